@@ -8,6 +8,7 @@
 #include "palpate/loop/contact_instant.h"
 #include "palpate/render/available.h"
 #include "palpate/render/marks.h"
+#include "palpate/scene/hands.h"
 
 namespace palpate::cli {
 namespace {
@@ -112,7 +113,8 @@ Instant instant_of(loop::World& world, double time, Shade shade) {
         if (depths[v] > 0.0) list.emplace_back(static_cast<int>(v), static_cast<float>(depths[v]));
     }
   for (const loop::Bone& bone : world.bones) out.bones.push_back(world.bone_pose(bone));
-  if (world.description.tool) out.tool = world.tool_pose();
+  for (std::size_t i = 0; i < scene::hands_of(world.description).size(); ++i)
+    out.tools.push_back(world.tool_pose(i));
   return out;
 }
 
@@ -125,13 +127,14 @@ render::Scene scene_of(const loop::World& world, const Instant& instant, Shade s
     scene.surfaces.push_back(std::move(surface));
   }
   add_bones(scene, world, instant);
-  if (world.description.tool) {
-    TriMesh tool = loop::tool_surface(*world.description.tool, world.folder);
-    if (instant.handle) add_handle(scene, *instant.handle, tool);
+  const std::vector<scene::Hand> hands = scene::hands_of(world.description);
+  for (std::size_t hand = 0; hand < hands.size(); ++hand) {
+    TriMesh tool = loop::tool_surface(*hands[hand].tool, world.folder);
+    if (hand == 0 && instant.handle) add_handle(scene, *instant.handle, tool);
     for (Eigen::Index i = 0; i < tool.vertices.cols(); ++i)
-      tool.vertices.col(i) = instant.tool * Vec3(tool.vertices.col(i));
-    render::Surface surface{"tool", tool.vertices, tool.faces};
-    surface.colour = {0.80f, 0.42f, 0.20f};
+      tool.vertices.col(i) = instant.tools[hand] * Vec3(tool.vertices.col(i));
+    render::Surface surface{hands[hand].name, tool.vertices, tool.faces};
+    surface.colour = hand == 0 ? render::Rgb{0.80f, 0.42f, 0.20f} : render::Rgb{0.25f, 0.50f, 0.72f};
     surface.opacity = 0.45;  // the dent lies under it
     scene.surfaces.push_back(surface);
   }

@@ -27,8 +27,8 @@ struct Instant {
   /// shades
   std::vector<std::vector<std::pair<int, float>>> depths;
   std::vector<Pose> bones;
-  Pose tool;
-  std::optional<Pose> handle;  ///< that the hand holds; empty: not drawn
+  std::vector<Pose> tools;     ///< of each hand
+  std::optional<Pose> handle;  ///< that the first hand holds; empty: not drawn
 };
 
 /// @pre for penetration: right after a query, with views kept (loop/contact_instant.h)

@@ -39,7 +39,8 @@ std::string bytes_of(const Instant& instant) {
   }
   out.put(instant.bones.size());
   for (const Pose& bone : instant.bones) put(out, bone);
-  put(out, instant.tool);
+  out.put(instant.tools.size());
+  for (const Pose& tool : instant.tools) put(out, tool);
   out.put(instant.handle.has_value());
   if (instant.handle) put(out, *instant.handle);
   return out.take();
@@ -63,7 +64,8 @@ Instant instant_from(const std::string& bytes) {
   }
   out.bones.resize(in.get<std::size_t>());
   for (Pose& bone : out.bones) bone = pose_from(in);
-  out.tool = pose_from(in);
+  out.tools.resize(in.get<std::size_t>());
+  for (Pose& tool : out.tools) tool = pose_from(in);
   if (in.get<bool>()) out.handle = pose_from(in);
   return out;
 }

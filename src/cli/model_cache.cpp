@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/scene/hands.h"
 #include "palpate/store/model_cache.h"
 
 namespace palpate::cli {
@@ -71,7 +72,7 @@ void make_missing_models(const scene::Description& description) {
       make_model(name, path);
   };
   for (const SoftBodySpec& body : description.bodies) make(body.mesh.file);
-  if (description.tool) make(description.tool->mesh.file);
+  for (const scene::Hand& hand : scene::hands_of(description)) make(hand.tool->mesh.file);
 }
 
 }  // namespace palpate::cli

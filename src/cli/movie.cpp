@@ -8,6 +8,7 @@
 #include "frames.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/haptic_record.h"
+#include "palpate/scene/hands.h"
 #include "palpate/store/run_file.h"
 #include "recorded_scene.h"
 #include "stop.h"
@@ -29,12 +30,13 @@ Pose pose_between(const Points& before, const Points& after) {
   return {Quat(R), d - R * c};
 }
 
-/// What a run kept of its states: the parts as the recorder writes them, bodies, bones with a shape, tool.
+/// What a run kept of its states: the parts as the recorder writes them, bodies, bones with a shape, tools.
 class States {
  public:
   States(const std::string& path, const loop::World& world, const store::RunReader& reader)
       : world_(world), reader_(reader) {
-    std::size_t expected = world.bodies.size() + world.description.tool.has_value();
+    const std::vector<scene::Hand> hands = scene::hands_of(world.description);
+    std::size_t expected = world.bodies.size() + hands.size();
     for (const loop::Bone& bone : world.bones) expected += bone.surface.vertices.cols() > 0;
     if (reader.parts().size() != expected)
       fail("{}: {} parts, but its scene has {}; it was made by another version of palpate", path,
@@ -43,7 +45,7 @@ class States {
       if (reader.parts()[i].reference.cols() != world.bodies[i].placed.cols())
         fail("{}: body \"{}\" has {} nodes, but its scene makes it of {}: the mesh is another now", path,
              world.bodies[i].name, reader.parts()[i].reference.cols(), world.bodies[i].placed.cols());
-    if (world.description.tool) tool_ = loop::tool_surface(*world.description.tool, world.folder);
+    for (const scene::Hand& hand : hands) tools_.push_back(loop::tool_surface(*hand.tool, world.folder));
   }
 
   Instant at(int step, Shade shade) const {
@@ -65,14 +67,14 @@ class States {
     };
     for (const loop::Bone& bone : world_.bones)
       out.bones.push_back(bone.surface.vertices.cols() > 0 ? pose(bone.surface) : Pose{});
-    if (world_.description.tool) out.tool = pose(tool_);
+    for (const TriMesh& tool : tools_) out.tools.push_back(pose(tool));
     return out;
   }
 
  private:
   const loop::World& world_;
   const store::RunReader& reader_;
-  TriMesh tool_;
+  std::vector<TriMesh> tools_;
 };
 
 /// Between two frames, in whole recorded states.

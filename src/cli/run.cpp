@@ -31,12 +31,25 @@ namespace {
 /// The largest force and torque that the hand felt, and when.
 class PeakWrench : public loop::Observer {
  public:
-  void tick(const loop::TickRecord& tick) override {
-    if (tick.device.force.norm() > force_n) force_n = tick.device.force.norm(), force_s = tick.time;
-    if (tick.device.moment.norm() > torque_n_m) torque_n_m = tick.device.moment.norm(), torque_s = tick.time;
+  void tick_of(std::size_t hand, const loop::TickRecord& tick) override {
+    if (hand >= of.size()) of.resize(hand + 1);
+    Peak& p = of[hand];
+    if (tick.device.force.norm() > p.force_n) p.force_n = tick.device.force.norm(), p.force_s = tick.time;
+    if (tick.device.moment.norm() > p.torque_n_m)
+      p.torque_n_m = tick.device.moment.norm(), p.torque_s = tick.time;
   }
-  double force_n = 0.0, force_s = 0.0, torque_n_m = 0.0, torque_s = 0.0;
+  struct Peak {
+    double force_n = 0.0, force_s = 0.0, torque_n_m = 0.0, torque_s = 0.0;
+  };
+  std::vector<Peak> of{1};  ///< each hand
 };
+
+void print_hand(const std::string& who, const PeakWrench::Peak& peak, long ticks, long limited) {
+  fmt::print(
+      "on {}: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the device's "
+      "limit\n",
+      who, peak.force_n, peak.force_s, peak.torque_n_m, peak.torque_s, ticks, limited);
+}
 
 void print_outcome(const loop::World& world, const loop::RunResult& result, const PeakWrench& peak,
                    double assemble_s) {
@@ -48,11 +61,10 @@ void print_outcome(const loop::World& world, const loop::RunResult& result, cons
                world.stepper->name(), c.steps, c.force_evaluations, c.tangent_evaluations,
                c.solver.factorisations, result.contact_queries);
   }
-  if (result.ticks > 0)
-    fmt::print(
-        "on the hand: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the "
-        "device's limit\n",
-        peak.force_n, peak.force_s, peak.torque_n_m, peak.torque_s, result.ticks, result.limited_ticks);
+  if (result.ticks > 0) print_hand("the hand", peak.of[0], result.ticks, result.limited_ticks);
+  for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peak.of.size(); ++i)
+    print_hand(fmt::format("hand \"{}\"", world.description.hands[i].name), peak.of[i + 1],
+               result.more_hands[i].ticks, result.more_hands[i].limited_ticks);
   if (result.outside_ticks > 0)
     fmt::print(
         "in {} ticks the handle was outside the device's workspace, where forces fade to nothing; move it by "

@@ -26,11 +26,12 @@ void visit_error(Error& e, Visit visit) {
 
 // Beside its numbers a RunResult holds a status, a flag (padded to a word), what put_result writes by hand,
 // and what a comparison has not: the clock of real time (it runs in virtual time), the energy at the device's
-// port, and buzz.
+// port, buzz, and what is known of further hands.
 static_assert(dynamics::bytes_of_counters<loop::RunResult>() + sizeof(dynamics::StepResult) + sizeof(double) +
                       sizeof(std::vector<long>) + sizeof(std::optional<loop::EnergyBalance>) +
                       sizeof(std::string) + sizeof(std::optional<loop::RealTimeResult>) +
-                      sizeof(std::optional<loop::PortEnergy>) + sizeof(std::optional<double>) ==
+                      sizeof(std::optional<loop::PortEnergy>) + sizeof(std::optional<double>) +
+                      sizeof(std::vector<loop::HandResult>) ==
                   sizeof(loop::RunResult),
               "the codec leaves out a member of RunResult");
 

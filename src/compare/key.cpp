@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "palpate/core/error.h"
+#include "palpate/scene/hands.h"
 #include "palpate/store/content_hash.h"
 #include "palpate/store/provenance.h"
 
@@ -70,7 +71,7 @@ std::string result_key(const scene::Description& d, const std::string& more) {
   hash.add(made_by()).add(without_compare(d.source)).add(fmt::format("{}", d.compare.duration_s)).add(more);
   const std::string folder = fs::path(d.path).parent_path().string();
   for (const SoftBodySpec& body : d.bodies) add_mesh(hash, body.mesh, folder);
-  if (d.tool) add_mesh(hash, d.tool->mesh, folder);
+  for (const scene::Hand& hand : scene::hands_of(d)) add_mesh(hash, hand.tool->mesh, folder);
   return hash.hex();
 }
 

@@ -210,8 +210,10 @@ std::unique_ptr<World> assemble(const scene::Description& description, std::uniq
   assemble_bodies(*world);
   if (!description.bones.empty()) assemble_bones(*world);
   assemble_skeletons(*world);
+  ToolSide::make(*world);
   ToolSide::of(*world).handle = std::move(hand);
-  if (description.tool) assemble_tool(*world);
+  for (std::size_t i = 0; i < ToolSide::all(*world).size(); ++i)
+    if (ToolSide::of(*world, i).spec) assemble_tool(*world, i);
   assemble_attachments(*world);
   if (!description.contacts.empty()) assemble_contact(*world);
   if (world->state.layout().blocks.empty()) return world;  // a tool with its own ticks, alone

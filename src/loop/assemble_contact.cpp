@@ -122,9 +122,8 @@ std::unique_ptr<contact::SampleSource> image_source(Pair pair, TriMesh rigid,
                                     rigid_proxies, frame, std::move(motion), options);
 }
 
-/// The tool's frame in contact: its block of the State, or its motion over one exchange period.
-std::shared_ptr<contact::MovingFrame> tool_motion(World& world) {
-  ToolSide& side = ToolSide::of(world);
+/// A tool's frame in contact: its block of the State, or its motion over one exchange period.
+std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolSide& side) {
   if (side.motion) return side.motion;
   if (world.monolithic())
     side.motion = contact::block_frame(side.block_id);
@@ -134,26 +133,25 @@ std::shared_ptr<contact::MovingFrame> tool_motion(World& world) {
   return side.motion;
 }
 
-std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
-  const ToolSpec& tool = *world.description.tool;
-  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
-  ToolSide& side = ToolSide::of(world);
+std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side, Pair pair) {
+  const ToolSpec& tool = *side.spec;
+  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
   const bool sphere = tool.shape == "sphere";
   if (pair.spec.method != "analytic" && !(pair.spec.method == "auto" && sphere && !pair.proxies))
     return image_source(std::move(pair), tool_surface(tool, world.folder), side.proxies, side.frame_index,
                         motion);
   if (!sphere)
     fail(
-        "contact {} - tool: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = "
+        "contact {} - {}: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = "
         "\"auto\"",
-        pair.spec.first, tool.shape);
+        pair.spec.first, pair.spec.second, tool.shape);
   return contact::make_sphere_source(std::move(pair.surface), side.frame_index, motion, Vec3::Zero(),
                                      tool.radius_m, pair.candidate_gap, pair.look_ahead);
 }
 
-/// What is left out buys a symmetric matrix: not where the tool's own rows make it unsymmetric.
+/// Where a step is one linear solve.  What is left out of a tool's rows besides buys no symmetric matrix; the
+/// secant is needed all the same, else friction that slides turns nodes round in each step and holds nothing.
 bool leaves_out_friction(const World& world) {
-  if (world.description.tool && world.monolithic()) return false;
   const auto& registry = integrate::stepper_registry();
   const auto entry = std::find_if(registry.begin(), registry.end(),
                                   [&](const auto& e) { return e.name == world.description.integrator.name; });
@@ -188,12 +186,12 @@ struct ToolInContact {
   double look_ahead;  ///< time to the next query [s]
 };
 
-std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, const ContactSpec& spec,
-                                                        const ObstacleSpec& obstacle,
+std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, const ToolSpec& tool,
+                                                        const ContactSpec& spec, const ObstacleSpec& obstacle,
                                                         const ToolInContact& in) {
-  const ToolSpec& tool = *world.description.tool;
   if (tool.shape == "sphere" && spec.spring == "per_point")
-    fail("contact tool - {}: spring = \"per_point\" is for vertices, and a sphere has none", obstacle.name);
+    fail("contact {} - {}: spring = \"per_point\" is for vertices, and a sphere has none", spec.first,
+         obstacle.name);
   contact::ContactSide side = [&]() -> contact::ContactSide {
     if (tool.shape == "sphere") return contact::FrameBall{tool.radius_m, Vec3::Zero(), in.frame, in.motion};
     return contact::FrameSurface{tool_surface(tool, world.folder), in.frame, in.motion};
@@ -203,20 +201,27 @@ std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, cons
 
 /// Contact of the tool with an obstacle.  A tool of ticks feels one of its own; what the bodies' side knows
 /// of it, along the path that the tool went, is for energies and pictures.
-std::unique_ptr<contact::SampleSource> tool_on_obstacle(World& world, const ContactSpec& spec,
+std::unique_ptr<contact::SampleSource> tool_on_obstacle(World& world, ToolSide& side, const ContactSpec& spec,
                                                         const ObstacleSpec& obstacle) {
-  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
-  ToolSide& side = ToolSide::of(world);
+  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
   const scene::CosimulationSpec& exchange = world.description.exchange;
   const double look_ahead = side.trajectory ? exchange.exchange_period_s : exchange.contact_refresh_s;
   if (side.trajectory) {
     if (!side.obstacles) side.obstacles = std::make_unique<ObstacleTouch>(look_ahead);
     ObstacleTouch& own = *side.obstacles;
-    own.contact().add_pair(
-        tool_on_obstacle(world, spec, obstacle, {own.contact(), own.frame(), own.motion(), look_ahead}),
-        spec);
+    own.contact().add_pair(tool_on_obstacle(world, *side.spec, spec, obstacle,
+                                            {own.contact(), own.frame(), own.motion(), look_ahead}),
+                           spec);
   }
-  return tool_on_obstacle(world, spec, obstacle, {*world.contact, side.frame_index, motion, look_ahead});
+  return tool_on_obstacle(world, *side.spec, spec, obstacle,
+                          {*world.contact, side.frame_index, motion, look_ahead});
+}
+
+/// The tool that [[contact]] calls so; null where there is none.
+ToolSide* side_named(World& world, const std::string& name) {
+  for (const auto& side : ToolSide::all(world))
+    if (side->spec && side->name == name) return side.get();
+  return nullptr;
 }
 
 /// @pre the names are in their order (scene::order_sides)
@@ -225,14 +230,14 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
   const auto& obstacles = world.description.obstacles;
   const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(),
                                      [&](const ObstacleSpec& o) { return o.name == spec.second; });
-  const bool tool = world.description.tool.has_value();
-  if (tool && spec.first == "tool" && obstacle != obstacles.end())
-    return tool_on_obstacle(world, spec, *obstacle);
+  ToolSide* const first_tool = side_named(world, spec.first);
+  if (first_tool && obstacle != obstacles.end()) return tool_on_obstacle(world, *first_tool, spec, *obstacle);
   if (!world.find_body(spec.first))
-    fail("contact {} - {}: one must be a soft body, or the tool where the other is an obstacle", spec.first,
+    fail("contact {} - {}: one must be a soft body, or a tool where the other is an obstacle", spec.first,
          spec.second);
   Pair pair = pair_of(world, spec, spec.first);
-  if (tool && spec.second == "tool") return tool_source(world, std::move(pair));
+  if (ToolSide* const side = side_named(world, spec.second))
+    return tool_source(world, *side, std::move(pair));
   if (obstacle != obstacles.end()) return obstacle_source(world, std::move(pair), *obstacle);
   if (spec.second == spec.first) return own_source(world, std::move(pair));
   if (world.find_body(spec.second)) return image_source(std::move(pair), pair_of(world, spec, spec.second));
@@ -244,22 +249,19 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
 
 void assemble_contact(World& world) {
   world.contact = std::make_shared<contact::ContactForce>();
-  bool soft_partner = false;  // of the tool
   for (ContactSpec& given : world.description.contacts) {
     scene::order_sides(world.description, given);
     ContactSpec spec = given;
     if (spec.friction_tangent == "auto")
       spec.friction_tangent = leaves_out_friction(world) ? "secant" : "full";
     // of a tool with ticks of its own on an obstacle no step matrix has a part
-    if (world.description.tool && spec.first == "tool" && !world.monolithic())
-      spec.friction_tangent = "symmetric";
+    if (side_named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "symmetric";
     world.contact->add_pair(source_of(world, spec), spec);
-    soft_partner = soft_partner || (world.description.tool && spec.second == "tool");
+    ToolSide* const side = side_named(world, spec.second);  // of a soft body's tool
+    if (side && side->trajectory && !side->touch && world.description.exchange.linearisation == "points")
+      side->touch = std::make_unique<TouchReduction>(world, world.description.exchange.linearisation_error);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
-  ToolSide& side = ToolSide::of(world);
-  if (soft_partner && side.trajectory && world.description.exchange.linearisation == "points")
-    side.touch = std::make_unique<TouchReduction>(world, world.description.exchange.linearisation_error);
 }
 
 contact::ObstaclePicture obstacle_picture(const ObstacleSpec& spec, const contact::View& view) {

@@ -9,10 +9,10 @@ void assemble_bodies(World& world);
 /// own first.
 /// @param in_file  regions of its mesh file  @pre body.placed
 fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<MaterialRegion> in_file, Body& body);
-void assemble_bones(World& world);        ///< only with [[bone]]
-void assemble_skeletons(World& world);    ///< bones of model files, where a [body.skeleton] asks for them
-void assemble_tool(World& world);         ///< only with [tool]
-void assemble_attachments(World& world);  ///< after all that nodes may be attached to
-void assemble_contact(World& world);      ///< only with [[contact]]
+void assemble_bones(World& world);      ///< only with [[bone]]
+void assemble_skeletons(World& world);  ///< bones of model files, where a [body.skeleton] asks for them
+void assemble_tool(World& world, std::size_t hand);  ///< for each of scene::hands_of()
+void assemble_attachments(World& world);             ///< after all that nodes may be attached to
+void assemble_contact(World& world);                 ///< only with [[contact]]
 
 }  // namespace palpate::loop

@@ -39,19 +39,18 @@ tool::HandBlock hand_of(const device::HandModel& model) {
 }
 
 /// The hand as a block of the State beside the tool.
-void assemble_hand(World& world, const dynamics::BlockSpec& tool_spec) {
+void assemble_hand(World& world, ToolSide& side, const dynamics::BlockSpec& tool_spec) {
   const scene::Description& d = world.description;
   if (d.record && d.record->energy)
     fail(
         "exchange: scheme = \"monolithic\" with a simulated hand: record.energy = true keeps the balance of "
         "what a hand does from outside, and this one is a part of the system; set it to false");
-  ToolSide& side = ToolSide::of(world);
   ToolSide::HandInState& hand = side.hand_in_state.emplace();
-  hand.model = device::hand_model(*d.device);
+  hand.model = device::hand_model(*side.device_spec);
   hand.hand = hand_of(hand.model);
   hand.block_id = world.state.insert(tool::hand_block(tool_spec.q_scale, tool_spec.u_scale),
                                      tool::hand_at_start(hand.hand), VecX::Zero(6));
-  const tool::HandTerms terms = tool::make_hand_terms(hand.block_id, side.block_id, *d.tool, hand.hand);
+  const tool::HandTerms terms = tool::make_hand_terms(hand.block_id, side.block_id, *side.spec, hand.hand);
   world.system.add(terms.inertia);
   world.system.add(terms.arm);
   world.system.add(terms.coupling);
@@ -59,37 +58,36 @@ void assemble_hand(World& world, const dynamics::BlockSpec& tool_spec) {
 
 /// The tool as a block of the State beside the bodies.
 /// @param own_device  the device is that of the scene
-void assemble_block(World& world, bool own_device) {
-  const scene::Description& d = world.description;
-  const ToolSpec& spec = *d.tool;
+void assemble_block(World& world, ToolSide& side, bool own_device) {
+  const ToolSpec& spec = *side.spec;
   const Quat r = quaternion_of(spec.rotation_vector_rad);
   VecX q(7);
   q << r.w(), r.vec(), spec.position_m;
   const dynamics::BlockSpec tool_spec = tool::tool_block(spec);
-  const int block_id = ToolSide::of(world).block_id = world.state.insert(tool_spec, q, VecX::Zero(6));
-  const tool::SimbodyTerms terms = tool::make_simbody_terms(block_id, spec, d.gravity_m_s2);
+  const int block_id = side.block_id = world.state.insert(tool_spec, q, VecX::Zero(6));
+  const tool::SimbodyTerms terms = tool::make_simbody_terms(block_id, spec, world.description.gravity_m_s2);
   world.system.add(terms.inertia);
   world.system.add(terms.force);
-  if (own_device && d.device->type == "hand") return assemble_hand(world, tool_spec);
-  world.system.add(tool::make_coupling_term(block_id, spec, path_of(*ToolSide::of(world).handle, *d.device)));
+  if (own_device && side.device_spec->type == "hand") return assemble_hand(world, side, tool_spec);
+  world.system.add(tool::make_coupling_term(block_id, spec, path_of(*side.handle, *side.device_spec)));
 }
 
 }  // namespace
 
-void assemble_tool(World& world) {
+void assemble_tool(World& world, std::size_t hand) {
   const scene::Description& d = world.description;
-  ToolSide& side = ToolSide::of(world);
+  ToolSide& side = ToolSide::of(world, hand);
   const bool own_device = !side.handle;
-  if (own_device) side.handle = device::make_device(*d.device, world.folder);
-  const device::DeviceFigures figures = device::figures_of(*d.device);
+  if (own_device) side.handle = device::make_device(*side.device_spec, world.folder);
+  const device::DeviceFigures figures = device::figures_of(*side.device_spec);
   side.limiter =
-      std::make_unique<device::WrenchLimiter>(figures.max_force, figures.max_torque, d.device->ramp_s,
+      std::make_unique<device::WrenchLimiter>(figures.max_force, figures.max_torque, side.device_spec->ramp_s,
                                               figures.max_force_slew, figures.max_torque_slew);
   side.limiter->confine(figures.workspace, *side.handle);
   if (d.exchange.scheme == "monolithic")
-    assemble_block(world, own_device);
+    assemble_block(world, side, own_device);
   else if (d.exchange.scheme == "partitioned") {
-    side.tool = std::make_unique<tool::Tool>(*d.tool, d.tool->gravity ? d.gravity_m_s2 : Vec3(Vec3::Zero()));
+    side.tool = side.another_tool(d.gravity_m_s2);
     side.known = {side.tool->time(), side.tool->pose(), side.tool->twist()};
   } else
     fail("exchange: unknown scheme \"{}\"{}", d.exchange.scheme,

@@ -12,10 +12,16 @@ namespace palpate::loop {
 int whole_number(double ratio) { return std::max(1, static_cast<int>(std::lround(ratio))); }
 
 BodySide::BodySide(World& world, const RunOptions& options, RunResult& result)
-    : world_(world), side_(ToolSide::of(world)), options_(options), result_(result) {
+    : world_(world), options_(options), result_(result) {
   const scene::Description& d = world.description;
-  if (d.tool && d.tool->tick_s * device::kBuzzFrequency < 0.25) buzz_.emplace(d.tool->tick_s);
-  side_.passivity = d.device ? device::make_passivity_controller(options.passivity, *d.device) : nullptr;
+  for (const auto& side : ToolSide::all(world)) {
+    Felt& felt = felt_.emplace_back();
+    side->passivity = side->device_spec
+                          ? device::make_passivity_controller(options.passivity, *side->device_spec)
+                          : nullptr;
+    if (side->spec && side->spec->tick_s * device::kBuzzFrequency < 0.25)
+      felt.buzz.emplace(side->spec->tick_s);
+  }
   duration_ = options.duration_s > 0.0 ? options.duration_s : d.duration_s;
   period_ = period_of(d);
   if (!(duration_ / period_ < 1e9))
@@ -36,9 +42,10 @@ void BodySide::start() {
 
 // The switch as it was at the last tick.  Within a period the ticks are ahead of the bodies.
 void BodySide::query() {
-  const std::optional<ToolSpec>& tool = world_.description.tool;
-  if (world_.contact && tool && tool->grasp_switch >= 0 && side_.frame_index >= 0)
-    world_.contact->set_grasp(side_.frame_index, (side_.handle_now.switches >> tool->grasp_switch) & 1U);
+  for (const auto& side : ToolSide::all(world_))
+    if (world_.contact && side->spec && side->spec->grasp_switch >= 0 && side->frame_index >= 0)
+      world_.contact->set_grasp(side->frame_index,
+                                (side->handle_now.switches >> side->spec->grasp_switch) & 1U);
   look();
 }
 
@@ -54,35 +61,40 @@ void BodySide::look() {
   for (Observer* observer : options_.observers) observer->queried(world_, world_.state.time());
 }
 
-ContactRecord BodySide::linearise(double period_s) {
+ContactRecord BodySide::linearise(std::size_t hand, double period_s) {
   const ContactRecord record = [&] {
     const ScopedTimer timer(result_.linearise_s);
-    return linearise_contact(world_, ++version_, period_s, result_.frozen_fallbacks);
+    return linearise_contact(world_, ++felt_[hand].version, period_s, result_.frozen_fallbacks, hand);
   }();
-  for (Observer* observer : options_.observers) observer->exchanged(record);
+  if (hand == 0)
+    for (Observer* observer : options_.observers) observer->exchanged(record);
   return record;
 }
 
-void BodySide::follow(double t, const Pose& pose, const Twist& twist) {
-  side_.known = {t, pose, twist};
-  if (side_.trajectory) side_.trajectory->append(t, pose, twist);
+void BodySide::follow(std::size_t hand, double t, const Pose& pose, const Twist& twist) {
+  ToolSide& side = ToolSide::of(world_, hand);
+  side.known = {t, pose, twist};
+  if (side.trajectory) side.trajectory->append(t, pose, twist);
 }
 
 void BodySide::restart_path() {
-  if (!side_.trajectory) return;
-  side_.trajectory->clear();
-  side_.trajectory->append(side_.known.time, side_.known.pose, side_.known.twist);
+  for (const auto& side : ToolSide::all(world_)) {
+    if (!side->trajectory) continue;
+    side->trajectory->clear();
+    side->trajectory->append(side->known.time, side->known.pose, side->known.twist);
+  }
 }
 
-void BodySide::felt(const TickRecord& tick) {
-  side_.handle_now.pose = tick.handle;
-  side_.handle_now.twist = tick.handle_twist;
-  side_.handle_now.valid = tick.handle_valid;
-  side_.handle_now.switches = tick.switches;
-  ++result_.ticks;
-  if (buzz_) buzz_->add(tick.device.force);
-  if (ledger_) ledger_->tick(tick.time, tick.wanted, tick.handle_twist);
-  for (Observer* observer : options_.observers) observer->tick(tick);
+void BodySide::felt(std::size_t hand, const TickRecord& tick) {
+  device::HandleSample& handle = ToolSide::of(world_, hand).handle_now;
+  handle.pose = tick.handle;
+  handle.twist = tick.handle_twist;
+  handle.valid = tick.handle_valid;
+  handle.switches = tick.switches;
+  ++felt_[hand].ticks;
+  if (felt_[hand].buzz) felt_[hand].buzz->add(tick.device.force);
+  if (ledger_) ledger_->tick(hand, tick.time, tick.wanted, tick.handle_twist);
+  for (Observer* observer : options_.observers) observer->tick_of(hand, tick);
 }
 
 double BodySide::next_query(double t0, double t1) {
@@ -176,15 +188,29 @@ void BodySide::finish() {
     result_.contact_queries = world_.contact->queries();
     result_.tunnelled = world_.contact->tunnelled();
   }
-  if (side_.limiter) {
-    result_.limited_ticks = side_.limiter->limited_ticks();
-    result_.outside_ticks = side_.limiter->outside_ticks();
-  }
-  if (buzz_) result_.buzz_n = buzz_->rms();
-  if (side_.passivity) {
-    const device::PassivityObserver& port = side_.passivity->observer();
-    result_.port = {port.energy(), port.least_energy(), port.work(), side_.passivity->dissipated(),
-                    side_.passivity->active_ticks()};
+  for (std::size_t i = 0; i < felt_.size(); ++i) {
+    const ToolSide& side = ToolSide::of(world_, i);
+    HandResult hand;
+    hand.ticks = felt_[i].ticks;
+    if (side.limiter) {
+      hand.limited_ticks = side.limiter->limited_ticks();
+      hand.outside_ticks = side.limiter->outside_ticks();
+    }
+    if (felt_[i].buzz) hand.buzz_n = felt_[i].buzz->rms();
+    if (side.passivity) {
+      const device::PassivityObserver& port = side.passivity->observer();
+      hand.port = {port.energy(), port.least_energy(), port.work(), side.passivity->dissipated(),
+                   side.passivity->active_ticks()};
+    }
+    if (i > 0) {
+      result_.more_hands.push_back(hand);
+      continue;
+    }
+    result_.ticks = hand.ticks;
+    result_.limited_ticks = hand.limited_ticks;
+    result_.outside_ticks = hand.outside_ticks;
+    result_.buzz_n = hand.buzz_n;
+    result_.port = hand.port;
   }
 }
 

@@ -25,14 +25,14 @@ class BodySide {
   /// The slow query at an exchange, where the tool grasps and lets go as the handle's switch says; multistep
   /// integrators then forget their history.
   void query();
-  /// The contact as the tool feels it for the coming `period_s`.
-  ContactRecord linearise(double period_s);
-  /// The tool was there, at a later time than all told before; from the last restart on it is a path that the
-  /// bodies follow.
-  void follow(double t, const Pose& pose, const Twist& twist);
-  void restart_path();
-  /// The hand felt this.
-  void felt(const TickRecord& tick);
+  /// The contact as that hand's tool feels it for the coming `period_s`.
+  ContactRecord linearise(std::size_t hand, double period_s);
+  /// That hand's tool was there, at a later time than all told before; from the last restart on it is a path
+  /// that the bodies follow.
+  void follow(std::size_t hand, double t, const Pose& pose, const Twist& twist);
+  void restart_path();  ///< of all tools
+  /// That hand felt this.
+  void felt(std::size_t hand, const TickRecord& tick);
   /// When contact is to be looked for again: at t1, or, with tunnelling = "substep", so soon that no skin has
   /// gone farther by then into what it touches than half of its thickness (SampleSource::safe_time).
   double next_query(double t0, double t1);
@@ -55,14 +55,18 @@ class BodySide {
   void change_materials(double time);
 
   World& world_;
-  ToolSide& side_;
   const RunOptions& options_;
   RunResult& result_;
   double duration_ = 0.0, period_ = 0.0;
   int periods_ = 0;
-  std::uint64_t version_ = 0;           ///< of the last linearisation
-  double changed_ = 0.0;                ///< time of the last material change [s]
-  std::optional<device::Buzz> buzz_;    ///< where ticks are fast enough
+  double changed_ = 0.0;  ///< time of the last material change [s]
+  /// Of a hand, as scene::hands_of() counts them.
+  struct Felt {
+    std::uint64_t version = 0;         ///< of the last linearisation
+    std::optional<device::Buzz> buzz;  ///< where ticks are fast enough
+    long ticks = 0;
+  };
+  std::vector<Felt> felt_;
   std::optional<EnergyLedger> ledger_;  ///< where an observer wants it
   MonolithicTicks* ticks_ = nullptr;
 };

@@ -57,50 +57,52 @@ double EnergyLedger::dissipated_power() const {
   const dynamics::StateView view = world_.state.view();
   double sum = 0.0;
   for (const auto& term : world_.system.terms()) sum += term->dissipated_power(view);
-  const ToolSide& side = ToolSide::of(world_);
-  if (!side.tool) return sum;
-  const VirtualCouplingSpec& c = world_.description.tool->coupling;
-  const Twist &tool = side.known.twist, &hand = side.handle_now.twist;
-  return sum + c.damping_n_s_m * (hand.linear - tool.linear).squaredNorm() +
-         c.rotational_damping_n_m_s_rad * (hand.angular - tool.angular).squaredNorm();
+  for (const auto& side : ToolSide::all(world_)) {
+    if (!side->tool) continue;
+    const VirtualCouplingSpec& c = side->spec->coupling;
+    const Twist &tool = side->known.twist, &hand = side->handle_now.twist;
+    sum += c.damping_n_s_m * (hand.linear - tool.linear).squaredNorm() +
+           c.rotational_damping_n_m_s_rad * (hand.angular - tool.angular).squaredNorm();
+  }
+  return sum;
 }
 
 void EnergyLedger::take_stored() {
   const dynamics::StateView view = world_.state.view();
-  ToolSide& side = ToolSide::of(world_);
   balance_.kinetic = view.layout->blocks.empty() ? 0.0 : world_.system.kinetic_energy(view);
   balance_.elastic = elastic_energy();
   balance_.contact = contact_energy();
   balance_.other =
       world_.system.potential_energy(view) - balance_.elastic - balance_.contact - other_at_start_;
-  if (!side.as_known) return;
-  side.as_known->set_state(side.known.time, side.known.pose, side.known.twist);
-  balance_.kinetic += side.as_known->kinetic_energy();
-  balance_.other += side.as_known->potential_energy(side.handle_now.pose);
+  for (const auto& side : ToolSide::all(world_)) {
+    if (!side->as_known) continue;
+    side->as_known->set_state(side->known.time, side->known.pose, side->known.twist);
+    balance_.kinetic += side->as_known->kinetic_energy();
+    balance_.other += side->as_known->potential_energy(side->handle_now.pose);
+  }
 }
 
 void EnergyLedger::start() {
   const double t = world_.state.time();
   balance_ = {};
   other_at_start_ = 0.0;
-  if (ToolSide& side = ToolSide::of(world_); side.tool) {
-    const scene::Description& d = world_.description;
-    side.as_known =
-        std::make_unique<tool::Tool>(*d.tool, d.tool->gravity ? d.gravity_m_s2 : Vec3(Vec3::Zero()));
-  }
+  for (const auto& side : ToolSide::all(world_))
+    if (side->tool) side->as_known = side->another_tool(world_.description.gravity_m_s2);
   take_stored();
   other_at_start_ = balance_.other;
   balance_.other = 0.0;
   stored_at_start_ = balance_.stored();
-  double hand = 0.0;
-  if (world_.description.tool) {
-    const device::HandleSample& handle = ToolSide::of(world_).handle_now;
-    hand =
-        -power_on(tool::coupling_on_hand(*world_.description.tool, {world_.tool_pose(), world_.tool_twist()},
-                                         {handle.pose, handle.twist}),
-                  handle.twist);
+  hands_.clear();
+  for (std::size_t i = 0; i < ToolSide::all(world_).size(); ++i) {
+    const ToolSide& side = ToolSide::of(world_, i);
+    const device::HandleSample& handle = side.handle_now;
+    double power = 0.0;
+    if (side.spec)
+      power = -power_on(tool::coupling_on_hand(*side.spec, {world_.tool_pose(i), world_.tool_twist(i)},
+                                               {handle.pose, handle.twist}),
+                        handle.twist);
+    hands_.emplace_back().start(t, power);
   }
-  hand_.start(t, hand);
   supports_.start(t, world_.system.support_power(world_.state.view()));
   dissipated_.start(t, dissipated_power());
 }
@@ -110,8 +112,8 @@ void EnergyLedger::after_query() { balance_.queries += contact_energy() - contac
 void EnergyLedger::before_material() { elastic_before_ = elastic_energy(); }
 void EnergyLedger::after_material() { balance_.materials += elastic_energy() - elastic_before_; }
 
-void EnergyLedger::tick(double t, const Wrench& on_hand, const Twist& handle) {
-  hand_.add(t, -power_on(on_hand, handle));
+void EnergyLedger::tick(std::size_t hand, double t, const Wrench& on_hand, const Twist& handle) {
+  hands_.at(hand).add(t, -power_on(on_hand, handle));
 }
 
 const EnergyBalance& EnergyLedger::period(double t) {
@@ -119,10 +121,14 @@ const EnergyBalance& EnergyLedger::period(double t) {
   take_stored();
   supports_.add(t, world_.system.support_power(world_.state.view()));
   dissipated_.add(t, dissipated_power());
-  balance_.hand = hand_.value();
+  balance_.hand = balance_.quadrature_error = 0.0;
+  for (const PowerIntegral& hand : hands_) {
+    balance_.hand += hand.value();
+    balance_.quadrature_error += hand.error();
+  }
   balance_.supports = supports_.value();
   balance_.dissipated = dissipated_.value();
-  balance_.quadrature_error = hand_.error() + supports_.error() + dissipated_.error();
+  balance_.quadrature_error += supports_.error() + dissipated_.error();
   balance_.unaccounted = balance_.stored() - stored_at_start_ - balance_.hand - balance_.supports -
                          balance_.queries - balance_.materials + balance_.dissipated;
   return balance_;

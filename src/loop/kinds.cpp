@@ -30,6 +30,33 @@ KindTable mesh_kinds(const char* table, std::vector<Kind> generators) {
   return {.table = table, .selector = "generator", .kinds = std::move(generators), .alternative = "file"};
 }
 
+/// Of [tool] and [device], or, with the prefix "hand.", of each [[hand]]'s.
+void add_hand(const std::string& prefix, scene::Kinds& out) {
+  KindTable tool_integrators{.table = prefix + "tool",
+                             .selector = "integrator",
+                             .what = "tool integrator",
+                             .kinds = {},
+                             .unsaid = [](const Description&) { return ToolSpec{}.integrator; }};
+  for (const tool::ToolIntegratorInfo& info : tool::tool_integrators())
+    tool_integrators.kinds.push_back({info.name});
+  // without Simbody there are none: assemble says which package brings the tool
+  if (!tool_integrators.kinds.empty()) out.push_back(std::move(tool_integrators));
+  out.push_back({.table = prefix + "device",
+                 .selector = "type",
+                 .what = "device type",
+                 .kinds = kinds_of(device::device_registry()),
+                 .unsaid = [](const Description&) { return DeviceSpec{}.type; }});
+  KindTable profiles{
+      .table = prefix + "device", .selector = "profile", .what = "device profile", .kinds = {}};
+  for (const device::DeviceProfile& one : device::device_profiles()) profiles.kinds.push_back({one.name});
+  out.push_back(std::move(profiles));
+  out.push_back({.table = prefix + "device.motion",
+                 .selector = "kind",
+                 .what = "motion",
+                 .kinds = kinds_of(device::motion_registry()),
+                 .unsaid = [](const Description&) { return MotionSpec{}.kind; }});
+}
+
 scene::Kinds make_kinds() {
   scene::Kinds out;
   out.push_back({.table = "integrator",
@@ -48,7 +75,8 @@ scene::Kinds make_kinds() {
                  .kinds = kinds_of(fem::law_registry()),
                  .unsaid = [](const Description&) { return SoftBodySpec{}.material; }});
   out.push_back(mesh_kinds("body.mesh", kinds_of(mesh::tet_generators())));
-  out.push_back(mesh_kinds("tool.mesh", kinds_of(mesh::surface_generators())));
+  for (const char* table : {"tool.mesh", "hand.tool.mesh"})
+    out.push_back(mesh_kinds(table, kinds_of(mesh::surface_generators())));
   out.push_back({.table = "obstacle",
                  .selector = "type",
                  .kinds = kinds_of(contact::obstacle_registry()),
@@ -78,28 +106,7 @@ scene::Kinds make_kinds() {
                  .selector = "tunnelling",
                  .kinds = {{"report"}, {"substep", part_keys({"shortest_refresh_s"})}},
                  .unsaid = [](const Description&) { return scene::CosimulationSpec{}.tunnelling; }});
-  KindTable tool_integrators{.table = "tool",
-                             .selector = "integrator",
-                             .what = "tool integrator",
-                             .kinds = {},
-                             .unsaid = [](const Description&) { return ToolSpec{}.integrator; }};
-  for (const tool::ToolIntegratorInfo& info : tool::tool_integrators())
-    tool_integrators.kinds.push_back({info.name});
-  // without Simbody there are none: assemble says which package brings the tool
-  if (!tool_integrators.kinds.empty()) out.push_back(std::move(tool_integrators));
-  out.push_back({.table = "device",
-                 .selector = "type",
-                 .what = "device type",
-                 .kinds = kinds_of(device::device_registry()),
-                 .unsaid = [](const Description&) { return DeviceSpec{}.type; }});
-  KindTable profiles{.table = "device", .selector = "profile", .what = "device profile", .kinds = {}};
-  for (const device::DeviceProfile& one : device::device_profiles()) profiles.kinds.push_back({one.name});
-  out.push_back(std::move(profiles));
-  out.push_back({.table = "device.motion",
-                 .selector = "kind",
-                 .what = "motion",
-                 .kinds = kinds_of(device::motion_registry()),
-                 .unsaid = [](const Description&) { return MotionSpec{}.kind; }});
+  for (const std::string prefix : {"", "hand."}) add_hand(prefix, out);
   return out;
 }
 
@@ -120,6 +127,7 @@ scene::Description with_models(scene::Description d) {
   };
   for (SoftBodySpec& body : d.bodies) take(body.mesh);
   if (d.tool) take(d.tool->mesh);
+  for (scene::HandSpec& hand : d.hands) take(hand.tool.mesh);
   return d;
 }
 

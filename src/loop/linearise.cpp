@@ -69,10 +69,28 @@ void known_motion(World& world, double H, VecX& s, VecX& w) {
   }
 }
 
-VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w) {
+// An other tool goes on with its twist v, which the implicit step meets at its end, H later:
+//     f1 = ... - K_no H v,     so that H f gains H^2 rate with rate = -K_no v.
+VecX rate_by_other_tools(const World& world, const ToolSide& mine) {
+  VecX rate;
+  for (const auto& other : ToolSide::all(world)) {
+    if (other.get() == &mine || other->frame_index < 0) continue;
+    contact::FrameLinearisation c;
+    world.contact->linearise(world.state.view(), other->frame_index, c, contact::Partners::kNodes);
+    if (c.active == 0) continue;
+    Vec6 v;
+    v << other->known.twist.angular, other->known.twist.linear;
+    if (rate.size() == 0) rate = VecX::Zero(world.state.layout().u_size);
+    rate.head(c.K_body.rows()) -= c.K_body * v;
+  }
+  return rate;
+}
+
+VecX right_hand_side(World& world, const ToolSide& mine, double H, const VecX& s, const VecX& w) {
   const dynamics::StateView view = world.state.view();
   VecX f, inertia, stiff = VecX::Zero(s.size());
   world.system.force(view, f);
+  if (const VecX rate = rate_by_other_tools(world, mine); rate.size() > 0) f += H * rate;
   for (const auto& term : world.system.terms()) {
     if (!term->traits().has_tangent) continue;
     term->apply_tangent(view, 1.0, 0.0, s, stiff);
@@ -104,9 +122,9 @@ dynamics::LinearSolver* factored(const dynamics::System& system, ToolSide& side)
 namespace {
 
 /// False where the step matrix has no factor.
-bool answer_after(World& world, double H, const contact::FrameLinearisation& c, Answer& out) {
-  world.system.step_matrix(world.state.view(), 1.0, H, H * H, ToolSide::of(world).condensed_matrix);
-  dynamics::LinearSolver* solver = factored(world.system, ToolSide::of(world));
+bool answer_after(World& world, ToolSide& side, double H, const contact::FrameLinearisation& c, Answer& out) {
+  world.system.step_matrix(world.state.view(), 1.0, H, H * H, side.condensed_matrix);
+  dynamics::LinearSolver* solver = factored(world.system, side);
   if (!solver) return false;
   VecX s, w;
   known_motion(world, H, s, w);
@@ -114,7 +132,7 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
   MatX rhs = MatX::Zero(world.state.layout().u_size, 13);
   rhs.topLeftCorner(n, 6) = c.K_body;
   rhs.block(0, 6, n, 6) = c.B_body;
-  rhs.col(12) = right_hand_side(world, H, s, w);
+  rhs.col(12) = right_hand_side(world, side, H, s, w);
   VecX column;
   for (Eigen::Index i = 0; i < 12; ++i) {
     column = rhs.col(i);
@@ -138,8 +156,8 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
   VecX q = moved(world, s + H * g), u = world.state.u() + w + g;
   world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
   contact::FrameLinearisation after;
-  world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()),
-                           ToolSide::of(world).frame_index, after, contact::Partners::kNodes);
+  world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()), side.frame_index, after,
+                           contact::Partners::kNodes);
   out.J.topLeftCorner<3, 3>() += after.geometric - c.geometric;
   return true;
 }
@@ -155,15 +173,15 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
 // and 2.5 ms. A stiff contact that the last period has left out of balance is relaxed within the first tick,
 // as it is in the bodies' own implicit step, where a line that began at the present wrench would press with
 // it for half the period.  Where nothing is stiff, it begins there to O(tick^2).
-bool condense(World& world, double period, const contact::FrameLinearisation& c,
+bool condense(World& world, ToolSide& side, double period, const contact::FrameLinearisation& c,
               dynamics::LinearisedContact& record) {
-  const double tick = world.description.tool->tick_s;
+  const double tick = side.spec->tick_s;
   Answer last, first;
-  if (!answer_after(world, period, c, last)) return false;
+  if (!answer_after(world, side, period, c, last)) return false;
   Vec6 F0 = last.wrench, F1 = Vec6::Zero();
   if (tick < period * (1.0 - 1e-9)) {
-    if (!answer_after(world, tick, c, first)) return false;
-    const Twist twist = ToolSide::of(world).known.twist;
+    if (!answer_after(world, side, tick, c, first)) return false;
+    const Twist twist = side.known.twist;
     Vec6 v0;
     v0 << twist.angular, twist.linear;
     const Vec6 after_tick = first.wrench + tick * (first.J * v0),
@@ -182,10 +200,10 @@ bool condense(World& world, double period, const contact::FrameLinearisation& c,
 
 }  // namespace
 
-ContactRecord linearise_contact(World& world, std::uint64_t version, double period_s,
-                                long& frozen_fallbacks) {
+ContactRecord linearise_contact(World& world, std::uint64_t version, double period_s, long& frozen_fallbacks,
+                                std::size_t hand) {
   counters::count("loop.exchange_record");
-  const ToolSide& side = ToolSide::of(world);
+  ToolSide& side = ToolSide::of(world, hand);
   ContactRecord out;
   dynamics::LinearisedContact& record = out.linear;
   record.version = version;
@@ -195,7 +213,7 @@ ContactRecord linearise_contact(World& world, std::uint64_t version, double peri
   record.x0 = flat(side.known.pose);
   Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
   if (side.touch) {
-    frozen_fallbacks += !side.touch->reduce(world, period_s, out.touch);
+    frozen_fallbacks += !side.touch->reduce(world, side, period_s, out.touch);
     record.source = dynamics::LinearisedContact::Source::kPoints;
     record.samples = out.touch.samples;
     return out;
@@ -208,7 +226,7 @@ ContactRecord linearise_contact(World& world, std::uint64_t version, double peri
   Eigen::Map<RowMajor6>(record.B.data()) = -c.B;
   record.source = dynamics::LinearisedContact::Source::kFrozen;
   const bool condensed = world.description.exchange.linearisation == "condensed";
-  if (condensed && c.active > 0 && !condense(world, period_s, c, record)) ++frozen_fallbacks;
+  if (condensed && c.active > 0 && !condense(world, side, period_s, c, record)) ++frozen_fallbacks;
   return out;
 }
 

@@ -10,22 +10,21 @@ namespace {
 /// part of a tick are equal.
 constexpr double kSame = 1e-6;
 
-TickRecord tick_of(const World& world, double t, const dynamics::StateView& state) {
-  const dynamics::Block& block = *state.layout->find(ToolSide::of(world).block_id);
+TickRecord tick_of(const World& world, const ToolSide& side, double t, const dynamics::StateView& state) {
+  const dynamics::Block& block = *state.layout->find(side.block_id);
   const auto q = state.q.segment<7>(block.q_offset);
   const auto u = state.u.segment<6>(block.u_offset);
   TickRecord tick;
   tick.time = t;
   tick.tool = {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
   tick.tool_twist = {u.head<3>(), u.tail<3>()};
-  if (const auto& hand = ToolSide::of(world).hand_in_state) {
+  if (const auto& hand = side.hand_in_state) {
     const tool::HandleState handle = tool::hand_motion(state, hand->block_id, hand->hand);
     tick.handle = handle.pose;
     tick.handle_twist = handle.twist;
     tick.switches = hand->model.wanted(t).switches;
   }
-  if (ToolSide::of(world).frame_index >= 0)
-    tick.contact = world.contact->frame_wrench(state, ToolSide::of(world).frame_index);
+  if (side.frame_index >= 0) tick.contact = world.contact->frame_wrench(state, side.frame_index);
   return tick;
 }
 
@@ -66,7 +65,8 @@ void MonolithicTicks::stepped(const dynamics::Stepper& stepper, double t0, doubl
 
 void MonolithicTicks::emit_at(double t, const dynamics::StateView& state) {
   ++count_;
-  emit_(tick_of(world_, t, state));
+  for (std::size_t i = 0; i < ToolSide::all(world_).size(); ++i)
+    emit_(i, tick_of(world_, ToolSide::of(world_, i), t, state));
 }
 
 }  // namespace palpate::loop

@@ -6,11 +6,12 @@
 namespace palpate::loop {
 
 /// The haptic ticks of a monolithic scene: the integrator steps tool and bodies as it likes, and the tool at
-/// each tick is read from its dense output.  An integrator that does not report its steps is made to land on
-/// every tick instead.
+/// each tick, of the first tool's period, is read from its dense output.  An integrator that does not report
+/// its steps is made to land on every tick instead.
 class MonolithicTicks : private dynamics::StepFollower {
  public:
-  using Emit = std::function<void(const TickRecord& tick)>;  ///< gets time, tool and the contact's wrench
+  /// gets time, tool and the contact's wrench of each hand
+  using Emit = std::function<void(std::size_t hand, const TickRecord& tick)>;
   MonolithicTicks(World& world, Emit emit);
   ~MonolithicTicks() override;
   /// Advances the World's stepper to t1 and emits the ticks on the way, the last one at t1 or before.

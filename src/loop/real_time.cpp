@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <deque>
 #include <exception>
 #include <latch>
 #include <thread>
@@ -40,7 +41,8 @@ constexpr std::int64_t kLead = 20'000'000;
 
 struct TimedTick {
   TickRecord record;
-  long number = 0;  ///< from 1
+  std::size_t hand = 0;
+  long number = 0;  ///< from 1, the same of all hands
   float lateness_s = 0.0F, work_s = 0.0F;
 };
 
@@ -51,6 +53,10 @@ void refuse_what_is_not_served(const World& world) {
   if (!d.tool) fail("real time: the scene has no [tool], so nothing that a hand would feel");
   if (!world.has_tool_of_ticks())
     fail("real time: exchange.scheme = \"monolithic\" has no ticks of its own; take \"partitioned\"");
+  for (const scene::HandSpec& hand : d.hands)
+    if (hand.tool.tick_s != d.tool->tick_s)
+      fail("real time: hand \"{}\" ticks every {} s, the first every {} s; one clock serves one tick_s",
+           hand.name, hand.tool.tick_s, d.tool->tick_s);
 }
 
 class RealTime {
@@ -61,12 +67,12 @@ class RealTime {
         options_(options),
         result_(result),
         out_(result.real_time.emplace()),
-        ticks_(world.description, ToolSide::of(world)),
         per_period_(whole_number(bodies.period() / world.description.tool->tick_s)),
         tick_s_(bodies.period() / per_period_),
         tick_ns_(std::llround(1e9 * tick_s_)),
         count_(static_cast<long>(per_period_) * bodies.periods()),
         queue_(kQueue) {
+    for (const auto& side : ToolSide::all(world)) hands_.emplace_back(world.description, *side);
     out_.tick_s = tick_s_;
     out_.period_s = bodies.period();
     out_.lateness_s.reserve(static_cast<std::size_t>(count_));
@@ -74,11 +80,11 @@ class RealTime {
   }
 
   void run() {
-    ticks_.start(0.0);
+    for (Hand& hand : hands_) hand.ticks.start(0.0);
     bodies_.restart_path();
     bodies_.start();
     bodies_.query();
-    records_.publish(bodies_.linearise(bodies_.period()));
+    publish();
     std::thread thread([this] { tick_to_the_end(); });
     ready_.wait();
     try {
@@ -109,11 +115,11 @@ class RealTime {
     try {
       tick_by_the_clock();
     } catch (...) { failure_ = std::current_exception(); }
-    try {
-      ticks_.end();
-    } catch (...) {
-      if (!failure_) failure_ = std::current_exception();
-    }
+    for (Hand& hand : hands_) try {
+        hand.ticks.end();
+      } catch (...) {
+        if (!failure_) failure_ = std::current_exception();
+      }
     over_.store(true, std::memory_order_release);
   }
 
@@ -124,12 +130,16 @@ class RealTime {
       sleep_until_ns(due);
       const std::int64_t woke = now_ns();
       const double t = static_cast<double>(i) * tick_s_;
-      tick_status_ = ticks_.tick(t, tick_s_, ticks_.contact(t, tick_s_, records_.latest()), timed.record);
-      if (!tick_status_.ok()) break;
       timed.number = i;
       timed.lateness_s = seconds(woke - due);
-      timed.work_s = seconds(now_ns() - woke);
-      if (!queue_.push(timed)) unrecorded_.fetch_add(1, std::memory_order_relaxed);
+      for (timed.hand = 0; timed.hand < hands_.size(); ++timed.hand) {
+        Hand& hand = hands_[timed.hand];
+        tick_status_ =
+            hand.ticks.tick(t, tick_s_, hand.ticks.contact(t, tick_s_, hand.records.latest()), timed.record);
+        if (!tick_status_.ok()) return;
+        timed.work_s = seconds(now_ns() - woke);  // of the last: that of all
+        if (!queue_.push(timed)) unrecorded_.fetch_add(1, std::memory_order_relaxed);
+      }
       ticked_.store(i, std::memory_order_release);
     }
   }
@@ -154,10 +164,15 @@ class RealTime {
     advance(taken);
     if (bodies_.ended()) return false;
     bodies_.query();
-    records_.publish(bodies_.linearise(bodies_.period()));
+    publish();
     out_.latency_s.push_back(seconds(now_ns() - start_ns_ - done_ * tick_ns_));
     bodies_.close_period(time_of(done_));
     return true;
+  }
+
+  void publish() {
+    for (std::size_t i = 0; i < hands_.size(); ++i)
+      hands_[i].records.publish(bodies_.linearise(i, bodies_.period()));
   }
 
   bool told_to_stop() {
@@ -186,30 +201,37 @@ class RealTime {
     bodies_.advance(t0, t1, periods > 1 ? t1 - t0 : world_.description.exchange.contact_refresh_s);
   }
 
-  /// Takes the ticks up to number `last` from the queue.
+  /// Takes the ticks up to number `last` of all hands from the queue.
   void drain(long last) {
-    for (TimedTick timed; drained_ < last && queue_.pop(timed);) {
-      drained_ = timed.number;
-      bodies_.follow(timed.record.time, timed.record.tool, timed.record.tool_twist);
-      bodies_.felt(timed.record);
+    const long all = last * static_cast<long>(hands_.size());
+    for (TimedTick timed; drained_ < all && queue_.pop(timed);) {
+      drained_ = (timed.number - 1) * static_cast<long>(hands_.size()) + static_cast<long>(timed.hand) + 1;
+      bodies_.follow(timed.hand, timed.record.time, timed.record.tool, timed.record.tool_twist);
+      bodies_.felt(timed.hand, timed.record);
+      if (timed.hand + 1 < hands_.size()) continue;
       out_.lateness_s.push_back(timed.lateness_s);
       out_.work_s.push_back(timed.work_s);
       out_.missed_ticks += timed.lateness_s >= static_cast<float>(tick_s_);
     }
   }
 
+  struct Hand {
+    Hand(const scene::Description& d, ToolSide& side) : ticks(d, side) {}
+    TickSide ticks;
+    dynamics::Exchange<ContactRecord> records;
+  };
+
   World& world_;
   BodySide& bodies_;
   const RunOptions& options_;
   RunResult& result_;
   RealTimeResult& out_;
-  TickSide ticks_;
+  std::deque<Hand> hands_;
   int per_period_;
   double tick_s_;
   std::int64_t tick_ns_, start_ns_ = 0;
   long count_, done_ = 0, drained_ = 0;
 
-  dynamics::Exchange<ContactRecord> records_;
   SpscRing<TimedTick> queue_;
   dynamics::StepResult tick_status_;  ///< of the ticks' thread; read when it is over
   std::atomic<long> ticked_{0}, unrecorded_{0};

@@ -6,6 +6,7 @@
 #include "palpate/core/error.h"
 #include "palpate/device/profile.h"
 #include "palpate/loop/haptic_record.h"
+#include "palpate/scene/hands.h"
 #include "palpate/store/bone_file.h"
 #include "palpate/store/force_file.h"
 #include "palpate/store/provenance.h"
@@ -19,6 +20,9 @@ constexpr const char* kForceFile = "force.csv";
 constexpr const char* kBoneFile = "bones.csv";
 constexpr const char* kHapticFile = "haptic.h5";
 constexpr const char* kEnergyFile = "energy.csv";
+
+/// Below this share of the device's maximum a difference is the limiter's smoothness, not a limit.
+constexpr double kUnlimited = 3e-13;
 
 std::vector<std::string> energy_headers() {
   std::vector<std::string> headers = {"time_s"};
@@ -36,18 +40,24 @@ int periods_between(const scene::Description& d) {
 
 struct Recorder::Impl {
   std::unique_ptr<store::RunFile> states;
-  std::unique_ptr<store::ForceFile> forces;
+  /// [N] and [N m]: a larger difference between the wrench wanted and the wrench sent means that it was
+  /// limited
+  struct Forces {
+    Forces(const std::string& path, const device::DeviceFigures& figures)
+        : file(path),
+          force_rounding(kUnlimited * figures.max_force),
+          torque_rounding(kUnlimited * figures.max_torque) {}
+    store::ForceFile file;
+    double force_rounding, torque_rounding;
+  };
+  std::vector<std::unique_ptr<Forces>> forces;  ///< of each hand
   std::unique_ptr<HapticRecorder> haptic;
   std::unique_ptr<store::BoneFile> bones;
   std::unique_ptr<store::CsvWriter> energy;
-  TriMesh tool;   ///< in its own axes; empty without a tool
-  int every = 1;  ///< periods between two recorded states
-  long seen = 0;  ///< periods so far
-  /// [N] and [N m]: a larger difference between the wrench wanted and the wrench sent means that it was
-  /// limited
-  double force_rounding = 0.0, torque_rounding = 0.0;
-  Pose tool_pose;
-  Twist tool_twist;
+  std::vector<TriMesh> tools;  ///< of each hand, in its own axes
+  int every = 1;               ///< periods between two recorded states
+  long seen = 0;               ///< periods so far
+  std::vector<std::pair<Pose, Twist>> tool_motions;
   Points points, velocity;
   VecX stress;
 
@@ -65,10 +75,11 @@ struct Recorder::Impl {
       parts.push_back({bone.name, placed(bone.surface, world.bone_pose(bone)), {}, bone.surface.faces});
       count += bone.surface.vertices.cols();
     }
-    if (d.tool) {
-      tool = tool_surface(*d.tool, world.folder);
-      tool_pose = {quaternion_of(d.tool->rotation_vector_rad), d.tool->position_m};
-      parts.push_back({"tool", placed(tool, tool_pose), {}, tool.faces});
+    for (const scene::Hand& hand : scene::hands_of(d)) {
+      const TriMesh& tool = tools.emplace_back(tool_surface(*hand.tool, world.folder));
+      const Pose pose{quaternion_of(hand.tool->rotation_vector_rad), hand.tool->position_m};
+      tool_motions.emplace_back(pose, Twist{});
+      parts.push_back({hand.name, placed(tool, pose), {}, tool.faces});
       count += tool.vertices.cols();
     }
     const int steps = static_cast<int>(d.duration_s / (every * period_of(d))) + 2;
@@ -109,7 +120,8 @@ struct Recorder::Impl {
     }
     for (const Bone& bone : world.bones)
       first = place(bone.surface, world.bone_pose(bone), world.bone_twist(bone), first);
-    if (tool.vertices.cols() > 0) place(tool, tool_pose, tool_twist, first);
+    for (std::size_t i = 0; i < tools.size(); ++i)
+      first = place(tools[i], tool_motions[i].first, tool_motions[i].second, first);
     states->append(t, points, velocity, stress);
   }
 
@@ -135,29 +147,24 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
     impl_->bones = std::make_unique<store::BoneFile>((base / kBoneFile).string());
   if (d.record->energy)
     impl_->energy = std::make_unique<store::CsvWriter>((base / kEnergyFile).string(), energy_headers());
-  if (d.record->forces && d.tool) {
-    // below this share of the device's maximum a difference is the limiter's smoothness, not a limit
-    constexpr double kUnlimited = 3e-13;
-    if (d.device) {
-      const device::DeviceFigures figures = device::figures_of(*d.device);
-      impl_->force_rounding = kUnlimited * figures.max_force;
-      impl_->torque_rounding = kUnlimited * figures.max_torque;
-    }
-    impl_->forces = std::make_unique<store::ForceFile>((base / kForceFile).string());
-    impl_->haptic = std::make_unique<HapticRecorder>((base / kHapticFile).string());
+  if (!d.record->forces || !d.tool) return;
+  impl_->haptic = std::make_unique<HapticRecorder>((base / kHapticFile).string());
+  for (const scene::Hand& hand : scene::hands_of(d)) {
+    const bool first = impl_->forces.empty();
+    const std::string name = first ? kForceFile : fmt::format("force-{}.csv", hand.name);
+    impl_->forces.push_back(
+        std::make_unique<Impl::Forces>((base / name).string(), device::figures_of(*hand.device)));
   }
 }
 
 Recorder::~Recorder() = default;
 
 void Recorder::period(World& world, double t) {
-  if (world.description.tool) {
-    impl_->tool_pose = world.tool_pose();
-    impl_->tool_twist = world.tool_twist();
-  }
+  for (std::size_t i = 0; i < impl_->tool_motions.size(); ++i)
+    impl_->tool_motions[i] = {world.tool_pose(i), world.tool_twist(i)};
   if (impl_->states && impl_->seen % impl_->every == 0) impl_->append(world, t);
   if (impl_->bones && impl_->seen % impl_->every == 0) impl_->append_bones(world, t);
-  if (impl_->forces) impl_->forces->flush();
+  for (const auto& forces : impl_->forces) forces->file.flush();
   if (impl_->haptic) impl_->haptic->period(world, t);
   ++impl_->seen;
 }
@@ -176,13 +183,14 @@ void Recorder::exchanged(const ContactRecord& record) {
   if (impl_->haptic) impl_->haptic->exchanged(record);
 }
 
-void Recorder::tick(const TickRecord& tick) {
-  if (!impl_->forces) return;
-  impl_->haptic->tick(tick);
+void Recorder::tick_of(std::size_t hand, const TickRecord& tick) {
+  if (hand >= impl_->forces.size()) return;
+  if (hand == 0) impl_->haptic->tick(tick);
+  Impl::Forces& forces = *impl_->forces[hand];
   const Wrench &sent = tick.device, &wanted = tick.wanted;
-  const bool limited = (sent.force - wanted.force).norm() > impl_->force_rounding ||
-                       (sent.moment - wanted.moment).norm() > impl_->torque_rounding;
-  impl_->forces->append({tick.time, tick.handle, tick.tool, tick.device, limited, tick.switches});
+  const bool limited = (sent.force - wanted.force).norm() > forces.force_rounding ||
+                       (sent.moment - wanted.moment).norm() > forces.torque_rounding;
+  forces.file.append({tick.time, tick.handle, tick.tool, tick.device, limited, tick.switches});
 }
 
 }  // namespace palpate::loop

@@ -66,6 +66,11 @@ void refuse_what_cannot_be_retraced(const scene::Description& d, const HapticRec
     fail(
         "replay: the ticks of this run used no exchange (monolithic, or no tool); change something to run it "
         "again");
+  if (!d.hands.empty())
+    fail(
+        "replay: the scene has {} hands, and the record is of the first; change something to run it again: "
+        "the others move as the scene says",
+        d.hands.size() + 1);
   for (std::size_t i = 0; i < record.ticks.size(); ++i) {
     const double start = i == 0 ? 0.0 : record.ticks[i - 1].time;
     if (std::abs(record.ticks[i].time - start - record.ticks[i].length) > kSameTime)

@@ -9,6 +9,7 @@
 #include "palpate/device/profile.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
+#include "palpate/scene/hands.h"
 #include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"
 
@@ -79,7 +80,7 @@ void add_models(store::Summary& summary, const scene::Description& d) {
       kept.emplace_back(name, file);
   };
   for (const SoftBodySpec& body : d.bodies) add(body.mesh.file);
-  if (d.tool) add(d.tool->mesh.file);
+  for (const scene::Hand& hand : scene::hands_of(d)) add(hand.tool->mesh.file);
 }
 
 /// Effect of queries on the resultants that bodies feel: between two queries contact goes on with the pairs
@@ -165,18 +166,32 @@ void add_energy(store::Summary& summary, const RunResult& result) {
   visit_energies([&](const char* name, double value) { s.values.emplace_back(name, value); }, *result.energy);
 }
 
-/// What the device felt like, and the energy at its port.
-void add_device(store::Summary& summary, const RunResult& result) {
-  if (result.buzz_n) summary.section("device").values.emplace_back("buzz_above_30_hz_rms_n", *result.buzz_n);
-  if (!result.port) return;
-  const PortEnergy& port = *result.port;
-  summary.section("device").values.insert(
-      summary.section("device").values.end(),
-      {{"port_energy_j", port.energy},
-       {"port_least_energy_j", port.least},
-       {"port_work_j", port.work},
-       {"passivity_controller_dissipated_j", port.controller_dissipated},
-       {"passivity_controller_ticks", static_cast<long long>(port.controller_ticks)}});
+/// What a device felt like, and the energy at its port.
+void add_feel(store::SummarySection& s, const std::optional<double>& buzz_n,
+              const std::optional<PortEnergy>& port) {
+  if (buzz_n) s.values.emplace_back("buzz_above_30_hz_rms_n", *buzz_n);
+  if (!port) return;
+  s.values.insert(s.values.end(),
+                  {{"port_energy_j", port->energy},
+                   {"port_least_energy_j", port->least},
+                   {"port_work_j", port->work},
+                   {"passivity_controller_dissipated_j", port->controller_dissipated},
+                   {"passivity_controller_ticks", static_cast<long long>(port->controller_ticks)}});
+}
+
+/// What the devices of further hands felt like.
+void add_more_hands(store::Summary& summary, const scene::Description& d, const RunResult& result) {
+  for (std::size_t i = 0; i < result.more_hands.size(); ++i) {
+    const HandResult& hand = result.more_hands[i];
+    const DeviceSpec& spec = d.hands[i].device;
+    store::SummarySection& s = summary.section("hand " + d.hands[i].name);
+    s.values = {{"ticks", static_cast<long long>(hand.ticks)},
+                {"limited_ticks", static_cast<long long>(hand.limited_ticks)},
+                {"ticks_outside_workspace", static_cast<long long>(hand.outside_ticks)},
+                {"max_force_n", device::figures_of(spec).max_force},
+                {"max_torque_n_m", device::figures_of(spec).max_torque}};
+    add_feel(s, hand.buzz_n, hand.port);
+  }
 }
 
 /// What a run in real time kept of its clock.
@@ -254,7 +269,8 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   }
   add_energy(summary, result);
   add_real_time(summary, result);
-  add_device(summary, result);
+  if (result.buzz_n || result.port) add_feel(summary.section("device"), result.buzz_n, result.port);
+  add_more_hands(summary, world.description, result);
   add_grasps(summary, world);
   add_jumps(summary, world);
   add_images(summary, world);

@@ -12,7 +12,7 @@ TickSide::TickSide(const ToolSpec& spec, ToolSide& side, const std::vector<Conta
 }
 
 TickSide::TickSide(const scene::Description& description, ToolSide& side)
-    : TickSide(*description.tool, side,
+    : TickSide(*side.spec, side,
                description.exchange.linearisation == "points" ? &description.contacts : nullptr) {}
 
 TickSide::~TickSide() {

@@ -6,6 +6,7 @@
 #include "palpate/device/limiter.h"
 #include "palpate/device/passivity.h"
 #include "palpate/loop/world.h"
+#include "palpate/scene/hands.h"
 #include "palpate/tool/hand_block.h"
 #include "palpate/tool/tool.h"
 #include "touch_reduction.h"
@@ -19,8 +20,12 @@ struct KnownTool {
   Twist twist;
 };
 
-/// A World's tool: the tool itself, the hand's side of it, and its contact.  All empty without [tool].
+/// One of a World's tools: the tool itself, the hand's side of it, and its contact.  All empty without
+/// [tool].
 struct ToolSide {
+  std::string name;                         ///< what [[contact]] calls it: "tool" is the first
+  const ToolSpec* spec = nullptr;           ///< in the World's description; null without [tool]
+  const DeviceSpec* device_spec = nullptr;  ///< the same
   /// the tool with ticks of its own; null where the scheme is monolithic
   std::unique_ptr<tool::Tool> tool;
   /// one more, at `known`, for the energy of the first; null where nobody asked
@@ -56,8 +61,26 @@ struct ToolSide {
   std::unique_ptr<dynamics::LinearSolver> condenser_lu;
   dynamics::BorderedMatrix condensed_matrix;
 
-  static ToolSide& of(World& world) { return *world.tool_side_; }
-  static const ToolSide& of(const World& world) { return *world.tool_side_; }
+  /// One for each hand of the World's description.
+  static void make(World& world) {
+    const std::vector<scene::Hand> hands = scene::hands_of(world.description);
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+      if (i > 0) world.tool_sides_.push_back(std::make_unique<ToolSide>());
+      ToolSide& side = *world.tool_sides_.back();
+      side.name = hands[i].name;
+      side.spec = hands[i].tool;
+      side.device_spec = hands[i].device;
+    }
+  }
+  /// A tool as the scene begins with.
+  std::unique_ptr<tool::Tool> another_tool(const Vec3& gravity) const {
+    return std::make_unique<tool::Tool>(*spec, spec->gravity ? gravity : Vec3(Vec3::Zero()));
+  }
+
+  /// The first is there even where the scene has no tool.
+  static ToolSide& of(World& world, std::size_t hand = 0) { return *world.tool_sides_.at(hand); }
+  static const ToolSide& of(const World& world, std::size_t hand = 0) { return *world.tool_sides_.at(hand); }
+  static const std::vector<std::unique_ptr<ToolSide>>& all(const World& world) { return world.tool_sides_; }
 };
 
 }  // namespace palpate::loop

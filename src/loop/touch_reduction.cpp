@@ -17,6 +17,7 @@ namespace palpate::loop {
 // the contact as it is in between; the last is where they go by themselves.  With displacements tau v + X y
 // (v = s/H), tested against X:
 //     X^T M X y'' + X^T D X y' + X^T K X y = X^T (f - M w/H) - tau X^T (K v + D w/H) + contact,
+// (and + tau X^T rate where other tools press the bodies, rate_by_other_tools in step_answer.h),
 // whose step over H answers as that of all nodes does, exactly, since that is in the span; within the period
 // it knows their inertia.  The samples' own part is taken out of f, K and D again: the ticks put it in, as it
 // is at each of them.
@@ -43,6 +44,7 @@ struct TouchReduction::Answers {
   MatX A;        ///< X^T A X; empty: not known
   VecX s, w, f;  ///< f: all forces
   VecX stiff;    ///< K s + D w
+  VecX rate;     ///< of f, by other tools; empty: none
   double still;  ///< what moves by less within the period rests [m]
 };
 
@@ -72,7 +74,9 @@ auto moved_by(const TouchSample& sample, const auto& x) {
 
 bool presses(const TouchSample& sample) { return sample.held || sample.gap < 0.0; }
 
-bool names_tool(const ContactSpec& contact) { return contact.first == "tool" || contact.second == "tool"; }
+bool names(const ContactSpec& contact, const std::string& tool) {
+  return contact.first == tool || contact.second == tool;
+}
 
 /// By how much each sample is pressed at the period's end if all goes on as it does [m]; where that is
 /// nowhere, of those that are nearest then by how much less they are apart than a tenth of the way to the
@@ -97,12 +101,14 @@ VecX coming_depths(const std::vector<TouchSample>& samples, const Twist& tool, c
 /// forces of the samples that will press if all goes on as it does, where some of these do not yet: a tool
 /// that comes down touches within the period.  Fewer than six and three, or twice that with friction, where
 /// they are alike: a round tool that turns does nothing.
-MatX load_patterns(const World& world, const std::vector<TouchSample>& samples, const KnownTool& tool,
+MatX load_patterns(const World& world, const ToolSide& side, const std::vector<TouchSample>& samples,
                    double H) {
+  const KnownTool& tool = side.known;
   const bool pressed = std::any_of(samples.begin(), samples.end(), presses);
   const auto& contacts = world.description.contacts;
-  const bool friction = std::any_of(contacts.begin(), contacts.end(),
-                                    [](const ContactSpec& c) { return names_tool(c) && c.friction > 0.0; });
+  const bool friction = std::any_of(contacts.begin(), contacts.end(), [&](const ContactSpec& c) {
+    return names(c, side.name) && c.friction > 0.0;
+  });
   const Mat3 R = tool.pose.rotation.toRotationMatrix();
   const VecX depths = coming_depths(samples, tool.twist, R, H);
   bool more = !pressed;
@@ -119,7 +125,10 @@ MatX load_patterns(const World& world, const std::vector<TouchSample>& samples, 
     const Mat3 along = s.normal * s.normal.transpose(),
                nn = !s.held ? along : Mat3(Mat3::Identity() - (s.gap < 0.0 ? along : Mat3(Mat3::Zero())));
     Eigen::Matrix<double, 3, 12> load;
-    load << s.stiffness * nn * Z, s.stiffness * (Mat3::Identity() - along) * Z * (s.held ? 0.0 : 1.0);
+    // friction's share is as large as what it is a share of: where it holds, mu p/v_r, nodes go with the
+    // tool, and loads by area would let those slip that are pressed hardest
+    load << s.stiffness * nn * Z,
+        std::max(s.force.dot(s.normal), 0.0) * (Mat3::Identity() - along) * Z * (s.held ? 0.0 : 1.0);
     for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
       const auto at = 3 * s.node[k];
       if (presses(s)) all.middleRows<3>(at) += s.weight[k] * load.leftCols(count);
@@ -128,6 +137,10 @@ MatX load_patterns(const World& world, const std::vector<TouchSample>& samples, 
         coming.middleRows<3>(at) += force;
       }
     }
+  }
+  if (friction) {  // both kinds count alike
+    const double along = all.middleCols<3>(3).norm(), across = all.middleCols<3>(9).norm();
+    if (across > 0.0) all.rightCols<6>() *= along / across;
   }
   // rotations count by the displacement that they come to where the tool touches
   for (Eigen::Index k = 0; k < count; k += 6) {
@@ -221,6 +234,7 @@ bool TouchReduction::iterate(World& world, double H, const MatX& patterns, Answe
     rhs.rightCols<1>() = r;
     out.stiff += tangent_times(world, 0.0, 1.0, out.w);
   }
+  if (out.rate.size() > 0) rhs.rightCols<1>() += H * H * out.rate;
   for (int dof : world.system.driven_dofs()) rhs.row(dof).setZero();
   SolveStatus status = response_->begin(rhs);
   // the work of the loads, each of length one, on the way that bodies go by themselves, by Cauchy and Schwarz
@@ -248,10 +262,10 @@ bool TouchReduction::iterate(World& world, double H, const MatX& patterns, Answe
 }
 
 /// False where the step matrix has no factor.
-bool TouchReduction::factor(World& world, double H, const MatX& patterns, Answers& out) {
+bool TouchReduction::factor(World& world, ToolSide& side, double H, const MatX& patterns, Answers& out) {
   const dynamics::StateView view = world.state.view();
-  world.system.step_matrix(view, 1.0, H, H * H, ToolSide::of(world).condensed_matrix);
-  dynamics::LinearSolver* solver = factored(world.system, ToolSide::of(world));
+  world.system.step_matrix(view, 1.0, H, H * H, side.condensed_matrix);
+  dynamics::LinearSolver* solver = factored(world.system, side);
   if (!solver) return false;
   counters::count("loop.touch_factored");
   out.stiff = tangent_times(world, 1.0, 0.0, out.s) + tangent_times(world, 0.0, 1.0, out.w);
@@ -262,7 +276,7 @@ bool TouchReduction::factor(World& world, double H, const MatX& patterns, Answer
     world.system.reduce(view, column);
     rhs.col(i) = column;
   }
-  rhs.rightCols<1>() = right_hand_side(world, H, out.s, out.w);
+  rhs.rightCols<1>() = right_hand_side(world, side, H, out.s, out.w);
   out.X.resize(rhs.rows(), rhs.cols());
   if (solver->solve(rhs, out.X) != dynamics::SolveStatus::kOk || !all_finite(out.X)) return false;
   for (Eigen::Index i = 0; i < out.X.cols(); ++i) {
@@ -331,8 +345,8 @@ struct Reduced {
 };
 
 /// @param A  X^T A X, empty: not known
-Reduced reduced(World& world, double H, const MatX& X, const MatX& A, const SampleSums& sums,
-                std::pair<double, double> damping) {
+Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, const MatX& A,
+                const SampleSums& sums, std::pair<double, double> damping) {
   const dynamics::StateView view = world.state.view();
   const Eigen::Index m = X.cols();
   const MatX &samples_K = sums.K, &samples_D = sums.D;
@@ -347,10 +361,11 @@ Reduced reduced(World& world, double H, const MatX& X, const MatX& A, const Samp
     out.D = products(X, [&](const VecX& v) { return tangent_times(world, 0.0, 1.0, v); }) - samples_D;
     return out;
   }
-  // bodies on obstacles and on each other
+  // bodies on obstacles, on each other and on other tools
   MatX others_K = MatX::Zero(m, m), others_D = others_K;
   const auto& contacts = world.description.contacts;
-  if (!std::all_of(contacts.begin(), contacts.end(), names_tool)) {
+  if (!std::all_of(contacts.begin(), contacts.end(),
+                   [&](const ContactSpec& c) { return names(c, side.name); })) {
     const auto contact = [&](double k, double d) {
       return products(X, [&](const VecX& v) {
         product.setZero(v.size());
@@ -372,8 +387,7 @@ Reduced reduced(World& world, double H, const MatX& X, const MatX& A, const Samp
 
 }  // namespace
 
-bool TouchReduction::reduce(World& world, double H, TouchModel& out) {
-  const ToolSide& side = ToolSide::of(world);
+bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& out) {
   const dynamics::StateView view = world.state.view();
   out = {};
   out.time = world.state.time();
@@ -388,8 +402,9 @@ bool TouchReduction::reduce(World& world, double H, TouchModel& out) {
   for (TouchSample& sample : samples)
     sample.velocity = moved_by(sample, [&](int node) { return velocity.segment<3>(3 * node); });
   world.system.force(view, x.f);
-  const MatX patterns = load_patterns(world, samples, side.known, H);
-  const bool known = iterate(world, H, patterns, x) || factor(world, H, patterns, x);
+  x.rate = rate_by_other_tools(world, side);
+  const MatX patterns = load_patterns(world, side, samples, H);
+  const bool known = iterate(world, H, patterns, x) || factor(world, side, H, patterns, x);
   Rows modes = Rows::Zero(kModes, velocity.size());
   if (known && farthest(samples, H * x.X.rightCols<1>()) <= x.still) {
     const Eigen::Index loads = patterns.cols();
@@ -398,7 +413,7 @@ bool TouchReduction::reduce(World& world, double H, TouchModel& out) {
   }
   if (known && x.X.cols() > 0) {
     const SampleSums sums = sum_of(samples, tangents, x.X, change);
-    const Reduced r = reduced(world, H, x.X, x.A, sums, damping_of(world, samples.front().node[0]));
+    const Reduced r = reduced(world, side, H, x.X, x.A, sums, damping_of(world, samples.front().node[0]));
     const MatX S = modes_of(r.M, r.K, r.D, x.A.size() > 0 ? kAlikeSingle : kAlike, out);
     VecX inertia;
     world.system.apply_mass(view, change, inertia);
@@ -407,6 +422,8 @@ bool TouchReduction::reduce(World& world, double H, TouchModel& out) {
     Eigen::Map<VecX>(out.force.data(), kept) = S.transpose() * (x.X.transpose() * x.f - sums.force);
     Eigen::Map<VecX>(out.force_rate.data(), kept) =
         S.transpose() * (sums.stiff - x.X.transpose() * x.stiff / H);
+    if (x.rate.size() > 0)
+      Eigen::Map<VecX>(out.force_rate.data(), kept) += S.transpose() * (x.X.transpose() * x.rate);
     modes.topRows(kept).noalias() = S.transpose() * x.X.transpose();
   }
   contact::gather_points(samples, side.known.pose, modes, out);

@@ -6,6 +6,8 @@
 
 namespace palpate::loop {
 
+struct ToolSide;
+
 /// Makes the model of the bodies that the tool's ticks touch (touch_reduction.cpp).
 class TouchReduction {
  public:
@@ -14,14 +16,14 @@ class TouchReduction {
   TouchReduction(World& world, double error);
   ~TouchReduction();
 
-  /// The bodies as the tool's contact sees them from the World's state on, for about `period_s`.
+  /// The bodies as that tool's contact sees them from the World's state on, for about `period_s`.
   /// @return false, and points without modes (bodies that do not answer), where the step matrix has no factor
-  bool reduce(World& world, double period_s, contact::TouchModel& out);
+  bool reduce(World& world, ToolSide& side, double period_s, contact::TouchModel& out);
 
  private:
   struct Answers;
   bool iterate(World& world, double H, const MatX& patterns, Answers& out);
-  bool factor(World& world, double H, const MatX& patterns, Answers& out);
+  bool factor(World& world, ToolSide& side, double H, const MatX& patterns, Answers& out);
 
   double error_;
   dynamics::StepAssembly assembly_;

@@ -13,17 +13,20 @@ namespace {
 class VirtualTime {
  public:
   VirtualTime(World& world, BodySide& bodies, RunResult& result)
-      : world_(world), bodies_(bodies), result_(result), side_(ToolSide::of(world)) {
+      : world_(world), bodies_(bodies), result_(result) {
     const scene::Description& d = world.description;
     if (!d.tool) return;
-    ticks_.emplace(d, side_).start(0.0);
+    for (const auto& side : ToolSide::all(world)) {
+      hands_.emplace_back(d, *side);
+      hands_.back().ticks.start(0.0);
+    }
     if (!world.monolithic()) {
       bodies.restart_path();
       return;
     }
-    dense_.emplace(world, [this](TickRecord tick) {
-      ticks_->feel(tick);
-      bodies_.felt(tick);
+    dense_.emplace(world, [this](std::size_t hand, TickRecord tick) {
+      hands_[hand].ticks.feel(tick);
+      bodies_.felt(hand, tick);
     });
     bodies.set_ticks(&*dense_);
   }
@@ -32,9 +35,9 @@ class VirtualTime {
     bodies_.query();
     // a tool feels the contact that was found before its ticks: these end where the next query is due
     for (double t = t0, next;; t = next) {
-      const bool exchanged = side_.tool != nullptr;
+      const bool exchanged = world_.has_tool_of_ticks();
       next = exchanged ? bodies_.next_query(t, t1) : t1;
-      if (exchanged) tick_tool(t, next);
+      if (exchanged) tick_tools(t, next);
       if (!result_.status.ok()) return;
       bodies_.advance(t, next, world_.description.exchange.contact_refresh_s);
       if (!result_.status.ok() || next >= t1) return;
@@ -43,53 +46,61 @@ class VirtualTime {
   }
 
   void end() {
-    if (ticks_) ticks_->end();
+    for (Hand& hand : hands_) hand.ticks.end();
   }
 
  private:
-  void tick_tool(double t0, double t1) {
-    adopt(bodies_.linearise(t1 - t0));
-    bodies_.restart_path();
-    const ScopedTimer timer(result_.tool_s);
-    const int ticks = whole_number((t1 - t0) / world_.description.tool->tick_s);
-    const double h = (t1 - t0) / ticks;
-    for (int i = 0; i < ticks && result_.status.ok(); ++i) tick(t0 + (i + 1) * h, h);
-  }
-
-  /// A linearisation is in force from latency_ticks on; the first of a run at once.
-  void adopt(const ContactRecord& record) {
-    const int latency = record.linear.version == 1 ? 0 : world_.description.exchange.latency_ticks;
-    if (latency == 0)
-      in_force_ = record;
-    else
-      coming_.push_back({count_ + latency, record});
-  }
-
-  void tick(double t, double h) {
-    for (; !coming_.empty() && coming_.front().tick <= count_; coming_.pop_front())
-      in_force_ = coming_.front().record;
-    ++count_;
-    TickRecord tick;
-    result_.status = ticks_->tick(t, h, ticks_->contact(t, h, in_force_), tick);
-    if (!result_.status.ok()) return;
-    bodies_.follow(t, tick.tool, tick.tool_twist);
-    bodies_.felt(tick);
-  }
-
   struct Coming {
     long tick;
     ContactRecord record;
   };
+  struct Hand {
+    Hand(const scene::Description& d, ToolSide& side) : tick_s(side.spec->tick_s), ticks(d, side) {}
+    double tick_s;
+    TickSide ticks;
+    ContactRecord in_force;
+    std::deque<Coming> coming;
+    long count = 0;  ///< of ticks
+  };
+
+  /// Every hand feels the bodies as all have left them, then each goes through the period by itself.
+  void tick_tools(double t0, double t1) {
+    for (std::size_t i = 0; i < hands_.size(); ++i) adopt(hands_[i], bodies_.linearise(i, t1 - t0));
+    bodies_.restart_path();
+    const ScopedTimer timer(result_.tool_s);
+    for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
+      const int ticks = whole_number((t1 - t0) / hands_[hand].tick_s);
+      const double h = (t1 - t0) / ticks;
+      for (int i = 0; i < ticks && result_.status.ok(); ++i) tick(hand, t0 + (i + 1) * h, h);
+    }
+  }
+
+  /// A linearisation is in force from latency_ticks on; the first of a run at once.
+  void adopt(Hand& hand, const ContactRecord& record) {
+    const int latency = record.linear.version == 1 ? 0 : world_.description.exchange.latency_ticks;
+    if (latency == 0)
+      hand.in_force = record;
+    else
+      hand.coming.push_back({hand.count + latency, record});
+  }
+
+  void tick(std::size_t number, double t, double h) {
+    Hand& hand = hands_[number];
+    for (; !hand.coming.empty() && hand.coming.front().tick <= hand.count; hand.coming.pop_front())
+      hand.in_force = hand.coming.front().record;
+    ++hand.count;
+    TickRecord tick;
+    result_.status = hand.ticks.tick(t, h, hand.ticks.contact(t, h, hand.in_force), tick);
+    if (!result_.status.ok()) return;
+    bodies_.follow(number, t, tick.tool, tick.tool_twist);
+    bodies_.felt(number, tick);
+  }
 
   World& world_;
   BodySide& bodies_;
   RunResult& result_;
-  ToolSide& side_;
-  std::optional<TickSide> ticks_;
+  std::deque<Hand> hands_;
   std::optional<MonolithicTicks> dense_;  ///< where tool and bodies are one system
-  ContactRecord in_force_;
-  std::deque<Coming> coming_;
-  long count_ = 0;  ///< of ticks
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace palpate::loop {
 
-World::World() : tool_side_(std::make_unique<ToolSide>()) {}
+World::World() { tool_sides_.push_back(std::make_unique<ToolSide>()); }
 World::~World() = default;
 
 Points Body::surface_points(const Points& nodes) const {
@@ -112,34 +112,38 @@ std::vector<Wrench> World::wrenches_on_bones() {
 double World::mechanical_energy() {
   const dynamics::StateView view = state.view();
   double energy = system.kinetic_energy(view) + system.potential_energy(view);
-  if (const ToolSide& side = *tool_side_; side.tool)
-    energy += side.tool->kinetic_energy() + side.tool->potential_energy(side.handle_now.pose);
+  for (const auto& side : tool_sides_)
+    if (side->tool)
+      energy += side->tool->kinetic_energy() + side->tool->potential_energy(side->handle_now.pose);
   return energy;
 }
 
-bool World::monolithic() const { return tool_side_->block_id >= 0; }
-bool World::has_tool_of_ticks() const { return tool_side_->tool != nullptr; }
-int World::tool_frame_index() const { return tool_side_->frame_index; }
+bool World::monolithic() const { return tool_sides_.front()->block_id >= 0; }
+bool World::has_tool_of_ticks() const { return tool_sides_.front()->tool != nullptr; }
+int World::tool_frame_index() const { return tool_sides_.front()->frame_index; }
 
-Pose World::tool_pose() const {
-  if (!monolithic()) return tool_side_->known.pose;
-  const auto q = state.q().segment<7>(state.layout().find(tool_side_->block_id)->q_offset);
+Pose World::tool_pose(std::size_t hand) const {
+  const ToolSide& side = ToolSide::of(*this, hand);
+  if (!monolithic()) return side.known.pose;
+  const auto q = state.q().segment<7>(state.layout().find(side.block_id)->q_offset);
   return {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
+}
+
+Twist World::tool_twist(std::size_t hand) const {
+  const ToolSide& side = ToolSide::of(*this, hand);
+  if (!monolithic()) return side.known.twist;
+  const auto u = state.u().segment<6>(state.layout().find(side.block_id)->u_offset);
+  return {u.head<3>(), u.tail<3>()};
 }
 
 void World::refresh_contact() {
   PALPATE_CHECK(contact, "a World without contact has nothing to ask");
-  if (const ToolSide& side = *tool_side_; side.trajectory) {
-    side.trajectory->clear();
-    side.trajectory->append(side.known.time, side.known.pose, side.known.twist);
-  }
+  for (const auto& side : tool_sides_)
+    if (side->trajectory) {
+      side->trajectory->clear();
+      side->trajectory->append(side->known.time, side->known.pose, side->known.twist);
+    }
   contact->refresh(state.view());
-}
-
-Twist World::tool_twist() const {
-  if (!monolithic()) return tool_side_->known.twist;
-  const auto u = state.u().segment<6>(state.layout().find(tool_side_->block_id)->u_offset);
-  return {u.head<3>(), u.tail<3>()};
 }
 
 }  // namespace palpate::loop

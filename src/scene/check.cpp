@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "palpate/scene/hands.h"
 #include "scene/reader.h"
 
 namespace palpate::scene {
@@ -32,11 +33,13 @@ void check_names(const Document& doc, const Description& d) {
       refuse(location(doc, key), where, "name \"tool\" is kept for the tool; choose another");
     if (!seen.insert(name).second)
       refuse(location(doc, key), where,
-             fmt::format("name \"{}\" is taken; bodies, bones and obstacles need names of their own", name));
+             fmt::format("name \"{}\" is taken; bodies, bones, obstacles and hands need names of their own",
+                         name));
   };
   for (std::size_t i = 0; i < d.bodies.size(); ++i) check_one("body", i, d.bodies[i].name);
   for (std::size_t i = 0; i < d.bones.size(); ++i) check_one("bone", i, d.bones[i].name);
   for (std::size_t i = 0; i < d.obstacles.size(); ++i) check_one("obstacle", i, d.obstacles[i].name);
+  for (std::size_t i = 0; i < d.hands.size(); ++i) check_one("hand", i, d.hands[i].name);
 }
 
 void check_loads(const Document& doc, const Description& d) {
@@ -48,25 +51,36 @@ void check_loads(const Document& doc, const Description& d) {
     }
 }
 
+/// How messages call a hand's tool or device: "tool", `hand "left": tool`.
+std::string label_of(const Hand& hand, const std::string& what) {
+  return hand.name == "tool" ? what : fmt::format("hand \"{}\": {}", hand.name, what);
+}
+
+void check_hand(const Document& doc, const Hand& hand) {
+  if (hand.device)
+    check_keyframes(doc, hand.device_key + ".keyframe", label_of(hand, "device"), hand.device->keyframes);
+  const Vec3& inertia = hand.tool->inertia_kg_m2;
+  const std::string key = hand.tool_key + ".inertia_kg_m2", where = label_of(hand, "tool");
+  if (hand.tool->shape == "mesh" && inertia.isZero(0.0))
+    refuse(location(doc, key), where, "inertia_kg_m2 is missing: shape = \"mesh\" has no inertia of its own");
+  const double largest = inertia.maxCoeff();
+  if (!inertia.isZero(0.0) && (inertia.minCoeff() <= 0.0 || 2.0 * largest > inertia.sum() * (1.0 + 1e-9)))
+    refuse(location(doc, key), where,
+           fmt::format("inertia_kg_m2 = [{}, {}, {}] belongs to no rigid body: all must be positive and none "
+                       "larger than the other two together",
+                       inertia[0], inertia[1], inertia[2]));
+}
+
 void check_tool(const Document& doc, const Description& d) {
   if (d.tool && !d.device)
     refuse(location(doc, "tool"), "tool", "a tool needs a hand: add [device] with [[device.keyframe]]");
   if (d.device && !d.tool)
     refuse(location(doc, "device"), "device",
            "a device needs something to move: add [tool], or remove [device]");
-  if (d.device) check_keyframes(doc, "device.keyframe", "device", d.device->keyframes);
-  if (!d.tool) return;
-
-  const Vec3& inertia = d.tool->inertia_kg_m2;
-  if (d.tool->shape == "mesh" && inertia.isZero(0.0))
-    refuse(location(doc, "tool.inertia_kg_m2"), "tool",
-           "inertia_kg_m2 is missing: shape = \"mesh\" has no inertia of its own");
-  const double largest = inertia.maxCoeff();
-  if (!inertia.isZero(0.0) && (inertia.minCoeff() <= 0.0 || 2.0 * largest > inertia.sum() * (1.0 + 1e-9)))
-    refuse(location(doc, "tool.inertia_kg_m2"), "tool",
-           fmt::format("inertia_kg_m2 = [{}, {}, {}] belongs to no rigid body: all must be positive and none "
-                       "larger than the other two together",
-                       inertia[0], inertia[1], inertia[2]));
+  if (!d.hands.empty() && !d.tool)
+    refuse(location(doc, "hand[0]"), fmt::format("hand \"{}\"", d.hands[0].name),
+           "the first hand is [tool] and [device]; name one more hand only beside them");
+  for (const Hand& hand : hands_of(d)) check_hand(doc, hand);
 }
 
 /// Whether `whole` is a positive whole multiple of `part`, to rounding of decimal input.
@@ -76,10 +90,10 @@ bool is_multiple(double whole, double part) {
 }
 
 void check_period(const Document& doc, const std::string& key, const std::string& where, double period,
-                  double tick) {
+                  double tick, const std::string& tick_key) {
   const double most = 1e6;
   if (period / tick > most)
-    refuse(location(doc, "tool.tick_s"), where,
+    refuse(location(doc, tick_key), where,
            fmt::format("tick_s = {} of the tool makes {:.3g} ticks of one exchange period of {} s, at most "
                        "{:g} are possible; a haptic device asks for 0.001",
                        tick, period / tick, period, most));
@@ -139,8 +153,11 @@ void check_periods(const Document& doc, const Description& d) {
   const bool own = given(doc, "exchange.exchange_period_s");
   const double compared = d.compare.duration_s > 0.0 ? d.compare.duration_s : d.duration_s;
   if (c.scheme != "monolithic") {
-    check_period(doc, own ? "exchange.exchange_period_s" : "tool.tick_s", "exchange", c.exchange_period_s,
-                 d.tool->tick_s);
+    for (const Hand& hand : hands_of(d)) {
+      const std::string tick = hand.tool_key + ".tick_s";
+      check_period(doc, own ? "exchange.exchange_period_s" : tick, "exchange", c.exchange_period_s,
+                   hand.tool->tick_s, tick);
+    }
     check_length(doc, own ? "exchange.exchange_period_s" : "scene.duration_s", "exchange",
                  c.exchange_period_s, d.duration_s);
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "palpate/scene/contact_sides.h"
+#include "palpate/scene/hands.h"
 #include "scene/check.h"
 #include "scene/reader.h"
 
@@ -12,17 +13,15 @@ namespace {
 
 /// What a contact may name.
 struct Sides {
-  Names bodies, obstacles;
-  bool tool = false;
+  Names bodies, obstacles, tools;
   bool is_body(const std::string& name) const { return contains(bodies, name); }
   bool is_obstacle(const std::string& name) const { return contains(obstacles, name); }
-  bool known(const std::string& name) const {
-    return is_body(name) || is_obstacle(name) || (tool && name == "tool");
-  }
+  bool is_tool(const std::string& name) const { return contains(tools, name); }
+  bool known(const std::string& name) const { return is_body(name) || is_obstacle(name) || is_tool(name); }
   Names all() const {
     Names names = bodies;
     names.insert(names.end(), obstacles.begin(), obstacles.end());
-    if (tool) names.push_back("tool");
+    names.insert(names.end(), tools.begin(), tools.end());
     return names;
   }
   static bool contains(const Names& names, const std::string& name) {
@@ -44,6 +43,9 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
   const std::string at = location(doc, key + ".between");
   if (c.first == c.second && !sides.is_body(c.first))
     refuse(at, where, "only a soft body may touch itself; name two");
+  if (sides.is_tool(c.first) && sides.is_tool(c.second))
+    refuse(at, where,
+           "two tools do not meet: one of the two must be a soft body, or an obstacle for a tool to meet");
   if (sides.is_obstacle(c.first) && sides.is_obstacle(c.second))
     refuse(
         at, where,
@@ -66,8 +68,9 @@ void check_own_contact(const Document& doc, const std::string& key, const std::s
 
 void check_method(const Document& doc, const std::string& key, const std::string& where, const Sides& sides,
                   const Description& d, ContactSpec& c) {
-  const bool obstacle = sides.is_obstacle(c.second), tool_first = d.tool && c.first == "tool",
-             sphere_tool = c.second == "tool" && d.tool && d.tool->shape == "sphere",
+  const ToolSpec *first_tool = tool_named(d, c.first), *second_tool = tool_named(d, c.second);
+  const bool obstacle = sides.is_obstacle(c.second),
+             sphere_tool = second_tool && second_tool->shape == "sphere",
              pruned = std::any_of(d.bodies.begin(), d.bodies.end(),
                                   [&](const auto&body) { return body.name == c.first && body.proxies; });
   if (c.method == "auto" && (obstacle || (sphere_tool && !pruned))) {
@@ -94,7 +97,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
     refuse(location(doc, key + ".spring"), where,
            "spring = \"per_point\" is a spring at each colliding vertex, and samples = \"pixel\" has none; "
            "write samples = \"vertex\" as well, or remove it");
-  if (c.spring == "per_point" && tool_first && d.tool->shape == "sphere")
+  if (c.spring == "per_point" && first_tool && first_tool->shape == "sphere")
     refuse(
         location(doc, key + ".spring"), where,
         "spring = \"per_point\" is a spring at each colliding vertex, and a tool with shape = \"sphere\" has "
@@ -137,16 +140,17 @@ void check_friction(const Document& doc, const std::string& key, const std::stri
          "friction_tangent means nothing where friction = 0; remove it, or set friction");
 }
 
-void check_grasp(const Document& doc, const Description& d) {
-  if (!d.tool || d.tool->grasp_switch < 0) return;
+void check_grasp(const Document& doc, const Description& d, const Hand& hand) {
+  if (hand.tool->grasp_switch < 0) return;
   // a body stands before the tool
   if (std::none_of(d.contacts.begin(), d.contacts.end(),
-                   [](const ContactSpec& c) { return c.second == "tool"; }))
+                   [&](const ContactSpec& c) { return c.second == hand.name && !tool_named(d, c.first); }))
     refuse(
-        location(doc, "tool.grasp_switch"), "tool",
+        location(doc, hand.tool_key + ".grasp_switch"),
+        hand.name == "tool" ? "tool" : fmt::format("hand \"{}\": tool", hand.name),
         fmt::format("grasp_switch = {}, but no [[contact]] is between the tool and a soft body, so there is "
                     "nothing to grasp; add one, or remove the key",
-                    d.tool->grasp_switch));
+                    hand.tool->grasp_switch));
 }
 
 }  // namespace
@@ -155,7 +159,7 @@ void check_contacts(const Document& doc, Description& d) {
   Sides sides;
   for (const auto& body : d.bodies) sides.bodies.push_back(body.name);
   for (const auto& obstacle : d.obstacles) sides.obstacles.push_back(obstacle.name);
-  sides.tool = d.tool.has_value();
+  for (const Hand& hand : hands_of(d)) sides.tools.push_back(hand.name);
 
   std::set<std::pair<std::string, std::string>> seen;
   for (std::size_t i = 0; i < d.contacts.size(); ++i) {
@@ -169,7 +173,7 @@ void check_contacts(const Document& doc, Description& d) {
     if (!seen.emplace(c.first, c.second).second)
       refuse(location(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
   }
-  check_grasp(doc, d);
+  for (const Hand& hand : hands_of(d)) check_grasp(doc, d, hand);
 }
 
 }  // namespace palpate::scene

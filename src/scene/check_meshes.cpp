@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "palpate/scene/hands.h"
 #include "scene/check.h"
 #include "scene/reader.h"
 
@@ -12,6 +13,24 @@ void check_mesh(const Document& doc, const std::string& key, const std::string& 
   if (mesh.file.empty() && mesh.generator.empty())
     refuse(location(doc, key), where,
            "needs file = \"PATH\" or generator = \"ball\" (box, ball, cylinder, tet)");
+}
+
+void check_tool_mesh(const Document& doc, const Hand& hand) {
+  const std::string key = hand.tool_key + ".mesh",
+                    where = hand.name == "tool" ? "tool" : fmt::format("hand \"{}\": tool", hand.name);
+  const std::string& shape = hand.tool->shape;
+  if (given(doc, key))
+    check_mesh(doc, key, where + ": mesh", hand.tool->mesh);
+  else if (shape == "mesh")
+    refuse(
+        location(doc, hand.tool_key + ".shape"), where,
+        fmt::format("shape = \"mesh\" needs a [{}]", hand.name == "tool" ? "tool.mesh" : "hand.tool.mesh"));
+  if (shape != "mesh" && given(doc, key))
+    refuse(location(doc, key), where,
+           fmt::format("mesh means nothing to shape = \"{}\"; write shape = \"mesh\", or remove it", shape));
+  if (shape == "mesh" && given(doc, hand.tool_key + ".radius_m"))
+    refuse(location(doc, hand.tool_key + ".radius_m"), where,
+           "radius_m means nothing to shape = \"mesh\"; the mesh has its own size");
 }
 
 }  // namespace
@@ -37,18 +56,7 @@ void check_meshes(const Document& doc, const Description& d) {
       refuse(at, where,
              "proxies = true, but no [[contact]] of this body is in image space, which alone uses them");
   }
-  if (!d.tool) return;
-  if (given(doc, "tool.mesh"))
-    check_mesh(doc, "tool.mesh", "tool: mesh", d.tool->mesh);
-  else if (d.tool->shape == "mesh")
-    refuse(location(doc, "tool.shape"), "tool", "shape = \"mesh\" needs a [tool.mesh]");
-  if (d.tool->shape != "mesh" && given(doc, "tool.mesh"))
-    refuse(location(doc, "tool.mesh"), "tool",
-           fmt::format("mesh means nothing to shape = \"{}\"; write shape = \"mesh\", or remove it",
-                       d.tool->shape));
-  if (d.tool->shape == "mesh" && given(doc, "tool.radius_m"))
-    refuse(location(doc, "tool.radius_m"), "tool",
-           "radius_m means nothing to shape = \"mesh\"; the mesh has its own size");
+  for (const Hand& hand : hands_of(d)) check_tool_mesh(doc, hand);
 }
 
 }  // namespace palpate::scene

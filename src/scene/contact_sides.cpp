@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "palpate/scene/hands.h"
+
 namespace palpate::scene {
 namespace {
 
@@ -11,7 +13,9 @@ std::size_t place(const Description& d, const std::string& name) {
   const auto body =
       std::find_if(d.bodies.begin(), d.bodies.end(), [&](const auto& b) { return b.name == name; });
   if (body != d.bodies.end()) return static_cast<std::size_t>(body - d.bodies.begin());
-  return d.bodies.size() + (d.tool && name == "tool" ? 0 : 1);
+  const std::vector<Hand> hands = hands_of(d);
+  const auto hand = std::find_if(hands.begin(), hands.end(), [&](const Hand& h) { return h.name == name; });
+  return d.bodies.size() + static_cast<std::size_t>(hand - hands.begin());
 }
 
 }  // namespace

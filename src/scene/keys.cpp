@@ -124,6 +124,21 @@ const KeyTable<ToolSpec>& tool_keys() {
   return keys;
 }
 
+/// A table whose keys stand elsewhere already.
+Key<HandSpec> as_elsewhere(Key<HandSpec> key) {
+  key.children.clear();
+  return required(std::move(key));
+}
+
+const KeyTable<HandSpec>& hand_keys() {
+  static const KeyTable<HandSpec> keys = {
+      required(text("name", &HandSpec::name, {}, "what [[contact]] calls its tool")),
+      as_elsewhere(table("tool", &HandSpec::tool, tool_keys(), "its tool; the keys of [tool]")),
+      as_elsewhere(table("device", &HandSpec::device, device_keys(), "its device; the keys of [device]")),
+  };
+  return keys;
+}
+
 const KeyTable<CosimulationSpec>& exchange_keys() {
   static const KeyTable<CosimulationSpec> keys = {
       text("scheme", &CosimulationSpec::scheme, {"partitioned", "monolithic"},
@@ -304,6 +319,7 @@ const KeyTable<Description>& description_keys() {
       tables("contact", &Description::contacts, contact_keys(), "a pair that may touch"),
       table("tool", &Description::tool, tool_keys(), "a rigid tool that the hand moves"),
       table("device", &Description::device, device_keys(), "the haptic device in the hand"),
+      tables("hand", &Description::hands, hand_keys(), "one more hand, with a tool and a device of its own"),
       table("exchange", &Description::exchange, exchange_keys(),
             "how tool and bodies are simulated together"),
       table("integrator", &Description::integrator, integrator_keys(), "how the bodies step in time"),

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/scene/hands.h"
 
 namespace palpate::scene {
 namespace {
@@ -115,6 +116,8 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
             : "no [tool]"});
   out.push_back({"device", d.device.has_value(),
                  d.device ? fmt::format("[device], type \"{}\"", d.device->type) : "no [device]"});
+  const std::size_t more = d.hands.size();
+  out.push_back({"more hands", more > 0, more > 0 ? fmt::format("{} [[hand]]", more) : "no [[hand]]"});
   const bool monolithic = tool && d.exchange.scheme == "monolithic",
              two_rates = tool && !monolithic && !d.bodies.empty();
   const std::string one_system = "scheme \"monolithic\": tool and bodies are one system of one integrator";
@@ -123,7 +126,8 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                                             d.exchange.exchange_period_s)
                  : monolithic ? one_system
                               : "one rate only"});
-  const bool touched = count_if(d.contacts, [](const auto& c) { return c.second == "tool"; }) > 0;
+  const bool touched =
+      count_if(d.contacts, [&](const auto& c) { return tool_named(d, c.second) != nullptr; }) > 0;
   const bool points = two_rates && touched && d.exchange.linearisation == "points";
   out.push_back({"contact points", points,
                  points       ? "linearisation \"points\": bodies are reduced to what the tool touches"
@@ -137,9 +141,12 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                  : monolithic ? one_system
                  : !touched   ? "no contact of a soft body with a tool"
                               : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
-  const bool grasp = d.tool && d.tool->grasp_switch >= 0;
+  const std::vector<Hand> hands = hands_of(d);
+  const auto grasps =
+      std::find_if(hands.begin(), hands.end(), [](const Hand& h) { return h.tool->grasp_switch >= 0; });
+  const bool grasp = grasps != hands.end();
   out.push_back({"grasp", grasp,
-                 grasp    ? fmt::format("tool.grasp_switch = {}", d.tool->grasp_switch)
+                 grasp    ? fmt::format("{}.grasp_switch = {}", grasps->tool_key, grasps->tool->grasp_switch)
                  : d.tool ? "no tool.grasp_switch"
                           : "no [tool]"});
   out.push_back(

@@ -276,7 +276,7 @@ TEST_F(Pictures, InstantsComeBackFromDiskBitForBit) {
   first.stress = {VecX::Random(7), VecX::Random(2)};
   first.depths = {{{3, 0.5f}, {5, 0.25f}}, {}};
   first.bones = {Pose{Quat(0.5, 0.5, 0.5, 0.5), Vec3(1, 2, 3)}};
-  first.tool = {Quat(0.0, 0.6, 0.8, 0.0), Vec3(4, 5, 6)};
+  first.tools = {{Quat(0.0, 0.6, 0.8, 0.0), Vec3(4, 5, 6)}};
   cli::Instant second;
   second.time = 0.2;
   second.handle = Pose{Quat(0.6, 0.0, 0.0, 0.8), Vec3(7, 8, 9)};
@@ -295,7 +295,7 @@ TEST_F(Pictures, InstantsComeBackFromDiskBitForBit) {
     ASSERT_EQ(read.bones.size(), 1u);
     EXPECT_EQ(read.bones[0].rotation.coeffs(), first.bones[0].rotation.coeffs());
     EXPECT_EQ(read.bones[0].translation, first.bones[0].translation);
-    EXPECT_EQ(read.tool.translation, first.tool.translation);
+    EXPECT_EQ(read.tools[0].translation, first.tools[0].translation);
     EXPECT_FALSE(read.handle.has_value());
     ASSERT_TRUE(spool.next(read));
     EXPECT_EQ(read.time, second.time);

@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kPeriod = 0.01;
 
-/// The block under the tool, its nodes on the way somewhere.
+/// The block under the tool, its nodes on the way somewhere at about that speed.
 std::unique_ptr<loop::World> touching(scene::Description d, const std::string& linearisation,
-                                      double error = 0.0) {
+                                      double error = 0.0, double speed = 1e-3) {
   d.exchange.linearisation = linearisation;
   d.exchange.linearisation_error = error;
   d.tool->tick_s = kPeriod;
@@ -29,7 +29,7 @@ std::unique_ptr<loop::World> touching(scene::Description d, const std::string& l
   side.trajectory->append(0.0, side.tool->pose(), {});
   world->contact->refresh(world->state.view());
   VecX u = world->state.u();
-  for (Eigen::Index i = 0; i < u.size(); ++i) u[i] += 1e-3 * std::sin(1.0 + 7.0 * static_cast<double>(i));
+  for (Eigen::Index i = 0; i < u.size(); ++i) u[i] += speed * std::sin(1.0 + 7.0 * static_cast<double>(i));
   VecX q = world->state.q();
   world->system.impose(world->state.layout(), 0.0, q.data(), u.data());
   world->state.u() = u;
@@ -84,6 +84,21 @@ TEST(TouchReduction, OneTickOfAPeriodIsTheCondensedAnswer) {
   ASSERT_GT(record.touch.points, 3);
   ASSERT_GE(record.touch.modes, 4);
   expect_same(whole_tick(*world), condensed, 1e-7);
+}
+
+// Where friction holds, the surface goes with a tool that moves along it: what resists is the body, not the
+// regularised friction, which is some hundred times as stiff.
+TEST(TouchReduction, WhatSticksGoesWithTheTool) {
+  scene::Description d = pressed_block(0.002);
+  d.bodies[0].mesh.element_size_m = 0.005;
+  d.contacts[0].friction = 0.8;
+  constexpr double kCreep = 1e-7;
+  const Linear condensed(record_of(*touching(d, "condensed", 0.0, kCreep)).linear),
+      frozen(record_of(*touching(d, "frozen", 0.0, kCreep)).linear);
+  ASSERT_LT(frozen.B(3, 3), 50.0 * condensed.B(3, 3)) << "nothing sticks here";
+  expect_same(whole_tick(*touching(d, "points", 0.0, kCreep)), condensed, 1e-3);
+  const Linear iterated = whole_tick(*touching(d, "points", 0.01, kCreep));
+  for (const int axis : {3, 4}) EXPECT_NEAR(iterated.B(axis, axis) / condensed.B(axis, axis), 1.0, 0.1);
 }
 
 TEST(TouchReduction, AFewIterationsAnswerToTheErrorAskedFor) {

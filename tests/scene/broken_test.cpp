@@ -64,6 +64,15 @@ const Broken kCases[] = {
     {"exchange-period", "9:21",
      "exchange: exchange_period_s = 0.0105 must be a whole number of the tool's ticks of 0.001 s; use 0.01 "
      "or 0.011"},
+    {"hand-of-a-name", "14:8", "hand \"tool\": name \"tool\" is kept for the tool; choose another"},
+    {"hand-ticks", "14:10",
+     "exchange: exchange_period_s = 0.01 must be a whole number of the tool's ticks of 0.003 s; use 0.009 or "
+     "0.012"},
+    {"hand-without-tool", "8:1",
+     "hand \"left\": the first hand is [tool] and [device]; name one more hand only beside them"},
+    {"hands-that-meet", "14:11",
+     "contact between \"tool\" and \"left\": two tools do not meet: one of the two must be a soft body, or "
+     "an obstacle for a tool to meet"},
     {"idle-key", "11:10",
      "body \"ball\": mesh: size_m means nothing to generator = \"ball\", which takes radius_m, "
      "element_size_m, grading; remove it (used by box, tet)"},
@@ -98,7 +107,7 @@ const Broken kCases[] = {
     {"syntax", "3:14", "not valid TOML: "},
     {"tool-without-device", "4:1", "tool: a tool needs a hand: add [device] with [[device.keyframe]]"},
     {"two-of-a-name", "10:8",
-     "obstacle \"ball\": name \"ball\" is taken; bodies, bones and obstacles need names of their own"},
+     "obstacle \"ball\": name \"ball\" is taken; bodies, bones, obstacles and hands need names of their own"},
     {"unknown-choice", "7:11", "body \"ball\": tangent = \"exakt\" is not known (did you mean \"exact\"?)"},
     {"unknown-table", "4:2", "unknown key \"integrater\" (did you mean \"integrator\"?)"},
     {"wrong-type", "3:14", "scene: duration_s = \"one second\" must be a number"},

@@ -328,9 +328,10 @@ TEST(Kinds, ListOnlyKeysThatThereAre) {
     for (const auto& kind : table.kinds)
       for (const auto& key : kind.keys) {
         ++keys;
-        EXPECT_TRUE(
-            std::any_of(rows.begin(), rows.end(),
-                        [&](const auto& row) { return row.table == table.table && row.name == key.name; }))
+        // a further hand has the keys of the first, which are listed once
+        const std::string listed = table.table.starts_with("hand.") ? table.table.substr(5) : table.table;
+        EXPECT_TRUE(std::any_of(rows.begin(), rows.end(),
+                                [&](const auto& row) { return row.table == listed && row.name == key.name; }))
             << table.table << ", " << kind.name << ": " << key.name;
       }
   EXPECT_GT(keys, 100);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
+#include "palpate/scene/hands.h"
 #include "palpate/scene/needs.h"
 #include "scene/scene_texts.h"
 
@@ -46,6 +47,33 @@ TEST(Load, PressBallAsWritten) {
   EXPECT_EQ(d.compare.ladders[1].setting, "step_s");
   EXPECT_EQ(d.compare.ladders[1].values.back(), 0.000625);
   EXPECT_EQ(d.compare.ladders[2].label, "cvode-bdf, root finding");
+}
+
+TEST(Load, HandsHaveToolsAndDevicesOfTheirOwn) {
+  const Description d = palpate::loop::load(scene_texts::kScenes + "/two-hands.toml");
+  ASSERT_EQ(d.hands.size(), 1u);
+  EXPECT_EQ(d.hands[0].name, "left");
+  EXPECT_EQ(d.hands[0].tool.position_m.x(), -d.tool->position_m.x());
+  EXPECT_EQ(d.hands[0].device.keyframes.size(), 4u);
+  EXPECT_EQ(d.contacts[2].second, "left");
+  const auto hands = palpate::scene::hands_of(d);
+  ASSERT_EQ(hands.size(), 2u);
+  EXPECT_EQ(hands[0].name, "tool");
+  EXPECT_EQ(palpate::scene::tool_named(d, "left"), &d.hands[0].tool);
+  EXPECT_EQ(palpate::scene::tool_named(d, "right"), nullptr);
+  // a hand's own kinds are checked as the first's
+  const std::string path = scene_texts::kScenes + "/two-hands.toml";
+  for (const auto& [override, said] : {std::pair("hand.0.device.type=robot", "robot"),
+                                       {"hand.0.tool.integrator=rk9", "rk9"},
+                                       {"hand.0.device.port=3", "port"},
+                                       {"hand.0.tool.grasp_switch=40", "grasp_switch"}})
+    try {
+      palpate::loop::load(path, {override});
+      ADD_FAILURE() << override;
+    } catch (const palpate::Error& e) {
+      EXPECT_NE(std::string(e.what()).find(said), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("hand"), std::string::npos) << e.what();
+    }
 }
 
 TEST(Load, BonesAndWhatIsTiedToThem) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <concepts>
 #include <type_traits>
+#include <vector>
 
 #include "palpate/loop/world.h"
 
@@ -14,11 +15,11 @@ namespace palpate::loop {
 /// the three powers leave: the error of this balance.
 struct EnergyBalance {
   double time = 0.0;         ///< [s]
-  double kinetic = 0.0;      ///< of bodies, bones and tool
+  double kinetic = 0.0;      ///< of bodies, bones and tools
   double elastic = 0.0;      ///< of the bodies' elements
   double contact = 0.0;      ///< of the contact's springs
   double other = 0.0;        ///< of the virtual coupling, of weight and of joints; zero at the start
-  double hand = 0.0;         ///< work of the hand on the coupling, from the start to the last tick
+  double hand = 0.0;         ///< work of hands on their couplings, from the start to the last tick
   double supports = 0.0;     ///< work of what moves held nodes along given paths
   double queries = 0.0;      ///< change of `contact` by queries, which change its samples at a state
   double materials = 0.0;    ///< change of `elastic` by changes of material, at a state
@@ -72,7 +73,8 @@ class EnergyLedger {
   void after_query();
   void before_material();
   void after_material();
-  void tick(double t, const Wrench& on_hand, const Twist& handle);
+  /// @param hand  as scene::hands_of() counts them
+  void tick(std::size_t hand, double t, const Wrench& on_hand, const Twist& handle);
   const EnergyBalance& period(double t);
   const EnergyBalance& balance() const { return balance_; }
 
@@ -85,7 +87,8 @@ class EnergyLedger {
   World& world_;
   EnergyBalance balance_;
   double stored_at_start_ = 0.0, other_at_start_ = 0.0, contact_before_ = 0.0, elastic_before_ = 0.0;
-  PowerIntegral hand_, supports_, dissipated_;
+  std::vector<PowerIntegral> hands_;
+  PowerIntegral supports_, dissipated_;
 };
 
 }  // namespace palpate::loop

@@ -8,7 +8,8 @@ namespace palpate::loop {
 
 /// Keeps what the scene's [record] table asks for, in one folder: run.vtkhdf (VTKHDF time series of all
 /// bodies, bones and the tool), bones.csv (pose of each bone and wrench of the tissue on it, a line a bone
-/// and recorded instant), force.csv (a line a tick), haptic.h5
+/// and recorded instant), force.csv (a line a tick; of a
+/// further hand force-NAME.csv), haptic.h5
 /// (each tick and exchange to the last bit, for replays), energy.csv (a line a period).  Every period on disk
 /// is complete: an interrupted run leaves valid files.  A scene without [record] gets no file.
 class Recorder : public Observer {
@@ -17,7 +18,7 @@ class Recorder : public Observer {
   Recorder(const World& world, const std::string& folder);
   ~Recorder() override;
   void period(World& world, double t) override;
-  void tick(const TickRecord& tick) override;
+  void tick_of(std::size_t hand, const TickRecord& tick) override;
   void exchanged(const ContactRecord& record) override;
   bool wants_energy() const override;
   void energy(const EnergyBalance& balance) override;

@@ -36,7 +36,11 @@ class Observer {
   /// At the start and after every period.
   virtual void period(World&, double /*t*/) {}
   virtual void tick(const TickRecord&) {}
-  /// A record of the contact was made for the coming ticks.
+  /// A tick of any hand, as scene::hands_of() counts them.  What does not ask for it sees those of the first.
+  virtual void tick_of(std::size_t hand, const TickRecord& tick_record) {
+    if (hand == 0) tick(tick_record);
+  }
+  /// A record of the contact was made for the coming ticks of the first hand.
   virtual void exchanged(const ContactRecord&) {}
   /// After every contact query, at its state: behind `period` where both come at one time.
   virtual void queried(World&, double /*t*/) {}
@@ -62,6 +66,13 @@ struct PortEnergy {
   long controller_ticks = 0;                       ///< in which it acted
 };
 
+/// What a run keeps of each further hand; of the first it stands in the RunResult itself.
+struct HandResult {
+  long ticks = 0, limited_ticks = 0, outside_ticks = 0;
+  std::optional<PortEnergy> port;
+  std::optional<double> buzz_n;
+};
+
 struct RunResult {
   dynamics::StepResult status;  ///< not ok: the integrator gave up; what was recorded stands
   bool stopped = false;
@@ -81,6 +92,7 @@ struct RunResult {
   std::optional<RealTimeResult> real_time;
   std::optional<PortEnergy> port;  ///< where passivity is observed or controlled
   std::optional<double> buzz_n;  ///< force on the hand above 30 Hz, RMS [N]; with a tool of fast enough ticks
+  std::vector<HandResult> more_hands;  ///< of each [[hand]]
 };
 
 /// Visits every number of a run, as its overload for StepperCounters (dynamics/stepper.h), which it includes.

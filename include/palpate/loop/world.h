@@ -125,20 +125,21 @@ struct World {
   /// Wrench of the tissue on each bone, moment about its origin: minus the forces that hold the nodes that it
   /// carries.
   std::vector<Wrench> wrenches_on_bones();
-  bool monolithic() const;         ///< the tool is a block of the State
+  bool monolithic() const;         ///< tools are blocks of the State
   bool has_tool_of_ticks() const;  ///< there is a tool, and it has ticks of its own
   /// number of the tool's frame in `contact`; -1 where no contact names it
   int tool_frame_index() const;
-  Pose tool_pose() const;  ///< @pre there is a tool
-  Twist tool_twist() const;
-  /// Asks for the contact anew at the state as it is, the tool where it stands.  @pre there is a contact
+  /// Of the hands as scene::hands_of() counts them.  @pre that one is there
+  Pose tool_pose(std::size_t hand = 0) const;
+  Twist tool_twist(std::size_t hand = 0) const;
+  /// Asks for the contact anew at the state as it is, tools where they stand.  @pre there is a contact
   void refresh_contact();
   /// kinetic and potential energy of bodies, contact, tool and coupling [J]
   double mechanical_energy();
 
  private:
   friend struct ToolSide;
-  std::unique_ptr<ToolSide> tool_side_;  ///< never null
+  std::vector<std::unique_ptr<ToolSide>> tool_sides_;  ///< one at least
 };
 
 /// Builds a World: the only function that names concrete parts.  From here on the process works on its number

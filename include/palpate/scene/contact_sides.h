@@ -3,7 +3,7 @@
 
 namespace palpate::scene {
 
-/// Puts the two names of a contact into their order: bodies as the scene lists them, then the tool, then
+/// Puts the two names of a contact into their order: bodies as the scene lists them, then tools, then
 /// obstacles.  So the result does not depend on which is named first, to the last bit.
 void order_sides(const Description& description, ContactSpec& contact);
 

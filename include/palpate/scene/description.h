@@ -76,6 +76,13 @@ struct CosimulationSpec {
   int latency_ticks = 0;
 };
 
+/// One more hand: a `[[hand]]` table of the scene.
+struct HandSpec {
+  std::string name;   ///< what [[contact]] calls its tool
+  ToolSpec tool;      ///< [hand.tool]
+  DeviceSpec device;  ///< [hand.device]
+};
+
 /// A scene file as plain data: everything a run needs, nothing computed.  A part that is absent here is not
 /// built.
 struct Description {
@@ -90,6 +97,7 @@ struct Description {
   std::vector<ContactSpec> contacts;
   std::optional<ToolSpec> tool;
   std::optional<DeviceSpec> device;
+  std::vector<HandSpec> hands;  ///< beside that of `tool` and `device`, which is the first
   CosimulationSpec exchange;
   IntegratorSpec integrator;
   std::optional<RecordSpec> record;
