@@ -64,7 +64,7 @@ TEST(Load, HandsHaveToolsAndDevicesOfTheirOwn) {
   // a hand's own kinds are checked as the first's
   const std::string path = scene_texts::kScenes + "/two-hands.toml";
   for (const auto& [override, said] : {std::pair("hand.0.device.type=robot", "robot"),
-                                       {"hand.0.tool.integrator=rk9", "rk9"},
+                                       {"hand.0.tool.shape=cube", "shape"},
                                        {"hand.0.device.port=3", "port"},
                                        {"hand.0.tool.grasp_switch=40", "grasp_switch"}})
     try {
