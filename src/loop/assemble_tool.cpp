@@ -60,6 +60,12 @@ void assemble_hand(World& world, ToolSide& side, const dynamics::BlockSpec& tool
 /// @param own_device  the device is that of the scene
 void assemble_block(World& world, ToolSide& side, bool own_device) {
   const ToolSpec& spec = *side.spec;
+  if (spec.tick_s != world.description.tool->tick_s)
+    fail(
+        "exchange: scheme = \"monolithic\" reads all tools at the same ticks: hand \"{}\" has tick_s = {}, "
+        "the "
+        "first {}; make them equal",
+        side.name, spec.tick_s, world.description.tool->tick_s);
   const Quat r = quaternion_of(spec.rotation_vector_rad);
   VecX q(7);
   q << r.w(), r.vec(), spec.position_m;

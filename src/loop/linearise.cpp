@@ -86,11 +86,11 @@ VecX rate_by_other_tools(const World& world, const ToolSide& mine) {
   return rate;
 }
 
-VecX right_hand_side(World& world, const ToolSide& mine, double H, const VecX& s, const VecX& w) {
+VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w, const VecX& rate) {
   const dynamics::StateView view = world.state.view();
   VecX f, inertia, stiff = VecX::Zero(s.size());
   world.system.force(view, f);
-  if (const VecX rate = rate_by_other_tools(world, mine); rate.size() > 0) f += H * rate;
+  if (rate.size() > 0) f += H * rate;
   for (const auto& term : world.system.terms()) {
     if (!term->traits().has_tangent) continue;
     term->apply_tangent(view, 1.0, 0.0, s, stiff);
@@ -132,7 +132,7 @@ bool answer_after(World& world, ToolSide& side, double H, const contact::FrameLi
   MatX rhs = MatX::Zero(world.state.layout().u_size, 13);
   rhs.topLeftCorner(n, 6) = c.K_body;
   rhs.block(0, 6, n, 6) = c.B_body;
-  rhs.col(12) = right_hand_side(world, side, H, s, w);
+  rhs.col(12) = right_hand_side(world, H, s, w, rate_by_other_tools(world, side));
   VecX column;
   for (Eigen::Index i = 0; i < 12; ++i) {
     column = rhs.col(i);

@@ -11,7 +11,8 @@ void known_motion(World& world, double H, VecX& s, VecX& w);
 /// nothing.
 VecX rate_by_other_tools(const World& world, const ToolSide& mine);
 /// H (f + H rate - K s - D w) - M w on free directions, at the World's state.
-VecX right_hand_side(World& world, const ToolSide& mine, double H, const VecX& s, const VecX& w);
+/// @param rate  as above
+VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w, const VecX& rate);
 /// A factor of ToolSide::condensed_matrix, the system's step matrix: by LU where it is indefinite (an
 /// inverted element, a compressed strut), null where it is singular.
 dynamics::LinearSolver* factored(const dynamics::System& system, ToolSide& side);

@@ -7,6 +7,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/core/finite.h"
 #include "step_answer.h"
+#include "touch_loads.h"
 
 namespace palpate::loop {
 
@@ -51,110 +52,14 @@ struct TouchReduction::Answers {
 namespace {
 
 constexpr int kModes = TouchModel::kMostModes, kMostIterations = 40;
-using Mat36 = Eigen::Matrix<double, 3, 6>;
 
 /// Squares of lengths, of directions scaled to one: of exact answers, and of single precision's.
 constexpr double kAlike = 1e-9, kAlikeSingle = 1e-6;
-/// Squares of loads: what is left out answers a thousandth of what the largest does.
-constexpr double kAlikeLoads = 1e-6;
-
 /// Of the samples' gaps: what moves by less within a period rests.  And of the samples' places, by rounding.
 constexpr double kStill = 1e-9, kStillByRounding = 1e-12;
 
 /// Modes by rows: those that move a node lie together.
 using Rows = Eigen::Matrix<double, kModes, Eigen::Dynamic>;
-
-/// The weighted sum of what X, or x, has for a sample's nodes.
-auto moved_by(const TouchSample& sample, const auto& x) {
-  auto out = (sample.weight[0] * x(sample.node[0])).eval();
-  for (std::size_t k = 1; k < static_cast<std::size_t>(sample.count); ++k)
-    out += sample.weight[k] * x(sample.node[k]);
-  return out;
-}
-
-bool presses(const TouchSample& sample) { return sample.held || sample.gap < 0.0; }
-
-bool names(const ContactSpec& contact, const std::string& tool) {
-  return contact.first == tool || contact.second == tool;
-}
-
-/// By how much each sample is pressed at the period's end if all goes on as it does [m]; where that is
-/// nowhere, of those that are nearest then by how much less they are apart than a tenth of the way to the
-/// farthest.  What is held has none: it presses now.
-VecX coming_depths(const std::vector<TouchSample>& samples, const Twist& tool, const Mat3& R, double H) {
-  VecX gaps = VecX::Constant(static_cast<Eigen::Index>(samples.size()), HUGE_VAL);
-  double nearest = HUGE_VAL, farthest = -HUGE_VAL;
-  for (std::size_t j = 0; j < samples.size(); ++j) {
-    const TouchSample& s = samples[j];
-    if (s.held) continue;
-    const Vec3 v = tool.at(R * s.offset + s.slide) - s.velocity;
-    const double gap = gaps[static_cast<Eigen::Index>(j)] = s.gap + H * s.normal.dot(v);
-    nearest = std::min(nearest, gap);
-    farthest = std::max(farthest, gap);
-  }
-  if (nearest > farthest) return VecX::Zero(gaps.size());
-  const double reach = nearest < 0.0 ? 0.0 : nearest + 0.1 * (farthest - nearest);
-  return (reach - gaps.array()).cwiseMax(0.0);
-}
-
-/// Load patterns: what a tool that moves a little does to the nodes through the samples that press; and the
-/// forces of the samples that will press if all goes on as it does, where some of these do not yet: a tool
-/// that comes down touches within the period.  Fewer than six and three, or twice that with friction, where
-/// they are alike: a round tool that turns does nothing.
-MatX load_patterns(const World& world, const ToolSide& side, const std::vector<TouchSample>& samples,
-                   double H) {
-  const KnownTool& tool = side.known;
-  const bool pressed = std::any_of(samples.begin(), samples.end(), presses);
-  const auto& contacts = world.description.contacts;
-  const bool friction = std::any_of(contacts.begin(), contacts.end(), [&](const ContactSpec& c) {
-    return names(c, side.name) && c.friction > 0.0;
-  });
-  const Mat3 R = tool.pose.rotation.toRotationMatrix();
-  const VecX depths = coming_depths(samples, tool.twist, R, H);
-  bool more = !pressed;
-  for (std::size_t j = 0; j < samples.size(); ++j)
-    more = more || (!presses(samples[j]) && depths[static_cast<Eigen::Index>(j)] > 0.0);
-  const Eigen::Index count = friction ? 12 : 6;
-  MatX all = MatX::Zero(world.state.layout().u_size, count), coming = MatX::Zero(all.rows(), more ? 3 : 0);
-  for (std::size_t j = 0; j < samples.size(); ++j) {
-    const TouchSample& s = samples[j];
-    const double depth = depths[static_cast<Eigen::Index>(j)];
-    Mat36 Z;
-    Z << -cross_matrix(R * s.offset + s.slide), Mat3::Identity();
-    // what is held is so across the normal, and along it where nothing presses
-    const Mat3 along = s.normal * s.normal.transpose(),
-               nn = !s.held ? along : Mat3(Mat3::Identity() - (s.gap < 0.0 ? along : Mat3(Mat3::Zero())));
-    Eigen::Matrix<double, 3, 12> load;
-    // friction's share is as large as what it is a share of: where it holds, mu p/v_r, nodes go with the
-    // tool, and loads by area would let those slip that are pressed hardest
-    load << s.stiffness * nn * Z,
-        std::max(s.force.dot(s.normal), 0.0) * (Mat3::Identity() - along) * Z * (s.held ? 0.0 : 1.0);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
-      const auto at = 3 * s.node[k];
-      if (presses(s)) all.middleRows<3>(at) += s.weight[k] * load.leftCols(count);
-      if (more && depth > 0.0) {
-        const Mat3 force = s.weight[k] * s.stiffness * depth * (friction ? Mat3(Mat3::Identity()) : nn);
-        coming.middleRows<3>(at) += force;
-      }
-    }
-  }
-  if (friction) {  // both kinds count alike
-    const double along = all.middleCols<3>(3).norm(), across = all.middleCols<3>(9).norm();
-    if (across > 0.0) all.rightCols<6>() *= along / across;
-  }
-  // rotations count by the displacement that they come to where the tool touches
-  for (Eigen::Index k = 0; k < count; k += 6) {
-    const double turn = all.middleCols<3>(k).norm(), push = all.middleCols<3>(k + 3).norm();
-    if (turn > 1e-9 * push * tool.pose.translation.norm()) all.middleCols<3>(k) *= push / turn;
-  }
-  MatX out(all.rows(), count + coming.cols());
-  const double now = all.norm(), later = coming.norm();
-  out << all / (now > 0.0 ? now : 1.0), coming / (later > 0.0 ? later : 1.0);
-  const Eigen::SelfAdjointEigenSolver<MatX> gram(MatX(out.transpose() * out));
-  const VecX& size = gram.eigenvalues();  // increasing
-  const Eigen::Index alone = (size.array() > kAlikeLoads * size[size.size() - 1]).count();
-  return out * gram.eigenvectors().rightCols(std::min<Eigen::Index>(alone, kModes - 1));
-}
 
 /// What moves by less than that within a period rests as far as the samples can tell [m].
 double still_of(const std::vector<TouchSample>& samples) {
@@ -276,7 +181,7 @@ bool TouchReduction::factor(World& world, ToolSide& side, double H, const MatX& 
     world.system.reduce(view, column);
     rhs.col(i) = column;
   }
-  rhs.rightCols<1>() = right_hand_side(world, side, H, out.s, out.w);
+  rhs.rightCols<1>() = right_hand_side(world, H, out.s, out.w, out.rate);
   out.X.resize(rhs.rows(), rhs.cols());
   if (solver->solve(rhs, out.X) != dynamics::SolveStatus::kOk || !all_finite(out.X)) return false;
   for (Eigen::Index i = 0; i < out.X.cols(); ++i) {
@@ -403,7 +308,7 @@ bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& 
     sample.velocity = moved_by(sample, [&](int node) { return velocity.segment<3>(3 * node); });
   world.system.force(view, x.f);
   x.rate = rate_by_other_tools(world, side);
-  const MatX patterns = load_patterns(world, side, samples, H);
+  const MatX patterns = load_patterns(world, side, samples, H, kModes - 1);
   const bool known = iterate(world, H, patterns, x) || factor(world, side, H, patterns, x);
   Rows modes = Rows::Zero(kModes, velocity.size());
   if (known && farthest(samples, H * x.X.rightCols<1>()) <= x.still) {

@@ -248,6 +248,18 @@ TEST(TwoHands, BalanceTheirEnergy) {
   }
 }
 
+TEST(TwoHands, OfOneSystemTickTogether) {
+  scene::Description d = squeezed();
+  d.exchange.scheme = "monolithic";
+  d.hands[0].tool.tick_s = 5e-4;
+  try {
+    loop::assemble(d);
+    FAIL() << "its force would be filtered, and recorded, by another tick than it has";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("hand \"left\" has tick_s"), std::string::npos);
+  }
+}
+
 TEST(TwoHands, TickByOneClock) {
   Both both;
   const loop::RunResult result = run(squeezed(), both, true);

@@ -1,0 +1,93 @@
+#include "touch_loads.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace palpate::loop {
+
+using contact::TouchSample;
+
+namespace {
+
+using Mat36 = Eigen::Matrix<double, 3, 6>;
+
+/// Squares of loads: what is left out answers a thousandth of what the largest does.
+constexpr double kAlikeLoads = 1e-6;
+
+/// By how much each sample is pressed at the period's end if all goes on as it does [m]; where that is
+/// nowhere, of those that are nearest then by how much less they are apart than a tenth of the way to the
+/// farthest.  What is held has none: it presses now.
+VecX coming_depths(const std::vector<TouchSample>& samples, const Twist& tool, const Mat3& R, double H) {
+  VecX gaps = VecX::Constant(static_cast<Eigen::Index>(samples.size()), HUGE_VAL);
+  double nearest = HUGE_VAL, farthest = -HUGE_VAL;
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    const TouchSample& s = samples[j];
+    if (s.held) continue;
+    const Vec3 v = tool.at(R * s.offset + s.slide) - s.velocity;
+    const double gap = gaps[static_cast<Eigen::Index>(j)] = s.gap + H * s.normal.dot(v);
+    nearest = std::min(nearest, gap);
+    farthest = std::max(farthest, gap);
+  }
+  if (nearest > farthest) return VecX::Zero(gaps.size());
+  const double reach = nearest < 0.0 ? 0.0 : nearest + 0.1 * (farthest - nearest);
+  return (reach - gaps.array()).cwiseMax(0.0);
+}
+
+}  // namespace
+
+MatX load_patterns(const World& world, const ToolSide& side, const std::vector<TouchSample>& samples,
+                   double H, Eigen::Index most) {
+  const KnownTool& tool = side.known;
+  const bool pressed = std::any_of(samples.begin(), samples.end(), presses);
+  const auto& contacts = world.description.contacts;
+  const bool friction = std::any_of(contacts.begin(), contacts.end(), [&](const ContactSpec& c) {
+    return names(c, side.name) && c.friction > 0.0;
+  });
+  const Mat3 R = tool.pose.rotation.toRotationMatrix();
+  const VecX depths = coming_depths(samples, tool.twist, R, H);
+  bool more = !pressed;
+  for (std::size_t j = 0; j < samples.size(); ++j)
+    more = more || (!presses(samples[j]) && depths[static_cast<Eigen::Index>(j)] > 0.0);
+  const Eigen::Index count = friction ? 12 : 6;
+  MatX all = MatX::Zero(world.state.layout().u_size, count), coming = MatX::Zero(all.rows(), more ? 3 : 0);
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    const TouchSample& s = samples[j];
+    const double depth = depths[static_cast<Eigen::Index>(j)];
+    Mat36 Z;
+    Z << -cross_matrix(R * s.offset + s.slide), Mat3::Identity();
+    // what is held is so across the normal, and along it where nothing presses
+    const Mat3 along = s.normal * s.normal.transpose(),
+               nn = !s.held ? along : Mat3(Mat3::Identity() - (s.gap < 0.0 ? along : Mat3(Mat3::Zero())));
+    Eigen::Matrix<double, 3, 12> load;
+    // friction's share is as large as what it is a share of: where it holds, mu p/v_r, nodes go with the
+    // tool, and loads by area would let those slip that are pressed hardest
+    load << s.stiffness * nn * Z,
+        std::max(s.force.dot(s.normal), 0.0) * (Mat3::Identity() - along) * Z * (s.held ? 0.0 : 1.0);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
+      const auto at = 3 * s.node[k];
+      if (presses(s)) all.middleRows<3>(at) += s.weight[k] * load.leftCols(count);
+      if (more && depth > 0.0) {
+        const Mat3 force = s.weight[k] * s.stiffness * depth * (friction ? Mat3(Mat3::Identity()) : nn);
+        coming.middleRows<3>(at) += force;
+      }
+    }
+  }
+  if (friction) {  // both kinds count alike
+    const double along = all.middleCols<3>(3).norm(), across = all.middleCols<3>(9).norm();
+    if (across > 0.0) all.rightCols<6>() *= along / across;
+  }
+  // rotations count by the displacement that they come to where the tool touches
+  for (Eigen::Index k = 0; k < count; k += 6) {
+    const double turn = all.middleCols<3>(k).norm(), push = all.middleCols<3>(k + 3).norm();
+    if (turn > 1e-9 * push * tool.pose.translation.norm()) all.middleCols<3>(k) *= push / turn;
+  }
+  MatX out(all.rows(), count + coming.cols());
+  const double now = all.norm(), later = coming.norm();
+  out << all / (now > 0.0 ? now : 1.0), coming / (later > 0.0 ? later : 1.0);
+  const Eigen::SelfAdjointEigenSolver<MatX> gram(MatX(out.transpose() * out));
+  const VecX& size = gram.eigenvalues();  // increasing
+  const Eigen::Index alone = (size.array() > kAlikeLoads * size[size.size() - 1]).count();
+  return out * gram.eigenvectors().rightCols(std::min(alone, most));
+}
+
+}  // namespace palpate::loop
