@@ -33,6 +33,19 @@ VecX coming_depths(const std::vector<TouchSample>& samples, const Twist& tool, c
   return (reach - gaps.array()).cwiseMax(0.0);
 }
 
+/// Of friction against a sample's sliding [N s/m]: the secant that ticks have, mu p A/max(|v_t|, v_r)
+/// (sample_math.cpp).  Where it holds nodes go with the tool, those the most that are pressed hardest, and
+/// what slides already hardly hears of it: loads by anything else have one kind move as the other does.
+double friction_damping(const std::vector<ContactSpec>& contacts, const Twist& tool, const Mat3& R,
+                        const TouchSample& s) {
+  if (s.held || !presses(s)) return 0.0;
+  const ContactSpec& law = contacts[static_cast<std::size_t>(s.pair)];
+  Vec3 slip = tool.at(R * s.offset + s.slide) - s.velocity;
+  slip -= slip.dot(s.normal) * s.normal;
+  return law.friction * std::max(s.force.dot(s.normal), 0.0) /
+         std::max(slip.norm(), law.friction_regularisation_m_s);
+}
+
 }  // namespace
 
 MatX load_patterns(const World& world, const ToolSide& side, const std::vector<TouchSample>& samples,
@@ -59,10 +72,8 @@ MatX load_patterns(const World& world, const ToolSide& side, const std::vector<T
     const Mat3 along = s.normal * s.normal.transpose(),
                nn = !s.held ? along : Mat3(Mat3::Identity() - (s.gap < 0.0 ? along : Mat3(Mat3::Zero())));
     Eigen::Matrix<double, 3, 12> load;
-    // friction's share is as large as what it is a share of: where it holds, mu p/v_r, nodes go with the
-    // tool, and loads by area would let those slip that are pressed hardest
     load << s.stiffness * nn * Z,
-        std::max(s.force.dot(s.normal), 0.0) * (Mat3::Identity() - along) * Z * (s.held ? 0.0 : 1.0);
+        friction_damping(contacts, tool.twist, R, s) * (Mat3::Identity() - along) * Z;
     for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
       const auto at = 3 * s.node[k];
       if (presses(s)) all.middleRows<3>(at) += s.weight[k] * load.leftCols(count);
