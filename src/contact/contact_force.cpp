@@ -207,10 +207,24 @@ double ContactForce::dissipated_power(const dynamics::StateView& state) {
   return sum;
 }
 
+SecantTangents::SecantTangents(ContactForce& contact) : contact_(*contact.impl_) {
+  PALPATE_CHECK(contact_.laws_kept.empty(), "SecantTangents lives twice");
+  for (auto& pair : contact_.pairs) {
+    contact_.laws_kept.push_back(pair.law);
+    pair.law.symmetric_tangent = pair.law.secant_friction = true;
+  }
+}
+
+SecantTangents::~SecantTangents() {
+  for (std::size_t i = 0; i < contact_.pairs.size(); ++i) contact_.pairs[i].law = contact_.laws_kept[i];
+  contact_.laws_kept.clear();
+}
+
 // With a symmetric tangent the step goes on with the friction of the pressure p0 that it began with:
 //     F = F0 - mu p0 A ds/dv dv,   and leaves out   -mu s A (p - p0),
 // whose sum over a pair's samples is what is measured, at the pressure that the step has led to.
 void ContactForce::Impl::linearise_friction(const dynamics::StateView& state) {
+  if (!laws_kept.empty()) return;
   measure_friction_lag(state);
   linearised.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {

@@ -24,6 +24,7 @@ struct ContactForce::Impl {
 
   std::vector<std::shared_ptr<MovingFrame>> frames;
   std::vector<Pair> pairs;
+  std::vector<PressureLaw> laws_kept;  ///< the pairs' own, while SecantTangents lives
   std::vector<ContactSample> samples, next_samples;
   SampleCells cells, next_cells;         ///< of image sources without friction
   SampleCells apart;                     ///< scratch of a query

@@ -6,6 +6,7 @@
 namespace palpate::loop {
 
 using contact::TouchSample;
+using contact::TouchTangent;
 
 namespace {
 
@@ -33,23 +34,10 @@ VecX coming_depths(const std::vector<TouchSample>& samples, const Twist& tool, c
   return (reach - gaps.array()).cwiseMax(0.0);
 }
 
-/// Of friction against a sample's sliding [N s/m]: the secant that ticks have, mu p A/max(|v_t|, v_r)
-/// (sample_math.cpp).  Where it holds nodes go with the tool, those the most that are pressed hardest, and
-/// what slides already hardly hears of it: loads by anything else have one kind move as the other does.
-double friction_damping(const std::vector<ContactSpec>& contacts, const Twist& tool, const Mat3& R,
-                        const TouchSample& s) {
-  if (s.held || !presses(s)) return 0.0;
-  const ContactSpec& law = contacts[static_cast<std::size_t>(s.pair)];
-  Vec3 slip = tool.at(R * s.offset + s.slide) - s.velocity;
-  slip -= slip.dot(s.normal) * s.normal;
-  return law.friction * std::max(s.force.dot(s.normal), 0.0) /
-         std::max(slip.norm(), law.friction_regularisation_m_s);
-}
-
 }  // namespace
 
 MatX load_patterns(const World& world, const ToolSide& side, const std::vector<TouchSample>& samples,
-                   double H, Eigen::Index most) {
+                   const std::vector<TouchTangent>& tangents, double H, Eigen::Index most) {
   const KnownTool& tool = side.known;
   const bool pressed = std::any_of(samples.begin(), samples.end(), presses);
   const auto& contacts = world.description.contacts;
@@ -71,9 +59,12 @@ MatX load_patterns(const World& world, const ToolSide& side, const std::vector<T
     // what is held is so across the normal, and along it where nothing presses
     const Mat3 along = s.normal * s.normal.transpose(),
                nn = !s.held ? along : Mat3(Mat3::Identity() - (s.gap < 0.0 ? along : Mat3(Mat3::Zero())));
+    // Where friction holds nodes go with the tool, those the most that are pressed hardest, and what slides
+    // hardly hears of it: loads by anything but the tangent have one kind move as the other does.
+    const Mat3 across = Mat3::Identity() - along,
+               friction_damping = s.held ? Mat3(Mat3::Zero()) : Mat3(across * tangents[j].D * across);
     Eigen::Matrix<double, 3, 12> load;
-    load << s.stiffness * nn * Z,
-        friction_damping(contacts, tool.twist, R, s) * (Mat3::Identity() - along) * Z;
+    load << s.stiffness * nn * Z, friction_damping * Z;
     for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
       const auto at = 3 * s.node[k];
       if (presses(s)) all.middleRows<3>(at) += s.weight[k] * load.leftCols(count);

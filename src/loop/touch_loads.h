@@ -24,6 +24,6 @@ inline bool names(const ContactSpec& contact, const std::string& tool) {
 /// they are alike: a round tool that turns does nothing.
 /// @param most  columns, at most
 MatX load_patterns(const World& world, const ToolSide& side, const std::vector<contact::TouchSample>& samples,
-                   double H, Eigen::Index most);
+                   const std::vector<contact::TouchTangent>& tangents, double H, Eigen::Index most);
 
 }  // namespace palpate::loop

@@ -30,6 +30,11 @@ namespace palpate::loop {
 // a and b of the body that is touched: where materials differ, the step over H is still exact, and what part
 // of it is damping is not.
 //
+// Friction is in A, K and D by its secant (sample_math.cpp), as in the ticks, whatever the bodies' own steps
+// have: a basis of nodes that slide freely does not let them hold again within the period, and one whose
+// loads weigh samples otherwise than A and the ticks do has those that hold move as those that slide (two
+// hands that lift a ball felt a third too much).  A is so symmetric with any friction.
+//
 // A body at rest goes nowhere but by rounding: then its own answer, however small, would span a direction of
 // its own, and a random one (the felt force knew by which method the body had come to rest, to 4e-5).  It is
 // left out.
@@ -293,6 +298,7 @@ Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, con
 }  // namespace
 
 bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& out) {
+  const contact::SecantTangents as_ticks_have_it(*world.contact);
   const dynamics::StateView view = world.state.view();
   out = {};
   out.time = world.state.time();
@@ -308,7 +314,7 @@ bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& 
     sample.velocity = moved_by(sample, [&](int node) { return velocity.segment<3>(3 * node); });
   world.system.force(view, x.f);
   x.rate = rate_by_other_tools(world, side);
-  const MatX patterns = load_patterns(world, side, samples, H, kModes - 1);
+  const MatX patterns = load_patterns(world, side, samples, tangents, H, kModes - 1);
   const bool known = iterate(world, H, patterns, x) || factor(world, side, H, patterns, x);
   Rows modes = Rows::Zero(kModes, velocity.size());
   if (known && farthest(samples, H * x.X.rightCols<1>()) <= x.still) {

@@ -225,8 +225,22 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   double query_seconds() const;
 
  private:
+  friend class SecantTangents;
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/// While it lives, tangents are those of friction_tangent = "secant" for all pairs, whatever they have:
+/// symmetric, and those of a tick.  What a step leaves out (largest_friction_lag) does not count them.
+class SecantTangents {
+ public:
+  explicit SecantTangents(ContactForce& contact);
+  ~SecantTangents();
+  SecantTangents(const SecantTangents&) = delete;
+  SecantTangents& operator=(const SecantTangents&) = delete;
+
+ private:
+  ContactForce::Impl& contact_;
 };
 
 }  // namespace palpate::contact

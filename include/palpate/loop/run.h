@@ -120,7 +120,7 @@ requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr vo
 /// monolithic, one refresh after the other, ticks from dense output.  A scene without a tool has periods but
 /// no ticks.  Or in real time: ticks by the machine's clock in a thread of their own, bodies behind them.
 /// It works on the World's own number of threads (integrator.threads), whatever other Worlds have.
-/// @throws Error in real time for a scene without a tool of ticks
+/// @throws Error in real time for a scene without a tool of ticks, or with hands of different tick_s
 RunResult run(World& world, const RunOptions& options);
 
 /// The length of the loop's period for a scene [s]: the exchange period where there is an exchange, else the
