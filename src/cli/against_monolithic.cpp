@@ -17,43 +17,59 @@ std::string line_of(const char* what, double rms, double max, double peak, const
                      100.0 * share_of_peak(max, peak));
 }
 
+std::string lines_of(const std::string& whose, const compare::FeltError& felt) {
+  const compare::TrajectoryError& e = felt.error;
+  return fmt::format(
+      "  {}{}\n  {}{}\n", whose,
+      line_of("force off by", e.force_rms_n, e.force_max_n, felt.peak_force_n, "N"), whose,
+      line_of("torque off by", e.torque_rms_n_m, e.torque_max_n_m, felt.peak_torque_n_m, "N m"));
+}
+
+void add_figures(store::SummarySection& s, const compare::FeltError& felt) {
+  const compare::TrajectoryError& e = felt.error;
+  s.values.insert(s.values.end(),
+                  {{"force_error_rms_n", e.force_rms_n},
+                   {"force_error_max_n", e.force_max_n},
+                   {"force_error_rms_of_peak", share_of_peak(e.force_rms_n, felt.peak_force_n)},
+                   {"peak_force_n", felt.peak_force_n},
+                   {"torque_error_rms_n_m", e.torque_rms_n_m},
+                   {"torque_error_max_n_m", e.torque_max_n_m},
+                   {"torque_error_rms_of_peak", share_of_peak(e.torque_rms_n_m, felt.peak_torque_n_m)},
+                   {"peak_torque_n_m", felt.peak_torque_n_m}});
+}
+
 }  // namespace
 
-compare::AgainstMonolithic against_monolithic(const loop::World& world, const loop::HapticRecord& record,
+compare::AgainstMonolithic against_monolithic(const loop::World& world,
+                                              const std::vector<loop::HapticRecord>& records,
                                               bool real_time) {
   compare::AgainstMonolithic out;
   {
     Progress progress("repeating it as one system");
     out = compare::against_monolithic(
-        world, record, real_time, [&progress](double fraction) { progress(fraction); }, &stop_flag());
+        world, records, real_time, [&progress](double fraction) { progress(fraction); }, &stop_flag());
   }
   if (!out.trouble.empty()) return out;
-  const compare::TrajectoryError& e = out.error;
-  fmt::print("against {} ({:.3g} s of CPU){}:\n  {}\n  {}\n", out.made_by, out.cpu_s,
-             out.recorded_hand ? ", under the hand as it was recorded" : "",
-             line_of("force off by", e.force_rms_n, e.force_max_n, out.peak_force_n, "N"),
-             line_of("torque off by", e.torque_rms_n_m, e.torque_max_n_m, out.peak_torque_n_m, "N m"));
+  fmt::print("against {} ({:.3g} s of CPU){}:\n{}", out.made_by, out.cpu_s,
+             out.recorded_hand ? ", under the hand as it was recorded" : "", lines_of("", out));
+  for (std::size_t i = 0; i < out.more_hands.size(); ++i)
+    fmt::print("{}", lines_of(fmt::format("hand {}: ", world.description.hands[i].name), out.more_hands[i]));
   return out;
 }
 
-void add_against_monolithic(store::Summary& summary, const compare::AgainstMonolithic& a) {
+void add_against_monolithic(store::Summary& summary, const scene::Description& description,
+                            const compare::AgainstMonolithic& a) {
   store::SummarySection& s = summary.section("against monolithic");
   s.values.emplace_back("reference", a.made_by);
   if (!a.trouble.empty()) {
     s.values.emplace_back("trouble", a.trouble);
     return;
   }
-  const compare::TrajectoryError& e = a.error;
-  s.values.insert(s.values.end(),
-                  {{"force_error_rms_n", e.force_rms_n},
-                   {"force_error_max_n", e.force_max_n},
-                   {"force_error_rms_of_peak", share_of_peak(e.force_rms_n, a.peak_force_n)},
-                   {"peak_force_n", a.peak_force_n},
-                   {"torque_error_rms_n_m", e.torque_rms_n_m},
-                   {"torque_error_max_n_m", e.torque_max_n_m},
-                   {"torque_error_rms_of_peak", share_of_peak(e.torque_rms_n_m, a.peak_torque_n_m)},
-                   {"peak_torque_n_m", a.peak_torque_n_m},
-                   {"reference_cpu_s", a.cpu_s}});
+  add_figures(s, a);
+  s.values.emplace_back("reference_cpu_s", a.cpu_s);
+  for (std::size_t i = 0; i < a.more_hands.size(); ++i)
+    add_figures(summary.section(fmt::format("hand {} against monolithic", description.hands[i].name)),
+                a.more_hands[i]);
 }
 
 }  // namespace palpate::cli

@@ -12,6 +12,7 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/summary.h"
+#include "palpate/scene/hands.h"
 #include "palpate/store/atomic_file.h"
 #include "paths.h"
 #include "progress.h"
@@ -30,26 +31,35 @@ std::string text_of_file(const std::filesystem::path& path) {
   return text.str();
 }
 
-scene::Description scene_of(const ReplayArguments& arguments) {
-  const std::filesystem::path folder(arguments.run);
-  std::vector<std::string> overrides = arguments.overrides;
-  if (!arguments.integrator.empty())
-    overrides.push_back(fmt::format("integrator.name=\"{}\"", arguments.integrator));
+scene::Description scene_of(const std::string& run, const std::vector<std::string>& overrides) {
+  const std::filesystem::path folder(run);
   return recorded_scene(text_of_file(folder / "scene.toml"), folder, overrides);
 }
 
-/// Keeps the ticks of a run.
+/// Keeps the ticks of a run's hands.
 class Ticks : public loop::Observer {
  public:
-  void tick(const loop::TickRecord& tick) override { all.push_back(tick); }
-  std::vector<loop::TickRecord> all;
+  explicit Ticks(std::size_t hands) : of(hands) {}
+  void tick_of(std::size_t hand, const loop::TickRecord& tick) override { of[hand].push_back(tick); }
+  std::vector<std::vector<loop::TickRecord>> of;
 };
 
-int repeat_ticks(const scene::Description& description, const loop::HapticRecord& record) {
-  const compare::FeltDifference difference =
-      compare::felt_difference(record.ticks, loop::retrace(description, record));
+/// Prints how a hand's ticks differ from others; with several hands, whose they are.
+compare::FeltDifference print_difference(const scene::Description& description, std::size_t hand,
+                                         const std::vector<loop::TickRecord>& reference,
+                                         const std::vector<loop::TickRecord>& other) {
+  if (!description.hands.empty()) fmt::print("{}:\n", scene::hands_of(description)[hand].name);
+  const compare::FeltDifference difference = compare::felt_difference(reference, other);
   fmt::print("{}", compare::text_of(difference));
-  if (!difference.identical)
+  return difference;
+}
+
+int repeat_ticks(const scene::Description& description, const std::vector<loop::HapticRecord>& records) {
+  bool identical = true;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    identical &= print_difference(description, i, records[i].ticks, loop::retrace(description, records[i], i))
+                     .identical;
+  if (!identical)
     fail("replay: the ticks differ from those recorded: the run was made by another version or machine");
   return 0;
 }
@@ -57,24 +67,31 @@ int repeat_ticks(const scene::Description& description, const loop::HapticRecord
 }  // namespace
 
 int replay(const ReplayArguments& arguments) {
-  const loop::HapticRecord record =
-      loop::read_haptic_record((std::filesystem::path(arguments.run) / "haptic.h5").string());
-  const scene::Description description = scene_of(arguments);
-  if (!arguments.changes()) return repeat_ticks(description, record);
+  const scene::Description recorded = scene_of(arguments.run, {});
+  const std::vector<loop::HapticRecord> records = loop::read_haptic_records(arguments.run, recorded);
+  if (!arguments.changes()) return repeat_ticks(recorded, records);
 
+  std::vector<std::string> overrides = arguments.overrides;
+  if (!arguments.integrator.empty())
+    overrides.push_back(fmt::format("integrator.name=\"{}\"", arguments.integrator));
+  const scene::Description description = scene_of(arguments.run, overrides);
+  if (description.hands.size() + 1 != records.size())
+    fail("replay: the scene has {} hands now, and {} were recorded", description.hands.size() + 1,
+         records.size());
+  if (records.front().ticks.empty()) fail("replay: the record has no ticks");
   const double start = wall_seconds();
-  const auto world = loop::assemble(description, loop::recorded_hand(record));
+  const auto world = loop::assemble(description, loop::recorded_hands(records));
   const double assemble_s = wall_seconds() - start;
   const std::string folder =
       arguments.folder.empty() ? default_folder("replay-" + short_name(description)) : arguments.folder;
   make_folder(folder);
-  Ticks ticks;
+  Ticks ticks(records.size());
   loop::RunResult result;
   {
     loop::Recorder recorder(*world, folder);
     Progress progress(fmt::format("replaying {}", arguments.run));
     loop::RunOptions options;
-    options.duration_s = record.ticks.back().time;
+    options.duration_s = records.front().ticks.back().time;
     options.observers = {&ticks, &recorder};
     options.progress = [&progress](double fraction) { progress(fraction); };
     options.stop = &stop_flag();
@@ -89,8 +106,9 @@ int replay(const ReplayArguments& arguments) {
              folder);
   if (!result.status.ok())
     fail("{} gave up at t = {:g} s: {}", description.integrator.name, result.status.t, result.status.message);
-  fmt::print("what the hand felt in {}, against this:\n{}", arguments.run,
-             compare::text_of(compare::felt_difference(ticks.all, record.ticks)));
+  fmt::print("what the hand felt in {}, against this:\n", arguments.run);
+  for (std::size_t i = 0; i < records.size(); ++i)
+    print_difference(description, i, ticks.of[i], records[i].ticks);
   return result.stopped ? kExitStopped : 0;
 }
 

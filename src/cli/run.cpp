@@ -118,7 +118,7 @@ void keep_summary(const loop::World& world, const loop::RunResult& result, doubl
                   const std::optional<compare::AgainstMonolithic>& against, const RunArguments& arguments,
                   const std::string& folder) {
   store::Summary summary = loop::summarise(world, result, assemble_s);
-  if (against) add_against_monolithic(summary, *against);
+  if (against) add_against_monolithic(summary, world.description, *against);
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
   store::write_summary((std::filesystem::path(folder) / "summary.json").string(), summary);
@@ -261,7 +261,7 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   if (result.real_time) print_clock(*result.real_time, world->description.exchange.linearisation);
   std::optional<compare::AgainstMonolithic> against;
   if (arguments.against_monolithic && result.status.ok() && !result.stopped)
-    against = against_monolithic(*world, memory.record(), arguments.real_time);
+    against = against_monolithic(*world, memory.records(), arguments.real_time);
   const bool against_cut = against && against->stopped;
   bool frames_cut = false;
   if (against && !against->stopped && !against->trouble.empty())

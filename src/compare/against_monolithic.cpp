@@ -3,6 +3,7 @@
 #include "palpate/compare/haptic.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/replay.h"
+#include "palpate/scene/hands.h"
 
 namespace palpate::compare {
 namespace {
@@ -11,6 +12,34 @@ Trajectory felt_in(const loop::HapticRecord& record) {
   WrenchRecorder recorder;
   for (const loop::TickRecord& tick : record.ticks) recorder.tick(tick);
   return recorder.trajectory();
+}
+
+/// What each hand felt of one run.
+class EachHand : public loop::Observer {
+ public:
+  explicit EachHand(std::size_t hands) : of_(hands) {}
+  void tick_of(std::size_t hand, const loop::TickRecord& tick) override { of_[hand].tick(tick); }
+  const Trajectory& of(std::size_t hand) const { return of_[hand].trajectory(); }
+
+ private:
+  std::vector<WrenchRecorder> of_;
+};
+
+FeltError felt_error(const Trajectory& felt, const Trajectory& reference) {
+  FeltError out;
+  for (const Wrench& w : reference.device) {
+    out.peak_force_n = std::max(out.peak_force_n, w.force.norm());
+    out.peak_torque_n_m = std::max(out.peak_torque_n_m, w.moment.norm());
+  }
+  out.error = wrench_distance(felt, reference);
+  return out;
+}
+
+bool all_paths_known(const loop::World& run) {
+  const std::vector<scene::Hand> hands = scene::hands_of(run.description);
+  return std::all_of(hands.begin(), hands.end(), [&](const scene::Hand& hand) {
+    return static_cast<bool>(device::make_device(*hand.device, run.folder)->path());
+  });
 }
 
 }  // namespace
@@ -23,23 +52,23 @@ void refuse_against_monolithic(const scene::Description& d) {
     fail("{}: exchange.scheme = \"monolithic\" is the reference itself; take \"partitioned\"", d.path);
 }
 
-AgainstMonolithic against_monolithic(const loop::World& run, const loop::HapticRecord& record, bool real_time,
-                                     const std::function<void(double)>& progress,
+AgainstMonolithic against_monolithic(const loop::World& run, const std::vector<loop::HapticRecord>& records,
+                                     bool real_time, const std::function<void(double)>& progress,
                                      const std::atomic<bool>* stop) {
   const scene::Description& d = run.description;
   refuse_against_monolithic(d);
   const MonolithicScene whole = monolithic_scene(d);
   AgainstMonolithic out;
   out.made_by = whole.made_by;
-  out.recorded_hand = real_time || !device::make_device(*d.device, run.folder)->path();
+  out.recorded_hand = real_time || !all_paths_known(run);
   try {
-    if (record.ticks.empty()) fail("the run has no ticks");
-    const auto world = out.recorded_hand ? loop::assemble(whole.description, loop::recorded_hand(record))
+    if (records.empty() || records.front().ticks.empty()) fail("the run has no ticks");
+    const auto world = out.recorded_hand ? loop::assemble(whole.description, loop::recorded_hands(records))
                                          : loop::assemble(whole.description);
-    WrenchRecorder recorder;
+    EachHand felt(records.size());
     loop::RunOptions options;
-    options.duration_s = record.ticks.back().time;
-    options.observers = {&recorder};
+    options.duration_s = records.front().ticks.back().time;
+    options.observers = {&felt};
     options.progress = progress;
     options.stop = stop;
     const loop::RunResult result = loop::run(*world, options);
@@ -49,11 +78,9 @@ AgainstMonolithic against_monolithic(const loop::World& run, const loop::HapticR
       fail("{} gave up at t = {:g} s: {}", whole.description.integrator.name, result.status.t,
            result.status.message);
     if (result.stopped) fail("stopped at t = {:g} s", result.time);
-    for (const Wrench& w : recorder.trajectory().device) {
-      out.peak_force_n = std::max(out.peak_force_n, w.force.norm());
-      out.peak_torque_n_m = std::max(out.peak_torque_n_m, w.moment.norm());
-    }
-    out.error = wrench_distance(felt_in(record), recorder.trajectory());
+    static_cast<FeltError&>(out) = felt_error(felt_in(records.front()), felt.of(0));
+    for (std::size_t i = 1; i < records.size(); ++i)
+      out.more_hands.push_back(felt_error(felt_in(records[i]), felt.of(i)));
   } catch (const Error& e) { out.trouble = e.what(); }
   return out;
 }

@@ -200,9 +200,18 @@ void assemble_bodies(World& world) {
     add_forces(world, bodies[i], world.description.bodies[i], materials[i]);
 }
 
-std::unique_ptr<World> assemble(const scene::Description& description) { return assemble(description, {}); }
+std::unique_ptr<World> assemble(const scene::Description& description) {
+  return assemble(description, std::vector<std::unique_ptr<device::Device>>());
+}
 
 std::unique_ptr<World> assemble(const scene::Description& description, std::unique_ptr<device::Device> hand) {
+  std::vector<std::unique_ptr<device::Device>> hands;
+  hands.push_back(std::move(hand));
+  return assemble(description, std::move(hands));
+}
+
+std::unique_ptr<World> assemble(const scene::Description& description,
+                                std::vector<std::unique_ptr<device::Device>> hands) {
   auto world = std::make_unique<World>();
   world->description = description;
   workers::set_count(description.integrator.threads);
@@ -211,9 +220,11 @@ std::unique_ptr<World> assemble(const scene::Description& description, std::uniq
   if (!description.bones.empty()) assemble_bones(*world);
   assemble_skeletons(*world);
   ToolSide::make(*world);
-  ToolSide::of(*world).handle = std::move(hand);
-  for (std::size_t i = 0; i < ToolSide::all(*world).size(); ++i)
-    if (ToolSide::of(*world, i).spec) assemble_tool(*world, i);
+  for (std::size_t i = 0; i < ToolSide::all(*world).size(); ++i) {
+    ToolSide& side = ToolSide::of(*world, i);
+    if (i < hands.size()) side.handle = std::move(hands[i]);
+    if (side.spec) assemble_tool(*world, i);
+  }
   assemble_attachments(*world);
   if (!description.contacts.empty()) assemble_contact(*world);
   if (world->state.layout().blocks.empty()) return world;  // a tool with its own ticks, alone

@@ -66,8 +66,7 @@ ContactRecord BodySide::linearise(std::size_t hand, double period_s) {
     const ScopedTimer timer(result_.linearise_s);
     return linearise_contact(world_, ++felt_[hand].version, period_s, result_.frozen_fallbacks, hand);
   }();
-  if (hand == 0)
-    for (Observer* observer : options_.observers) observer->exchanged(record);
+  for (Observer* observer : options_.observers) observer->exchanged_of(hand, record);
   return record;
 }
 

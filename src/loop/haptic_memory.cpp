@@ -5,11 +5,16 @@
 namespace palpate::loop {
 
 void HapticMemory::period(World& world, double t) {
-  if (t > 0.0 || !ToolSide::of(world).handle) return;
-  const device::HandleSample& handle = ToolSide::of(world).handle_now;
-  record_.start.handle = handle.pose;
-  record_.start.handle_twist = handle.twist;
-  record_.start.handle_valid = handle.valid;
+  if (t > 0.0) return;
+  records_.clear();
+  for (const auto& side : ToolSide::all(world)) {
+    const device::HandleSample& handle = side->handle_now;
+    TickRecord& start = records_.emplace_back().start;
+    start.handle = handle.pose;
+    start.handle_twist = handle.twist;
+    start.handle_valid = handle.valid;
+    start.switches = handle.switches;
+  }
 }
 
 }  // namespace palpate::loop

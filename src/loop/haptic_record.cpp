@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/scene/hands.h"
 #include "palpate/store/table_file.h"
 #include "tool_side.h"
 
@@ -180,22 +181,25 @@ std::vector<contact::TouchModel> read_models(const std::string& path, std::size_
 }  // namespace
 
 struct HapticRecorder::Impl {
-  explicit Impl(const std::string& path)
-      : file(path, {{"start", names_of(kVisitStart, StartRow{})},
+  Impl(const std::string& path, std::size_t whose)
+      : hand(whose),
+        file(path, {{"start", names_of(kVisitStart, StartRow{})},
                     {"ticks", names_of(kVisitTick, TickRecord{})},
                     {"exchanges", names_of(kVisitExchange, dynamics::LinearisedContact{})},
                     {"models", names_of(kVisitModel, ModelRow{})},
                     {"points", names_of(kVisitPoint, PointRow{})}}) {}
+  std::size_t hand;
   store::TableFile file;
   std::vector<double> row;
 };
 
-HapticRecorder::HapticRecorder(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+HapticRecorder::HapticRecorder(const std::string& path, std::size_t hand)
+    : impl_(std::make_unique<Impl>(path, hand)) {}
 HapticRecorder::~HapticRecorder() = default;
 
 void HapticRecorder::period(World& world, double t) {
   if (t == 0.0) {
-    const ToolSide& side = ToolSide::of(world);
+    const ToolSide& side = ToolSide::of(world, impl_->hand);
     StartRow start;
     start.tick.handle = side.handle_now.pose;
     start.tick.handle_twist = side.handle_now.twist;
@@ -238,6 +242,21 @@ HapticRecord read_haptic_record(const std::string& path) {
   out.ticks = read(kVisitTick, TickRecord{}, path, "ticks");
   out.exchanges = read(kVisitExchange, dynamics::LinearisedContact{}, path, "exchanges");
   out.models = read_models(path, out.exchanges.size());
+  return out;
+}
+
+std::vector<std::string> haptic_files(const scene::Description& description) {
+  std::vector<std::string> out;
+  for (const scene::Hand& hand : scene::hands_of(description))
+    out.push_back(out.empty() ? "haptic.h5" : fmt::format("haptic-{}.h5", hand.name));
+  return out;
+}
+
+std::vector<HapticRecord> read_haptic_records(const std::string& folder,
+                                              const scene::Description& description) {
+  std::vector<HapticRecord> out;
+  for (const std::string& name : haptic_files(description))
+    out.push_back(read_haptic_record((std::filesystem::path(folder) / name).string()));
   return out;
 }
 

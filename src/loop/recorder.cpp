@@ -18,7 +18,6 @@ namespace {
 constexpr const char* kRunFile = "run.vtkhdf";
 constexpr const char* kForceFile = "force.csv";
 constexpr const char* kBoneFile = "bones.csv";
-constexpr const char* kHapticFile = "haptic.h5";
 constexpr const char* kEnergyFile = "energy.csv";
 
 /// Below this share of the device's maximum a difference is the limiter's smoothness, not a limit.
@@ -29,6 +28,18 @@ std::vector<std::string> energy_headers() {
   const EnergyBalance none;
   visit_energies([&](const char* name, double) { headers.emplace_back(name); }, none);
   return headers;
+}
+
+/// Of further hands an earlier run may have left records in the folder, which would be taken for this one's.
+void remove_more_hands(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> old;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    const std::string name = file.path().filename().string();
+    if ((name.starts_with("force-") && name.ends_with(".csv")) ||
+        (name.starts_with("haptic-") && name.ends_with(".h5")))
+      old.push_back(file.path());
+  }
+  for (const auto& path : old) std::filesystem::remove(path);
 }
 
 /// How many periods of the loop pass between two recorded states.
@@ -50,8 +61,8 @@ struct Recorder::Impl {
     store::ForceFile file;
     double force_rounding, torque_rounding;
   };
-  std::vector<std::unique_ptr<Forces>> forces;  ///< of each hand
-  std::unique_ptr<HapticRecorder> haptic;
+  std::vector<std::unique_ptr<Forces>> forces;          ///< of each hand
+  std::vector<std::unique_ptr<HapticRecorder>> haptic;  ///< likewise
   std::unique_ptr<store::BoneFile> bones;
   std::unique_ptr<store::CsvWriter> energy;
   std::vector<TriMesh> tools;  ///< of each hand, in its own axes
@@ -142,13 +153,15 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
   std::filesystem::create_directories(folder, failed);
   if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
   const std::filesystem::path base(folder);
+  remove_more_hands(base);
   if (d.record->states && !world.bodies.empty()) impl_->open_states(world, (base / kRunFile).string());
   if (d.record->states && !world.bones.empty())
     impl_->bones = std::make_unique<store::BoneFile>((base / kBoneFile).string());
   if (d.record->energy)
     impl_->energy = std::make_unique<store::CsvWriter>((base / kEnergyFile).string(), energy_headers());
   if (!d.record->forces || !d.tool) return;
-  impl_->haptic = std::make_unique<HapticRecorder>((base / kHapticFile).string());
+  for (const std::string& name : haptic_files(d))
+    impl_->haptic.push_back(std::make_unique<HapticRecorder>((base / name).string(), impl_->haptic.size()));
   for (const scene::Hand& hand : scene::hands_of(d)) {
     const bool first = impl_->forces.empty();
     const std::string name = first ? kForceFile : fmt::format("force-{}.csv", hand.name);
@@ -165,7 +178,7 @@ void Recorder::period(World& world, double t) {
   if (impl_->states && impl_->seen % impl_->every == 0) impl_->append(world, t);
   if (impl_->bones && impl_->seen % impl_->every == 0) impl_->append_bones(world, t);
   for (const auto& forces : impl_->forces) forces->file.flush();
-  if (impl_->haptic) impl_->haptic->period(world, t);
+  for (const auto& haptic : impl_->haptic) haptic->period(world, t);
   ++impl_->seen;
 }
 
@@ -179,13 +192,13 @@ void Recorder::energy(const EnergyBalance& balance) {
   impl_->energy->flush();
 }
 
-void Recorder::exchanged(const ContactRecord& record) {
-  if (impl_->haptic) impl_->haptic->exchanged(record);
+void Recorder::exchanged_of(std::size_t hand, const ContactRecord& record) {
+  if (hand < impl_->haptic.size()) impl_->haptic[hand]->exchanged(record);
 }
 
 void Recorder::tick_of(std::size_t hand, const TickRecord& tick) {
   if (hand >= impl_->forces.size()) return;
-  if (hand == 0) impl_->haptic->tick(tick);
+  impl_->haptic[hand]->tick(tick);
   Impl::Forces& forces = *impl_->forces[hand];
   const Wrench &sent = tick.device, &wanted = tick.wanted;
   const bool limited = (sent.force - wanted.force).norm() > forces.force_rounding ||

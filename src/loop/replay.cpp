@@ -5,6 +5,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/dynamics/path.h"
+#include "palpate/scene/hands.h"
 #include "tick_side.h"
 
 namespace palpate::loop {
@@ -52,13 +53,24 @@ class RecordedHand : public device::Device {
   std::shared_ptr<const HapticRecord> record_;
 };
 
-/// What a record of the bodies leaves to the ticks themselves.
-bool is_tool_on_obstacle(const scene::Description& d, const ContactSpec& contact) {
-  const auto is = [&](const std::string& name) {
-    return std::any_of(d.obstacles.begin(), d.obstacles.end(),
-                       [&](const ObstacleSpec& o) { return o.name == name; });
-  };
-  return (contact.first == "tool" && is(contact.second)) || (contact.second == "tool" && is(contact.first));
+/// A scene of that tool and the obstacles alone: their contact a record of the bodies leaves to the ticks.
+scene::Description tool_alone(const scene::Description& d, const scene::Hand& hand) {
+  scene::Description out = d;
+  out.bodies.clear();
+  out.bones.clear();
+  out.hands.clear();
+  out.tool = *hand.tool;
+  out.device = *hand.device;
+  out.contacts.clear();
+  for (ContactSpec contact : d.contacts) {
+    if (contact.second == hand.name) std::swap(contact.first, contact.second);
+    const bool on_obstacle = std::any_of(d.obstacles.begin(), d.obstacles.end(),
+                                         [&](const ObstacleSpec& o) { return o.name == contact.second; });
+    if (contact.first != hand.name || !on_obstacle) continue;
+    contact.first = "tool";
+    out.contacts.push_back(contact);
+  }
+  return out;
 }
 
 void refuse_what_cannot_be_retraced(const scene::Description& d, const HapticRecord& record) {
@@ -66,11 +78,6 @@ void refuse_what_cannot_be_retraced(const scene::Description& d, const HapticRec
     fail(
         "replay: the ticks of this run used no exchange (monolithic, or no tool); change something to run it "
         "again");
-  if (!d.hands.empty())
-    fail(
-        "replay: the scene has {} hands, and the record is of the first; change something to run it again: "
-        "the others move as the scene says",
-        d.hands.size() + 1);
   for (std::size_t i = 0; i < record.ticks.size(); ++i) {
     const double start = i == 0 ? 0.0 : record.ticks[i - 1].time;
     if (std::abs(record.ticks[i].time - start - record.ticks[i].length) > kSameTime)
@@ -85,17 +92,19 @@ std::unique_ptr<device::Device> recorded_hand(HapticRecord record) {
   return std::make_unique<RecordedHand>(std::move(record));
 }
 
-std::vector<TickRecord> retrace(const scene::Description& description, const HapticRecord& record) {
+std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<HapticRecord>& records) {
+  std::vector<std::unique_ptr<device::Device>> out;
+  for (const HapticRecord& record : records) out.push_back(recorded_hand(record));
+  return out;
+}
+
+std::vector<TickRecord> retrace(const scene::Description& description, const HapticRecord& record,
+                                std::size_t hand) {
   refuse_what_cannot_be_retraced(description, record);
-  scene::Description tool_alone = description;
-  tool_alone.bodies.clear();
-  tool_alone.bones.clear();
-  std::erase_if(tool_alone.contacts,
-                [&](const ContactSpec& c) { return !is_tool_on_obstacle(description, c); });
-  const auto world = assemble(tool_alone, recorded_hand(record));
-  ToolSide::of(*world).passivity = device::make_passivity_controller(record.passivity, *description.device);
-  TickSide side(*tool_alone.tool, ToolSide::of(*world),
-                record.models.empty() ? nullptr : &description.contacts);
+  const scene::Description alone = tool_alone(description, scene::hands_of(description).at(hand));
+  const auto world = assemble(alone, recorded_hand(record));
+  ToolSide::of(*world).passivity = device::make_passivity_controller(record.passivity, *alone.device);
+  TickSide side(*alone.tool, ToolSide::of(*world), record.models.empty() ? nullptr : &description.contacts);
   side.start(0.0);
   std::vector<TickRecord> out;
   out.reserve(record.ticks.size());

@@ -429,6 +429,24 @@ class Results(Cli):
         self.assertEqual(done.returncode, 1)
         self.assertIn("nowhere/haptic.h5: no such file", done.stderr)
 
+    def test_each_of_two_hands_is_replayed_and_compared(self):
+        text = self.good("run", "two-hands", "--duration-s", "0.3", "--against-monolithic", "-o", "first")
+        off = re.findall(r"(?m)^  (hand left: )?force off by \S+ N RMS \((\S+) % of the peak", text)
+        self.assertEqual([whose for whose, _ in off], ["", "hand left: "], text)
+        for _, share in off:
+            self.assertLess(float(share), 10.0, text)
+        figures = json.loads((self.folder / "first/summary.json").read_text())["figures"]
+        self.assertGreater(figures["hand left against monolithic"]["peak_force_n"], 1.0)
+        same = "300 ticks compared, 0.001 to 0.3 s: identical to the last bit\n"
+        self.assertEqual(self.good("replay", "first"), f"tool:\n{same}left:\n{same}")
+        text = self.good("replay", "first", "--set", "exchange.exchange_period_s=0.005", "-o", "other")
+        self.assertRegex(text, r"(?m)^tool:\n(.*\n)*force: differs(.*\n)*left:\n(.*\n)*force: differs")
+        self.assertIn("\nleft:\n", self.good("diff", "first", "other"))
+        # a run into the folder of one with more hands leaves none of theirs behind
+        self.good("run", "press-ball", "--duration-s", "0.1", "-o", "other")
+        self.assertFalse((self.folder / "other/haptic-left.h5").exists())
+        self.assertIn("left: there is none in other", self.good("diff", "first", "other"))
+
     HAPTIC = ["--set", "compare.haptic.exchange_periods_s=[0.02, 0.01]",
               "--set", "compare.haptic.ticks_s=[0.002, 0.001]", "--set", "compare.haptic.integrators=[]",
               "--set", "compare.haptic.reference_rtol=1e-5",

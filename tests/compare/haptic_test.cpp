@@ -294,7 +294,7 @@ compare::AgainstMonolithic against(const scene::Description& faulty, bool real_t
   options.observers = {&memory};
   EXPECT_TRUE(loop::run(*world, options).status.ok());
   world->description = press();
-  return compare::against_monolithic(*world, memory.record(), real_time, {}, nullptr);
+  return compare::against_monolithic(*world, memory.records(), real_time, {}, nullptr);
 }
 
 TEST(Haptic, ARunIsHeldAgainstItsOwnSceneAsOneSystem) {

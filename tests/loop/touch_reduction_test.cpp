@@ -101,6 +101,36 @@ TEST(TouchReduction, WhatSticksGoesWithTheTool) {
   for (const int axis : {3, 4}) EXPECT_NEAR(iterated.B(axis, axis) / condensed.B(axis, axis), 1.0, 0.1);
 }
 
+// Some samples hold and some slide: each kind answers as its own friction has it.
+TEST(TouchReduction, WhatSlidesIsNotTakenForWhatSticks) {
+  scene::Description d = pressed_block(0.002);
+  d.bodies[0].mesh.element_size_m = 0.005;
+  d.contacts[0].friction = 0.8;
+  d.contacts[0].friction_tangent = "secant";
+  constexpr double kSpeed = 3e-3;  // at v_r = 1e-3
+  const auto world = touching(d, "points", 0.0, kSpeed);
+  std::vector<contact::TouchTangent> tangents;
+  const auto samples = world->contact->touch_samples(world->state.view(), 0, &tangents);
+  double least = HUGE_VAL, most = 0.0;
+  for (const contact::TouchSample& s : samples) {
+    if (!(s.gap < 0.0)) continue;
+    const double slip = (s.velocity - s.velocity.dot(s.normal) * s.normal).norm();
+    least = std::min(least, slip);
+    most = std::max(most, slip);
+  }
+  ASSERT_LT(least, 1e-3) << "none sticks";
+  ASSERT_GT(most, 2e-3) << "none slides";
+  const Linear condensed(record_of(*touching(d, "condensed", 0.0, kSpeed)).linear);
+  expect_same(whole_tick(*world), condensed, 1e-3);
+  // whatever tangents the bodies' own steps have: the ticks' friction is the same
+  for (const char* tangent : {"full", "symmetric"}) {
+    d.contacts[0].friction_tangent = tangent;
+    const auto other = touching(d, "points", 0.0, kSpeed);
+    expect_same(whole_tick(*other), condensed, 1e-3);
+    EXPECT_EQ(other->system.symmetric(), std::string(tangent) != "full") << "the pair has its own again";
+  }
+}
+
 TEST(TouchReduction, AFewIterationsAnswerToTheErrorAskedFor) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.004;

@@ -78,20 +78,27 @@ struct MonolithicScene {
 /// @param coarser  how many times the step (the refresh; ten times as often the tolerance) is that of the key
 MonolithicScene monolithic_scene(const scene::Description& description, double coarser = 1.0);
 
-/// A run that was made, against its scene as one system under the same hand.
-struct AgainstMonolithic {
-  std::string made_by;         ///< the reference, in words
-  bool recorded_hand = false;  ///< held by the hand as it was recorded, not by the scene's own path
+/// Of what one hand felt.
+struct FeltError {
   TrajectoryError error = no_distance();
-  double peak_force_n = 0.0, peak_torque_n_m = 0.0, cpu_s = 0.0;  ///< of the reference
+  double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< of the reference
+};
+
+/// A run that was made, against its scene as one system under the same hands; of the first hand its own
+/// figures.
+struct AgainstMonolithic : FeltError {
+  std::string made_by;         ///< the reference, in words
+  bool recorded_hand = false;  ///< held by the hands as they were recorded, not by the scene's own paths
+  double cpu_s = 0.0;          ///< of the reference
+  std::vector<FeltError> more_hands;  ///< of each [[hand]]
   bool stopped = false;
   std::string trouble{};  ///< why there is no error
 };
 /// Repeats a run as monolithic_scene().  One in real time, and one of a hand whose path nobody knows
-/// beforehand, is held by the hand as it was recorded.
-/// @param world  of the run  @param real_time  whether the run was
+/// beforehand, is held by the hands as they were recorded.
+/// @param world  of the run  @param records  of each hand  @param real_time  whether the run was
 /// @throws Error for what refuse_against_monolithic() refuses
-AgainstMonolithic against_monolithic(const loop::World& world, const loop::HapticRecord& record,
+AgainstMonolithic against_monolithic(const loop::World& world, const std::vector<loop::HapticRecord>& records,
                                      bool real_time, const std::function<void(double)>& progress,
                                      const std::atomic<bool>* stop);
 /// @throws Error for a scene without a tool or without bodies, and for one that is monolithic itself

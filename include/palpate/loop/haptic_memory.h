@@ -3,15 +3,15 @@
 
 namespace palpate::loop {
 
-/// Keeps the ticks of a run in memory, as HapticRecorder keeps them in a file; no exchanges.
+/// Keeps the ticks of a run's hands in memory, as HapticRecorder keeps them in files; no exchanges.
 class HapticMemory : public Observer {
  public:
   void period(World& world, double t) override;
-  void tick(const TickRecord& tick) override { record_.ticks.push_back(tick); }
-  const HapticRecord& record() const { return record_; }
+  void tick_of(std::size_t hand, const TickRecord& tick) override { records_[hand].ticks.push_back(tick); }
+  const std::vector<HapticRecord>& records() const { return records_; }
 
  private:
-  HapticRecord record_;
+  std::vector<HapticRecord> records_;
 };
 
 }  // namespace palpate::loop

@@ -16,12 +16,13 @@ struct HapticRecord {
   device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
 };
 
-/// Keeps a HapticRecord in an HDF5 file (haptic.h5: tables "start" with the passivity mode, "ticks",
+/// Keeps one hand's HapticRecord in an HDF5 file (haptic.h5: tables "start" with the passivity mode, "ticks",
 /// "exchanges", and where these have points "models" and "points"; one row each, columns by name).
 class HapticRecorder : public Observer {
  public:
+  /// @param hand  whose start it keeps; its ticks and exchanges are those that it is given
   /// @throws Error when the file cannot be made
-  explicit HapticRecorder(const std::string& path);
+  explicit HapticRecorder(const std::string& path, std::size_t hand = 0);
   ~HapticRecorder() override;
   void period(World& world, double t) override;
   void tick(const TickRecord& tick) override;
@@ -34,5 +35,12 @@ class HapticRecorder : public Observer {
 
 /// @throws Error for a file that is none of HapticRecorder's
 HapticRecord read_haptic_record(const std::string& path);
+
+/// How a run's folder calls the records of a scene's hands: haptic.h5 the first's, haptic-NAME.h5 a further
+/// one's.
+std::vector<std::string> haptic_files(const scene::Description& description);
+/// Of a run's folder, one for each hand of its scene.  @throws Error as read_haptic_record()
+std::vector<HapticRecord> read_haptic_records(const std::string& folder,
+                                              const scene::Description& description);
 
 }  // namespace palpate::loop

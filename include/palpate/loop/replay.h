@@ -11,11 +11,15 @@ namespace palpate::loop {
 /// cubic through poses and twists; before the first and after the last it rests.
 /// @throws Error for a record without ticks
 std::unique_ptr<device::Device> recorded_hand(HapticRecord record);
+/// Of each hand.
+std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<HapticRecord>& records);
 
-/// The ticks of a record again, each with the input and the linearised contact that it had: no body is
-/// simulated.  Ticks of a run in real time come out in virtual time as they were, bit for bit.
-/// @throws Error for a scene whose tool meets obstacles (linearised anew at each tick), for a tool without
-///   ticks of its own, for a record with ticks missing
-std::vector<TickRecord> retrace(const scene::Description& description, const HapticRecord& record);
+/// The ticks of a hand's record again, each with the input and the contact record that it had: no body is
+/// simulated, and no other hand.  Ticks of a run in real time come out in virtual time as they were, bit for
+/// bit.
+/// @param hand  whose record it is, as scene::hands_of() counts
+/// @throws Error for a tool without ticks of its own, for a record with ticks missing
+std::vector<TickRecord> retrace(const scene::Description& description, const HapticRecord& record,
+                                std::size_t hand = 0);
 
 }  // namespace palpate::loop

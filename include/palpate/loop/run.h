@@ -42,6 +42,10 @@ class Observer {
   }
   /// A record of the contact was made for the coming ticks of the first hand.
   virtual void exchanged(const ContactRecord&) {}
+  /// Likewise for those of any hand.  What does not ask for it sees those of the first.
+  virtual void exchanged_of(std::size_t hand, const ContactRecord& record) {
+    if (hand == 0) exchanged(record);
+  }
   /// After every contact query, at its state: behind `period` where both come at one time.
   virtual void queried(World&, double /*t*/) {}
   /// After every period, in runs of which an observer wants it: a run that nobody asks keeps no balance.

@@ -150,6 +150,9 @@ std::unique_ptr<World> assemble(const scene::Description& description);
 /// As the scene, but held by another hand (a recording, or a device of one's own); the limits are those of
 /// [device].
 std::unique_ptr<World> assemble(const scene::Description& description, std::unique_ptr<device::Device> hand);
+/// Likewise, of each hand as scene::hands_of() counts them; null, or not there: the scene's own.
+std::unique_ptr<World> assemble(const scene::Description& description,
+                                std::vector<std::unique_ptr<device::Device>> hands);
 
 /// The surface of the scene's tool in its own axes, for pictures and records: its mesh, or a sphere.
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder);
