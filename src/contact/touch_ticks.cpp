@@ -26,13 +26,16 @@ namespace palpate::contact {
 //
 // A is symmetric and positive definite at any h: K_i and D_i are taken without how friction follows pressure,
 // and with friction against the velocity at the tick's end (sample_math.cpp).
+//
+// The sums are most of a tick's work.  They are made in so many modes as the model has, rounded up, with P
+// transposed: then all of them run along the modes, which lie together.
 namespace {
 
 constexpr int kModes = TouchModel::kMostModes;
 using Modes = Eigen::Matrix<double, kModes, 1>;
 using ModesByModes = Eigen::Matrix<double, kModes, kModes>;
 using ModesBySix = Eigen::Matrix<double, kModes, 6>;
-using PointModes = Eigen::Matrix<double, 3, kModes>;
+using ModesByThree = Eigen::Matrix<double, kModes, 3>;  ///< P^T
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
@@ -47,6 +50,7 @@ PressureLaw law_of_ticks(ContactSpec spec) {
 struct TouchTicks::Impl {
   std::vector<PressureLaw> laws;
   TouchModel model;
+  std::array<ModesByThree, TouchModel::kMostPoints> modes;  ///< of each point
   Modes q = Modes::Zero(), z = Modes::Zero();
   // of the tick under way
   double h = 0.0;
@@ -54,6 +58,10 @@ struct TouchTicks::Impl {
   Modes dz = Modes::Zero();
   ModesBySix dz_dx = ModesBySix::Zero(), dz_dv = ModesBySix::Zero();
   int pressing = 0;
+
+  /// In the first N modes.
+  template <int N>
+  void linearise(double t1, dynamics::LinearisedContact& out);
 };
 
 TouchTicks::TouchTicks(const std::vector<ContactSpec>& contacts) : impl_(std::make_unique<Impl>()) {
@@ -67,18 +75,30 @@ int TouchTicks::pressing() const { return impl_->pressing; }
 VecX TouchTicks::rates() const { return impl_->z; }
 
 void TouchTicks::adopt(const TouchModel& model) {
-  impl_->model = model;
-  impl_->q.setZero();
-  impl_->z.setZero();
+  Impl& m = *impl_;
+  m.model = model;
+  m.q.setZero();
+  m.z.setZero();
+  m.dz_dx.setZero();
+  m.dz_dv.setZero();
+  m.dz.setZero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.points); ++i)
+    m.modes[i] = Eigen::Map<const Eigen::Matrix<double, 3, kModes>>(model.point[i].modes.data()).transpose();
 }
 
 namespace {
 
 /// Where tool and bodies are carried on to, and what their points come to there.
+template <int N>
 struct Sums {
+  using Modes = Eigen::Matrix<double, N, 1>;
+  using ModesByModes = Eigen::Matrix<double, N, N>;
+  using ModesBySix = Eigen::Matrix<double, N, 6>;
+  using ModesByThree = Eigen::Matrix<double, N, 3>;
+
   const dynamics::RigidMotion& tool;  ///< x_p, v
   double tau, h;
-  const Modes &q, &z;
+  Modes q, z;
   Mat3 R = tool.pose.rotation.toRotationMatrix();
 
   ModesByModes A = ModesByModes::Zero();
@@ -88,46 +108,47 @@ struct Sums {
   Mat6 K = Mat6::Zero(), B = Mat6::Zero();
   int pressing = 0;
 
-  void add_touching(const TouchModel::Point& point, const PressureLaw& law);
-  void add_held(const TouchModel::Point& point);
+  /// @param P_t  P^T of the point
+  void add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law);
+  void add_held(const TouchModel::Point& point, const ModesByThree& P_t);
 
  private:
-  Vec3 place(const TouchModel::Point& point) const {
-    return vec(point.place) + tau * vec(point.velocity) +
-           Eigen::Map<const PointModes>(point.modes.data()) * q;
+  Vec3 place(const TouchModel::Point& point, const ModesByThree& P_t) const {
+    return vec(point.place) + tau * vec(point.velocity) + P_t.transpose() * q;
   }
-  Vec3 velocity(const TouchModel::Point& point) const {
-    return vec(point.velocity) + Eigen::Map<const PointModes>(point.modes.data()) * z;
+  Vec3 velocity(const TouchModel::Point& point, const ModesByThree& P_t) const {
+    return vec(point.velocity) + P_t.transpose() * z;
   }
   /// What is common to both kinds.
   /// @param Kx, Dv  -dF by the tool's pose and twist
-  void add(const TouchModel::Point& point, const Mat36& Z, const Vec3& arm, const Vec3& F, const Mat3& S,
+  void add(const ModesByThree& P_t, const Mat36& Z, const Vec3& arm, const Vec3& F, const Mat3& S,
            const Mat36& Kx, const Mat36& Dv);
 };
 
-void Sums::add(const TouchModel::Point& point, const Mat36& Z, const Vec3& arm, const Vec3& F, const Mat3& S,
-               const Mat36& Kx, const Mat36& Dv) {
-  const Eigen::Map<const PointModes> P(point.modes.data());
-  const PointModes SP = S * P;
-  A.noalias() += h * (P.transpose() * SP);
-  by_x.noalias() += P.transpose() * Kx;
-  by_v.noalias() += P.transpose() * Dv;
-  S_by_Z.noalias() += SP.transpose() * Z;
-  r.noalias() -= P.transpose() * F;
+template <int N>
+void Sums<N>::add(const ModesByThree& P_t, const Mat36& Z, const Vec3& arm, const Vec3& F, const Mat3& S,
+                  const Mat36& Kx, const Mat36& Dv) {
+  const ModesByThree PS = P_t.lazyProduct(S);  // S is symmetric
+  A += (h * PS).lazyProduct(P_t.transpose());
+  by_x += P_t.lazyProduct(Kx);
+  by_v += P_t.lazyProduct(Dv);
+  S_by_Z += PS.lazyProduct(Z);
+  r -= P_t.lazyProduct(F);
   wrench.head<3>() += arm.cross(F);
   wrench.tail<3>() += F;
   K.noalias() += Z.transpose() * Kx;
   B.noalias() += Z.transpose() * Dv;
 }
 
-void Sums::add_touching(const TouchModel::Point& point, const PressureLaw& law) {
+template <int N>
+void Sums<N>::add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law) {
   const Vec3 slide = vec(point.slide), rotating = R * vec(point.offset), arm = rotating + slide;
   ContactSample sample;
   sample.normal = vec(point.normal);
   sample.area = point.area;
   SampleMotion motion;
   motion.a = {tool.pose.translation + arm, tool.twist.at(arm), arm, rotating};
-  motion.b = {place(point), velocity(point), Vec3::Zero(), Vec3::Zero()};
+  motion.b = {place(point, P_t), velocity(point, P_t), Vec3::Zero(), Vec3::Zero()};
   motion.gap = sample.normal.dot(motion.a.x - motion.b.x);
   if (!(motion.gap < 0.0)) return;
   motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
@@ -138,22 +159,23 @@ void Sums::add_touching(const TouchModel::Point& point, const PressureLaw& law) 
   Z << -cross_matrix(arm), Mat3::Identity();
   Mat36 Kx = s.K * Z;
   Kx.leftCols<3>().noalias() -= s.D * (cross_matrix(tool.twist.angular) * cross_matrix(rotating));
-  add(point, Z, arm, s.force, h * s.K + s.D, Kx, s.D * Z);
+  add(P_t, Z, arm, s.force, h * s.K + s.D, Kx, s.D * Z);
   K.topLeftCorner<3, 3>().noalias() -= cross_matrix(s.force) * cross_matrix(rotating);
 }
 
-void Sums::add_held(const TouchModel::Point& point) {
-  const Vec3 arm = place(point) - tool.pose.translation;
+template <int N>
+void Sums<N>::add_held(const TouchModel::Point& point, const ModesByThree& P_t) {
+  const Vec3 arm = place(point, P_t) - tool.pose.translation;
   const BondForce b =
       bond_force(R * vec(point.offset) - arm, R * vec(point.normal), arm,
-                 tool.twist.at(arm) - velocity(point), point.held_stiffness, point.held_damping);
+                 tool.twist.at(arm) - velocity(point, P_t), point.held_stiffness, point.held_damping);
   Mat36 Z;
   Z << -cross_matrix(arm), Mat3::Identity();
   const Mat3 F = cross_matrix(b.elastic);
   Mat36 Kx = b.K * Z;
   Kx.leftCols<3>() += F;
-  add(point, Z, arm, b.force, h * b.K + b.D, Kx, b.D * Z);
-  S_by_Z.leftCols<3>().noalias() += h * (Eigen::Map<const PointModes>(point.modes.data()).transpose() * F);
+  add(P_t, Z, arm, b.force, h * b.K + b.D, Kx, b.D * Z);
+  S_by_Z.template leftCols<3>() += h * P_t.lazyProduct(F);
   // Z^T [F]x dtheta of `add` has - of -dM = ([M]x + [F]x [r]x) dtheta - [F]x dp the part [r]x [F]x
   const Mat3 turn = cross_matrix(arm);
   K.topLeftCorner<3, 3>() += cross_matrix(arm.cross(b.elastic)) + F * turn - turn * F;
@@ -162,45 +184,54 @@ void Sums::add_held(const TouchModel::Point& point) {
 
 }  // namespace
 
+template <int N>
+void TouchTicks::Impl::linearise(double t1, dynamics::LinearisedContact& out) {
+  const double tau = t1 - model.time;
+  using OfModes = Eigen::Matrix<double, N, 1>;
+  const OfModes z_p = z.head<N>(), q_p = q.head<N>() + h * z_p;
+  const auto damping = Eigen::Map<const ModesByModes>(model.damping.data()).topLeftCorner<N, N>();
+  const Eigen::Map<const OfModes> stiffness(model.stiffness.data()), force(model.force.data()),
+      rate(model.force_rate.data());
+  Sums<N> sums{.tool = at, .tau = tau, .h = h, .q = q_p, .z = z_p};
+  sums.A = h * damping;
+  sums.A.diagonal() += OfModes::Ones() + h * h * stiffness;
+  sums.r = force + tau * rate - damping * z_p - stiffness.cwiseProduct(q_p);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.points); ++i) {
+    const TouchModel::Point& point = model.point[i];
+    const Eigen::Matrix<double, N, 3> P_t = modes[i].topRows<N>();
+    if (point.held_stiffness > 0.0)
+      sums.add_held(point, P_t);
+    else
+      sums.add_touching(point, P_t, laws[static_cast<std::size_t>(point.pair)]);
+  }
+  pressing = sums.pressing;
+  const Eigen::LLT<Eigen::Matrix<double, N, N>> factor(sums.A);
+  dz.head<N>() = factor.solve(h * sums.r);
+  dz_dx.topRows<N>() = factor.solve(h * sums.by_x);
+  dz_dv.topRows<N>() = factor.solve(h * sums.by_v);
+  Eigen::Map<Vec6>(out.F0.data()) = sums.wrench + sums.S_by_Z.transpose() * dz.head<N>();
+  Eigen::Map<RowMajor6>(out.J.data()) = sums.S_by_Z.transpose() * dz_dx.topRows<N>() - sums.K;
+  Eigen::Map<RowMajor6>(out.B.data()) = sums.S_by_Z.transpose() * dz_dv.topRows<N>() - sums.B;
+}
+
 dynamics::LinearisedContact TouchTicks::linearise(double t1, double h, const dynamics::RigidMotion& tool) {
   Impl& m = *impl_;
-  const TouchModel& model = m.model;
   m.h = h;
   m.at.twist = tool.twist;
   m.at.pose.rotation = (quaternion_of(h * tool.twist.angular) * tool.pose.rotation).normalized();
   m.at.pose.translation = tool.pose.translation + h * tool.twist.linear;
-  const double tau = t1 - model.time;
-  const Modes q_p = m.q + h * m.z;
-
-  const Eigen::Map<const ModesByModes> damping(model.damping.data());
-  const Eigen::Map<const Modes> stiffness(model.stiffness.data()), force(model.force.data()),
-      rate(model.force_rate.data());
-  Sums sums{.tool = m.at, .tau = tau, .h = h, .q = q_p, .z = m.z};
-  sums.A = ModesByModes::Identity() + h * damping;
-  sums.A.diagonal() += h * h * stiffness;
-  sums.r = force + tau * rate - damping * m.z - stiffness.cwiseProduct(q_p);
-  for (int i = 0; i < model.points; ++i) {
-    const TouchModel::Point& point = model.point[static_cast<std::size_t>(i)];
-    if (point.held_stiffness > 0.0)
-      sums.add_held(point);
-    else
-      sums.add_touching(point, m.laws[static_cast<std::size_t>(point.pair)]);
-  }
-  m.pressing = sums.pressing;
-  const Eigen::LLT<ModesByModes> factor(sums.A);
-  m.dz = factor.solve(h * sums.r);
-  m.dz_dx = factor.solve(h * sums.by_x);
-  m.dz_dv = factor.solve(h * sums.by_v);
-
   dynamics::LinearisedContact out;
+  if (m.model.modes <= 4)
+    m.linearise<4>(t1, out);
+  else if (m.model.modes <= 8)
+    m.linearise<8>(t1, out);
+  else
+    m.linearise<kModes>(t1, out);
   out.time = t1;
   const Quat& rotation = m.at.pose.rotation;
   const Vec3& x = m.at.pose.translation;
   out.x0 = {rotation.w(), rotation.x(), rotation.y(), rotation.z(), x.x(), x.y(), x.z()};
   Eigen::Map<Vec6>(out.v0.data()) << tool.twist.angular, tool.twist.linear;
-  Eigen::Map<Vec6>(out.F0.data()) = sums.wrench + sums.S_by_Z.transpose() * m.dz;
-  Eigen::Map<RowMajor6>(out.J.data()) = sums.S_by_Z.transpose() * m.dz_dx - sums.K;
-  Eigen::Map<RowMajor6>(out.B.data()) = sums.S_by_Z.transpose() * m.dz_dv - sums.B;
   out.source = dynamics::LinearisedContact::Source::kPoints;
   out.samples = m.pressing;
   return out;
