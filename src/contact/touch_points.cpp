@@ -21,6 +21,7 @@ using MovedBy = Eigen::Matrix<double, TouchModel::kMostModes, 3>;
 /// A range of the samples' order.
 struct Bunch {
   int first, last;
+  Six middle;  ///< mean by area
   Six spread;  ///< sum of area times squared distance from the mean, by direction
   double worst() const { return last - first > 1 ? spread.maxCoeff() : 0.0; }
 };
@@ -39,6 +40,9 @@ class Bunches {
     mean /= area;
     for (int j : order_) square += sample(j).area * (sample(j).place - origin_ - mean).squaredNorm();
     reach_ = std::sqrt(square / area);
+    coordinates_.resize(samples.size());
+    for (int j : order_)
+      coordinates_[static_cast<std::size_t>(j)] << sample(j).place - origin_, reach_ * sample(j).normal;
     if (!order_.empty()) bunches_.push_back(bunch(0, static_cast<int>(order_.size())));
   }
 
@@ -52,7 +56,7 @@ class Bunches {
       Eigen::Index axis = 0;
       worst->spread.maxCoeff(&axis);
       const int first = worst->first, last = worst->last;
-      const double middle = mean(first, last)[axis];
+      const double middle = worst->middle[axis];
       const auto split = std::partition(order_.begin() + first, order_.begin() + last,
                                         [&](int j) { return coordinates(j)[axis] < middle; });
       const int at = static_cast<int>(split - order_.begin());
@@ -67,12 +71,7 @@ class Bunches {
 
  private:
   const TouchSample& sample(int j) const { return samples_[static_cast<std::size_t>(j)]; }
-  /// Place, and normal at the contact's own size: a turn by one radian is as bad as that way.
-  Six coordinates(int j) const {
-    Six c;
-    c << sample(j).place - origin_, reach_ * sample(j).normal;
-    return c;
-  }
+  const Six& coordinates(int j) const { return coordinates_[static_cast<std::size_t>(j)]; }
   Six mean(int first, int last) const {
     Six sum = Six::Zero();
     double area = 0.0;
@@ -87,13 +86,15 @@ class Bunches {
     Six spread = Six::Zero();
     for (int i = first; i < last; ++i)
       spread += sample(member(i)).area * (coordinates(member(i)) - middle).cwiseAbs2();
-    return {first, last, spread};
+    return {first, last, middle, spread};
   }
 
   const std::vector<TouchSample>& samples_;
   Vec3 origin_;
   double reach_ = 0.0;
   std::vector<int> order_;
+  /// of each sample: place, and normal at the contact's own size: a turn by one radian is as bad as that way
+  std::vector<Six> coordinates_;
   std::vector<Bunch> bunches_;
 };
 

@@ -36,8 +36,20 @@ VecX coming_depths(const std::vector<TouchSample>& samples, const Twist& tool, c
 
 }  // namespace
 
+std::vector<int> number_nodes(std::vector<TouchSample>& samples) {
+  std::vector<int> out;
+  for (const TouchSample& s : samples) out.insert(out.end(), s.node.begin(), s.node.begin() + s.count);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  for (TouchSample& s : samples)
+    for (auto node = s.node.begin(); node != s.node.begin() + s.count; ++node)
+      *node = static_cast<int>(std::lower_bound(out.begin(), out.end(), *node) - out.begin());
+  return out;
+}
+
 MatX load_patterns(const World& world, const ToolSide& side, const std::vector<TouchSample>& samples,
-                   const std::vector<TouchTangent>& tangents, double H, Eigen::Index most) {
+                   const std::vector<TouchTangent>& tangents, std::size_t nodes, double H,
+                   Eigen::Index most) {
   const KnownTool& tool = side.known;
   const bool pressed = std::any_of(samples.begin(), samples.end(), presses);
   const auto& contacts = world.description.contacts;
@@ -50,7 +62,8 @@ MatX load_patterns(const World& world, const ToolSide& side, const std::vector<T
   for (std::size_t j = 0; j < samples.size(); ++j)
     more = more || (!presses(samples[j]) && depths[static_cast<Eigen::Index>(j)] > 0.0);
   const Eigen::Index count = friction ? 12 : 6;
-  MatX all = MatX::Zero(world.state.layout().u_size, count), coming = MatX::Zero(all.rows(), more ? 3 : 0);
+  MatX all = MatX::Zero(3 * static_cast<Eigen::Index>(nodes), count),
+       coming = MatX::Zero(all.rows(), more ? 3 : 0);
   for (std::size_t j = 0; j < samples.size(); ++j) {
     const TouchSample& s = samples[j];
     const double depth = depths[static_cast<Eigen::Index>(j)];

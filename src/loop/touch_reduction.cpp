@@ -46,12 +46,15 @@ using contact::TouchSample;
 using contact::TouchTangent;
 
 struct TouchReduction::Answers {
-  MatX X;        ///< u_size x patterns and one
-  MatX A;        ///< X^T A X; empty: not known
-  VecX s, w, f;  ///< f: all forces
-  VecX stiff;    ///< K s + D w
-  VecX rate;     ///< of f, by other tools; empty: none
-  double still;  ///< what moves by less within the period rests [m]
+  std::vector<int> nodes;  ///< that samples stand on
+  MatX patterns;           ///< 3 nodes x patterns
+  MatX X;                  ///< u_size x patterns and one
+  MatX A;                  ///< X^T A X; empty: not known
+  MatX loads, product;     ///< scratch, as large as X
+  VecX s, w, f;            ///< f: all forces
+  VecX stiff;              ///< K s + D w
+  VecX rate;               ///< of f, by other tools; empty: none
+  double still;            ///< what moves by less within the period rests [m]
 };
 
 namespace {
@@ -82,6 +85,14 @@ double farthest(const std::vector<TouchSample>& samples, const VecX& displacemen
   return out;
 }
 
+/// The rows of nodes' directions, node after node.
+MatX rows_of(const auto& x, const std::vector<int>& nodes) {
+  MatX out(3 * static_cast<Eigen::Index>(nodes.size()), x.cols());
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    out.middleRows<3>(3 * static_cast<Eigen::Index>(k)) = x.template middleRows<3>(3 * nodes[k]);
+  return out;
+}
+
 /// y = (k K + d D) x of all forces, in nodes' and bones' directions.
 VecX tangent_times(World& world, double k, double d, const VecX& x) {
   VecX out = VecX::Zero(x.size());
@@ -93,10 +104,11 @@ VecX tangent_times(World& world, double k, double d, const VecX& x) {
   return out + k * carried;
 }
 
-MatX products(const MatX& X, const auto& product) {
-  MatX out(X.rows(), X.cols());
-  for (Eigen::Index i = 0; i < X.cols(); ++i) out.col(i) = product(VecX(X.col(i)));
-  return X.transpose() * out;
+/// @param scratch  room for as much as X
+MatX products(const MatX& X, MatX& scratch, const auto& product) {
+  scratch.resize(X.rows(), X.cols());
+  for (Eigen::Index i = 0; i < X.cols(); ++i) scratch.col(i) = product(VecX(X.col(i)));
+  return X.transpose() * scratch;
 }
 
 /// Symmetric, with what is negative taken for zero.
@@ -120,13 +132,24 @@ std::pair<double, double> damping_of(const World& world, int node) {
 
 }  // namespace
 
-TouchReduction::TouchReduction(World& world, double error) : error_(error), assembly_(world.system) {
+TouchReduction::TouchReduction(World& world, double error)
+    : error_(error), assembly_(world.system), answers_(std::make_unique<Answers>()) {
   if (error > 0.0) response_ = std::make_unique<linear::StepResponse>(world.description.integrator.threads);
 }
 TouchReduction::~TouchReduction() = default;
 
+/// The patterns in all directions, and room for one more, behind them.  @return their number
+Eigen::Index TouchReduction::spread_patterns(Answers& x, Eigen::Index size) {
+  const Eigen::Index loads = x.patterns.cols();
+  x.loads.setZero(size, loads + 1);
+  for (std::size_t k = 0; k < x.nodes.size(); ++k)
+    x.loads.leftCols(loads).middleRows<3>(3 * x.nodes[k]) =
+        x.patterns.middleRows<3>(3 * static_cast<Eigen::Index>(k));
+  return loads;
+}
+
 /// False where that is not for this system, or found no end.
-bool TouchReduction::iterate(World& world, double H, const MatX& patterns, Answers& out) {
+bool TouchReduction::iterate(World& world, double H, Answers& out) {
   using dynamics::SolveStatus;
   const dynamics::StateView view = world.state.view();
   if (!response_ || !assembly_.applies(view)) return false;
@@ -135,8 +158,8 @@ bool TouchReduction::iterate(World& world, double H, const MatX& patterns, Answe
   assembly_.assemble(view, out.s, 1.0, H, H * H, r, A);
   if (response_->take_step_matrix() != SolveStatus::kOk) return false;
   out.stiff = out.f - r;
-  MatX rhs(patterns.rows(), patterns.cols() + 1);
-  rhs.leftCols(patterns.cols()) = patterns;
+  MatX& rhs = out.loads;
+  const Eigen::Index loads = spread_patterns(out, world.state.layout().u_size);
   if (out.w.isZero(0.0)) {
     rhs.rightCols<1>() = H * r;
   } else {
@@ -149,7 +172,6 @@ bool TouchReduction::iterate(World& world, double H, const MatX& patterns, Answe
   SolveStatus status = response_->begin(rhs);
   // the work of the loads, each of length one, on the way that bodies go by themselves, by Cauchy and Schwarz
   const VecX energy = response_->response().diagonal() + response_->residual_energies();
-  const Eigen::Index loads = patterns.cols();
   if (loads > 0 && H * std::sqrt(energy.head(loads).maxCoeff() * energy[loads]) <= out.still) {
     rhs.rightCols<1>().setZero();
     status = response_->begin(rhs);
@@ -172,17 +194,18 @@ bool TouchReduction::iterate(World& world, double H, const MatX& patterns, Answe
 }
 
 /// False where the step matrix has no factor.
-bool TouchReduction::factor(World& world, ToolSide& side, double H, const MatX& patterns, Answers& out) {
+bool TouchReduction::factor(World& world, ToolSide& side, double H, Answers& out) {
   const dynamics::StateView view = world.state.view();
   world.system.step_matrix(view, 1.0, H, H * H, side.condensed_matrix);
   dynamics::LinearSolver* solver = factored(world.system, side);
   if (!solver) return false;
   counters::count("loop.touch_factored");
   out.stiff = tangent_times(world, 1.0, 0.0, out.s) + tangent_times(world, 0.0, 1.0, out.w);
-  MatX rhs(patterns.rows(), patterns.cols() + 1);
+  MatX& rhs = out.loads;
+  const Eigen::Index loads = spread_patterns(out, world.state.layout().u_size);
   VecX column;
-  for (Eigen::Index i = 0; i < patterns.cols(); ++i) {
-    column = patterns.col(i);
+  for (Eigen::Index i = 0; i < loads; ++i) {
+    column = rhs.col(i);
     world.system.reduce(view, column);
     rhs.col(i) = column;
   }
@@ -230,6 +253,7 @@ struct SampleSums {
   VecX stiff;  ///< K v + D w/H
 };
 
+/// @param X, mean_change  of the samples' nodes alone
 SampleSums sum_of(const std::vector<TouchSample>& samples, const std::vector<TouchTangent>& tangents,
                   const MatX& X, const VecX& mean_change) {
   const Eigen::Index m = X.cols();
@@ -254,21 +278,23 @@ struct Reduced {
   MatX M, K, D;
 };
 
-/// @param A  X^T A X, empty: not known
-Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, const MatX& A,
+/// @param A  X^T A X, empty: not known  @param scratch  room for as much as X
+Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, const MatX& A, MatX& scratch,
                 const SampleSums& sums, std::pair<double, double> damping) {
   const dynamics::StateView view = world.state.view();
   const Eigen::Index m = X.cols();
   const MatX &samples_K = sums.K, &samples_D = sums.D;
   Reduced out;
   VecX product;
-  out.M = products(X, [&](const VecX& v) {
+  out.M = products(X, scratch, [&](const VecX& v) {
     world.system.apply_mass(view, v, product);
     return product;
   });
   if (A.size() == 0) {
-    out.K = products(X, [&](const VecX& v) { return tangent_times(world, 1.0, 0.0, v); }) - samples_K;
-    out.D = products(X, [&](const VecX& v) { return tangent_times(world, 0.0, 1.0, v); }) - samples_D;
+    out.K =
+        products(X, scratch, [&](const VecX& v) { return tangent_times(world, 1.0, 0.0, v); }) - samples_K;
+    out.D =
+        products(X, scratch, [&](const VecX& v) { return tangent_times(world, 0.0, 1.0, v); }) - samples_D;
     return out;
   }
   // bodies on obstacles, on each other and on other tools
@@ -277,7 +303,7 @@ Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, con
   if (!std::all_of(contacts.begin(), contacts.end(),
                    [&](const ContactSpec& c) { return names(c, side.name); })) {
     const auto contact = [&](double k, double d) {
-      return products(X, [&](const VecX& v) {
+      return products(X, scratch, [&](const VecX& v) {
         product.setZero(v.size());
         world.contact->apply_tangent(view, k, d, v, product);
         return product;
@@ -306,36 +332,43 @@ bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& 
   std::vector<TouchSample> samples = world.contact->touch_samples(view, side.frame_index, &tangents);
   if (samples.empty()) return true;
   out.samples = static_cast<int>(std::count_if(samples.begin(), samples.end(), presses));
-  Answers x;
+  Answers& x = *answers_;
   x.still = still_of(samples);
+  x.nodes = number_nodes(samples);
   known_motion(world, H, x.s, x.w);
-  const VecX velocity = x.s / H, change = x.w / H;
+  const VecX velocity = rows_of(x.s, x.nodes) / H, change = rows_of(x.w, x.nodes) / H;
   for (TouchSample& sample : samples)
     sample.velocity = moved_by(sample, [&](int node) { return velocity.segment<3>(3 * node); });
   world.system.force(view, x.f);
   x.rate = rate_by_other_tools(world, side);
-  const MatX patterns = load_patterns(world, side, samples, tangents, H, kModes - 1);
-  const bool known = iterate(world, H, patterns, x) || factor(world, side, H, patterns, x);
+  x.patterns = load_patterns(world, side, samples, tangents, x.nodes.size(), H, kModes - 1);
+  const bool known = iterate(world, H, x) || factor(world, side, H, x);
   Rows modes = Rows::Zero(kModes, velocity.size());
-  if (known && farthest(samples, H * x.X.rightCols<1>()) <= x.still) {
-    const Eigen::Index loads = patterns.cols();
+  MatX near;
+  if (known) near = rows_of(x.X, x.nodes);
+  if (known && farthest(samples, H * near.rightCols<1>()) <= x.still) {
+    const Eigen::Index loads = x.patterns.cols();
     x.X.conservativeResize(Eigen::NoChange, loads);
+    near.conservativeResize(Eigen::NoChange, loads);
     if (x.A.size() > 0) x.A.conservativeResize(loads, loads);
   }
   if (known && x.X.cols() > 0) {
-    const SampleSums sums = sum_of(samples, tangents, x.X, change);
-    const Reduced r = reduced(world, side, H, x.X, x.A, sums, damping_of(world, samples.front().node[0]));
+    const SampleSums sums = sum_of(samples, tangents, near, change);
+    const Reduced r = reduced(world, side, H, x.X, x.A, x.product, sums,
+                              damping_of(world, x.nodes[static_cast<std::size_t>(samples.front().node[0])]));
     const MatX S = modes_of(r.M, r.K, r.D, x.A.size() > 0 ? kAlikeSingle : kAlike, out);
-    VecX inertia;
-    world.system.apply_mass(view, change, inertia);
-    x.f -= inertia;
+    if (!x.w.isZero(0.0)) {
+      VecX inertia;
+      world.system.apply_mass(view, x.w / H, inertia);
+      x.f -= inertia;
+    }
     const Eigen::Index kept = S.cols();
     Eigen::Map<VecX>(out.force.data(), kept) = S.transpose() * (x.X.transpose() * x.f - sums.force);
     Eigen::Map<VecX>(out.force_rate.data(), kept) =
         S.transpose() * (sums.stiff - x.X.transpose() * x.stiff / H);
     if (x.rate.size() > 0)
       Eigen::Map<VecX>(out.force_rate.data(), kept) += S.transpose() * (x.X.transpose() * x.rate);
-    modes.topRows(kept).noalias() = S.transpose() * x.X.transpose();
+    modes.topRows(kept).noalias() = S.transpose() * near.transpose();
   }
   contact::gather_points(samples, side.known.pose, modes, out);
   return known;

@@ -22,12 +22,14 @@ class TouchReduction {
 
  private:
   struct Answers;
-  bool iterate(World& world, double H, const MatX& patterns, Answers& out);
-  bool factor(World& world, ToolSide& side, double H, const MatX& patterns, Answers& out);
+  static Eigen::Index spread_patterns(Answers& x, Eigen::Index size);
+  bool iterate(World& world, double H, Answers& out);
+  bool factor(World& world, ToolSide& side, double H, Answers& out);
 
   double error_;
   dynamics::StepAssembly assembly_;
   std::unique_ptr<linear::StepResponse> response_;
+  std::unique_ptr<Answers> answers_;  ///< its room is kept from exchange to exchange
 };
 
 }  // namespace palpate::loop
