@@ -430,14 +430,16 @@ class Results(Cli):
         self.assertIn("nowhere/haptic.h5: no such file", done.stderr)
 
     def test_each_of_two_hands_is_replayed_and_compared(self):
-        text = self.good("run", "two-hands", "--duration-s", "0.3", "--against-monolithic", "-o", "first")
+        text = self.good("run", "two-hands", "--duration-s", "0.2", "--against-monolithic", "-o", "first",
+                         "--set", "compare.haptic.reference_rtol=1e-4",
+                         "--set", "compare.haptic.reference_refresh_s=4e-3")
         off = re.findall(r"(?m)^  (hand left: )?force off by \S+ N RMS \((\S+) % of the peak", text)
         self.assertEqual([whose for whose, _ in off], ["", "hand left: "], text)
         for _, share in off:
             self.assertLess(float(share), 10.0, text)
         figures = json.loads((self.folder / "first/summary.json").read_text())["figures"]
         self.assertGreater(figures["hand left against monolithic"]["peak_force_n"], 1.0)
-        same = "300 ticks compared, 0.001 to 0.3 s: identical to the last bit\n"
+        same = "200 ticks compared, 0.001 to 0.2 s: identical to the last bit\n"
         self.assertEqual(self.good("replay", "first"), f"tool:\n{same}left:\n{same}")
         text = self.good("replay", "first", "--set", "exchange.exchange_period_s=0.005", "-o", "other")
         self.assertRegex(text, r"(?m)^tool:\n(.*\n)*force: differs(.*\n)*left:\n(.*\n)*force: differs")
