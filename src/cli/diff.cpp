@@ -1,22 +1,26 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include "commands.h"
 #include "palpate/compare/felt_difference.h"
 #include "palpate/loop/haptic_record.h"
+#include "palpate/loop/load.h"
+#include "palpate/scene/hands.h"
+#include "paths.h"
 
 namespace palpate::cli {
 namespace {
 
-/// Of the further hands of a run, by the names of their records: haptic-NAME.h5.
-std::set<std::string> more_hands(const std::filesystem::path& folder) {
-  std::set<std::string> out;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    const std::string name = file.path().filename().string();
-    if (name.starts_with("haptic-") && name.ends_with(".h5")) out.insert(name);
-  }
+/// Of the further hands of a run's scene.  Not of what lies in the folder: an earlier run may have had
+/// others.
+std::vector<std::string> more_hands(const std::filesystem::path& folder) {
+  const std::filesystem::path scene = folder / "scene.toml";
+  std::vector<std::string> out;
+  if (!std::filesystem::exists(scene)) return out;
+  for (const scene::HandSpec& hand : loop::parse(read_text(scene.string()), scene.string()).hands)
+    out.push_back(hand.name);
   return out;
 }
 
@@ -31,17 +35,19 @@ int diff(const DiffArguments& arguments) {
     return compare::text_of(compare::felt_difference(ticks(reference), ticks(other)));
   };
   const std::string first = difference("haptic.h5");
-  const std::set<std::string> mine = more_hands(reference), theirs = more_hands(other);
-  std::set<std::string> all = mine;
-  all.insert(theirs.begin(), theirs.end());
-  fmt::print("{}{}", all.empty() ? "" : "tool:\n", first);
-  for (const std::string& name : all) {
-    const std::string hand = name.substr(7, name.size() - 10);
-    if (mine.contains(name) && theirs.contains(name))
-      fmt::print("{}:\n{}", hand, difference(name));
+  const std::vector<std::string> mine = more_hands(reference), theirs = more_hands(other);
+  const auto has = [](const std::vector<std::string>& hands, const std::string& name) {
+    return std::find(hands.begin(), hands.end(), name) != hands.end();
+  };
+  fmt::print("{}{}", mine.empty() && theirs.empty() ? "" : "tool:\n", first);
+  for (const std::string& hand : mine) {
+    if (has(theirs, hand))
+      fmt::print("{}:\n{}", hand, difference(fmt::format("haptic-{}.h5", hand)));
     else
-      fmt::print("{}: there is none in {}\n", hand, (mine.contains(name) ? other : reference).string());
+      fmt::print("{}: there is none in {}\n", hand, other.string());
   }
+  for (const std::string& hand : theirs)
+    if (!has(mine, hand)) fmt::print("{}: there is none in {}\n", hand, reference.string());
   return 0;
 }
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "commands.h"
 #include "palpate/compare/felt_difference.h"
@@ -24,11 +22,9 @@ namespace palpate::cli {
 namespace {
 
 std::string text_of_file(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  if (!in) fail("{}: no such file; a replay needs the folder of a finished run", path.string());
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  if (!std::filesystem::exists(path))
+    fail("{}: no such file; a replay needs the folder of a finished run", path.string());
+  return read_text(path.string());
 }
 
 scene::Description scene_of(const std::string& run, const std::vector<std::string>& overrides) {
@@ -68,6 +64,7 @@ int repeat_ticks(const scene::Description& description, const std::vector<loop::
 
 int replay(const ReplayArguments& arguments) {
   const scene::Description recorded = scene_of(arguments.run, {});
+  if (!recorded.tool) fail("replay: the scene of {} has no [tool]: no hand felt anything", arguments.run);
   const std::vector<loop::HapticRecord> records = loop::read_haptic_records(arguments.run, recorded);
   if (!arguments.changes()) return repeat_ticks(recorded, records);
 

@@ -63,8 +63,7 @@ void assemble_block(World& world, ToolSide& side, bool own_device) {
   if (spec.tick_s != world.description.tool->tick_s)
     fail(
         "exchange: scheme = \"monolithic\" reads all tools at the same ticks: hand \"{}\" has tick_s = {}, "
-        "the "
-        "first {}; make them equal",
+        "the first {}; make them equal",
         side.name, spec.tick_s, world.description.tool->tick_s);
   const Quat r = quaternion_of(spec.rotation_vector_rad);
   VecX q(7);

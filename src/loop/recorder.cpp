@@ -30,18 +30,6 @@ std::vector<std::string> energy_headers() {
   return headers;
 }
 
-/// Of further hands an earlier run may have left records in the folder, which would be taken for this one's.
-void remove_more_hands(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> old;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    const std::string name = file.path().filename().string();
-    if ((name.starts_with("force-") && name.ends_with(".csv")) ||
-        (name.starts_with("haptic-") && name.ends_with(".h5")))
-      old.push_back(file.path());
-  }
-  for (const auto& path : old) std::filesystem::remove(path);
-}
-
 /// How many periods of the loop pass between two recorded states.
 int periods_between(const scene::Description& d) {
   return std::max(1, static_cast<int>(std::lround(d.record->state_period_s / period_of(d))));
@@ -153,7 +141,6 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
   std::filesystem::create_directories(folder, failed);
   if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
   const std::filesystem::path base(folder);
-  remove_more_hands(base);
   if (d.record->states && !world.bodies.empty()) impl_->open_states(world, (base / kRunFile).string());
   if (d.record->states && !world.bones.empty())
     impl_->bones = std::make_unique<store::BoneFile>((base / kBoneFile).string());

@@ -444,10 +444,18 @@ class Results(Cli):
         text = self.good("replay", "first", "--set", "exchange.exchange_period_s=0.005", "-o", "other")
         self.assertRegex(text, r"(?m)^tool:\n(.*\n)*force: differs(.*\n)*left:\n(.*\n)*force: differs")
         self.assertIn("\nleft:\n", self.good("diff", "first", "other"))
-        # a run into the folder of one with more hands leaves none of theirs behind
+        # what an earlier run left in the folder is not taken for this one's, and what a person put there stays
+        (self.folder / "other/force-measured.csv").write_text("1,2\n")
         self.good("run", "press-ball", "--duration-s", "0.1", "-o", "other")
-        self.assertFalse((self.folder / "other/haptic-left.h5").exists())
         self.assertIn("left: there is none in other", self.good("diff", "first", "other"))
+        self.assertIn("left: there is none in other", self.good("diff", "other", "first"))
+        self.assertEqual((self.folder / "other/force-measured.csv").read_text(), "1,2\n")
+
+    def test_without_a_tool_nothing_is_replayed(self):
+        self.good("run", "falling-ball", "--duration-s", "0.05", "-o", "fallen")
+        done = self.call("replay", "fallen")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("the scene of fallen has no [tool]", done.stderr)
 
     HAPTIC = ["--set", "compare.haptic.exchange_periods_s=[0.02, 0.01]",
               "--set", "compare.haptic.ticks_s=[0.002, 0.001]", "--set", "compare.haptic.integrators=[]",
