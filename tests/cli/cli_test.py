@@ -444,7 +444,7 @@ class Results(Cli):
         text = self.good("replay", "first", "--set", "exchange.exchange_period_s=0.005", "-o", "other")
         self.assertRegex(text, r"(?m)^tool:\n(.*\n)*force: differs(.*\n)*left:\n(.*\n)*force: differs")
         self.assertIn("\nleft:\n", self.good("diff", "first", "other"))
-        # what an earlier run left in the folder is not taken for this one's, and what a person put there stays
+        # what an earlier run left there is not taken for this one's, and what a person put there stays
         (self.folder / "other/force-measured.csv").write_text("1,2\n")
         self.good("run", "press-ball", "--duration-s", "0.1", "-o", "other")
         self.assertIn("left: there is none in other", self.good("diff", "first", "other"))
