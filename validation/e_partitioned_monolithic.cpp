@@ -69,7 +69,7 @@ std::vector<Measurement> run(const std::string& fault) {
   options.reference = &whole;
   std::vector<double> periods, force, torque, position;
   std::string table;
-  for (const compare::ExchangePoint& point : compare::compare_exchange(parts, options)) {
+  for (const compare::ExchangePoint& point : compare::compare_exchange(parts, options).points) {
     periods.push_back(point.exchange_period_s);
     force.push_back(point.error.force_rms_n);
     torque.push_back(point.error.torque_rms_n_m);

@@ -64,11 +64,12 @@ struct CompareArguments {
   std::string folder;
   std::vector<std::string> integrators;  ///< names, or labels of ladders; empty: every one
   bool all = false;                      ///< all others beside those named
-  int repeats = 3, jobs = 0;             ///< jobs = 0: as many as there are cores
+  int repeats = 3, jobs = 0;             ///< jobs = 0: what is timed runs alone
   double limit_s = 10.0, reference_limit_s = 120.0;
   double duration_s = 0.0;
-  bool fresh = false;   ///< forget what an earlier study left in the folder
-  bool haptic = false;  ///< what a hand feels against one system, of one scene
+  std::string linear_solver = "cholmod";  ///< of all; "best": each method's fastest; "named": the scene's
+  bool fresh = false;                     ///< forget what an earlier study left in the folder
+  bool haptic = false;                    ///< what a hand feels against one system, of one scene
 };
 int compare(const CompareArguments& arguments);
 int compare_haptic(const CompareArguments& arguments);

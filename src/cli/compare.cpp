@@ -54,11 +54,21 @@ compare::Comparison compare_watched(const std::vector<scene::Description>& scene
   options.jobs = arguments.jobs;
   options.integrators = arguments.integrators;
   options.all = arguments.all;
+  options.linear_solvers = arguments.linear_solver == "best"    ? compare::LinearSolvers::kBest
+                           : arguments.linear_solver == "named" ? compare::LinearSolvers::kNamed
+                                                                : compare::LinearSolvers::kSame;
+  if (options.linear_solvers == compare::LinearSolvers::kSame)
+    options.linear_solver = arguments.linear_solver;
   options.database = (fs::path(folder) / "study.sqlite").string();
   options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
   options.stop = &stop_flag();
   if (arguments.fresh) fs::remove(options.database);
   return compare::run(scenes, options);
+}
+
+report::ReferenceError reference_of(const compare::Reference& r) {
+  return {r.own_error.position_rel_l2, r.own_error.force_rms_n, r.own_error.torque_rms_n_m, r.peak_force_n,
+          r.peak_torque_n_m};
 }
 
 /// Adds to `missing` what a finished comparison lacks.
@@ -95,12 +105,13 @@ int compare(const CompareArguments& arguments, Undelivered& missing) {
     print_reference(scene);
     const report::Table own = report::rows_where(table, "scene", scene.scene);
     if (own.rows.empty()) continue;
+    print_trials(scene);
     print_points(scene);
     print_prices(own, scene.reference.own_error.position_rel_l2);
     print_restarts(scene);
     print_exchange(scene);
     print_methods(scene);
-    fmt::print("{}\n\n", report::in_words(own, scene.reference.own_error.position_rel_l2));
+    fmt::print("{}\n\n", report::in_words(own, reference_of(scene.reference)));
   }
   fmt::print("{}\n", comparison.rules);
   if (!table.rows.empty()) {

@@ -34,8 +34,9 @@ std::size_t end_of_failures(const std::vector<compare::ComparePoint>& points, st
 }  // namespace
 
 void print_points(const compare::SceneComparison& scene) {
-  std::vector<std::string> headers = {"integrator", "setting",     "position error", "CPU [s]",
-                                      "steps",      "force evals", "factors",        ""};
+  std::vector<std::string> headers = {"integrator",  "setting",       "position error",
+                                      "CPU [s]",     "linear solver", "steps",
+                                      "force evals", "factors",       ""};
   if (scene.tool) headers.insert(headers.begin() + 3, {"force error [N]", "torque error [N m]"});
   Rows rows;
   for (std::size_t i = 0; i < scene.points.size(); i = end_of_failures(scene.points, i)) {
@@ -48,7 +49,8 @@ void print_points(const compare::SceneComparison& scene) {
     if (const std::size_t end = end_of_failures(scene.points, i); end > i + 1)
       setting += " to " + report::setting_text(p.setting_name, scene.points[end - 1].setting);
     rows.push_back({p.label, setting, report::short_number(p.error.position_rel_l2),
-                    ran ? fmt::format("{:.3f}", p.cpu_median_s) : "-", count(c.steps),
+                    ran ? fmt::format("{:.3f}", p.cpu_median_s) : "-",
+                    p.linear_solver.empty() ? "-" : p.linear_solver, count(c.steps),
                     count(c.force_evaluations), count(c.solver.factorisations), outcome_text(p)});
     if (scene.tool)
       rows.back().insert(rows.back().begin() + 3, {report::short_number(p.error.force_rms_n),
@@ -58,6 +60,18 @@ void print_points(const compare::SceneComparison& scene) {
     fmt::print("{}\n", report::format_table(headers, rows));
   else
     fmt::print("{} points; each is a line of compare.csv.\n\n", scene.points.size());
+}
+
+void print_trials(const compare::SceneComparison& scene) {
+  if (scene.trials.empty()) return;
+  Rows rows;
+  for (const compare::ComparePoint& p : scene.trials)
+    rows.push_back({p.label, report::setting_text(p.setting_name, p.setting),
+                    report::short_number(p.error.position_rel_l2),
+                    p.status == compare::PointStatus::kOk ? fmt::format("{:.3f}", p.cpu_median_s) : "-",
+                    outcome_text(p)});
+  fmt::print("{}\n",
+             report::format_table({"linear solver tried", "at", "position error", "CPU [s]", ""}, rows));
 }
 
 void print_prices(const report::Table& table, double reference_error) {
@@ -82,14 +96,17 @@ void print_prices(const report::Table& table, double reference_error) {
   rows.clear();
   for (const report::Winner& win :
        report::winners(table, kError, "cpu_s_median", report::kTargets, reference_error))
-    rows.push_back(
-        {fmt::format("{:g}", win.target), win.found ? win.label : "none reaches it",
-         win.found ? report::cost_text(win.cost) : "-",
-         win.runner_up.empty() ? "-" : fmt::format("{} ({:.2f} x)", win.runner_up, win.runner_up_ratio),
-         std::isfinite(win.baseline_ratio) ? fmt::format("{:.3g} x", win.baseline_ratio) : "-"});
-  fmt::print("{}\n",
-             report::format_table(
-                 {"position error at most", "cheapest", "CPU [s]", "runner-up", report::kBaseline}, rows));
+    rows.push_back({fmt::format("{:g}", win.target),
+                    !win.resolved    ? "the reference cannot tell"
+                    : !win.found     ? "none reaches it"
+                    : win.declared() ? win.label
+                                     : "no winner: " + win.label,
+                    report::cost_text(win.cost), report::spread_text(win.cost),
+                    win.runner_up.empty() ? "-" : win.runner_up, report::ratio_text(win.runner_up_ratio),
+                    report::ratio_text(win.baseline_ratio)});
+  fmt::print("{}\n", report::format_table({"position error at most", "cheapest", "CPU [s]", "from, to",
+                                           "runner-up", "times", report::kBaseline},
+                                          rows));
 }
 
 void print_restarts(const compare::SceneComparison& scene) {
@@ -112,15 +129,20 @@ void print_restarts(const compare::SceneComparison& scene) {
 }
 
 void print_exchange(const compare::SceneComparison& scene) {
-  if (scene.exchange.empty()) return;
+  if (scene.exchange.points.empty()) return;
+  const compare::ExchangeStudy& study = scene.exchange;
+  fmt::print("tool and bodies as one system by {}, checked by {}; its own error: position {}, force {} N\n",
+             study.made_by, study.checked_by, report::short_number(study.own_error.position_rel_l2),
+             report::short_number(study.own_error.force_rms_n));
   Rows rows;
-  for (const compare::ExchangePoint& p : scene.exchange)
+  for (const compare::ExchangePoint& p : study.points)
     rows.push_back({fmt::format("{:g}", 1e3 * p.exchange_period_s),
                     fmt::format("{:.2e}", p.error.position_rel_l2),
                     fmt::format("{:.2e}", p.error.force_rms_n), fmt::format("{:.2e}", p.error.torque_rms_n_m),
-                    fmt::format("{:.3f}", p.cpu_s)});
+                    fmt::format("{:.3f}", p.cpu_s),
+                    p.unresolved || p.force_unresolved ? "not distinguishable from the reference" : ""});
   fmt::print("{}\n", report::format_table({"exchange period [ms]", "position error", "force error [N]",
-                                           "torque error [N m]", "CPU [s]"},
+                                           "torque error [N m]", "CPU [s]", ""},
                                           rows));
 }
 

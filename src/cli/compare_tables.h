@@ -7,6 +7,8 @@ namespace palpate::cli {
 
 /// How the comparison was made, and how far its reference can be trusted.
 void print_reference(const compare::SceneComparison& scene);
+/// Which linear solvers were tried for each method, where that was asked for.
+void print_trials(const compare::SceneComparison& scene);
 /// A line a point; neighbouring rungs that failed alike share a line.  Above the number that a screen can
 /// hold, their number alone.
 void print_points(const compare::SceneComparison& scene);

@@ -1,12 +1,12 @@
 // Pictures of a run that is over, from what it recorded.
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <filesystem>
 
 #include "commands.h"
 #include "frames.h"
 #include "palpate/core/error.h"
+#include "palpate/core/rigid_fit.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/run_file.h"
@@ -16,19 +16,6 @@
 
 namespace palpate::cli {
 namespace {
-
-/// Where a rigid surface was placed.  With c, d the means of its points before and after, the rotation that
-/// brings (a - c) nearest to (b - d) is V U^T of the singular value decomposition sum (a - c)(b - d)^T =
-/// U S V^T (Kabsch 1976), here exactly.
-Pose pose_between(const Points& before, const Points& after) {
-  const Vec3 c = before.rowwise().mean(), d = after.rowwise().mean();
-  const Mat3 sum = (before.colwise() - c) * (after.colwise() - d).transpose();
-  const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Mat3 V = svd.matrixV(), Ut = svd.matrixU().transpose();
-  const Vec3 hand(1.0, 1.0, (V * Ut).determinant());  // of a flat one the last is free: no reflection
-  const Mat3 R = V * hand.asDiagonal() * Ut;
-  return {Quat(R), d - R * c};
-}
 
 /// What a run kept of its states: the parts as the recorder writes them, bodies, bones with a shape, tools.
 class States {
@@ -63,7 +50,7 @@ class States {
     }
     const auto pose = [&](const TriMesh& surface) {
       const int first = reader_.first_point(part++);
-      return pose_between(surface.vertices, points.middleCols(first, surface.vertices.cols()));
+      return rigid_fit(surface.vertices, points.middleCols(first, surface.vertices.cols()));
     };
     for (const loop::Bone& bone : world_.bones)
       out.bones.push_back(bone.surface.vertices.cols() > 0 ? pose(bone.surface) : Pose{});

@@ -205,7 +205,16 @@ void add_compare(CLI::App& app, Invocation& invocation) {
       ->type_name("SECONDS")
       ->check(duration)
       ->capture_default_str();
-  command->add_option("--jobs", arguments->jobs, "runs side by side; default: the number of cores")
+  command
+      ->add_option("--linear-solver", arguments->linear_solver,
+                   "of all implicit methods: a name of `palpate list linear-solvers`; best: each method's "
+                   "fastest, found by trying; named: the scene's, or the method's own")
+      ->type_name("NAME|best|named")
+      ->capture_default_str();
+  command
+      ->add_option("--jobs", arguments->jobs,
+                   "runs side by side, at the expense of their times; default: references on all cores, all "
+                   "else alone")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--fresh", arguments->fresh, "start anew instead of continuing the study in the folder");
   command->add_flag(
@@ -225,9 +234,10 @@ void add_compare(CLI::App& app, Invocation& invocation) {
 
 Each point is one integrator at one tolerance or step, at the scene's fixed exchange period, in a process of
 its own, against a tight reference whose own error is printed.  The ladders are the scene's
-[[compare.ladder]], and a default one for every other integrator.  Ctrl-C or a crash loses nothing: the same
-line goes on where it stopped.  Writes compare.csv, reference.json, study.sqlite (one row a run) and
-report.html.
+[[compare.ladder]], and a default one for every other integrator, down to where the reference cannot tell
+errors or --limit-s ends it.  A winner is named only where the spreads of times and rungs do not overlap.
+Ctrl-C or a crash loses nothing: the same line goes on where it stopped.  Writes compare.csv, reference.json,
+study.sqlite (one row a run) and report.html.
 
 With --haptic one thing at a time differs from the scene, as its [compare.haptic] says; points run one at a
 time unless --jobs is given, and have 120 s of CPU each, references 1800, unless --limit-s and

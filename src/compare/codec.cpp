@@ -97,6 +97,8 @@ loop::RunResult get_result(ByteReader& in) {
 
 void put_trajectory(ByteWriter& out, const Trajectory& t) {
   out.put(t.period_times).put(t.energies).put(t.tick_times).put(t.node_weights).put(t.start);
+  out.put(t.bodies.size());
+  for (const Trajectory::Body& body : t.bodies) out.put(body.first).put(body.size);
   out.put(t.positions.size());
   for (const VecX& x : t.positions) out.put(x);
   out.put(t.device.size());
@@ -111,6 +113,11 @@ Trajectory get_trajectory(ByteReader& in) {
   t.tick_times = in.get<std::vector<double>>();
   t.node_weights = in.get<VecX>();
   t.start = in.get<VecX>();
+  t.bodies.resize(in.get<std::size_t>());
+  for (Trajectory::Body& body : t.bodies) {
+    body.first = in.get<Eigen::Index>();
+    body.size = in.get<Eigen::Index>();
+  }
   t.positions.resize(in.get<std::size_t>());
   for (VecX& x : t.positions) x = in.get<VecX>();
   t.device.resize(in.get<std::size_t>());
@@ -141,6 +148,7 @@ std::string bytes_of(const Run& run) {
   ByteWriter out;
   put_trajectory(out, run.trajectory);
   put_result(out, run.result);
+  out.put(run.setup_s).put(run.record_s);
   return out.take();
 }
 
@@ -149,6 +157,8 @@ Run run_of(const std::string& bytes) {
   Run run;
   run.trajectory = get_trajectory(in);
   run.result = get_result(in);
+  run.setup_s = in.get<double>();
+  run.record_s = in.get<double>();
   return run;
 }
 
@@ -167,6 +177,7 @@ std::string bytes_of(const PointRun& run) {
   ByteWriter out;
   out.put(run.reference).put(run.status).put(run.reason);
   visit_error(run.error, writing(out, run));
+  out.put(run.setup_s).put(run.record_s);
   put_result(out, run.result);
   return out.take();
 }
@@ -178,13 +189,15 @@ PointRun point_run_of(const std::string& bytes) {
   run.status = in.get<PointStatus>();
   run.reason = in.get<std::string>();
   visit_error(run.error, reading(in));
+  run.setup_s = in.get<double>();
+  run.record_s = in.get<double>();
   run.result = get_result(in);
   return run;
 }
 
 const std::vector<std::string>& run_columns() {
   static const std::vector<std::string> columns = [] {
-    std::vector<std::string> out = {"limit_s", "reference_used"};
+    std::vector<std::string> out = {"limit_s", "reference_used", "setup_s", "record_s"};
     PointRun none;
     const auto name = [&](const char* column, const auto&) { out.push_back(column); };
     visit_error(none.error, name);
@@ -198,7 +211,7 @@ store::StudyRun row_of(const PointRun& run, double limit_s) {
   store::StudyRun row;
   row.status = to_string(run.status);
   row.reason = run.reason;
-  row.numbers = {limit_s, static_cast<double>(run.reference)};
+  row.numbers = {limit_s, static_cast<double>(run.reference), run.setup_s, run.record_s};
   const auto add = [&](const char*, const auto& value) { row.numbers.push_back(static_cast<double>(value)); };
   visit_error(run.error, add);
   loop::visit_counters(add, run.result);
@@ -211,7 +224,9 @@ PointRun point_run_of(const store::StudyRun& row) {
   for (PointStatus one : kStatuses)
     if (row.status == to_string(one)) run.status = one;
   run.reference = static_cast<ReferenceUsed>(static_cast<int>(row.numbers[1]));
-  std::size_t i = 2;
+  run.setup_s = row.numbers[2];
+  run.record_s = row.numbers[3];
+  std::size_t i = 4;
   const auto take = [&](const char*, auto& value) {
     value = static_cast<std::remove_reference_t<decltype(value)>>(row.numbers[i++]);
   };
@@ -222,26 +237,33 @@ PointRun point_run_of(const store::StudyRun& row) {
 
 double limit_of(const store::StudyRun& row) { return row.numbers[0]; }
 
-std::string bytes_of(const std::vector<ExchangePoint>& points) {
+std::string bytes_of(const ExchangeStudy& study) {
   ByteWriter out;
-  out.put(points.size());
-  for (const ExchangePoint& p : points) {
+  out.put(study.made_by).put(study.checked_by).put(study.trouble);
+  visit_error(study.own_error, writing(out, study));
+  out.put(study.points.size());
+  for (const ExchangePoint& p : study.points) {
     out.put(p.exchange_period_s).put(p.cpu_s).put(p.trouble);
+    out.put(p.unresolved).put(p.force_unresolved).put(p.torque_unresolved);
     visit_error(p.error, writing(out, p));
   }
   return out.take();
 }
 
-std::vector<ExchangePoint> exchange_of(const std::string& bytes) {
+ExchangeStudy exchange_of(const std::string& bytes) {
   ByteReader in(bytes);
-  std::vector<ExchangePoint> points(in.get<std::size_t>());
-  for (ExchangePoint& p : points) {
+  ExchangeStudy study;
+  for (std::string* text : {&study.made_by, &study.checked_by, &study.trouble}) *text = in.get<std::string>();
+  visit_error(study.own_error, reading(in));
+  study.points.resize(in.get<std::size_t>());
+  for (ExchangePoint& p : study.points) {
     p.exchange_period_s = in.get<double>();
     p.cpu_s = in.get<double>();
     p.trouble = in.get<std::string>();
+    for (bool* flag : {&p.unresolved, &p.force_unresolved, &p.torque_unresolved}) *flag = in.get<bool>();
     visit_error(p.error, reading(in));
   }
-  return points;
+  return study;
 }
 
 std::string bytes_of(const std::vector<MethodPoint>& points) {

@@ -20,6 +20,7 @@ struct PointRun {
   PointStatus status = PointStatus::kMissing;
   std::string reason;
   TrajectoryError error = no_distance();
+  double setup_s = 0.0, record_s = 0.0;  ///< CPU time, see Run
   loop::RunResult result;
 };
 std::string bytes_of(const PointRun& run);
@@ -31,8 +32,8 @@ store::StudyRun row_of(const PointRun& run, double limit_s);
 PointRun point_run_of(const store::StudyRun& row);
 double limit_of(const store::StudyRun& row);  ///< CPU limit that the run had [s]
 
-std::string bytes_of(const std::vector<ExchangePoint>& points);
-std::vector<ExchangePoint> exchange_of(const std::string& bytes);
+std::string bytes_of(const ExchangeStudy& study);
+ExchangeStudy exchange_of(const std::string& bytes);
 std::string bytes_of(const std::vector<MethodPoint>& points);
 std::vector<MethodPoint> methods_of(const std::string& bytes);
 

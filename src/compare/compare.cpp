@@ -1,6 +1,8 @@
 #include "palpate/compare/compare.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <thread>
 
 #include "ledger.h"
@@ -27,13 +29,14 @@ PointStatus status_of(Outcome::End end) {
 /// before: a study that was killed and started again gives the same table.
 class Study {
  public:
-  Study(const std::vector<scene::Description>& scenes, const CompareOptions& options)
+  Study(const std::vector<scene::Description>& scenes, const CompareOptions& options,
+        const std::vector<SolverChoice>& choices, bool trials = false)
       : options_(options),
         jobs_(options.jobs > 0 ? options.jobs
                                : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
         pool_(jobs_),
         database_(options.database.empty() ? ":memory:" : options.database, run_columns()),
-        ledger_(scenes, options) {}
+        ledger_(scenes, options, choices, trials) {}
 
   Comparison run() {
     while (!stopped()) {
@@ -66,9 +69,15 @@ class Study {
       resume(task);
       if (task.done) return true;
     }
-    if (!pool_.has_room()) return false;
+    if (!has_room_for(task)) return false;
     start(task);
     return true;
+  }
+
+  /// Where nobody asked for a number of jobs, what is timed has the machine for itself.
+  bool has_room_for(const Task& task) const {
+    if (options_.jobs > 0 || task.is_reference()) return pool_.has_room() && !timed_runs_;
+    return pool_.idle();
   }
 
   /// Takes the result of an earlier study.
@@ -82,8 +91,8 @@ class Study {
     }
     for (const store::StudyRun& row : database_.runs(ledger_.key_of(task))) {
       const bool wants_more_time = row.status == "out of time" && compare::limit_of(row) < options_.limit_s;
-      const bool other_reference = task.kind == Task::Kind::kPoint &&
-                                   point_run_of(row).reference != ledger_.work[task.scene].reference_used;
+      const bool other_reference =
+          task.kind == Task::Kind::kPoint && point_run_of(row).reference != ledger_.reference_used(task);
       if (row.repeat == task.repeat && !wants_more_time && !other_reference) reuse(task, row);
     }
   }
@@ -97,6 +106,7 @@ class Study {
 
   void start(Task& task) {
     task.started = true;
+    timed_runs_ = options_.jobs <= 0 && !task.is_reference();
     Task* at = &task;
     pool_.start(do_order, order(task), ledger_.limit_of(task),
                 [this, at](const Outcome& outcome) { done(*at, outcome); });
@@ -116,11 +126,12 @@ class Study {
       case Task::Kind::kRestart: break;
     }
     return order_of(WorkKind::kPoint, ledger_.point_of(task).description, limit_s,
-                    task.kind == Task::Kind::kPoint ? scene.reference : nullptr);
+                    ledger_.reference_of(task));
   }
 
   /// Called in the study's own process: keeps the result, then uses it.
   void done(Task& task, const Outcome& outcome) {
+    timed_runs_ = false;
     if (stopped()) return;  // it may have been cut short
     task.done = true;
     if (task.is_point())
@@ -142,7 +153,7 @@ class Study {
       run = point_run_of(outcome.bytes);
     else
       run.status = status_of(outcome.end), run.reason = outcome.bytes;
-    run.reference = ledger_.work[task.scene].reference_used;
+    run.reference = ledger_.reference_used(task);
     store::StudyRun row = compare::row_of(run, options_.limit_s);
     const ComparePoint& point = ledger_.point_of(task);
     row.key = ledger_.key_of(task);
@@ -199,16 +210,47 @@ class Study {
   }
 
   const CompareOptions& options_;
+  bool timed_runs_ = false;
   int jobs_;
   ProcessPool pool_;  ///< first: where it cannot be had, nothing was opened
   store::StudyDb database_;
   Ledger ledger_;
 };
 
+/// A solver whose result is farther than this from that of a ladder's first one is not considered, however
+/// fast, relative to the error.
+constexpr double kSameError = 0.1;
+
+/// The fastest solver of each ladder that was tried, of those whose error is the first (direct) one's.
+SolverChoice fastest_of(const std::vector<ComparePoint>& trials) {
+  SolverChoice out;
+  std::map<std::string, const ComparePoint*> first, best;
+  for (const ComparePoint& trial : trials) {
+    if (trial.status != PointStatus::kOk) continue;
+    const std::string label =
+        trial.label.substr(0, trial.label.size() - trial_label("", trial.linear_solver).size());
+    const double right = first.emplace(label, &trial).first->second->error.position_rel_l2,
+                 error = trial.error.position_rel_l2;
+    if (std::abs(error - right) > kSameError * right) continue;
+    const ComparePoint*& fastest = best.emplace(label, &trial).first->second;
+    if (trial.cpu_median_s <= fastest->cpu_median_s) fastest = &trial;
+  }
+  for (const auto& [label, trial] : best) out.by_label[label] = trial->linear_solver;
+  return out;
+}
+
 }  // namespace
 
 Comparison run(const std::vector<scene::Description>& scenes, const CompareOptions& options) {
-  return Study(scenes, options).run();
+  std::vector<SolverChoice> choices(
+      scenes.size(), {options.linear_solvers == LinearSolvers::kSame ? options.linear_solver : ""});
+  if (options.linear_solvers != LinearSolvers::kBest) return Study(scenes, options, choices).run();
+  const Comparison tried = Study(scenes, options, choices, true).run();
+  for (std::size_t s = 0; s < scenes.size(); ++s) choices[s] = fastest_of(tried.scenes[s].points);
+  Comparison out = Study(scenes, options, choices).run();
+  for (std::size_t s = 0; s < scenes.size(); ++s) out.scenes[s].trials = tried.scenes[s].points;
+  out.reused += tried.reused;
+  return out;
 }
 
 }  // namespace palpate::compare

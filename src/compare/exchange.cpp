@@ -9,6 +9,7 @@ namespace palpate::compare {
 namespace {
 
 constexpr double kRtol = 1e-6;
+const std::string kMethod = "cvode-bdf", kCheck = "ark-dirk-esdirk547", kCheckSolver = "umfpack";
 constexpr int kTicks = 10;  ///< in an exchange period
 
 /// The longest time that every period is a multiple of: a whole fraction of the shortest.
@@ -32,8 +33,15 @@ scene::Description with_scheme(scene::Description d, const std::string& scheme, 
   d.exchange.exchange_period_s = period;
   d.exchange.contact_refresh_s = refresh;
   d.tool->tick_s = period / kTicks;
-  d.integrator.name = "cvode-bdf";
+  d.integrator.name = kMethod;
   d.integrator.rtol = kRtol;
+  return d;
+}
+
+/// The same by the check's method.
+scene::Description checked(scene::Description d) {
+  d.integrator.name = kCheck;
+  d.integrator.linear_solver = kCheckSolver;
   return d;
 }
 
@@ -41,12 +49,12 @@ scene::Description with_scheme(scene::Description d, const std::string& scheme, 
 
 int exchange_runs(const scene::Description& d) {
   return d.tool && !d.compare.exchange_periods_s.empty()
-             ? static_cast<int>(d.compare.exchange_periods_s.size()) + 1
+             ? static_cast<int>(d.compare.exchange_periods_s.size()) + 2
              : 0;
 }
 
-std::vector<ExchangePoint> compare_exchange(const scene::Description& d, const ExchangeOptions& options) {
-  std::vector<ExchangePoint> out;
+ExchangeStudy compare_exchange(const scene::Description& d, const ExchangeOptions& options) {
+  ExchangeStudy out;
   if (exchange_runs(d) == 0) return out;
   const auto done = [&](const std::string& what) {
     if (options.done) options.done(what);
@@ -54,25 +62,39 @@ std::vector<ExchangePoint> compare_exchange(const scene::Description& d, const E
   const std::vector<double>& periods = d.compare.exchange_periods_s;
   const double refresh = common_refresh(periods),
                shortest = *std::min_element(periods.begin(), periods.end());
-  const scene::Description& whole = options.reference ? *options.reference : d;
-  const Run reference =
-      run_once(with_scheme(whole, "monolithic", shortest, refresh), d.compare.duration_s, options.stop);
+  const scene::Description whole =
+      with_scheme(options.reference ? *options.reference : d, "monolithic", shortest, refresh);
+  const Run reference = run_once(whole, d.compare.duration_s, options.stop);
   if (reference.result.stopped) return out;
   const bool comparable = reference.result.status.ok();
   done("monolithic");
+  const Run check = run_once(checked(whole), d.compare.duration_s, options.stop);
+  if (check.result.stopped) return out;
+  done("monolithic, checked");
+  out.made_by = fmt::format("{} at rtol {:g}", kMethod, kRtol);
+  out.checked_by = fmt::format("{} at rtol {:g} by {}", kCheck, kRtol, kCheckSolver);
+  if (!check.result.status.ok())
+    out.trouble = "the check failed: " + check.result.status.message;
+  else if (comparable)
+    out.own_error = distance(check.trajectory, reference.trajectory);
   for (double period : periods) {
     if (options.stop && options.stop->load()) return out;
     const Run run =
         run_once(with_scheme(d, "partitioned", period, refresh), d.compare.duration_s, options.stop);
     done(fmt::format("exchange period {:g} s", period));
     if (run.result.stopped) return out;
-    std::string trouble;
+    ExchangePoint point{period, no_distance(), run.result.cpu_s};
     if (!comparable)
-      trouble = "the monolithic run failed: " + reference.result.status.message;
+      point.trouble = "the monolithic run failed: " + reference.result.status.message;
     else if (!run.result.status.ok())
-      trouble = run.result.status.message.empty() ? "the run failed" : run.result.status.message;
-    out.push_back({period, trouble.empty() ? distance(run.trajectory, reference.trajectory) : no_distance(),
-                   run.result.cpu_s, trouble});
+      point.trouble = run.result.status.message.empty() ? "the run failed" : run.result.status.message;
+    else
+      point.error = distance(run.trajectory, reference.trajectory);
+    const TrajectoryError& own = out.own_error;
+    point.unresolved = point.error.position_rel_l2 < kResolution * own.position_rel_l2;
+    point.force_unresolved = point.error.force_rms_n < kResolution * own.force_rms_n;
+    point.torque_unresolved = point.error.torque_rms_n_m < kResolution * own.torque_rms_n_m;
+    out.points.push_back(point);
   }
   return out;
 }

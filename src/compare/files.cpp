@@ -22,7 +22,7 @@ using Row = std::vector<CsvCell>;
 
 const std::vector<std::string> kExchangeColumns = {
     "scene", "exchange_period_s", "position_error_rel_l2", "force_error_rms_n", "torque_error_rms_n_m",
-    "cpu_s"};
+    "cpu_s", "unresolved",        "force_unresolved",      "torque_unresolved"};
 
 const std::vector<std::string> kMethodColumns = {"scene",
                                                  "method",
@@ -78,6 +78,12 @@ Row row_of(const std::vector<std::string>& columns, const std::string& scene, co
                    {"multistep", yes_no(p.multistep)},
                    {"setting_name", p.setting_name},
                    {"setting", p.setting},
+                   {"coarsest", yes_no(p.coarsest)},
+                   {"linear_solver", p.linear_solver},
+                   {"against", p.against},
+                   {"method_s", time(p.method_s())},
+                   {"setup_s", time(p.setup_s)},
+                   {"record_s", time(p.record_s)},
                    {"position_error_rel_l2", e.position_rel_l2},
                    {"position_error_max_m", e.position_max_m},
                    {"force_error_rms_n", e.force_rms_n},
@@ -109,8 +115,15 @@ Row restart_row(const std::vector<std::string>& columns, const std::string& scen
 }
 
 Row exchange_row(const std::vector<std::string>&, const std::string& scene, const ExchangePoint& p) {
-  return {scene,  p.exchange_period_s, p.error.position_rel_l2, p.error.force_rms_n, p.error.torque_rms_n_m,
-          p.cpu_s};
+  return {scene,
+          p.exchange_period_s,
+          p.error.position_rel_l2,
+          p.error.force_rms_n,
+          p.error.torque_rms_n_m,
+          p.cpu_s,
+          yes_no(p.unresolved),
+          yes_no(p.force_unresolved),
+          yes_no(p.torque_unresolved)};
 }
 
 Row method_row(const std::vector<std::string>&, const std::string& scene, const MethodPoint& p) {
@@ -127,14 +140,15 @@ Row method_row(const std::vector<std::string>&, const std::string& scene, const 
 }
 
 /// One table over all scenes; no file where it would be empty (and none stays from before).
-template <class Point, class ToRow>
+template <class Point>
 void write_table(const Comparison& comparison, const fs::path& path, const std::vector<std::string>& columns,
-                 std::vector<Point> SceneComparison::*points, ToRow to_row) {
+                 const std::vector<Point>& (*points)(const SceneComparison&),
+                 Row (*to_row)(const std::vector<std::string>&, const std::string&, const Point&)) {
   std::error_code none;
   fs::remove(path, none);
   std::optional<store::CsvWriter> csv;
   for (const SceneComparison& scene : comparison.scenes)
-    for (const Point& point : scene.*points) {
+    for (const Point& point : points(scene)) {
       if constexpr (std::is_same_v<Point, ComparePoint>)
         if (point.status == PointStatus::kMissing) continue;  // stopped before it
       if (!csv) csv.emplace(path.string(), columns);
@@ -154,7 +168,15 @@ nlohmann::ordered_json reference_of(const SceneComparison& scene) {
           {"position_error_rel_l2", own.position_rel_l2},
           {"force_error_rms_n", own.force_rms_n},
           {"torque_error_rms_n_m", own.torque_rms_n_m},
+          {"peak_force_n", scene.reference.peak_force_n},
+          {"peak_torque_n_m", scene.reference.peak_torque_n_m},
           {"cpu_s", scene.reference.cpu_s},
+          {"exchange",
+           {{"made_by", scene.exchange.made_by},
+            {"checked_by", scene.exchange.checked_by},
+            {"position_error_rel_l2", scene.exchange.own_error.position_rel_l2},
+            {"force_error_rms_n", scene.exchange.own_error.force_rms_n},
+            {"torque_error_rms_n_m", scene.exchange.own_error.torque_rms_n_m}}},
           {"notes", notes}};
 }
 
@@ -165,12 +187,21 @@ void write(const Comparison& comparison, const std::string& folder) {
   fs::create_directories(folder, failed);
   if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
   const fs::path base(folder);
-  write_table(comparison, base / "compare.csv", with_every_number(store::compare_columns()),
-              &SceneComparison::points, row_of);
-  write_table(comparison, base / "restarts.csv", with_every_number(store::restart_columns()),
-              &SceneComparison::restarts, restart_row);
-  write_table(comparison, base / "exchange.csv", kExchangeColumns, &SceneComparison::exchange, exchange_row);
-  write_table(comparison, base / "methods.csv", kMethodColumns, &SceneComparison::methods, method_row);
+  const std::vector<std::string> columns = with_every_number(store::compare_columns());
+  using Scene = const SceneComparison&;
+  write_table<ComparePoint>(
+      comparison, base / "compare.csv", columns, [](Scene s) -> auto& { return s.points; }, row_of);
+  write_table<ComparePoint>(
+      comparison, base / "trials.csv", columns, [](Scene s) -> auto& { return s.trials; }, row_of);
+  write_table<ComparePoint>(
+      comparison, base / "restarts.csv", with_every_number(store::restart_columns()),
+      [](Scene s) -> auto& { return s.restarts; }, restart_row);
+  write_table<ExchangePoint>(
+      comparison, base / "exchange.csv", kExchangeColumns, [](Scene s) -> auto& { return s.exchange.points; },
+      exchange_row);
+  write_table<MethodPoint>(
+      comparison, base / "methods.csv", kMethodColumns, [](Scene s) -> auto& { return s.methods; },
+      method_row);
   nlohmann::ordered_json references = {{"rules", comparison.rules},
                                        {"scenes", nlohmann::ordered_json::array()}};
   for (const SceneComparison& scene : comparison.scenes) references["scenes"].push_back(reference_of(scene));

@@ -142,13 +142,12 @@ std::optional<Trajectory> run_references(const scene::Description& d, Runner& ru
               {&check.description, 0, [&](const Ended& e) { check_run = reference_run_of(e); }}},
              options.jobs > 0 ? options.jobs : cores(), options.reference_limit_s);
   if (runner.stopped()) return {};
-  out.reference = settle({primary.made_by, check.made_by, {}, {}}, primary_run, check_run, wrench_distance);
+  out.reference =
+      settle({primary.made_by, check.made_by, {}, {}, {}, {}}, primary_run, check_run, wrench_distance);
   if (!out.reference.available) return {};
   const Trajectory reference = (primary_run.run ? primary_run : check_run).run->trajectory;
-  for (const Wrench& w : reference.device) {
-    out.peak_force_n = std::max(out.peak_force_n, w.force.norm());
-    out.peak_torque_n_m = std::max(out.peak_torque_n_m, w.moment.norm());
-  }
+  out.peak_force_n = out.reference.peak_force_n;
+  out.peak_torque_n_m = out.reference.peak_torque_n_m;
   return reference;
 }
 

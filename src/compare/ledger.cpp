@@ -7,21 +7,23 @@
 
 namespace palpate::compare {
 
-Ledger::Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options)
-    : options_(options) {
-  for (const scene::Description& d : scenes) plan(d);
+Ledger::Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options,
+               const std::vector<SolverChoice>& choices, bool trials)
+    : options_(options), trials_(trials) {
+  for (std::size_t s = 0; s < scenes.size(); ++s) plan(scenes[s], choices[s]);
   add_tasks();
 }
 
-void Ledger::plan(const scene::Description& d) {
+void Ledger::plan(const scene::Description& d, const SolverChoice& choice) {
   SceneWork own;
   own.description = with_overrides(d, {});  // the text alone decides
   SceneComparison comparison;
   comparison.scene = d.name;
   comparison.path = d.path;
   comparison.tool = d.tool.has_value();
-  comparison.points = plan_points(own.description, options_);
-  comparison.restarts = plan_restarts(own.description, options_);
+  comparison.points =
+      trials_ ? plan_trials(own.description, options_) : plan_points(own.description, options_, choice);
+  if (!trials_) comparison.restarts = plan_restarts(own.description, options_, choice);
   own.planned = plan_reference(own.description, comparison.points);
   own.primary_key = result_key(own.planned.primary, "reference");
   own.check_key = result_key(own.planned.check, "reference");
@@ -46,7 +48,7 @@ void Ledger::add_tasks() {
       for (std::size_t s = 0; s < work.size(); ++s)
         for (std::size_t p = 0; p < out.scenes[s].points.size(); ++p)
           if (rung(s, p) == r) tasks.push_back({Task::Kind::kPoint, s, p, repeat});
-    if (repeat > 0) continue;
+    if (repeat > 0 || trials_) continue;
     for (std::size_t s = 0; s < work.size(); ++s) {
       for (std::size_t p = 0; p < out.scenes[s].restarts.size(); ++p)
         tasks.push_back({Task::Kind::kRestart, s, p});
@@ -63,10 +65,49 @@ std::size_t Ledger::rung(std::size_t s, std::size_t p) const {
   while (p > 0 && points[p - 1].label == points[p].label) --p, ++n;
   return n;
 }
-const ComparePoint* Ledger::coarser(const Task& task) const {
+const ComparePoint* Ledger::coarser(const Task& task, std::size_t by) const {
   const auto& points = out.scenes[task.scene].points;
-  return task.point > 0 && points[task.point - 1].label == points[task.point].label ? &points[task.point - 1]
-                                                                                    : nullptr;
+  return task.point >= by && points[task.point - by].label == points[task.point].label
+             ? &points[task.point - by]
+             : nullptr;
+}
+
+// Two rungs in a row whose errors the reference cannot tell: nothing finer can be judged.
+bool Ledger::is_at_the_end(const Task& task) const {
+  const SceneComparison& scene = out.scenes[task.scene];
+  const TrajectoryError& own = scene.reference.own_error;
+  for (const std::size_t by : {std::size_t{1}, std::size_t{2}}) {
+    const ComparePoint* before = coarser(task, by);
+    if (!before || before->status != PointStatus::kOk ||
+        !(before->error.position_rel_l2 < kResolution * own.position_rel_l2) ||
+        (scene.tool && !(before->error.force_rms_n < kResolution * own.force_rms_n)))
+      return false;
+  }
+  return true;
+}
+
+ReferenceUsed Ledger::reference_used(const Task& task) const {
+  const SceneWork& own = work[task.scene];
+  if (task.kind != Task::Kind::kPoint || (!own.primary.run && !own.check.run)) return ReferenceUsed::kNone;
+  if (!own.primary.run) return ReferenceUsed::kCheck;
+  if (!own.check.run) return ReferenceUsed::kPrimary;
+  const ComparePoint& point = out.scenes[task.scene].points[task.point];
+  const auto is_of = [&](const std::string& integrator) {
+    const dynamics::StepperEntry* entry = find_stepper(integrator);
+    return point.integrator == integrator || (entry && entry->traits.family == point.family);
+  };
+  return is_of(own.planned.made_with) && !is_of(own.planned.checked_with) ? ReferenceUsed::kCheck
+                                                                          : ReferenceUsed::kPrimary;
+}
+
+const Trajectory* Ledger::reference_of(const Task& task) const {
+  const SceneWork& own = work[task.scene];
+  switch (reference_used(task)) {
+    case ReferenceUsed::kPrimary: return &own.primary.run->trajectory;
+    case ReferenceUsed::kCheck: return &own.check.run->trajectory;
+    case ReferenceUsed::kNone: break;
+  }
+  return nullptr;
 }
 
 ComparePoint& Ledger::point_of(const Task& task) {
@@ -97,7 +138,7 @@ bool Ledger::is_ready(const Task& task) {
   if (task.kind != Task::Kind::kPoint) return true;
   if (!work[task.scene].reference_settled) return false;
   if (task.repeat > 0) return point_of(task).status != PointStatus::kMissing;
-  const ComparePoint* before = coarser(task);
+  const ComparePoint* before = coarser(task, 1);
   return !before || before->status != PointStatus::kMissing;
 }
 
@@ -110,7 +151,7 @@ bool Ledger::is_pointless(const Task& task) {
     for (double s : point.cpu_s) spent += s;
     return point.status != PointStatus::kOk || spent > 0.2 * options_.limit_s;
   }
-  const ComparePoint* before = coarser(task);
+  const ComparePoint* before = coarser(task, 1);
   if (!before || point.status != PointStatus::kMissing) return false;
   const auto settle_untried = [&point](PointStatus status, const std::string& reason) {
     point.status = status;
@@ -119,8 +160,11 @@ bool Ledger::is_pointless(const Task& task) {
   };
   if (before->status == PointStatus::kRefused)
     settle_untried(PointStatus::kRefused, before->reason);
-  else if (before->status == PointStatus::kOutOfTime || before->status == PointStatus::kNotTried)
+  else if (before->status == PointStatus::kOutOfTime ||
+           (before->status == PointStatus::kNotTried && before->reason != kNotNeeded))
     settle_untried(PointStatus::kNotTried, "not tried: a coarser rung ran out of time");
+  else if (point.open_ended && (before->reason == kNotNeeded || is_at_the_end(task)))
+    settle_untried(PointStatus::kNotTried, kNotNeeded);
   return point.status != PointStatus::kMissing;
 }
 

@@ -7,6 +7,9 @@
 
 namespace palpate::compare {
 
+/// Why a rung was left out that nobody misses; it is in no table.
+inline const std::string kNotNeeded = "the reference cannot tell finer errors";
+
 /// One run that is to be made.
 struct Task {
   enum class Kind { kPrimary, kCheck, kPoint, kRestart, kExchange, kMethods };
@@ -25,8 +28,6 @@ struct SceneWork {
   PlannedReference planned;
   std::string primary_key, check_key;
   ReferenceRun primary, check;
-  const Trajectory* reference = nullptr;  ///< what points are held against
-  ReferenceUsed reference_used = ReferenceUsed::kNone;
   bool reference_settled = false;
   std::vector<std::string> point_keys, restart_keys;
 };
@@ -34,7 +35,9 @@ struct SceneWork {
 /// All runs of a study, and their results so far.
 class Ledger {
  public:
-  Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options);
+  /// @param choices  of each scene  @param trials  instead of ladders and charts: which solver is fastest
+  Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options,
+         const std::vector<SolverChoice>& choices, bool trials);
 
   std::deque<Task> tasks;       ///< in the order in which they are wanted; a task stays where it is
   std::vector<SceneWork> work;  ///< of each scene
@@ -42,9 +45,10 @@ class Ledger {
 
   const CompareOptions& options() const { return options_; }
   ComparePoint& point_of(const Task& task);
-  const ComparePoint* coarser(const Task& task) const;  ///< the rung before it, or null
-  const std::string& key_of(const Task& task) const;    ///< of a point's runs in the database
-  std::string artefact_key(const Task& task) const;     ///< of all else
+  /// the rung so many before it, or null
+  const ComparePoint* coarser(const Task& task, std::size_t by) const;
+  const std::string& key_of(const Task& task) const;  ///< of a point's runs in the database
+  std::string artefact_key(const Task& task) const;   ///< of all else
   double limit_of(const Task& task) const {
     return task.is_point() ? options_.limit_s : options_.reference_limit_s;
   }
@@ -60,6 +64,11 @@ class Ledger {
   /// False for a chart that lacks something: what was missing (a library, a display) may be there today, so
   /// the chart is made again.
   static bool is_whole(const Task& task, const store::StudyArtefact& kept);
+  /// What a point's error is measured against: the reference, or its check where the method is of the
+  /// reference's own family, and shares what error it has; and the other where one failed.
+  ReferenceUsed reference_used(const Task& task) const;
+  const Trajectory* reference_of(const Task& task) const;  ///< null: there is none
+
   /// Once a scene's two reference runs have ended, decides which is the reference and how far it can be
   /// trusted.
   void settle_references();
@@ -68,13 +77,15 @@ class Ledger {
   void finish(int jobs);
 
  private:
-  void plan(const scene::Description& description);
+  void plan(const scene::Description& description, const SolverChoice& choice);
   void add_tasks();
   void take_chart(const Task& task, const store::StudyArtefact& kept);
   /// how many rungs of the same ladder come before it
   std::size_t rung(std::size_t scene, std::size_t point) const;
   bool reference_tasks_done(std::size_t scene) const;
+  bool is_at_the_end(const Task& task) const;
   const CompareOptions& options_;
+  bool trials_;
 };
 
 }  // namespace palpate::compare

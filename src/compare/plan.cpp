@@ -15,6 +15,10 @@ using dynamics::Stability;
 using dynamics::StepControl;
 using dynamics::StepperEntry;
 
+/// What kBest tries: the direct solver and the iterative ones.
+const std::vector<std::string> kTriedSolvers = {"cholmod", "pcg-single", "pcg-two-level"};
+const std::string kOtherDirectSolver = "umfpack";
+
 std::string label_of(const scene::LadderSpec& ladder) {
   return ladder.label.empty() ? ladder.integrator : ladder.label;
 }
@@ -34,19 +38,38 @@ bool is_named(const std::vector<std::string>& wanted, const scene::LadderSpec& l
   return contains(wanted, ladder.integrator) && std::none_of(all.begin(), all.end(), has_that_label);
 }
 
-/// Default ladder: rtol 1e-2 ... 1e-8 under error control; else halvings of the loop's period, or of 10 ms,
-/// because an explicit method may need very short steps.
+constexpr double kLoosestRtol = 0.1;
+
+/// The first setting of a method that makes sense: a tenth of the motion; a whole period in one step.
+bool is_coarsest(const scene::Description& d, const scene::LadderSpec& ladder, double value) {
+  if (ladder.setting == "rtol") return value >= (1.0 - 1e-9) * kLoosestRtol;
+  return ladder.setting == "step_s" && value >= (1.0 - 1e-9) * loop::period_of(d);
+}
+
+bool takes_rtol(const StepperEntry& entry, double rtol) {
+  return std::all_of(entry.keys.begin(), entry.keys.end(),
+                     [&](const PartKey& key) { return key.name != "rtol" || key.range.holds(rtol); });
+}
+
+/// Default rungs: from the first that makes sense to rounding, decades of rtol under error control, else
+/// halvings of the loop's period.  How far down they are run the time limit says, or the reference, when it
+/// cannot tell the errors any more.
+void fill_by_default(const scene::Description& d, const StepperEntry& entry, scene::LadderSpec& ladder) {
+  if (entry.traits.control != StepControl::kFixed) {
+    ladder.setting = "rtol";
+    for (int k = 1; k <= 12; ++k)
+      if (const double rtol = std::stod(fmt::format("1e-{}", k)); takes_rtol(entry, rtol))
+        ladder.values.push_back(rtol);
+    return;
+  }
+  ladder.setting = "step_s";
+  for (int k = 0; k < 20; ++k) ladder.values.push_back(std::ldexp(loop::period_of(d), -k));
+}
+
 scene::LadderSpec default_ladder(const scene::Description& d, const StepperEntry& entry) {
   scene::LadderSpec ladder;
   ladder.integrator = entry.name;
-  if (entry.traits.control != StepControl::kFixed) {
-    for (int k = 2; k <= 8; ++k) ladder.values.push_back(std::pow(10.0, -k));
-    return ladder;
-  }
-  ladder.setting = "step_s";
-  const double longest = std::min(0.01, loop::period_of(d));
-  const int rungs = entry.traits.stability == Stability::kExplicit ? 11 : 8;
-  for (int k = 0; k < rungs; ++k) ladder.values.push_back(std::ldexp(longest, -k));
+  fill_by_default(d, entry, ladder);
   return ladder;
 }
 
@@ -62,6 +85,7 @@ scene::LadderSpec tick_ladder(const scene::Description& d, const std::string& in
 void check_ladder(const scene::Description& d, const scene::LadderSpec& ladder) {
   const StepperEntry& entry = find(loop::steppers(), ladder.integrator,
                                    fmt::format("integrator in [[compare.ladder]] of {}:", d.path).c_str());
+  if (ladder.values.empty()) return;
   const StepControl control = entry.traits.control;
   if (control == StepControl::kAdaptive && ladder.setting != "rtol")
     fail("{}: [[compare.ladder]] \"{}\": {} steps under error control; give rtol = [...] instead of {}",
@@ -78,7 +102,7 @@ std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const Com
   std::vector<scene::LadderSpec> out;
   std::set<std::string> labels, integrators, met;
   if (!tool_only)
-    for (const scene::LadderSpec& ladder : d.compare.ladders) {
+    for (scene::LadderSpec ladder : d.compare.ladders) {
       check_ladder(d, ladder);
       const bool named = is_named(wanted, ladder, d.compare.ladders);
       if (named) met.insert({ladder.integrator, label_of(ladder)});
@@ -87,6 +111,7 @@ std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const Com
         fail("{}: two [[compare.ladder]] are called \"{}\"; give one of them a label", d.path,
              label_of(ladder));
       integrators.insert(ladder.integrator);
+      if (ladder.values.empty()) fill_by_default(d, *find_stepper(ladder.integrator), ladder);
       out.push_back(ladder);
     }
   std::vector<std::string> known;
@@ -112,6 +137,26 @@ std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const Com
   return out;
 }
 
+bool uses(const StepperEntry* entry, const std::string& name) {
+  return entry && std::any_of(entry->keys.begin(), entry->keys.end(),
+                              [&](const PartKey& key) { return key.name == name; });
+}
+
+/// The change to the scene that gives a ladder its linear solver; none where it keeps its own.
+std::vector<std::string> solver_of(const scene::LadderSpec& ladder, const SolverChoice& choice) {
+  if (!uses(find_stepper(ladder.integrator), "linear_solver")) return {};
+  const auto chosen = choice.by_label.find(label_of(ladder));
+  const std::string& solver = chosen == choice.by_label.end() ? choice.of_all : chosen->second;
+  if (solver.empty()) return {};
+  return {"integrator.linear_solver=\"" + solver + "\""};
+}
+
+std::string solver_name(const scene::Description& d, const std::string& integrator) {
+  const StepperEntry* entry = d.bodies.empty() ? nullptr : find_stepper(integrator);
+  if (!uses(entry, "linear_solver")) return "";
+  return d.integrator.linear_solver.empty() ? entry->traits.linear_solver : d.integrator.linear_solver;
+}
+
 ComparePoint point_of(const scene::Description& d, const scene::LadderSpec& ladder) {
   ComparePoint point;
   point.label = label_of(ladder);
@@ -129,7 +174,18 @@ ComparePoint point_of(const scene::Description& d, const scene::LadderSpec& ladd
   return point;
 }
 
+/// Whether a ladder's rungs are not the scene's own.
+bool is_by_default(const scene::Description& d, const scene::LadderSpec& ladder) {
+  return std::none_of(d.compare.ladders.begin(), d.compare.ladders.end(), [&](const auto& own) {
+    return !own.values.empty() && label_of(own) == label_of(ladder);
+  });
+}
+
 }  // namespace
+
+std::string trial_label(const std::string& label, const std::string& solver) {
+  return label + " by " + solver;
+}
 
 const StepperEntry* find_stepper(const std::string& name) {
   for (const StepperEntry& entry : loop::steppers())
@@ -151,13 +207,10 @@ std::vector<std::string> overrides_of(const scene::LadderSpec& ladder, double va
   }
   out.push_back("integrator.name=\"" + ladder.integrator + "\"");
   const StepperEntry* entry = find_stepper(ladder.integrator);
-  const auto uses = [&](const std::string& name) {
-    return entry && std::any_of(entry->keys.begin(), entry->keys.end(),
-                                [&](const PartKey& key) { return key.name == name; });
-  };
-  if (uses(ladder.setting))
+  if (uses(entry, ladder.setting))
     out.push_back(fmt::format("integrator.{}={}", ladder.setting, toml_number(value)));
-  if (uses("fixed_step")) out.push_back(fmt::format("integrator.fixed_step={}", ladder.setting == "step_s"));
+  if (uses(entry, "fixed_step"))
+    out.push_back(fmt::format("integrator.fixed_step={}", ladder.setting == "step_s"));
   return out;
 }
 
@@ -167,21 +220,53 @@ scene::Description with_overrides(const scene::Description& d, const std::vector
   return loop::parse(d.source, d.path, overrides);
 }
 
-std::vector<ComparePoint> plan_points(const scene::Description& d, const CompareOptions& options) {
+std::vector<ComparePoint> plan_points(const scene::Description& d, const CompareOptions& options,
+                                      const SolverChoice& choice) {
   std::vector<ComparePoint> points;
-  for (const scene::LadderSpec& ladder : ladders_of(d, options))
+  for (scene::LadderSpec ladder : ladders_of(d, options)) {
+    const bool by_default = is_by_default(d, ladder);
     for (const double value : ladder.values) {
       ComparePoint point = point_of(d, ladder);
       point.setting_name = ladder.setting;
       point.setting = value;
-      point.description = with_overrides(d, overrides_of(ladder, value));
+      point.coarsest = is_coarsest(d, ladder, value);
+      point.open_ended = by_default;
+      std::vector<std::string> overrides = overrides_of(ladder, value);
+      for (std::string& solver : solver_of(ladder, choice)) overrides.push_back(std::move(solver));
+      point.description = with_overrides(d, overrides);
+      point.linear_solver = solver_name(point.description, ladder.integrator);
       points.push_back(std::move(point));
     }
+  }
   if (points.empty()) fail("scene \"{}\": nothing to compare", d.name);
   return points;
 }
 
-std::vector<ComparePoint> plan_restarts(const scene::Description& d, const CompareOptions& options) {
+std::vector<ComparePoint> plan_trials(const scene::Description& d, const CompareOptions& options) {
+  std::vector<ComparePoint> out;
+  for (const std::string& solver : kTriedSolvers)
+    for (const scene::LadderSpec& ladder : ladders_of(d, options)) {
+      if (d.bodies.empty() || !uses(find_stepper(ladder.integrator), "linear_solver")) continue;
+      scene::LadderSpec middle = ladder;
+      // of a default ladder the end is open: its third rung
+      middle.values = {
+          ladder.values[is_by_default(d, ladder) ? std::min<std::size_t>(2, ladder.values.size() - 1)
+                                                 : ladder.values.size() / 2]};
+      ComparePoint point = point_of(d, middle);
+      point.label = trial_label(point.label, solver);
+      point.setting_name = ladder.setting;
+      point.setting = middle.values[0];
+      std::vector<std::string> overrides = overrides_of(middle, point.setting);
+      overrides.push_back("integrator.linear_solver=\"" + solver + "\"");
+      point.description = with_overrides(d, overrides);
+      point.linear_solver = solver;
+      out.push_back(std::move(point));
+    }
+  return out;
+}
+
+std::vector<ComparePoint> plan_restarts(const scene::Description& d, const CompareOptions& options,
+                                        const SolverChoice& choice) {
   std::vector<ComparePoint> points;
   if (d.contacts.empty() || d.bodies.empty()) return points;
   CompareOptions own = options;
@@ -196,6 +281,7 @@ std::vector<ComparePoint> plan_restarts(const scene::Description& d, const Compa
           overrides_of(ladder, ladder.setting == "rtol" ? d.integrator.rtol : d.integrator.step_s);
       overrides.push_back("exchange.contact_refresh_s=" + toml_number(period));
       if (!d.tool) overrides.push_back("exchange.exchange_period_s=" + toml_number(period));
+      for (std::string& solver : solver_of(ladder, choice)) overrides.push_back(std::move(solver));
       ComparePoint point = point_of(d, ladder);
       point.setting_name = "contact_refresh_s";
       point.setting = period;
@@ -219,21 +305,35 @@ PlannedReference plan_reference(const scene::Description& d, const std::vector<C
     out.checked_by = "simbody-cpodes at the same";
     out.primary = made("simbody-rkmerson");
     out.check = made("simbody-cpodes");
+    out.made_with = "simbody-rkmerson";
+    out.checked_with = "simbody-cpodes";
     return out;
   }
   const scene::CompareSpec& c = d.compare;
-  const auto made = [&](const std::string& integrator, double rtol) {
+  const auto made = [&](const std::string& integrator, double rtol, const std::string& solver) {
     const StepperEntry& entry = find(loop::steppers(), integrator, "reference integrator");
     if (entry.traits.control == StepControl::kFixed || entry.traits.stability == Stability::kStatic)
       fail("{}: compare: {} cannot make a reference: it has no error control", d.path, integrator);
     scene::LadderSpec ladder;
     ladder.integrator = integrator;
-    return with_overrides(d, overrides_of(ladder, rtol));
+    std::vector<std::string> overrides = overrides_of(ladder, rtol);
+    if (!solver.empty()) overrides.push_back("integrator.linear_solver=\"" + solver + "\"");
+    return with_overrides(d, overrides);
   };
-  out.primary = made(c.reference, c.reference_rtol);
-  out.check = made(c.reference_check, c.reference_check_rtol);
-  out.made_by = fmt::format("{} at rtol {:g}", c.reference, c.reference_rtol);
-  out.checked_by = fmt::format("{} at rtol {:g}", c.reference_check, c.reference_check_rtol);
+  out.primary = made(c.reference, c.reference_rtol, "");
+  const std::string solver = solver_name(out.primary, c.reference);
+  // An implicit check is solved by another factorisation: LU for Cholesky.
+  const std::string other = !uses(find_stepper(c.reference_check), "linear_solver") ? ""
+                            : solver == kOtherDirectSolver                          ? "cholmod"
+                                                                                    : kOtherDirectSolver;
+  out.check = made(c.reference_check, c.reference_check_rtol, other);
+  const auto in_words = [](const std::string& integrator, double rtol, const std::string& by) {
+    return fmt::format("{} at rtol {:g}{}", integrator, rtol, by.empty() ? "" : " by " + by);
+  };
+  out.made_by = in_words(c.reference, c.reference_rtol, solver);
+  out.checked_by = in_words(c.reference_check, c.reference_check_rtol, other);
+  out.made_with = c.reference;
+  out.checked_with = c.reference_check;
   if (c.reference != c.reference_check &&
       find_stepper(c.reference)->traits.family == find_stepper(c.reference_check)->traits.family)
     out.checked_by += " (of the same family)";

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "ledger.h"
@@ -36,7 +37,12 @@ void Ledger::take(const Task& task, const store::StudyRun& row) {
   point.status = run.status;
   point.reason = run.reason;
   point.error = run.error;
+  point.setup_s = run.setup_s;
+  point.record_s = run.record_s;
   point.result = run.result;
+  const PlannedReference& planned = work[task.scene].planned;
+  if (run.reference != ReferenceUsed::kNone)
+    point.against = run.reference == ReferenceUsed::kPrimary ? planned.made_with : planned.checked_with;
 }
 
 void Ledger::take(const Task& task, const store::StudyArtefact& kept) {
@@ -59,7 +65,9 @@ void Ledger::take_chart(const Task& task, const store::StudyArtefact& kept) {
     note(exchange ? "the exchange period" : "the contact methods", kept.reason);
   } else if (exchange) {
     comparison.exchange = exchange_of(kept.bytes);
-    for (const ExchangePoint& point : comparison.exchange)
+    if (!comparison.exchange.trouble.empty())
+      note("the exchange period's own error", comparison.exchange.trouble);
+    for (const ExchangePoint& point : comparison.exchange.points)
       if (!point.trouble.empty())
         note(fmt::format("the exchange period at {:g} s", point.exchange_period_s), point.trouble);
   } else {
@@ -75,8 +83,8 @@ bool Ledger::is_whole(const Task& task, const store::StudyArtefact& kept) {
   if (kept.status != "ok") return false;
   const auto good = [](const auto& point) { return point.trouble.empty(); };
   if (task.kind == Task::Kind::kExchange) {
-    const std::vector<ExchangePoint> points = exchange_of(kept.bytes);
-    return std::all_of(points.begin(), points.end(), good);
+    const ExchangeStudy study = exchange_of(kept.bytes);
+    return study.trouble.empty() && std::all_of(study.points.begin(), study.points.end(), good);
   }
   const std::vector<MethodPoint> points = methods_of(kept.bytes);
   return std::all_of(points.begin(), points.end(), good);
@@ -88,9 +96,6 @@ void Ledger::settle_references() {
     if (own.reference_settled || !reference_tasks_done(s)) continue;
     own.reference_settled = true;
     out.scenes[s].reference = settle(own.planned, own.primary, own.check);
-    if (!out.scenes[s].reference.available) continue;
-    own.reference_used = own.primary.run ? ReferenceUsed::kPrimary : ReferenceUsed::kCheck;
-    own.reference = own.primary.run ? &own.primary.run->trajectory : &own.check.run->trajectory;
   }
 }
 
@@ -103,6 +108,7 @@ void Ledger::finish(int jobs) {
   for (SceneComparison& scene : out.scenes) {
     for (auto* points : {&scene.points, &scene.restarts})
       for (ComparePoint& point : *points) summarise(point, scene.reference.own_error);
+    std::erase_if(scene.points, [](const ComparePoint& p) { return p.reason == kNotNeeded; });
     // A method that refuses the scene says so once.
     std::set<std::string> refused;
     std::erase_if(scene.points, [&](const ComparePoint& p) {
@@ -111,12 +117,25 @@ void Ledger::finish(int jobs) {
     std::sort(scene.missing_charts.begin(), scene.missing_charts.end(),
               [](const MissingChart& a, const MissingChart& b) { return a.of < b.of; });
   }
+  static const std::map<LinearSolvers, std::string> kSolvers = {
+      {LinearSolvers::kSame, "All implicit methods solved their linear systems by {}."},
+      {LinearSolvers::kBest,
+       "Each implicit method had the linear solver that was fastest at a rung of its "
+       "ladder."},
+      {LinearSolvers::kNamed,
+       "Each implicit method had the linear solver that the scene names, or its own."}};
+  const std::string solvers =
+      fmt::format(fmt::runtime(kSolvers.at(options_.linear_solvers)), options_.linear_solver);
   out.rules = fmt::format(
-      "Each run had a process of its own, {} at a time, and at most {:g} CPU seconds ({:g} for references "
+      "{} Each run had a process of its own, {}, and at most {:g} CPU seconds ({:g} for references "
       "and further charts). A point was run "
       "up to {} times, again only while its runs together took less than {:g} CPU seconds, the repeats "
-      "interleaved over all points; times are medians.",
-      jobs, options_.limit_s, options_.reference_limit_s, options_.repeats, 0.2 * options_.limit_s);
+      "interleaved over all points; times are medians of the loop's CPU time, without assembly and "
+      "recording.",
+      solvers,
+      options_.jobs > 0 ? fmt::format("{} at a time", jobs)
+                        : fmt::format("references {} at a time, all else with nothing beside it", jobs),
+      options_.limit_s, options_.reference_limit_s, options_.repeats, 0.2 * options_.limit_s);
 }
 
 }  // namespace palpate::compare

@@ -12,6 +12,8 @@ PointRun run_point(const scene::Description& d, double limit_s, const Trajectory
   const dynamics::StepResult& last = run.result.status;
   PointRun out;
   out.result = run.result;
+  out.setup_s = run.setup_s;
+  out.record_s = run.record_s;
   if (run.result.stopped) {
     out.status = PointStatus::kOutOfTime;
     out.reason = fmt::format("out of time: {:g} s (at t = {:.4g} s)", limit_s, run.result.time);
@@ -53,7 +55,13 @@ Reference settle(const PlannedReference& planned, const ReferenceRun& primary, c
         "there is no reference: {} failed ({}), and so did {} ({}); the points have costs, but no errors",
         planned.made_by, primary.trouble, planned.checked_by, check.trouble);
   }
-  if (out.available) out.cpu_s = (primary.run ? primary : check).run->result.cpu_s;
+  if (!out.available) return out;
+  const Run& used = *(primary.run ? primary : check).run;
+  out.cpu_s = used.result.cpu_s;
+  for (const Wrench& w : used.trajectory.device) {
+    out.peak_force_n = std::max(out.peak_force_n, w.force.norm());
+    out.peak_torque_n_m = std::max(out.peak_torque_n_m, w.moment.norm());
+  }
   return out;
 }
 

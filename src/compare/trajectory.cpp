@@ -3,10 +3,25 @@
 #include <cmath>
 #include <limits>
 
+#include "palpate/core/clock.h"
 #include "palpate/core/error.h"
+#include "palpate/core/rigid_fit.h"
 
 namespace palpate::compare {
 namespace {
+
+/// Adds the CPU time of its own life to a sum.
+class Spent {
+ public:
+  explicit Spent(double& sum) : sum_(sum), start_(thread_cpu_seconds()) {}
+  ~Spent() { sum_ += thread_cpu_seconds() - start_; }
+  Spent(const Spent&) = delete;
+  Spent& operator=(const Spent&) = delete;
+
+ private:
+  double& sum_;
+  double start_;
+};
 
 VecX nodal_positions(const loop::World& world) {
   return world.state.q().head(world.state.layout().nodal_size);
@@ -43,6 +58,26 @@ int for_common_times(const std::vector<double>& a, const std::vector<double>& b,
   return common;
 }
 
+/// Mass-weighted square of what is left of a state's displacement without each body's rigid motion.
+double deformation2(const Trajectory& t, const VecX& x) {
+  double sum = 0.0;
+  for (const Trajectory::Body& body : t.bodies) {
+    const auto points = [&](const VecX& all) {
+      return Points(Eigen::Map<const Points>(all.data() + body.first, 3, body.size / 3));
+    };
+    const VecX mass =
+        Eigen::Map<const VecX, 0, Eigen::InnerStride<3>>(t.node_weights.data() + body.first, body.size / 3);
+    const Points before = points(t.start), after = points(x);
+    const Pose rigid = rigid_fit(before, after, mass);
+    const Points left = after - ((rigid.rotation.toRotationMatrix() * before).colwise() + rigid.translation);
+    sum += left.colwise().squaredNorm().dot(mass);
+  }
+  return sum;
+}
+
+/// A deformation below this share of the displacement is rounding.
+constexpr double kLeastDeformation = 1e-9;
+
 /// Returns the number of common ticks; without any, the errors stay as they are.
 int add_wrench_distance(const Trajectory& computed, const Trajectory& reference, TrajectoryError& error) {
   double force2 = 0.0, torque2 = 0.0, force_max = 0.0, torque_max = 0.0;
@@ -66,6 +101,7 @@ int add_wrench_distance(const Trajectory& computed, const Trajectory& reference,
 }  // namespace
 
 void TrajectoryRecorder::period(loop::World& world, double t) {
+  const Spent spent(cpu_s_);
   if (trajectory_.period_times.empty()) {
     if (world.description.tool) tool_origin_ = world.description.tool->position_m;
     trajectory_.start = positions_of(world, tool_origin_);
@@ -74,6 +110,7 @@ void TrajectoryRecorder::period(loop::World& world, double t) {
       const int first = world.state.layout().find(body.block_id)->u_offset;
       for (Eigen::Index i = 0; i < body.masses.size(); ++i)
         trajectory_.node_weights.segment<3>(first + 3 * i).setConstant(body.masses[i]);
+      trajectory_.bodies.push_back({first, 3 * body.masses.size()});
     }
   }
   trajectory_.period_times.push_back(t);
@@ -82,19 +119,21 @@ void TrajectoryRecorder::period(loop::World& world, double t) {
 }
 
 void TrajectoryRecorder::tick(const loop::TickRecord& tick) {
+  const Spent spent(cpu_s_);
   trajectory_.tick_times.push_back(tick.time);
   trajectory_.device.push_back(tick.device);
   tool_origin_ = tick.tool.translation;
 }
 
 void WrenchRecorder::tick(const loop::TickRecord& tick) {
+  const Spent spent(cpu_s_);
   trajectory_.tick_times.push_back(tick.time);
   trajectory_.device.push_back(tick.device);
 }
 
 TrajectoryError distance(const Trajectory& computed, const Trajectory& reference) {
   TrajectoryError error;
-  double difference = 0.0, size = 0.0;
+  double difference = 0.0, displacement = 0.0, deformation = 0.0;
   const int common =
       for_common_times(computed.period_times, reference.period_times, [&](std::size_t i, std::size_t j) {
         const VecX& x = computed.positions[i];
@@ -102,13 +141,16 @@ TrajectoryError distance(const Trajectory& computed, const Trajectory& reference
         PALPATE_CHECK(x.size() == y.size(), "trajectories of {} and {} coordinates", x.size(), y.size());
         if (x.size() > 0) {
           difference += reference.node_weights.dot((x - y).cwiseAbs2());
-          size += reference.node_weights.dot((y - reference.start).cwiseAbs2());
+          displacement += reference.node_weights.dot((y - reference.start).cwiseAbs2());
+          deformation += deformation2(reference, y);
           for (Eigen::Index n = 0; n < x.size(); n += 3)
             error.position_max_m = worse(error.position_max_m, (x.segment<3>(n) - y.segment<3>(n)).norm());
         }
         error.energy_j = worse(error.energy_j, std::abs(computed.energies[i] - reference.energies[j]));
       });
   PALPATE_CHECK(common > 0, "two trajectories without a common time");
+  const double size =
+      deformation > kLeastDeformation * kLeastDeformation * displacement ? deformation : displacement;
   error.position_rel_l2 = size > 0.0 ? std::sqrt(difference / size) : std::sqrt(difference);
   add_wrench_distance(computed, reference, error);
   return error;
@@ -132,15 +174,19 @@ namespace {
 /// @param Recorder  an observer with a trajectory()
 template <class Recorder>
 Run run_with(const scene::Description& description, double duration_s, const std::atomic<bool>* stop) {
+  Run run;
+  const double start = thread_cpu_seconds();
   const auto world = loop::assemble(description);
+  run.setup_s = thread_cpu_seconds() - start;
   Recorder recorder;
   loop::RunOptions options;
   options.duration_s = duration_s;
   options.observers = {&recorder};
   options.stop = stop;
-  Run run;
   run.result = loop::run(*world, options);
   run.trajectory = recorder.trajectory();
+  run.record_s = recorder.cpu_s();
+  run.result.cpu_s -= run.record_s;
   return run;
 }
 

@@ -29,7 +29,8 @@ void add_points_table(Page& page, const Table& compare) {
                     cell_text(compare, r, "force_error_rms_n"), cell_text(compare, r, "torque_error_rms_n_m"),
                     cell_text(compare, r, "energy_error_j"), cell_text(compare, r, "cpu_s_median"),
                     cell_text(compare, r, "cpu_s_min") + " – " + cell_text(compare, r, "cpu_s_max"),
-                    cell_text(compare, r, "repeats"),
+                    cell_text(compare, r, "repeats"), cell_text(compare, r, "linear_solver"),
+                    cell_text(compare, r, "against"),
                     !ok     ? (row[reason].empty() ? row[status] : row[reason])
                     : under ? "below reference"
                             : "ok"});
@@ -37,8 +38,10 @@ void add_points_table(Page& page, const Table& compare) {
   }
   page.add_table(
       {"integrator", "setting", "position error, rel. L2", "force error, RMS [N]", "torque error, RMS [N m]",
-       "energy error [J]", "CPU [s], median", "CPU [s], least – most", "runs", "status"},
-      rows, "“Below reference”: the error is smaller than the reference's own, so it says no more than that.",
+       "energy error [J]", "CPU [s], median", "CPU [s], least – most", "runs", "linear solver",
+       "held against", "status"},
+      rows,
+      "“Below reference”: the error is within ten times the reference's own, and says no more than that.",
       marks);
 }
 
@@ -84,6 +87,15 @@ void add_counts_and_maxima(Page& page, const Table& compare) {
   for (auto& further : further_counts(compare)) counts.push_back(std::move(further));
   add_columns_table(page, compare, counts, "Counts, which no noise of the machine touches.");
   add_columns_table(page, compare,
+                    {{"cpu_s_median", "all but set-up and recording, median"},
+                     {"method_s", "the method"},
+                     {"contact_query_s", "contact queries"},
+                     {"linearise_s", "linearisation for the tool"},
+                     {"tool_ticks_s", "the tool's ticks"},
+                     {"setup_s", "set-up"},
+                     {"record_s", "recording, with the bodies' energy"}},
+                    "Where the time went, of the first repeat [s].");
+  add_columns_table(page, compare,
                     {{"position_error_max_m", "position error [m]"},
                      {"force_error_max_n", "force error [N]"},
                      {"torque_error_max_n_m", "torque error [N m]"}},
@@ -117,28 +129,34 @@ void add_orders_table(Page& page, const Table& compare, const std::vector<Quanti
                  "follows the tolerance). Points within 10 times of the reference's own error are left out.");
 }
 
-/// The winner at each target error, by a cost.
-void add_winners_table(Page& page, const Table& compare, const std::string& cost_column,
-                       const std::string& cost_label, double reference_error) {
+/// The winner at each target error, by a cost.  @param scale  what the targets are shares of
+void add_winners_table(Page& page, const Table& compare, const Quantity& q, double scale,
+                       const std::string& cost_column, const std::string& cost_label) {
   std::vector<std::vector<std::string>> rows;
-  for (const Winner& win : winners(compare, kPosition, cost_column, kTargets, reference_error)) {
-    const std::string target = fmt::format("{:g}", win.target);
+  std::vector<double> targets = kTargets;
+  for (double& target : targets) target *= scale;
+  const std::vector<Winner> all = winners(compare, q.column, cost_column, targets, q.reference);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Winner& win = all[i];
+    const std::string target = fmt::format("{:g}", kTargets[i]);
     if (!win.found) {
-      rows.push_back({target, "none reaches it", "-", "-", "-", "-"});
+      rows.push_back(
+          {target, win.resolved ? "none reaches it" : "the reference cannot tell", "-", "-", "-", "-", "-"});
       continue;
     }
-    const auto ratio = [](double value) {
-      return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("-");
-    };
-    rows.push_back({target, win.label, cost_text(win.cost), win.runner_up.empty() ? "-" : win.runner_up,
-                    ratio(win.runner_up_ratio), ratio(win.baseline_ratio)});
+    const std::string winner =
+        win.declared() ? win.label : fmt::format("no winner: {}, {}", win.label, fmt::join(win.rivals, ", "));
+    rows.push_back({target, winner, cost_text(win.cost), spread_text(win.cost),
+                    win.runner_up.empty() ? "-" : win.runner_up, ratio_text(win.runner_up_ratio),
+                    ratio_text(win.baseline_ratio)});
   }
   page.add_table(
-      {"position error", "cheapest", cost_label, "runner-up", "runner-up / cheapest",
-       kBaseline + " / cheapest"},
+      {scale == 1.0 ? "position error" : "force error / peak", "cheapest", cost_label, "from, to",
+       "runner-up", "runner-up / cheapest", kBaseline + " / cheapest"},
       rows,
-      "Interpolated between neighbouring rungs of each ladder, log cost against log error; never "
-      "extrapolated. “<=”: the coarsest usable rung is better than asked for, and costs this much.");
+      "Log cost against log error on each ladder's monotone envelopes, never extrapolated nor across rungs "
+      "that failed. “From, to”: by the spread of repeats, and of rungs that lie out of line. No winner: the "
+      "spreads overlap. “<=”: the coarsest usable rung is better than asked for, and costs this much.");
 }
 
 /// The cost of each integrator at each target error, with its fitted order.
@@ -206,7 +224,7 @@ void add_scene_comparison(Page& page, const Table& compare, const ReferenceError
                                           short_number(reference.position_error_rel_l2))
                             : "."));
   if (!reference.trouble.empty()) page.add_paragraph("Mind: " + reference.trouble + ".");
-  std::istringstream words(in_words(compare, reference.position_error_rel_l2));
+  std::istringstream words(in_words(compare, reference));
   for (std::string paragraph; std::getline(words, paragraph);) page.add_paragraph(paragraph);
   const std::vector<Quantity> quantities = quantities_of(compare, reference);
   for (const Quantity& q : quantities) add_work_precision(page, compare, q);
@@ -216,11 +234,19 @@ void add_scene_comparison(Page& page, const Table& compare, const ReferenceError
       !torque.empty() && *std::max_element(torque.begin(), torque.end()) <= kRounding)
     page.add_paragraph("No torque: its largest error is rounding, for this scene makes none.");
   if (quantities.empty()) page.add_paragraph("No point of the comparison has a measured error.");
-  page.add_heading("Cheapest for a wanted error", 3);
-  add_winners_table(page, compare, "cpu_s_median", "CPU [s]", reference.position_error_rel_l2);
-  add_winners_table(page, compare, "force_evaluations", "force evaluations", reference.position_error_rel_l2);
-  page.add_heading("Cost of a wanted error", 3);
-  add_costs_table(page, compare, reference.position_error_rel_l2);
+  if (std::isfinite(reference.position_error_rel_l2)) {
+    page.add_heading("Cheapest for a wanted error", 3);
+    for (const Quantity& q : quantities) {
+      const double scale = q.column == kPosition             ? 1.0
+                           : q.column == "force_error_rms_n" ? reference.peak_force_n
+                                                             : kUnknown;
+      if (!std::isfinite(scale)) continue;
+      add_winners_table(page, compare, q, scale, "cpu_s_median", "CPU [s]");
+      add_winners_table(page, compare, q, scale, "force_evaluations", "force evaluations");
+    }
+    page.add_heading("Cost of a wanted error", 3);
+    add_costs_table(page, compare, reference.position_error_rel_l2);
+  }
   if (!quantities.empty()) add_orders_table(page, compare, quantities);
   page.add_heading("All points", 3);
   const bool folded = compare.rows.size() > 40;

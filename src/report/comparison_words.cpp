@@ -9,8 +9,8 @@ namespace palpate::report {
 namespace {
 
 constexpr const char* kError = "position_error_rel_l2";
-/// Best points must be this far above the reference's error to be distinguished by it.
-constexpr double kMargin = 10.0;
+/// A peak below this is rounding [N].
+constexpr double kLeastPeak = 1e-12;
 
 std::string list_of(const std::vector<std::string>& names) {
   if (names.size() < 2) return names.empty() ? "" : names[0];
@@ -23,43 +23,93 @@ std::string times(double ratio) {
                         : fmt::format("{:.0f} times", ratio);
 }
 
-std::string winners_in_words(const Table& compare, double reference_error) {
+/// "12 (11 to 14) times".
+std::string times(const CostRatio& ratio) {
+  if (ratio.low == ratio.high || !std::isfinite(ratio.low)) return times(ratio.value);
+  const auto number = [](double value) {
+    return value < 1.995  ? fmt::format("{:.2f}", value)
+           : value < 9.95 ? fmt::format("{:.2g}", value)
+                          : fmt::format("{:.0f}", value);
+  };
+  return fmt::format("{} ({} to {}) times", number(ratio.value), number(ratio.low),
+                     std::isfinite(ratio.high) ? number(ratio.high) : "?");
+}
+
+std::string winner_in_words(const Winner& win, const std::string& target) {
+  if (std::isnan(win.cost.high))
+    return fmt::format(
+        "For {}, {} is the cheapest ({} s), but no run was repeated: a winner is not declared. ", target,
+        win.label, short_number(win.cost.value));
+  if (!win.declared()) {
+    std::vector<std::string> alike = {win.label};
+    for (const std::string& rival : win.rivals)
+      if (alike.size() < 4) alike.push_back(rival);
+    const std::size_t more = win.rivals.size() + 1 - alike.size();
+    if (more > 0) alike.push_back(fmt::format("{} more", more));
+    return fmt::format(
+        "For {} there is no winner: {} cost the same within their spread ({} s for the first). ", target,
+        list_of(alike), short_number(win.cost.value));
+  }
+  std::string out = fmt::format("For {}, {} is the cheapest ({}{} s)", target, win.label,
+                                win.cost.at_most ? "at most " : "", short_number(win.cost.value));
+  if (!win.runner_up.empty())
+    out += fmt::format("; the next, {}, takes {} as long", win.runner_up, times(win.runner_up_ratio));
+  if (win.label != kBaseline && win.runner_up != kBaseline && std::isfinite(win.baseline_ratio.value))
+    out += fmt::format(", {} {}", kBaseline, times(win.baseline_ratio));
+  return out + ". ";
+}
+
+/// @param scale  what the targets are shares of
+std::string winners_in_words(const Table& compare, const std::string& column, const std::string& what,
+                             double scale, double reference_error) {
   std::string out;
-  std::vector<std::string> unreached;
-  for (const Winner& win : winners(compare, kError, "cpu_s_median", kTargets, reference_error)) {
-    if (!win.found) {
-      unreached.push_back(fmt::format("{:g}", win.target));
-      continue;
-    }
-    out += fmt::format("For an error of {:g}, {} is the cheapest ({}{} s)", win.target, win.label,
-                       win.cost.at_most ? "at most " : "", short_number(win.cost.value));
-    if (!win.runner_up.empty())
-      out += fmt::format("; the next, {}, takes {} as long", win.runner_up, times(win.runner_up_ratio));
-    if (win.label != kBaseline && win.runner_up != kBaseline && std::isfinite(win.baseline_ratio))
-      out += fmt::format(", {} {}", kBaseline, times(win.baseline_ratio));
-    out += ". ";
+  std::vector<std::string> unreached, unresolved;
+  std::vector<double> targets = kTargets;
+  for (double& target : targets) target *= scale;
+  const std::vector<Winner> all = winners(compare, column, "cpu_s_median", targets, reference_error);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string target = fmt::format("{:g}", kTargets[i]);
+    if (!all[i].resolved)
+      unresolved.push_back(target);
+    else if (!all[i].found)
+      unreached.push_back(target);
+    else
+      out += winner_in_words(all[i], what + target);
   }
   if (!unreached.empty()) out += fmt::format("No point reaches {}. ", list_of(unreached));
+  if (!unresolved.empty() && std::isfinite(reference_error))
+    out += fmt::format("The reference cannot tell {}. ", list_of(unresolved));
   return out;
+}
+
+std::string force_winners_in_words(const Table& compare, const ReferenceError& reference) {
+  constexpr const char* kForce = "force_error_rms_n";
+  if (!compare.has(kForce) || !(reference.peak_force_n > kLeastPeak) ||
+      !std::isfinite(reference.force_error_rms_n))
+    return "";
+  return fmt::format("The force on the hand, its error over the peak of {} N. ",
+                     short_number(reference.peak_force_n)) +
+         winners_in_words(compare, kForce, "", reference.peak_force_n, reference.force_error_rms_n);
 }
 
 std::string baseline_in_words(const std::vector<Ladder>& all) {
   for (const Ladder& ladder : all) {
     if (ladder.integrator != kBaseline || ladder.points.empty()) continue;
-    const auto best =
-        std::min_element(ladder.points.begin(), ladder.points.end(),
-                         [](const LadderPoint& a, const LadderPoint& b) { return a.error < b.error; });
+    const auto best = std::min_element(
+        ladder.points.begin(), ladder.points.end(), [](const LadderPoint& a, const LadderPoint& b) {
+          return a.unresolved == b.unresolved ? a.error < b.error : b.unresolved;
+        });
+    if (best->unresolved) continue;
     return fmt::format("The best of {} is {} in {} s. ", ladder.label, short_number(best->error),
                        short_number(best->cost));
   }
   return "";
 }
 
-std::string families_in_words(const std::vector<Ladder>& all, double target) {
+std::string families_in_words(const std::vector<Ladder>& all, double target, double reference_error) {
   std::vector<std::string> families;
   for (const Ladder& ladder : all)
-    if (std::any_of(ladder.points.begin(), ladder.points.end(),
-                    [&](const LadderPoint& p) { return p.error <= target; }) &&
+    if (!std::isnan(cost_at(ladder, target, reference_error).value) &&
         std::find(families.begin(), families.end(), ladder.family) == families.end())
       families.push_back(ladder.family);
   if (families.empty()) return "";
@@ -133,13 +183,13 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
     }
   if (std::isnan(best)) return "No point has an error that can be distinguished from the reference's.";
   if (std::isnan(reference_error))
-    return "The reference's own error is not known: read small errors with care.";
-  if (best < kMargin * reference_error)
+    return "The reference's own error is not known: nothing is declared, and small errors may be its own.";
+  if (best < kResolved * reference_error)
     return fmt::format(
         "The reference's own error is {}: errors below {} cannot be distinguished by it (the best point "
         "shows "
         "{}).",
-        short_number(reference_error), short_number(kMargin * reference_error), short_number(best));
+        short_number(reference_error), short_number(kResolved * reference_error), short_number(best));
   std::string out = fmt::format(
       "The reference's own error, {}, is {} below the best point that it can judge, {}: it bears every "
       "figure here{}.",
@@ -147,21 +197,23 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
       unresolved ? " but the marked ones" : "");
   if (unresolved)
     out += fmt::format(" {} within {:g} times of it, {}: errors below {} cannot be distinguished.",
-                       unresolved == 1 ? "1 point lies" : fmt::format("{} points lie", unresolved), kMargin,
+                       unresolved == 1 ? "1 point lies" : fmt::format("{} points lie", unresolved), kResolved,
                        unresolved == 1 ? "is marked, and counts nowhere" : "are marked, and count nowhere",
-                       short_number(kMargin * reference_error));
+                       short_number(kResolved * reference_error));
   return out;
 }
 
 }  // namespace
 
-std::string in_words(const Table& compare, double reference_error) {
+std::string in_words(const Table& compare, const ReferenceError& reference) {
+  const double reference_error = reference.position_error_rel_l2;
   const std::vector<Ladder> all = ladders(compare, kError, "cpu_s_median");
   std::string out;
   for (std::string paragraph :
-       {winners_in_words(compare, reference_error) + baseline_in_words(all) +
-            families_in_words(all, kTargets.back()),
-        explicit_in_words(compare) + failures_in_words(all), reference_in_words(all, reference_error)}) {
+       {winners_in_words(compare, kError, "an error of ", 1.0, reference_error) + baseline_in_words(all) +
+            families_in_words(all, kTargets.back(), reference_error),
+        force_winners_in_words(compare, reference), explicit_in_words(compare) + failures_in_words(all),
+        reference_in_words(all, reference_error)}) {
     paragraph.erase(paragraph.find_last_not_of(' ') + 1);
     if (!paragraph.empty()) out += (out.empty() ? "" : "\n") + paragraph;
   }

@@ -15,8 +15,13 @@ std::map<std::string, ReferenceError> read_references(const Json& json) {
   if (!json.contains("scenes")) return out;
   for (const Json& one : json["scenes"]) {
     ReferenceError& r = out[text_at(one, "scene")];
-    r = {number_at(one, "position_error_rel_l2"), number_at(one, "force_error_rms_n"),
-         number_at(one, "torque_error_rms_n_m"), text_at(one, "description"), text_at(one, "trouble")};
+    r = {number_at(one, "position_error_rel_l2"),
+         number_at(one, "force_error_rms_n"),
+         number_at(one, "torque_error_rms_n_m"),
+         number_at(one, "peak_force_n"),
+         number_at(one, "peak_torque_n_m"),
+         text_at(one, "description"),
+         text_at(one, "trouble")};
     if (one.contains("notes"))
       for (const Json& note : one["notes"]) r.notes.push_back(note.get<std::string>());
   }

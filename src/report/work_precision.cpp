@@ -9,15 +9,43 @@
 namespace palpate::report {
 namespace {
 
-/// Each error has its own reference: a position below it says nothing about the force.
-std::string below_column(const Table& compare, const std::string& error_column) {
-  const std::string own = error_column.substr(0, error_column.find('_')) + "_unresolved";
-  return compare.has(own) ? own : "unresolved";
-}
-
 bool is_yes(const std::string& cell) { return cell == "yes" || cell == "true" || cell == "1"; }
 
+/// The least and the largest cost of a point's repeats.  A point that ran once takes the median spread of the
+/// others, unknown (NaN) where none ran again; counts have none.
+class Spread {
+ public:
+  Spread(const Table& compare, const std::string& cost_column) {
+    if (cost_column != "cpu_s_median" || !compare.has("cpu_s_min") || !compare.has("cpu_s_max")) return;
+    typical_ = kUnknown;
+    least_ = compare.numbers("cpu_s_min");
+    most_ = compare.numbers("cpu_s_max");
+    repeats_ = compare.numbers("repeats");
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < least_.size(); ++i)
+      if (repeats_[i] > 1.0 && least_[i] > 0.0) ratios.push_back(std::sqrt(most_[i] / least_[i]));
+    if (ratios.empty()) return;
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    typical_ = *middle;
+  }
+  std::pair<double, double> of(std::size_t row, double cost) const {
+    if (least_.empty() || !std::isfinite(cost)) return {cost, cost};
+    if (repeats_[row] > 1.0) return {least_[row], most_[row]};
+    return {cost / typical_, cost * typical_};
+  }
+
+ private:
+  std::vector<double> least_, most_, repeats_;
+  double typical_ = 1.0;
+};
+
 }  // namespace
+
+std::string below_column(const Table& table, const std::string& error_column) {
+  const std::string own = error_column.substr(0, error_column.find('_')) + "_unresolved";
+  return table.has(own) ? own : "unresolved";
+}
 
 LogLine fit_log_line(const std::vector<double>& x, const std::vector<double>& y) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
@@ -76,6 +104,7 @@ std::vector<Ladder> ladders(const Table& compare, const std::string& error_colum
     return compare.rows[row][compare.column(column)];
   };
   const std::size_t below = compare.column(below_column(compare, error_column));
+  const Spread spread(compare, cost_column);
   std::vector<Ladder> out;
   for (std::size_t i = 0; i < compare.rows.size(); ++i) {
     const std::string label = text(i, "label");
@@ -87,12 +116,20 @@ std::vector<Ladder> ladders(const Table& compare, const std::string& error_colum
                      text(i, "stability"),
                      text(i, "setting_name"),
                      0,
+                     false,
                      {}});
       ladder = out.end() - 1;
       ladder->order = std::isfinite(order[i]) ? static_cast<int>(order[i]) : 0;
+      ladder->coarsest_tried = is_yes(text(i, "coarsest"));
     }
     if (text(i, "status") == "ok" && std::isfinite(error[i])) {
-      ladder->points.push_back({setting[i], error[i], cost[i], is_yes(compare.rows[i][below])});
+      const auto [low, high] = spread.of(i, cost[i]);
+      LadderPoint point{setting[i], error[i], cost[i], low, high, is_yes(compare.rows[i][below])};
+      const std::vector<double>& failed = ladder->failed_settings;
+      const double before = ladder->points.empty() ? kUnknown : ladder->points.back().setting;
+      point.behind_failure = !failed.empty() && !(failed.back() >= before);
+      if (point.behind_failure) point.failed_before = failed.back();
+      ladder->points.push_back(point);
     } else if (text(i, "status") != "ok") {
       ladder->failures.emplace_back(text(i, "status"), text(i, "reason"));
       ladder->failed_settings.push_back(setting[i]);
@@ -114,69 +151,6 @@ std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& 
     orders.push_back({ladder.label, ladder.integrator, ladder.setting_name, line.slope, line.points});
   }
   return orders;
-}
-
-Cost cost_at(const Ladder& ladder, double target, double reference_error) {
-  const auto known = [&](const LadderPoint& p) {
-    return std::isfinite(reference_error) ? std::max(p.error, reference_error) : p.error;
-  };
-  Cost best;
-  const auto offer = [&](double value, bool at_most) {
-    if (value >= 0.0 && !(value >= best.value)) best = {value, at_most};
-  };
-  for (std::size_t i = 0; i < ladder.points.size(); ++i) {
-    const LadderPoint& fine = ladder.points[i];
-    if (!(known(fine) <= target)) continue;
-    if (i == 0) {
-      offer(fine.cost, known(fine) < target);
-      continue;
-    }
-    const LadderPoint& coarse = ladder.points[i - 1];
-    if (!(known(coarse) > target)) {
-      offer(fine.cost, true);  // an odd ladder, where a finer rung is cheaper
-      continue;
-    }
-    const double share = std::log(known(coarse) / target) / std::log(known(coarse) / known(fine));
-    const bool positive = coarse.cost > 0.0 && fine.cost > 0.0;
-    offer(
-        positive ? std::exp((1.0 - share) * std::log(coarse.cost) + share * std::log(fine.cost)) : fine.cost,
-        false);
-  }
-  return best;
-}
-
-std::string cost_text(const Cost& cost) { return (cost.at_most ? "<= " : "") + short_number(cost.value); }
-
-std::vector<Winner> winners(const Table& compare, const std::string& error_column,
-                            const std::string& cost_column, const std::vector<double>& targets,
-                            double reference_error) {
-  const std::vector<Ladder> all = ladders(compare, error_column, cost_column);
-  std::vector<Winner> out;
-  for (const double target : targets) {
-    Winner win;
-    win.target = target;
-    double second = kUnknown, baseline = kUnknown;
-    for (const Ladder& ladder : all) {
-      const Cost cost = cost_at(ladder, target, reference_error);
-      if (std::isnan(cost.value)) continue;
-      if (ladder.integrator == kBaseline && !(cost.value >= baseline)) baseline = cost.value;
-      if (!win.found || cost.value < win.cost.value) {
-        if (win.found) second = win.cost.value, win.runner_up = win.label;
-        win.found = true;
-        win.label = ladder.label;
-        win.cost = cost;
-      } else if (!(cost.value >= second)) {
-        second = cost.value;
-        win.runner_up = ladder.label;
-      }
-    }
-    if (win.found && win.cost.value > 0.0) {
-      win.runner_up_ratio = second / win.cost.value;
-      win.baseline_ratio = baseline / win.cost.value;
-    }
-    out.push_back(win);
-  }
-  return out;
 }
 
 }  // namespace palpate::report

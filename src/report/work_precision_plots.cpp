@@ -162,7 +162,11 @@ Plot exchange_plot(const Table& exchange, const std::string& error_column, const
   plot.log_x = plot.log_y = true;
   plot.height = 340;
   plot.series.push_back({.name = "measured", .x = period, .y = error, .mark = Mark::kLinePoints});
-  const LogLine line = fit_log_line(period, error);
+  std::vector<double> resolved = error;  // the fit leaves NaN out
+  if (const std::string below = below_column(exchange, error_column); exchange.has(below))
+    for (std::size_t i = 0; i < resolved.size(); ++i)
+      if (exchange.rows[i][exchange.column(below)] == "yes") resolved[i] = kUnknown;
+  const LogLine line = fit_log_line(period, resolved);
   if (std::isfinite(line.slope)) {
     const auto [least, greatest] = std::minmax_element(period.begin(), period.end());
     Series fit{.name = fmt::format("fitted order {:.2f}", line.slope),

@@ -208,13 +208,6 @@ void check_exchange(const Document& doc, Description& d) {
                         std::max(1.0, std::ceil(c.exchange_period_s / c.contact_refresh_s - 1e-9))));
 }
 
-void check_compare(const Document& doc, const Description& d) {
-  for (std::size_t i = 0; i < d.compare.ladders.size(); ++i)
-    if (d.compare.ladders[i].values.empty())
-      refuse(location(doc, fmt::format("compare.ladder[{}]", i)), fmt::format("compare: ladder[{}]", i),
-             "needs rungs: rtol = [...] or step_s = [...]");
-}
-
 }  // namespace
 
 void check_keyframes(const Document& doc, const std::string& key, const std::string& where,
@@ -251,7 +244,6 @@ void check(const Document& doc, Description& d) {
   check_contacts(doc, d);
   check_exchange(doc, d);
   check_changes(doc, d);
-  check_compare(doc, d);
 }
 
 }  // namespace palpate::scene

@@ -238,8 +238,10 @@ const KeyTable<LadderSpec>& ladder_keys() {
       required(text("integrator", &LadderSpec::integrator, {}, "the method: palpate list integrators")),
       unless("the integrator's name", text("label", &LadderSpec::label, {}, "what reports call this ladder")),
       texts("set", &LadderSpec::set, "what else is changed in the scene: \"KEY=VALUE\", as for --set"),
-      rungs("rtol", "tolerances, from the coarsest to the finest; of methods with error control"),
-      rungs("step_s", "steps, from the longest to the shortest; of methods with fixed steps")};
+      rungs("rtol",
+            "tolerances, loosest to tightest; of methods with error control; left out: from 0.1 down"),
+      rungs("step_s",
+            "steps, longest to shortest; of methods with fixed steps; left out: halved from a period on")};
   return keys;
 }
 

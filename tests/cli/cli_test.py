@@ -217,7 +217,10 @@ class Results(Cli):
         self.good(*arguments)
         table = (self.folder / "two/compare.csv").read_text().splitlines()
         self.assertEqual({line.split(",")[0] for line in table[1:]}, {"cantilever", "one-tet"})
-        self.assertEqual(len(table), 1 + 2 * 7)
+        for scene in ("cantilever", "one-tet"):  # down to where the reference cannot tell errors
+            rows = [line for line in table if line.startswith(scene + ",")]
+            self.assertGreater(len(rows), 4)
+            self.assertLess(len(rows), 12)
         page = (self.folder / "two/report.html").read_text()
         xml.dom.minidom.parseString(page)
         self.assertIn("Scene: one-tet", page)
@@ -239,8 +242,11 @@ class Results(Cli):
         process.wait()
         before = self.rows(database)
         self.assertGreaterEqual(before, 3)
-        self.good(*arguments[1:])
-        self.assertEqual(self.rows(database), 11)
+        text = self.good(*arguments[1:])
+        self.assertIn("were done before", text)
+        with open(self.folder / "cut/compare.csv", newline="") as table:
+            run = [row for row in csv.DictReader(table) if row["status"] != "not tried"]
+        self.assertEqual(self.rows(database), len(run))
 
     def rows(self, database):
         try:

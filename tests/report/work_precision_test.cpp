@@ -11,6 +11,19 @@ using namespace palpate;
 
 namespace {
 
+/// Slowest repeat over the median, and the median over the fastest.
+constexpr double kNoise = 1.05;
+/// Of the reference: far below every point.
+constexpr double kExact = 1e-9;
+
+/// The cells of a column of one ladder, from the coarsest rung to the finest.
+void put(report::Table& table, const std::string& label, const char* column, std::vector<double> values) {
+  std::size_t next = 0;
+  for (auto& row : table.rows)
+    if (row[table.column("label")] == label && next < values.size())
+      row[table.column(column)] = fmt::format("{}", values[next++]);
+}
+
 /// A table with the columns of compare.csv; `fast` is of order 1 at 1/h seconds, `good` of order 2 at 3/h
 /// seconds.
 report::Table compare_table() {
@@ -25,6 +38,10 @@ report::Table compare_table() {
     row[table.column("setting")] = fmt::format("{}", h);
     row[table.column("position_error_rel_l2")] = fmt::format("{}", error);
     row[table.column("cpu_s_median")] = row[table.column("force_evaluations")] = fmt::format("{}", cpu);
+    row[table.column("cpu_s_min")] = fmt::format("{}", cpu / kNoise);
+    row[table.column("cpu_s_max")] = fmt::format("{}", cpu * kNoise);
+    row[table.column("repeats")] = "3";
+    row[table.column("coarsest")] = "yes";
     row[table.column("status")] = status;
     row[table.column("unresolved")] = below ? "true" : "false";
     table.rows.push_back(row);
@@ -34,7 +51,7 @@ report::Table compare_table() {
     add("good", h, 2.0 * h * h, 3.0 / h, "ok", false);
   }
   add("fast", 0.4, 1e-9, 0.001, "diverged", false);  // cheap and wrong: must count nowhere
-  add("good", 0.001, 0.1, 5000.0, "ok", true);       // below the reference: not in the fit
+  add("good", 0.001, 9e-6, 5000.0, "ok", true);      // below the reference: not in the fit
   return table;
 }
 
@@ -73,49 +90,132 @@ TEST(FittedOrders, OnePointHasNone) {
 // Errors of `fast`: 0.05 0.025 0.0125 0.00625 at 10 20 40 80 s, so that error x cost = 0.5; of `good`: 0.02
 // 0.005 0.00125 0.0003125 at 30 60 120 240 s, so that error x cost^2 = 18.  Both are straight in log-log:
 // interpolation is exact.
-TEST(CostAt, IsExactOnPowerLaws) {
-  const auto all = report::ladders(compare_table(), "position_error_rel_l2", "cpu_s_median");
-  ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0].failures.size(), 1u);
-  for (const double target : {0.03, 0.01, 0.00625})
-    EXPECT_NEAR(report::cost_at(all[0], target, report::kUnknown).value, 0.5 / target, 1e-9);
-  EXPECT_NEAR(report::cost_at(all[1], 0.001, report::kUnknown).value, std::sqrt(18.0 / 0.001), 1e-9);
-  EXPECT_FALSE(report::cost_at(all[1], 0.001, report::kUnknown).at_most);
+class CostAt : public testing::Test {
+ protected:
+  CostAt() { table_.rows.pop_back(); }
+  report::Cost at(const std::string& label, double target, double reference_error = kExact) const {
+    for (const report::Ladder& ladder : report::ladders(table_, "position_error_rel_l2", "cpu_s_median"))
+      if (ladder.label == label) return report::cost_at(ladder, target, reference_error);
+    return {};
+  }
+  report::Table table_ = compare_table();
+};
+
+TEST_F(CostAt, IsExactOnPowerLawsAndHoldsTheSpreadOfRepeats) {
+  for (const double target : {0.03, 0.01, 0.00625}) {
+    const report::Cost cost = at("fast", target);
+    EXPECT_NEAR(cost.value, 0.5 / target, 1e-9);
+    EXPECT_NEAR(cost.low, cost.value / kNoise, 1e-9);
+    EXPECT_NEAR(cost.high, cost.value * kNoise, 1e-9);
+  }
+  EXPECT_NEAR(at("good", 0.001).value, std::sqrt(18.0 / 0.001), 1e-9);
+  EXPECT_FALSE(at("good", 0.001).at_most);
 }
 
-TEST(CostAt, ExtrapolatesNothing) {
-  const auto all = report::ladders(compare_table(), "position_error_rel_l2", "cpu_s_median");
-  EXPECT_TRUE(std::isnan(report::cost_at(all[0], 0.006, report::kUnknown).value))
-      << "finer than its finest rung";
-  const report::Cost coarse = report::cost_at(all[1], 0.5, report::kUnknown);
+TEST_F(CostAt, ExtrapolatesNothing) {
+  EXPECT_TRUE(std::isnan(at("fast", 0.006).value)) << "finer than its finest rung";
+  const report::Cost coarse = at("good", 0.5);
   EXPECT_DOUBLE_EQ(coarse.value, 30.0);
   EXPECT_TRUE(coarse.at_most) << "coarser than its coarsest rung";
+  EXPECT_NEAR(coarse.low, 30.0 / kNoise, 1e-9) << "no coarser one makes sense";
   EXPECT_EQ(report::cost_text(coarse), "<= 30");
+  for (auto& row : table_.rows) row[table_.column("coarsest")] = "no";
+  EXPECT_EQ(at("good", 0.5).low, 0.0) << "a coarser rung that was not tried may cost anything";
 }
 
-// An error below the reference's own is known only to be below it: it counts as the reference's.
-TEST(CostAt, TrustsNoErrorBelowTheReference) {
-  const auto all = report::ladders(compare_table(), "position_error_rel_l2", "cpu_s_median");
-  EXPECT_TRUE(std::isnan(report::cost_at(all[0], 0.007, 0.01).value));
-  // from 0.025 at 20 s to 0.015 at 40 s
-  const double cost = report::cost_at(all[0], 0.02, 0.0125 * 1.2).value;
-  EXPECT_NEAR(cost, 20.0 * std::pow(2.0, std::log(0.025 / 0.02) / std::log(0.025 / 0.015)), 1e-9);
+// A rung whose error passes through zero: its finer neighbours show what the method can do.  The cheapest
+// crossing alone would give 1e-3 at 20 s.
+TEST_F(CostAt, OneLuckyRungDoesNotWin) {
+  put(table_, "fast", "position_error_rel_l2", {0.05, 1e-4, 0.0125, 0.00625});
+  EXPECT_TRUE(std::isnan(at("fast", 1e-3).value) || at("fast", 1e-3).value > 40.0);
+  EXPECT_FALSE(at("fast", 1e-3).high < std::numeric_limits<double>::infinity())
+      << "no finer rung confirms it";
+  const report::Cost cost = at("fast", 0.01);
+  EXPECT_LT(cost.low, 20.0) << "what the lucky rung may mean is within the spread";
+  EXPECT_GT(cost.high, 0.5 / 0.01) << "and so is that it means nothing";
+  EXPECT_GE(cost.value, cost.low);
+  EXPECT_LE(cost.value, cost.high);
+}
+
+TEST_F(CostAt, AFinerRungThatIsCheaperIsTakenInstead) {
+  put(table_, "fast", "cpu_s_median", {10, 50, 40, 80});
+  EXPECT_DOUBLE_EQ(at("fast", 0.025).value, 40.0);
+}
+
+TEST_F(CostAt, NothingIsInterpolatedAcrossARungThatFailed) {
+  const double across = at("fast", 0.0135).value;
+  EXPECT_GT(across, 20.0);
+  EXPECT_LT(across, 40.0);
+  put(table_, "fast", "position_error_rel_l2", {0.05, std::nan("")});
+  for (auto& row : table_.rows)
+    if (row[table_.column("label")] == "fast" && row[table_.column("setting")] == "0.05")
+      row[table_.column("status")] = "failed";
+  const report::Cost behind = at("fast", 0.0135);
+  EXPECT_DOUBLE_EQ(behind.value, 40.0);
+  EXPECT_TRUE(behind.at_most);
+  EXPECT_NEAR(behind.low, 40.0 / kNoise / 2.0, 1e-9) << "the limit of its step lies somewhere between";
+}
+
+// Errors within ten times the reference's own count as that much; below, nothing has a cost.
+TEST_F(CostAt, TrustsNoErrorThatTheReferenceCannotTell) {
+  EXPECT_TRUE(std::isnan(at("good", 0.0005, 1e-4).value));
+  EXPECT_TRUE(std::isnan(at("fast", 0.01, report::kUnknown).value)) << "of an unknown error nothing is known";
+  // from 0.00125 at 120 s to at most 0.001 at 240 s
+  const double cost = at("good", 0.00115, 1e-4).value;
+  EXPECT_NEAR(cost, 120.0 * std::pow(2.0, std::log(0.00125 / 0.00115) / std::log(0.00125 / 0.001)), 1e-9);
+}
+
+// A rung that ran once is as uncertain as its neighbours.
+TEST_F(CostAt, WithoutRepeatsTheSpreadIsThatOfTheOthers) {
+  for (auto& row : table_.rows)
+    if (row[table_.column("label")] == "fast") {
+      row[table_.column("repeats")] = "1";
+      row[table_.column("cpu_s_min")] = row[table_.column("cpu_s_max")] = row[table_.column("cpu_s_median")];
+    }
+  EXPECT_NEAR(at("fast", 0.025).high, 20.0 * kNoise, 1e-9);
+  for (auto& row : table_.rows) row[table_.column("repeats")] = "1";
+  EXPECT_TRUE(std::isnan(at("fast", 0.025).high)) << "none ran again";
+  EXPECT_DOUBLE_EQ(at("fast", 0.025).value, 20.0);
 }
 
 TEST(Winners, AreTheCheapestWithTheirLead) {
-  const auto wins =
-      report::winners(compare_table(), "position_error_rel_l2", "cpu_s_median", {0.05, 0.01, 0.001, 1e-4});
-  ASSERT_EQ(wins.size(), 4u);
+  report::Table table = compare_table();
+  table.rows.pop_back();
+  const auto wins = report::winners(table, "position_error_rel_l2", "cpu_s_median",
+                                    {0.05, 0.01, 0.001, 1e-4, 1e-9}, kExact);
+  ASSERT_EQ(wins.size(), 5u);
   EXPECT_EQ(wins[0].label, "fast");
   EXPECT_DOUBLE_EQ(wins[0].cost.value, 10.0);
   EXPECT_EQ(wins[0].runner_up, "good");
-  EXPECT_DOUBLE_EQ(wins[0].runner_up_ratio, 3.0);
+  EXPECT_TRUE(wins[0].declared());
+  EXPECT_DOUBLE_EQ(wins[0].runner_up_ratio.value, 3.0);
+  EXPECT_NEAR(wins[0].runner_up_ratio.low, 3.0 / kNoise / kNoise, 1e-9);
+  EXPECT_NEAR(wins[0].runner_up_ratio.high, 3.0 * kNoise * kNoise, 1e-9);
   EXPECT_EQ(wins[1].label, "good");
   EXPECT_NEAR(wins[1].cost.value, std::sqrt(1800.0), 1e-9);
-  EXPECT_NEAR(wins[1].runner_up_ratio, 50.0 / std::sqrt(1800.0), 1e-9);
+  EXPECT_NEAR(wins[1].runner_up_ratio.value, 50.0 / std::sqrt(1800.0), 1e-9);
   EXPECT_EQ(wins[2].label, "good");
   EXPECT_TRUE(wins[2].runner_up.empty());
+  EXPECT_TRUE(wins[3].resolved);
   EXPECT_FALSE(wins[3].found);
+  EXPECT_FALSE(wins[4].resolved) << "the reference cannot tell such errors";
+}
+
+TEST(Winners, AreNotDeclaredWithinTheSpread) {
+  report::Table table = compare_table();
+  put(table, "good", "cpu_s_median", {10.4});  // at 0.02, where fast takes 25 s; at 0.05 10 s
+  put(table, "good", "cpu_s_min", {9.9});
+  put(table, "good", "cpu_s_max", {10.9});
+  const auto wins = report::winners(table, "position_error_rel_l2", "cpu_s_median", {0.05, 0.02}, kExact);
+  EXPECT_TRUE(wins[0].found);
+  EXPECT_EQ(wins[0].rivals, std::vector<std::string>{"good"});
+  EXPECT_FALSE(wins[0].declared());
+  EXPECT_TRUE(wins[1].declared());
+  EXPECT_NE(report::in_words(table, {.position_error_rel_l2 = kExact}).find("For an error of 0.01, good is"),
+            std::string::npos);
+  for (const auto& win :
+       report::winners(table, "position_error_rel_l2", "cpu_s_median", {0.05, 0.02}, report::kUnknown))
+    EXPECT_FALSE(win.found) << "nothing is declared against a reference whose error is unknown";
 }
 
 TEST(Winners, TellHowMuchSlowerTheInteractiveMethodIs) {
@@ -123,29 +223,54 @@ TEST(Winners, TellHowMuchSlowerTheInteractiveMethodIs) {
   for (auto& row : table.rows)
     if (row[table.column("label")] == "fast")
       row[table.column("label")] = row[table.column("integrator")] = report::kBaseline;
-  const auto wins = report::winners(table, "position_error_rel_l2", "cpu_s_median", {0.01, 0.001});
-  EXPECT_NEAR(wins[0].baseline_ratio, 50.0 / std::sqrt(1800.0), 1e-9);
-  EXPECT_TRUE(std::isnan(wins[1].baseline_ratio)) << "it does not get there";
+  const auto wins = report::winners(table, "position_error_rel_l2", "cpu_s_median", {0.01, 0.001}, kExact);
+  EXPECT_NEAR(wins[0].baseline_ratio.value, 50.0 / std::sqrt(1800.0), 1e-9);
+  EXPECT_LT(wins[0].baseline_ratio.low, wins[0].baseline_ratio.value);
+  EXPECT_TRUE(std::isnan(wins[1].baseline_ratio.value)) << "it does not get there";
+}
+
+// Errors of the force are shares of its peak, against the force's own reference.
+TEST(InWords, NamesTheCheapestForTheForceOnTheHand) {
+  report::Table table = compare_table();
+  for (auto& row : table.rows) {
+    const double position = report::to_number(row[table.column("position_error_rel_l2")]);
+    row[table.column("force_error_rms_n")] = fmt::format("{}", 2.0 * position);
+    row[table.column("force_unresolved")] = "no";
+  }
+  report::ReferenceError reference{.position_error_rel_l2 = kExact, .force_error_rms_n = kExact};
+  EXPECT_EQ(report::in_words(table, reference).find("The force on the hand"), std::string::npos)
+      << "its peak is not known";
+  reference.peak_force_n = 2.0;
+  const std::string words = report::in_words(table, reference);
+  EXPECT_NE(
+      words.find("The force on the hand, its error over the peak of 2 N. For 0.01, good is the cheapest "
+                 "(42.4 s)"),
+      std::string::npos)
+      << words;
 }
 
 TEST(InWords, SaysWhatTheNumbersSay) {
   report::Table table = compare_table();
-  std::string words = report::in_words(table, 1e-6);
+  std::string words = report::in_words(table, {.position_error_rel_l2 = 1e-6});
   for (const char* part :
-       {"For an error of 0.01, good is the cheapest (42.4 s); the next, fast, takes 1.18 times as long",
-        "For an error of 0.001, good is the cheapest (134 s).", "No point reaches 0.0001 and 1e-06",
+       {"For an error of 0.01, good is the cheapest (42.4 s); the next, fast, takes 1.18 (1.07 "
+        "to 1.30) times as long",
+        "For an error of 0.001, good is the cheapest (134 s).",
+        "For an error of 0.0001, good is the cheapest (656 s).", "The reference cannot tell 1e-06",
         "Some rungs of fast failed: diverged."})
     EXPECT_NE(words.find(part), std::string::npos) << part << " in: " << words;
   EXPECT_NE(words.find("cannot be distinguished"), std::string::npos) << "one point lies below the reference";
   table.rows.pop_back();
-  words = report::in_words(table, 2e-6);
+  words = report::in_words(table, {.position_error_rel_l2 = 2e-6});
+  EXPECT_NE(words.find("No point reaches 0.0001"), std::string::npos) << words;
   EXPECT_NE(words.find("The reference's own error, 2e-06, is 156 times below the best point that it can "
                        "judge, 0.000313: it bears every figure here."),
             std::string::npos)
       << words;
-  EXPECT_NE(report::in_words(table, 1e-4).find("cannot be distinguished"), std::string::npos)
+  EXPECT_NE(report::in_words(table, {.position_error_rel_l2 = 1e-4}).find("cannot be distinguished"),
+            std::string::npos)
       << "only three times below";
-  EXPECT_NE(report::in_words(table, report::kUnknown).find("own error is not known"), std::string::npos);
+  EXPECT_NE(report::in_words(table, {}).find("own error is not known"), std::string::npos);
 }
 
 // Ten times tighter for hardly more force evaluations: the stability limit holds the step, not the tolerance.
@@ -172,7 +297,7 @@ TEST(InWords, NamesExplicitMethodsAtTheirStabilityLimit) {
   add("implicit", "L", "rtol", 1e-3, 1e-4, 1000, "ok");
   add("fixed", "explicit", "step_s", 2e-3, std::nan(""), 10, "failed");
   add("fixed", "explicit", "step_s", 1e-3, 1e-4, 2000, "ok");
-  const std::string words = report::in_words(table, 1e-9);
+  const std::string words = report::in_words(table, {.position_error_rel_l2 = 1e-9});
   EXPECT_NE(words.find("saves nothing: held."), std::string::npos) << words;
   EXPECT_NE(words.find("unstable at longer steps: fixed (usable from 1 ms on)."), std::string::npos) << words;
 }

@@ -28,23 +28,26 @@ struct ComparePoint {
   bool multistep = false;
   std::string setting_name;  ///< "rtol", "step_s" or "tick_s"
   double setting = 0.0;
+  bool coarsest = false;      ///< a coarser setting makes no sense
+  bool open_ended = false;    ///< of a default ladder, which ends where the reference cannot tell errors
+  std::string linear_solver;  ///< empty: it solves no linear systems
+  std::string against;        ///< integrator of the reference that it is held against: not its own method
   scene::Description description;  ///< the scene with everything set for this point
   PointStatus status = PointStatus::kMissing;
   std::string reason;  ///< where the status is not kOk
   /// NaN throughout where the status is not kOk, or where there is no reference
   TrajectoryError error;
   loop::RunResult result;     ///< of the first repeat; counts are the same in all
-  std::vector<double> cpu_s;  ///< of each repeat
+  std::vector<double> cpu_s;  ///< of each repeat: the loop's, without assembly and recording
   double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;
+  double setup_s = 0.0, record_s = 0.0;  ///< of the first repeat: assembly; recording and the bodies' energy
+  /// of the first repeat: the loop without contact queries, linearisations and ticks
+  double method_s() const { return result.cpu_s - result.query_s - result.linearise_s - result.tool_s; }
   /// whether the position error is less than kResolution times the reference's own: not to be trusted
   bool unresolved = false;
   bool force_unresolved = false,
        torque_unresolved = false;  ///< likewise for the RMS of force and torque on the hand
 };
-
-/// The reference leaves a tenth in doubt of an error this many times its own; points closer to it are marked,
-/// and enter no fit and no verdict.
-constexpr double kResolution = 10.0;
 
 /// The reference that the points are compared with, and how far it can be trusted.
 struct Reference {
@@ -53,6 +56,7 @@ struct Reference {
   bool available = false;   ///< without one no point has an error
   /// distance of two families at tight tolerance; NaN where there was no check
   TrajectoryError own_error = no_distance();
+  double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< on the hand
   double cpu_s = 0.0;
 };
 
@@ -83,9 +87,11 @@ struct SceneComparison {
   /// setting "contact_refresh_s": what re-initialisation costs; empty where the scene asks for none
   std::vector<ComparePoint> restarts;
   /// error of the exchange period itself; empty where the scene asks for none
-  std::vector<ExchangePoint> exchange;
+  ExchangeStudy exchange;
   std::vector<MethodPoint> methods;  ///< those that could be run; empty where the scene names none
   std::vector<MissingChart> missing_charts;
+  /// what LinearSolvers::kBest tried: each method's middle rung, by each solver; labels are the ladders'
+  std::vector<ComparePoint> trials;
 };
 
 struct Comparison {
@@ -95,12 +101,22 @@ struct Comparison {
   bool stopped = false;
 };
 
+/// Which linear solver each implicit method is given.
+enum class LinearSolvers {
+  kSame,   ///< one for all (`linear_solver`), so that methods alone are compared
+  kBest,   ///< each method's fastest, found by trying them at the middle rung of its ladder
+  kNamed,  ///< the scene's own, or else what the method takes by itself
+};
+
 struct CompareOptions {
+  LinearSolvers linear_solvers = LinearSolvers::kSame;
+  std::string linear_solver = "cholmod";  ///< of kSame: a direct one leaves no error of its own
   /// at most; a point is repeated only while its runs together took less than a fifth of the limit
   int repeats = 3;
   double limit_s = 10.0;             ///< CPU seconds a point
   double reference_limit_s = 120.0;  ///< CPU seconds of a reference, of its check, and of each further chart
-  int jobs = 0;                      ///< runs side by side; 0: the number of cores
+  /// runs side by side; 0: references on all cores, and what is timed with nothing beside it
+  int jobs = 0;
   /// names or labels; empty: the scene's ladders and all else that is not static
   std::vector<std::string> integrators;
   bool all = false;      ///< every integrator that is not static, beside those named
@@ -109,10 +125,11 @@ struct CompareOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// Runs every ladder of every scene at the scene's fixed exchange period against the scene's tight reference,
-/// each run in a process of its own; repeats are interleaved over all points, so that a noisy machine hurts
-/// all alike.  The processes come from core's ProcessPool: a program that has started threads or drawn a
-/// picture by now must have called ProcessPool::prepare() before.
+/// Runs every ladder of every scene at the scene's fixed exchange period against the scene's tight reference
+/// (a method of the reference's own family against its check), each run in a process of its own; repeats are
+/// interleaved over all points, so that a noisy machine hurts all alike.  The processes come from core's
+/// ProcessPool: a program that has started threads or drawn a picture by now must have called
+/// ProcessPool::prepare() before.
 /// @param scenes  from loop::load or loop::parse: their text is what results are kept under
 /// @throws Error for ladders that make no sense
 Comparison run(const std::vector<scene::Description>& scenes, const CompareOptions& options);

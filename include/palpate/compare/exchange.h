@@ -14,6 +14,17 @@ struct ExchangePoint {
   TrajectoryError error;  ///< NaN throughout when the run, or the one it is held against, failed
   double cpu_s = 0.0;
   std::string trouble{};  ///< why there is no error; empty: there is one
+  /// whether the errors are less than ten times the reference's own
+  bool unresolved = false, force_unresolved = false, torque_unresolved = false;
+};
+
+/// What an exchange study found.
+struct ExchangeStudy {
+  std::vector<ExchangePoint> points;
+  std::string made_by = {}, checked_by = {};  ///< the reference and its check, in words
+  /// distance of the two; NaN where there was no check
+  TrajectoryError own_error = no_distance();
+  std::string trouble = {};  ///< why there was none
 };
 
 /// Options of an exchange study.
@@ -31,9 +42,9 @@ int exchange_runs(const scene::Description& description);
 /// `compare.exchange_periods_s` from the monolithic one.  Everything else is alike in both: they are
 /// integrated by the same tight cvode-bdf, the contact is refreshed at one period for all (the longest that
 /// divides every exchange period), and the tool's tick is a tenth of the exchange period.  The scheme is of
-/// order 1 in the period where the handle is smooth.  Empty where the scene asks for none; stops early on
-/// request.
-std::vector<ExchangePoint> compare_exchange(const scene::Description& description,
-                                            const ExchangeOptions& options);
+/// order 1 in the period where the handle is smooth.  The monolithic run is made once more by a method of
+/// another family with another factorisation: their distance is the reference's own error.  Empty where the
+/// scene asks for none; stops early on request.
+ExchangeStudy compare_exchange(const scene::Description& description, const ExchangeOptions& options);
 
 }  // namespace palpate::compare

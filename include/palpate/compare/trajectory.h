@@ -15,6 +15,10 @@ struct Trajectory {
   std::vector<Wrench> device;      ///< on the hand
   VecX node_weights;               ///< mass of the node of each entry [kg]
   VecX start;                      ///< positions at the start [m]
+  struct Body {
+    Eigen::Index first, size;  ///< its entries of `positions`
+  };
+  std::vector<Body> bodies;
 };
 
 /// Collects a Trajectory while a run goes on.
@@ -23,10 +27,12 @@ class TrajectoryRecorder : public loop::Observer {
   void period(loop::World& world, double t) override;
   void tick(const loop::TickRecord& tick) override;
   const Trajectory& trajectory() const { return trajectory_; }
+  double cpu_s() const { return cpu_s_; }  ///< spent in recording, the bodies' energy included
 
  private:
   Trajectory trajectory_;
   Vec3 tool_origin_ = Vec3::Zero();
+  double cpu_s_ = 0.0;
 };
 
 /// Collects of a Trajectory what the hand felt alone: ticks and device wrenches.
@@ -34,20 +40,27 @@ class WrenchRecorder : public loop::Observer {
  public:
   void tick(const loop::TickRecord& tick) override;
   const Trajectory& trajectory() const { return trajectory_; }
+  double cpu_s() const { return cpu_s_; }
 
  private:
   Trajectory trajectory_;
+  double cpu_s_ = 0.0;
 };
 
 /// Distance of a trajectory from a reference at their common times.
 struct TrajectoryError {
-  /// mass-weighted L2 over nodes and times, relative to that of the reference's displacement
+  /// mass-weighted L2 over nodes and times, relative to that of the reference's deformation: of its
+  /// displacement what the nearest rigid motion of each body leaves (rigid_fit.h).  A scene in which nothing
+  /// deforms is held against its displacement.
   double position_rel_l2 = 0.0;
   double position_max_m = 0.0;
   double force_rms_n = 0.0, force_max_n = 0.0;
   double torque_rms_n_m = 0.0, torque_max_n_m = 0.0;
   double energy_j = 0.0;  ///< largest difference of mechanical energy
 };
+/// The reference leaves a tenth in doubt of an error this many times its own; points closer to it are marked,
+/// and enter no fit and no verdict.
+constexpr double kResolution = 10.0;
 TrajectoryError distance(const Trajectory& computed, const Trajectory& reference);
 /// Of the wrench on the hand alone, at the ticks that both have; all else is NaN.
 /// @throws Error where they have no tick in common
@@ -56,10 +69,11 @@ TrajectoryError wrench_distance(const Trajectory& computed, const Trajectory& re
 /// throughout.
 TrajectoryError no_distance();
 
-/// Assembles and runs one description; times the loop without assembly.
+/// Assembles and runs one description.
 struct Run {
   Trajectory trajectory;
-  loop::RunResult result;
+  loop::RunResult result;                ///< its CPU time that of the loop, without assembly and recording
+  double setup_s = 0.0, record_s = 0.0;  ///< CPU time of these
 };
 Run run_once(const scene::Description& description, double duration_s,
              const std::atomic<bool>* stop = nullptr);

@@ -25,7 +25,8 @@ struct ReferenceError {
   double position_error_rel_l2 = kUnknown;
   double force_error_rms_n = kUnknown;
   double torque_error_rms_n_m = kUnknown;
-  std::string description;
+  double peak_force_n = kUnknown, peak_torque_n_m = kUnknown;  ///< of the reference
+  std::string description = {};
   std::string trouble = {};             ///< what is missing of it, and why
   std::vector<std::string> notes = {};  ///< charts that could not be made
 };
@@ -38,11 +39,15 @@ std::vector<std::string> distinct(const Table& table, const std::string& column)
 /// One ladder: its usable points, from the coarsest rung to the finest.
 struct LadderPoint {
   double setting = kUnknown, error = kUnknown, cost = kUnknown;
+  double cost_low = kUnknown, cost_high = kUnknown;  ///< of the repeats
   bool unresolved = false;
+  bool behind_failure = false;  ///< the rung before it failed, at the setting
+  double failed_before = kUnknown;
 };
 struct Ladder {
   std::string label, integrator, family, stability, setting_name;
   int order = 0;                    ///< theoretical
+  bool coarsest_tried = false;      ///< no setting coarser than the first rung's makes sense
   std::vector<LadderPoint> points;  ///< those with status ok and a finite error
   std::vector<std::pair<std::string, std::string>> failures = {};  ///< status and reason of the others
   std::vector<double> failed_settings = {};
@@ -58,34 +63,49 @@ struct FittedOrder {
 };
 std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column);
 
-/// Cost of an error on one ladder.  Between two neighbouring rungs whose errors enclose it, log(cost) is
-/// taken as linear in log(error); the cheapest such pair counts.  Nothing is extrapolated: where even the
-/// coarsest usable rung is better, its own cost is an upper bound (`at_most`).  An error below the
-/// reference's own counts as that.
+/// Errors closer to the reference's own than this decide nothing (compare marks them, compare.h).
+inline constexpr double kResolved = 10.0;
+
+/// Cost of an error on one ladder, on monotone envelopes of its rungs (cost_envelope.cpp).  Nothing is
+/// extrapolated, nor interpolated across rungs that failed: there the next finer rung's cost is an upper
+/// bound (`at_most`).
 struct Cost {
-  double value = kUnknown;  ///< NaN: not reached
+  double value = kUnknown;                 ///< NaN: not reached, or not resolved by the reference
+  double low = kUnknown, high = kUnknown;  ///< by repeats and by rungs out of line
   bool at_most = false;
 };
+/// @param reference_error  the reference's own; NaN: nothing has a cost
 Cost cost_at(const Ladder& ladder, double target, double reference_error);
-std::string cost_text(const Cost& cost);  ///< "0.12", "<= 0.12", "-"
+std::string cost_text(const Cost& cost);    ///< "0.12", "<= 0.12", "-"
+std::string spread_text(const Cost& cost);  ///< "0.11 to 0.14"
+
+/// A cost over another.
+struct CostRatio {
+  double value = kUnknown, low = kUnknown, high = kUnknown;
+};
+std::string ratio_text(const CostRatio& ratio);  ///< "1.50 (1.31 to 1.72)", "-"
 
 /// The ladder that reaches an error at the least cost.
 struct Winner {
   double target = 0.0;
-  bool found = false;
+  bool resolved = false;  ///< the reference can tell such errors
+  bool found = false;     ///< some ladder reaches it
   std::string label, runner_up;
   Cost cost;
-  double runner_up_ratio = kUnknown;  ///< its cost over the winner's
-  double baseline_ratio =
-      kUnknown;  ///< cost of kBaseline over the winner's; NaN where it does not reach the error
+  CostRatio runner_up_ratio;        ///< its cost over the cheapest's
+  CostRatio baseline_ratio;         ///< of kBaseline; NaN where it does not reach the error
+  std::vector<std::string> rivals;  ///< whose spread overlaps the cheapest's: with any, nothing is declared
+  bool declared() const { return found && rivals.empty(); }
 };
+/// @param reference_error  the reference's own; NaN: nothing is declared
 std::vector<Winner> winners(const Table& compare, const std::string& error_column,
                             const std::string& cost_column, const std::vector<double>& targets,
-                            double reference_error = kUnknown);
+                            double reference_error);
 
-/// The numbers as sentences: which ladder wins where, which failed and why, which explicit methods are at
-/// their stability limit, and whether the reference is good enough.  Paragraphs are separate lines.
-std::string in_words(const Table& compare, double reference_error);
+/// The numbers as sentences: which ladder wins where, for positions and for the force on the hand, which
+/// failed and why, which explicit methods are at their stability limit, and whether the reference is good
+/// enough.  Paragraphs are separate lines.
+std::string in_words(const Table& compare, const ReferenceError& reference);
 
 /// Error against a cost, log-log: one line a ladder, coloured by family; the best envelope is drawn over
 /// them.

@@ -1,0 +1,39 @@
+#include "palpate/core/rigid_fit.h"
+
+#include <gtest/gtest.h>
+
+using namespace palpate;
+
+namespace {
+
+const Points kCorner = (Points(3, 4) << 0, 1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3).finished();
+
+TEST(RigidFit, FindsARigidMotion) {
+  const Quat turn(Eigen::AngleAxisd(2.5, Vec3(1, -2, 0.5).normalized()));
+  const Vec3 way(1, 2, 3);
+  const Points after = (turn.toRotationMatrix() * kCorner).colwise() + way;
+  const Pose found = rigid_fit(kCorner, after);
+  EXPECT_NEAR(found.rotation.angularDistance(turn), 0.0, 1e-7);
+  EXPECT_LT((found.translation - way).norm(), 1e-12);
+}
+
+// No rotation is a reflection; of a flat set both would fit alike.
+TEST(RigidFit, ReflectsNothing) {
+  Points flat = kCorner.leftCols(3);
+  EXPECT_NEAR(rigid_fit(flat, flat).rotation.angularDistance(Quat::Identity()), 0.0, 1e-7);
+  Points mirrored = kCorner;
+  mirrored.row(2) *= -1.0;
+  EXPECT_NEAR(rigid_fit(kCorner, mirrored).rotation.toRotationMatrix().determinant(), 1.0, 1e-12);
+}
+
+// A point of no weight pulls nothing; a heavy one draws the whole to itself.
+TEST(RigidFit, WeighsItsPoints) {
+  Points after = kCorner;
+  after(0, 3) += 1.0;
+  EXPECT_LT((rigid_fit(kCorner, after, VecX(Eigen::Vector4d(1, 1, 1, 0))).translation).norm(), 1e-12);
+  const Pose heavy = rigid_fit(kCorner, after, Eigen::Vector4d(1, 1, 1, 1e6));
+  const Vec3 carried = heavy.rotation * Vec3(kCorner.col(3)) + heavy.translation;
+  EXPECT_LT((carried - after.col(3)).norm(), 1e-5);
+}
+
+}  // namespace
