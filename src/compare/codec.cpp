@@ -73,6 +73,7 @@ void put_result(ByteWriter& out, const loop::RunResult& r) {
   out.put(r.stopped);
   loop::visit_counters(writing(out, r), r);
   out.put(r.counters.solver.ordering);
+  out.put(r.counters.most_halvings);
   out.put(r.tunnelled.size());
   for (const long vertices : r.tunnelled) out.put(vertices);
   out.put(r.energy.has_value());
@@ -87,6 +88,7 @@ loop::RunResult get_result(ByteReader& in) {
   r.stopped = in.get<bool>();
   loop::visit_counters(reading(in), r);
   r.counters.solver.ordering = in.get<std::string>();
+  r.counters.most_halvings = in.get<long>();
   r.tunnelled.resize(in.get<std::size_t>());
   for (long& vertices : r.tunnelled) vertices = in.get<long>();
   if (!in.get<bool>()) return r;

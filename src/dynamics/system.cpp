@@ -48,6 +48,12 @@ void System::events(const StateView& state, double* g) const {
   }
 }
 
+long System::clamped_tangents() const {
+  long sum = 0;
+  for (const auto& term : terms_) sum += term->clamped_tangents();
+  return sum;
+}
+
 std::pair<Diagnostic, std::string> System::inspect(const StateView& state) const {
   for (const auto& term : terms_)
     if (const Diagnostic found = term->inspect(state); found.element >= 0)

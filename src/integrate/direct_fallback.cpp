@@ -27,6 +27,7 @@ SolveStatus DirectFallback::factor_by_lu(const BorderedMatrix& A) {
   if (!lu_) lu_ = linear::make_linear_solver("umfpack");
   active_ = lu_.get();
   counters::count("integrate.matrices_left_to_lu");
+  ++left_to_lu_;
   return lu_->factor(A);
 }
 

@@ -32,6 +32,7 @@ class DirectFallback {
   dynamics::SolveStatus solve(const Columns& b, Columns& x) {
     return active_->solve(b, x);
   }
+  long left_to_lu() const { return left_to_lu_; }
   /// Sum over all solvers.
   const dynamics::SolverCounters& counters() const;
 
@@ -39,6 +40,7 @@ class DirectFallback {
   IntegratorSpec spec_;
   std::unique_ptr<dynamics::LinearSolver> chosen_, unsymmetric_, cholesky_, lu_;
   dynamics::LinearSolver* active_;
+  long left_to_lu_ = 0;
   mutable dynamics::SolverCounters sum_;
 };
 

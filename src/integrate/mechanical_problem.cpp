@@ -17,7 +17,7 @@ using dynamics::TermTraits;
 MechanicalProblem::MechanicalProblem(dynamics::System& system, dynamics::State& state,
                                      const IntegratorSpec& spec,
                                      std::unique_ptr<dynamics::LinearSolver> solver)
-    : system_(system), state_(state), spec_(spec) {
+    : system_(system), state_(state), spec_(spec), clamped_before_(system.clamped_tangents()) {
   if (solver) newton_ = std::make_unique<CondensedNewton>(system, std::move(solver), spec);
 }
 
@@ -165,6 +165,7 @@ void MechanicalProblem::finish(double t, const double* y, VecX& q, VecX& u) cons
 }
 
 void MechanicalProblem::collect_solver_counters() {
+  counters_.clamped = system_.clamped_tangents() - clamped_before_;
   if (!newton_) return;
   newton_->solver().report(counters_);
 }

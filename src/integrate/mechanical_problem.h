@@ -56,6 +56,7 @@ class MechanicalProblem final : public OdeProblem {
   dynamics::System& system_;
   dynamics::State& state_;
   IntegratorSpec spec_;
+  long clamped_before_;
   std::unique_ptr<CondensedNewton> newton_;
   Side tangent_side_ = Side::kAll;
   dynamics::StepperCounters counters_;

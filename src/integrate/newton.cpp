@@ -20,8 +20,10 @@ double left_over(double correction, double contraction) {
 
 NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, Way way, bool usable) {
   const bool every_time = way != Way::kKeptMatrix;
-  const auto failed = [](StepStatus status, int iterations, double correction, const char* what) {
-    return NewtonResult{status, iterations, correction, what};
+  bool earlier = !every_time && usable;  // the factor is
+  int kept = 0;
+  const auto failed = [&](StepStatus status, int iterations, double correction, const char* what) {
+    return NewtonResult{status, iterations, correction, what, kept};
   };
   const auto converged = [&](double correction, double contraction) {
     return left_over(correction, contraction) <= 1.0 || correction <= equation.rounding(x);
@@ -34,9 +36,10 @@ NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, W
   if ((fresh && equation.refresh() != SolveStatus::kOk) || !equation.correct(d_, size))
     return failed(StepStatus::kSolverFailed, 0, 0.0, "the step matrix is singular or not finite");
   for (int k = 1; k <= limit; ++k) {
+    kept += earlier;
     if (converged(size, contraction_)) {
       x += d_;
-      return {StepStatus::kOk, k, size, ""};
+      return {StepStatus::kOk, k, size, "", kept};
     }
     double lambda = 1.0, next = 0.0, kappa = 0.0;
     bool taken = false;
@@ -57,17 +60,18 @@ NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, W
       contraction_ = kappa;
       if (converged(next, kappa)) {
         x += e_;
-        return {StepStatus::kOk, k, next, ""};
+        return {StepStatus::kOk, k, next, "", kept};
       }
     } else if (!equation.evaluate(x)) {  // the old matrix led astray: back
       return failed(StepStatus::kNotFinite, k, size, "the force is not finite");
     }
     if (every_time || !taken || kappa > kSlow) {
       fresh = true;
-      const double kept = taken ? kappa : 0.0;
+      earlier = false;
+      const double seen = taken ? kappa : 0.0;
       if (equation.refresh() != SolveStatus::kOk || !equation.correct(d_, size))
         return failed(StepStatus::kSolverFailed, k, next, "the step matrix is singular or not finite");
-      contraction_ = kept;  // what a fresh matrix does is seen after its first correction
+      contraction_ = seen;  // what a fresh matrix does is seen after its first correction
     } else {
       fresh = false;
       d_.swap(e_);

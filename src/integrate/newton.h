@@ -26,6 +26,7 @@ struct NewtonResult {
   int iterations = 0;
   double correction = 0.0;  ///< the last, in units of the tolerance
   const char* what = "";
+  int kept = 0;  ///< of the iterations, those by the factor that was there before
 };
 
 /// Newton's method after Deuflhard (2004, sections 2.1 and 3.3): affine invariant, so neither units nor the

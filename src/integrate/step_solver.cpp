@@ -48,6 +48,7 @@ void StepSolver::report(dynamics::StepperCounters& counters) const {
   counters.indefinite = indefinite_count_;
   counters.projected = projected_count_;
   counters.unconverged = unconverged_count_;
+  counters.lu = solvers_.left_to_lu();
 }
 
 }  // namespace palpate::integrate

@@ -20,7 +20,7 @@ NamedDirection name_of(const dynamics::Layout& layout, int dof) {
 const std::vector<std::string>& TraceRecorder::columns() {
   static const std::vector<std::string> names = {
       "time_s",     "step_s",     "order",      "error",         "newton_iterations", "outcome",
-      "worst_body", "worst_node", "worst_axis", "inverted_body", "inverted_element"};
+      "worst_body", "worst_node", "worst_axis", "inverted_body", "inverted_element",  "halvings"};
   return names;
 }
 
@@ -45,7 +45,8 @@ void TraceRecorder::attempt(const dynamics::StepAttempt& a) {
   csv_.row(std::vector<store::CsvCell>{
       a.t, a.h, static_cast<double>(a.order), a.error, static_cast<double>(a.newton_iterations),
       std::string(to_string(a.outcome)), worst.block, number_or_none(worst.node), worst.axis,
-      a.inverted_element < 0 ? std::string() : a.inverted_in, number_or_none(a.inverted_element)});
+      a.inverted_element < 0 ? std::string() : a.inverted_in, number_or_none(a.inverted_element),
+      static_cast<double>(a.halvings)});
 }
 
 void TraceRecorder::close() { csv_.close(); }

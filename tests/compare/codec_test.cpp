@@ -71,6 +71,15 @@ TEST(Codec, VisitsEveryMember) {
                            c.projected,
                            c.unconverged,
                            c.rounding_limited,
+                           c.lu,
+                           c.kept_matrix_iterations,
+                           c.definite_retries,
+                           c.leaps,
+                           c.halved_steps,
+                           c.step_parts,
+                           c.downhill,
+                           c.clamped,
+                           c.fast_steps,
                            s.symbolic,
                            s.orderings,
                            s.factorisations,
@@ -92,7 +101,7 @@ TEST(Codec, VisitsEveryMember) {
        {c.force_s, c.tangent_s, s.symbolic_s, s.factor_s, s.solve_s, run.result.time, run.result.cpu_s,
         run.result.wall_s, run.result.query_s, run.result.linearise_s, run.result.tool_s})
     values.insert(time);
-  EXPECT_EQ(values.size(), 40u);
+  EXPECT_EQ(values.size(), 49u);
   EXPECT_EQ(numbers_of(run.result).size(), values.size());
   EXPECT_GE(*values.begin(), 1000.0) << "a member that is not visited";
 }
@@ -101,6 +110,7 @@ TEST(Codec, NothingIsLostFromTheRunToTheTable) {
   const Folder folder;
   compare::PointRun run = distinct();
   run.result.counters.solver.ordering = "METIS";
+  run.result.counters.most_halvings = 6;
   run.result.tunnelled = {3, 0, 7};
   const std::map<std::string, double> all = numbers_of(run.result);
 
@@ -117,6 +127,7 @@ TEST(Codec, NothingIsLostFromTheRunToTheTable) {
                        *sent.result.energy);
   EXPECT_EQ(numbers_of(sent.result), all);
   EXPECT_EQ(sent.result.counters.solver.ordering, "METIS");
+  EXPECT_EQ(sent.result.counters.most_halvings, 6);
   EXPECT_EQ(sent.result.tunnelled, run.result.tunnelled);
 
   const std::string database = (folder.path / "study.sqlite").string();

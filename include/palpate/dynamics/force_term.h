@@ -59,6 +59,8 @@ class ForceTerm {
 
   /// The worst of what can go wrong in this term at a state; for traces, not for the step.
   virtual Diagnostic inspect(const StateView&) const { return {}; }
+  /// Parts of its tangents (elements) that were bounded near a singularity of their law, over all so far.
+  virtual long clamped_tangents() const { return 0; }
 
   /// Root functions for event location: g changes sign at an event (a gap closing).
   virtual int event_count() const { return 0; }

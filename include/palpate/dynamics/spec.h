@@ -30,7 +30,8 @@ struct IntegratorSpec {
   /// a step matrix that is not positive definite: "project" (definite tangent), then LU; or "lu" at once
   std::string indefinite = "project";
   std::string linear_solver = {};  ///< empty: the method's own (StepperTraits::linear_solver)
-  /// iterative linear solvers: relative residual of "pcg"; relative error, in the energy norm, of the others
+  /// iterative linear solvers: relative residual of "pcg"; relative error, in the energy norm, of the others,
+  /// which under error control end as well where the error is a small share of Newton's tolerance
   double linear_rtol = 1e-8;
   /// of the whole run, the caller's included: elements, and linear solvers that can share their work; results
   /// do not depend on it

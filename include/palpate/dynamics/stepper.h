@@ -50,6 +50,19 @@ struct StepperCounters {
   /// equilibria whose residual is the rounding of forces that cancel, above the tolerance asked for
   long rounding_limited = 0;
   long unconverged = 0;  ///< solves that an iterative linear solver gave up, for a factor to answer
+  long lu = 0;           ///< matrices that were left to LU
+  /// Newton's iterations by the matrix of an earlier solve: an earlier stage, step or, of SUNDIALS, step size
+  long kept_matrix_iterations = 0;
+  /// nonlinear solves of fixed steps that failed and were tried again: with definite tangents; and then by
+  /// corrections taken whole whatever they do to the residual
+  long definite_retries = 0, leaps = 0;
+  /// fixed steps (of statics: load steps) that failed and were taken in parts, and the parts
+  long halved_steps = 0, step_parts = 0;
+  long downhill = 0;    ///< of statics: proximal steps, towards less energy, where Newton's method failed
+  long clamped = 0;     ///< tangents of elements that were bounded near a singularity of their law
+  long fast_steps = 0;  ///< of the fast side of a multi-rate method
+  /// The smallest part of a fixed step was 1/2^most_halvings of it.  The largest of all: no sum, not visited.
+  long most_halvings = 0;
   double force_s = 0.0, tangent_s = 0.0;  ///< wall time [s]
   SolverCounters solver;
 };
@@ -71,12 +84,21 @@ requires(std::same_as<std::remove_const_t<Counters>, StepperCounters>&&...) cons
   f("projected_matrices", c.projected...);
   f("unconverged_linear_solves", c.unconverged...);
   f("rounding_limited_equilibria", c.rounding_limited...);
+  f("lu_matrices", c.lu...);
+  f("kept_matrix_iterations", c.kept_matrix_iterations...);
+  f("definite_tangent_retries", c.definite_retries...);
+  f("leaping_retries", c.leaps...);
+  f("halved_steps", c.halved_steps...);
+  f("step_parts", c.step_parts...);
+  f("downhill_steps", c.downhill...);
+  f("clamped_tangents", c.clamped...);
+  f("fast_steps", c.fast_steps...);
   f("force_s", c.force_s...);
   f("tangent_s", c.tangent_s...);
   visit_counters(f, c.solver...);
 }
 static_assert(bytes_of_counters<StepperCounters>() - bytes_of_counters<SolverCounters>() +
-                      sizeof(SolverCounters) ==
+                      sizeof(SolverCounters) + sizeof(StepperCounters::most_halvings) ==
                   sizeof(StepperCounters),
               "visit_counters() leaves out a member of StepperCounters");
 
@@ -102,6 +124,8 @@ struct StepAttempt {
   /// the most inverted element at the attempted state, over the terms in their order; -1: none
   int inverted_element = -1;
   std::string inverted_in;  ///< the term that it belongs to
+  /// of a fixed step that is taken in parts: this is 1/2^halvings of it; 0: whole
+  int halvings = 0;
 };
 const char* to_string(StepAttempt::Outcome outcome);
 
@@ -197,6 +221,13 @@ struct StepperEntry {
   StepperTraits traits;
   MakeStepper make;                ///< of an explicit method the linear solver is null
   std::vector<PartKey> keys = {};  ///< of [integrator] that the method uses
+  /// The relative tolerance that the method's own error test holds a step to, so that the error over a given
+  /// time falls in proportion to spec.rtol.  Null for methods without an error test; of those that can do
+  /// both it means nothing with fixed_step.
+  double (*error_test_rtol)(const IntegratorSpec& spec) = nullptr;
+  /// The smallest rtol that the method takes with this spec: what it would make of less is rounding.  Null
+  /// where error_test_rtol is.
+  double (*tightest_rtol)(const IntegratorSpec& spec) = nullptr;
 };
 using StepperRegistry = std::vector<StepperEntry>;
 

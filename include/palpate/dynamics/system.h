@@ -49,6 +49,7 @@ class System {
   void events(const StateView& state, double* g) const;
   /// The first term's diagnostic that names an element, with the term's name; element -1 where none does.
   std::pair<Diagnostic, std::string> inspect(const StateView& state) const;
+  long clamped_tangents() const;  ///< sum over all terms
 
   using TermFilter = std::function<bool(const TermTraits&)>;
 

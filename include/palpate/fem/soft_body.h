@@ -53,6 +53,7 @@ class SoftBody : public dynamics::ForceTerm,
   void project_to_psd(bool on) override;
   /// The element with the smallest det F <= 0.
   dynamics::Diagnostic inspect(const dynamics::StateView& state) const override;
+  long clamped_tangents() const override { return counts().clamped; }
   dynamics::TermTraits traits() const override;
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;

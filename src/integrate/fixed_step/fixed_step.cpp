@@ -1,5 +1,6 @@
 #include "integrate/fixed_step/fixed_step.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -32,7 +33,13 @@ StepAttempt::Outcome outcome_of(StepStatus status) {
 
 FixedStep::FixedStep(std::string name, int order, Between between, dynamics::System& system,
                      dynamics::State& state, const IntegratorSpec& spec)
-    : system_(system), state_(state), spec_(spec), name_(std::move(name)), order_(order), between_(between) {
+    : system_(system),
+      state_(state),
+      spec_(spec),
+      name_(std::move(name)),
+      order_(order),
+      clamped_before_(system.clamped_tangents()),
+      between_(between) {
   check_fixed_step(spec_);
   counters::count("integrate." + name_);
 }
@@ -72,17 +79,20 @@ StepResult FixedStep::cover(double t1, double h, double t_end) {
     if (tried.status == StepStatus::kOk && !(all_finite(q1_) && all_finite(u1_)))
       tried = {.status = StepStatus::kNotFinite, .what = "the position or the velocity is not finite"};
     counters_.newton_iterations += tried.iterations;
-    if (trace()) tell(tried, length, to);
+    if (trace()) tell(tried, length, to, halvings);
     if (tried.status != StepStatus::kOk) {
       ++counters_.rejected;
       if (tried.status == StepStatus::kNewtonFailed) ++counters_.newton_failures;
       if (!tried.recoverable) return failure(tried.status, length, tried.iterations, tried.what);
+      if (halvings == 0) ++counters_.halved_steps;
       if (++halvings > kHalvings)
         return failure(tried.status, length, tried.iterations,
                        fmt::format("{}, not even at h/{}", tried.what, 1 << kHalvings));
+      counters_.most_halvings = std::max<long>(counters_.most_halvings, halvings);
       part /= 2.0;
       continue;
     }
+    if (halvings > 0) ++counters_.step_parts;
     accept(length, to);
     if (!last) continue;
     StepResult result;
@@ -109,7 +119,7 @@ void FixedStep::accept(double h, double t1) {
   if (follower_) follower_->stepped(*this, t0_, t1_);
 }
 
-void FixedStep::tell(const Attempt& attempt, double h, double t1) const {
+void FixedStep::tell(const Attempt& attempt, double h, double t1, int halvings) const {
   StepAttempt record;
   record.t = state_.time();
   record.h = h;
@@ -117,6 +127,7 @@ void FixedStep::tell(const Attempt& attempt, double h, double t1) const {
   record.error = std::numeric_limits<double>::quiet_NaN();
   record.newton_iterations = attempt.iterations;
   record.outcome = outcome_of(attempt.status);
+  record.halvings = halvings;
   if (attempt.status != StepStatus::kOk && all_finite(q1_) && all_finite(u1_)) {
     const auto [diagnostic, term] = system_.inspect(state_.view(t1, q1_.data(), u1_.data()));
     record.inverted_element = diagnostic.element;
@@ -186,6 +197,7 @@ void FixedStep::reinit(dynamics::ReinitReason reason) {
 
 const dynamics::StepperCounters& FixedStep::counters() const {
   collect(counters_);
+  counters_.clamped = system_.clamped_tangents() - clamped_before_;
   return counters_;
 }
 

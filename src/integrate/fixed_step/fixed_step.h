@@ -16,8 +16,9 @@ namespace palpate::integrate {
 /// Failure.  What a method calls recoverable (Newton did not converge, a value that is not finite on the way)
 /// is tried again in halves, quarters, ... of that one step, down to 1/64: where a nonlinear solve fails, it
 /// is the step that is too long for its convergence, and a user who chose h = 10 ms wants the other steps as
-/// they are.  Each failed attempt counts as rejected.  What is not recoverable ends advance_to at once, with
-/// the method's name, the reason, time and step; the State holds the last good step, always finite.
+/// they are.  Each failed attempt counts as rejected, each step that was taken in parts as halved.  What is
+/// not recoverable ends advance_to at once, with the method's name, the reason, time and step; the State
+/// holds the last good step, always finite.
 ///
 /// Dense output.  Between the ends of the last step: of order 1 methods q and u are linear; of order 2, q is
 /// the cubic through both ends' q and q' = N u, and u is its rate; of order 4, u too is the cubic through
@@ -73,12 +74,13 @@ class FixedStep : public dynamics::Stepper {
  private:
   dynamics::StepResult cover(double t1, double h, double t_end);
   void accept(double h, double t1);
-  void tell(const Attempt& attempt, double h, double t1) const;
+  void tell(const Attempt& attempt, double h, double t1, int halvings) const;
   dynamics::StepResult failure(dynamics::StepStatus status, double h, int iterations,
                                const std::string& what) const;
 
   std::string name_;
   int order_;
+  long clamped_before_;
   Between between_;
   int taken_ = 0;  ///< steps since the last output
   VecX q0_, u0_;   ///< start of the last step

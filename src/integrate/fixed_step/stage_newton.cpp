@@ -44,7 +44,9 @@ NewtonResult StageNewton::solve(const Stage& stage, const StateView& from, VecX&
   error_weights(layout, tolerance_, system_.driven_mask(), from.u.data(), weights_.data());
 
   NewtonResult result = iterate(kIterations, kept_steps_ == 1);
+  counters.kept_matrix_iterations += result.kept;
   if (result.status == StepStatus::kOk) return result;
+  ++counters.definite_retries;
   a = stage.theta / -stage.c_theta;
   for (int dof : system_.driven_dofs()) a[dof] = 0.0;
   NewtonResult second;

@@ -199,6 +199,7 @@ void Adapter::collect() {
       now.error_test_failures + now.solve_failures - counted_.error_test_failures - counted_.solve_failures;
   c.newton_iterations += now.newton_iterations - counted_.newton_iterations;
   c.newton_failures += now.newton_failures - counted_.newton_failures;
+  c.fast_steps += now.fast_steps - counted_.fast_steps;
   counted_ = now;
 }
 
@@ -218,6 +219,7 @@ bool Adapter::prepare_matrix(double t, N_Vector y, bool reuse, double gamma, Ode
   wanted_gamma_ = gamma;
   const bool fresh = !(reuse && gamma == problem_->gamma());
   if (fresh) problem_->evaluate_tangent(t, NV_DATA_S(y), side);
+  fresh_matrix_ = fresh;
   return fresh;
 }
 
@@ -250,6 +252,7 @@ int Adapter::test_convergence(int iteration, double correction, double tolerance
 SUNNonlinearSolver Adapter::make_newton() {
   newton_ = SUNNonlinSol_Newton(y_, context_);
   check(newton_, "SUNNonlinSol_Newton");
+  by_library_newton_ = true;
   return newton_;
 }
 
@@ -269,7 +272,34 @@ SolveStatus Adapter::solve_newton(const double* y, const double* r, double* d) {
   return problem_->solve(y, r, d);
 }
 
+/// Counts Newton's iterations since the last setup of an earlier solve.  The library counts those of a solve
+/// from 0, also where it begins again after a setup.
+void Adapter::count_iteration() {
+  int iteration = 0;
+  check(SUNNonlinSolGetCurIter(newton_, &iteration), "SUNNonlinSolGetCurIter", problem_->time(), 0.0);
+  if (iteration == 0) kept_matrix_ = !fresh_matrix_;
+  fresh_matrix_ = false;
+  problem_->counters().kept_matrix_iterations += kept_matrix_;
+}
+
+void Adapter::count_solve(int kept, bool definite_retry, bool leap) {
+  dynamics::StepperCounters& c = problem_->counters();
+  c.kept_matrix_iterations += kept;
+  c.definite_retries += definite_retry;
+  c.leaps += leap;
+}
+
+void Adapter::begin_part(int halvings) {
+  dynamics::StepperCounters& c = problem_->counters();
+  c.halved_steps += halvings_ == 0 && halvings > 0;
+  c.most_halvings = std::max<long>(c.most_halvings, halvings);
+  halvings_ = halvings;
+}
+
+void Adapter::end_part(bool done) { problem_->counters().step_parts += done && halvings_ > 0; }
+
 int Adapter::solve(N_Vector x, N_Vector b) {
+  if (by_library_newton_) count_iteration();
   const SolveStatus status = solve_newton(NV_DATA_S(newton_state()), NV_DATA_S(b), NV_DATA_S(x));
   if (status != SolveStatus::kOk) return kRecoverable;
   fill_weights(newton_state(), weights_);

@@ -45,7 +45,8 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
  protected:
   /// A library's own counts since its last start.
   struct Counts {
-    long steps = 0, error_test_failures = 0, newton_iterations = 0, newton_failures = 0, solve_failures = 0;
+    long steps = 0, error_test_failures = 0, newton_iterations = 0, newton_failures = 0, solve_failures = 0,
+         fast_steps = 0;
   };
 
   // --- what one library does
@@ -96,11 +97,14 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   int solve(N_Vector x, N_Vector b) override;
   N_Vector iterate() const override { return newton_state(); }
   void project_to_psd(bool on) override { problem_->project_to_psd(on); }
+  void count_solve(int kept, bool definite_retry, bool leap) override;
   virtual dynamics::SolveStatus solve_newton(const double* y, const double* r, double* d);
   /// Newton's iteration with our own test of convergence; made with the memory, freed by the base.
   SUNNonlinearSolver make_newton();
   SUNNonlinearSolver make_fixed_step_newton();  ///< in its place where steps cannot be shortened
   void allow_leaps(bool on) { fixed_step_newton_.allow_leaps(on); }
+  void begin_part(int halvings);  ///< 1/2^halvings of a fixed step is attempted
+  void end_part(bool done);
   void use_own_test();  ///< after it was handed to the library, which sets its own
 
   /// Re-evaluates the tangent unless the factor can be kept; to be called by the library's matrix callback.
@@ -113,6 +117,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
 
  private:
   void start();
+  void count_iteration();
   void allocate();
   void release();
   void collect();
@@ -128,6 +133,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   SUNContext context_ = nullptr;
   N_Vector y_ = nullptr, scratch_ = nullptr, weights_ = nullptr;
   SUNNonlinearSolver newton_ = nullptr;
+  bool by_library_newton_ = false, fresh_matrix_ = false, kept_matrix_ = false;
   FixedStepNewton fixed_step_newton_{*this};
   double rate_ = 1.0, previous_correction_ = 0.0;  ///< contraction of Newton's iteration
   void fill_weights(N_Vector y, N_Vector w) const;
@@ -136,6 +142,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   Counts counted_;  ///< when they were last read
   long newton_before_ = 0;
   double last_correction_ = 0.0;  ///< weighted norm of the last Newton correction
+  int halvings_ = 0;              ///< of the fixed step under way
   dynamics::StepFollower* follower_ = nullptr;
   bool made_ = false, running_ = false, keep_step_ = false;
   bool finite_ = true;  ///< the last evaluation was
@@ -148,7 +155,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   // the attempt being traced
   Counts attempt_counts_;
   double attempt_start_ = 0.0, attempt_reach_ = 0.0;
-  int attempt_worst_ = -1;
+  int attempt_worst_ = -1, attempt_halvings_ = 0;
   bool attempt_finite_ = true, attempt_open_ = false;
   VecX attempt_y_;
 

@@ -24,6 +24,7 @@ void Adapter::see_evaluation(double t, N_Vector y, bool finite) {
     close_attempt(StepAttempt::Outcome::kErrorTest);
   else if (attempt_open_ && now.solve_failures > attempt_counts_.solve_failures)
     close_attempt(attempt_finite_ ? StepAttempt::Outcome::kNewton : StepAttempt::Outcome::kNotFinite);
+  if (!attempt_open_) attempt_halvings_ = halvings_;
   attempt_open_ = true;
   attempt_finite_ = finite;
   attempt_reach_ = std::max(attempt_reach_, t);
@@ -43,6 +44,7 @@ StepAttempt Adapter::attempt(double t0, double t1, StepAttempt::Outcome outcome)
 
 void Adapter::close_attempt(StepAttempt::Outcome outcome) {
   StepAttempt a = attempt(attempt_start_, attempt_reach_, outcome);
+  a.halvings = attempt_halvings_;
   a.worst_dof = attempt_worst_ >= 0 ? problem_->dof_of(attempt_worst_) : -1;
   if (all_finite(attempt_y_)) {
     const auto [diagnostic, term] = problem_->inspect(attempt_reach_, attempt_y_.data());
@@ -58,6 +60,7 @@ void Adapter::close_attempt(StepAttempt::Outcome outcome) {
 
 void Adapter::accept_attempt(double t0, double t1, bool event) {
   StepAttempt a = attempt(t0, t1, event ? StepAttempt::Outcome::kEvent : StepAttempt::Outcome::kAccepted);
+  a.halvings = halvings_;
   if (local_errors(scratch_)) {
     fill_weights(y_, weights_);
     a.error = N_VWrmsNorm(scratch_, weights_);

@@ -151,8 +151,10 @@ class Ark final : public Adapter {
     for (;;) {
       check(ARKStepSetFixedStep(memory_, parts_.next(now_, t_end)), "ARKStepSetFixedStep", now_, 0.0);
       allow_leaps(parts_.halved());
+      begin_part(parts_.halvings());
       const int flag = ARKStepEvolve(memory_, t_end, y(), &t, ARK_ONE_STEP);
       if (flag >= 0) now_ = t;
+      end_part(flag >= 0);
       if (flag != ARK_CONV_FAILURE || !parts_.shorten(now_)) return flag;
       restore_state();
       check(ARKStepReset(memory_, now_, y()), "ARKStepReset", now_, 0.0);

@@ -106,8 +106,11 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
   VecX x = first;
   NewtonResult result = newton_.solve(*this, x, kIterations, DampedNewton::Way::kKeptMatrix, usable_);
   iterations_ = result.iterations;
+  const int kept = result.kept;
+  bool definite = false, leapt = false;
   if (result.status != StepStatus::kOk && flag_ >= 0) {
     x = first;
+    definite = true;
     hook_.project_to_psd(true);
     result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kFresh, false);
     hook_.project_to_psd(false);
@@ -116,10 +119,12 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
   }
   if (result.status != StepStatus::kOk && flag_ >= 0 && leaps_) {
     x = first;
+    leapt = true;
     result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kLeaps, false);
     iterations_ += result.iterations;
   }
   entries(correction) = x;
+  hook_.count_solve(kept, definite, leapt);
   failed_ = result.status != StepStatus::kOk;
   if (!failed_) return SUN_NLS_SUCCESS;
   return flag_ < 0 ? flag_ : SUN_NLS_CONV_RECVR;

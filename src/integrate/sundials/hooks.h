@@ -16,6 +16,8 @@ class NewtonHook {
   /// y where the nonlinear residual was last evaluated; null: unknown
   virtual N_Vector iterate() const { return nullptr; }
   virtual void project_to_psd(bool) {}  ///< from the next setup on: positive semi-definite tangents
+  /// What one nonlinear solve took: iterations by the factor of an earlier one, further tries.
+  virtual void count_solve(int /*kept*/, bool /*definite_retry*/, bool /*leap*/) {}
 };
 
 /// A direct linear solver and a matrix with nothing in it: SUNDIALS passes both around, the work is the

@@ -64,6 +64,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   KinsolStatic(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
       : system_(system), state_(state), spec_(spec), solver_(std::move(solver), spec) {
     check_static(spec);
+    clamped_before_ = system.clamped_tangents();
     counters::count("integrate.kinsol-static");
   }
   ~KinsolStatic() override { release(); }
@@ -108,6 +109,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   void reinit(ReinitReason) override { ++counters_.reinits; }
   const StepperCounters& counters() const override {
     solver_.report(counters_);
+    counters_.clamped = system_.clamped_tangents() - clamped_before_;
     return counters_;
   }
 
@@ -116,6 +118,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   StepResult climb() {
     double s = 0.0, rung = 1.0;
     int flag = KIN_SUCCESS;
+    bool halved = false;
     long iterations = 0;
     while (s < 1.0) {
       if (interrupted()) return failure(StepStatus::kInterrupted, "interrupted");
@@ -124,11 +127,15 @@ class KinsolStatic final : public Stepper, private NewtonHook {
       flag = solve(iterations);
       if (flag < 0 && rung > kShortestRung) {
         ++counters_.rejected;
+        counters_.halved_steps += !halved;
+        halved = true;
         rung *= 0.5;
+        counters_.most_halvings = std::max<long>(counters_.most_halvings, std::lround(-std::log2(rung)));
         continue;
       }
       if (flag < 0 && !go_downhill(flag, iterations)) return failure(status_of(flag), describe(flag));
       accept_rung();
+      counters_.step_parts += halved;
       s = s_;
       rung = std::min(2.0 * rung, 1.0);
     }
@@ -152,6 +159,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
         continue;
       }
       accept_rung();
+      ++counters_.downhill;
       VecX left;
       if (!residual(NV_DATA_S(zero_displacement()), 0.0, left)) return false;
       if (size_of(left) <= tolerance_) {
@@ -499,6 +507,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   IntegratorSpec spec_;
   StepSolver solver_;
   mutable StepperCounters counters_;
+  long clamped_before_ = 0;
   BorderedMatrix A_, absolute_;
   VecX q_start_, u_start_, base_q_, q_, rate_, velocity_, unbalanced_, g_, inertia_, rhs_, step_, kept_,
       coordinate_, summands_;

@@ -119,8 +119,10 @@ class Mri final : public Adapter {
     for (;;) {
       check(MRIStepSetFixedStep(slow_, parts_.next(now_, t_end)), "MRIStepSetFixedStep", now_, 0.0);
       allow_leaps(parts_.halved());
+      begin_part(parts_.halvings());
       const int flag = MRIStepEvolve(slow_, t_end, y(), &t, ARK_ONE_STEP);
       if (flag >= 0) now_ = t;
+      end_part(flag >= 0);
       if (flag != ARK_CONV_FAILURE) return flag;
       ++failures_;
       if (!parts_.shorten(now_)) return flag;
@@ -149,6 +151,7 @@ class Mri final : public Adapter {
     check(MRIStepGetNonlinSolvStats(slow_, &c.newton_iterations, &c.newton_failures),
           "MRIStepGetNonlinSolvStats", 0.0, 0.0);
     c.solve_failures = failures_;
+    check(ARKStepGetNumSteps(fast_, &c.fast_steps), "ARKStepGetNumSteps", 0.0, 0.0);
     return c;
   }
   double last_step() const override {

@@ -13,7 +13,8 @@ class StepInParts {
   explicit StepInParts(double step) : step_(step) {}
 
   bool halved() const { return halvings_ > 0; }
-  void begin() { halvings_ = 0; }  ///< nothing is left of an earlier step
+  int halvings() const { return halvings_; }  ///< the step of next() is 1/2^halvings() of a whole one
+  void begin() { halvings_ = 0; }             ///< nothing is left of an earlier step
   /// From t towards t_end.  What is longer than a step by rounding is one, and a step shorter than rounding
   /// of the others is none.
   double next(double t, double t_end) {
