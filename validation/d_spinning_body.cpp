@@ -185,8 +185,8 @@ void add_drifts(const std::string& fault, std::vector<Measurement>& out) {
                    .note = note});
   };
   IntegratorSpec spec;
-  spec.rtol = 1e-12;
-  add(spec, "rtol 1e-12, stiffness damping on", false);
+  spec.rtol = 1e-10;  // the tightest; its error test is held to 1e-12
+  add(spec, "rtol 1e-10, stiffness damping on", false);
   spec.name = "implicit-midpoint";
   spec.step_s = 2.0 * M_PI / (32 * kSpin.norm());
   spec.newton_rtol = fault == "loose-newton" ? 1e-4 : 1e-11;

@@ -9,7 +9,7 @@
 // orders p and p - 1 estimates the error of a step as C h^p and holds it at rtol, so h ~ rtol^{1/p}; the
 // solution carried on has order p, so its error over a given time is ~ h^p ~ rtol.
 // Backward differences hold C h^{k+1} of order k <= 5 at a tolerance T: error ~ T^{k/(k+1)}.  They are given
-// T = rtol^{6/5} (adapter.h), which makes that 0.9 to 1 for k from 3 to 5.  Adams holds the same estimate,
+// T = rtol^{6/5} (error_test.h), which makes that 0.9 to 1 for k from 3 to 5.  Adams holds the same estimate,
 // but its k rises along the ladder up to 12, so that its error falls faster than at any one k.
 // Two pairs (ESDIRK437, and ARK548 also as one half of an additive pair) estimate a linear motion better than
 // others: of the conditions of order p on the embedded weights, that of the tall tree, b^T A^(p-1) 1 = 1/p!,

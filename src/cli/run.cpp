@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/haptic_memory.h"
 #include "palpate/loop/recorder.h"
+#include "palpate/loop/registries.h"
 #include "palpate/loop/summary.h"
 #include "palpate/loop/trace.h"
 #include "palpate/report/run_report.h"
@@ -51,6 +53,34 @@ void print_hand(const std::string& who, const PeakWrench::Peak& peak, long ticks
       who, peak.force_n, peak.force_s, peak.torque_n_m, peak.torque_s, ticks, limited);
 }
 
+/// What was asked for, and what the method makes of it.
+void print_tolerance(const IntegratorSpec& spec) {
+  const auto& method = find(loop::steppers(), spec.name, "integrator");
+  if (method.error_test_rtol && !spec.fixed_step)
+    fmt::print("{}: rtol {:g}, error test at {:.3g}\n", spec.name, spec.rtol, method.error_test_rtol(spec));
+}
+
+/// What a method did beside the steps that it was asked for.
+void print_silent(const dynamics::StepperCounters& c) {
+  if (c.halved_steps > 0)
+    fmt::print("{} steps were too long for Newton's method and taken in {} parts, the smallest 1/{}\n",
+               c.halved_steps, c.step_parts, 1L << c.most_halvings);
+  std::vector<std::string> rest;
+  const auto add = [&](long count, const char* what) {
+    if (count > 0) rest.push_back(fmt::format("{} {}", count, what));
+  };
+  add(c.definite_retries, "solves tried again with definite tangents");
+  add(c.leaps, "solves without descent");
+  add(c.downhill, "steps downhill in energy");
+  add(c.indefinite, "indefinite matrices");
+  add(c.lu, "matrices left to LU");
+  add(c.unconverged, "linear solves given up by the iteration");
+  add(c.clamped, "element tangents bounded");
+  add(c.rounding_limited, "equilibria limited by rounding");
+  add(c.rejected, "attempts rejected");
+  if (!rest.empty()) fmt::print("on the way: {}\n", fmt::join(rest, ", "));
+}
+
 void print_outcome(const loop::World& world, const loop::RunResult& result, const PeakWrench& peak,
                    double assemble_s) {
   fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s\n", short_name(world.description),
@@ -60,6 +90,8 @@ void print_outcome(const loop::World& world, const loop::RunResult& result, cons
     fmt::print("{}: {} steps, {} force and {} tangent evaluations, {} factorisations, {} contact queries\n",
                world.stepper->name(), c.steps, c.force_evaluations, c.tangent_evaluations,
                c.solver.factorisations, result.contact_queries);
+    print_tolerance(world.description.integrator);
+    print_silent(c);
   }
   if (result.ticks > 0) print_hand("the hand", peak.of[0], result.ticks, result.limited_ticks);
   for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peak.of.size(); ++i)
@@ -254,7 +286,8 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   recorder.reset();  // closes its files
   if (trace) {
     trace->close();
-    fmt::print("trace: {} attempted steps, {} rejected\n", trace->attempts(), trace->rejected());
+    fmt::print("trace: {} attempted steps, {} rejected; an error of 1 is the error test's tolerance\n",
+               trace->attempts(), trace->rejected());
   }
 
   print_outcome(*world, result, peak, assemble_s);

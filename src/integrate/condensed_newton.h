@@ -1,5 +1,6 @@
 #pragma once
 #include "integrate/step_solver.h"
+#include "palpate/dynamics/energy_tolerance.h"
 
 namespace palpate::integrate {
 
@@ -24,7 +25,9 @@ class CondensedNewton {
  public:
   CondensedNewton(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver,
                   const IntegratorSpec& spec)
-      : system_(system), solver_(std::move(solver), spec) {}
+      : system_(system),
+        solver_(std::move(solver), spec),
+        tolerance_(dynamic_cast<dynamics::EnergyTolerance*>(&solver_.chosen())) {}
 
   /// M, and D and K of the terms that `filter` picks (empty: all), at this state; no factor yet.
   /// The counters are kept in mind for evaluations that factor() and the solves ask for: they outlive it.
@@ -42,6 +45,11 @@ class CondensedNewton {
   dynamics::SolveStatus solve_residual_form(const dynamics::Layout& layout, const double* q, const double* r1,
                                             const double* r2, double* dq, double* du);
   double gamma() const { return gamma_; }  ///< of the last factor; 0 when there is none
+  /// Whether the linear solver can use limit_error().
+  bool takes_error_limit() const { return tolerance_ != nullptr; }
+  /// Solutions may err by `error` in the norm sqrt(mean (w_i e_i)^2) of first-order form: e_u = e, e_q =
+  /// gamma e.  @param w  of q and u, one after the other
+  void limit_error(const dynamics::Layout& layout, const double* w, double error);
   const StepSolver& solver() const { return solver_; }
 
  private:
@@ -52,6 +60,7 @@ class CondensedNewton {
   void left_inverse(const dynamics::Layout& layout, const double* q, const double* r1, bool nodes_only);
   dynamics::System& system_;
   StepSolver solver_;
+  dynamics::EnergyTolerance* tolerance_;
   dynamics::StepperCounters* counters_ = nullptr;
   const dynamics::Layout* layout_ = nullptr;  ///< of the last evaluation, with its time, q and u
   double time_ = 0.0;

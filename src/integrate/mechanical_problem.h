@@ -35,6 +35,8 @@ class MechanicalProblem final : public OdeProblem {
   void evaluate_tangent(double t, const double* y, Side side) override;
   dynamics::SolveStatus factor(double gamma) override { return newton_->factor(gamma); }
   double gamma() const override { return newton_->gamma(); }
+  bool takes_error_limit() const override { return newton_ && newton_->takes_error_limit(); }
+  void limit_error(const double* w, double error) override { newton_->limit_error(layout(), w, error); }
   void project_to_psd(bool on) override { system_.project_to_psd(on); }
   dynamics::SolveStatus solve(const double* y, const double* r, double* d) override;
   bool residual(double t, const double* y, const double* y_dot, double* r) override;

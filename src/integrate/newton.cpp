@@ -1,14 +1,13 @@
 #include "integrate/newton.h"
 
+#include "integrate/tuning.h"
+
 namespace palpate::integrate {
 
 using dynamics::SolveStatus;
 using dynamics::StepStatus;
 
 namespace {
-
-constexpr double kSlow = 0.5;  // contraction above which an old matrix is renewed
-constexpr double kSmallestDamping = 1.0 / 64.0;
 
 /// Bound of the error after a correction of this size at this contraction (geometric series), at least the
 /// correction itself.
@@ -43,7 +42,7 @@ NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, W
     }
     double lambda = 1.0, next = 0.0, kappa = 0.0;
     bool taken = false;
-    for (; !taken && lambda >= kSmallestDamping; lambda /= 2.0) {
+    for (; !taken && lambda >= tuning::kSmallestDamping; lambda /= 2.0) {
       trial_ = x + lambda * d_;
       if (equation.evaluate(trial_)) {
         if (!equation.correct(e_, next))
@@ -65,7 +64,7 @@ NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, W
     } else if (!equation.evaluate(x)) {  // the old matrix led astray: back
       return failed(StepStatus::kNotFinite, k, size, "the force is not finite");
     }
-    if (every_time || !taken || kappa > kSlow) {
+    if (every_time || !taken || kappa > tuning::kSlowContraction) {
       fresh = true;
       earlier = false;
       const double seen = taken ? kappa : 0.0;

@@ -43,6 +43,10 @@ class OdeProblem {
   /// Asks for a positive semi-definite tangent from now on, where there is one (true), or for the true one
   /// (false).
   virtual void project_to_psd(bool) {}
+  /// Solutions d of what follows may err by `error` in the norm of the weights w, where the linear solver has
+  /// a use for that (takes_error_limit).
+  virtual void limit_error(const double* /*w*/, double /*error*/) {}
+  virtual bool takes_error_limit() const { return false; }
   /// (I - gamma J) d = r.  d may not be r.
   virtual dynamics::SolveStatus solve(const double* y, const double* r, double* d) = 0;
 

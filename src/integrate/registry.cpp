@@ -1,3 +1,4 @@
+#include "integrate/error_test.h"
 #include "integrate/make.h"
 #include "integrate/robust_solver.h"
 #include "integrate/settings.h"
@@ -14,7 +15,8 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-/// What implicit methods use beside their own; make_registry() adds `threads`, which serves any method.
+/// What implicit methods use beside their own; make_registry() adds `rtol` where there is an error test, and
+/// `threads`, which serves any method.
 const Keys kImplicit = {"linear_solver", "indefinite"};
 const Keys kFixed = {"step_s", "max_steps"};
 
@@ -24,16 +26,21 @@ Keys together(Keys keys, const Keys& more) {
 }
 std::vector<PartKey> with(const Keys& keys, const Keys& more) { return part_keys(together(keys, more)); }
 
+/// The key `rtol` as an entry takes it with its settings' defaults.
+PartKey rtol_key(double (*tightest_rtol)(const IntegratorSpec&), const std::string& name) {
+  return {.name = "rtol", .range = rtol_range(tightest_rtol({.name = name}))};
+}
+
 std::vector<PartKey> adaptive_keys(int highest_order, bool implicit) {
   std::vector<PartKey> keys =
-      with({"rtol", "atol_q", "atol_u", "max_steps", "events"}, implicit ? kImplicit : Keys{});
+      with({"atol_q", "atol_u", "max_steps", "events"}, implicit ? kImplicit : Keys{});
   keys.push_back({.name = "max_order", .range = order_range(highest_order)});
   return keys;
 }
 
 /// By error control, or with fixed steps, where newton_rtol takes the place of rtol.
 std::vector<PartKey> ark_keys(const dynamics::StepperTraits& traits) {
-  Keys keys = {"rtol", "atol_q", "atol_u", "max_steps", "events", "fixed_step", "step_s"};
+  Keys keys = {"atol_q", "atol_u", "max_steps", "events", "fixed_step", "step_s"};
   if (traits.implicit) keys = together(together(keys, kImplicit), {"newton_rtol"});
   if (traits.family == "ImEx Runge-Kutta") keys.push_back("explicit_side");
   return part_keys(keys);
@@ -46,32 +53,41 @@ dynamics::StepperRegistry make_registry() {
        "backward differences of SUNDIALS CVODE, order 1 to 5 (max_order)",
        {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"},
        make_cvode,
-       adaptive_keys(5, true)},
+       adaptive_keys(5, true),
+       error_test_rtol_of_bdf,
+       tightest_rtol_of_bdf},
       {"cvode-adams",
        "Adams-Moulton of SUNDIALS CVODE, order 1 to 12 (max_order), fixed-point iteration",
        {"Adams", 12, 0, StepControl::kAdaptive, Stability::kExplicit, false, true, "force"},
        make_cvode,
-       adaptive_keys(12, false)},
+       adaptive_keys(12, false),
+       error_test_rtol_of_adams,
+       tightest_rtol_of_adams},
       {"ida",
        "backward differences of SUNDIALS IDA on the residual M u' - f, order 1 to 5 (max_order)",
        {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"},
        make_ida,
-       adaptive_keys(5, true)},
+       adaptive_keys(5, true),
+       error_test_rtol_of_bdf,
+       tightest_rtol_of_bdf},
   };
   for (const ArkMethod& m : ark_methods())
-    all.push_back({m.name, m.summary, m.traits, make_ark, ark_keys(m.traits)});
+    all.push_back({m.name, m.summary, m.traits, make_ark, ark_keys(m.traits), error_test_rtol_of_ark,
+                   tightest_rtol_of_ark});
   const auto multi_rate = [](int order, int stiff_order) {
     return dynamics::StepperTraits{
         "multi-rate",  order, stiff_order, StepControl::kFixed,
         Stability::kA, true,  false,       "force, tangent; contact and tool as the fast side"};
   };
   const std::vector<PartKey> mri_keys =
-      with({"step_s", "max_steps", "rtol", "newton_rtol", "atol_q", "atol_u", "events"}, kImplicit);
+      with({"step_s", "max_steps", "newton_rtol", "atol_q", "atol_u", "events"}, kImplicit);
   all.push_back({"ark-mri-2",
                  "multi-rate IRK21a of Sandu 2019: bodies by an implicit slow step, contact and tool fast",
-                 multi_rate(2, 2), make_mri, mri_keys});
-  all.push_back({"ark-mri-3", "multi-rate ESDIRK34a of Sandu 2019", multi_rate(3, 2), make_mri, mri_keys});
-  all.push_back({"ark-mri-4", "multi-rate ESDIRK46a of Sandu 2019", multi_rate(4, 2), make_mri, mri_keys});
+                 multi_rate(2, 2), make_mri, mri_keys, error_test_rtol_of_mri, tightest_rtol_of_mri});
+  all.push_back({"ark-mri-3", "multi-rate ESDIRK34a of Sandu 2019", multi_rate(3, 2), make_mri, mri_keys,
+                 error_test_rtol_of_mri, tightest_rtol_of_mri});
+  all.push_back({"ark-mri-4", "multi-rate ESDIRK46a of Sandu 2019", multi_rate(4, 2), make_mri, mri_keys,
+                 error_test_rtol_of_mri, tightest_rtol_of_mri});
   all.push_back({"kinsol-static",
                  "quasi-static equilibrium of SUNDIALS KINSOL: no inertia, no velocity",
                  {"statics", 1, 1, StepControl::kFixed, Stability::kStatic, true, false, "force, tangent"},
@@ -122,7 +138,10 @@ dynamics::StepperRegistry make_registry() {
        part_keys(kFixed)},
   };
   all.insert(all.end(), by_hand.begin(), by_hand.end());
-  for (dynamics::StepperEntry& entry : all) entry.keys.push_back({.name = "threads"});
+  for (dynamics::StepperEntry& entry : all) {
+    if (entry.tightest_rtol) entry.keys.push_back(rtol_key(entry.tightest_rtol, entry.name));
+    entry.keys.push_back({.name = "threads"});
+  }
   return all;
 }
 
@@ -148,6 +167,12 @@ std::string linear_solver_of(const IntegratorSpec& spec) {
   if (!traits.implicit) return {};
   if (!spec.linear_solver.empty()) return spec.linear_solver;
   return spec.factor_kept_steps > 1 ? "cholmod" : traits.linear_solver;
+}
+
+std::optional<double> error_test_rtol_of(const IntegratorSpec& spec) {
+  const auto& entry = find(stepper_registry(), spec.name, "integrator");
+  if (!entry.error_test_rtol || spec.fixed_step) return {};
+  return entry.error_test_rtol(spec);
 }
 
 std::unique_ptr<dynamics::LinearSolver> make_robust_linear_solver(const std::string& name,

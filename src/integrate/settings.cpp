@@ -20,8 +20,19 @@ void check_atol(const IntegratorSpec& spec) {
 
 Range order_range(int highest_order) { return Range::closed(0, highest_order, Ranges::max_order.remedy); }
 
-void check_adaptive(const IntegratorSpec& spec, int highest_order) {
+void check_tightest(const IntegratorSpec& spec, double tightest_rtol) {
+  if (spec.rtol >= tightest_rtol) return;
+  fail(
+      "integrator \"{}\": rtol = {} is below {}, the tightest that it takes with {}: its error test would "
+      "see "
+      "rounding alone",
+      spec.name, spec.rtol, tightest_rtol,
+      spec.max_order > 0 ? fmt::format("max_order = {}", spec.max_order) : "its highest order");
+}
+
+void check_adaptive(const IntegratorSpec& spec, int highest_order, double tightest_rtol) {
   check(spec, "rtol", spec.rtol, Ranges::rtol);
+  check_tightest(spec, tightest_rtol);
   check_atol(spec);
   check(spec, "max_order", spec.max_order, order_range(highest_order));
   check(spec, "max_steps", spec.max_steps, Ranges::max_steps);

@@ -4,7 +4,9 @@
 namespace palpate::integrate {
 
 /// @throws Error naming the key of the `[integrator]` table, its value and what to write instead.
-void check_adaptive(const IntegratorSpec& spec, int highest_order);
+void check_adaptive(const IntegratorSpec& spec, int highest_order, double tightest_rtol);
+/// The smallest rtol that the method takes with these settings.
+void check_tightest(const IntegratorSpec& spec, double tightest_rtol);
 Range order_range(int highest_order);  ///< of max_order
 void check_fixed_step(const IntegratorSpec& spec);
 void check_static(const IntegratorSpec& spec);

@@ -8,6 +8,7 @@
 #include "linear/settings.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/dynamics/energy_tolerance.h"
 #include "palpate/dynamics/mixed_precision_step.h"
 #include "palpate/linear/solvers.h"
 
@@ -101,7 +102,9 @@ namespace {
 /// Courant-type number and linear_rtol, in logarithms.  The number of a whole matrix is computed before a
 /// solver takes it.  A zero-row-sum matrix is written in the order of a solver, so the first goes to
 /// kProvisional, which serves stiff and soft ones; the number of one decides which solver has the next.
-class AutoSolver final : public dynamics::LinearSolver, public dynamics::MixedPrecisionSolver {
+class AutoSolver final : public dynamics::LinearSolver,
+                         public dynamics::MixedPrecisionSolver,
+                         public dynamics::EnergyTolerance {
  public:
   explicit AutoSolver(const IntegratorSpec& spec) : spec_(spec) { counters::count("integrate.solver.auto"); }
   std::string name() const override { return "auto"; }
@@ -136,6 +139,10 @@ class AutoSolver final : public dynamics::LinearSolver, public dynamics::MixedPr
   std::optional<SolveStatus> solve_by_refinement(dynamics::ResidualFunction& residual, VecX& x) override {
     return mixed_ ? mixed_->solve_by_refinement(residual, x) : std::nullopt;
   }
+  void allow_error(double error) override {
+    allowed_ = error;
+    if (auto* tolerance = dynamic_cast<dynamics::EnergyTolerance*>(active_)) tolerance->allow_error(error);
+  }
   SolveStatus solve(const MatX& B, MatX& X) override { return chosen().solve(B, X); }
   SolveStatus solve(const VecX& b, VecX& x) override { return chosen().solve(b, x); }
 
@@ -165,6 +172,7 @@ class AutoSolver final : public dynamics::LinearSolver, public dynamics::MixedPr
   void activate(std::size_t k) {
     active_ = &made(k);
     mixed_ = dynamic_cast<dynamics::MixedPrecisionSolver*>(active_);
+    allow_error(allowed_);
   }
 
   SolveStatus factor_unsymmetric(const BorderedMatrix& A) {
@@ -199,6 +207,7 @@ class AutoSolver final : public dynamics::LinearSolver, public dynamics::MixedPr
   dynamics::LinearSolver* active_ = nullptr;
   dynamics::MixedPrecisionSolver* mixed_ = nullptr;  ///< capability of active_
   dynamics::ZeroRowSumMatrix* room_ = nullptr;       ///< of active_
+  double allowed_ = 0.0;                             ///< energy-norm error
   std::uint64_t values_version_ = 0;
   int nodes_ = -1;
   bool provisional_ = false;          ///< active_ was not chosen yet

@@ -39,10 +39,12 @@ std::vector<Choice> stepper_choices() {
     const char* control = t.control == StepControl::kAdaptive ? "rtol"
                           : t.control == StepControl::kFixed  ? "step_s"
                                                               : "rtol, or step_s";
-    out.push_back(
-        {entry.name,
-         fmt::format("{} [{}; {}; {}]", entry.summary, t.family, dynamics::to_string(t.stability), control),
-         t.order});
+    const std::string tightest =
+        entry.tightest_rtol ? fmt::format(" from {:g}", entry.tightest_rtol({.name = entry.name})) : "";
+    out.push_back({entry.name,
+                   fmt::format("{} [{}; {}; {}{}]", entry.summary, t.family, dynamics::to_string(t.stability),
+                               control, tightest),
+                   t.order});
   }
   return out;
 }

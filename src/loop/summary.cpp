@@ -1,6 +1,7 @@
 #include "palpate/loop/summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "palpate/contact/gpu_available.h"
@@ -44,6 +45,8 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
     s.values.emplace_back("scene_path", std::filesystem::absolute(d.path).lexically_normal().string());
   s.values.emplace_back("integrator", d.integrator.name);
   s.values.emplace_back("rtol", d.integrator.rtol);
+  if (const auto used = integrate::error_test_rtol_of(d.integrator))
+    s.values.emplace_back("error_test_rtol", *used);
   s.values.emplace_back("step_s", d.integrator.step_s);
   s.values.emplace_back("linear_solver", integrate::linear_solver_of(d.integrator));
   s.values.emplace_back("threads", static_cast<long long>(d.integrator.threads));
@@ -258,6 +261,9 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   add_sizes(summary.section("sizes"), world);
   add_models(summary, world.description);
   add_numbers<long>(summary.section("counts"), result);
+  if (const long halvings = result.counters.most_halvings; halvings > 0)
+    summary.section("sizes").values.emplace_back("smallest_part_of_a_step",
+                                                 std::ldexp(1.0, -static_cast<int>(halvings)));
   summary.section("timings").values.emplace_back("assemble_s", assemble_s);
   add_numbers<double>(summary.section("timings"), result);
   // vertices that went through unseen, for each [[contact]]

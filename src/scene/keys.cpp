@@ -167,7 +167,8 @@ const KeyTable<IntegratorSpec>& integrator_keys() {
   using Ranges = IntegratorRanges;
   static const KeyTable<IntegratorSpec> keys = {
       text("name", &IntegratorSpec::name, {}, "the method: palpate list integrators"),
-      number("rtol", &IntegratorSpec::rtol, Ranges::rtol, "relative tolerance of error control"),
+      number("rtol", &IntegratorSpec::rtol, Ranges::rtol,
+             "relative tolerance of error control; what a step is held to stands in the summary"),
       number("atol_q", &IntegratorSpec::atol_q, Ranges::atol_q,
              "absolute tolerance of positions: this times rtol times the body's size"),
       number("atol_u", &IntegratorSpec::atol_u, Ranges::atol_u,

@@ -186,6 +186,11 @@ TEST(HandSteppers, GiveUpOnANewtonThatCannotConverge) {
     EXPECT_TRUE(std::isnan(kept.attempts[2].error));
     EXPECT_EQ(kept.attempts[2].inverted_element, 7);
     EXPECT_EQ(kept.attempts[2].inverted_in, "liar");
+    for (int k = 0; k < 7; ++k) EXPECT_EQ(kept.attempts[static_cast<std::size_t>(k)].halvings, k);
+    EXPECT_EQ(stepper->counters().definite_retries, 7);
+    EXPECT_EQ(stepper->counters().halved_steps, 1);
+    EXPECT_EQ(stepper->counters().step_parts, 0);
+    EXPECT_EQ(stepper->counters().most_halvings, 6);
   }
 }
 
@@ -196,6 +201,10 @@ TEST(BackwardEuler, CoversAStepThatNewtonFailsAtInParts) {
   ASSERT_TRUE(result.ok()) << result.message;
   EXPECT_EQ(stepper->counters().rejected, 5);
   EXPECT_EQ(stepper->counters().steps, 32);
+  EXPECT_EQ(stepper->counters().halved_steps, 1);
+  EXPECT_EQ(stepper->counters().step_parts, 32);
+  EXPECT_EQ(stepper->counters().most_halvings, 5);
+  EXPECT_EQ(stepper->counters().definite_retries, 5);
   EXPECT_EQ(lied.state.time(), 1.0);
   EXPECT_EQ(result.h, 1.0 / 32);
   ASSERT_TRUE(integrate::make_stepper(honest.system, honest.state, spec_of("backward-euler", 1.0 / 32))
@@ -220,6 +229,9 @@ TEST(HandSteppers, TraceEveryStep) {
     EXPECT_EQ(kept.attempts[4].outcome, StepAttempt::Outcome::kAccepted);
     EXPECT_EQ(kept.attempts[4].newton_iterations > 0, !is_explicit(name));
     EXPECT_EQ(kept.attempts[4].inverted_element, -1);
+    EXPECT_EQ(kept.attempts[4].halvings, 0);
+    const StepperCounters& c = stepper->counters();
+    EXPECT_EQ(c.halved_steps + c.step_parts + c.most_halvings + c.definite_retries + c.leaps, 0) << name;
   }
 }
 

@@ -109,6 +109,11 @@ TEST(DampedNewton, AResidualThatIsNotFiniteIsSaidAndNotTaken) {
   EXPECT_EQ(DampedNewton().solve(log, x, 60, Way::kFresh, false).status, StepStatus::kNotFinite);
 }
 
+struct Kept final : dynamics::StepTrace {
+  std::vector<dynamics::StepAttempt> all;
+  void attempt(const dynamics::StepAttempt& a) override { all.push_back(a); }
+};
+
 // y' = y^2, y(0) = 1: y = 1/(1 - t).  A stage y1 = y0 + g y1^2 has no solution for 4 g y0 > 1, so a step of H
 // cannot be taken whole by a table whose first stage has g = H a_11 > 1/4, and ends near 1/(1 - H) where it
 // is taken in parts.
@@ -123,6 +128,8 @@ TEST(FixedStepNewton, AStepThatHasNoSolutionIsTakenInParts) {
     IntegratorSpec spec{.name = name, .step_s = 0.65, .fixed_step = true};
     const auto stepper =
         integrate::make_ode_stepper(std::make_unique<fakes::DenseOde>(growth, 1e-8, y, t), spec);
+    Kept kept;
+    stepper->set_trace(&kept);
     const dynamics::StepResult result = stepper->advance_to(0.65);
     ASSERT_TRUE(result.ok()) << name << ": " << result.message;
     EXPECT_EQ(t, 0.65);
@@ -131,6 +138,14 @@ TEST(FixedStepNewton, AStepThatHasNoSolutionIsTakenInParts) {
     EXPECT_GT(stepper->counters().rejected, 0) << name;
     EXPECT_GT(stepper->counters().newton_failures, 0) << name;
     EXPECT_LE(stepper->counters().newton_failures, stepper->counters().rejected) << name;
+    const dynamics::StepperCounters& c = stepper->counters();
+    EXPECT_EQ(c.halved_steps, 1) << name;
+    EXPECT_EQ(c.step_parts, c.steps) << name;
+    EXPECT_EQ(c.most_halvings, std::lround(-std::log2(result.h / 0.65))) << name;
+    EXPECT_GE(c.definite_retries, c.rejected) << name;
+    EXPECT_EQ(std::count_if(kept.all.begin(), kept.all.end(), [](const auto& a) { return a.halvings > 0; }),
+              c.step_parts + c.rejected - 1)
+        << name << ": every attempt but the first is at a part";
   }
 }
 

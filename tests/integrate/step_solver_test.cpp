@@ -33,6 +33,7 @@ TEST(StepSolver, LeavesAnUnsymmetricMatrixToLuWhereTheIterationDoesNotConverge) 
     solver.report(counted);
     EXPECT_EQ(counted.unconverged, 1) << border;
     EXPECT_EQ(counters::counter("integrate.matrices_left_to_lu"), before + 1) << border;
+    EXPECT_EQ(counted.lu, 1) << border;
     EXPECT_EQ(counted.indefinite, 0) << border;
     EXPECT_EQ(reassembled, 0) << border << ": nothing is projected";
   }

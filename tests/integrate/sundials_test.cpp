@@ -217,6 +217,62 @@ TEST(MultiRate, FastStepsAreLimitedAndInterrupted) {
   }
 }
 
+TEST(MultiRate, CountsItsFastSteps) {
+  Chain chain;
+  chain.state.u().setOnes();
+  const auto fast = std::make_shared<FastDamper>();
+  chain.system.add(fast);
+  chain.system.prepare(chain.state.view());
+  const auto stepper =
+      integrate::make_stepper(chain.system, chain.state, {.name = "ark-mri-2", .step_s = 1e-4});
+  ASSERT_TRUE(stepper->advance_to(1e-3).ok());
+  EXPECT_EQ(stepper->counters().steps, 10);
+  // Bogacki and Shampine are stable up to 2.5 rates, and take three evaluations a step
+  EXPECT_GT(stepper->counters().fast_steps, 1e-3 * 1e6 / 3.0);
+  EXPECT_LT(3 * stepper->counters().fast_steps, fast->evaluations);
+}
+
+// --- what is silent
+
+// A matrix serves CVODE for several steps: its iterations are known, and no more than all.
+TEST(Silent, IterationsByAKeptMatrixAreCounted) {
+  for (const char* name : {"cvode-bdf", "ida", "ark-dirk-esdirk437"}) {
+    Chain chain(0.02);
+    chain.start_in_mode(0.1);
+    const auto stepper = integrate::make_stepper(chain.system, chain.state, {.name = name, .rtol = 1e-6});
+    ASSERT_TRUE(stepper->advance_to(1.0).ok());
+    const StepperCounters& c = stepper->counters();
+    EXPECT_GT(c.kept_matrix_iterations, 0) << name;
+    EXPECT_LT(c.kept_matrix_iterations, c.newton_iterations) << name << ": the first of each matrix is not";
+    EXPECT_EQ(c.definite_retries + c.leaps + c.halved_steps + c.lu + c.fast_steps, 0) << name;
+  }
+}
+
+/// Says that each of its tangents was bounded.
+struct Bounded final : ForceTerm {
+  long bounded = 5;
+  std::string_view name() const override { return "bounded"; }
+  TermTraits traits() const override { return {}; }
+  void add_force(const StateView&, VecX&) override {}
+  void add_tangent(const StateView&, double k, double, BorderedMatrix&) override { bounded += k != 0.0; }
+  void apply_tangent(const StateView&, double, double, const VecX&, VecX&) override {}
+  long clamped_tangents() const override { return bounded; }
+};
+
+TEST(Silent, BoundedTangentsAreCounted) {
+  for (const char* name : {"cvode-bdf", "backward-euler", "kinsol-static"}) {
+    Chain chain;
+    const auto term = std::make_shared<Bounded>();
+    chain.system.add(std::static_pointer_cast<ForceTerm>(term));
+    chain.system.prepare(chain.state.view());
+    chain.start_in_mode(0.1);
+    const auto stepper = integrate::make_stepper(chain.system, chain.state, {.name = name});
+    ASSERT_TRUE(stepper->advance_to(0.01).ok());
+    EXPECT_GT(stepper->counters().clamped, 0) << name;
+    EXPECT_EQ(stepper->counters().clamped, term->bounded - 5) << name << ": since it was made";
+  }
+}
+
 // --- statics
 
 const IntegratorSpec kStatic{.name = "kinsol-static"};
@@ -246,6 +302,7 @@ TEST(KinsolStatic, FindsTheEquilibriumOfALinearSystem) {
   EXPECT_LT((chain.state.q() - exact).norm(), 1e-8);
   EXPECT_EQ(chain.state.u().norm(), 0.0);
   EXPECT_LE(stepper->counters().newton_iterations, 2);
+  EXPECT_EQ(stepper->counters().halved_steps + stepper->counters().downhill, 0);
 }
 
 /// Snap-through: a mass on two springs that meet at a shallow angle, V = k (sqrt(1 + x^2) - L)^2 with L > 1,
@@ -289,6 +346,11 @@ TEST(KinsolStatic, SnapsThroughALimitLoad) {
   EXPECT_LT(state.q()[0], -0.45) << "on the other side";
   EXPECT_NEAR(arch->force(state.q()[0]), 0.0, 1e-6);
   EXPECT_GT(arch->stiffness(state.q()[0]), 0.0) << "stable";
+  const StepperCounters& c = stepper->counters();
+  EXPECT_GT(c.downhill, 0) << "Newton's method alone does not get there";
+  EXPECT_EQ(c.halved_steps, 1) << "the one load step";
+  EXPECT_EQ(c.most_halvings, 6) << "down to the shortest rung";
+  EXPECT_LE(c.step_parts + c.downhill, c.steps + 1);
 }
 
 TEST(KinsolStatic, SaysThatAFreeBodyHasNoEquilibrium) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,9 @@ std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynami
 /// The linear solver that the spec names, or else the method's own, where factor_kept_steps > 1 cholmod;
 /// empty where the method is explicit.  @throws Error for an unknown integrator
 std::string linear_solver_of(const IntegratorSpec& spec);
+/// The tolerance of the method's own error test with this spec (StepperEntry::error_test_rtol); empty where
+/// steps are fixed.  Of a multi-rate method that of the fast side.  @throws Error for an unknown integrator
+std::optional<double> error_test_rtol_of(const IntegratorSpec& spec);
 /// The linear solver of that name with an LU behind it: takes unsymmetric and indefinite matrices too, and
 /// right-hand sides that an iteration does not answer.  For those whose matrices are usually positive
 /// definite and who have no step to shorten.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "integrate/settings.h"
+#include "integrate/tuning.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -17,9 +18,6 @@ using dynamics::StepResult;
 using dynamics::StepStatus;
 
 namespace {
-
-constexpr int kHalvings = 6;           // 2^6 = 64 parts
-constexpr double kRoundingOfH = 1e-9;  // a step that is longer than another by less is as long
 
 StepAttempt::Outcome outcome_of(StepStatus status) {
   switch (status) {
@@ -54,7 +52,8 @@ StepResult FixedStep::advance_to(double t_end) {
     return result;
   }
   taken_ = 0;
-  const double count = std::max(1.0, std::ceil((t_end - start) / spec_.step_s * (1.0 - kRoundingOfH))),
+  const double count =
+                   std::max(1.0, std::ceil((t_end - start) / spec_.step_s * (1.0 - tuning::kRoundingOfStep))),
                h = (t_end - start) / count;
   for (double k = 1.0; state_.time() < t_end; ++k) {
     result = cover(k < count ? start + k * h : t_end, h, t_end);
@@ -71,7 +70,7 @@ StepResult FixedStep::cover(double t1, double h, double t_end) {
     if (taken_ == spec_.max_steps)
       return failure(StepStatus::kTooManySteps, part, 0,
                      fmt::format("{} steps before t_end = {}", taken_, t_end));
-    const bool last = halvings == 0 || t1 - state_.time() <= part * (1.0 + kRoundingOfH);
+    const bool last = halvings == 0 || t1 - state_.time() <= part * (1.0 + tuning::kRoundingOfStep);
     const double to = last ? t1 : state_.time() + part, length = halvings == 0 ? h : to - state_.time();
     q1_.resize(layout().q_size);
     u1_.resize(layout().u_size);
@@ -85,9 +84,9 @@ StepResult FixedStep::cover(double t1, double h, double t_end) {
       if (tried.status == StepStatus::kNewtonFailed) ++counters_.newton_failures;
       if (!tried.recoverable) return failure(tried.status, length, tried.iterations, tried.what);
       if (halvings == 0) ++counters_.halved_steps;
-      if (++halvings > kHalvings)
+      if (++halvings > tuning::kHalvings)
         return failure(tried.status, length, tried.iterations,
-                       fmt::format("{}, not even at h/{}", tried.what, 1 << kHalvings));
+                       fmt::format("{}, not even at h/{}", tried.what, 1 << tuning::kHalvings));
       counters_.most_halvings = std::max<long>(counters_.most_halvings, halvings);
       part /= 2.0;
       continue;

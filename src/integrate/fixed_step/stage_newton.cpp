@@ -4,6 +4,7 @@
 
 #include "integrate/error_weights.h"
 #include "integrate/fixed_step/displace.h"
+#include "integrate/tuning.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/finite.h"
 
@@ -13,12 +14,7 @@ using dynamics::SolveStatus;
 using dynamics::StateView;
 using dynamics::StepStatus;
 
-namespace {
-
-constexpr int kIterations = 20, kDefiniteIterations = 60;
-constexpr double kOtherCoefficients = 0.1;
-
-}  // namespace
+namespace {}  // namespace
 
 StageNewton::StageNewton(dynamics::System& system, const IntegratorSpec& spec,
                          std::unique_ptr<dynamics::LinearSolver> solver)
@@ -43,7 +39,7 @@ NewtonResult StageNewton::solve(const Stage& stage, const StateView& from, VecX&
   weights_.resize(layout.q_size + layout.u_size);
   error_weights(layout, tolerance_, system_.driven_mask(), from.u.data(), weights_.data());
 
-  NewtonResult result = iterate(kIterations, kept_steps_ == 1);
+  NewtonResult result = iterate(tuning::kNewtonIterations, kept_steps_ == 1);
   counters.kept_matrix_iterations += result.kept;
   if (result.status == StepStatus::kOk) return result;
   ++counters.definite_retries;
@@ -52,7 +48,7 @@ NewtonResult StageNewton::solve(const Stage& stage, const StateView& from, VecX&
   NewtonResult second;
   {
     const ProjectedTangents projected(system_);
-    second = iterate(kDefiniteIterations, true);
+    second = iterate(tuning::kDefiniteIterations, true);
   }
   forget();  // the next step wants the true tangent
   second.iterations += result.iterations;
@@ -94,7 +90,7 @@ StateView StageNewton::at() const {
 
 bool StageNewton::usable() const {
   const auto near = [](double now, double then) {
-    return std::abs(now - then) <= kOtherCoefficients * std::abs(then);
+    return std::abs(now - then) <= tuning::kOtherCoefficients * std::abs(then);
   };
   return have_factor_ && age_ < kept_steps_ && near(stage_->c_a, m_scale_) &&
          near(stage_->weight * stage_->c_u, d_scale_) && near(stage_->weight * stage_->c_theta, k_scale_);

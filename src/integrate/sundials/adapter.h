@@ -10,6 +10,7 @@
 #include "integrate/sundials/fixed_step_newton.h"
 #include "integrate/sundials/hidden.h"
 #include "integrate/sundials/hooks.h"
+#include "integrate/tuning.h"
 #include "palpate/dynamics/spec.h"
 
 namespace palpate::integrate {
@@ -17,10 +18,6 @@ namespace PALPATE_HIDDEN sun {
 
 constexpr int kRecoverable = 1;
 constexpr int kUnrecoverable = -1;
-/// A force that jumps (a damper at first touch) makes the step shrink by ten a failure, down to where the
-/// jump is below the tolerance; the libraries' own limit of 7 gives up at rtol 1e-8.  A smallest step
-/// bounds it in any case.
-constexpr int kErrorTestFailures = 30;
 
 /// What CVODE, ARKODE and IDA have in common, seen as a Stepper: memory made once a layout, restarts,
 /// landing on the output time, root finding with a restart at the root, counters across restarts, the
@@ -77,16 +74,8 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   const IntegratorSpec& spec() const { return spec_; }
   SUNContext context() const { return context_; }
   N_Vector y() const { return y_; }
-  /// Takes `rtol` in the place of the spec's.
+  /// Takes `rtol` in the place of the spec's (error_test.h).
   void use_tolerance(double rtol) { weight_scale_ = spec_.rtol / rtol; }
-  /// For backward differences up to order k.  Their error test holds C h^(k+1) at a tolerance T, so h ~
-  /// T^(1/(k+1)), and the error over a given time ~ h^k = T^(k/(k+1)): T is rtol^((k+1)/k), so that a tenth
-  /// of rtol buys a tenth of the error; but not below kTightest, where rounding shows.
-  void use_tolerance_of_bdf(int highest_order) {
-    const double k = spec_.max_order > 0 ? spec_.max_order : highest_order;
-    constexpr double kTightest = 1e-12;
-    use_tolerance(std::max(std::pow(spec_.rtol, (k + 1.0) / k), std::min(spec_.rtol, kTightest)));
-  }
   void keep_state();  ///< y(), at the start of a step that may be tried again
   void restore_state();
   /// To be called at every evaluation of the right-hand side: tells attempted steps apart while they are
@@ -105,7 +94,8 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   void allow_leaps(bool on) { fixed_step_newton_.allow_leaps(on); }
   void begin_part(int halvings);  ///< 1/2^halvings of a fixed step is attempted
   void end_part(bool done);
-  void use_own_test();  ///< after it was handed to the library, which sets its own
+  /// After it was handed to the library, which sets its own.  @param fixed_point  in place of make_newton()'s
+  void use_own_test(SUNNonlinearSolver fixed_point = nullptr);
 
   /// Re-evaluates the tangent unless the factor can be kept; to be called by the library's matrix callback.
   bool prepare_matrix(double t, N_Vector y, bool reuse, double gamma, OdeProblem::Side side);
@@ -133,7 +123,8 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   SUNContext context_ = nullptr;
   N_Vector y_ = nullptr, scratch_ = nullptr, weights_ = nullptr;
   SUNNonlinearSolver newton_ = nullptr;
-  bool by_library_newton_ = false, fresh_matrix_ = false, kept_matrix_ = false;
+  double newton_tolerance_ = 0.0;  ///< of the nonlinear solve under way
+  bool fixed_point_ = false, by_library_newton_ = false, fresh_matrix_ = false, kept_matrix_ = false;
   FixedStepNewton fixed_step_newton_{*this};
   double rate_ = 1.0, previous_correction_ = 0.0;  ///< contraction of Newton's iteration
   void fill_weights(N_Vector y, N_Vector w) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrate/error_test.h"
 #include "integrate/make.h"
 #include "integrate/mechanical_problem.h"
 #include "integrate/settings.h"
@@ -22,17 +23,9 @@ using dynamics::StepControl;
 using dynamics::StepStatus;
 using Side = OdeProblem::Side;
 
-/// ARKODE's own 3 fail about once a step on soft bodies.
-constexpr int kNewtonIterations = 8;
 constexpr int kInterpolantDegree = 3;  ///< cubic Hermite: no evaluation of its own
 /// a root's state is where the next step starts from: worth two evaluations
 constexpr int kRootDegree = 5;
-/// Newton ends at this share of the tolerance, not at ARKODE's tenth: what it leaves has one sign from step
-/// to step while an old factor is kept, and a method of order 2 takes thousands of steps.  Where the pair's
-/// tolerance T is above rtol (tolerance_of), the share is of rtol: the solution carried on is better than T
-/// says, and must not be spoilt by its stages.
-constexpr double kNewtonCoefficient = 0.01;
-
 /// Runge-Kutta methods of SUNDIALS ARKODE (Reynolds et al. 2023): explicit, diagonally implicit, or additive
 /// (what is stiff implicit, the rest explicit), by the tables of ark_methods.cpp; step by error control, or
 /// step_s with fixed_step. One-step: a change from outside restarts it without loss, with the step that it
@@ -46,23 +39,21 @@ class Ark final : public Adapter {
     if (spec.fixed_step)
       check_fixed_step(spec);
     else
-      check_adaptive(spec, method_.traits.order);
-    use_tolerance(tolerance_of(spec, method_));
+      check_adaptive(spec, method_.traits.order, tightest_rtol_of_ark(spec));
+    use_tolerance(tolerance_of(spec));
   }
   ~Ark() override { Ark::destroy(); }
 
  private:
-  /// The error estimate of a pair p (p^) is O(h^(m+1)), m = min(p, p^), so a step that meets a tolerance T
-  /// has h ~ T^(1/(m+1)), and the solution an error ~ h^p = T^(p/(m+1)).  For the usual p^ = p - 1 that is T.
-  /// For the others the tolerance is taken to the power (m+1)/p, so that with every method a tenth of rtol
-  /// buys a tenth of the error. Three pairs have m = p on linear motions and p - 1 on others.  Half-way
-  /// between, m = p - 1/2, the error falls as T^((p+1/2)/(p+1)) on the former and T^((p+1/2)/p) on the
-  /// latter: 0.90 and 1.13 for p = 4, 0.92 and 1.10 for p = 5. With a fixed step what the weights serve is
-  /// Newton alone, and newton_rtol takes the place of rtol.
-  static double tolerance_of(const IntegratorSpec& spec, const ArkMethod& method) {
-    const double p = method.traits.order, m = std::min<double>(p, method.embedded_order) +
-                                              (method.sharper_on_linear_motion ? 0.5 : 0.0);
-    return spec.fixed_step ? spec.newton_rtol : std::pow(spec.rtol, (m + 1.0) / p);
+  /// With a fixed step what the weights serve is Newton alone, and newton_rtol takes the place of rtol.
+  static double tolerance_of(const IntegratorSpec& spec) {
+    return spec.fixed_step ? spec.newton_rtol : error_test_rtol_of_ark(spec);
+  }
+  /// Newton's share of the tolerance.  Where the pair's tolerance T is above rtol, the share is of rtol: the
+  /// solution carried on is better than T says, and must not be spoilt by its stages.
+  static double newton_share(const IntegratorSpec& spec) {
+    const double aim = spec.fixed_step ? spec.newton_rtol : spec.rtol;
+    return tuning::kNewtonShare * std::min(1.0, aim / tolerance_of(spec));
   }
 
   bool has_implicit() const { return method_.implicit_table >= 0; }
@@ -88,7 +79,8 @@ class Ark final : public Adapter {
     check(ARKStepSetInterpolantDegree(memory_,
                                       spec().events == "root-finding" ? kRootDegree : kInterpolantDegree),
           "ARKStepSetInterpolantDegree", t, 0.0);
-    check(ARKStepSetMaxErrTestFails(memory_, kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
+    check(ARKStepSetMaxErrTestFails(memory_, tuning::kErrorTestFailures), "ARKStepSetMaxErrTestFails", t,
+          0.0);
     if (problem().has_manifold())
       check(ARKStepSetPostprocessStepFn(memory_, project_step), "ARKStepSetPostprocessStepFn", t, 0.0);
     if (has_implicit()) use_newton(t);
@@ -102,11 +94,9 @@ class Ark final : public Adapter {
     matrix_ = make_matrix(context());
     check(ARKStepSetLinearSolver(memory_, linear_solver_, matrix_), "ARKStepSetLinearSolver", t, 0.0);
     check(ARKStepSetLinSysFn(memory_, linear_system), "ARKStepSetLinSysFn", t, 0.0);
-    check(ARKStepSetMaxNonlinIters(memory_, kNewtonIterations), "ARKStepSetMaxNonlinIters", t, 0.0);
-    const double aim = spec().fixed_step ? spec().newton_rtol : spec().rtol;
-    check(ARKStepSetNonlinConvCoef(memory_,
-                                   kNewtonCoefficient * std::min(1.0, aim / tolerance_of(spec(), method_))),
-          "ARKStepSetNonlinConvCoef", t, 0.0);
+    check(ARKStepSetMaxNonlinIters(memory_, tuning::kArkNewtonIterations), "ARKStepSetMaxNonlinIters", t,
+          0.0);
+    check(ARKStepSetNonlinConvCoef(memory_, newton_share(spec())), "ARKStepSetNonlinConvCoef", t, 0.0);
     // f of a stage from its equation: spares evaluations
     check(ARKStepSetDeduceImplicitRhs(memory_, SUNTRUE), "ARKStepSetDeduceImplicitRhs", t, 0.0);
   }
@@ -179,8 +169,7 @@ class Ark final : public Adapter {
   /// With a fixed step no accuracy was asked for: what is out of proportion to the weights is the solution.
   std::string remedy(int flag) const override {
     if (flag == ARK_CONV_FAILURE && spec().fixed_step)
-      return fmt::format("  Not even at h/{}: a smaller step_s, or error control",
-                         1 << StepInParts::kHalvings);
+      return fmt::format("  Not even at h/{}: a smaller step_s, or error control", 1 << tuning::kHalvings);
     if (flag != ARK_TOO_MUCH_ACC || !spec().fixed_step) return {};
     return has_implicit() ? "  The solution has grown out of bounds at this fixed step: a smaller step_s, or "
                             "error control"

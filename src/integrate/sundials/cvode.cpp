@@ -4,6 +4,7 @@
 #include <nvector/nvector_serial.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+#include "integrate/error_test.h"
 #include "integrate/make.h"
 #include "integrate/mechanical_problem.h"
 #include "integrate/settings.h"
@@ -19,7 +20,6 @@ using dynamics::StepStatus;
 using Side = OdeProblem::Side;
 
 constexpr int kHighestBdf = 5, kHighestAdams = 12;
-constexpr int kNewtonIterations = 4;  ///< one more than CVODE's 3: our test seldom takes the first correction
 
 /// Linear multistep methods of variable order and step by SUNDIALS CVODE (Hindmarsh et al. 2005, Gardner et
 /// al. 2022), in the fixed-leading-coefficient form
@@ -32,9 +32,11 @@ class Cvode final : public Adapter {
  public:
   Cvode(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec, int method)
       : Adapter(std::move(problem), spec), method_(method) {
-    check_adaptive(spec, method == CV_BDF ? kHighestBdf : kHighestAdams);
-    // the order of Adams-Moulton rises with the tolerance up to 12: its error falls as rtol by itself
-    if (method == CV_BDF) use_tolerance_of_bdf(kHighestBdf);
+    if (method == CV_BDF)
+      check_adaptive(spec, kHighestBdf, tightest_rtol_of_bdf(spec));
+    else
+      check_adaptive(spec, kHighestAdams, tightest_rtol_of_adams(spec));
+    use_tolerance(method == CV_BDF ? error_test_rtol_of_bdf(spec) : error_test_rtol_of_adams(spec));
   }
   ~Cvode() override { Cvode::destroy(); }
 
@@ -49,7 +51,7 @@ class Cvode final : public Adapter {
     check(CVodeSetUserData(memory_, static_cast<Adapter*>(this)), "CVodeSetUserData", t, 0.0);
     check(CVodeWFtolerances(memory_, weights), "CVodeWFtolerances", t, 0.0);
     if (spec().max_order > 0) check(CVodeSetMaxOrd(memory_, spec().max_order), "CVodeSetMaxOrd", t, 0.0);
-    check(CVodeSetMaxErrTestFails(memory_, kErrorTestFailures), "CVodeSetMaxErrTestFails", t, 0.0);
+    check(CVodeSetMaxErrTestFails(memory_, tuning::kErrorTestFailures), "CVodeSetMaxErrTestFails", t, 0.0);
     if (method_ == CV_BDF)
       use_newton(t);
     else
@@ -62,7 +64,7 @@ class Cvode final : public Adapter {
   void use_newton(double t) {
     check(CVodeSetNonlinearSolver(memory_, make_newton()), "CVodeSetNonlinearSolver", t, 0.0);
     use_own_test();
-    check(CVodeSetMaxNonlinIters(memory_, kNewtonIterations), "CVodeSetMaxNonlinIters", t, 0.0);
+    check(CVodeSetMaxNonlinIters(memory_, tuning::kCvodeNewtonIterations), "CVodeSetMaxNonlinIters", t, 0.0);
     linear_solver_ = make_linear_solver(*this, context());
     matrix_ = make_matrix(context());
     check(CVodeSetLinearSolver(memory_, linear_solver_, matrix_), "CVodeSetLinearSolver", t, 0.0);
@@ -73,7 +75,8 @@ class Cvode final : public Adapter {
     nonlinear_solver_ = SUNNonlinSol_FixedPoint(y(), 0, context());
     check(nonlinear_solver_, "SUNNonlinSol_FixedPoint");
     check(CVodeSetNonlinearSolver(memory_, nonlinear_solver_), "CVodeSetNonlinearSolver", t, 0.0);
-    check(CVodeSetMaxNonlinIters(memory_, 6), "CVodeSetMaxNonlinIters", t, 0.0);
+    use_own_test(nonlinear_solver_);
+    check(CVodeSetMaxNonlinIters(memory_, tuning::kFixedPointIterations), "CVodeSetMaxNonlinIters", t, 0.0);
   }
 
   void destroy() override {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "integrate/sundials/check.h"
+#include "integrate/tuning.h"
 #include "palpate/core/finite.h"
 
 namespace palpate::integrate::sun {
@@ -13,9 +14,6 @@ using dynamics::SolveStatus;
 using dynamics::StepStatus;
 
 namespace {
-
-constexpr int kIterations = 20, kDefiniteIterations = 60;
-constexpr double kRounding = 1e-14;
 
 Eigen::Map<VecX> entries(N_Vector v) { return {NV_DATA_S(v), NV_LENGTH_S(v)}; }
 
@@ -104,7 +102,8 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
   if (set_up) usable_ = false;
   const VecX first = entries(correction);
   VecX x = first;
-  NewtonResult result = newton_.solve(*this, x, kIterations, DampedNewton::Way::kKeptMatrix, usable_);
+  NewtonResult result =
+      newton_.solve(*this, x, tuning::kNewtonIterations, DampedNewton::Way::kKeptMatrix, usable_);
   iterations_ = result.iterations;
   const int kept = result.kept;
   bool definite = false, leapt = false;
@@ -112,7 +111,7 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
     x = first;
     definite = true;
     hook_.project_to_psd(true);
-    result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kFresh, false);
+    result = newton_.solve(*this, x, tuning::kDefiniteIterations, DampedNewton::Way::kFresh, false);
     hook_.project_to_psd(false);
     usable_ = false;  // the next solve wants the true tangent
     iterations_ += result.iterations;
@@ -120,7 +119,7 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
   if (result.status != StepStatus::kOk && flag_ >= 0 && leaps_) {
     x = first;
     leapt = true;
-    result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kLeaps, false);
+    result = newton_.solve(*this, x, tuning::kDefiniteIterations, DampedNewton::Way::kLeaps, false);
     iterations_ += result.iterations;
   }
   entries(correction) = x;
@@ -142,7 +141,7 @@ bool FixedStepNewton::solved() const { return (entries(residual_).array() == 0.0
 /// The value of the stage: the unknown is a correction to a prediction of it.
 double FixedStepNewton::rounding(const VecX&) {
   const N_Vector stage = hook_.iterate();
-  return stage ? kRounding * N_VWrmsNorm(stage, weights_) / tolerance_ : 0.0;
+  return stage ? tuning::kRounding * N_VWrmsNorm(stage, weights_) / tolerance_ : 0.0;
 }
 
 SolveStatus FixedStepNewton::refresh() {

@@ -2,6 +2,7 @@
 #include <ida/ida_ls.h>
 #include <nvector/nvector_serial.h>
 
+#include "integrate/error_test.h"
 #include "integrate/make.h"
 #include "integrate/mechanical_problem.h"
 #include "integrate/settings.h"
@@ -27,8 +28,8 @@ constexpr int kHighestOrder = 5;
 class Ida final : public Adapter {
  public:
   Ida(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec) {
-    check_adaptive(spec, kHighestOrder);
-    use_tolerance_of_bdf(kHighestOrder);
+    check_adaptive(spec, kHighestOrder, tightest_rtol_of_bdf(spec));
+    use_tolerance(error_test_rtol_of_bdf(spec));
   }
   ~Ida() override { Ida::destroy(); }
 
@@ -45,7 +46,7 @@ class Ida final : public Adapter {
     check(IDASetUserData(memory_, static_cast<Adapter*>(this)), "IDASetUserData", t, 0.0);
     check(IDAWFtolerances(memory_, weights), "IDAWFtolerances", t, 0.0);
     if (spec().max_order > 0) check(IDASetMaxOrd(memory_, spec().max_order), "IDASetMaxOrd", t, 0.0);
-    check(IDASetMaxErrTestFails(memory_, kErrorTestFailures), "IDASetMaxErrTestFails", t, 0.0);
+    check(IDASetMaxErrTestFails(memory_, tuning::kErrorTestFailures), "IDASetMaxErrTestFails", t, 0.0);
     check(IDASetNonlinearSolver(memory_, make_newton()), "IDASetNonlinearSolver", t, 0.0);
     use_own_test();
     linear_solver_ = make_linear_solver(*this, context());

@@ -2,6 +2,7 @@
 #include <kinsol/kinsol_ls.h>
 #include <nvector/nvector_serial.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,7 @@
 #include "integrate/sundials/check.h"
 #include "integrate/sundials/hooks.h"
 #include "integrate/sundials/vector_ops.h"
+#include "integrate/tuning.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -23,15 +25,8 @@ namespace {
 using namespace dynamics;
 
 constexpr int kRecoverable = 1;
-constexpr long kNewtonIterations = 25;
-constexpr double kShortestRung = 1.0 / 64.0;
-constexpr int kProximalSteps = 200;
-constexpr double kRounding = 1e-14;  // of the forces that cancel in a balance: less is no error
-constexpr double kSmallest =         // positions and forces below it have lost digits to underflow
+constexpr double kSmallest =  // positions and forces below it have lost digits to underflow
     std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
-constexpr int kRefinements = 3;
-constexpr double kHelps = 0.5;  // a correction that lowers the residual by less is lost in rounding
-
 /// Quasi-static equilibrium, f(q, 0, t) = 0, by Newton's method of SUNDIALS KINSOL with the exact tangent at
 /// every iteration. The State at t_end is the equilibrium that belongs to t_end, reached from the one before;
 /// velocities are zero.
@@ -125,7 +120,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
       s_ = std::min(1.0, s + rung);
       sigma_ = 0.0;
       flag = solve(iterations);
-      if (flag < 0 && rung > kShortestRung) {
+      if (flag < 0 && rung > tuning::kShortestRung) {
         ++counters_.rejected;
         counters_.halved_steps += !halved;
         halved = true;
@@ -150,7 +145,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     sigma_ = stiffness_over_mass();
     if (!(sigma_ > 0.0)) return false;
     const double largest = 1e6 * sigma_;
-    for (int k = 0; k < kProximalSteps && !interrupted(); ++k) {
+    for (int k = 0; k < tuning::kProximalSteps && !interrupted(); ++k) {
       flag = solve(iterations);
       if (flag < 0) {
         ++counters_.rejected;
@@ -216,7 +211,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     if (size > rounding()) return false;
     ++counters_.rounding_limited;
     if (setup() != 0) return true;  // a free body that rests
-    for (int k = 0; k < kRefinements && size > spec_.newton_rtol; ++k) {
+    for (int k = 0; k < tuning::kRefinements && size > spec_.newton_rtol; ++k) {
       rhs_ = g_;
       if (solve_for_step() != 0) break;
       kept_ = x;
@@ -226,7 +221,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
         x = kept_;
         break;
       }
-      if (size > kHelps * before) break;
+      if (size > tuning::kRefinementHelps * before) break;
     }
     return true;
   }
@@ -347,7 +342,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     absolute_.corner = A_.corner.cwiseAbs();
     absolute_.multiply(coordinate_, summands_);
     for (int dof : system_.driven_dofs()) summands_[dof] = 0.0;
-    return kRounding * size_of(summands_);
+    return tuning::kRounding * size_of(summands_);
   }
 
   /// What proximal steps begin with [1/s^2]: the largest stiffness of a node over the largest mass of one,
@@ -449,7 +444,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     check(KINSetJacFn(kinsol_, jacobian), "KINSetJacFn", t, 0.0);
     // a tangent an iteration: with an old one Newton leaves soft bodies
     check(KINSetMaxSetupCalls(kinsol_, 1), "KINSetMaxSetupCalls", t, 0.0);
-    check(KINSetNumMaxIters(kinsol_, kNewtonIterations), "KINSetNumMaxIters", t, 0.0);
+    check(KINSetNumMaxIters(kinsol_, tuning::kStaticIterations), "KINSetNumMaxIters", t, 0.0);
     check(KINSetMaxNewtonStep(kinsol_, 1e30), "KINSetMaxNewtonStep", t, 0.0);  // the ladder keeps steps short
     layout_version_ = state_.layout().version;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "integrate/error_test.h"
 #include "integrate/make.h"
 #include "integrate/mechanical_problem.h"
 #include "integrate/settings.h"
@@ -22,11 +23,6 @@ namespace {
 using dynamics::StepStatus;
 using Side = OdeProblem::Side;
 
-constexpr double kNewtonCoefficient = 0.01;
-/// The fast side is integrated to a thousandth of rtol, so that the slow step decides the order.
-constexpr double kFastShare = 1e-3;
-constexpr int kLeastFastSteps = 1000;  ///< a small max_steps is meant for the slow ones
-
 /// Multi-rate infinitesimal methods of Sandu (2019) by SUNDIALS ARKODE's MRIStep: y' = f_S + f_F, the bodies
 /// slow and implicit, tool and contact fast. Between two slow stages, c_i and c_(i+1), the fast side is
 /// integrated with the slow one as a polynomial forcing,
@@ -44,6 +40,7 @@ class Mri final : public Adapter {
   Mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec)
       : Adapter(std::move(problem), spec), method_(multirate_method(spec.name)) {
     check_fixed_step(spec);
+    check_tightest(spec, tightest_rtol_of_mri(spec));
     use_tolerance(spec.newton_rtol);
   }
   ~Mri() override { Mri::destroy(); }
@@ -68,7 +65,7 @@ class Mri final : public Adapter {
     matrix_ = make_matrix(context());
     check(MRIStepSetLinearSolver(slow_, linear_solver_, matrix_), "MRIStepSetLinearSolver", t, 0.0);
     check(MRIStepSetLinSysFn(slow_, linear_system), "MRIStepSetLinSysFn", t, 0.0);
-    check(MRIStepSetNonlinConvCoef(slow_, kNewtonCoefficient), "MRIStepSetNonlinConvCoef", t, 0.0);
+    check(MRIStepSetNonlinConvCoef(slow_, tuning::kNewtonShare), "MRIStepSetNonlinConvCoef", t, 0.0);
     if (problem().has_manifold())
       check(MRIStepSetPostprocessStepFn(slow_, project_step), "MRIStepSetPostprocessStepFn", t, 0.0);
   }
@@ -82,9 +79,9 @@ class Mri final : public Adapter {
     check(ARKStepSetTableNum(fast_, ARKODE_DIRK_NONE, ARKODE_BOGACKI_SHAMPINE_4_2_3), "ARKStepSetTableNum", t,
           0.0);
     // between two slow stages
-    check(ARKStepSetMaxNumSteps(fast_, std::max(kLeastFastSteps, spec().max_steps)), "ARKStepSetMaxNumSteps",
-          t, 0.0);
-    check(ARKStepSetMaxErrTestFails(fast_, kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
+    check(ARKStepSetMaxNumSteps(fast_, std::max(tuning::kLeastFastSteps, spec().max_steps)),
+          "ARKStepSetMaxNumSteps", t, 0.0);
+    check(ARKStepSetMaxErrTestFails(fast_, tuning::kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
     check(ARKStepCreateMRIStepInnerStepper(fast_, &inner_), "ARKStepCreateMRIStepInnerStepper", t, 0.0);
   }
 
@@ -138,7 +135,7 @@ class Mri final : public Adapter {
   std::string flag_name(int flag) const override { return sun::flag_name("MRIStep", flag); }
   std::string remedy(int flag) const override {
     return flag == ARK_CONV_FAILURE
-               ? fmt::format("  Not even at h/{}: a smaller step_s", 1 << StepInParts::kHalvings)
+               ? fmt::format("  Not even at h/{}: a smaller step_s", 1 << tuning::kHalvings)
                : std::string();
   }
   bool interpolate(double t, N_Vector out) const override {
@@ -187,7 +184,7 @@ class Mri final : public Adapter {
   }
   static int fast_weights(N_Vector y, N_Vector w, void* data) {
     self(data).problem().weights(NV_DATA_S(y), NV_DATA_S(w));
-    N_VScale(1.0 / kFastShare, w, w);
+    N_VScale(1.0 / tuning::kFastShare, w, w);
     return 0;
   }
   static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, booleantype reuse,

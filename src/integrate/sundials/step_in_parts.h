@@ -1,5 +1,6 @@
 #pragma once
 #include "integrate/sundials/hidden.h"
+#include "integrate/tuning.h"
 
 namespace palpate::integrate {
 namespace PALPATE_HIDDEN sun {
@@ -9,7 +10,6 @@ namespace PALPATE_HIDDEN sun {
 /// user who chose h wants the other steps as they are.
 class StepInParts {
  public:
-  static constexpr int kHalvings = 6;
   explicit StepInParts(double step) : step_(step) {}
 
   bool halved() const { return halvings_ > 0; }
@@ -18,22 +18,21 @@ class StepInParts {
   /// From t towards t_end.  What is longer than a step by rounding is one, and a step shorter than rounding
   /// of the others is none.
   double next(double t, double t_end) {
-    if (halvings_ > 0 && t >= whole_end_ - kRounding * step_) halvings_ = 0;
+    if (halvings_ > 0 && t >= whole_end_ - tuning::kRoundingOfStep * step_) halvings_ = 0;
     const double end = halvings_ > 0 ? whole_end_ : t_end, wanted = halvings_ > 0 ? part_ : step_;
-    length_ = end - t <= wanted * (1.0 + kRounding) ? end - t : wanted;
+    length_ = end - t <= wanted * (1.0 + tuning::kRoundingOfStep) ? end - t : wanted;
     return length_;
   }
   /// The step of next() from t has failed: a shorter one; false where it was short enough.
   bool shorten(double t) {
     if (halvings_ == 0) whole_end_ = t + length_;
-    if (halvings_ == kHalvings) return false;
+    if (halvings_ == tuning::kHalvings) return false;
     part_ = 0.5 * (halvings_ == 0 ? length_ : part_);
     ++halvings_;
     return true;
   }
 
  private:
-  static constexpr double kRounding = 1e-9;  // of a step
   double step_, length_ = 0.0, part_ = 0.0, whole_end_ = 0.0;
   int halvings_ = 0;
 };

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "linear/mixed_precision/energy_bound.h"
 #include "linear/mixed_precision/rigid_mode_coarse_space.h"
 #include "linear/mixed_precision/single_matrix.h"
@@ -35,6 +37,8 @@ class SingleIteration {
   /// such a rho.
   double error(double rho) const { return bounds_[0].error(rho); }
   double solution() const { return bounds_[0].solution(); }
+  /// An error whose square is no more than this is small enough too.
+  void allow(double square) { allowed_ = square; }
   /// Most that rho may be at the end, whatever the bound says.
   void set_floor(double rho) { floor_ = rho; }
 
@@ -69,7 +73,7 @@ class SingleIteration {
 
  private:
   bool reached(const EnergyBound& bound, double rho, double rtol) const {
-    return bound.error(rho) <= rtol * rtol * bound.solution() && rho <= floor_;
+    return bound.error(rho) <= std::max(rtol * rtol * bound.solution(), allowed_) && rho <= floor_;
   }
   bool coarse_on() const { return clusters_.ready(); }
   void precondition(std::size_t cluster, int first, int last);
@@ -86,7 +90,7 @@ class SingleIteration {
   Singles d_, r_, z_, p_, q_;
   Singles y_, w_;   ///< of the clusters: force and moment, and their motion
   Singles pieces_;  ///< motion of their pieces
-  double pq_ = 0.0, floor_ = 0.0;
+  double pq_ = 0.0, floor_ = 0.0, allowed_ = 0.0;
   bool moved_ = false;        ///< d_ + last_length_ p_ is what was found
   float last_length_ = 0.0f;  ///< of the last step, which d_ lacks
   /// one a thread, all alike: each decides for itself, with nothing to wait for

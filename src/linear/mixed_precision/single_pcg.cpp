@@ -9,6 +9,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/dynamics/energy_tolerance.h"
 #include "palpate/dynamics/mixed_precision_step.h"
 
 namespace palpate::linear {
@@ -67,7 +68,8 @@ int parts_of(int nodes) {
 /// Tolerance: linear_rtol bounds the error of the solution itself, |x - x*|_A <= linear_rtol |x*|_A, by
 /// energy_bound.h.  In a step A = M + h D + h^2 K, so the norm is that of the kinetic energy of the velocity
 /// change's error plus the elastic energy that its displacement takes; a residual, which peers stop by,
-/// bounds it up to the condition number only.
+/// bounds it up to the condition number only.  Who knows an absolute error that does no harm
+/// (EnergyTolerance) is spared the digits below it.
 ///
 /// Start: projected_guess.h.  Preconditioner: inverse 3x3 blocks, in `two-level` with rigid clusters beside
 /// them (rigid_mode_coarse_space.h).  Their E is made anew when what its age cost, in iterations above the
@@ -79,7 +81,9 @@ int parts_of(int nodes) {
 ///
 /// A border (a tool) changes the problem: such matrices are solved by "pcg", whose coarse space is the
 /// border.
-class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPrecisionSolver {
+class SinglePcg final : public dynamics::LinearSolver,
+                        public dynamics::MixedPrecisionSolver,
+                        public dynamics::EnergyTolerance {
  public:
   SinglePcg(std::string name, bool two_level, const IntegratorSpec& spec)
       : name_(std::move(name)),
@@ -103,6 +107,8 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
     sum_ += bordered_->counters();
     return sum_;
   }
+
+  void allow_error(double error) override { allowed_ = error; }
 
   SolveStatus factor(const BorderedMatrix& A) override {
     PALPATE_CHECK(A.symmetric, "solver {} was given an unsymmetric matrix", name_);
@@ -167,7 +173,10 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
     check_right_hand_side(b.rows());
     const ScopedTimer timer(counters_.solve_s);
     x.resize(b.size());
-    return solve_column(b.data(), x.data(), true);
+    solve_.allow_error(allowed_);
+    const SolveStatus status = solve_column(b.data(), x.data(), true);
+    solve_.allow_error(0.0);
+    return status;
   }
 
   SolveStatus solve(const MatX& B, MatX& X) override {
@@ -289,7 +298,7 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
 
   std::string name_;
   bool two_level_;
-  double rtol_;
+  double rtol_, allowed_ = 0.0;
   IntegratorSpec spec_;
   const NodeKernels& kernels_;
   ClusterTeam team_;

@@ -59,7 +59,10 @@ SolveStatus SingleSolve::iterate() {
   const ProjectedGuess::Start start = s_.choose();
   if (!std::isfinite(s_.size)) return SolveStatus::kNotConverged;
   s_.iteration.begin(start.energy);
-  if (const SolveStatus status = refine(); status != SolveStatus::kOk) return status;
+  s_.iteration.allow(allowed_);
+  const SolveStatus status = refine();
+  s_.iteration.allow(0.0);
+  if (status != SolveStatus::kOk) return status;
   s_.iteration.end();
   s_.correction =
       std::sqrt((start.change + s_.iteration.solution() - start.energy) / s_.iteration.solution());
@@ -86,7 +89,7 @@ SolveStatus SingleSolve::refine() {
     if (status != SolveStatus::kOk) return status;
     const bool done = s_.iteration.reached(rho * s_.unit(), s_.rtol);
     const double size_before = s_.size;
-    if (done && replacement == 0 && rho * s_.unit() >= unchecked && s_.rtol >= kTrustsSingleStart)
+    if (done && replacement == 0 && rho * s_.unit() >= unchecked && reduction_wanted() >= kTrustsSingleStart)
       return SolveStatus::kOk;
     renew_residual();
     if (s_.size == 0.0) return SolveStatus::kOk;
@@ -98,6 +101,11 @@ SolveStatus SingleSolve::refine() {
     conjugate = s_.iteration.orthogonal_to_last();
   }
   return SolveStatus::kNotConverged;
+}
+
+/// The relative error that is asked for.
+double SingleSolve::reduction_wanted() const {
+  return std::max(s_.rtol, std::sqrt(allowed_ / s_.iteration.solution()));
 }
 
 /// The residual becomes b - A x in double, at the price of about an iteration.
