@@ -347,10 +347,9 @@ TEST(KinsolStatic, SnapsThroughALimitLoad) {
   EXPECT_NEAR(arch->force(state.q()[0]), 0.0, 1e-6);
   EXPECT_GT(arch->stiffness(state.q()[0]), 0.0) << "stable";
   const StepperCounters& c = stepper->counters();
-  EXPECT_GT(c.downhill, 0) << "Newton's method alone does not get there";
   EXPECT_EQ(c.halved_steps, 1) << "the one load step";
-  EXPECT_EQ(c.most_halvings, 6) << "down to the shortest rung";
-  EXPECT_LE(c.step_parts + c.downhill, c.steps + 1);
+  EXPECT_GT(c.most_halvings, 0);
+  EXPECT_EQ(c.step_parts + c.downhill, c.steps);
 }
 
 TEST(KinsolStatic, SaysThatAFreeBodyHasNoEquilibrium) {
@@ -365,6 +364,8 @@ TEST(KinsolStatic, SaysThatAFreeBodyHasNoEquilibrium) {
   const StepResult r = stepper->advance_to(1.0);
   EXPECT_FALSE(r.ok());
   EXPECT_NE(r.message.find("is the body held"), std::string::npos) << r.message;
+  EXPECT_GT(stepper->counters().downhill, 0) << "there is no end of going downhill";
+  EXPECT_EQ(stepper->counters().most_halvings, 6) << "down to the shortest rung";
   EXPECT_EQ(state.q().norm(), 0.0) << "the last good state";
 }
 

@@ -42,9 +42,10 @@ struct Small {
 };
 
 /// A damped soft bar, one end held, that falls under its weight and swings.
-inline std::unique_ptr<Small> swinging_bar() {
+/// @param length, across  elements
+inline std::unique_ptr<Small> swinging_bar(int length, int across) {
   auto s = std::make_unique<Small>();
-  const TetMesh mesh = mesh::box(Vec3(0.12, 0.04, 0.04), {3, 1, 1});
+  const TetMesh mesh = mesh::box(Vec3(0.12, 0.04, 0.04), {length, across, across});
   const auto n = static_cast<int>(mesh.nodes.cols());
   const VecX rest = mesh.nodes.reshaped();
   const int id = s->state.insert(
@@ -86,10 +87,11 @@ inline std::unique_ptr<Small> landing_block(double onset) {
   s->system.add(fem::make_lumped_mass(mesh, material.density, id));
   s->system.add(std::make_shared<SpringFloor>(50.0, onset));
   s->system.prepare(s->state.view());
-  s->duration = 0.12;
+  s->duration = 0.2;
   return s;
 }
 
+inline std::unique_ptr<Small> swinging_bar() { return swinging_bar(3, 1); }
 inline std::unique_ptr<Small> smoothly_landing_block() { return landing_block(1e-3); }
 inline std::unique_ptr<Small> sharply_landing_block() { return landing_block(0.0); }
 

@@ -4,7 +4,7 @@
 #include "integrate/error_weights.h"
 #include "integrate/tolerance_systems.h"
 
-/// Achieved over wanted error: the largest norm of the error at eight outputs, in the weights of rtol
+/// Achieved over wanted error: the largest norm of the error at four outputs, in the weights of rtol
 /// (error_weights.h), so that 1 is what was asked for.  The reference is of another family, at its tightest.
 namespace palpate::fakes {
 
@@ -16,7 +16,7 @@ struct ToleranceScene {
 inline const std::vector<ToleranceScene>& tolerance_scenes() {
   static const std::vector<ToleranceScene> scenes = {
       {"spinning top", spinning_top},
-      {"swinging bar", swinging_bar},
+      {"swinging bar", +[] { return swinging_bar(); }},
       {"landing block", smoothly_landing_block},
   };
   return scenes;
@@ -29,8 +29,8 @@ inline Course course(const ToleranceScene& scene, const IntegratorSpec& spec) {
   const auto small = scene.make();
   const auto stepper = integrate::make_stepper(small->system, small->state, spec);
   Course out;
-  for (int i = 1; i <= 8; ++i) {
-    if (const StepResult r = stepper->advance_to(0.125 * i * small->duration); !r.ok()) fail("{}", r.message);
+  for (int i = 1; i <= 4; ++i) {
+    if (const StepResult r = stepper->advance_to(0.25 * i * small->duration); !r.ok()) fail("{}", r.message);
     out.q.push_back(small->state.q());
     out.u.push_back(small->state.u());
   }
