@@ -171,7 +171,9 @@ ValidationCase spheres_field() {
               "every force comes from this field; a pixel that reads its neighbour, or a depth of few bits, "
               "is felt as texture that no surface has (line and sphere, in closed form)",
           .run = run,
-          .faults = {"sixteen-bits", "neighbours-depth", "lost-samples"}};
+          .faults = {{"sixteen-bits", "against the facets"},
+                     {"neighbours-depth", "depth field against"},
+                     {"lost-samples", "missed or extra"}}};
 }
 
 }  // namespace palpate::validation

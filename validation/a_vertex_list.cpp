@@ -158,7 +158,7 @@ ValidationCase vertex_list() {
           "a vertex that is missed is a spring that is missing (line and triangle, in double); the paper's "
           "interpolated depths stand beside it",
       .run = run,
-      .faults = {"neighbours-depth", "lost-samples"}};
+      .faults = {{"neighbours-depth", "depths of the colliding"}, {"lost-samples", "missed or extra"}}};
 }
 
 }  // namespace palpate::validation

@@ -122,7 +122,7 @@ ValidationCase walls() {
               "an image shows one layer and no wall; what it cannot show must be found and asked of exact "
               "lines, or gears pass through each other (line and triangle, in double)",
           .run = run,
-          .faults = {"ground-for-top", "walls-lost"}};
+          .faults = {{"ground-for-top", "depth field"}, {"walls-lost", "missed or extra"}}};
 }
 
 }  // namespace palpate::validation

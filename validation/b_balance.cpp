@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -69,9 +70,22 @@ struct Balance {
   int samples = 0;
 };
 
-/// Fault "no-rest-offset": weights below zero are cut off.
+/// Faults: "no-rest-offset": weights below zero are cut off; "force-on-one-side": a tenth of it is lost
+/// there; "points-apart": the other side's point is not on the sample's line.
 std::unique_ptr<contact::SampleSource> with_fault(std::unique_ptr<contact::SampleSource> source,
                                                   const std::string& fault) {
+  if (fault == "force-on-one-side")
+    return spoiled(std::move(source), [](auto& samples) {
+      for (auto& s : samples)
+        for (double& w : s.a.weight) w *= 0.9;
+    });
+  if (fault == "points-apart")
+    return spoiled(std::move(source), [](auto& samples) {
+      for (auto& s : samples) {
+        if (s.b.frame >= 0) s.b.offset += 0.5 * kSize * s.normal.unitOrthogonal();
+        std::rotate(s.b.weight.begin(), s.b.weight.begin() + 1, s.b.weight.begin() + std::max(1, s.b.count));
+      }
+    });
   if (fault != "no-rest-offset") return source;
   return spoiled(std::move(source), [](auto& samples) {
     for (auto& s : samples)
@@ -185,7 +199,10 @@ ValidationCase balance() {
               "a contact that is out of balance drives bodies that touch, on their own (action and reaction, "
               "points on one line)",
           .run = run,
-          .faults = {"no-rest-offset"}};
+          .faults = {{"no-rest-offset", "sum of their moments"},
+                     {"force-on-one-side", "sum of normal forces"},
+                     {"force-on-one-side", "sum of forces with friction"},
+                     {"points-apart", "their moment, over depth x friction"}}};
 }
 
 }  // namespace palpate::validation

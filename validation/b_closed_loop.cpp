@@ -108,7 +108,7 @@ ValidationCase closed_loop() {
           "force along a common normal is conservative against a plane, not between two rough skins; how "
           "much it is not has a closed form (k times the loop integral of V dh)",
       .run = run,
-      .faults = {"skin-normals"}};
+      .faults = {{"skin-normals", "net work"}}};
 }
 
 }  // namespace palpate::validation

@@ -209,7 +209,9 @@ ValidationCase felt_detail() {
               "exchange and coupling; nothing of it comes from the coarse levels (volume law over the disc "
               "of contact: a Bessel function)",
           .run = run,
-          .faults = {"coarse-surface", "no-rest-offset", "slow-query"}};
+          .faults = {{"coarse-surface", "on the skin [N]"},
+                     {"no-rest-offset", "at frequency q v"},
+                     {"slow-query", "at frequency q v"}}};
 }
 
 }  // namespace palpate::validation

@@ -40,7 +40,7 @@ scene::Description free_tool_scene(contact::DepthBackend backend, double length,
   return d;
 }
 
-std::vector<loop::TickRecord> run_free_tool(const scene::Description& description) {
+std::vector<loop::TickRecord> run_free_tool(const scene::Description& description, const Spoiler& spoil) {
   struct Keep final : loop::Observer {
     std::vector<loop::TickRecord> ticks;
     void tick(const loop::TickRecord& tick) override { ticks.push_back(tick); }
@@ -52,6 +52,7 @@ std::vector<loop::TickRecord> run_free_tool(const scene::Description& descriptio
   end.time_s = d.duration_s;
   d.device->keyframes = {start, end};
   const auto world = loop::assemble(d);
+  if (spoil) spoil(*world);
   loop::RunOptions options;
   options.observers = {&keep};
   const loop::RunResult result = loop::run(*world, options);

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "faults.h"
 #include "palpate/contact/sources.h"
 #include "palpate/loop/run.h"
 
@@ -16,7 +17,7 @@ namespace palpate::validation {
 scene::Description free_tool_scene(contact::DepthBackend backend, double length, double width);
 
 /// What each tick showed, a millisecond apart.
-std::vector<loop::TickRecord> run_free_tool(const scene::Description& description);
+std::vector<loop::TickRecord> run_free_tool(const scene::Description& description, const Spoiler& spoil = {});
 
 /// Mean acceleration of the tool along x between two times [m/s^2].
 double mean_acceleration(const std::vector<loop::TickRecord>& ticks, double from_s, double to_s);

@@ -36,8 +36,17 @@ double held_force(SurfaceBody& body, std::unique_ptr<contact::SampleSource> sour
   contact::ContactForce term;
   term.add_frame(frame);
   ContactSpec law;
-  law.stiffness_pa_m = fault == "half-stiffness" ? 0.5 * kStiffness : kStiffness;
-  term.add_pair(std::move(source), law);
+  law.stiffness_pa_m = kStiffness;
+  // "surface-area": the area on the sphere instead of its projection, what an elastic foundation normal to
+  // the skin would use
+  term.add_pair(spoiled(std::move(source),
+                        [&](auto& samples) {
+                          for (auto& s : samples)
+                            s.area *= fault == "half-area"      ? 0.5
+                                      : fault == "surface-area" ? kRadius / (kRadius - kDepth - s.gap)
+                                                                : 1.0;
+                        }),
+                law);
   term.refresh(body.state.view());
   return -term.frame_wrench(body.state.view(), 0).force.z();
 }
@@ -45,19 +54,6 @@ double held_force(SurfaceBody& body, std::unique_ptr<contact::SampleSource> sour
 double vertex_force(const TriMesh& mesh, const std::string& fault) {
   SurfaceBody body(mesh);
   const auto frame = contact::fixed_frame();
-  // "surface-area": the area on the sphere instead of its projection, what an elastic foundation normal to
-  // the skin would use
-  if (fault == "surface-area") {
-    double sum = 0.0;
-    std::vector<contact::ContactSample> samples;
-    contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6)
-        ->query(body.state.view(), samples);
-    for (const auto& s : samples) {
-      const double cosine = (kRadius - kDepth - body.state.view().position(s.a.node[0]).z()) / kRadius;
-      sum += kStiffness * std::max(0.0, -s.gap) * s.area / cosine;
-    }
-    return sum;
-  }
   return held_force(body,
                     contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6),
                     frame, fault);
@@ -128,7 +124,7 @@ ValidationCase sphere_on_plane() {
           "facets (volume of a spherical cap).",
           false,
           run,
-          {"half-stiffness", "surface-area"}};
+          {{"half-area", "force on the"}, {"surface-area", "force on the"}}};
 }
 
 }  // namespace palpate::validation

@@ -238,7 +238,7 @@ ValidationCase true_sphere() {
           "beside each other with their orders and times (volume of a spherical cap)",
       .slow = true,
       .run = run,
-      .faults = {"skin-area", "shallow-lost"}};
+      .faults = {{"skin-area", ": force, finest facets"}, {"shallow-lost", ": force, 81 pixels"}}};
 }
 
 }  // namespace palpate::validation

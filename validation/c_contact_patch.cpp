@@ -208,14 +208,15 @@ std::vector<Measurement> run(const std::string& fault) {
 }  // namespace
 
 ValidationCase contact_patch() {
-  return {.name = "contact-patch",
-          .section = "C",
-          .summary = "two blocks with meshes that do not match, pressed together: the stress stays uniform",
-          .why =
-              "whether meshes that do not match pass on a uniform pressure decides whether contact converges "
-              "with the mesh (the contact patch test, Taylor and Papadopoulos 1991)",
-          .run = run,
-          .faults = {"force-on-first-corner", "half-area"}};
+  return {
+      .name = "contact-patch",
+      .section = "C",
+      .summary = "two blocks with meshes that do not match, pressed together: the stress stays uniform",
+      .why =
+          "whether meshes that do not match pass on a uniform pressure decides whether contact converges "
+          "with the mesh (the contact patch test, Taylor and Papadopoulos 1991)",
+      .run = run,
+      .faults = {{"force-on-first-corner", "pixel: largest error"}, {"half-area", "pixel: mean pressure"}}};
 }
 
 }  // namespace palpate::validation

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "cases.h"
+#include "faults.h"
 #include "palpate/core/pose.h"
 #include "palpate/mesh/generators.h"
 #include "statics.h"
@@ -62,6 +63,16 @@ Measurement taylor(const std::string& quantity, double step, const std::function
           .note = "error is of the order, absolute"};
 }
 
+/// K with a part that is not symmetric: each force by the next displacement as well.
+class Unsymmetric final : public DecoratedTerm {
+ public:
+  using DecoratedTerm::DecoratedTerm;
+  void apply_tangent(const dynamics::StateView& state, double k, double d, const VecX& x, VecX& y) override {
+    term().apply_tangent(state, k, d, x, y);
+    y.head(x.size() - 1) += 1e-6 * k * x.tail(x.size() - 1);
+  }
+};
+
 void measure(const Shape& shape, const std::string& fault, std::vector<Measurement>& out) {
   fem::Material material;
   material.youngs_modulus = 3.0;
@@ -74,15 +85,18 @@ void measure(const Shape& shape, const std::string& fault, std::vector<Measureme
   const int id = state.insert(spec, shape.x, zero);
   fem::SoftBodyOptions options;
   if (fault == "no-rotation-derivative") options.tangent = fem::Tangent::kWarped;
-  fem::SoftBody body("body", shape.rest, material, options, id);
-  const double sign = fault == "wrong-sign" ? -1.0 : fault == "half-force" ? 0.5 : 1.0;
+  std::shared_ptr<dynamics::ForceTerm> body =
+      std::make_shared<fem::SoftBody>("body", shape.rest, material, options, id);
+  if (fault == "wrong-sign") body = scaled(body, {.force = -1.0});
+  if (fault == "half-stiffness") body = scaled(body, {.stiffness = 0.5});
+  if (fault == "unsymmetric") body = std::make_shared<Unsymmetric>(body);
 
   const auto force = [&](const VecX& x) {
     VecX f = VecX::Zero(n);
-    body.add_force(state.view(0.0, x.data(), zero.data()), f);
-    return VecX(sign * f);
+    body->add_force(state.view(0.0, x.data(), zero.data()), f);
+    return f;
   };
-  const auto energy = [&](const VecX& x) { return body.energy(state.view(0.0, x.data(), zero.data())); };
+  const auto energy = [&](const VecX& x) { return body->energy(state.view(0.0, x.data(), zero.data())); };
   std::mt19937 engine(15);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const VecX w = VecX::NullaryExpr(n, [&] { return uniform(engine); }),
@@ -91,8 +105,8 @@ void measure(const Shape& shape, const std::string& fault, std::vector<Measureme
   const double e0 = energy(shape.x);
   VecX Kw = VecX::Zero(n), Kw2 = Kw;
   const auto here = state.view(0.0, shape.x.data(), zero.data());
-  body.apply_tangent(here, 1.0, 0.0, w, Kw);
-  body.apply_tangent(here, 1.0, 0.0, w2, Kw2);
+  body->apply_tangent(here, 1.0, 0.0, w, Kw);
+  body->apply_tangent(here, 1.0, 0.0, w2, Kw2);
 
   const std::string name = shape.name;
   out.push_back(taylor(name + ": order of energy + force", shape.step,
@@ -124,7 +138,10 @@ ValidationCase gradient_and_tangent() {
               "energy is kept and Newton converges only if both hold; finite differences know nothing of the "
               "derivation",
           .run = run,
-          .faults = {"wrong-sign", "half-force", "no-rotation-derivative"}};
+          .faults = {{"wrong-sign", "energy + force"},
+                     {"half-stiffness", "force + tangent"},
+                     {"no-rotation-derivative", "sheared and rotated: order of force + tangent"},
+                     {"unsymmetric", "asymmetry"}}};
 }
 
 }  // namespace palpate::validation

@@ -141,7 +141,7 @@ ValidationCase hertz_sphere() {
           "must be found, not given (Hertz 1882)",
       .slow = true,
       .run = run,
-      .faults = {"rim-not-seen", "gaps-too-small"}};
+      .faults = {{"rim-not-seen", "force of the half-space"}, {"gaps-too-small", "force of the half-space"}}};
 }
 
 }  // namespace palpate::validation

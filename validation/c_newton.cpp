@@ -30,13 +30,13 @@ struct Problem {
 };
 
 /// Newton from z until rounding; the residual norms.
-std::vector<double> newton(const Problem& p, VecX z, bool keep_matrix, int steps) {
+std::vector<double> newton(const Problem& p, VecX z, int steps) {
   std::vector<double> r;
   Eigen::PartialPivLU<MatX> factor;
   for (int k = 0; k < steps; ++k) {
     const VecX g = p.residual(z);
     r.push_back(g.norm());
-    if (k == 0 || !keep_matrix) factor.compute(p.matrix(z));
+    factor.compute(p.matrix(z));
     z -= factor.solve(g);
   }
   return r;
@@ -44,14 +44,14 @@ std::vector<double> newton(const Problem& p, VecX z, bool keep_matrix, int steps
 
 /// Starts around the solution at halved distances; the slope within each generation (first pair, second pair,
 /// ...), pooled: each has a constant of its own.
-double exponent(const Problem& p, const std::string& fault) {
+double exponent(const Problem& p) {
   constexpr int kStarts = 6, kSteps = 8;
   std::mt19937 engine(71);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const VecX w = VecX::NullaryExpr(p.solution.size(), [&] { return uniform(engine); });
   std::vector<std::vector<double>> runs;
   for (int k = 0; k < kStarts; ++k)
-    runs.push_back(newton(p, p.solution + p.size * std::pow(0.5, k) * w, fault == "matrix-kept", kSteps));
+    runs.push_back(newton(p, p.solution + p.size * std::pow(0.5, k) * w, kSteps));
   const double rounding = 100.0 * p.residual(p.solution).norm();
   double xy = 0.0, xx = 0.0;
   for (std::size_t generation = 0; generation + 1 < kSteps; ++generation) {
@@ -235,11 +235,13 @@ std::vector<Measurement> run(const std::string& fault) {
       return std::make_shared<Body>(beam_mesh(), m, options);
     };
     const Problem exact = row.make(body(Tangent::kExact, true));
-    Problem p = row.make(body(row.tangent, row.full));
+    // the library gives other tangents than it is asked for
+    const Tangent given = fault == "warped-for-exact" ? Tangent::kWarped : row.tangent;
+    Problem p = row.make(body(given, row.full && fault != "unsymmetric-part-lost"));
     VecX z = exact.solution;
     const bool solved = converge(exact, z);
     p.solution = z;
-    const double found = solved ? exponent(p, fault) : std::nan("");
+    const double found = solved ? exponent(p) : std::nan("");
     out.push_back({.quantity = std::string("exponent of the residuals: ") + row.name,
                    .computed = found,
                    .exact = row.expected,
@@ -260,7 +262,9 @@ ValidationCase newton_convergence() {
               "Euler, damping too; 1 with inexact ones",
           .why = "quadratic convergence shows that force and tangent belong together, where it counts",
           .run = run,
-          .faults = {"matrix-kept"}};
+          .faults = {{"warped-for-exact", "bent beam, exact tangent"},
+                     {"warped-for-exact", "backward Euler, exact tangent"},
+                     {"unsymmetric-part-lost", "damped, its tangent whole"}}};
 }
 
 }  // namespace palpate::validation

@@ -54,6 +54,7 @@ ValidationCase dropped_ball();
 ValidationCase colliding_bars();
 ValidationCase handle_step();
 ValidationCase handle_below_wall();
+ValidationCase free_top();
 ValidationCase coupling_limit();
 ValidationCase sampled_wall();
 ValidationCase partitioned_monolithic();

@@ -21,20 +21,21 @@ constexpr int kModes = 3;
 /// Frequencies [Hz] of the first three axial modes; NaN where none overlaps by more than 0.95.
 std::vector<double> frequencies(int cells_along, const std::string& fault) {
   ModalBody bar;
-  bar.material.youngs_modulus = fault == "half-stiffness" ? 0.5 * kYoung : kYoung;
-  bar.material.poissons_ratio = fault == "lateral-strain" ? 0.4 : 0.0;
+  bar.material.youngs_modulus = kYoung;
+  bar.material.poissons_ratio = 0.0;
+  if (fault == "half-stiffness") bar.defect.force = 0.5;
+  if (fault == "double-mass") bar.defect.mass = 2.0;
+  if (fault == "lateral-strain") {
+    bar.defect.elements = bar.materials();
+    bar.defect.elements->list[0].poissons_ratio = 0.4;
+  }
   bar.rest =
       mesh::box(Vec3(kLength, kHalfWidth, kHalfWidth), {cells_along, cells_along / 8, cells_along / 8});
   const Vec3 corner = bar.rest.nodes.rowwise().minCoeff();
   bar.rest.nodes.colwise() -= corner;
-  const double clamp = fault == "clamp-too-long" ? 0.04 * kLength : 1e-9;
-  bar.hold("xyz", [&](const Vec3& X) { return X.x() < clamp; });
-  if (fault == "held-sides") {
-    bar.hold("x", [](const Vec3& X) { return X.y() < 1e-9; });
-  } else {
-    bar.hold("y", [](const Vec3& X) { return X.y() < 1e-9; });
-    bar.hold("z", [](const Vec3& X) { return X.z() < 1e-9; });
-  }
+  bar.hold("xyz", [&](const Vec3& X) { return X.x() < 1e-9; });
+  bar.hold("y", [](const Vec3& X) { return X.y() < 1e-9; });
+  bar.hold("z", [](const Vec3& X) { return X.z() < 1e-9; });
   const modes::Modes modes = bar.lowest(6);
   std::vector<double> out;
   for (int n = 1; n <= kModes; ++n) {
@@ -78,16 +79,18 @@ std::vector<Measurement> run(const std::string& fault) {
 }  // namespace
 
 ValidationCase axial_vibration() {
-  return {.name = "axial-vibration",
-          .section = "D",
-          .summary =
-              "a bar vibrates along its axis: first three frequencies against (2n - 1) c / 4L, order in the "
-              "element size",
-          .why =
-              "stiffness and mass together against the wave equation, whose solution is exact for nu = 0 "
-              "(Rayleigh 1877)",
-          .run = run,
-          .faults = {"half-stiffness", "clamp-too-long", "lateral-strain", "held-sides"}};
+  return {
+      .name = "axial-vibration",
+      .section = "D",
+      .summary =
+          "a bar vibrates along its axis: first three frequencies against (2n - 1) c / 4L, order in the "
+          "element size",
+      .why =
+          "stiffness and mass together against the wave equation, whose solution is exact for nu = 0 "
+          "(Rayleigh 1877)",
+      .run = run,
+      .faults = {
+          {"half-stiffness", "frequency"}, {"double-mass", "frequency"}, {"lateral-strain", "frequency"}}};
 }
 
 }  // namespace palpate::validation

@@ -36,7 +36,9 @@ double root(double b, int n) {
 /// Frequency [Hz] of the first axial vibration; NaN where no mode overlaps by more than 0.95.
 double frequency(int cells, double b, const std::string& fault) {
   ModalBody bar;
-  bar.material.youngs_modulus = fault == "half-stiffness" ? 0.5 * kYoung : kYoung;
+  bar.material.youngs_modulus = kYoung;
+  if (fault == "half-stiffness") bar.defect.force = 0.5;
+  if (fault == "light-bone") bar.defect.bone_mass = 0.5;
   bar.material.poissons_ratio = 0.0;
   bar.rest = mesh::box(Vec3(kLength, kHalfWidth, kHalfWidth), {cells, cells / 8, cells / 8});
   const Vec3 corner = bar.rest.nodes.rowwise().minCoeff();
@@ -44,13 +46,9 @@ double frequency(int cells, double b, const std::string& fault) {
   const double mass = bar.material.density * kLength * kHalfWidth * kHalfWidth;
   for (int i = 0; i < bar.rest.nodes.cols(); ++i)
     if (bar.rest.nodes(0, i) < 1e-9) bar.carried.push_back(i);
-  bar.bone_mass = (fault == "light-bone" ? 0.5 : 1.0) * b * mass;
+  bar.bone_mass = b * mass;
   bar.bone_inertia.setConstant(bar.bone_mass * kHalfWidth * kHalfWidth / 6.0);
   bar.bone_centre = Vec3(0.0, 0.5 * kHalfWidth, 0.5 * kHalfWidth);
-  if (fault == "no-bone") {
-    bar.carried.clear();
-    bar.hold("xyz", [](const Vec3& X) { return X.x() < 1e-9; });
-  }
   bar.hold("y", [](const Vec3& X) { return X.y() < 1e-9 && X.x() > 1e-9; });
   bar.hold("z", [](const Vec3& X) { return X.z() < 1e-9 && X.x() > 1e-9; });
   const double k = root(b, 1) / kLength;
@@ -100,7 +98,7 @@ ValidationCase bar_on_bone() {
               "momentum goes from tissue to bone and back at the right rate, also where the bone is a "
               "thousandth of the tissue (Timoshenko 1937)",
           .run = run,
-          .faults = {"half-stiffness", "light-bone", "no-bone"}};
+          .faults = {{"half-stiffness", "frequency"}, {"light-bone", "bone of 3 "}}};
 }
 
 }  // namespace palpate::validation

@@ -65,7 +65,6 @@ Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, 
   for (int k = range.loosest; k <= range.tightest; ++k) {
     spec.rtol = std::pow(10.0, -k);
     tolerances.push_back(spec.rtol);
-    if (fault == "tolerance-ignored") spec.rtol = std::pow(10.0, -range.loosest);
     errors.push_back(vibration_error(bar, spec, trial, fault));
     table += fmt::format(" {:.1e}", errors.back());
   }
@@ -116,17 +115,18 @@ std::vector<Measurement> run(const std::string& fault) {
 }  // namespace
 
 ValidationCase vibration_tolerance() {
-  return {.name = "vibration-tolerance",
-          .section = "D",
-          .summary =
-              "free vibration of a clamped bar under error control: slope of the error against the "
-              "tolerance, every adaptive integrator",
-          .why =
-              "a tolerance is worth what it promises only where the error follows it; exact in time, so no "
-              "reference run",
-          .slow = true,
-          .run = run,
-          .faults = {"half-stiffness", "one-percent", "tolerance-ignored"}};
+  return {
+      .name = "vibration-tolerance",
+      .section = "D",
+      .summary =
+          "free vibration of a clamped bar under error control: slope of the error against the "
+          "tolerance, every adaptive integrator",
+      .why =
+          "a tolerance is worth what it promises only where the error follows it; exact in time, so no "
+          "reference run",
+      .slow = true,
+      .run = run,
+      .faults = {{"tolerance-ignored", ": error at rtol"}, {"force-off-by-one-percent", ": error at rtol"}}};
 }
 
 }  // namespace palpate::validation

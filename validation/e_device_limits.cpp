@@ -84,7 +84,9 @@ ValidationCase device_limits() {
               "last valid pose",
           .why = "the last thing before motors that a person holds",
           .run = run,
-          .faults = {"no-limiter", "componentwise-clip", "no-timeout"}};
+          .faults = {{"no-limiter", "number not finite"},
+                     {"componentwise-clip", "largest"},
+                     {"no-timeout", "20 ms after"}}};
 }
 
 }  // namespace palpate::validation

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "faults.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/dynamics/system.h"
@@ -23,7 +24,8 @@ void add_bone(const ModalBody& body, dynamics::State& state, dynamics::System& s
   const Vec3 at = body.bone_centre;
   const VecX q = (VecX(7) << 1.0, 0.0, 0.0, 0.0, at).finished();
   const int bone = state.insert(dynamics::rigid_block("bone", 1.0, 1.0), q, VecX::Zero(6));
-  system.add(dynamics::make_rigid_inertia(bone, body.bone_mass, body.bone_inertia));
+  const double factor = body.defect.bone_mass;
+  system.add(dynamics::make_rigid_inertia(bone, factor * body.bone_mass, factor * body.bone_inertia));
   Points local(3, 3 * static_cast<Eigen::Index>(body.carried.size()));
   for (Eigen::Index i = 0; i < local.cols(); ++i)
     local.col(i) = body.rest.nodes.col(body.carried[static_cast<std::size_t>(i / 3)]) - at;
@@ -40,11 +42,19 @@ modes::Modes ModalBody::lowest(int count) const {
   spec.q_size = spec.u_size = static_cast<int>(rest.nodes.size());
   const VecX q0 = rest.nodes.reshaped();
   const int id = state.insert(spec, q0, VecX::Zero(q0.size()));
-  system.add(std::make_shared<fem::SoftBody>("body", rest, materials(), fem::SoftBodyOptions{}, id));
-  system.add(consistent_mass ? fem::make_consistent_mass(rest, materials(), id)
-                             : fem::make_lumped_mass(rest, materials(), id));
+  const fem::Materials of_elements = defect.elements.value_or(materials()),
+                       of_masses = defect.masses.value_or(materials());
+  const auto elastic = std::make_shared<fem::SoftBody>("body", rest, of_elements, fem::SoftBodyOptions{}, id);
+  if (defect.force != 1.0)
+    system.add(scaled(elastic, {.force = defect.force}));
+  else
+    system.add(std::static_pointer_cast<dynamics::ForceTerm>(elastic));
+  const auto mass = consistent_mass ? fem::make_consistent_mass(rest, of_masses, id)
+                                    : fem::make_lumped_mass(rest, of_masses, id);
+  system.add(defect.mass != 1.0 ? scaled(mass, defect.mass) : mass);
   if (consistent_mass) system.set_mass_solver(linear::make_linear_solver("cholmod"));
   std::vector<int> dofs = held;
+  dofs.insert(dofs.end(), defect.held.begin(), defect.held.end());
   std::sort(dofs.begin(), dofs.end());
   dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
   if (!dofs.empty()) system.add(fem::make_fixed(dofs, q0(dofs)));

@@ -7,6 +7,13 @@
 
 namespace palpate::validation {
 
+/// What the library computes with instead of what it is asked: its defects, for the faults of cases.
+struct ModalDefect {
+  double force = 1.0, mass = 1.0, bone_mass = 1.0;  ///< factors
+  std::optional<fem::Materials> elements, masses;   ///< other materials of the forces, of the masses
+  std::vector<int> held;                            ///< directions of u that nobody asked to hold
+};
+
 /// One soft body at rest and its modes, for the cases of section D on frequencies.
 struct ModalBody {
   TetMesh rest;
@@ -17,6 +24,8 @@ struct ModalBody {
   std::vector<int> carried;  ///< nodes that sit on a free rigid bone, ascending; empty: there is none
   double bone_mass = 0.0;    ///< [kg]
   Vec3 bone_inertia = Vec3::Zero(), bone_centre = Vec3::Zero();
+
+  ModalDefect defect{};
 
   /// Holds the axes ("x", "yz") of every node that `where` is true for.
   void hold(const std::string& axes, const std::function<bool(const Vec3&)>& where);

@@ -25,7 +25,7 @@ const std::vector<ValidationCase>& validation_cases() {
          spinning_body(),       explicit_limit(),   dropped_ball(),
          colliding_bars()});
     if (tool::available())
-      add({handle_step(), handle_below_wall(), coupling_limit(), partitioned_monolithic()});
+      add({handle_step(), handle_below_wall(), free_top(), coupling_limit(), partitioned_monolithic()});
     add({device_limits(), sampled_wall()});
     return out;
   }();

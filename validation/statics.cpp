@@ -30,6 +30,10 @@ void StaticBody::add(const std::function<std::shared_ptr<dynamics::ForceTerm>(in
   terms_.push_back(make(block_));
 }
 
+void StaticBody::replace(const std::function<Force(const Force&)>& make) {
+  for (Force& term : terms_) term = make(term);
+}
+
 void StaticBody::hold(int node, int axis, double position) {
   held_[static_cast<std::size_t>(3 * node + axis)] = 1;
   state_.q()[3 * node + axis] = position;

@@ -11,6 +11,7 @@ namespace palpate::validation {
 /// Equilibrium of one soft body by the integrator "kinsol-static", as a scene would have it.
 class StaticBody {
  public:
+  using Force = std::shared_ptr<dynamics::ForceTerm>;
   /// A volumetric share below 1 brings the rest of lambda by fem::NodalDilatation.
   StaticBody(const TetMesh& rest, const fem::Materials& materials, const fem::SoftBodyOptions& options = {});
 
@@ -18,6 +19,8 @@ class StaticBody {
   fem::SoftBody& body() { return *body_; }
   /// A further force on the same nodes; `make` receives the id of the node block.
   void add(const std::function<std::shared_ptr<dynamics::ForceTerm>(int block_id)>& make);
+  /// Puts another force in place of each that was added so far: the library with a defect.
+  void replace(const std::function<Force(const Force&)>& make);
   /// Holds one direction of a node at a position [m] (and puts it there).
   void hold(int node, int axis, double position);
   void hold(int node, const Vec3& position);

@@ -12,6 +12,16 @@ bool Measurement::passed() const {
   return order >= order_low && (std::isnan(order_high) || order <= order_high);
 }
 
+bool Fault::is_found(const std::vector<Measurement>& measurements) const {
+  bool found = false;
+  for (const Measurement& m : measurements) {
+    if (fails.empty() || m.quantity.find(fails) == std::string::npos) continue;
+    if (m.passed()) return false;
+    found = true;
+  }
+  return found;
+}
+
 double fitted_order(const std::vector<double>& h, const std::vector<double>& error) {
   PALPATE_CHECK(h.size() == error.size() && h.size() >= 2, "{} steps, {} errors", h.size(), error.size());
   double mean_x = 0, mean_y = 0;

@@ -46,8 +46,9 @@ struct VibrationTrial {
   double amplitude = 0.0;
 };
 
-/// Mass-weighted relative error of q, RMS over the samples; NaN where the integrator gives up.  `fault`:
-/// "half-stiffness", "one-percent".
+/// Mass-weighted relative error of q, RMS over the samples; NaN where the integrator gives up.  Faults:
+/// "force-off-by-one-percent", "first-order-rule" (backward Euler whatever is asked for),
+/// "tolerance-ignored".
 double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, const VibrationTrial& trial,
                        const std::string& fault);
 

@@ -261,7 +261,7 @@ void add_validate(CLI::App& app, Invocation& invocation) {
   command->add_option("CASE", arguments->cases, "only these; see `palpate list cases`");
   command->add_flag("--slow", arguments->slow, "also the cases that take minutes");
   command->add_flag("--inject-faults", arguments->inject_faults,
-                    "break the physics of each case on purpose: every one must then fail");
+                    "break the library on purpose: what each fault is measured by must then fail");
   command->add_flag("--sabotage", arguments->inject_faults)->group("");  // its name before 0.1, not shown
   command->add_option("-o,--output", arguments->folder, "also write validation.json and report.html here")
       ->type_name("DIR");

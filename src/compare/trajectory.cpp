@@ -173,11 +173,13 @@ namespace {
 
 /// @param Recorder  an observer with a trajectory()
 template <class Recorder>
-Run run_with(const scene::Description& description, double duration_s, const std::atomic<bool>* stop) {
+Run run_with(const scene::Description& description, double duration_s, const std::atomic<bool>* stop,
+             const std::function<void(loop::World&)>& spoil = {}) {
   Run run;
   const double start = thread_cpu_seconds();
   const auto world = loop::assemble(description);
   run.setup_s = thread_cpu_seconds() - start;
+  if (spoil) spoil(*world);
   Recorder recorder;
   loop::RunOptions options;
   options.duration_s = duration_s;
@@ -192,8 +194,9 @@ Run run_with(const scene::Description& description, double duration_s, const std
 
 }  // namespace
 
-Run run_once(const scene::Description& description, double duration_s, const std::atomic<bool>* stop) {
-  return run_with<TrajectoryRecorder>(description, duration_s, stop);
+Run run_once(const scene::Description& description, double duration_s, const std::atomic<bool>* stop,
+             const std::function<void(loop::World&)>& spoil) {
+  return run_with<TrajectoryRecorder>(description, duration_s, stop, spoil);
 }
 
 Run run_for_wrenches(const scene::Description& description, double duration_s,

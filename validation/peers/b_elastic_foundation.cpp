@@ -128,7 +128,7 @@ ValidationCase elastic_foundation_peer() {
               "two codes that share nothing, on one problem: they must differ by what their laws differ by, "
               "and by nothing else (area on the sphere against projected area)",
           .run = run,
-          .faults = {"skin-area"}};
+          .faults = {{"skin-area", "force over ours"}}};
 }
 
 }  // namespace palpate::validation

@@ -31,8 +31,8 @@ struct ExchangeStudy {
 struct ExchangeOptions {
   std::function<void(const std::string& what)> done;  ///< after each run
   const std::atomic<bool>* stop = nullptr;
-  /// the scene that the reference is made of; null: the same (another one shows that the study can fail)
-  const scene::Description* reference = nullptr;
+  /// changes each partitioned World once it is assembled: a defect that the study must find
+  std::function<void(loop::World& world)> spoil = {};
 };
 
 /// Runs that compare_exchange makes of a scene: 0 without a tool or without `compare.exchange_periods_s`.

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "palpate/loop/run.h"
@@ -75,8 +76,9 @@ struct Run {
   loop::RunResult result;                ///< its CPU time that of the loop, without assembly and recording
   double setup_s = 0.0, record_s = 0.0;  ///< CPU time of these
 };
+/// @param spoil  changes the World once it is assembled: a defect that a study must find
 Run run_once(const scene::Description& description, double duration_s,
-             const std::atomic<bool>* stop = nullptr);
+             const std::atomic<bool>* stop = nullptr, const std::function<void(loop::World&)>& spoil = {});
 /// Likewise, with ticks and wrenches alone in the trajectory.
 Run run_for_wrenches(const scene::Description& description, double duration_s,
                      const std::atomic<bool>* stop = nullptr);

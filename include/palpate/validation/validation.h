@@ -28,6 +28,15 @@ struct Measurement {
   bool passed() const;
 };
 
+/// The library with a defect (a wrong sign, half the stiffness, a first-order rule), and the measurement that
+/// is there to find it.  What the case asks of the library stays as it is: a decorator of the library's own
+/// part (validation/faults.h), or the part made wrongly.
+struct Fault {
+  std::string name;
+  std::string fails;  ///< part of a quantity: every measurement whose quantity has it must fail, one at least
+  bool is_found(const std::vector<Measurement>& measurements) const;
+};
+
 /// A case with a known answer.  Stands in validation/ as one file; `registry.cpp` lists it.
 struct ValidationCase {
   std::string name;     ///< "patch-test"
@@ -35,10 +44,9 @@ struct ValidationCase {
   std::string summary;  ///< one line: what is measured
   std::string why;      ///< why it matters, and the source of the exact answer
   bool slow = false;    ///< minutes; ctest label `slow`
-  /// Runs it.  `fault` is empty, or one of `faults`: the physics broken on purpose, and then at least
-  /// one measurement must fail.
+  /// Runs it.  `fault` is empty, or the name of one of `faults`.
   std::vector<Measurement> (*run)(const std::string& fault) = nullptr;
-  std::vector<std::string> faults;  ///< at least one
+  std::vector<Fault> faults;  ///< at least one
 };
 
 /// Observed order: least-squares slope of log(error) against log(h).
