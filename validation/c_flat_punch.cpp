@@ -20,6 +20,10 @@
 // kappa -> 0 rigid bodies, F = k pi a^2 d.  At kappa = 1000 the springs take 0.2 %, and neither k nor the
 // area under each sample is felt; at kappa = 1 they take half, and both are.
 //
+// Blocks.  Rim and sides both lie on lines of one graded mesh: L/a = sinh(N ln 2)/sinh(ln 2) = 10.6, 21.3 and
+// 42.7 for N = 4, 5, 6, each twice the one before, as nearly as 10, 20 and 40 can be had.  What is
+// extrapolated is a/L as it is.
+//
 // Orders.  The rim is a line of the mesh, so that the elements' error is that of the best approximation, and
 // the force's is the energy's: F_h - F ~ |u - u_h|^2.
 //     kappa = 1000, springs shorter (a/kappa) than a cell: u ~ sqrt(r - a) beyond the rim, the energy of the

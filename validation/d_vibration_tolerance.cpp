@@ -30,7 +30,6 @@
 // the lowest modes ask for shorter steps than those that let the highest grow.
 // A third motion is reported and has no bar: undamped, all modes at equal amplitude, some of which no
 // tolerance of the ladder resolves.
-// tolerance of the ladder resolves.
 
 namespace palpate::validation {
 namespace {
