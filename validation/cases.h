@@ -41,6 +41,7 @@ ValidationCase newton_convergence();
 ValidationCase contact_patch();
 ValidationCase flat_punch();
 ValidationCase hertz_sphere();
+ValidationCase deep_dent();
 ValidationCase free_vibration();
 ValidationCase vibration_tolerance();
 ValidationCase spinning_body();
