@@ -102,16 +102,17 @@ const MultirateMethod& multirate_method(std::string_view name) {
   return *m;
 }
 
+MatX multirate_step(std::string_view method, const MatX& slow, const MatX& fast, double step_s) {
+  return step_matrix(Coupling(multirate_method(method)), slow, fast, step_s);
+}
+
 }  // namespace sun
 
 double multirate_amplification(std::string_view method, const MatX& slow, const MatX& fast, double step_s) {
   if (slow.rows() != slow.cols() || fast.rows() != slow.rows() || fast.cols() != slow.cols())
     fail("the slow side is {} x {} and the fast one {} x {}: both must be square, of one size", slow.rows(),
          slow.cols(), fast.rows(), fast.cols());
-  return sun::step_matrix(sun::Coupling(sun::multirate_method(method)), slow, fast, step_s)
-      .eigenvalues()
-      .cwiseAbs()
-      .maxCoeff();
+  return sun::multirate_step(method, slow, fast, step_s).eigenvalues().cwiseAbs().maxCoeff();
 }
 
 }  // namespace palpate::integrate

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "integrate/sundials/hidden.h"
+#include "palpate/core/types.h"
 
 namespace palpate::integrate {
 namespace PALPATE_HIDDEN sun {
@@ -15,6 +16,9 @@ struct MultirateMethod {
 };
 /// @throws Error for another name
 const MultirateMethod& multirate_method(std::string_view name);
+
+/// The matrix of one step on y' = (slow + fast) y, the fast side integrated exactly.
+MatX multirate_step(std::string_view method, const MatX& slow, const MatX& fast, double step_s);
 
 }  // namespace sun
 }  // namespace palpate::integrate
