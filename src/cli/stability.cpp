@@ -21,7 +21,7 @@ using stability::StabilityCell;
 using stability::Verdict;
 
 /// One letter a cell: the matrix fits a terminal.
-char letter(const StabilityCell& cell) { return "ASBEGNFT"[static_cast<std::size_t>(cell.verdict)]; }
+char letter(const StabilityCell& cell) { return "ASBEGNFTW"[static_cast<std::size_t>(cell.verdict)]; }
 
 /// A row of letters a case, one column an integrator; a cell that differs from what theory expects is marked.
 void print_matrix(const stability::StabilityMatrix& matrix) {
@@ -48,7 +48,7 @@ void print_matrix(const stability::StabilityMatrix& matrix) {
   }
   fmt::print(
       "\nA accurate  S stable  B bounded  E ended with a clear error  G grew  N not finite  F failed in "
-      "silence  T too slow  ! unexpected  . no such cell\n");
+      "silence  T too slow  W wrong  ! unexpected  . no such cell\n");
 }
 
 void print_cells(const stability::StabilityMatrix& matrix, bool only_unexpected) {

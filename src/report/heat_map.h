@@ -7,7 +7,7 @@ namespace palpate::report {
 /// One cell of a heat map.
 struct HeatCell {
   std::string letter;     ///< readable without colour
-  std::string css;        ///< class of its colour: "v0" ... "v7", or empty where there is no such cell
+  std::string css;        ///< class of its colour: "v0" ... "v8", or empty where there is no such cell
   std::string title;      ///< tooltip
   bool outlined = false;  ///< not what was expected
 };

@@ -14,7 +14,7 @@ struct VerdictName {
   const char* letter;
   const char* meaning;
 };
-constexpr std::array<VerdictName, 8> kVerdicts = {
+constexpr std::array<VerdictName, 9> kVerdicts = {
     {{"accurate", "A", "within the error that theory allows of an exact answer"},
      {"stable", "S", "never more energy or motion than was put in"},
      {"bounded", "B", "more than was put in, within a bound"},
@@ -22,7 +22,8 @@ constexpr std::array<VerdictName, 8> kVerdicts = {
      {"grew", "G", "went beyond every bound and called it success"},
      {"not finite", "N", "returned NaN or infinity as a result"},
      {"silent", "F", "failed without a reason, or kept back what it had to report"},
-     {"too slow", "T", "cut off at the time limit"}}};
+     {"too slow", "T", "cut off at the time limit"},
+     {"wrong", "W", "did not do what physics or the method's own formula says must happen"}}};
 
 std::size_t index_of(const std::string& verdict) {
   std::size_t v = 0;

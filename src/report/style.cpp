@@ -75,11 +75,12 @@ table.heat td { width: 1.3rem; min-width: 1.3rem; height: 1.3rem; padding: 0; te
 .v3 { background: #f3d27a; color: #2d2408; } .v4 { background: #e0803a; color: #1f1005; }
 .v5 { background: #b3261e; color: #fff; }
 .v6 { background: #6d1b7b; color: #fff; } .v7 { background: #8a9099; color: #101214; }
+.v8 { background: #b5179e; color: #fff; }
 .odd { outline: 3px solid #e5007d; outline-offset: -2px; font-weight: 700; }
 .plot .gridline { stroke: var(--line); }
 .plot [fill^="rgb(236, 239, 242)"] { fill: var(--tint); }
 .plot [color="rgb(255, 255, 255)"], .plot [color="white"] { color: var(--page); }
-@media print { .v0, .v1, .v2, .v3, .v4, .v5, .v6, .v7 { print-color-adjust: exact; }
+@media print { .v0, .v1, .v2, .v3, .v4, .v5, .v6, .v7, .v8 { print-color-adjust: exact; }
   :root { color-scheme: light; --page: #ffffff; --ink: #000000; --quiet: #444444; --line: #bbbbbb;
     --tint: #f2f2f2; --good: #1e7a46; --bad: #b3261e; --bad-tint: #ffffff; }
   html { font-size: 10.5pt; } body { max-width: none; padding: 0; }

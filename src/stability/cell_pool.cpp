@@ -50,8 +50,7 @@ std::string do_order(const std::string& order, const std::atomic<bool>& expired)
   const auto registry = reinterpret_cast<const dynamics::StepperRegistry& (*)()>(in.get<std::uintptr_t>());
   const std::vector<Row> rows = all_rows();
   const Row& row = named(rows, &Row::name, row_name);
-  const std::vector<Column> columns =
-      row.columns == RowColumns::kSteppers ? stepper_columns(registry()) : tool_columns();
+  const std::vector<Column> columns = columns_of(row, registry());
   const Task task{&row, &named(row.cases, &SubCase::name, case_name), &named(columns, &Column::label, label)};
   return cell_to_json(run_cell(task, seeds, limit_s, expired)).dump();
 }

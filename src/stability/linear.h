@@ -7,22 +7,38 @@ namespace palpate::stability {
 inline constexpr int kLinearPeriods = 40;    ///< of H each
 inline constexpr double kLinearRtol = 1e-6;  ///< of the columns under error control
 inline constexpr double kAccurate = 0.05;    ///< error of a fixed step that counts as accurate
+inline constexpr int kLastPeriod = 20000;    ///< a run whose formula overflows is followed to here
+
+/// What a run is judged by, or what the formula of its method says of it beforehand.
+struct LinearOutcome {
+  double highest = 1.0;  ///< energy over that of the start
+  double error = 0.0;    ///< largest; for fixed steps and statics over the second half
+  bool overflows = false;
+};
+
+/// A fixed-step column's outcome by its formula alone (modal_steps.h).
+LinearOutcome predict_linear(const Column& column, const LinearProblem& problem, double H);
+
+/// Bars that separate the verdicts of an outcome; derivation in linear_theory.cpp.
+struct LinearBars {
+  double error;      ///< accurate up to here
+  double kept;       ///< energy gain that counts as none
+  double gain;       ///< largest energy gain that theory knows a reason for
+  double agreement;  ///< with the formula of a fixed-step method, of the largest size of its course
+};
+Verdict verdict_of(const LinearOutcome& outcome, const LinearBars& bars);
+LinearBars linear_bars(const Column& column, const LinearProblem& problem, double H, double highest,
+                       long steps);
 
 /// Theoretical expectation of a column on a linear problem with periods (and fixed steps) of `H`; derivation
 /// in linear_theory.cpp.
 Verdicts expect_linear(const Lab& lab, const LinearProblem& problem, double H);
 
-/// Largest energy gain of a bounded method, by the theory in linear_theory.cpp.
-double bounded_gain(const Column& column, const LinearProblem& problem, double H);
+/// The time [s] that a column under error control must have reached, accurately, before it may say that it
+/// has no steps left.
+double least_progress(const Column& column, const LinearProblem& problem);
 
-/// Amplification of one oscillator by a fixed-step method, found by running the method.
-struct Amplification {
-  double modulus = 0.0;      ///< of the largest eigenvalue of one step; infinite where it failed
-  double evaluations = 0.0;  ///< of the force, a step
-};
-Amplification amplification(const Column& column, double omega, double damping_ratio, double H);
-
-/// Runs the column over the problem and compares it with the exact motion.
+/// Runs the column over the problem and compares it with the exact motion, and with its own formula.
 StabilityCell linear_cell(const Lab& lab, const LinearProblem& problem, double H);
 
 /// A case of a row: expect_linear() and linear_cell() of the problem that `make` builds.

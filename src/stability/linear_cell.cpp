@@ -1,80 +1,106 @@
 #include <cmath>
+#include <optional>
 
 #include "linear.h"
 #include "palpate/core/error.h"
+#include "predicted_course.h"
 
 namespace palpate::stability {
 namespace {
 
-constexpr int kLastPeriod = 20000;  ///< an explicit run that grows is followed to here
-constexpr double kGrowing = 1e3;    ///< times the energy of the start
-constexpr double kRounding = 1e-9;
-constexpr double kMultistepNorm = 10.0, kUseful = 1e4 * kLinearRtol;
+/// An energy, over that of the start, from which on a run may end.  The first to give up is ARKODE: where the
+/// rounding of q, eps |q|, is above its tolerance rtol atol_q q_scale, so at |q| = 5e7 of the start, an
+/// energy of 2e15, or in the step before that.
+constexpr double kOverflowing = 1e10;
+/// Energies up to here are compared with the formula's.
+constexpr double kComparable = 1e250;
 
 struct Course {
   dynamics::StepResult result;
-  double highest = 1.0;  ///< energy over that of the start
-  double error = 0.0;    ///< largest; for fixed steps and statics over the second half
-  double speed = 0.0;    ///< largest root mean square of u seen [m/s]
+  LinearOutcome seen;
+  double departure = 0.0;  ///< from the formula's course, of its size
+  double predicted = 1.0;  ///< energy at the last good state, by the formula
   bool finite = true, interrupted = false;
 };
 
 Course follow(const Lab& lab, const LinearProblem& problem, LinearProblem::Instance& run,
               dynamics::Stepper& stepper, double H) {
+  const bool by_formula = has_modal_steps(lab.column);
   // stiff transients of a fixed step are over by then
-  const bool settles = lab.column.fixed || is_static(lab.column);
-  const bool followed = lab.column.fixed && is_explicit(lab.column);
+  const int settled = lab.column.fixed || is_static(lab.column) ? kLinearPeriods / 2 : 0;
+  std::optional<PredictedCourse> formula;
+  if (by_formula) formula.emplace(lab.column, problem, H);
+  const bool followed = by_formula && predict_linear(lab.column, problem, H).overflows;
   Course course;
-  for (int i = 1; i <= kLinearPeriods || (followed && course.highest > kGrowing && i <= kLastPeriod); ++i) {
+  for (int i = 1; i <= (followed ? kLastPeriod : kLinearPeriods); ++i) {
     if (lab.time_is_up()) course.interrupted = true;
     if (course.interrupted) break;
     course.result = stepper.advance_to(i * H);
     if (!course.result.ok()) break;
     course.finite = run.state.q().allFinite() && run.state.u().allFinite();
     if (!course.finite) break;
-    course.highest = std::max(course.highest, problem.energy(run.state));
-    course.speed = std::max(course.speed, problem.speed_rms(run.state));
-    if (i > (settles ? kLinearPeriods / 2 : 0) && i <= kLinearPeriods)
-      course.error = std::max(course.error, is_static(lab.column) ? problem.from_rest(run.state)
-                                                                  : problem.error(run.state, i * H));
+    course.seen.highest = std::max(course.seen.highest, problem.energy(run.state));
+    if (formula) {
+      formula->advance();
+      course.predicted = formula->highest();
+      if (course.predicted < kComparable)
+        course.departure =
+            std::max(course.departure, problem.distance(run.state, formula->modes()) / formula->size());
+    }
+    if (i > settled && i <= kLinearPeriods)
+      course.seen.error =
+          std::max(course.seen.error,
+                   is_static(lab.column) ? problem.from_rest(run.state) : problem.error(run.state, i * H));
   }
   return course;
+}
+
+/// An end with an error must have a reason: overflow of a fixed step, the limit of steps under error control.
+void judge_early_end(const Lab& lab, const LinearProblem& problem, const Course& course,
+                     const dynamics::State& last, double bar, StabilityCell& cell) {
+  if (cell.verdict != Verdict::kError) return;
+  std::string mistake;
+  if (has_modal_steps(lab.column)) {
+    if (!(course.predicted > kOverflowing))
+      mistake = fmt::format("gave up where its formula has {:.1e} of the start's energy", course.predicted);
+  } else if (!lab.column.fixed) {
+    const double least = least_progress(lab.column, problem), t = last.time();
+    const double error = problem.error(last, t);
+    if (t < least)
+      mistake = fmt::format("gave up at {:.1e} s, where its steps reach {:.1e} s at least", t, least);
+    else if (!(error <= bar))
+      mistake = fmt::format("gave up with an error of {:.1e} of {:.1e}", error, bar);
+  }
+  if (mistake.empty()) return;
+  cell.verdict = Verdict::kWrong;
+  cell.reason = fmt::format("{}: {}", mistake, cell.reason);
 }
 
 }  // namespace
 
 StabilityCell linear_cell(const Lab& lab, const LinearProblem& problem, double H) {
   StabilityCell cell;
-  const IntegratorSpec spec = spec_of(lab.column, kLinearRtol, H);
   const auto run = problem.start();
-  const auto stepper = make_stepper(lab.column, run->system, run->state, spec);
+  const auto stepper = make_stepper(lab.column, run->system, run->state, spec_of(lab.column, kLinearRtol, H));
   stepper->set_interrupt(lab.expired);
   const Course course = follow(lab, problem, *run, *stepper, H);
   cell.steps = stepper->counters().steps;
+  const LinearBars bars = linear_bars(lab.column, problem, H, course.seen.highest, cell.steps);
+  cell.gain = course.seen.highest - 1.0;
+  cell.error = course.seen.error;
+  cell.figure = fmt::format("energy {:+.1e}, error {:.1e} of {:.1e}", cell.gain, cell.error, bars.error);
+  if (has_modal_steps(lab.column)) cell.figure += fmt::format(", {:.0e} from its formula", course.departure);
 
-  // Between two samples the speed is at most that of the whole energy as kinetic energy.
-  const double speed =
-      std::max(course.speed, std::sqrt(std::min(course.highest, 1e300)) * problem.largest_speed_rms());
-  const double kept = kRounding * std::sqrt(problem.condition()) +
-                      static_cast<double>(cell.steps) * problem.tolerance(spec, speed);
-  const double rounding = 2.3e-16 * problem.condition();
-  const auto& traits = lab.column.entry->traits;
-  const double bar = rounding + (lab.column.fixed || is_static(lab.column)
-                                     ? kAccurate
-                                     : std::min(kUseful, kept * (traits.multistep ? kMultistepNorm : 1.0)));
-  const double most = bounded_gain(lab.column, problem, H);
-  cell.gain = course.highest - 1.0;
-  cell.error = course.error;
-  cell.figure = fmt::format("energy {:+.1e}, error {:.1e} of {:.1e}", cell.gain, cell.error, bar);
-
-  if (ended_early(lab.column, course.result, course.finite, course.interrupted, cell.gain > most, cell))
-    return cell;
-  if (cell.error <= bar && cell.gain <= most) {
-    cell.verdict = Verdict::kAccurate;
+  if (ended_early(lab.column, course.result, course.finite, course.interrupted,
+                  cell.gain > bars.gain && !has_modal_steps(lab.column), cell)) {
+    judge_early_end(lab, problem, course, run->state, bars.error, cell);
   } else {
-    cell.verdict = cell.gain <= 2.0 * kept ? Verdict::kStable
-                   : cell.gain <= most     ? Verdict::kBounded
-                                           : Verdict::kGrew;
+    cell.verdict = verdict_of(course.seen, bars);
+  }
+  if (cell.verdict <= Verdict::kError && course.departure > bars.agreement) {
+    cell.verdict = Verdict::kWrong;
+    cell.reason =
+        fmt::format("departs from its own formula by {:.1e} of {:.1e}", course.departure, bars.agreement);
   }
   return cell;
 }

@@ -122,9 +122,24 @@ double LinearProblem::energy(const dynamics::State& state) const {
 }
 
 double LinearProblem::error(const dynamics::State& state, double t) const {
-  VecX a(a0_.size()), b(a0_.size());
-  for (Eigen::Index j = 0; j < a0_.size(); ++j)
-    std::tie(a[j], b[j]) = oscillator(omega_[j], damping_ratio(j), a0_[j], t);
+  return distance(state, modes_at(t));
+}
+
+LinearProblem::Points2 LinearProblem::modes_at_start() const { return modes_at(0.0); }
+
+LinearProblem::Points2 LinearProblem::modes_at(double t) const {
+  Points2 x(2, a0_.size());
+  for (Eigen::Index j = 0; j < a0_.size(); ++j) {
+    const auto [a, b] = oscillator(omega_[j], damping_ratio(j), a0_[j], t);
+    x.col(j) << omega_[j] * a, b;
+  }
+  return x;
+}
+
+double LinearProblem::energy(const Points2& modes) const { return 0.5 * modes.squaredNorm() / start_energy_; }
+
+double LinearProblem::distance(const dynamics::State& state, const Points2& modes) const {
+  const VecX a = modes.row(0).transpose().cwiseQuotient(omega_), b = modes.row(1).transpose();
   return std::sqrt(energy_of(state.q() - phi_ * a, state.u() - phi_ * b) / start_energy_);
 }
 

@@ -15,6 +15,7 @@ namespace palpate::stability {
 /// It starts at zero velocity with the same energy in every mode, so that no mode can misbehave unseen.
 class LinearProblem {
  public:
+  using Points2 = Eigen::Matrix<double, 2, Eigen::Dynamic>;
   /// @param damping_ratio  z_1, of the lowest mode  @param clamp_below  nodes with a smaller z [m] are
   ///   held, and left out
   LinearProblem(const TetMesh& rest, const fem::Material& material, double damping_ratio, double clamp_below);
@@ -38,6 +39,12 @@ class LinearProblem {
   double energy(const dynamics::State& state) const;
   double error(const dynamics::State& state, double t) const;  ///< sqrt(E(y - y_exact(t))/E(y_start))
   double from_rest(const dynamics::State& state) const;        ///< sqrt(E(y)/E(y_start))
+  /// The start in each mode's [w a; a'], one a column: |x|^2/2 is its energy.
+  Points2 modes_at_start() const;
+  Points2 modes_at(double t) const;           ///< of the exact motion
+  double energy(const Points2& modes) const;  ///< over that of the start
+  /// sqrt(E(y - y_modes)/E(y_start))
+  double distance(const dynamics::State& state, const Points2& modes) const;
   /// Largest error, measured as error() does, that WRMS <= 1 admits for weights of `rtol` and a root mean
   /// square `speed_rms` of u; derived in linear_problem.cpp.
   double tolerance(const IntegratorSpec& spec, double speed_rms) const;

@@ -26,18 +26,22 @@ StabilityMatrix run(const StabilityOptions& options) {
   const dynamics::StepperRegistry& registry =
       options.registry ? options.registry() : integrate::stepper_registry();
   const std::vector<Row> rows = all_rows();
-  const std::vector<Column> steppers = stepper_columns(registry), tools = tool_columns();
   check_names(options.rows, names(rows), "row");
   std::vector<std::string> known = names(registry);
-  for (const Column& column : tools) known.push_back(column.name);
+  for (const Column& column : tool_columns()) known.push_back(column.name);
   check_names(options.integrators, known, "integrator");
 
+  std::vector<std::vector<Column>> columns;  // of each row: tasks point into them
+  for (const Row& row : rows) columns.push_back(columns_of(row, registry));
   std::vector<Task> tasks;
-  for (const Row& row : rows) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const Row& row = rows[r];
     if (!chosen(row.name, options.rows) || (row.slow && !options.slow && options.rows.empty())) continue;
-    for (const SubCase& one : row.cases)
-      for (const Column& column : row.columns == RowColumns::kSteppers ? steppers : tools)
+    for (const SubCase& one : row.cases) {
+      if (options.core && &one != &row.cases[row.core]) continue;
+      for (const Column& column : columns[r])
         if (chosen(column.name, options.integrators)) tasks.push_back({&row, &one, &column});
+    }
   }
   StabilityMatrix matrix;
   matrix.cells = run_cells(tasks, options);

@@ -32,7 +32,12 @@ struct SubCase {
 };
 
 /// Which columns a row has.
-enum class RowColumns { kSteppers, kTools };
+enum class RowColumns {
+  kSteppers,
+  kFixedSteppers,  ///< those that move at fixed steps: no error control, no statics
+  kFamilies,       ///< a few of those, one for each way of stepping
+  kTools
+};
 
 /// One row of section F.  Each stands in a file of its own, with the theory that its expectations follow from
 /// on top.
@@ -41,14 +46,17 @@ struct Row {
   RowColumns columns = RowColumns::kSteppers;
   bool slow = false;
   std::vector<SubCase> cases{};
+  std::size_t core = 0;  ///< the sub-case that stands for the row in the core of the matrix
 };
 
 Row youngs_modulus_row();
 Row poissons_ratio_row();
 Row undamped_row();
+Row stiff_modes_row();
 Row step_row();
 Row sliver_row();
 Row squashed_row();
+Row two_bodies_row();
 Row contact_stiffness_row();
 Row impact_row();
 Row density_ratio_row();
@@ -58,7 +66,10 @@ Row rest_row();
 Row size_row();
 Row million_ticks_row();
 Row million_tool_ticks_row();
+Row million_touch_ticks_row();
 
 std::vector<Row> all_rows();
+
+std::vector<Column> columns_of(const Row& row, const dynamics::StepperRegistry& registry);
 
 }  // namespace palpate::stability

@@ -1,8 +1,8 @@
 #include <cmath>
 
+#include "alive.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/generators.h"
-#include "scene_run.h"
 
 // At rest without load every right-hand side is zero but for rounding of the rotations, eps E x (face area) a
 // node, which moves nothing farther than eps times the body's size against its stiffness: a thousand times
@@ -14,6 +14,9 @@
 // tolerance; and at a fixed step a Runge-Kutta method of order 2 has |R(iy)|^2 = 1 + y^4/4 > 1 on every
 // undamped mode, at any step.
 //   -> accurate, bounded
+// A stepper that does nothing stays at rest as well.  So each cell lets its body go a second time, at a speed
+// v away from the floor: it must be where v t is, to 1e-6 of it (the internal force stays zero), or the cell
+// is wrong.  (Statics knows no speed.)
 //
 // Free fall of one tetrahedron from rest, z = -g t^2/2, an internal force that stays zero:
 // - order 1 at a fixed step H (every one of them: the error per step is g H^2/2): relative error H/T exactly;
@@ -23,7 +26,7 @@
 // - statics: nothing holds the body, the matrix is singular: that must be said.
 //     -> error
 //
-// No body: time passes.
+// No body: time passes.  A stepper that only passes time does so as well: the cell lets an element fall, too.
 
 namespace palpate::stability {
 namespace {
@@ -58,6 +61,10 @@ StabilityCell stays(const Lab& lab, const scene::Description& d) {
   cell.verdict = cell.error <= kRest  ? Verdict::kAccurate
                  : cell.error <= 1e-6 ? Verdict::kBounded
                                       : Verdict::kGrew;
+  if (const std::string mistake = does_not_move(lab, d, kRtol); !mistake.empty()) {
+    cell.verdict = Verdict::kWrong;
+    cell.reason = mistake;
+  }
   return cell;
 }
 
@@ -131,6 +138,9 @@ StabilityCell nothing(const Lab& lab) {
   if (ended_early(lab.column, result, std::isfinite(state.time()), false, false, cell)) return cell;
   cell.error = std::abs(state.time() - 1.0);
   cell.verdict = state.time() == 1.0 ? Verdict::kAccurate : Verdict::kGrew;
+  if (is_static(lab.column) || fall(lab).verdict == Verdict::kAccurate) return cell;
+  cell.verdict = Verdict::kWrong;
+  cell.reason = "time passes, but an element does not fall as it must";
   return cell;
 }
 
@@ -138,7 +148,9 @@ StabilityCell nothing(const Lab& lab) {
 
 Row rest_row() {
   return {"rest",
-          "no gravity, everything at rest: it stays at rest to rounding",
+          "no gravity, everything at rest: it stays at rest to rounding, and moves when let go at a speed.  "
+          "Finds "
+          "forces that rounding makes, and steppers that do nothing",
           RowColumns::kSteppers,
           false,
           {{"a free cube", expect_rest, [](const Lab& lab) { return stays(lab, resting(false, false)); }},
@@ -150,7 +162,7 @@ Row rest_row() {
 
 Row size_row() {
   return {"sizes",
-          "one element falling, no body at all",
+          "one element falling, no body at all.  Finds errors of the path, and sizes that are forgotten",
           RowColumns::kSteppers,
           false,
           {{"one element falls", expect_fall, fall},

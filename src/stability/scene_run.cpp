@@ -79,6 +79,16 @@ SceneCourse run_scene(const Lab& lab, const scene::Description& description, dou
   return course;
 }
 
+std::string gave_up_early(const Lab& lab, const SceneCourse& course) {
+  if (is_static(lab.column)) return {};
+  if (lab.column.fixed && is_explicit(lab.column))
+    return course.gain() > kGrown ? std::string()
+                                  : fmt::format("gave up at {:.1e} of the energy", 1.0 + course.gain());
+  if (!lab.column.fixed)
+    return course.steps >= kMaxSteps ? std::string() : fmt::format("gave up after {} steps", course.steps);
+  return "gave up";
+}
+
 void judge(const Lab& lab, const SceneCourse& course, const GainBars& bars, StabilityCell& cell) {
   cell.steps = course.steps;
   cell.gain = course.gain();

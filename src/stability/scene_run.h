@@ -43,6 +43,10 @@ struct GainBars {
   double stable, bounded;
 };
 
+/// An explicit fixed step must have grown, error control must have used up its steps, before they end with an
+/// error; what is missing of that, empty for nothing.
+std::string gave_up_early(const Lab& lab, const SceneCourse& course);
+
 /// The verdict on a run by its energy alone; fills the cell's figures.
 void judge(const Lab& lab, const SceneCourse& course, const GainBars& bars, StabilityCell& cell);
 

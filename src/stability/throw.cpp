@@ -1,9 +1,10 @@
 #include "throw.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "frequency.h"
-#include "linear.h"
+#include "modal_steps.h"
 #include "multirate_theory.h"
 
 // Thrown at an obstacle.  No gravity: what is available is the energy of the throw, E0 = 1/2 m v^2; the
@@ -29,17 +30,94 @@
 //   (multirate_theory.cpp), each of the n steps of a touch multiplies the energy: where r^(2 n) > 2, n the
 //   steps of the row, that is no bound.
 //     -> stable, bounded, grew; error
-// - Explicit fixed steps: a node on the contact alone is an oscillator of w_c^2 = k A_n/m_n, y = w_c H; one
-//   step of s stages takes position times w_c and speed to at most P = 1 + y + ... + y^s/s! times themselves
-//   (the majorant of its polynomial), their energy to P^2.  A touch is at most half a swing long, pi/y steps
-//   and one that it begins in: P^(2n), n = 1 + ceil(pi/y), is the bound where it is more than the one above:
-//   an explicit method may throw the body back so fast, and the body is then free.  What goes beyond a
-//   thousand times E0 is followed until it overflows, and must say so.
-//     -> stable, bounded; error
-// - Statics: a free body has no equilibrium that the throw would end in: any end with a message is accepted.
+//   Generalised-alpha carries the acceleration along, from the step that closed the contact: the bound is
+//   multiplied by the square of what its first step does to a rigid body on the contact, by its formula
+//   (modal_steps.h).
+// - Explicit fixed steps.  Where the body's own fastest mode is outside the method's limit by its formula, it
+//   overflows, and must say so.
+//     -> error
+//   A node on the contact alone is an oscillator of w_c^2 = k A_n/m_n.  Within the limit for that, the energy
+//   is bounded by the square of what a touch's n = 1 + ceil(pi/y) steps, y = w_c H, can make of it: the norm
+//   of the n-th power, where that is more than the bound above.
+//     -> stable, bounded
+//   Outside it there is no bound: the body may be thrown back at any speed by a step or two, and is then
+//   free.
+//     -> bounded, grew, error; where one step can multiply the energy by less than 1e6, also stable
+// - Statics has no velocity: a free body is in equilibrium where it is, and stays there.
+//     -> stable
+//
+// What must have happened, whatever the method (else: wrong):
+// - Flight.  The throw is 2.5 periods high.  Without a force every consistent method, and any step, moves the
+//   centre of mass by -v t: after each of two periods it is there, to 1e-6 of v t (rtol under error control).
+// - Turn.  The obstacle's force is upwards.  Where a rigid body on the contact alone would be turned round by
+//   the end, w (T - t0) > pi/2 with w^2 = k A/m and t0 the time of touching, the speed of the centre of mass
+//   is then not downwards (to 5 % of v); where it would not, it is that of the rigid body, -v cos(w (T -
+//   t0)), to 5 % of v: the body itself, k L/E times softer than the contact, changes it by k L/E, which is
+//   below 1 % there.  A body that has gone through the obstacle, counted, need not turn.
+// - An early end has a reason: at explicit fixed steps an energy beyond 1e3 of the start's, under error
+// control
+//   the limit of steps reached.  Of an implicit fixed step, Newton's method may fail where a period is more
+//   than kTooFar of the body's thicknesses long, so that the first step in contact turns its elements inside
+//   out: there an error is admitted, after a flight that was right.
+//     -> error as well
 
 namespace palpate::stability {
 namespace {
+
+constexpr double kPeriodsOfFlight = 2.5, kFlightError = 1e-6, kTurnError = 0.05;
+constexpr double kThrownBack = 1e6;  // of the energy, by one step
+constexpr double kTooFar = 10.0;     // thicknesses of the body, in a period
+
+/// w of a rigid body on the contact alone [rad/s].
+double rigid_rate(const scene::Description& d) {
+  const SoftBodySpec& body = d.bodies[0];
+  const Vec3& size = body.mesh.size_m;
+  return std::sqrt(d.contacts[0].stiffness_pa_m * size.x() * size.y() / (body.density_kg_m3 * size.prod()));
+}
+
+/// The course of the centre of mass.
+class Flight {
+ public:
+  explicit Flight(const scene::Description& d)
+      : speed_(d.bodies[0].velocity_m_s.norm()), rate_(rigid_rate(d)) {}
+  void probe(const loop::World& world, double t) {
+    const loop::Body& body = world.bodies[0];
+    const dynamics::Block* block = world.state.layout().find(body.block_id);
+    const Eigen::Map<const Points> v(world.state.u().data() + block->u_offset, 3, block->u_size / 3);
+    const double mass = body.masses.sum();
+    if (t <= kThrowDuration * (1.0 + 1e-9)) last_speed_ = (v * body.masses)[2] / mass;
+    if (!(t > 0.0) || t > 2.01 * kThrowPeriod) return;
+    const Vec3 moved = (world.positions(body) - body.placed) * body.masses / mass;
+    off_ = std::max(off_, (moved + Vec3(0, 0, speed_ * t)).norm() / (speed_ * t));
+    ++flown_;
+  }
+  /// What the body did that it cannot have done; empty for nothing.
+  std::string in_flight(const Column& column) const {
+    if (flown_ < 2) return "it ended in free flight";
+    if (!(off_ <= (column.fixed ? kFlightError : kThrowRtol)))
+      return fmt::format("in free flight it is {:.1e} of its way off", off_);
+    return {};
+  }
+  std::string mistake(const Column& column, bool passed) const {
+    if (is_static(column)) return {};
+    if (std::string early = in_flight(column); !early.empty() || passed) return early;
+    const double phase = rate_ * (kThrowDuration - kPeriodsOfFlight * kThrowPeriod);
+    if (phase > 0.5 * M_PI)
+      return last_speed_ >= -kTurnError * speed_
+                 ? std::string()
+                 : fmt::format("not turned round: its speed is {:.2f} of the throw's", -last_speed_ / speed_);
+    const double rigid = -std::cos(phase);
+    return std::abs(last_speed_ / speed_ - rigid) <= kTurnError
+               ? std::string()
+               : fmt::format("its speed is {:.3f} of the throw's, a rigid body's {:.3f}",
+                             last_speed_ / speed_, rigid);
+  }
+  double last_speed() const { return last_speed_ / speed_; }
+
+ private:
+  double speed_, rate_, off_ = 0.0, last_speed_ = 0.0;
+  int flown_ = 0;
+};
 
 /// Largest k A_n/m_n of the body's lower side [rad^2/s^2], A_n a third of the faces around the node.
 double largest_contact_rate2(const loop::Body& body, double stiffness) {
@@ -54,13 +132,29 @@ double largest_contact_rate2(const loop::Body& body, double stiffness) {
   return stiffness * area.cwiseQuotient(body.masses).maxCoeff();
 }
 
-double explicit_gain(const Column& column, double rate) {
-  const double y = rate * kThrowPeriod;
-  const int stages = static_cast<int>(
-      std::ceil(std::max(1.0, amplification(column, rate, 0.0, kThrowPeriod).evaluations) - 1e-9));
-  double term = 1.0, P = 1.0;
-  for (int j = 1; j <= stages; ++j) P += term *= y / j;
-  return std::pow(P, 2.0 * (1.0 + std::ceil(M_PI / y))) - 1.0;
+/// What theory has to say of an explicit method at fixed steps on a throw.
+struct ExplicitTheory {
+  bool body_is_stable, contact_is_stable;
+  double gain;      ///< of the energy, by a touch; where contact is stable
+  double one_step;  ///< factor of the energy by one step in contact
+};
+
+ExplicitTheory explicit_theory(const Column& column, const scene::Description& d) {
+  scene::Description alone = d;
+  alone.integrator.name = "linearly-implicit-euler";
+  const auto world = loop::assemble(alone);
+  const double w = largest_frequency(world->system, world->state.view()),
+               y = kThrowPeriod *
+                   std::sqrt(largest_contact_rate2(world->bodies[0], d.contacts[0].stiffness_pa_m));
+  const ModalSteps body(column, w * kThrowPeriod, 0.5 * d.bodies[0].stiffness_damping_s * w),
+      contact(column, y, 0.0);
+  constexpr double kRounds = 1e-9;
+  MatX touch = MatX::Identity(2, 2);
+  const bool stable = contact.spectral_radius() <= 1.0 + kRounds;
+  for (int i = 0; stable && i < 1 + static_cast<int>(std::ceil(M_PI / y)); ++i)
+    touch = contact.next() * touch;
+  return {body.spectral_radius() <= 1.0 + kRounds, stable, std::pow(touch.operatorNorm(), 2),
+          std::pow(contact.norm_of_first(), 2)};
 }
 
 /// Factor that the energy may grow by with a multi-rate method while the whole lower side is in contact.
@@ -69,7 +163,8 @@ double growth_in_contact(const Column& column, scene::Description d) {
   d.integrator.name = "linearly-implicit-euler";
   const auto world = loop::assemble(d);
   VecX q = world->state.q();
-  for (Eigen::Index i = 2; i < q.size(); i += 3) q[i] -= kThrowHeight + kDepth;
+  for (Eigen::Index i = 2; i < q.size(); i += 3)
+    q[i] -= kPeriodsOfFlight * kThrowPeriod * d.bodies[0].velocity_m_s.norm() + kDepth;
   const double r = multirate_amplification_at(column, *world, q, world->state.u(), kThrowPeriod);
   return std::pow(r, 2.0 * kThrowDuration / kThrowPeriod);
 }
@@ -79,7 +174,7 @@ double growth_in_contact(const Column& column, scene::Description d) {
 scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle, double speed,
                              double stiffness_pa_m) {
   d.duration_s = kThrowDuration;
-  d.bodies[0].position_m.z() += kThrowHeight;
+  d.bodies[0].position_m.z() += kPeriodsOfFlight * speed * kThrowPeriod;
   d.bodies[0].velocity_m_s = Vec3(0, 0, -speed);
   d.obstacles.push_back(obstacle);
   ContactSpec contact;
@@ -92,10 +187,21 @@ scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle,
 }
 
 Verdicts expect_thrown(const Lab& lab, const scene::Description& d) {
+  if (is_static(lab.column)) return {Verdict::kStable};
   if (is_multirate(lab.column) && growth_in_contact(lab.column, d) > 2.0)
     return {Verdict::kStable, Verdict::kBounded, Verdict::kGrew, Verdict::kError};
-  if (!lab.column.fixed && !is_static(lab.column)) return {Verdict::kStable, Verdict::kError};
-  return {Verdict::kStable, Verdict::kBounded, Verdict::kError};
+  if (!lab.column.fixed) return {Verdict::kStable};
+  if (is_explicit(lab.column)) {
+    const ExplicitTheory theory = explicit_theory(lab.column, d);
+    if (!theory.body_is_stable) return {Verdict::kError};
+    if (theory.contact_is_stable) return {Verdict::kStable, Verdict::kBounded};
+    if (theory.one_step > kThrownBack) return {Verdict::kBounded, Verdict::kGrew, Verdict::kError};
+    return {Verdict::kStable, Verdict::kBounded, Verdict::kGrew, Verdict::kError};
+  }
+  const SoftBodySpec& body = d.bodies[0];
+  if (body.velocity_m_s.norm() * kThrowPeriod > kTooFar * body.mesh.size_m.minCoeff())
+    return {Verdict::kStable, Verdict::kBounded, Verdict::kError};
+  return {Verdict::kStable, Verdict::kBounded};
 }
 
 GainBars throw_bars(const Column& column, const scene::Description& d) {
@@ -104,22 +210,45 @@ GainBars throw_bars(const Column& column, const scene::Description& d) {
   const double mass = spec.density_kg_m3 * spec.mesh.size_m.prod(),
                area = spec.mesh.size_m.x() * spec.mesh.size_m.y();
   double bounded = 1.0 + 2.0 * stiffness * area * kThrowPeriod * kThrowPeriod / mass;
-  const bool multi_rate = is_multirate(column);
-  if (column.fixed && (multi_rate || is_explicit(column))) {
+  if (is_multirate(column)) {
     scene::Description alone = d;
     alone.integrator.name = "linearly-implicit-euler";
     const auto world = loop::assemble(alone);
-    if (multi_rate)
-      bounded += 2.0 * std::pow(largest_frequency(world->system, world->state.view()) * kThrowPeriod, 2);
-    else
-      bounded = std::max(
-          bounded, explicit_gain(column, std::sqrt(largest_contact_rate2(world->bodies[0], stiffness))));
+    bounded += 2.0 * std::pow(largest_frequency(world->system, world->state.view()) * kThrowPeriod, 2);
+  } else if (column.fixed && is_explicit(column)) {
+    const ExplicitTheory theory = explicit_theory(column, d);
+    if (theory.contact_is_stable) bounded = std::max(bounded, theory.gain);
+  } else if (column.name == "generalized-alpha") {
+    bounded *= std::pow(ModalSteps(column, rigid_rate(d) * kThrowPeriod, 0.0).norm_of_first(), 2);
   }
   double stable = 100.0 * kThrowRtol;
   if (!column.fixed)
     stable *= std::max(1.0, IntegratorSpec{}.atol_u * std::sqrt(spec.youngs_modulus_pa / spec.density_kg_m3) /
                                 spec.velocity_m_s.norm());
   return {stable, std::max(stable, bounded)};
+}
+
+StabilityCell thrown_cell(const Lab& lab, const scene::Description& d, const Probe& probe,
+                          const std::function<bool()>& passes) {
+  Flight flight(d);
+  const SceneCourse course = run_scene(lab, d, kThrowRtol, 0.0, [&](loop::World& world, double t) {
+    flight.probe(world, t);
+    if (probe) probe(world, t);
+  });
+  StabilityCell cell;
+  judge(lab, course, throw_bars(lab.column, d), cell);
+  cell.figure += fmt::format(", leaves at {:+.2f} of its speed", flight.last_speed());
+  std::string mistake;
+  if (cell.verdict == Verdict::kError) {
+    const bool by_newton = lab.column.fixed && !is_explicit(lab.column);
+    mistake = by_newton ? flight.in_flight(lab.column) : gave_up_early(lab, course);
+  } else if (cell.verdict <= Verdict::kBounded) {
+    mistake = flight.mistake(lab.column, passes && passes());
+  }
+  if (mistake.empty()) return cell;
+  cell.verdict = Verdict::kWrong;
+  cell.reason = cell.reason.empty() ? mistake : fmt::format("{}: {}", mistake, cell.reason);
+  return cell;
 }
 
 }  // namespace palpate::stability

@@ -5,10 +5,10 @@ namespace palpate::stability {
 
 /// Contact rows: a body thrown at an obstacle, and nothing else.  Theory in throw.cpp.
 ///
-/// Period and duration [s], relative tolerance, height of the start [m].
-inline constexpr double kThrowPeriod = 2e-3, kThrowDuration = 0.1, kThrowRtol = 1e-4, kThrowHeight = 1e-3;
+/// Period and duration [s], relative tolerance.
+inline constexpr double kThrowPeriod = 2e-3, kThrowDuration = 0.1, kThrowRtol = 1e-4;
 
-/// `d`'s body at `speed` [m/s] downwards from kThrowHeight above z = 0, against `obstacle`.
+/// `d`'s body at `speed` [m/s] downwards from throw_height(speed) above z = 0, against `obstacle`.
 scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle, double speed,
                              double stiffness_pa_m);
 
@@ -16,5 +16,12 @@ Verdicts expect_thrown(const Lab& lab, const scene::Description& thrown);
 
 /// Energy gains that theory allows a column.
 GainBars throw_bars(const Column& column, const scene::Description& d);
+
+/// Runs it, and judges energy, flight, turn and the reason of an early end.
+/// @param probe  called after every period  @param passes  says whether the body went through the obstacle,
+/// and
+///   so need not turn round; null: it cannot
+StabilityCell thrown_cell(const Lab& lab, const scene::Description& thrown, const Probe& probe = {},
+                          const std::function<bool()>& passes = {});
 
 }  // namespace palpate::stability

@@ -7,7 +7,7 @@ namespace palpate::stability {
 
 const char* to_string(Verdict verdict) {
   static constexpr std::array<const char*, kVerdicts> kNames = {
-      "accurate", "stable", "bounded", "error", "grew", "not finite", "silent", "too slow"};
+      "accurate", "stable", "bounded", "error", "grew", "not finite", "silent", "too slow", "wrong"};
   return kNames[static_cast<std::size_t>(verdict)];
 }
 

@@ -10,7 +10,8 @@
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 
-/// Linearly implicit Euler with one injected defect, which the stability matrix must find.
+/// Linearly implicit Euler with one injected defect, which the stability matrix must find.  It bears that
+/// method's name, by whose formula it is judged.
 namespace palpate::faulty {
 
 enum class Defect {
@@ -24,7 +25,9 @@ enum class Defect {
   kCrashes,
   kClaimsErrorControl,
   kClaimsToBeExplicit,
-  kFallsUpward
+  kClaimsToBeLStable,  ///< is the implicit midpoint rule, and calls itself backward Euler
+  kFallsUpward,
+  kDrags  ///< one per cent of the velocity a step
 };
 
 template <Defect kDefect>
@@ -33,7 +36,7 @@ class FaultyStepper final : public dynamics::Stepper {
   FaultyStepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec)
       : state_(state) {
     IntegratorSpec inner = spec;
-    inner.name = "linearly-implicit-euler";
+    inner.name = kDefect == Defect::kClaimsToBeLStable ? "implicit-midpoint" : "linearly-implicit-euler";
     inner_ = integrate::make_stepper(system, state, inner);
   }
   std::string name() const override { return "faulty"; }
@@ -48,6 +51,7 @@ class FaultyStepper final : public dynamics::Stepper {
       if (state_.layout().u_size > 0) state_.u()[0] = std::numeric_limits<double>::quiet_NaN();
     if constexpr (kDefect == Defect::kGainsEnergy) state_.u() *= 3.0, state_.q() *= kGainOfPositions;
     if constexpr (kDefect == Defect::kGainsALittle) state_.u() *= 1.05;
+    if constexpr (kDefect == Defect::kDrags) state_.u() *= 0.99;
     if constexpr (kDefect == Defect::kFallsUpward) state_.q().array() += 1.0;
     if constexpr (kDefect == Defect::kFailsInSilence) result.status = dynamics::StepStatus::kNewtonFailed;
     return result;
@@ -67,7 +71,9 @@ const dynamics::StepperRegistry& registry_of() {
   using dynamics::Stability;
   using dynamics::StepControl;
   static const dynamics::StepperRegistry registry = {
-      {"faulty",
+      {kDefect == Defect::kClaimsToBeExplicit  ? "symplectic-euler"
+       : kDefect == Defect::kClaimsToBeLStable ? "backward-euler"
+                                               : "linearly-implicit-euler",
        "broken on purpose",
        {"Euler", 1, 1, kDefect == Defect::kClaimsErrorControl ? StepControl::kAdaptive : StepControl::kFixed,
         kDefect == Defect::kClaimsToBeExplicit ? Stability::kExplicit : Stability::kL, true, false,
@@ -93,7 +99,9 @@ inline Registry registry(Defect defect) {
     case Defect::kCrashes: return registry_of<Defect::kCrashes>;
     case Defect::kClaimsErrorControl: return registry_of<Defect::kClaimsErrorControl>;
     case Defect::kClaimsToBeExplicit: return registry_of<Defect::kClaimsToBeExplicit>;
+    case Defect::kClaimsToBeLStable: return registry_of<Defect::kClaimsToBeLStable>;
     case Defect::kFallsUpward: return registry_of<Defect::kFallsUpward>;
+    case Defect::kDrags: return registry_of<Defect::kDrags>;
   }
   fail("no such fault");
 }

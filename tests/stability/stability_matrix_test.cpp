@@ -1,34 +1,37 @@
 #include <gtest/gtest.h>
 
-#include <ostream>
-
-#include "palpate/core/error.h"
-#include "palpate/stability/stability.h"
-
-namespace palpate::stability {
-void PrintTo(const StabilityRow& row, std::ostream* out) { *out << row.name; }
-}  // namespace palpate::stability
+#include "stability/lazy_columns.h"
+#include "stability/matrix_rows.h"
 
 using namespace palpate;
 using namespace palpate::stability;
 
 /// Each row of the stability matrix, whole, over every integrator of the registry.
 class WholeRow : public testing::TestWithParam<StabilityRow> {};
-INSTANTIATE_TEST_SUITE_P(Stability, WholeRow, testing::ValuesIn(stability_rows()), [](const auto& param) {
-  std::string name = param.param.name;
-  for (char& c : name)
-    if (c == '-') c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Stability, WholeRow, testing::ValuesIn(rows_of_the_matrix(true)), name_of_row);
 TEST_P(WholeRow, IsAsTheoryExpects) {
   StabilityOptions options;
   options.rows = {GetParam().name};
   options.jobs = 2;
   options.limit_s = GetParam().slow ? 600.0 : 20.0;
-  std::string unexpected;
-  for (const StabilityCell& c : run(options).cells)
-    if (!c.as_expected())
-      unexpected += fmt::format("{} / {}: {}, expected {}; {}; {}\n", c.sub_case, c.integrator,
-                                to_string(c.verdict), c.expected.text(), c.figure, c.reason);
-  EXPECT_EQ(unexpected, "");
+  EXPECT_EQ(unexpected_of(run(options)), "");
+}
+
+class LazyStepper : public testing::TestWithParam<lazy::Named> {};
+INSTANTIATE_TEST_SUITE_P(Stability, LazyStepper, testing::ValuesIn(lazy::all()),
+                         [](const auto& param) { return param.param.name; });
+TEST_P(LazyStepper, SatisfiesNextToNothing) {
+  StabilityOptions options;
+  options.jobs = 2;
+  EXPECT_LT(lazy::satisfied_share(GetParam(), options), 0.02);
+}
+/// A few columns, of each way of stepping one: a million ticks take their time even where no step does
+/// anything.
+TEST_P(LazyStepper, SatisfiesNothingOfAMillionTicks) {
+  StabilityOptions options;
+  options.rows = {"million-ticks"};
+  options.integrators = {"linearly-implicit-euler", "rk4", "cvode-bdf", "ark-erk-4"};
+  options.jobs = 2;
+  options.limit_s = 600.0;
+  EXPECT_EQ(lazy::satisfied_share(GetParam(), options), 0.0);
 }

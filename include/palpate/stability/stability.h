@@ -23,9 +23,10 @@ enum class Verdict {
   kNotFinite,  ///< returned NaN or infinity as a result
   kSilent,     ///< failed without a reason, or kept back what it had to report
   kTooSlow,    ///< cut off at the time limit of the cell
+  kWrong,      ///< did not do what physics, or the method's own formula, says must happen; or gave up early
 };
-inline constexpr int kVerdicts = 8;
-const char* to_string(Verdict verdict);  ///< "accurate", "stable", ..., "not finite", "too slow"
+inline constexpr int kVerdicts = 9;
+const char* to_string(Verdict verdict);  ///< "accurate", "stable", ..., "too slow", "wrong"
 
 /// A set of verdicts: what theory expects of a cell.
 class Verdicts {
@@ -72,6 +73,7 @@ struct StabilityOptions {
   std::vector<std::string> rows;         ///< empty: all that are not slow
   std::vector<std::string> integrators;  ///< by the registry's name; empty: all
   bool slow = false;                     ///< the slow rows too
+  bool core = false;                     ///< of each row one sub-case, of all that are not slow or are named
   int seeds = 10;                        ///< random starts of a cell that has them
   int jobs = 1;                          ///< processes
   /// CPU time of a cell; of a slow row's, kLongerInSlowRows times that

@@ -1,0 +1,24 @@
+#include "alive.h"
+
+#include "palpate/core/error.h"
+
+namespace palpate::stability {
+
+std::string does_not_move(const Lab& lab, scene::Description d, double rtol) {
+  if (is_static(lab.column)) return {};
+  const Vec3 speed(0.003, -0.002, 0.01);
+  d.bodies[0].velocity_m_s = speed;
+  d.duration_s = 0.1;
+  double most = 0.0;
+  int periods = 0;
+  const SceneCourse course = run_scene(lab, d, rtol, 1.0, [&](loop::World& world, double t) {
+    const Points shift = world.positions(world.bodies[0]) - world.bodies[0].placed;
+    if (t > 0.0) most = std::max(most, (shift.colwise() - t * speed).norm() / (t * speed.norm())), ++periods;
+  });
+  if (!course.result.ok()) return fmt::format("let go at a speed, it ended: {}", course.result.message);
+  if (periods < 5 || !(most <= 1e-6))
+    return fmt::format("let go at a speed, it is {:.1e} of its way off after {} periods", most, periods);
+  return {};
+}
+
+}  // namespace palpate::stability

@@ -1,0 +1,106 @@
+#include <cmath>
+
+#include "palpate/core/clock.h"
+#include "palpate/tool/tool.h"
+#include "scene_run.h"
+
+// A million ticks of tool and body together: a ball on its coupling rests on a soft cube that is held below,
+// the handle pressed in by a fixed depth.  The press is over after a second; from then on nothing moves but
+// what rounding moves, and any drift is the exchange's own: a record that is not the same twice, a stiffness
+// that a linearisation adds or loses, ticks that walk along it.  At rest the coupling carries what the
+// contact does, k (z_tool - z_handle) = F > 0, so the tool is away from the handle (it has touched), and
+// - the tool is where it was after the press, to 1e-6 of the depth;
+// - so is the cube's energy, to 1e-6;
+// - memory does not grow: less than 2 MiB.
+//   -> accurate
+// The ticks are the loop's, whatever steps the cube takes; so the row has the methods that stand for a family
+// each, at fixed steps that are stable on the cube alone (w H below every limit is not needed: it rests).
+
+namespace palpate::stability {
+namespace {
+
+constexpr double kDuration = 1000.0, kSettled = 10.0, kPeriod = 0.01, kDepth = 0.003, kRadius = 0.01,
+                 kEdge = 0.05, kRtol = 1e-4, kStays = 1e-6;
+
+scene::Description pressed() {
+  scene::Description d = soft_cube();
+  AttachmentSpec below;
+  below.box_min_m = Vec3(-1, -1, -1e-6);
+  below.box_max_m = Vec3(1, 1, 1e-6);
+  d.bodies[0].attachments.push_back(below);
+  d.bodies[0].youngs_modulus_pa = 1e4;
+  d.bodies[0].stiffness_damping_s = 1e-2;
+  d.tool.emplace();
+  d.tool->radius_m = kRadius;
+  d.tool->mass_kg = 0.1;
+  d.tool->position_m = Vec3(0.001, 0.002, kEdge + kRadius);
+  d.tool->coupling.damping_n_s_m = 4.0;
+  d.device.emplace();
+  for (const auto& [time, z] :
+       {std::pair{0.0, 0.0}, std::pair{1.0, -kDepth}, std::pair{kDuration, -kDepth}}) {
+    KeyframeSpec frame;
+    frame.time_s = time;
+    frame.position_m = d.tool->position_m + Vec3(0, 0, z);
+    d.device->keyframes.push_back(frame);
+  }
+  ContactSpec contact;
+  contact.first = "cube";
+  contact.second = "tool";
+  contact.stiffness_pa_m = 1e7;
+  d.contacts.push_back(contact);
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = kPeriod;
+  d.duration_s = kDuration;
+  return d;
+}
+
+StabilityCell press(const Lab& lab) {
+  const scene::Description d = pressed();
+  double memory = 0.0, moved = 0.0, energy = 0.0, changed = 0.0, carried = 0.0;
+  Vec3 rest = Vec3::Zero();
+  const SceneCourse course = run_scene(lab, d, kRtol, 1.0, [&](loop::World& world, double t) {
+    const Vec3 tool = world.tool_pose().translation;
+    const double now = world.bodies[0].term->energy(world.state.view());
+    if (memory == 0.0 && t >= kSettled) {
+      memory = resident_memory_mib();
+      rest = tool;
+      energy = now;
+      carried = (tool - d.device->keyframes.back().position_m).z();
+    }
+    if (memory == 0.0) return;
+    moved = std::max(moved, (tool - rest).norm() / kDepth);
+    changed = std::max(changed, std::abs(now / energy - 1.0));
+  });
+  const double grown = resident_memory_mib() - memory;
+  StabilityCell cell;
+  cell.steps = course.steps;
+  cell.error = moved;
+  cell.figure =
+      fmt::format("tool moved {:.1e} of its depth, energy {:.1e}, carried {:.1e} m, memory {:+.1f} MiB",
+                  moved, changed, carried, grown);
+  if (ended_early(lab.column, course.result, course.finite && std::isfinite(moved + changed),
+                  course.interrupted, moved > 1.0, cell))
+    return cell;
+  if (!(carried > 0.01 * kDepth && energy > 0.0)) {
+    cell.verdict = Verdict::kWrong;
+    cell.reason = "the tool does not rest on the cube";
+    return cell;
+  }
+  cell.verdict = moved <= kStays && changed <= kStays && grown < 2.0 ? Verdict::kAccurate : Verdict::kGrew;
+  return cell;
+}
+
+Verdicts expect(const Lab&) { return {Verdict::kAccurate}; }
+
+}  // namespace
+
+Row million_touch_ticks_row() {
+  if (!tool::available())
+    return {"million-touch-ticks", "needs tools, which were not compiled in", RowColumns::kFamilies, true};
+  Row row{"million-touch-ticks",
+          "a million ticks of a tool that rests on a soft cube.  Finds drift of the exchange and leaks",
+          RowColumns::kFamilies, true};
+  row.cases.push_back({"at rest under a press", expect, press});
+  return row;
+}
+
+}  // namespace palpate::stability

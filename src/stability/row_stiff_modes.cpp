@@ -1,0 +1,79 @@
+#include <cmath>
+
+#include "linear.h"
+#include "palpate/core/error.h"
+#include "predicted_course.h"
+
+// L- against A-stability.  One oscillator of y = w H from 1e2 to 1e8, damping ratio 1/20, let go at amplitude
+// 1/w, under every method at fixed steps.  The exact motion has come to rest within a step (z y = 5 and
+// more). After kFew steps:
+// - an L-stable method has |R(i y)| <= C/y, C below 20 for all in use: at most 20/y of the amplitude is left.
+//   (BDF2 has a double root of size y^(-1/2) instead; with its L-stable first step that makes y^(-2).)
+//     -> accurate
+// - any other A-stable method keeps R(inf)^kFew of it, which its formula gives, and which does not depend on
+//   y; of generalised-alpha a multiple in the first step.
+//     -> stable, bounded
+//   The family of Newmark carries the acceleration along, right to eps y^2 of what it moves: above y = 1e7
+//   that hides which of the two.
+// - an explicit method is y/2 and more beyond its limit: overflow.
+//     -> error
+// The registry's word L is taken at its value: a method that says so and keeps the mode is wrong.  For the
+// others the formula decides (a multi-rate method's slow side alone may do more than the whole can promise).
+// All of it besides the agreement with the formula of linear_theory.cpp, 1, over 40 steps.
+
+namespace palpate::stability {
+namespace {
+
+constexpr double kH = 0.01, kDampingRatio = 0.05;
+constexpr int kFew = 3;
+constexpr double kRoundsAcceleration = 1e7;
+
+LinearProblem mode(double y) { return {y / kH, kDampingRatio}; }
+
+Verdict verdict_on(double amplitude, double y) {
+  return amplitude <= 20.0 / y ? Verdict::kAccurate : amplitude <= 1.0 ? Verdict::kStable : Verdict::kBounded;
+}
+
+Verdicts expect(const Lab& lab, double y) {
+  if (is_explicit(lab.column)) return {Verdict::kError};
+  if (lab.column.entry->traits.stability == dynamics::Stability::kL) return {Verdict::kAccurate};
+  const LinearProblem problem = mode(y);
+  PredictedCourse course(lab.column, problem, kH);
+  for (int i = 0; i < kFew; ++i) course.advance();
+  if (lab.column.entry->traits.family == "Newmark" && y >= kRoundsAcceleration)
+    return {Verdict::kStable, Verdict::kBounded};
+  return {verdict_on(std::sqrt(problem.energy(course.modes())), y)};
+}
+
+StabilityCell run(const Lab& lab, double y) {
+  const LinearProblem problem = mode(y);
+  StabilityCell cell = linear_cell(lab, problem, kH);
+  if (cell.verdict > Verdict::kBounded) return cell;
+  const auto few = problem.start();
+  const auto stepper =
+      make_stepper(lab.column, few->system, few->state, spec_of(lab.column, kLinearRtol, kH));
+  for (int i = 1; i <= kFew; ++i)
+    if (!stepper->advance_to(i * kH).ok()) return cell;
+  const double left = problem.from_rest(few->state);
+  cell.verdict = verdict_on(left, y);
+  cell.figure += fmt::format("; {:.1e} of the amplitude left after {} steps", left, kFew);
+  return cell;
+}
+
+}  // namespace
+
+Row stiff_modes_row() {
+  Row row{"stiff-modes",
+          "a stiff mode let go, w H from 1e2 to 1e8, fixed steps: an L-stable method damps it at once, an "
+          "A-stable one by R(inf) a step.  Finds methods that are not what the registry says of them",
+          RowColumns::kFixedSteppers};
+  for (const int decade : {2, 3, 4, 6, 8}) {
+    const double y = std::pow(10.0, decade);
+    row.cases.push_back({fmt::format("w H = 1e{}", decade), [y](const Lab& lab) { return expect(lab, y); },
+                         [y](const Lab& lab) { return run(lab, y); }});
+  }
+  row.core = 2;
+  return row;
+}
+
+}  // namespace palpate::stability

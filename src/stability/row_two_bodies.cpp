@@ -1,0 +1,98 @@
+#include <cmath>
+
+#include "palpate/core/error.h"
+#include "throw.h"
+
+// Two soft cubes, one above the other, densities rho and D rho, D up to 1e6; the upper and light one is
+// thrown at the other, which rests and is free.  No gravity and no support: contact is the only force between
+// them, and it balances, so
+//     m1 v1 + m2 v2 = m1 v
+// at every period, whatever the method: a linear invariant, which every method here keeps to rounding, to
+// what Newton's method leaves, and to the steps' tolerance under error control; 1e-4 of m1 v.  (Not the
+// multi-rate methods and additive ones alone: each of their sides has the invariant as well.) By the end the
+// light cube has been turned round (throw.cpp), relative to the heavy one:
+//     v1 - v2 >= -0.05 v    (v > 0 away from it),
+// and it has touched: v1 has changed by v/2 at least (of equal masses a perfectly plastic impact changes it
+// by v/2, of a heavier second body by more).  Energy as in throw.cpp: stable, bounded. E follows the density,
+// so that both have the same wave speed: else the heavy cube would not move as one body in the row's time.
+
+namespace palpate::stability {
+namespace {
+
+constexpr double kSpeed = 0.5, kMomentum = 1e-4, kEdge = 0.05, kGap = 2.5 * kSpeed * kThrowPeriod;
+
+scene::Description light_on_heavy(double ratio) {
+  scene::Description d = soft_cube();
+  d.name = "two cubes";
+  SoftBodySpec heavy = d.bodies[0];
+  heavy.name = "heavy";
+  heavy.density_kg_m3 *= ratio;
+  heavy.youngs_modulus_pa *= ratio;
+  d.bodies[0].position_m = Vec3(0.003, 0.002, 1.5 * kEdge + kGap);
+  d.bodies[0].velocity_m_s = Vec3(0, 0, -kSpeed);
+  d.bodies.push_back(heavy);
+  ContactSpec contact;
+  contact.first = d.bodies[0].name;
+  contact.second = heavy.name;
+  contact.stiffness_pa_m = 1e6;
+  d.contacts.push_back(contact);
+  d.exchange.contact_refresh_s = kThrowPeriod;
+  d.duration_s = kThrowDuration;
+  return d;
+}
+
+/// Momentum [kg m/s] and speed [m/s] along z of a body.
+std::pair<double, double> motion_of(const loop::World& world, const loop::Body& body) {
+  const dynamics::Block* block = world.state.layout().find(body.block_id);
+  const Eigen::Map<const Points> v(world.state.u().data() + block->u_offset, 3, block->u_size / 3);
+  const double p = (v * body.masses)[2];
+  return {p, p / body.masses.sum()};
+}
+
+StabilityCell run(const Lab& lab, const scene::Description& d) {
+  double off = 0.0, first = 0.0, second = 0.0;
+  const SceneCourse course = run_scene(lab, d, kThrowRtol, 0.0, [&](loop::World& world, double) {
+    const auto [p1, v1] = motion_of(world, world.bodies[0]);
+    const auto [p2, v2] = motion_of(world, world.bodies[1]);
+    const double thrown = -kSpeed * world.bodies[0].masses.sum();
+    off = std::max(off, std::abs((p1 + p2) / thrown - 1.0));
+    first = v1, second = v2;
+  });
+  StabilityCell cell;
+  judge(lab, course, throw_bars(lab.column, d), cell);
+  cell.figure +=
+      fmt::format(", momentum {:.0e} off, parts at {:+.2f} of its speed", off, (first - second) / kSpeed);
+  std::string mistake;
+  if (cell.verdict == Verdict::kError) mistake = gave_up_early(lab, course);
+  if (cell.verdict <= Verdict::kBounded && !is_static(lab.column)) {
+    if (!(off <= kMomentum))
+      mistake = fmt::format("momentum is {:.1e} of itself off", off);
+    else if (!(first + kSpeed >= 0.45 * kSpeed))
+      mistake = "it was not stopped";
+    else if (!(first - second >= -0.05 * kSpeed))
+      mistake = "it was not turned round";
+  }
+  if (mistake.empty()) return cell;
+  cell.verdict = Verdict::kWrong;
+  cell.reason = cell.reason.empty() ? mistake : fmt::format("{}: {}", mistake, cell.reason);
+  return cell;
+}
+
+}  // namespace
+
+Row two_bodies_row() {
+  Row row{
+      "two-bodies",
+      "a soft cube thrown at one that is up to 1e6 times as dense, both free.  Finds contact that does not "
+      "balance, momentum that a method makes or loses, bodies that do not part"};
+  for (const double ratio : {1.0, 1e3, 1e6}) {
+    const scene::Description d = light_on_heavy(ratio);
+    row.cases.push_back({fmt::format("{:g} times as dense", ratio),
+                         [d](const Lab& lab) { return expect_thrown(lab, d); },
+                         [d](const Lab& lab) { return run(lab, d); }});
+  }
+  row.core = 2;
+  return row;
+}
+
+}  // namespace palpate::stability
