@@ -29,9 +29,9 @@ void visit_error(Error& e, Visit visit) {
 // port, buzz, and what is known of further hands.
 static_assert(dynamics::bytes_of_counters<loop::RunResult>() + sizeof(dynamics::StepResult) + sizeof(double) +
                       sizeof(std::vector<long>) + sizeof(std::optional<loop::EnergyBalance>) +
-                      sizeof(std::string) + sizeof(std::optional<loop::RealTimeResult>) +
-                      sizeof(std::optional<loop::PortEnergy>) + sizeof(std::optional<double>) +
-                      sizeof(std::vector<loop::HandResult>) ==
+                      sizeof(std::string) + sizeof(dynamics::StepperCounters::most_halvings) +
+                      sizeof(std::optional<loop::RealTimeResult>) + sizeof(std::optional<loop::PortEnergy>) +
+                      sizeof(std::optional<double>) + sizeof(std::vector<loop::HandResult>) ==
                   sizeof(loop::RunResult),
               "the codec leaves out a member of RunResult");
 
