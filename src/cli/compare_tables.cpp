@@ -15,9 +15,28 @@ using Rows = std::vector<std::vector<std::string>>;
 constexpr std::size_t kPointsOnScreen = 80;
 constexpr std::size_t kReasonLength = 90;
 
+/// What a method did beside what it is called by: a step of h that was taken in parts is not one of h.
+std::string silent_text(const dynamics::StepperCounters& c) {
+  std::vector<std::string> out;
+  const auto add = [&](long n, const std::string& what) {
+    if (n > 0) out.push_back(fmt::format("{} {}", n, what));
+  };
+  add(c.halved_steps, fmt::format("steps in parts, down to 1/{}", 1L << c.most_halvings));
+  add(c.definite_retries, "solves again with definite tangents");
+  add(c.leaps, "whole corrections against the residual");
+  add(c.downhill, "steps downhill");
+  add(c.clamped, "tangents clamped");
+  add(c.projected, "matrices made definite");
+  add(c.unconverged, "solves given up by the iteration");
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
 std::string outcome_text(const compare::ComparePoint& p) {
-  if (p.status == compare::PointStatus::kOk)
-    return p.unresolved ? "not distinguishable from the reference" : "";
+  if (p.status == compare::PointStatus::kOk) {
+    const std::string silent = silent_text(p.result.counters);
+    if (!p.unresolved) return silent;
+    return "not distinguishable from the reference" + (silent.empty() ? "" : "; " + silent);
+  }
   const std::string line = p.reason.substr(0, p.reason.find('\n'));
   return line.size() <= kReasonLength ? line : line.substr(0, line.find_last_of(' ', kReasonLength)) + " ...";
 }
@@ -34,10 +53,9 @@ std::size_t end_of_failures(const std::vector<compare::ComparePoint>& points, st
 }  // namespace
 
 void print_points(const compare::SceneComparison& scene) {
-  std::vector<std::string> headers = {"integrator",  "setting",       "position error",
-                                      "CPU [s]",     "linear solver", "steps",
-                                      "force evals", "factors",       ""};
-  if (scene.tool) headers.insert(headers.begin() + 3, {"force error [N]", "torque error [N m]"});
+  std::vector<std::string> headers = {"integrator",    "setting", "error test",  "position error", "CPU [s]",
+                                      "linear solver", "steps",   "force evals", "factors",        ""};
+  if (scene.tool) headers.insert(headers.begin() + 4, {"force error [N]", "torque error [N m]"});
   Rows rows;
   for (std::size_t i = 0; i < scene.points.size(); i = end_of_failures(scene.points, i)) {
     const compare::ComparePoint& p = scene.points[i];
@@ -48,12 +66,13 @@ void print_points(const compare::SceneComparison& scene) {
     std::string setting = report::setting_text(p.setting_name, p.setting);
     if (const std::size_t end = end_of_failures(scene.points, i); end > i + 1)
       setting += " to " + report::setting_text(p.setting_name, scene.points[end - 1].setting);
-    rows.push_back({p.label, setting, report::short_number(p.error.position_rel_l2),
+    rows.push_back({p.label, setting, report::short_number(p.error_test_rtol),
+                    report::short_number(p.error.position_rel_l2),
                     ran ? fmt::format("{:.3f}", p.cpu_median_s) : "-",
                     p.linear_solver.empty() ? "-" : p.linear_solver, count(c.steps),
                     count(c.force_evaluations), count(c.solver.factorisations), outcome_text(p)});
     if (scene.tool)
-      rows.back().insert(rows.back().begin() + 3, {report::short_number(p.error.force_rms_n),
+      rows.back().insert(rows.back().begin() + 4, {report::short_number(p.error.force_rms_n),
                                                    report::short_number(p.error.torque_rms_n_m)});
   }
   if (rows.size() <= kPointsOnScreen)

@@ -78,6 +78,7 @@ Row row_of(const std::vector<std::string>& columns, const std::string& scene, co
                    {"multistep", yes_no(p.multistep)},
                    {"setting_name", p.setting_name},
                    {"setting", p.setting},
+                   {"error_test_rtol", p.error_test_rtol},
                    {"coarsest", yes_no(p.coarsest)},
                    {"linear_solver", p.linear_solver},
                    {"against", p.against},

@@ -235,6 +235,9 @@ std::vector<ComparePoint> plan_points(const scene::Description& d, const Compare
       for (std::string& solver : solver_of(ladder, choice)) overrides.push_back(std::move(solver));
       point.description = with_overrides(d, overrides);
       point.linear_solver = solver_name(point.description, ladder.integrator);
+      if (const StepperEntry* entry = d.bodies.empty() ? nullptr : find_stepper(ladder.integrator);
+          entry && entry->error_test_rtol && ladder.setting == "rtol")
+        point.error_test_rtol = entry->error_test_rtol(point.description.integrator);
       points.push_back(std::move(point));
     }
   }

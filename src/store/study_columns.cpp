@@ -12,6 +12,7 @@ const std::vector<std::string>& compare_columns() {
                                                    "multistep",
                                                    "setting_name",
                                                    "setting",
+                                                   "error_test_rtol",
                                                    "coarsest",
                                                    "linear_solver",
                                                    "against",

@@ -47,7 +47,7 @@ void fill(const TemporaryFolder& dir) {
     const std::string text = line;
     const auto first = text.find(','), last = text.rfind(',');
     compare += "press,cvode_<bdf>,cvode-bdf,BDF,5,A(alpha),yes,rtol," + text.substr(0, first) +
-               ",yes,cholmod,ark-erk-5," + text.substr(first + 1, last - first - 1) + ",,,,,,," +
+               ",1e-7,yes,cholmod,ark-erk-5," + text.substr(first + 1, last - first - 1) + ",,,,,,," +
                text.substr(last + 1) + ",1,4,1,0.1,0.1,3,10,2,3,10,12,9,8,1,0,ok,,no,no,no\n";
   }
   put(dir / "compare.csv", compare);

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct ComparePoint {
   bool multistep = false;
   std::string setting_name;  ///< "rtol", "step_s" or "tick_s"
   double setting = 0.0;
+  /// relative tolerance of the method's own error test; NaN where it has none
+  double error_test_rtol = std::numeric_limits<double>::quiet_NaN();
   bool coarsest = false;      ///< a coarser setting makes no sense
   bool open_ended = false;    ///< of a default ladder, which ends where the reference cannot tell errors
   std::string linear_solver;  ///< empty: it solves no linear systems
