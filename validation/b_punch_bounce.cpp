@@ -55,6 +55,16 @@ class Adhesive final : public DecoratedTerm {
   double damping_;
 };
 
+/// Fault "drag": a little damping where there is no contact.
+class Drag final : public DecoratedTerm {
+ public:
+  using DecoratedTerm::DecoratedTerm;
+  void add_force(const dynamics::StateView& state, VecX& f) override {
+    term().add_force(state, f);
+    f[2] -= 1e-6 * kMass * state.u[2];
+  }
+};
+
 /// The punch above (or in) the plane, through the real contact term, system and stepper.
 struct Bounce {
   dynamics::State state;
@@ -100,6 +110,8 @@ struct Bounce {
     term->add_pair(std::move(source), law);
     if (fault == "adhesive")
       system.add(std::make_shared<Adhesive>(term, law.damping_pa_s_m));
+    else if (fault == "drag")
+      system.add(std::make_shared<Drag>(term));
     else
       system.add(std::static_pointer_cast<dynamics::ForceTerm>(term));
     if (fault == "half-damping") system.add(friction_defect(term, 0.5));
@@ -363,7 +375,8 @@ ValidationCase punch_bounce() {
           run_undamped,
           {{"half-area", "contact duration"},
            {"tolerance-ignored", "contact duration"},
-           {"first-order-rule", "implicit-midpoint in contact"}}};
+           {"first-order-rule", "implicit-midpoint in contact"},
+           {"drag", "in free flight"}}};
 }
 
 ValidationCase punch_bounce_damped() {

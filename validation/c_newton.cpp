@@ -236,8 +236,11 @@ std::vector<Measurement> run(const std::string& fault) {
     };
     const Problem exact = row.make(body(Tangent::kExact, true));
     // the library gives other tangents than it is asked for
-    const Tangent given = fault == "warped-for-exact" ? Tangent::kWarped : row.tangent;
-    Problem p = row.make(body(given, row.full && fault != "unsymmetric-part-lost"));
+    const Tangent given = fault == "warped-for-exact"   ? Tangent::kWarped
+                          : fault == "exact-for-warped" ? Tangent::kExact
+                                                        : row.tangent;
+    const bool full = (row.full && fault != "unsymmetric-part-lost") || fault == "unsymmetric-part-kept";
+    Problem p = row.make(body(given, full));
     VecX z = exact.solution;
     const bool solved = converge(exact, z);
     p.solution = z;
@@ -264,7 +267,9 @@ ValidationCase newton_convergence() {
           .run = run,
           .faults = {{"warped-for-exact", "bent beam, exact tangent"},
                      {"warped-for-exact", "backward Euler, exact tangent"},
-                     {"unsymmetric-part-lost", "damped, its tangent whole"}}};
+                     {"exact-for-warped", "warped tangent"},
+                     {"unsymmetric-part-lost", "damped, its tangent whole"},
+                     {"unsymmetric-part-kept", "unsymmetric part dropped"}}};
 }
 
 }  // namespace palpate::validation
