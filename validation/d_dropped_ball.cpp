@@ -20,8 +20,8 @@
 // - Soft: a ball of tetrahedra: the projected areas of its vertices change with its shape, and are held
 //   between two queries.  The energy gained at each query is the cost of the slow query: reported, with no
 //   bar.
-// Gains are relative to the energy of the fall, m g h.  Pairs of order 2 are asked for 1e-7, where they take
-// some 1e5 steps, the others for 1e-10.
+// Gains are relative to the energy of the fall, m g h.  Pairs of order 2 are asked for 1e-7, the others
+// for 1e-10, which would take those of order 2 thirty times the steps.
 //
 // Why additive pairs need the kinks as roots.  A vertex that touches at the part theta of a step changes its
 // force by J: y'' = J (t - theta h)+.  The step's error in the velocity and its estimate are then
