@@ -8,6 +8,8 @@ std::string does_not_move(const Lab& lab, scene::Description d, double rtol) {
   if (is_static(lab.column)) return {};
   const Vec3 speed(0.003, -0.002, 0.01);
   d.bodies[0].velocity_m_s = speed;
+  d.contacts.clear();
+  d.obstacles.clear();
   d.duration_s = 0.1;
   double most = 0.0;
   int periods = 0;

@@ -139,13 +139,13 @@ std::vector<double> period_ends(double duration, bool short_steps) {
   return ends;
 }
 
-/// False where a step failed; the tally then has its result and nothing else.
+/// False where a step failed; the tally then has its result, and the rise of the energy until then.
 bool let_go(const Lab& lab, Body& body, const Bars& bars, bool short_steps, Tally& tally) {
   if (body.inverted() && body.system.inspect(body.state.view()).first.element < 0) tally.unreported = true;
   const auto stepper = make_stepper(lab.column, body.system, body.state, spec_of(lab.column, kRtol, kH));
   stepper->set_interrupt(lab.expired);
   const double start = body.energy();
-  double lowest = start, rise = 0.0;
+  double lowest = start;
   for (const double end : period_ends(bars.duration, short_steps)) {
     if (!(lowest > kSettled * start)) break;
     const dynamics::StepResult result = stepper->advance_to(end);
@@ -158,11 +158,10 @@ bool let_go(const Lab& lab, Body& body, const Bars& bars, bool short_steps, Tall
     const double energy = body.energy();
     tally.finite = tally.finite && std::isfinite(energy);
     if (!tally.finite) return true;
-    rise = std::max(rise, (energy - lowest) / start);
+    tally.rise = std::max(tally.rise, (energy - lowest) / start);
     lowest = std::min(lowest, energy);
   }
   tally.steps += stepper->counters().steps;
-  tally.rise = std::max(tally.rise, rise);
   tally.least_fall = std::min(tally.least_fall, 1.0 - lowest / start);
   const bool still = body.system.kinetic_energy(body.state.view()) <= kAtRest * start;
   const bool low = body.system.potential_energy(body.state.view()) <= kAtRest * start && !body.inverted();

@@ -55,10 +55,9 @@
 //   t0)), to 5 % of v: the body itself, k L/E times softer than the contact, changes it by k L/E, which is
 //   below 1 % there.  A body that has gone through the obstacle, counted, need not turn.
 // - An early end has a reason: at explicit fixed steps an energy beyond 1e3 of the start's, under error
-// control
-//   the limit of steps reached.  Of an implicit fixed step, Newton's method may fail where a period is more
-//   than kTooFar of the body's thicknesses long, so that the first step in contact turns its elements inside
-//   out: there an error is admitted, after a flight that was right.
+//   control the limit of steps reached.  Of an implicit fixed step, Newton's method may fail where a period
+//   is more than kTooFar of the body's thicknesses long, so that the first step in contact turns its elements
+//   inside out: there an error is admitted, after a flight that was right.
 //     -> error as well
 
 namespace palpate::stability {
