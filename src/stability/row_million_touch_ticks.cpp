@@ -14,7 +14,7 @@
 // - memory does not grow: less than 2 MiB.
 //   -> accurate
 // The ticks are the loop's, whatever steps the cube takes; so the row has the methods that stand for a family
-// each, at fixed steps that are stable on the cube alone (w H below every limit is not needed: it rests).
+// each.
 
 namespace palpate::stability {
 namespace {
@@ -24,6 +24,7 @@ constexpr double kDuration = 1000.0, kSettled = 10.0, kPeriod = 0.01, kDepth = 0
 
 scene::Description pressed() {
   scene::Description d = soft_cube();
+  d.bodies[0].mesh.element_size_m = 0.5 * kEdge;  // a node under the ball: contact is at the skin's vertices
   AttachmentSpec below;
   below.box_min_m = Vec3(-1, -1, -1e-6);
   below.box_max_m = Vec3(1, 1, 1e-6);
