@@ -33,20 +33,27 @@ VecX positions_of(const loop::World& world, const Vec3& tool_origin) {
   return nodal_positions(world);
 }
 
-/// Whether two times are equal.  They are multiples of the two runs' periods: equal to well within the
-/// shorter one's rounding.
-bool same_time(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1.0, std::abs(a)); }
+/// The mean distance of ascending times; of a single one its own distance from zero.
+double spacing(const std::vector<double>& times) {
+  if (times.size() < 2) return times.empty() ? 0.0 : std::abs(times[0]);
+  return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+}
 
 /// The larger of two numbers; NaN stays, where std::max would drop it.
 double worse(double a, double b) { return b > a || std::isnan(b) ? b : a; }
+
+/// Times are multiples of the two runs' periods: equal where they differ by less than this share of the
+/// shorter one, far above their rounding and far below any ratio of periods.
+constexpr double kSameTime = 1e-6;
 
 /// Calls visit(i, j) for every pair of equal times of two ascending lists; returns how many there were.
 template <class Visit>
 int for_common_times(const std::vector<double>& a, const std::vector<double>& b, Visit visit) {
   std::size_t i = 0, j = 0;
   int common = 0;
+  const double alike = kSameTime * std::min(spacing(a), spacing(b));
   while (i < a.size() && j < b.size()) {
-    if (same_time(a[i], b[j])) {
+    if (std::abs(a[i] - b[j]) <= alike) {
       visit(i++, j++);
       ++common;
     } else if (a[i] < b[j]) {

@@ -1,5 +1,5 @@
-"""Two scenes against references from outside: the same semi-discrete equations, written apart from the library
-in NumPy and integrated by SciPy (DOP853 of Hairer, Norsett and Wanner; Radau IIA of order 5).
+"""Two scenes against references from outside: the same semi-discrete equations, written apart from the
+library in NumPy and integrated by SciPy (DOP853 of Hairer, Norsett and Wanner; Radau IIA of order 5).
 
     outside_reference_test.py PROGRAM
 
