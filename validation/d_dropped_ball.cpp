@@ -177,9 +177,13 @@ std::vector<Measurement> run(const std::string& fault) {
     if (entry.traits.control == StepControl::kFixed || entry.traits.stability == dynamics::Stability::kStatic)
       continue;
     spec.name = entry.name;
-    spec.events = entry.traits.family == "ImEx Runge-Kutta" ? "root-finding" : "error-control";
-    // the digits of two tables end at 5e-10
-    const double wanted = entry.traits.order <= 2 ? 1e-7 : std::max(1e-10, entry.tightest_rtol(spec));
+    // The digits of Cash's tables end at 5e-10: what error control takes from a kink is not small enough
+    // there.
+    const bool coarse = entry.tightest_rtol(spec) > 1e-10 && entry.traits.order > 2;
+    spec.events = coarse || entry.traits.family == "ImEx Runge-Kutta" ? "root-finding" : "error-control";
+    // At a kink the embedded solution tells less of the error than in smooth motion: a tenth of what smooth
+    // motion would ask for.
+    const double wanted = entry.traits.order <= 2 ? 1e-7 : std::max(1e-11, entry.tightest_rtol(spec));
     spec.rtol = fault == "tolerance-ignored" ? 1e-2 : wanted;
     spec.max_steps = 100'000'000;
     for (const double damping : {0.0, 2e6}) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "cases.h"
@@ -119,7 +120,8 @@ Watch block_top(const std::string& integrator, const std::string& fault) {
   system.prepare(state.view());
   IntegratorSpec spec;
   spec.name = integrator;
-  spec.rtol = fault == "tolerance-ignored" ? 1e-4 : 1e-12;
+  const auto& entry = find(integrate::stepper_registry(), integrator, "integrator");
+  spec.rtol = fault == "tolerance-ignored" ? 1e-4 : std::max(1e-12, entry.tightest_rtol(spec));
   if (fault == "first-order-rule") {
     spec.name = "backward-euler";
     spec.step_s = kTick;

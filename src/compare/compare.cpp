@@ -1,7 +1,6 @@
 #include "palpate/compare/compare.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <thread>
 
@@ -217,11 +216,12 @@ class Study {
   Ledger ledger_;
 };
 
-/// A solver whose result is farther than this from that of a ladder's first one is not considered, however
-/// fast, relative to the error.
-constexpr double kSameError = 0.1;
+/// A solver that makes the error of a ladder's first one larger than so many times is not considered, however
+/// fast.  Under error control any other rounding takes other steps, and errors scatter by that much.
+constexpr double kSameError = 2.0;
 
-/// The fastest solver of each ladder that was tried, of those whose error is the first (direct) one's.
+/// The fastest solver of each ladder that was tried, of those whose error is no worse than the first (direct)
+/// one's.
 SolverChoice fastest_of(const std::vector<ComparePoint>& trials) {
   SolverChoice out;
   std::map<std::string, const ComparePoint*> first, best;
@@ -231,7 +231,7 @@ SolverChoice fastest_of(const std::vector<ComparePoint>& trials) {
         trial.label.substr(0, trial.label.size() - trial_label("", trial.linear_solver).size());
     const double right = first.emplace(label, &trial).first->second->error.position_rel_l2,
                  error = trial.error.position_rel_l2;
-    if (std::abs(error - right) > kSameError * right) continue;
+    if (error > kSameError * right) continue;
     const ComparePoint*& fastest = best.emplace(label, &trial).first->second;
     if (trial.cpu_median_s <= fastest->cpu_median_s) fastest = &trial;
   }

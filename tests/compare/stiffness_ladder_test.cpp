@@ -53,8 +53,9 @@ INSTANTIATE_TEST_SUITE_P(Pascal, StiffnessLadder, testing::Values(1e4, 1e5, 1e6,
                            return fmt::format("1e{}", static_cast<int>(std::lround(std::log10(given.param))));
                          });
 
-// Every implicit method of SUNDIALS with error control, at one tolerance for all of E: 1e-7, and 1e-5 for
-// methods of order 2.
+// Every implicit method of SUNDIALS with error control, at one tolerance for all of E: 1e-7, and 1e-6 for
+// methods of order 2.  Errors are relative to the deformation, of which a bending bar has a seventh of its
+// displacement.
 TEST_P(StiffnessLadder, EveryImplicitMethodOfSundialsReaches1eMinus5) {
   const compare::Run reference = run(GetParam(), {.name = "cvode-bdf", .rtol = 1e-9});
   ASSERT_TRUE(reference.result.status.ok()) << reference.result.status.message;
@@ -67,7 +68,7 @@ TEST_P(StiffnessLadder, EveryImplicitMethodOfSundialsReaches1eMinus5) {
     if (!entry.traits.implicit || entry.traits.control == dynamics::StepControl::kFixed) continue;
     const compare::Run r =
         run(GetParam(),
-            {.name = entry.name, .rtol = entry.traits.order <= 2 ? 1e-5 : 1e-7, .max_steps = 1000000});
+            {.name = entry.name, .rtol = entry.traits.order <= 2 ? 1e-6 : 1e-7, .max_steps = 1000000});
     ASSERT_TRUE(r.result.status.ok()) << entry.name << ": " << r.result.status.message;
     const double error = compare::distance(r.trajectory, reference.trajectory).position_rel_l2;
     EXPECT_LT(error, 1e-5) << entry.name;
