@@ -67,7 +67,7 @@ double moved(const scene::Description& d, const Ran& ran) {
 // The error of the iteration stays below what Newton's method sees: as many Newton iterations as by LU's
 // factors, to the same motion.  Error control turns the last digits into other lengths of steps (as far apart
 // are the runs by two LU factors, umfpack's and klu's): those methods are held to their own tolerance, and to
-// the iterations of a step.  One method of each family that moves.
+// no more iterations a step.  One method of each family that moves.
 TEST(FrictionSolver, NoFamilyOfMethodsNeedsLu) {
   std::set<std::string> families;
   for (const auto& entry : integrate::stepper_registry()) {
@@ -90,7 +90,7 @@ TEST(FrictionSolver, NoFamilyOfMethodsNeedsLu) {
       EXPECT_EQ(krylov.counters.newton_iterations, lu.counters.newton_iterations) << entry.name;
     } else {
       EXPECT_LT(apart, d.integrator.rtol * moved(d, lu)) << entry.name;
-      EXPECT_NEAR(newton_a_step(krylov), newton_a_step(lu), 0.1 * newton_a_step(lu)) << entry.name;
+      EXPECT_LT(newton_a_step(krylov), 1.1 * newton_a_step(lu)) << entry.name;
     }
   }
   EXPECT_GE(families.size(), 6u);
