@@ -84,9 +84,9 @@ TEST(Trace, WritesEveryAttemptWithItsReasonAndNode) {
             kWorstNode);  // otherwise the test could not tell which numbering is written
   EXPECT_EQ(table.rows[0],
             (std::vector<std::string>{"0", "0.004", "3", "7.5", "2", "error test", "block",
-                                      std::to_string(file_node[kWorstNode]), "y", "block", "4"}));
+                                      std::to_string(file_node[kWorstNode]), "y", "block", "4", "0"}));
   EXPECT_EQ(table.rows[1], (std::vector<std::string>{"0", "0.001", "3", "0.5", "2", "accepted", "block",
-                                                     std::to_string(file_node[0]), "x", "", ""}));
+                                                     std::to_string(file_node[0]), "x", "", "", "0"}));
 }
 
 TEST(Trace, NamesDirectionsOfBodiesAndTools) {
