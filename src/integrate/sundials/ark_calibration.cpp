@@ -22,6 +22,10 @@
 // For the usual m = p - 1 that is d/c rtol, whatever the amplitude.  Without the factor pairs differ by a
 // hundred: of ARK5(4)8L[2]SA d is made nearly zero, and the test sees a small part of the error.
 //
+// A factor only tightens: where a force has a kink the estimate tells of it what it does, whatever d/c is on
+// smooth motion.  With d/c = 11 of SDIRK 5(3)4 a ball on an undamped spring gained 4.5e-6 of its energy at rtol
+// 1e-10, and 2.2e-6 at 1e-11.
+//
 // Three pairs have m = p on linear motion and p - 1 on others.  The power is half-way between (error_test.h),
 // and the factor such that both agree at kMiddle.
 //
@@ -70,7 +74,7 @@ ArkCalibration calibrate(const ArkMethod& method) {
 
   out.power = (embedded + (method.sharper_on_linear_motion ? 0.5 : 0.0) + 1.0) / p;
   const double a = kUsualMotion, T = d * a * std::pow(kMiddle / (c * a), (m + 1.0) / p);
-  out.factor = T / std::pow(kMiddle, out.power);
+  out.factor = std::min(1.0, T / std::pow(kMiddle, out.power));
   return out;
 }
 
