@@ -23,8 +23,8 @@
 // hundred: of ARK5(4)8L[2]SA d is made nearly zero, and the test sees a small part of the error.
 //
 // A factor only tightens: where a force has a kink the estimate tells of it what it does, whatever d/c is on
-// smooth motion.  With d/c = 11 of SDIRK 5(3)4 a ball on an undamped spring gained 4.5e-6 of its energy at rtol
-// 1e-10, and 2.2e-6 at 1e-11.
+// smooth motion.  Loosened by d/c, SDIRK 5(3)4 let a ball on an undamped spring gain 4.5e-6 of its energy at
+// rtol 1e-10, and 2.2e-6 at 1e-11.
 //
 // Three pairs have m = p on linear motion and p - 1 on others.  The power is half-way between (error_test.h),
 // and the factor such that both agree at kMiddle.
