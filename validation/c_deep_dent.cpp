@@ -211,7 +211,8 @@ void measure_work(const std::string& fault, std::vector<Measurement>& out) {
   for (int i = kSteps; i-- > 0;) {
     const double back = dent.press(kPoint[i] * kDent);
     returned += kWeight[i] * kDent * back;
-    apart = std::max(apart, std::abs(back - forces[static_cast<std::size_t>(i)]) / whole);
+    const double off = std::abs(back - forces[static_cast<std::size_t>(i)]) / whole;
+    if (!(off <= apart)) apart = off;  // NaN stays
   }
   dent.press(-0.1 * kSize);
   out.push_back({.quantity = "work of the tool against the energy of the dent by its definition [J]",

@@ -47,6 +47,12 @@ struct Watch {
   double crossing = std::nan(""), energy = 0.0, momentum = 0.0;
   int crossings = 0;
 
+  /// Of a run that did not reach its end.
+  static Watch failed() {
+    Watch out;
+    out.energy = out.momentum = std::nan("");
+    return out;
+  }
   void start(const Pose& pose, const Vec3& spin) {
     before_ = body(pose, spin);
     time_ = 0.0;
@@ -55,9 +61,9 @@ struct Watch {
   }
   void sample(double t, const Pose& pose, const Vec3& spin) {
     const Vec3 w = body(pose, spin);
-    energy = std::max(energy, std::abs(twice_energy(w) / energy_ - 1.0));
-    momentum = std::max(
-        momentum, (pose.rotation * Vec3(kInertia.cwiseProduct(w)) - momentum_).norm() / momentum_.norm());
+    energy = worse(energy, std::abs(twice_energy(w) / energy_ - 1.0));
+    momentum = worse(momentum,
+                     (pose.rotation * Vec3(kInertia.cwiseProduct(w)) - momentum_).norm() / momentum_.norm());
     if (before_.y() < 0.0 && w.y() >= 0.0) {
       crossing = time_ +
                  (t - time_) * zero(before_.y(), w.y(), slope(before_) * (t - time_), slope(w) * (t - time_));
@@ -68,6 +74,8 @@ struct Watch {
   }
 
  private:
+  /// NaN stays.
+  static double worse(double a, double b) { return b <= a ? a : b; }
   static Vec3 body(const Pose& pose, const Vec3& spin) { return pose.rotation.conjugate() * spin; }
   static double slope(const Vec3& w) { return (kInertia.z() - kInertia.x()) / kInertia.y() * w.z() * w.x(); }
   /// Where Hermite's cubic with these values and slopes on [0, 1] is zero.
@@ -100,7 +108,7 @@ Watch tool_top(const std::string& scheme, const std::string& fault) {
   Watch watch;
   watch.start(kStart, spin);
   for (int i = 1; i <= ticks(); ++i) {
-    if (!body.advance(kTick, {kStart, kStart, {}, {}}, {}).ok()) return {};
+    if (!body.advance(kTick, {kStart, kStart, {}, {}}, {}).ok()) return Watch::failed();
     watch.sample(i * kTick, body.pose(), body.twist().angular);
   }
   return watch;
@@ -130,7 +138,7 @@ Watch block_top(const std::string& integrator, const std::string& fault) {
   Watch watch;
   watch.start(kStart, spin);
   for (int i = 1; i <= ticks(); ++i) {
-    if (!stepper->advance_to(i * kTick).ok()) return {};
+    if (!stepper->advance_to(i * kTick).ok()) return Watch::failed();
     const dynamics::RigidMotion m =
         dynamics::motion_of(state.view(), dynamics::rigid_block_of(state.view(), id));
     watch.sample(i * kTick, m.pose, m.twist.angular);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "palpate/report/work_precision.h"
+#include "silent.h"
 
 namespace palpate::cli {
 namespace {
@@ -15,25 +16,9 @@ using Rows = std::vector<std::vector<std::string>>;
 constexpr std::size_t kPointsOnScreen = 80;
 constexpr std::size_t kReasonLength = 90;
 
-/// What a method did beside what it is called by: a step of h that was taken in parts is not one of h.
-std::string silent_text(const dynamics::StepperCounters& c) {
-  std::vector<std::string> out;
-  const auto add = [&](long n, const std::string& what) {
-    if (n > 0) out.push_back(fmt::format("{} {}", n, what));
-  };
-  add(c.halved_steps, fmt::format("steps in parts, down to 1/{}", 1L << c.most_halvings));
-  add(c.definite_retries, "solves again with definite tangents");
-  add(c.leaps, "whole corrections against the residual");
-  add(c.downhill, "steps downhill");
-  add(c.clamped, "tangents clamped");
-  add(c.projected, "matrices made definite");
-  add(c.unconverged, "solves given up by the iteration");
-  return fmt::format("{}", fmt::join(out, ", "));
-}
-
 std::string outcome_text(const compare::ComparePoint& p) {
   if (p.status == compare::PointStatus::kOk) {
-    const std::string silent = silent_text(p.result.counters);
+    const std::string silent = silent_doings(p.result.counters);
     if (!p.unresolved) return silent;
     return "not distinguishable from the reference" + (silent.empty() ? "" : "; " + silent);
   }

@@ -243,7 +243,8 @@ With --haptic one thing at a time differs from the scene, as its [compare.haptic
 time unless --jobs is given, and have 120 s of CPU each, references 1800, unless --limit-s and
 --reference-limit-s are given.  Writes haptic.csv, summary.json, study.sqlite and report.html.)");
   command->callback([arguments, command, &invocation] {
-    if (arguments->haptic && arguments->all) throw CLI::ExcludesError("--haptic", "--all");
+    for (const char* other : {"--all", "--linear-solver"})
+      if (arguments->haptic && command->count(other) > 0) throw CLI::ExcludesError("--haptic", other);
     if (arguments->haptic && command->count("--limit-s") == 0) arguments->limit_s = 120.0;
     if (arguments->haptic && command->count("--reference-limit-s") == 0)
       arguments->reference_limit_s = 1800.0;

@@ -24,6 +24,7 @@
 #include "picture.h"
 #include "progress.h"
 #include "scene_of.h"
+#include "silent.h"
 #include "stop.h"
 #include "undelivered.h"
 
@@ -60,27 +61,6 @@ void print_tolerance(const IntegratorSpec& spec) {
     fmt::print("{}: rtol {:g}, error test at {:.3g}\n", spec.name, spec.rtol, method.error_test_rtol(spec));
 }
 
-/// What a method did beside the steps that it was asked for.
-void print_silent(const dynamics::StepperCounters& c) {
-  if (c.halved_steps > 0)
-    fmt::print("{} steps were too long for Newton's method and taken in {} parts, the smallest 1/{}\n",
-               c.halved_steps, c.step_parts, 1L << c.most_halvings);
-  std::vector<std::string> rest;
-  const auto add = [&](long count, const char* what) {
-    if (count > 0) rest.push_back(fmt::format("{} {}", count, what));
-  };
-  add(c.definite_retries, "solves tried again with definite tangents");
-  add(c.leaps, "solves without descent");
-  add(c.downhill, "steps downhill in energy");
-  add(c.indefinite, "indefinite matrices");
-  add(c.lu, "matrices left to LU");
-  add(c.unconverged, "linear solves given up by the iteration");
-  add(c.clamped, "element tangents bounded");
-  add(c.rounding_limited, "equilibria limited by rounding");
-  add(c.rejected, "attempts rejected");
-  if (!rest.empty()) fmt::print("on the way: {}\n", fmt::join(rest, ", "));
-}
-
 void print_outcome(const loop::World& world, const loop::RunResult& result, const PeakWrench& peak,
                    double assemble_s) {
   fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s\n", short_name(world.description),
@@ -91,7 +71,7 @@ void print_outcome(const loop::World& world, const loop::RunResult& result, cons
                world.stepper->name(), c.steps, c.force_evaluations, c.tangent_evaluations,
                c.solver.factorisations, result.contact_queries);
     print_tolerance(world.description.integrator);
-    print_silent(c);
+    if (const std::string silent = silent_doings(c); !silent.empty()) fmt::print("on the way: {}\n", silent);
   }
   if (result.ticks > 0) print_hand("the hand", peak.of[0], result.ticks, result.limited_ticks);
   for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peak.of.size(); ++i)

@@ -237,8 +237,8 @@ void SoftBody::add_step_force(const StateView& state, const VecX& shift, const V
   const LaneCounts met = m.elements.add_step_force(
       m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset, more}, force);
   m.counts.inverted += met.inverted;
-  m.counts.clamped += met.clamped;
-  m.counts.by_scalar += met.by_scalar;
+  m.counts.by_scalar +=
+      met.by_scalar;  // its tangents are applied, as often as an iteration asks: not counted
   if (!m.dragged()) return;
   m.add_drag(at, force);
   for (int i = 0; i < node_count(); ++i)

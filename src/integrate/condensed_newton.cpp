@@ -75,7 +75,8 @@ void CondensedNewton::limit_error(const Layout& layout, const double* w, double 
     if (system_.driven_mask()[static_cast<std::size_t>(i)]) continue;
     const double wq = gamma_ * w[i], wu = w[layout.q_size + i],
                  m = M_.body.block(M_.body.diagonal(i / 3))[4 * (i % 3)];
-    if (m > 0.0) largest = std::max(largest, (wq * wq + wu * wu) / m);
+    if (!(m > 0.0)) return tolerance_->allow_error(0.0);  // no bound
+    largest = std::max(largest, (wq * wq + wu * wu) / m);
   }
   double c = 1.0;
   for (const auto& inertia : system_.inertias())

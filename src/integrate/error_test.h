@@ -14,8 +14,8 @@ namespace palpate::integrate {
 //     Adams-Moulton           its order rises with the tolerance up to 12, and the error falls as T by
 //                             itself; but it adds up over some ten steps a radian, each of which may err by
 //                             T = rtol/10
-//     Runge-Kutta pair p(p^)  m = min(p, p^): a factor times rtol for the usual p^ = p - 1, by the pair's own
-//                             coefficients (ark_calibration.cpp).  Three pairs have m = p on linear motions
+//     Runge-Kutta pair p(p^)  m = min(p, p^): a factor, at most 1, times rtol for the usual p^ = p - 1, by
+//                             the pair's own coefficients (ark_calibration.cpp).  Three pairs have m = p on linear motions
 //                             and p - 1 on others.  Half-way between, m = p - 1/2, the error falls as
 //                             T^((p+1/2)/(p+1)) on the former and T^((p+1/2)/p) on the latter: 0.90 and 1.13
 //                             for p = 4, 0.92 and 1.10 for p = 5.

@@ -23,11 +23,10 @@ Range order_range(int highest_order) { return Range::closed(0, highest_order, Ra
 void check_tightest(const IntegratorSpec& spec, double tightest_rtol) {
   if (spec.rtol >= tightest_rtol) return;
   fail(
-      "integrator \"{}\": rtol = {} is below {}, the tightest that it takes with {}: its error test would "
-      "see "
-      "rounding alone",
+      "integrator \"{}\": rtol = {} is below {}, the tightest that it takes{}: of less it would make "
+      "rounding",
       spec.name, spec.rtol, tightest_rtol,
-      spec.max_order > 0 ? fmt::format("max_order = {}", spec.max_order) : "its highest order");
+      spec.max_order > 0 ? fmt::format(" with max_order = {}", spec.max_order) : "");
 }
 
 void check_adaptive(const IntegratorSpec& spec, int highest_order, double tightest_rtol) {

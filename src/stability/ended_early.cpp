@@ -25,4 +25,10 @@ bool ended_early(const Column& column, const dynamics::StepResult& result, bool 
   return true;
 }
 
+void mark_wrong(const std::string& mistake, StabilityCell& cell) {
+  if (mistake.empty()) return;
+  cell.verdict = Verdict::kWrong;
+  cell.reason = cell.reason.empty() ? mistake : fmt::format("{}: {}", mistake, cell.reason);
+}
+
 }  // namespace palpate::stability

@@ -71,9 +71,7 @@ void judge_early_end(const Lab& lab, const LinearProblem& problem, const Course&
     else if (!(error <= bar))
       mistake = fmt::format("gave up with an error of {:.1e} of {:.1e}", error, bar);
   }
-  if (mistake.empty()) return;
-  cell.verdict = Verdict::kWrong;
-  cell.reason = fmt::format("{}: {}", mistake, cell.reason);
+  mark_wrong(mistake, cell);
 }
 
 }  // namespace

@@ -24,6 +24,9 @@ struct Lab {
 bool ended_early(const Column& column, const dynamics::StepResult& result, bool finite, bool interrupted,
                  bool grown, StabilityCell& cell);
 
+/// Sets the verdict "wrong" where `mistake` is not empty, before what the cell says already.
+void mark_wrong(const std::string& mistake, StabilityCell& cell);
+
 struct SubCase {
   std::string name;
   std::function<Verdicts(const Lab&)> expect;  ///< from theory, before anything of the case has run

@@ -104,11 +104,11 @@ StabilityCell run_on_plate(const Lab& lab, const scene::Description& d) {
 }  // namespace
 
 Row impact_row() {
-  Row row{"impact",
-          "a thin slab thrown at 0.1 to 100 m/s (three times the speed of its own waves) on a plane, and on "
-          "a plate as thin as itself: what goes through is counted.  Finds what contact-stiffness does, at "
-          "speed, "
-          "and vertices that are not counted"};
+  Row row{
+      "impact",
+      "a thin slab thrown at 0.1 to 100 m/s (three times the speed of its own waves) on a plane, and on "
+      "a plate as thin as itself: what goes through is counted.  Finds bodies that are not turned round or "
+      "leave with more energy than they came with, and vertices that go through uncounted"};
   const auto add = [&row](std::string name, const scene::Description& thrown,
                           StabilityCell (*run)(const Lab&, const scene::Description&)) {
     row.cases.push_back({std::move(name), [thrown](const Lab& lab) { return expect_thrown(lab, thrown); },

@@ -99,9 +99,7 @@ StabilityCell run(const Lab& lab, double slope) {
     cell.verdict = drift <= bar && grown < 2.0 ? Verdict::kAccurate : Verdict::kGrew;
     if (slope == 0.0) mistake = does_not_move(lab, on_a_floor(slope), kRtol);
   }
-  if (mistake.empty()) return cell;
-  cell.verdict = Verdict::kWrong;
-  cell.reason = cell.reason.empty() ? mistake : fmt::format("{}: {}", mistake, cell.reason);
+  mark_wrong(mistake, cell);
   return cell;
 }
 

@@ -2,7 +2,7 @@
 
 #include "palpate/core/clock.h"
 #include "palpate/tool/tool.h"
-#include "scene_run.h"
+#include "tool_scene.h"
 
 // A million ticks of tool and body together: a ball on its coupling rests on a soft cube that is held below,
 // the handle pressed in by a fixed depth.  The press is over after a second; from then on nothing moves but
@@ -19,37 +19,14 @@
 namespace palpate::stability {
 namespace {
 
-constexpr double kDuration = 1000.0, kSettled = 10.0, kPeriod = 0.01, kDepth = 0.003, kRadius = 0.01,
-                 kEdge = 0.05, kRtol = 1e-4, kStays = 1e-6;
+constexpr double kDuration = 1000.0, kSettled = 10.0, kDepth = 0.003, kRtol = 1e-4, kStays = 1e-6;
 
 scene::Description pressed() {
-  scene::Description d = soft_cube();
-  d.bodies[0].mesh.element_size_m = 0.5 * kEdge;  // a node under the ball: contact is at the skin's vertices
-  AttachmentSpec below;
-  below.box_min_m = Vec3(-1, -1, -1e-6);
-  below.box_max_m = Vec3(1, 1, 1e-6);
-  d.bodies[0].attachments.push_back(below);
+  const double above = kToolCubeEdge + kToolRadius;
+  scene::Description d = under_a_tool({{0.0, above}, {1.0, above - kDepth}, {kDuration, above - kDepth}}, 0.1,
+                                      VirtualCouplingSpec{}.stiffness_n_m, 4.0);
   d.bodies[0].youngs_modulus_pa = 1e4;
   d.bodies[0].stiffness_damping_s = 1e-2;
-  d.tool.emplace();
-  d.tool->radius_m = kRadius;
-  d.tool->mass_kg = 0.1;
-  d.tool->position_m = Vec3(0.001, 0.002, kEdge + kRadius);
-  d.tool->coupling.damping_n_s_m = 4.0;
-  d.device.emplace();
-  for (const auto& [time, z] :
-       {std::pair{0.0, 0.0}, std::pair{1.0, -kDepth}, std::pair{kDuration, -kDepth}}) {
-    KeyframeSpec frame;
-    frame.time_s = time;
-    frame.position_m = d.tool->position_m + Vec3(0, 0, z);
-    d.device->keyframes.push_back(frame);
-  }
-  ContactSpec contact;
-  contact.first = "cube";
-  contact.second = "tool";
-  contact.stiffness_pa_m = 1e7;
-  d.contacts.push_back(contact);
-  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = kPeriod;
   d.duration_s = kDuration;
   return d;
 }

@@ -61,10 +61,7 @@ StabilityCell stays(const Lab& lab, const scene::Description& d) {
   cell.verdict = cell.error <= kRest  ? Verdict::kAccurate
                  : cell.error <= 1e-6 ? Verdict::kBounded
                                       : Verdict::kGrew;
-  if (const std::string mistake = does_not_move(lab, d, kRtol); !mistake.empty()) {
-    cell.verdict = Verdict::kWrong;
-    cell.reason = mistake;
-  }
+  mark_wrong(does_not_move(lab, d, kRtol), cell);
   return cell;
 }
 

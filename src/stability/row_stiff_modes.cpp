@@ -53,7 +53,10 @@ StabilityCell run(const Lab& lab, double y) {
   const auto stepper =
       make_stepper(lab.column, few->system, few->state, spec_of(lab.column, kLinearRtol, kH));
   for (int i = 1; i <= kFew; ++i)
-    if (!stepper->advance_to(i * kH).ok()) return cell;
+    if (!stepper->advance_to(i * kH).ok()) {
+      mark_wrong("forty steps went well, and a few do not", cell);
+      return cell;
+    }
   const double left = problem.from_rest(few->state);
   cell.verdict = verdict_on(left, y);
   cell.figure += fmt::format("; {:.1e} of the amplitude left after {} steps", left, kFew);

@@ -8,9 +8,10 @@
 // them, and it balances, so
 //     m1 v1 + m2 v2 = m1 v
 // at every period, whatever the method: a linear invariant, which every method here keeps to rounding, to
-// what Newton's method leaves, and to the steps' tolerance under error control; 1e-4 of m1 v.  (Not the
-// multi-rate methods and additive ones alone: each of their sides has the invariant as well.) By the end the
-// light cube has been turned round (throw.cpp), relative to the heavy one:
+// what Newton's method leaves, and to the steps' tolerance under error control; 1e-4 of m1 v.
+// (Multi-rate and additive methods as well: each of their sides keeps it.)  Energy is bounded as in
+// throw.cpp, with the reduced mass m1 m2/(m1 + m2) on the contact.  By the end the light cube has been turned
+// round (throw.cpp), relative to the heavy one:
 //     v1 - v2 >= -0.05 v    (v > 0 away from it),
 // and it has touched: v1 has changed by v/2 at least (of equal masses a perfectly plastic impact changes it
 // by v/2, of a heavier second body by more).  Energy as in throw.cpp: stable, bounded. E follows the density,
@@ -72,9 +73,7 @@ StabilityCell run(const Lab& lab, const scene::Description& d) {
     else if (!(first - second >= -0.05 * kSpeed))
       mistake = "it was not turned round";
   }
-  if (mistake.empty()) return cell;
-  cell.verdict = Verdict::kWrong;
-  cell.reason = cell.reason.empty() ? mistake : fmt::format("{}: {}", mistake, cell.reason);
+  mark_wrong(mistake, cell);
   return cell;
 }
 

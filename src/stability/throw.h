@@ -8,7 +8,7 @@ namespace palpate::stability {
 /// Period and duration [s], relative tolerance.
 inline constexpr double kThrowPeriod = 2e-3, kThrowDuration = 0.1, kThrowRtol = 1e-4;
 
-/// `d`'s body at `speed` [m/s] downwards from throw_height(speed) above z = 0, against `obstacle`.
+/// `d`'s body at `speed` [m/s] downwards from 2.5 periods of flight above z = 0, against `obstacle`.
 scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle, double speed,
                              double stiffness_pa_m);
 
@@ -18,9 +18,8 @@ Verdicts expect_thrown(const Lab& lab, const scene::Description& thrown);
 GainBars throw_bars(const Column& column, const scene::Description& d);
 
 /// Runs it, and judges energy, flight, turn and the reason of an early end.
-/// @param probe  called after every period  @param passes  says whether the body went through the obstacle,
-/// and
-///   so need not turn round; null: it cannot
+/// @param probe  called after every period  @param passes  says whether the body went through the
+///   obstacle, and so need not turn round; null: it cannot
 StabilityCell thrown_cell(const Lab& lab, const scene::Description& thrown, const Probe& probe = {},
                           const std::function<bool()>& passes = {});
 

@@ -63,7 +63,7 @@ TEST(LinearTolerance, BoundsTheErrorOfACorrection) {
 }
 
 // The step sequence of backward differences is sensitive: rtol changed by 3 % changes the error by a factor
-// of two to three either way, with a direct solver as well.  Over twenty tolerances the geometric mean is
+// of two to three either way, with a direct solver as well.  Over forty tolerances the geometric mean is
 // left.
 TEST(LinearTolerance, LeavesTheErrorOfARunAsItIs) {
   const auto mean_error = [](const char* solver) {

@@ -179,7 +179,8 @@ TEST_P(Steppers, StartAnewAfterReinit) {
 // that it had.
 TEST_P(Steppers, PayForARestartOnlyIfTheyHaveAHistory) {
   // Of three tolerances together: how short a step that lands on an output is left is chance, and the next
-  // ones grow from it.
+  // ones grow from it (of ark-dirk-ark436 166 and 166 steps at 1e-4, 150 and 150 at 1e-5, 146 and 183 at
+  // 1e-6).
   const auto steps_with = [this](int restarts) {
     long steps = 0;
     for (const double rtol : {1e-4, 1e-5, 1e-6}) {
@@ -189,10 +190,11 @@ TEST_P(Steppers, PayForARestartOnlyIfTheyHaveAHistory) {
       if (!steps_are_fixed(GetParam())) s.rtol = rtol;
       const auto stepper = integrate::make_stepper(chain.system, chain.state, s);
       for (int i = 1; i <= 20; ++i) {
-        if (!stepper->advance_to(0.1 * i).ok()) return -1L;
+        EXPECT_TRUE(stepper->advance_to(0.1 * i).ok());
         if (restarts > 0) stepper->reinit(ReinitReason::kContactRefreshed);
       }
       steps += stepper->counters().steps;
+      if (steps_are_fixed(GetParam())) break;
     }
     return steps;
   };

@@ -33,7 +33,7 @@ scene::Description sliding(const std::string& integrator, double friction, doubl
   small_scenes::add_floor(d, contact);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
   d.integrator.name = integrator;
-  d.integrator.rtol = 1e-6;
+  d.integrator.rtol = 1e-6;  // some hundred steps: of few a Newton iteration more or less tells nothing
   d.integrator.step_s = 1e-3;
   return d;
 }

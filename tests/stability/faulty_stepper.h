@@ -68,20 +68,21 @@ class FaultyStepper final : public dynamics::Stepper {
 
 template <Defect kDefect>
 const dynamics::StepperRegistry& registry_of() {
-  using dynamics::Stability;
   using dynamics::StepControl;
-  static const dynamics::StepperRegistry registry = {
-      {kDefect == Defect::kClaimsToBeExplicit  ? "symplectic-euler"
-       : kDefect == Defect::kClaimsToBeLStable ? "backward-euler"
-                                               : "linearly-implicit-euler",
-       "broken on purpose",
-       {"Euler", 1, 1, kDefect == Defect::kClaimsErrorControl ? StepControl::kAdaptive : StepControl::kFixed,
-        kDefect == Defect::kClaimsToBeExplicit ? Stability::kExplicit : Stability::kL, true, false,
-        "force, tangent"},
-       [](dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
-          std::unique_ptr<dynamics::LinearSolver>) -> std::unique_ptr<dynamics::Stepper> {
-         return std::make_unique<FaultyStepper<kDefect>>(system, state, spec);
-       }}};
+  static const dynamics::StepperRegistry registry = [] {
+    const char* name = kDefect == Defect::kClaimsToBeExplicit  ? "symplectic-euler"
+                       : kDefect == Defect::kClaimsToBeLStable ? "backward-euler"
+                                                               : "linearly-implicit-euler";
+    // what is expected of it is what is expected of the method itself
+    dynamics::StepperEntry entry = find(integrate::stepper_registry(), name, "integrator");
+    entry.summary = "broken on purpose";
+    if (kDefect == Defect::kClaimsErrorControl) entry.traits.control = StepControl::kAdaptive;
+    entry.make = [](dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+                    std::unique_ptr<dynamics::LinearSolver>) -> std::unique_ptr<dynamics::Stepper> {
+      return std::make_unique<FaultyStepper<kDefect>>(system, state, spec);
+    };
+    return dynamics::StepperRegistry{entry};
+  }();
   return registry;
 }
 

@@ -12,8 +12,8 @@
 /// cell is then run and held against it.
 namespace palpate::stability {
 
-/// How a cell ended, best first.  The first four are acceptable ends; the others are failures, whatever
-/// theory allows.
+/// How a cell ended, best first.  The first four are acceptable ends; the others are failures, but for growth
+/// where theory says that a method has no bound.
 enum class Verdict {
   kAccurate,   ///< within the error that theory allows of an exact answer
   kStable,     ///< less accurate, but its energy (or motion) never exceeded what was put in

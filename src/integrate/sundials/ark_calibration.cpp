@@ -74,7 +74,9 @@ ArkCalibration calibrate(const ArkMethod& method) {
 
   out.power = (embedded + (method.sharper_on_linear_motion ? 0.5 : 0.0) + 1.0) / p;
   const double a = kUsualMotion, T = d * a * std::pow(kMiddle / (c * a), (m + 1.0) / p);
-  out.factor = std::min(1.0, T / std::pow(kMiddle, out.power));
+  const double smooth = T / std::pow(kMiddle, out.power);
+  out.factor = std::min(1.0, smooth);
+  out.spare = std::max(1.0, smooth);
   return out;
 }
 
