@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "palpate/loop/silent_doings.h"
 #include "palpate/report/work_precision.h"
-#include "silent.h"
 
 namespace palpate::cli {
 namespace {
@@ -18,7 +18,7 @@ constexpr std::size_t kReasonLength = 90;
 
 std::string outcome_text(const compare::ComparePoint& p) {
   if (p.status == compare::PointStatus::kOk) {
-    const std::string silent = silent_doings(p.result.counters);
+    const std::string silent = loop::silent_doings(p.result.counters);
     if (!p.unresolved) return silent;
     return "not distinguishable from the reference" + (silent.empty() ? "" : "; " + silent);
   }

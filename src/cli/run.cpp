@@ -16,6 +16,7 @@
 #include "palpate/loop/haptic_memory.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/registries.h"
+#include "palpate/loop/silent_doings.h"
 #include "palpate/loop/summary.h"
 #include "palpate/loop/trace.h"
 #include "palpate/report/run_report.h"
@@ -24,7 +25,6 @@
 #include "picture.h"
 #include "progress.h"
 #include "scene_of.h"
-#include "silent.h"
 #include "stop.h"
 #include "undelivered.h"
 
@@ -71,7 +71,8 @@ void print_outcome(const loop::World& world, const loop::RunResult& result, cons
                world.stepper->name(), c.steps, c.force_evaluations, c.tangent_evaluations,
                c.solver.factorisations, result.contact_queries);
     print_tolerance(world.description.integrator);
-    if (const std::string silent = silent_doings(c); !silent.empty()) fmt::print("on the way: {}\n", silent);
+    if (const std::string silent = loop::silent_doings(c); !silent.empty())
+      fmt::print("on the way: {}\n", silent);
   }
   if (result.ticks > 0) print_hand("the hand", peak.of[0], result.ticks, result.limited_ticks);
   for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peak.of.size(); ++i)

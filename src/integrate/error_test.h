@@ -15,10 +15,10 @@ namespace palpate::integrate {
 //                             itself; but it adds up over some ten steps a radian, each of which may err by
 //                             T = rtol/10
 //     Runge-Kutta pair p(p^)  m = min(p, p^): a factor, at most 1, times rtol for the usual p^ = p - 1, by
-//                             the pair's own coefficients (ark_calibration.cpp).  Three pairs have m = p on linear motions
-//                             and p - 1 on others.  Half-way between, m = p - 1/2, the error falls as
-//                             T^((p+1/2)/(p+1)) on the former and T^((p+1/2)/p) on the latter: 0.90 and 1.13
-//                             for p = 4, 0.92 and 1.10 for p = 5.
+//                             the pair's own coefficients (ark_calibration.cpp).  Three pairs have m = p on
+//                             linear motions and p - 1 on others.  Half-way between, m = p - 1/2, the error
+//                             falls as T^((p+1/2)/(p+1)) on the former and T^((p+1/2)/p) on the latter: 0.90
+//                             and 1.13 for p = 4, 0.92 and 1.10 for p = 5.
 // A request whose T lies below kTightestErrorTest (tuning.h) is refused, not met half-way.
 
 double error_test_rtol_of_bdf(const IntegratorSpec& spec);

@@ -86,7 +86,7 @@ std::vector<Fault> faults() {
       Fault{Defect::kNotANumber, "contact-stiffness", "k = 1e6 Pa/m", Verdict::kNotFinite, "not finite"},
       Fault{Defect::kNotANumber, "squashed", "mirror image", Verdict::kNotFinite, "not finite"},
       Fault{Defect::kGainsEnergy, "youngs-modulus", "E = 1e5 Pa", Verdict::kGrew, ""},
-      Fault{Defect::kGainsEnergy, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kGrew, "then:"},
+      Fault{Defect::kGainsEnergy, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kWrong, "then:"},
       Fault{Defect::kGainsALittle, "youngs-modulus", "E = 1e3 Pa", Verdict::kGrew, ""},
       Fault{Defect::kFailsInSilence, "youngs-modulus", "E = 1e5 Pa", Verdict::kSilent, ""},
       Fault{Defect::kFailsInSilence, "impact", "10 m/s", Verdict::kSilent, ""},

@@ -1,10 +1,10 @@
-#include "silent.h"
+#include "palpate/loop/silent_doings.h"
 
 #include <fmt/format.h>
 
 #include <vector>
 
-namespace palpate::cli {
+namespace palpate::loop {
 
 std::string silent_doings(const dynamics::StepperCounters& c) {
   std::vector<std::string> out;
@@ -25,4 +25,4 @@ std::string silent_doings(const dynamics::StepperCounters& c) {
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-}  // namespace palpate::cli
+}  // namespace palpate::loop

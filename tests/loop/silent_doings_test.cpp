@@ -1,0 +1,28 @@
+#include "palpate/loop/silent_doings.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate::loop {
+namespace {
+
+TEST(SilentDoings, OfAMethodThatDidOnlyWhatItWasAskedForAreEmpty) {
+  dynamics::StepperCounters counters;
+  counters.steps = 100;
+  counters.newton_iterations = 130;
+  EXPECT_EQ(silent_doings(counters), "");
+}
+
+TEST(SilentDoings, AreNamedWithTheirCounts) {
+  dynamics::StepperCounters counters;
+  counters.halved_steps = 3;
+  counters.step_parts = 12;
+  counters.most_halvings = 2;
+  counters.leaps = 5;
+  counters.clamped = 7;
+  EXPECT_EQ(
+      silent_doings(counters),
+      "3 steps taken in 12 parts, the smallest 1/4, 5 solves without descent, 7 element tangents bounded");
+}
+
+}  // namespace
+}  // namespace palpate::loop
