@@ -26,6 +26,11 @@ inline bool is_explicit(const Column& column) {
   return column.entry->traits.stability == dynamics::Stability::kExplicit;
 }
 
+/// Whether it takes a contact apart from the bodies: explicitly, or in fast steps.
+inline bool splits(const Column& column) {
+  return column.entry->traits.family == "ImEx Runge-Kutta" || column.entry->traits.family == "multi-rate";
+}
+
 /// Internal steps between two outputs that a cell allows: deterministic, so that verdicts do not depend on
 /// the machine's speed.
 inline constexpr int kMaxSteps = 20000;

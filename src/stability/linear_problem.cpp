@@ -60,8 +60,11 @@ LinearProblem::LinearProblem(const TetMesh& rest, const fem::Material& material,
   beta_ = 2.0 * damping_ratio / omega_[0];
 }
 
-LinearProblem::LinearProblem(double omega, double damping_ratio)
-    : mass_(VecX::Ones(3)), K_(MatX::Identity(3, 3) * omega * omega), beta_(2.0 * damping_ratio / omega) {
+LinearProblem::LinearProblem(double omega, double damping_ratio, double contact_share)
+    : mass_(VecX::Ones(3)),
+      K_(MatX::Identity(3, 3) * omega * omega),
+      beta_(2.0 * damping_ratio / omega),
+      contact_share_(contact_share) {
   find_modes();
 }
 
@@ -104,7 +107,12 @@ std::unique_ptr<LinearProblem::Instance> LinearProblem::start() const {
   spec.q_scale = q_scale_;
   spec.u_scale = u_scale_;
   const int id = out->state.insert(spec, phi_ * a0_, VecX::Zero(mass_.size()));
-  out->system.add(std::static_pointer_cast<dynamics::ForceTerm>(std::make_shared<LinearTerm>(K_, beta_)));
+  const auto add = [&](double share, bool contact) {
+    out->system.add(std::static_pointer_cast<dynamics::ForceTerm>(
+        std::make_shared<LinearTerm>(share * K_, beta_, contact)));
+  };
+  add(1.0 - contact_share_, false);
+  if (contact_share_ > 0.0) add(contact_share_, true);
   out->system.add(std::static_pointer_cast<dynamics::InertiaTerm>(std::make_shared<DiagonalMass>(id, mass_)));
   out->system.prepare(out->state.view());
   return out;

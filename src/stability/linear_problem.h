@@ -20,10 +20,12 @@ class LinearProblem {
   ///   held, and left out
   LinearProblem(const TetMesh& rest, const fem::Material& material, double damping_ratio, double clamp_below);
   /// One oscillator of frequency `omega` [rad/s] in each of three directions, unit mass.
-  LinearProblem(double omega, double damping_ratio);
+  /// @param contact_share  of K that is a term of its own, a contact: what a method may split off
+  LinearProblem(double omega, double damping_ratio, double contact_share = 0.0);
 
   const VecX& omega() const { return omega_; }  ///< [rad/s], ascending
   double damping_ratio(Eigen::Index mode) const { return 0.5 * beta_ * omega_[mode]; }
+  double contact_share() const { return contact_share_; }
   /// Largest modulus of an eigenvalue of y' = A y: w, or w (z + sqrt(z^2 - 1)) of an overdamped mode [1/s].
   double fastest_rate() const;
   double condition() const;  ///< of K against M: (w_max/w_1)^2
@@ -57,7 +59,7 @@ class LinearProblem {
 
   VecX mass_;  ///< one a direction [kg]
   MatX K_;
-  double beta_ = 0.0;
+  double beta_ = 0.0, contact_share_ = 0.0;
   VecX omega_;
   MatX phi_;  ///< phi^T M phi = 1
   VecX a0_;   ///< modal amplitudes at the start

@@ -7,9 +7,9 @@ namespace palpate::stability {
 /// hides what an integrator does.
 class LinearTerm final : public dynamics::ForceTerm {
  public:
-  LinearTerm(MatX K, double beta) : K_(std::move(K)), beta_(beta) {}
+  LinearTerm(MatX K, double beta, bool contact) : K_(std::move(K)), beta_(beta), contact_(contact) {}
   std::string_view name() const override { return "linear body"; }
-  dynamics::TermTraits traits() const override { return {.conservative = true}; }
+  dynamics::TermTraits traits() const override { return {.conservative = true, .contact = contact_}; }
   void add_pattern(dynamics::PatternBuilder& pattern) const override {
     for (int i = 0; i < nodes(); ++i)
       for (int j = 0; j < i; ++j) pattern.add_pair(i, j);
@@ -39,6 +39,7 @@ class LinearTerm final : public dynamics::ForceTerm {
   int nodes() const { return static_cast<int>(K_.rows() / 3); }
   MatX K_;
   double beta_;
+  bool contact_;
 };
 
 /// Any diagonal mass over one node block.

@@ -20,7 +20,10 @@
 //   generalised-alpha (Chung and Hulbert 1993), X = [D; V; A] = [w a; w H a'; w H^2 a''] = [w a; y a'; ..]:
 //     (1 - am) A1 + am A0 = -y^2 D_f - 2 z y V_f,      D_f = (1 - af) D1 + af D0, V_f alike,
 //     D1 = D0 + V0 + (1/2 - b) A0 + b A1,      V1 = V0 + (1 - g) A0 + g A1;  at first A0 = -y^2 D0 - 2 z y V0
-//   methods of SUNDIALS                     R(Z) of their tables (integrate/linear_step.h)
+//   methods of SUNDIALS                     R(Z) of their tables (integrate/linear_step.h); of a contact
+//                                           with the share c of the force, additive methods have
+//                                           Z^ = c [0 0; -y -2zy] on the explicit side, multi-rate ones on
+//                                           the fast one, and Z - Z^ on the other
 
 namespace palpate::stability {
 namespace {
@@ -33,7 +36,7 @@ MatX inverse_times(const MatX& A, const MatX& B) { return A.partialPivLu().solve
 
 bool has_modal_steps(const Column& column) { return column.fixed && !is_static(column); }
 
-ModalSteps::ModalSteps(const Column& column, double y, double z) {
+ModalSteps::ModalSteps(const Column& column, double y, double z, double contact_share) {
   const MatX Z = generator(y, z), one = MatX::Identity(2, 2);
   if (column.name == "linearly-implicit-euler" || column.name == "backward-euler") {
     one_step(inverse_times(one - Z, one));
@@ -47,6 +50,10 @@ ModalSteps::ModalSteps(const Column& column, double y, double z) {
     bdf2(Z);
   } else if (column.name == "generalized-alpha") {
     generalized_alpha(y, z, IntegratorSpec{}.spectral_radius);
+  } else if (contact_share > 0.0 && splits(column)) {
+    MatX contact = MatX::Zero(2, 2);
+    contact.row(1) = contact_share * Z.row(1);
+    one_step(integrate::split_step(column.name, Z - contact, contact));
   } else {
     one_step(integrate::linear_step(column.name, Z));
   }

@@ -9,8 +9,9 @@ namespace palpate::stability {
 /// x.
 class ModalSteps {
  public:
+  /// @param contact_share  of the force, that additive methods take explicitly and multi-rate ones fast
   /// @throws Error where the method has no formula here
-  ModalSteps(const Column& column, double y, double z);
+  ModalSteps(const Column& column, double y, double z, double contact_share = 0.0);
 
   VecX start(const Eigen::Vector2d& x) const { return start_ * x; }
   /// The state after the first step from start(), and after each further one.

@@ -8,7 +8,7 @@ namespace palpate::stability {
 PredictedCourse::PredictedCourse(const Column& column, const LinearProblem& problem, double H)
     : problem_(problem), modes_(problem.modes_at_start()) {
   for (Eigen::Index j = 0; j < problem.omega().size(); ++j) {
-    steps_.emplace_back(column, problem.omega()[j] * H, problem.damping_ratio(j));
+    steps_.emplace_back(column, problem.omega()[j] * H, problem.damping_ratio(j), problem.contact_share());
     x_.push_back(steps_.back().start(modes_.col(j)));
   }
 }

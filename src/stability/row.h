@@ -39,6 +39,7 @@ enum class RowColumns {
   kSteppers,
   kFixedSteppers,  ///< those that move at fixed steps: no error control, no statics
   kFamilies,       ///< a few of those, one for each way of stepping
+  kSplitting,      ///< additive and multi-rate methods
   kTools
 };
 
@@ -57,6 +58,7 @@ Row poissons_ratio_row();
 Row undamped_row();
 Row stiff_modes_row();
 Row step_row();
+Row split_row();
 Row sliver_row();
 Row squashed_row();
 Row two_bodies_row();

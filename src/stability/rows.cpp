@@ -10,6 +10,7 @@ std::vector<Row> all_rows() {
           stiff_modes_row(),
           poissons_ratio_row(),
           step_row(),
+          split_row(),
           sliver_row(),
           squashed_row(),
           density_ratio_row(),
@@ -30,6 +31,8 @@ std::vector<Column> columns_of(const Row& row, const dynamics::StepperRegistry& 
   std::vector<Column> columns = stepper_columns(registry);
   if (row.columns == RowColumns::kFixedSteppers)
     std::erase_if(columns, [](const Column& column) { return !column.fixed || is_static(column); });
+  if (row.columns == RowColumns::kSplitting)
+    std::erase_if(columns, [](const Column& column) { return !splits(column); });
   if (row.columns == RowColumns::kFamilies)
     std::erase_if(columns, [](const Column& column) {
       static const std::vector<std::string> kept = {"linearly-implicit-euler", "backward-euler", "bdf2",

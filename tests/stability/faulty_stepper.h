@@ -11,7 +11,7 @@
 #include "palpate/integrate/integrators.h"
 
 /// Linearly implicit Euler with one injected defect, which the stability matrix must find.  It bears that
-/// method's name, by whose formula it is judged.
+/// method's name, by whose formula it is judged, or that of the method that it claims to be.
 namespace palpate::faulty {
 
 enum class Defect {
@@ -27,7 +27,8 @@ enum class Defect {
   kClaimsToBeExplicit,
   kClaimsToBeLStable,  ///< is the implicit midpoint rule, and calls itself backward Euler
   kFallsUpward,
-  kDrags  ///< one per cent of the velocity a step
+  kForgetsToSplit,  ///< an additive method that takes contact implicitly
+  kDrags            ///< one per cent of the velocity a step
 };
 
 template <Defect kDefect>
@@ -36,7 +37,10 @@ class FaultyStepper final : public dynamics::Stepper {
   FaultyStepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec)
       : state_(state) {
     IntegratorSpec inner = spec;
-    inner.name = kDefect == Defect::kClaimsToBeLStable ? "implicit-midpoint" : "linearly-implicit-euler";
+    if constexpr (kDefect == Defect::kForgetsToSplit)
+      inner.explicit_side = IntegratorSpec{}.explicit_side, inner.fixed_step = true;
+    else
+      inner.name = kDefect == Defect::kClaimsToBeLStable ? "implicit-midpoint" : "linearly-implicit-euler";
     inner_ = integrate::make_stepper(system, state, inner);
   }
   std::string name() const override { return "faulty"; }
@@ -72,11 +76,13 @@ const dynamics::StepperRegistry& registry_of() {
   static const dynamics::StepperRegistry registry = [] {
     const char* name = kDefect == Defect::kClaimsToBeExplicit  ? "symplectic-euler"
                        : kDefect == Defect::kClaimsToBeLStable ? "backward-euler"
+                       : kDefect == Defect::kForgetsToSplit    ? "ark-imex-3"
                                                                : "linearly-implicit-euler";
     // what is expected of it is what is expected of the method itself
     dynamics::StepperEntry entry = find(integrate::stepper_registry(), name, "integrator");
     entry.summary = "broken on purpose";
     if (kDefect == Defect::kClaimsErrorControl) entry.traits.control = StepControl::kAdaptive;
+    if (kDefect == Defect::kForgetsToSplit) entry.traits.control = StepControl::kFixed;
     entry.make = [](dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
                     std::unique_ptr<dynamics::LinearSolver>) -> std::unique_ptr<dynamics::Stepper> {
       return std::make_unique<FaultyStepper<kDefect>>(system, state, spec);
@@ -102,6 +108,7 @@ inline Registry registry(Defect defect) {
     case Defect::kClaimsToBeExplicit: return registry_of<Defect::kClaimsToBeExplicit>;
     case Defect::kClaimsToBeLStable: return registry_of<Defect::kClaimsToBeLStable>;
     case Defect::kFallsUpward: return registry_of<Defect::kFallsUpward>;
+    case Defect::kForgetsToSplit: return registry_of<Defect::kForgetsToSplit>;
     case Defect::kDrags: return registry_of<Defect::kDrags>;
   }
   fail("no such fault");

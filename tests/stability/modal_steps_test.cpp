@@ -17,8 +17,8 @@ namespace {
 constexpr double kDamping = 0.1;
 
 /// |x(T) - exp| after T = 1/w at n steps.
-double error_of(const Column& column, int n) {
-  const ModalSteps steps(column, 1.0 / n, kDamping);
+double error_of(const Column& column, int n, double contact_share = 0.0) {
+  const ModalSteps steps(column, 1.0 / n, kDamping, contact_share);
   const Eigen::Vector2d start(1.0, -0.5);
   VecX x = steps.first() * steps.start(start);
   for (int i = 1; i < n; ++i) x = steps.next() * x;
@@ -35,6 +35,20 @@ TEST(ModalSteps, HaveTheOrderOfTheirMethod) {
     ++checked;
   }
   EXPECT_EQ(checked, 43);
+}
+
+// The conditions that couple the two sides, too: each alone would not show them.
+TEST(ModalSteps, HaveTheOrderOfTheirMethodWhereItSplits) {
+  int checked = 0;
+  for (const Column& column : stepper_columns(integrate::stepper_registry())) {
+    if (!has_modal_steps(column) || !splits(column)) continue;
+    for (const double share : {0.3, 0.7}) {
+      const double order = std::log2(error_of(column, 16, share) / error_of(column, 32, share));
+      EXPECT_NEAR(order, column.entry->traits.order, 0.45) << column.label << " " << share;
+    }
+    ++checked;
+  }
+  EXPECT_EQ(checked, 8);
 }
 
 TEST(ModalSteps, VanishAtInfinityWhereTheRegistrySaysL) {
@@ -60,6 +74,8 @@ TEST(ModalSteps, OfSymplecticEulerEndAtTwo) {
 TEST(LinearStep, RefusesWhatHasNoTable) {
   EXPECT_THROW(integrate::linear_step("cvode-bdf", MatX::Identity(2, 2)), Error);
   EXPECT_THROW(integrate::linear_step("ark-erk-4", MatX::Identity(2, 3)), Error);
+  EXPECT_THROW(integrate::split_step("ark-erk-4", MatX::Identity(2, 2), MatX::Identity(2, 2)), Error);
+  EXPECT_THROW(integrate::split_step("ark-imex-3", MatX::Identity(2, 2), MatX::Identity(3, 3)), Error);
 }
 
 }  // namespace

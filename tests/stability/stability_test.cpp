@@ -98,6 +98,8 @@ std::vector<Fault> faults() {
       Fault{Defect::kDrags, "undamped", "E = 1e3 Pa", Verdict::kWrong, "departs"},
       Fault{Defect::kDrags, "poissons-ratio", "nu = 0.3", Verdict::kWrong, "departs"},
       Fault{Defect::kDrags, "step", "H = 0.01 s", Verdict::kWrong, "departs"},
+      Fault{Defect::kForgetsToSplit, "split", "w H = 0.3, contact 0.3", Verdict::kWrong, "departs"},
+      Fault{Defect::kForgetsToSplit, "split", "w H = 1, contact 10", Verdict::kWrong, "departs"},
       Fault{Defect::kDrags, "slivers", "volume ratio 1e6", Verdict::kWrong, "departs"},
       Fault{Defect::kDrags, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kWrong, "free flight"},
       Fault{Defect::kDrags, "impact", "1 m/s", Verdict::kWrong, "free flight"},

@@ -13,4 +13,9 @@ namespace palpate::integrate {
 /// @throws Error for a method that is not one of these, or a Z that is not square
 MatX linear_step(std::string_view method, const MatX& Z);
 
+/// The same with both sides: Z of the implicit or slow one, `other` of the explicit or fast one, the fast
+/// side integrated exactly between the slow stages.
+/// @throws Error for a method that is neither additive nor multi-rate, or matrices that do not fit
+MatX split_step(std::string_view method, const MatX& Z, const MatX& other);
+
 }  // namespace palpate::integrate

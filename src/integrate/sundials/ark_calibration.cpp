@@ -1,16 +1,11 @@
-#include <cstdio>  // SUNDIALS 6.4 forgets it: arkode_butcher.h names FILE
-
 #include "integrate/sundials/ark_calibration.h"
-
-#include <arkode/arkode_butcher_dirk.h>
-#include <arkode/arkode_butcher_erk.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "integrate/sundials/check.h"
-#include "palpate/core/types.h"
+#include "integrate/sundials/butcher_table.h"
+#include "palpate/core/error.h"
 
 // On y' = lambda y a step multiplies by R(z) = 1 + sum_k z^k b^T A^(k-1) 1, where e^z has z^k/k!, and the
 // estimate is sum_k z^k (b - b^)^T A^(k-1) 1.  With c the first coefficient in which R and e^z differ, that
@@ -39,33 +34,23 @@ constexpr double kMiddle = 1e-6;     // of the tolerances that are asked for
 constexpr double kRounding = 1e-14;  // of a table's coefficients: less is zero
 
 ArkCalibration calibrate(const ArkMethod& method) {
-  ARKodeButcherTable table =
-      method.implicit_table >= 0
-          ? ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(method.implicit_table))
-          : ARKodeButcherTable_LoadERK(static_cast<ARKODE_ERKTableID>(method.explicit_table));
-  sun::check(table, "ARKodeButcherTable_Load");
-  const int s = table->stages, p = method.traits.order, embedded = std::min(p, method.embedded_order);
-  MatX A(s, s);
-  VecX b(s), difference(s), stage = VecX::Ones(s);
-  for (int i = 0; i < s; ++i) {
-    b[i] = table->b[i];
-    difference[i] = table->b[i] - table->d[i];
-    for (int j = 0; j < s; ++j) A(i, j) = table->A[i][j];
-  }
-  ARKodeButcherTable_Free(table);
+  const ButcherTable table = leading_table(method);
+  const int p = method.traits.order, embedded = std::min(p, method.embedded_order);
+  const VecX difference = table.b - table.embedded;
+  VecX stage = VecX::Ones(table.stages());
 
   ArkCalibration out;
   double c = 0.0, d = 0.0, factorial = 1.0;
   const int m = embedded + (method.sharper_on_linear_motion ? 1 : 0);
   for (int k = 1; k <= p + 1; ++k) {
     factorial *= k;
-    const double error = std::abs(b.dot(stage) - 1.0 / factorial);
+    const double error = std::abs(table.b.dot(stage) - 1.0 / factorial);
     if (k <= p)
       out.defect = std::max(out.defect, error);
     else
       c = error;
     if (k == m + 1) d = std::abs(difference.dot(stage));
-    stage = A * stage;
+    stage = table.A * stage;
   }
   if (out.defect < kRounding) out.defect = 0.0;
   out.order = p;

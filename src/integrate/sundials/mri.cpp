@@ -73,7 +73,7 @@ class Mri final : public Adapter {
   void create_fast(double t) {
     fast_ = ARKStepCreate(fast_side, nullptr, t, y(), context());
     check(fast_, "ARKStepCreate");
-    check(ARKStepSetErrHandlerFn(fast_, on_error, this), "ARKStepSetErrHandlerFn", t, 0.0);
+    check(ARKStepSetErrHandlerFn(fast_, on_fast_error, this), "ARKStepSetErrHandlerFn", t, 0.0);
     check(ARKStepSetUserData(fast_, static_cast<Adapter*>(this)), "ARKStepSetUserData", t, 0.0);
     check(ARKStepWFtolerances(fast_, fast_weights), "ARKStepWFtolerances", t, 0.0);
     check(ARKStepSetTableNum(fast_, ARKODE_DIRK_NONE, ARKODE_BOGACKI_SHAMPINE_4_2_3), "ARKStepSetTableNum", t,
@@ -134,6 +134,7 @@ class Mri final : public Adapter {
   }
   std::string flag_name(int flag) const override { return sun::flag_name("MRIStep", flag); }
   std::string remedy(int flag) const override {
+    if (flag == ARK_INNERSTEP_FAIL) return "  " + fast_message_;
     return flag == ARK_CONV_FAILURE
                ? fmt::format("  Not even at h/{}: a smaller step_s", 1 << tuning::kHalvings)
                : std::string();
@@ -168,6 +169,9 @@ class Mri final : public Adapter {
     return gamma;
   }
 
+  static void on_fast_error(int, const char*, const char*, char* text, void* data) {
+    self(data).fast_message_ = fmt::format("Fast side: {}", text);
+  }
   static Mri& self(void* data) { return static_cast<Mri&>(*static_cast<Adapter*>(data)); }
   static int slow_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
     Mri& me = self(data);
@@ -196,6 +200,7 @@ class Mri final : public Adapter {
   const MultirateMethod& method_;
   double now_ = 0.0;
   StepInParts parts_{spec().step_s};
+  std::string fast_message_;
   long failures_ = 0;  ///< of a stage's solve: the library counts none
   void *slow_ = nullptr, *fast_ = nullptr;
   MRIStepInnerStepper inner_ = nullptr;

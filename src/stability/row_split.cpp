@@ -1,0 +1,43 @@
+#include <cmath>
+
+#include "linear.h"
+
+// One oscillator held by two springs: a body's, of frequency w_B, and a contact's, w_C; w^2 = w_B^2 + w_C^2,
+// damping ratio 1/20 of both together, each with its share.  Additive methods take the contact explicitly,
+// multi-rate ones in fast steps.  By the formula of each (integrate/linear_step.h), so from theory:
+// - w_B H = w_C H = 0.3: resolved.
+// - A stiff body, w_B H = 1e3 or 1e6, and a soft contact, w_C H = 0.3: the implicit side damps what it
+// should.
+// - A stiff contact on a soft body: additive methods are beyond the limit of their explicit side from
+//   w_C H = 2 to 6 on, as an explicit method is.  So are multi-rate ones: their fast side has the contact's
+//   force, but a node's q' = u is slow, and the force sees q move as the slow stages have it.  (A tool's
+//   kinematics are fast: a light tool on a stiff contact is what they are for.)
+// - Both stiff: no theorem holds, the matrix of the step decides.
+
+namespace palpate::stability {
+
+Row split_row() {
+  Row row{
+      "split",
+      "a stiff mode on a body's spring and a contact's, w H of each from 0.3 to 1e6, by methods that take "
+      "the contact explicitly or in fast steps.  Finds a split that is not made, sides taken for each "
+      "other, a step that is not the method's",
+      RowColumns::kSplitting};
+  constexpr double kH = 0.01, kDampingRatio = 0.05;
+  const auto add = [&row](double body, double contact) {
+    const double w = std::hypot(body, contact) / kH, share = contact * contact / (w * w * kH * kH);
+    row.cases.push_back(linear_case(
+        fmt::format("w H = {:g}, contact {:g}", body, contact),
+        [=] { return LinearProblem(w, kDampingRatio, share); }, kH));
+  };
+  add(0.3, 0.3);
+  add(1e3, 0.3);
+  add(1e6, 0.3);
+  add(1.0, 10.0);
+  add(0.3, 100.0);
+  add(30.0, 10.0);
+  row.core = 3;
+  return row;
+}
+
+}  // namespace palpate::stability
