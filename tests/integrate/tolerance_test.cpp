@@ -19,6 +19,13 @@ TEST(Tolerance, BuysTheErrorThatItSays) {
   }
 }
 
+TEST(Tolerance, OfASplitSystemBuysTheErrorThatItSays) {
+  const ToleranceScene scene = split_scene();
+  const References references(scene);
+  for (const auto& entry : integrate::stepper_registry())
+    if (is_additive(entry)) expect_within_band(scene, references, entry, 1e-7, 1e-2);
+}
+
 std::string refusal(const IntegratorSpec& spec) {
   Chain chain;
   try {

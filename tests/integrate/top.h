@@ -35,9 +35,10 @@ struct TopInertia final : InertiaTerm {
 /// Gyroscopic force of the top, and a spring between its centre and node 0.
 struct TopForces final : ForceTerm {
   int id;
-  explicit TopForces(int i) : id(i) {}
+  bool fast;
+  explicit TopForces(int i, bool is_fast = false) : id(i), fast(is_fast) {}
   std::string_view name() const override { return "top"; }
-  TermTraits traits() const override { return {.symmetric_tangent = false}; }
+  TermTraits traits() const override { return {.fast = fast, .symmetric_tangent = false}; }
   void add_force(const StateView& s, VecX& f) override {
     const Block& b = *s.layout->find(id);
     const Vec3 w = s.u.segment<3>(b.u_offset);
@@ -76,13 +77,14 @@ struct Top {
   Vec3 w0 = Vec3(1.0, -0.5, 3.0), L, node0 = Vec3(0.2, 0.0, -0.1);
   const Block* body = nullptr;
 
-  Top() {
+  /// @param fast  the top's forces belong on the fast side of a multi-rate method
+  explicit Top(bool fast = false) {
     state.insert(BlockSpec{.name = "node", .q_size = 3, .u_size = 3}, node0, VecX::Zero(3));
     VecX q = VecX::Unit(7, 0), u = VecX::Zero(6);
     u.head<3>() = w0;
     const int id = state.insert(rigid_block("top", 1.0, 1.0), q, u);
     L = Vec3(kI1, kI1, kI3).cwiseProduct(w0);
-    system.add(std::make_shared<TopForces>(id));
+    system.add(std::make_shared<TopForces>(id, fast));
     system.add(std::make_shared<TopInertia>(id));
     system.add(std::make_shared<NodalMass>(0, kNodeMass * MatX::Identity(3, 3)));
     system.prepare(state.view());
