@@ -6,8 +6,13 @@ namespace palpate::stability {
 
 inline constexpr int kLinearPeriods = 40;    ///< of H each
 inline constexpr double kLinearRtol = 1e-6;  ///< of the columns under error control
-inline constexpr double kAccurate = 0.05;    ///< error of a fixed step that counts as accurate
-inline constexpr int kLastPeriod = 20000;    ///< a run whose formula overflows is followed to here
+/// Of elements: a hundred times looser, for their displacements are 1e-5 of positions that have a rounding.
+inline double linear_rtol(const LinearProblem& problem) {
+  return problem.is_by_elements() ? 100.0 * kLinearRtol : kLinearRtol;
+}
+inline constexpr double kAccurate = 0.05;   ///< error of a fixed step that counts as accurate
+inline constexpr int kLastPeriod = 20000;   ///< a run whose formula overflows is followed to here
+inline constexpr double kLinearUpTo = 1e2;  ///< elements that grow are followed to this energy
 
 /// What a run is judged by, or what the formula of its method says of it beforehand.
 struct LinearOutcome {

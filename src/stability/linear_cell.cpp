@@ -22,6 +22,7 @@ struct Course {
   double departure = 0.0;  ///< from the formula's course, of its size
   double predicted = 1.0;  ///< highest energy so far by the formula, a failed step included
   bool finite = true, interrupted = false;
+  bool left_linear = false;  ///< of elements: grown, as predicted, beyond where they are linear
 };
 
 Course follow(const Lab& lab, const LinearProblem& problem, LinearProblem::Instance& run,
@@ -44,23 +45,27 @@ Course follow(const Lab& lab, const LinearProblem& problem, LinearProblem::Insta
     if (!course.result.ok()) break;
     course.finite = run.state.q().allFinite() && run.state.u().allFinite();
     if (!course.finite) break;
-    course.seen.highest = std::max(course.seen.highest, problem.energy(run.state));
+    course.seen.highest = std::max(course.seen.highest, problem.energy(run));
+    if (problem.is_by_elements() && course.predicted > kLinearUpTo) {
+      course.left_linear = true;
+      if (course.seen.highest < 0.1 * kLinearUpTo) course.departure = 1.0;
+      break;
+    }
     if (formula) {
       if (course.predicted < kComparable)
         course.departure =
-            std::max(course.departure, problem.distance(run.state, formula->modes()) / formula->size());
+            std::max(course.departure, problem.distance(run, formula->modes()) / formula->size());
     }
     if (i > settled && i <= kLinearPeriods)
-      course.seen.error =
-          std::max(course.seen.error,
-                   is_static(lab.column) ? problem.from_rest(run.state) : problem.error(run.state, i * H));
+      course.seen.error = std::max(
+          course.seen.error, is_static(lab.column) ? problem.from_rest(run) : problem.error(run, i * H));
   }
   return course;
 }
 
 /// An end with an error must have a reason: overflow of a fixed step, the limit of steps under error control.
 void judge_early_end(const Lab& lab, const LinearProblem& problem, const Course& course,
-                     const dynamics::State& last, double bar, StabilityCell& cell) {
+                     const LinearProblem::Instance& last, double bar, StabilityCell& cell) {
   if (cell.verdict != Verdict::kError) return;
   std::string mistake;
   if (has_modal_steps(lab.column)) {
@@ -69,7 +74,7 @@ void judge_early_end(const Lab& lab, const LinearProblem& problem, const Course&
     if (!(course.predicted > (fast_contact ? kOverflowingOnItsWay : kOverflowing)))
       mistake = fmt::format("gave up where its formula has {:.1e} of the start's energy", course.predicted);
   } else if (!lab.column.fixed) {
-    const double least = least_progress(lab.column, problem), t = last.time();
+    const double least = least_progress(lab.column, problem), t = last.state.time();
     const double error = problem.error(last, t);
     if (t < least)
       mistake = fmt::format("gave up at {:.1e} s, where its steps reach {:.1e} s at least", t, least);
@@ -84,7 +89,7 @@ void judge_early_end(const Lab& lab, const LinearProblem& problem, const Course&
 StabilityCell linear_cell(const Lab& lab, const LinearProblem& problem, double H) {
   StabilityCell cell;
   const auto run = problem.start();
-  IntegratorSpec spec = spec_of(lab.column, kLinearRtol, H);
+  IntegratorSpec spec = spec_of(lab.column, linear_rtol(problem), H);
   if (problem.contact_share() > 0.0) spec.explicit_side = "contact";
   const auto stepper = make_stepper(lab.column, run->system, run->state, spec);
   stepper->set_interrupt(lab.expired);
@@ -98,9 +103,9 @@ StabilityCell linear_cell(const Lab& lab, const LinearProblem& problem, double H
 
   if (ended_early(lab.column, course.result, course.finite, course.interrupted,
                   cell.gain > bars.gain && !has_modal_steps(lab.column), cell)) {
-    judge_early_end(lab, problem, course, run->state, bars.error, cell);
+    judge_early_end(lab, problem, course, *run, bars.error, cell);
   } else {
-    cell.verdict = verdict_of(course.seen, bars);
+    cell.verdict = course.left_linear ? Verdict::kBounded : verdict_of(course.seen, bars);
   }
   if (cell.verdict <= Verdict::kError && course.departure > bars.agreement) {
     cell.verdict = Verdict::kWrong;

@@ -1,10 +1,12 @@
 #include "linear_problem.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <complex>
 
 #include "linear_term.h"
 #include "palpate/core/error.h"
+#include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"
 
 namespace palpate::stability {
@@ -44,18 +46,18 @@ std::pair<double, double> oscillator(double w, double z, double a0, double t) {
 }  // namespace
 
 LinearProblem::LinearProblem(const TetMesh& rest, const fem::Material& material, double damping_ratio,
-                             double clamp_below) {
-  std::vector<int> free;
+                             double clamp_below)
+    : mesh_(rest), material_(material) {
   const VecX node_mass = fem::lumped_masses(rest, material.density);
   std::vector<double> mass;
   for (Eigen::Index node = 0; node < rest.nodes.cols(); ++node)
     for (int axis = 0; axis < 3; ++axis)
       if (rest.nodes(2, node) >= clamp_below) {
-        free.push_back(static_cast<int>(3 * node) + axis);
+        free_.push_back(static_cast<int>(3 * node) + axis);
         mass.push_back(node_mass[node]);
       }
   mass_ = Eigen::Map<const VecX>(mass.data(), static_cast<Eigen::Index>(mass.size()));
-  K_ = rest_stiffness(rest, material, free);
+  K_ = rest_stiffness(rest, material, free_);
   find_modes();
   beta_ = 2.0 * damping_ratio / omega_[0];
 }
@@ -99,7 +101,55 @@ double LinearProblem::fastest_rate() const {
 
 double LinearProblem::condition() const { return std::pow(omega_[omega_.size() - 1] / omega_[0], 2); }
 
+LinearProblem LinearProblem::by_elements() const {
+  PALPATE_CHECK(!free_.empty(), "only a block has elements");
+  LinearProblem out = *this;
+  out.by_elements_ = true;
+  return out;
+}
+
+VecX LinearProblem::Instance::displacement() const {
+  if (free.empty()) return state.q();
+  return (VecX(state.q()(free)) - rest) / amplitude;
+}
+
+VecX LinearProblem::Instance::velocity() const {
+  if (free.empty()) return state.u();
+  return VecX(state.u()(free)) / amplitude;
+}
+
+std::unique_ptr<LinearProblem::Instance> LinearProblem::start_elements() const {
+  auto out = std::make_unique<Instance>();
+  const auto size = static_cast<int>(mesh_.nodes.size());
+  const VecX rest = mesh_.nodes.reshaped(), start = phi_ * a0_;
+  out->free = free_;
+  out->rest = rest(free_);
+  out->amplitude = kOfElements *
+                   (mesh_.nodes.rowwise().maxCoeff() - mesh_.nodes.rowwise().minCoeff()).maxCoeff() /
+                   start.cwiseAbs().maxCoeff();
+  VecX q = rest;
+  q(free_) += out->amplitude * start;
+  dynamics::BlockSpec spec;
+  spec.name = "body";
+  spec.q_size = spec.u_size = size;
+  spec.q_scale = out->amplitude * q_scale_;
+  spec.u_scale = out->amplitude * u_scale_;
+  const int id = out->state.insert(spec, q, VecX::Zero(size));
+  fem::Material material = material_;
+  material.stiffness_damping = beta_;
+  out->system.add(std::static_pointer_cast<dynamics::ForceTerm>(
+      std::make_shared<fem::SoftBody>("body", mesh_, material, fem::SoftBodyOptions{}, id)));
+  out->system.add(fem::make_lumped_mass(mesh_, material.density, id));
+  std::vector<int> held;
+  for (int i = 0; i < size; ++i)
+    if (std::find(free_.begin(), free_.end(), i) == free_.end()) held.push_back(i);
+  out->system.add(fem::make_fixed(held, rest(held)));
+  out->system.prepare(out->state.view());
+  return out;
+}
+
 std::unique_ptr<LinearProblem::Instance> LinearProblem::start() const {
+  if (by_elements_) return start_elements();
   auto out = std::make_unique<Instance>();
   dynamics::BlockSpec spec;
   spec.name = "linear body";
@@ -125,13 +175,11 @@ double LinearProblem::energy_of(const VecX& q, const VecX& u) const {
   return 0.5 * (u.dot(mass_.cwiseProduct(u)) + omega_.cwiseProduct(a).squaredNorm());
 }
 
-double LinearProblem::energy(const dynamics::State& state) const {
-  return energy_of(state.q(), state.u()) / start_energy_;
+double LinearProblem::energy(const Instance& run) const {
+  return energy_of(run.displacement(), run.velocity()) / start_energy_;
 }
 
-double LinearProblem::error(const dynamics::State& state, double t) const {
-  return distance(state, modes_at(t));
-}
+double LinearProblem::error(const Instance& run, double t) const { return distance(run, modes_at(t)); }
 
 LinearProblem::Points2 LinearProblem::modes_at_start() const { return modes_at(0.0); }
 
@@ -146,16 +194,12 @@ LinearProblem::Points2 LinearProblem::modes_at(double t) const {
 
 double LinearProblem::energy(const Points2& modes) const { return 0.5 * modes.squaredNorm() / start_energy_; }
 
-double LinearProblem::distance(const dynamics::State& state, const Points2& modes) const {
+double LinearProblem::distance(const Instance& run, const Points2& modes) const {
   const VecX a = modes.row(0).transpose().cwiseQuotient(omega_), b = modes.row(1).transpose();
-  return std::sqrt(energy_of(state.q() - phi_ * a, state.u() - phi_ * b) / start_energy_);
+  return std::sqrt(energy_of(run.displacement() - phi_ * a, run.velocity() - phi_ * b) / start_energy_);
 }
 
-double LinearProblem::from_rest(const dynamics::State& state) const { return std::sqrt(energy(state)); }
-
-double LinearProblem::speed_rms(const dynamics::State& state) const {
-  return state.u().norm() / std::sqrt(static_cast<double>(mass_.size()));
-}
+double LinearProblem::from_rest(const Instance& run) const { return std::sqrt(energy(run)); }
 
 double LinearProblem::largest_speed_rms() const {
   return std::sqrt(2.0 * start_energy_ / (mass_.minCoeff() * static_cast<double>(mass_.size())));

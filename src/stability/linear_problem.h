@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/material.h"
@@ -30,33 +31,48 @@ class LinearProblem {
   double fastest_rate() const;
   double condition() const;  ///< of K against M: (w_max/w_1)^2
 
+  /// The same motion, of a mesh, made by the elements themselves: a soft body with its clamped nodes held,
+  /// displaced so little that it is linear to kOfElements.
+  LinearProblem by_elements() const;
+  bool is_by_elements() const { return by_elements_; }
+  static constexpr double kOfElements = 1e-5;  ///< displacement at the start, over the body's size
+
   /// A copy of the System and of its State at the start.
   struct Instance {
     dynamics::System system;
     dynamics::State state;
+    std::vector<int> free{};  ///< directions of the State that are the problem's; empty: all
+    VecX rest{};              ///< of those
+    double amplitude = 1.0;   ///< displacements in the State over those of the problem
+    VecX displacement() const;
+    VecX velocity() const;
   };
   std::unique_ptr<Instance> start() const;
 
   /// kinetic and elastic energy over that of the start
-  double energy(const dynamics::State& state) const;
-  double error(const dynamics::State& state, double t) const;  ///< sqrt(E(y - y_exact(t))/E(y_start))
-  double from_rest(const dynamics::State& state) const;        ///< sqrt(E(y)/E(y_start))
+  double energy(const Instance& run) const;
+  double error(const Instance& run, double t) const;  ///< sqrt(E(y - y_exact(t))/E(y_start))
+  double from_rest(const Instance& run) const;        ///< sqrt(E(y)/E(y_start))
   /// The start in each mode's [w a; a'], one a column: |x|^2/2 is its energy.
   Points2 modes_at_start() const;
   Points2 modes_at(double t) const;           ///< of the exact motion
   double energy(const Points2& modes) const;  ///< over that of the start
   /// sqrt(E(y - y_modes)/E(y_start))
-  double distance(const dynamics::State& state, const Points2& modes) const;
+  double distance(const Instance& run, const Points2& modes) const;
   /// Largest error, measured as error() does, that WRMS <= 1 admits for weights of `rtol` and a root mean
   /// square `speed_rms` of u; derived in linear_problem.cpp.
   double tolerance(const IntegratorSpec& spec, double speed_rms) const;
-  double speed_rms(const dynamics::State& state) const;  ///< root mean square of u [m/s]
-  double largest_speed_rms() const;                      ///< largest that the energy of the start allows
+  double largest_speed_rms() const;  ///< root mean square of u that the energy of the start allows [m/s]
 
  private:
   void find_modes();
+  std::unique_ptr<Instance> start_elements() const;
   double energy_of(const VecX& q, const VecX& u) const;
 
+  TetMesh mesh_;  ///< of a block
+  fem::Material material_;
+  std::vector<int> free_;  ///< directions of its nodes that are not held
+  bool by_elements_ = false;
   VecX mass_;  ///< one a direction [kg]
   MatX K_;
   double beta_ = 0.0, contact_share_ = 0.0;

@@ -32,7 +32,7 @@
 //    (number of steps) x (what a step may err).  The second factor is WRMS <= 1 in the weights of the method,
 //    converted to the energy's norm (LinearProblem::tolerance).  Of a multistep method the norm is another
 //    one; a factor of 10 covers the norms' ratio and that its estimate is of the leading term alone.  The
-//    bound takes the worst of every step in the stiffest mode; where that makes it useless, 1e4 rtol is asked
+//    bound takes the worst of every step in the stiffest mode; where that makes it useless, 0.01 is asked
 //    for.
 //      -> accurate
 //    Explicit ones need steps below about 10/(fastest rate) (no method here has a stability region that
@@ -48,6 +48,11 @@
 // 3. Statics has no motion to be right about: it finds the equilibrium that the motion ends in.
 //      -> accurate
 //
+// Elements (row_elements.cpp) are linear to a multiple of their displacement, kOfElements of the body's size
+// at the start: kNonlinear is added to what the run and the formula may differ by.  What grows is followed to
+// kLinearUpTo of the energy, ten times the displacement.
+//   -> bounded, where the formula grows beyond that
+//
 // Rounding: K x is right to eps w_max^2, and the slowest mode feels it by eps (w_max/w_1)^2, added to every
 // bar.
 
@@ -58,12 +63,13 @@ constexpr double kFollowed = 1e3;  // of the energy
 constexpr double kNearABar = 0.01;
 constexpr double kEps = 2.3e-16;
 constexpr double kRounding = 1e-9;
-constexpr double kMultistepNorm = 10.0, kUseful = 1e4 * kLinearRtol;
+constexpr double kNonlinear = 1e-3;
+constexpr double kMultistepNorm = 10.0, kUseful = 0.01;
 constexpr double kPowerBound = 100.0;  // of multistep methods under error control
 
 /// Steps a period that error control needs to be accurate, of an explicit method at least.
 double smallest_step(const Column& column, const LinearProblem& problem) {
-  return std::pow(kLinearRtol * IntegratorSpec{}.atol_q, 1.0 / column.entry->traits.order) /
+  return std::pow(linear_rtol(problem) * IntegratorSpec{}.atol_q, 1.0 / column.entry->traits.order) /
          problem.omega()[problem.omega().size() - 1];
 }
 
@@ -104,7 +110,7 @@ LinearOutcome predict_linear(const Column& column, const LinearProblem& problem,
 LinearBars linear_bars(const Column& column, const LinearProblem& problem, double H, double highest,
                        long steps) {
   const auto& traits = column.entry->traits;
-  const IntegratorSpec spec = spec_of(column, kLinearRtol, H);
+  const IntegratorSpec spec = spec_of(column, linear_rtol(problem), H);
   // the speed that the whole energy would be as kinetic energy
   const double speed = std::sqrt(std::min(highest, 1e300)) * problem.largest_speed_rms(),
                kept = kRounding * std::sqrt(problem.condition()) +
@@ -117,7 +123,9 @@ LinearBars linear_bars(const Column& column, const LinearProblem& problem, doubl
   }
   const double y = problem.omega()[problem.omega().size() - 1] * H,
                of_acceleration = traits.family == "Newmark" ? kEps * y * y : 0.0;
-  const double agreement = kLinearPeriods * (10.0 * kLinearRtol + rounding + of_acceleration);
+  const double of_elements = problem.is_by_elements() ? kNonlinear : 0.0;
+  const double agreement =
+      kLinearPeriods * (10.0 * kLinearRtol + rounding + of_acceleration) + of_elements;
   const double most = predict_linear(column, problem, H).highest;
   return {rounding + kAccurate, 2.0 * kept, most * (1.0 + agreement) - 1.0 + 2.0 * kept, agreement};
 }
@@ -133,7 +141,8 @@ Verdicts expect_linear(const Lab& lab, const LinearProblem& problem, double H) {
   if (is_static(lab.column)) return {Verdict::kAccurate};
   if (!lab.column.fixed) return expect_error_control(lab.column, problem, H);
   const LinearOutcome predicted = predict_linear(lab.column, problem, H);
-  if (predicted.overflows) return {Verdict::kError};
+  if (predicted.overflows && !problem.is_by_elements()) return {Verdict::kError};
+  if (predicted.highest > kLinearUpTo && problem.is_by_elements()) return {Verdict::kBounded};
   const LinearBars bars = linear_bars(lab.column, problem, H, predicted.highest, kLinearPeriods);
   Verdicts out;
   for (const double by : {1.0 - kNearABar, 1.0, 1.0 + kNearABar})

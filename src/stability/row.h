@@ -59,6 +59,7 @@ Row undamped_row();
 Row stiff_modes_row();
 Row step_row();
 Row split_row();
+Row elements_row();
 Row sliver_row();
 Row squashed_row();
 Row two_bodies_row();

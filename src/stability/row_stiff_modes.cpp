@@ -57,7 +57,7 @@ StabilityCell run(const Lab& lab, double y) {
       mark_wrong("forty steps went well, and a few do not", cell);
       return cell;
     }
-  const double left = problem.from_rest(few->state);
+  const double left = problem.from_rest(*few);
   cell.verdict = verdict_on(left, y);
   cell.figure += fmt::format("; {:.1e} of the amplitude left after {} steps", left, kFew);
   return cell;

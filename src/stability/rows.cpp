@@ -11,6 +11,7 @@ std::vector<Row> all_rows() {
           poissons_ratio_row(),
           step_row(),
           split_row(),
+          elements_row(),
           sliver_row(),
           squashed_row(),
           density_ratio_row(),

@@ -100,6 +100,8 @@ std::vector<Fault> faults() {
       Fault{Defect::kDrags, "step", "H = 0.01 s", Verdict::kWrong, "departs"},
       Fault{Defect::kForgetsToSplit, "split", "w H = 0.3, contact 0.3", Verdict::kWrong, "departs"},
       Fault{Defect::kForgetsToSplit, "split", "w H = 1, contact 10", Verdict::kWrong, "departs"},
+      Fault{Defect::kDrags, "elements", "E = 1e5 Pa", Verdict::kWrong, "departs"},
+      Fault{Defect::kClaimsToBeLStable, "elements", "E = 1e5 Pa", Verdict::kWrong, "departs"},
       Fault{Defect::kDrags, "slivers", "volume ratio 1e6", Verdict::kWrong, "departs"},
       Fault{Defect::kDrags, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kWrong, "free flight"},
       Fault{Defect::kDrags, "impact", "1 m/s", Verdict::kWrong, "free flight"},
