@@ -124,8 +124,7 @@ LinearBars linear_bars(const Column& column, const LinearProblem& problem, doubl
   const double y = problem.omega()[problem.omega().size() - 1] * H,
                of_acceleration = traits.family == "Newmark" ? kEps * y * y : 0.0;
   const double of_elements = problem.is_by_elements() ? kNonlinear : 0.0;
-  const double agreement =
-      kLinearPeriods * (10.0 * kLinearRtol + rounding + of_acceleration) + of_elements;
+  const double agreement = kLinearPeriods * (10.0 * kLinearRtol + rounding + of_acceleration) + of_elements;
   const double most = predict_linear(column, problem, H).highest;
   return {rounding + kAccurate, 2.0 * kept, most * (1.0 + agreement) - 1.0 + 2.0 * kept, agreement};
 }
