@@ -63,14 +63,42 @@ std::vector<std::size_t> image_contacts(const Description& d) {
   return out;
 }
 
+const dynamics::StepperEntry& method_of(const Description& d, const std::string& name,
+                                        const std::string& key) {
+  const dynamics::StepperEntry& entry = find(loop::steppers(), name, key);
+  if (entry.traits.stability == dynamics::Stability::kStatic)
+    fail("{}: {}: {} cannot make a reference: it does not move in time", d.path, key, name);
+  return entry;
+}
+
+/// The method that checks a reference: the scene's, or one of another family, with error control or without
+/// as the reference has it.
+const dynamics::StepperEntry& check_of(const Description& d, const dynamics::StepperEntry& reference) {
+  const std::string key = "compare.haptic.reference_check";
+  const std::string& named = d.compare.haptic.reference_check;
+  const bool fixed = reference.traits.control == dynamics::StepControl::kFixed;
+  const auto other = [&](const char* usual, const char* instead) {
+    return find_stepper(usual)->traits.family != reference.traits.family ? usual : instead;
+  };
+  const dynamics::StepperEntry& check = method_of(d,
+                                                  !named.empty() ? named
+                                                  : fixed ? other("generalized-alpha", "implicit-midpoint")
+                                                          : other("ark-dirk-esdirk437", "cvode-bdf"),
+                                                  key);
+  if (check.traits.family == reference.traits.family)
+    fail("{}: {}: {} and {} are of one family, {}: the two would err alike", d.path, key, check.name,
+         reference.name, check.traits.family);
+  return check;
+}
+
 /// What makes tool and bodies one system, with contact found every `refresh`.
+/// @param coarser  above 1: the check, so many times as coarse, of another family, with another factorisation
 std::vector<std::string> monolithic_overrides(const Description& d, double coarser) {
   const scene::HapticCompareSpec& h = d.compare.haptic;
-  const dynamics::StepperEntry& entry = find(loop::steppers(), h.reference, "compare.haptic.reference");
-  if (entry.traits.stability == dynamics::Stability::kStatic)
-    fail("{}: compare.haptic: {} cannot make a reference: it does not move in time", d.path, h.reference);
+  const dynamics::StepperEntry& reference = method_of(d, h.reference, "compare.haptic.reference");
+  const dynamics::StepperEntry& entry = coarser > 1.0 ? check_of(d, reference) : reference;
   scene::LadderSpec ladder;
-  ladder.integrator = h.reference;
+  ladder.integrator = entry.name;
   const bool fixed = entry.traits.control == dynamics::StepControl::kFixed;
   if (fixed) ladder.setting = "step_s";
   // an error of first order in the refresh, and of one in the tolerance: both then fall well below the
@@ -78,6 +106,9 @@ std::vector<std::string> monolithic_overrides(const Description& d, double coars
   std::vector<std::string> out = overrides_of(
       ladder, fixed ? coarser * h.reference_step_s : std::pow(coarser, std::log2(10.0)) * h.reference_rtol);
   out.push_back(assign("exchange.contact_refresh_s", coarser * h.reference_refresh_s));
+  if (coarser > 1.0 && entry.traits.implicit)
+    out.push_back(assign("integrator.linear_solver",
+                         std::string(d.integrator.linear_solver == "cholmod" ? "umfpack" : "cholmod")));
   return out;
 }
 
@@ -202,18 +233,19 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 double share_of_peak(double error, double peak) { return peak > kLeastPeak ? error / peak : kNone; }
 
 MonolithicScene monolithic_scene(const Description& d, double coarser) {
-  const scene::HapticCompareSpec& h = d.compare.haptic;
   std::vector<std::string> overrides = monolithic_overrides(d, coarser);
   overrides.push_back(assign("exchange.scheme", std::string("monolithic")));
   if (d.exchange.latency_ticks > 0) overrides.push_back("exchange.latency_ticks=0");
   // the check, coarser, keeps the scene's own pixels: their error is part of the reference's
   MonolithicScene out{coarser > 1.0 ? with_overrides(d, overrides) : as_tight_as_the_reference(d, overrides),
                       ""};
-  const bool fixed = find_stepper(h.reference)->traits.control == dynamics::StepControl::kFixed;
-  out.made_by = fmt::format("tool and bodies as one system by {} {}, contact refreshed every {}", h.reference,
-                            fixed ? "in steps of " + milliseconds(out.description.integrator.step_s)
-                                  : fmt::format("at rtol {:.2g}", out.description.integrator.rtol),
-                            milliseconds(out.description.exchange.contact_refresh_s));
+  const IntegratorSpec& made = out.description.integrator;
+  const bool fixed = find_stepper(made.name)->traits.control == dynamics::StepControl::kFixed;
+  out.made_by = fmt::format(
+      "tool and bodies as one system by {} {}{}, contact refreshed every {}", made.name,
+      fixed ? "in steps of " + milliseconds(made.step_s) : fmt::format("at rtol {:.2g}", made.rtol),
+      coarser > 1.0 ? " by " + made.linear_solver : std::string(),
+      milliseconds(out.description.exchange.contact_refresh_s));
   return out;
 }
 

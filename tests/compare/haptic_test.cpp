@@ -172,7 +172,7 @@ TEST(Haptic, PixelsAreVariedWhereTheToolIsSeenInAnImage) {
   EXPECT_EQ(elements, 2) << "that of the list and the scene's own";
 }
 
-TEST(Haptic, TheReferenceIsOneSystemAndItsCheckIsCoarser) {
+TEST(Haptic, TheReferenceIsOneSystemAndItsCheckIsCoarserAndOfAnotherFamily) {
   const scene::Description d = press({"exchange.latency_ticks=5", "integrator.rtol=1e-2"});
   const compare::MonolithicScene fine = compare::monolithic_scene(d),
                                  coarse = compare::monolithic_scene(d, 2.0);
@@ -182,10 +182,22 @@ TEST(Haptic, TheReferenceIsOneSystemAndItsCheckIsCoarser) {
   EXPECT_DOUBLE_EQ(fine.description.integrator.rtol, 1e-7);
   EXPECT_DOUBLE_EQ(coarse.description.exchange.contact_refresh_s, 5e-4);
   EXPECT_NEAR(coarse.description.integrator.rtol, 1e-6, 1e-12);
+  EXPECT_EQ(coarse.description.integrator.name, "ark-dirk-esdirk437");
+  EXPECT_NE(coarse.description.integrator.linear_solver, fine.description.integrator.linear_solver);
   EXPECT_NE(fine.made_by.find("cvode-bdf at rtol 1e-07"), std::string::npos) << fine.made_by;
   const compare::MonolithicScene steps = compare::monolithic_scene(
       press({"compare.haptic.reference=implicit-midpoint", "compare.haptic.reference_step_s=1e-4"}));
   EXPECT_DOUBLE_EQ(steps.description.integrator.step_s, 1e-4);
+  const auto check_of = [](const std::vector<std::string>& set) {
+    return compare::monolithic_scene(press(set), 2.0).description.integrator;
+  };
+  const IntegratorSpec check =
+      check_of({"compare.haptic.reference=implicit-midpoint", "compare.haptic.reference_step_s=1e-4"});
+  EXPECT_EQ(check.name, "generalized-alpha");
+  EXPECT_DOUBLE_EQ(check.step_s, 2e-4);
+  EXPECT_EQ(check_of({"compare.haptic.reference_check=ark-dirk-trbdf2"}).name, "ark-dirk-trbdf2");
+  EXPECT_EQ(check_of({"compare.haptic.reference=ark-dirk-trbdf2"}).name, "cvode-bdf");
+  EXPECT_THROW(check_of({"compare.haptic.reference_check=ida"}), Error) << "backward differences as well";
 }
 
 const HapticPoint& frozen_point(const HapticComparison& c) {

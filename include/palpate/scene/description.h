@@ -26,9 +26,11 @@ struct LadderSpec {
 /// one system that the force on the hand is held against: the `[compare.haptic]` table.
 struct HapticCompareSpec {
   std::string reference = "cvode-bdf";  ///< the integrator of tool and bodies as one system
-  double reference_rtol = 1e-7;         ///< of the reference, under error control
-  double reference_step_s = 5e-4;       ///< of the reference, in fixed steps
-  double reference_refresh_s = 5e-4;    ///< contact refresh of the reference
+  /// the integrator, of another family, that checks it; empty: one is chosen
+  std::string reference_check;
+  double reference_rtol = 1e-7;       ///< of the reference, under error control
+  double reference_step_s = 5e-4;     ///< of the reference, in fixed steps
+  double reference_refresh_s = 5e-4;  ///< contact refresh of the reference
   std::vector<double> exchange_periods_s = {0.05, 0.02, 0.01, 0.005, 0.002, 0.001};
   std::vector<double> ticks_s = {0.002, 0.001, 5e-4, 2e-4, 1e-4};
   /// along the longer edge of the images of the tool's contacts, where it has any
