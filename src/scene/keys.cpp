@@ -253,8 +253,7 @@ const KeyTable<HapticCompareSpec>& haptic_compare_keys() {
   static const KeyTable<Spec> keys = {
       text("reference", &Spec::reference, {}, "the integrator of tool and bodies as one system"),
       text("reference_check", &Spec::reference_check, {},
-           "the integrator of another family that checks it, at twice the steps and refreshes; left out: one "
-           "is chosen"),
+           "the integrator of another family that checks it, twice as coarse; left out: one is chosen"),
       number("reference_rtol", &Spec::reference_rtol, closed(1e-13, 1e-2),
              "relative tolerance of the reference, where it has error control"),
       number("reference_step_s", &Spec::reference_step_s, positive(),
