@@ -55,11 +55,12 @@
 // and drag takes little of it; a fifth of the whole is asked for.  That start has ten times as many seeds at
 // fixed steps.
 //   -> stable, bounded; error control: stable
-// One linear solve a step has the bound above for each step, and no theorem for two: the shear part that the
-// next step's rotation has is energy that no step accounts for.  Scattered and moving, linearly implicit
-// Euler makes 42 E0 at most (that is what this start was added for).  It is held to what two steps by the
-// majorant can make, (g^4 - 1) E0.
-//   -> stable, bounded
+// One linear solve a step has that bound where the remainder is semi-definite.  The exact tangent of a body
+// thrown apart is not: where a Cholesky factor still accepts it, a step is as large as the smallest
+// eigenvalue lets it be.  Scattered and moving, linearly implicit Euler makes 42 E0 from the worst of 10
+// seeds and 102 E0 from the worst of 100, nearly all in one step (that is what this start was added for);
+// with warped tangents, which are definite, nothing at all.
+//   -> grew as well
 //
 // Statics looks for a stationary point, and a saddle is one: any end with a message is accepted.
 
@@ -112,18 +113,19 @@ struct Body {
   }
 };
 
-double bound_of(int steps) {
+double bound_of_a_step() {
   Body body(mesh::box(Vec3::Constant(kSize), {1, 1, 1}).nodes);
   const double y = largest_frequency(body.system, body.state.view()) * kH;
   const double g = 1.0 + 0.5 * y * y + y * std::sqrt(1.0 + 0.25 * y * y);
-  return std::pow(g, 2 * steps) - 1.0;
+  return g * g - 1.0;
 }
 
 /// Outcome of all the starts of a cell.
 struct Tally {
   int starts = 0, at_rest = 0, elsewhere = 0, moving = 0, failed = 0, short_steps = 0;
   double rise = 0.0, bound = 1.0;  ///< of the energy, relative to E0
-  double least_fall = 1.0;         ///< of the energy, of all starts
+  bool beyond() const { return !(rise <= bound); }
+  double least_fall = 1.0;  ///< of the energy, of all starts
   bool unreported = false, silent = false, finite = true, interrupted = false;
   dynamics::StepResult failure;
   long steps = 0;
@@ -193,14 +195,14 @@ StabilityCell verdict_on(const Lab& lab, const Bars& bars, const Tally& tally) {
     return cell;
   }
   if (ended_early(lab.column, gave_up ? tally.failure : dynamics::StepResult{}, tally.finite,
-                  tally.interrupted, tally.rise > tally.bound, cell))
+                  tally.interrupted, tally.beyond(), cell))
     return cell;
   if (tally.unreported) {
     cell.verdict = Verdict::kSilent;
     cell.reason = "an inverted element was not reported";
     return cell;
   }
-  if (tally.rise <= tally.bound && tally.least_fall < bars.fall) {
+  if (!tally.beyond() && tally.least_fall < bars.fall) {
     cell.verdict = Verdict::kWrong;
     cell.reason =
         fmt::format("a start kept more than {:.2f} of its energy, damped as it is", 1.0 - bars.fall);
@@ -209,9 +211,9 @@ StabilityCell verdict_on(const Lab& lab, const Bars& bars, const Tally& tally) {
   const bool no_rise = tally.rise <= 100.0 * kRtol;
   cell.verdict = no_rise && bars.must_rest && tally.at_rest >= kShareAtRest * tally.starts
                      ? Verdict::kAccurate
-                 : no_rise                   ? Verdict::kStable
-                 : tally.rise <= tally.bound ? Verdict::kBounded
-                                             : Verdict::kGrew;
+                 : no_rise         ? Verdict::kStable
+                 : !tally.beyond() ? Verdict::kBounded
+                                   : Verdict::kGrew;
   return cell;
 }
 
@@ -226,6 +228,7 @@ Verdicts expect(const Lab& lab) {
 Verdicts expect_moving(const Lab& lab) {
   if (!lab.column.fixed) return {Verdict::kStable};
   if (is_static(lab.column)) return expect(lab);
+  if (lab.column.entry->traits.linearised) return {Verdict::kStable, Verdict::kBounded, Verdict::kGrew};
   return {Verdict::kStable, Verdict::kBounded};
 }
 
@@ -234,8 +237,7 @@ using Velocities = std::function<void(VecX&, std::mt19937&)>;
 StabilityCell run(const Lab& lab, const Bars& bars, int seeds, const Placement& place,
                   const Velocities& throw_it) {
   Tally tally;
-  const bool two_steps = throw_it && lab.column.entry->traits.linearised;
-  if (lab.column.fixed) tally.bound = std::max(1.0, bound_of(two_steps ? 2 : 1));
+  if (lab.column.fixed) tally.bound = std::max(1.0, bound_of_a_step());
   for (int seed = 0; seed < seeds && !tally.interrupted && tally.finite; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed) + 1);
     Points placed = mesh::box(Vec3::Constant(kSize), {1, 1, 1}).nodes;
