@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Faults, BrokenStepper, testing::ValuesIn(faults()),
                          [](const auto& param) { return fmt::format("fault_{}", param.index); });
 TEST_P(BrokenStepper, MakesTheCellFail) {
   const Fault& fault = GetParam();
-  const StabilityMatrix matrix = matrix_of(faulty::registry(fault.defect), {fault.row}, 1.0);
+  const StabilityMatrix matrix = matrix_of(faulty::registry(fault.defect), {fault.row}, 3.0);
   const StabilityCell& cell = cell_of(matrix, fault.sub_case);
   EXPECT_EQ(to_string(cell.verdict), std::string(to_string(fault.verdict)))
       << cell.figure << "; " << cell.reason;
