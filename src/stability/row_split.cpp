@@ -8,10 +8,10 @@
 // - w_B H = w_C H = 0.3: resolved.
 // - A stiff body, w_B H = 1e3 or 1e6, and a soft contact, w_C H = 0.3: the implicit side damps what it
 // should.
-// - A stiff contact on a soft body: additive methods are beyond the limit of their explicit side from
-//   w_C H = 2 to 6 on, as an explicit method is.  So are multi-rate ones: their fast side has the contact's
-//   force, but a node's q' = u is slow, and the force sees q move as the slow stages have it.  (A tool's
-//   kinematics are fast: a light tool on a stiff contact is what they are for.)
+// - A stiff contact on a soft body: additive methods have the limit of their explicit side, as
+//   an explicit method has: all five are beyond it at w_C H = 10.  So are multi-rate ones: their fast side
+//   has the contact's force, but a node's q' = u is slow, and the force sees q move as the slow stages have
+//   it.  (A tool's kinematics are fast: a light tool on a stiff contact is what they are for.)
 // - Both stiff: no theorem holds, the matrix of the step decides.
 
 namespace palpate::stability {

@@ -56,8 +56,8 @@
 // fixed steps.
 //   -> stable, bounded; error control: stable
 // One linear solve a step has that bound where the remainder is semi-definite.  The exact tangent of a body
-// thrown apart is not: where a Cholesky factor still accepts it, a step is as large as the smallest
-// eigenvalue lets it be.  Scattered and moving, linearly implicit Euler makes 42 E0 from the worst of 10
+// thrown apart need not be, and a step matrix that a Cholesky factor still accepts may have an eigenvalue
+// near zero: no bound holds.  Scattered and moving, linearly implicit Euler makes 42 E0 from the worst of 10
 // seeds and 102 E0 from the worst of 100, nearly all in one step (that is what this start was added for);
 // with warped tangents, which are definite, nothing at all.
 //   -> grew as well
