@@ -60,6 +60,13 @@ inline constexpr double kRoundingOfStep = 1e-9;
 /// Of a state, or of the forces that cancel in a balance: a correction below it is rounding.
 inline constexpr double kRounding = 1e-14;
 
+// --- linearly implicit steps (linearized_step.h)
+
+/// Negative curvature that a step may go along, of its mass: 1 is a singular matrix.  A body that buckles at
+/// the rate sigma has (sigma h)^2, so that rates up to 1/(3 h) keep their true tangent; a step's speed is
+/// bounded by 1.11 times that of a body without stiffness.
+inline constexpr double kNegativeCurvature = 0.1;
+
 // --- statics (kinsol_static.cpp)
 
 inline constexpr long kStaticIterations = 25;

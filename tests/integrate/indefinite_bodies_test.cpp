@@ -53,16 +53,20 @@ struct Strut {
     system.add(fem::make_dead_load("end load", Points(-f.reshaped(3, n)), id));
     system.prepare(state.view());
   }
-  /// Smallest eigenvalue of K phi = lambda M phi over the free directions [1/s^2].
-  double smallest_eigenvalue() {
+  /// K phi = lambda M phi over the free directions [1/s^2], by growing lambda; phi.M phi = 1.
+  struct Modes {
+    VecX lambda;
+    MatX phi;
+  };
+  Modes modes() {
     BorderedMatrix K, M;
     system.step_matrix(state.view(), 0.0, 0.0, 1.0, K);
     system.step_matrix(state.view(), 1.0, 0.0, 0.0, M);
     const VecX scale = M.to_dense().diagonal().cwiseSqrt().cwiseInverse();
-    return Eigen::SelfAdjointEigenSolver<MatX>(scale.asDiagonal() * K.to_dense() * scale.asDiagonal(),
-                                               Eigen::EigenvaluesOnly)
-        .eigenvalues()[0];
+    const Eigen::SelfAdjointEigenSolver<MatX> solved(scale.asDiagonal() * K.to_dense() * scale.asDiagonal());
+    return {solved.eigenvalues(), scale.asDiagonal() * solved.eigenvectors()};
   }
+  double smallest_eigenvalue() { return modes().lambda[0]; }
 };
 
 TEST(EulerStrut, IsStableBelowTheCriticalLoadAndNotWellAbove) {
@@ -71,29 +75,61 @@ TEST(EulerStrut, IsStableBelowTheCriticalLoadAndNotWellAbove) {
 }
 
 // M + h^2 K is positive definite exactly when 1 + h^2 lambda > 0 for the smallest eigenvalue lambda of (K,
-// M): with lambda = -sigma^2 < 0, when h < 1 / sigma.
-TEST(EulerStrut, StepMatrixTurnsIndefiniteAtTheGrowthRate) {
-  const double sigma = std::sqrt(-Strut(4.0).smallest_eigenvalue());
-  for (const auto& [h_sigma, expected] : {std::pair{0.98, 0L}, std::pair{1.02, 1L}})
-    for (const char* solver : {"cholmod", "pcg"}) {
+// M): with lambda = -sigma^2 < 0, when h < 1 / sigma.  A body that moves along that mode with the speed v
+// leaves at v / (1 - (h sigma)^2), where the motion itself grows by e^(h sigma): the step along it is taken
+// up to (h sigma)^2 = 0.1 and projected beyond, definite or not.  It then keeps v, as long as no other part
+// of the tangent takes it.  (A square section has two such modes, of one rate.)
+TEST(EulerStrut, StepGoesAlongTheUnstableModeUpToATenthOfItsMass) {
+  const auto modes = Strut(4.0).modes();
+  const double sigma = std::sqrt(-modes.lambda[0]);
+  constexpr double kSpeed = 1e-9;
+  for (const auto& [h_sigma, expected] : {std::pair{0.31, 0L}, std::pair{0.32, 1L}, std::pair{0.98, 1L}})
+    for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level"})
       for (const char* policy : {"project", "lu"}) {
         Strut strut(4.0);
-        const VecX q0 = strut.state.q();
-        IntegratorSpec spec{.name = "linearly-implicit-euler",
-                            .step_s = h_sigma / sigma,
-                            .indefinite = policy,
-                            .linear_solver = solver};
-        const auto stepper = integrate::make_stepper(strut.system, strut.state, spec);
-        const StepResult result = stepper->advance_to(spec.step_s);
-        ASSERT_TRUE(result.ok()) << result.message;
-        EXPECT_LT((strut.state.q() - q0).norm(), 1e-9) << "an equilibrium, if an unstable one";
-        EXPECT_TRUE(strut.state.u().allFinite());
-        // PCG meets a direction of negative curvature only where the right-hand side has one
-        if (solver != std::string("cholmod")) continue;
-        EXPECT_EQ(stepper->counters().indefinite, expected) << policy << ", h sigma = " << h_sigma;
-        EXPECT_EQ(stepper->counters().projected, policy == std::string("project") ? expected : 0);
+        strut.state.u() = kSpeed * modes.phi.col(0);
+        const auto stepper = integrate::make_stepper(strut.system, strut.state,
+                                                     {.name = "linearly-implicit-euler",
+                                                      .step_s = h_sigma / sigma,
+                                                      .indefinite = policy,
+                                                      .linear_solver = solver,
+                                                      .linear_rtol = 1e-8});
+        ASSERT_TRUE(stepper->advance_to(h_sigma / sigma).ok());
+        const std::string what =
+            std::string(solver) + ", " + policy + ", h sigma = " + std::to_string(h_sigma);
+        const bool projects = policy == std::string("project") && expected;
+        EXPECT_EQ(stepper->counters().indefinite, projects ? 1 : 0) << what;
+        EXPECT_EQ(stepper->counters().projected, projects ? 1 : 0) << what;
+        const double speed = std::sqrt(2.0 * strut.system.kinetic_energy(strut.state.view()));
+        if (projects)
+          EXPECT_LE(speed, kSpeed * (1.0 + 1e-4)) << what;
+        else
+          EXPECT_NEAR(speed * (1.0 - h_sigma * h_sigma), kSpeed, 1e-3 * kSpeed) << what;
       }
-    }
+}
+
+// The matrix itself has a Cholesky factor up to 1.
+TEST(EulerStrut, StepMatrixTurnsIndefiniteAtTheGrowthRate) {
+  const double sigma = std::sqrt(-Strut(4.0).smallest_eigenvalue());
+  const auto counts_of = [&](double h_sigma, const char* solver, const char* policy) {
+    Strut strut(4.0);
+    const VecX q0 = strut.state.q();
+    const IntegratorSpec spec{.name = "linearly-implicit-euler",
+                              .step_s = h_sigma / sigma,
+                              .indefinite = policy,
+                              .linear_solver = solver};
+    const auto stepper = integrate::make_stepper(strut.system, strut.state, spec);
+    const StepResult result = stepper->advance_to(spec.step_s);
+    EXPECT_TRUE(result.ok()) << result.message;
+    EXPECT_LT((strut.state.q() - q0).norm(), 1e-9) << "an equilibrium, if an unstable one";
+    EXPECT_TRUE(strut.state.u().allFinite());
+    return std::pair{stepper->counters().indefinite, stepper->counters().projected};
+  };
+  EXPECT_EQ(counts_of(0.98, "cholmod", "lu"), std::pair(0L, 0L));
+  EXPECT_EQ(counts_of(1.02, "cholmod", "lu"), std::pair(1L, 0L));
+  EXPECT_EQ(counts_of(1.02, "cholmod", "project"), std::pair(1L, 1L));
+  // PCG meets a direction of negative curvature only where the right-hand side has one
+  for (const char* policy : {"project", "lu"}) counts_of(1.02, "pcg", policy);
 }
 
 /// A cube, one end held, the nodes of its free half mirrored through the middle plane: every element between
@@ -245,6 +281,66 @@ TEST(InvertedElements, GainNoEnergyByAnySolver) {
       EXPECT_EQ(c.projected, c.indefinite) << solver << ", " << rtol;
       EXPECT_EQ(c.unconverged, 0) << solver << ", " << rtol;
     }
+}
+
+/// A free damped cube, all its nodes anywhere within its size, thrown anywhere.
+struct ThrownApart {
+  State state;
+  System system;
+  explicit ThrownApart(unsigned seed) {
+    const TetMesh mesh = mesh::box(Vec3::Constant(0.1), {1, 1, 1});
+    const int n = static_cast<int>(mesh.nodes.cols());
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(-0.05, 0.05), speed(-3.0, 3.0);
+    VecX x(3 * n), u(3 * n);
+    for (double& value : x) value = place(random);
+    for (double& value : u) value = speed(random);
+    const int id = state.insert(BlockSpec{.name = "cube", .q_size = 3 * n, .u_size = 3 * n}, x, u);
+    fem::Material material{.youngs_modulus = 1e4, .poissons_ratio = 0.4, .density = kDensity};
+    system.add(std::static_pointer_cast<ForceTerm>(
+        std::make_shared<fem::SoftBody>("cube", mesh, material, fem::SoftBodyOptions{}, id)));
+    system.add(fem::make_lumped_mass(mesh, kDensity, id));
+    system.prepare(state.view());
+  }
+  double speed() { return std::sqrt(2.0 * system.kinetic_energy(state.view())); }
+};
+
+// No step is faster than 1/(1 - eta) times that of the same nodes without stiffness, u0 + h M^-1 f, whatever
+// the tangent and whoever solves.  With the tangent as it is, LU's way, some are, ten times and more: their
+// matrices are definite by a hair.
+TEST(ThrownApart, NoStepIsFasterThanTheForcesPush) {
+  constexpr double kStep = 5e-3, kMost = 1.0 / 0.9, kSolved = 1e-6;
+  const auto fastest = [&](const char* solver, const char* policy, long& projected) {
+    double most = 0.0;
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+      ThrownApart cube(seed);
+      const auto stepper = integrate::make_stepper(cube.system, cube.state,
+                                                   {.name = "linearly-implicit-euler",
+                                                    .step_s = kStep,
+                                                    .indefinite = policy,
+                                                    .linear_solver = solver,
+                                                    .linear_rtol = 0.1 * kSolved});
+      for (int i = 1; i <= 20; ++i) {
+        VecX f;
+        cube.system.force(cube.state.view(), f);
+        const VecX& mass = cube.system.nodal_mass();
+        const VecX pushed = cube.state.u() + kStep * f.cwiseQuotient(mass);
+        const double bound = std::sqrt(pushed.dot(mass.cwiseProduct(pushed)));
+        EXPECT_TRUE(stepper->advance_to(i * kStep).ok()) << solver << ", seed " << seed;
+        most = std::max(most, cube.speed() / bound);
+      }
+      projected += stepper->counters().projected;
+    }
+    return most;
+  };
+  long projected = 0, none = 0;
+  EXPECT_GT(fastest("cholmod", "lu", none), 10.0);
+  EXPECT_EQ(none, 0);
+  for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level", "auto"}) {
+    projected = 0;
+    EXPECT_LE(fastest(solver, "project", projected), kMost * (1.0 + kSolved)) << solver;
+    EXPECT_GT(projected, 0) << solver;
+  }
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ struct StepperCounters {
   long force_evaluations = 0, tangent_evaluations = 0;
   long reinits = 0;
   long events = 0;  ///< roots that a step was cut short at
-  /// matrices that had no Cholesky factor: answered by definite tangents (projected) or, the rest, by LU
+  /// matrices with no Cholesky factor, or of negative curvature: definite tangents (projected); the rest: LU
   long indefinite = 0;
   long projected = 0;  ///< of those, answered by definite tangents
   /// equilibria whose residual is the rounding of forces that cancel, above the tolerance asked for

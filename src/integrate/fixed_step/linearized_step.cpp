@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "integrate/tuning.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/finite.h"
 
@@ -28,8 +29,13 @@ LinearizedStep::LinearizedStep(dynamics::System& system, std::unique_ptr<dynamic
 StepStatus LinearizedStep::solve(const Equations& e, VecX& du, dynamics::StepperCounters& counters) {
   counters_ = &counters;
   known_indefinite_ = false;
-  if (mixed_ && fused_.applies(e.at) && (solve_by_lagged_matrix(e, du) || solve_fused(e, du)))
-    return StepStatus::kOk;
+  if (mixed_ && fused_.applies(e.at)) {
+    if (solve_by_lagged_matrix(e, du)) {
+      if (!goes_along_negative_curvature(e, du)) return StepStatus::kOk;
+      known_indefinite_ = true;
+    }
+    if (solve_fused(e, du)) return StepStatus::kOk;
+  }
   return solve_whole(e, du);
 }
 
@@ -51,6 +57,48 @@ void LinearizedStep::evaluate_residual(const Equations& e, const VecX& du, VecX&
   s_of_x_ = e.s + e.h * du;
   if (!e.dv_is_zero) dv_of_x_ = e.dv + du;
   fused_.residual(e.at, s_of_x_, e.dv_is_zero ? du : dv_of_x_, e.h, r);
+}
+
+/// Whether |u1| > |u0| / (1 - eta) on free directions; u1_ is then u1 there, and zero on driven ones.
+bool LinearizedStep::is_faster(const Equations& e, const VecX& du) {
+  if (!solver_.projects()) return false;
+  const auto square_norm = [&](const VecX& v) {
+    if (e.at.layout->border_size() == 0 && system_.nodal_mass().size() == v.size())
+      return v.dot(system_.nodal_mass().cwiseProduct(v));
+    system_.apply_mass(e.at, v, product_);
+    return v.dot(product_);
+  };
+  constexpr double kMost = 1.0 / (1.0 - tuning::kNegativeCurvature);
+  u1_ = e.at.u;
+  for (const int dof : system_.driven_dofs()) u1_[dof] = 0.0;
+  const double before = square_norm(u1_);
+  u1_ += du;  // zero along driven directions
+  speed_ = square_norm(u1_);
+  return speed_ > kMost * kMost * before;
+}
+
+/// Of the fused equations.  With s and dv zero on free directions but -u0 for dv, their right-hand side is b
+/// (less what driven directions do to free ones, which belongs to it).
+bool LinearizedStep::goes_along_negative_curvature(const Equations& e, const VecX& du) {
+  if (!is_faster(e, du)) return false;
+  const ScopedTimer timer(counters_->force_s);
+  ++counters_->force_evaluations;
+  s_of_x_.setZero(e.s.size());
+  dv_of_x_ = -e.at.u;
+  for (const int dof : system_.driven_dofs()) {
+    s_of_x_[dof] = e.s[dof];
+    dv_of_x_[dof] = e.dv[dof];
+  }
+  fused_.residual(e.at, s_of_x_, dv_of_x_, e.h, product_);
+  return u1_.dot(product_) < (1.0 - tuning::kNegativeCurvature) * speed_;
+}
+
+/// Of the whole matrix, which is there: u1.A u1 = u1.M u1 + u1.R u1.
+bool LinearizedStep::goes_along_negative_curvature_of(const dynamics::BorderedMatrix& A, const Equations& e,
+                                                      const VecX& du) {
+  if (!A.symmetric || !is_faster(e, du)) return false;
+  A.multiply(u1_, product_);
+  return u1_.dot(product_) < (1.0 - tuning::kNegativeCurvature) * speed_;
 }
 
 bool LinearizedStep::solve_by_lagged_matrix(const Equations& e, VecX& du) {
@@ -77,6 +125,10 @@ bool LinearizedStep::solve_fused(const Equations& e, VecX& du) {
   if (!A) return false;
   forget();
   ++counters_->force_evaluations;
+  if (known_indefinite_) {
+    solver_.count_indefinite();
+    return solve_fused_projected(e, du, *A);
+  }
   if (!assemble_fused(e, *A)) return false;
   SolveStatus status = SolveStatus::kSingular;
   const StepMatrixUse use = mixed_->factor_step_matrix();
@@ -90,6 +142,7 @@ bool LinearizedStep::solve_fused(const Equations& e, VecX& du) {
     case StepMatrixUse::kIndefinite: status = SolveStatus::kIndefinite; break;
     case StepMatrixUse::kNone: break;
   }
+  if (status == SolveStatus::kOk && goes_along_negative_curvature(e, du)) status = SolveStatus::kIndefinite;
   if (status == SolveStatus::kIndefinite) {
     known_indefinite_ = true;
     solver_.count_indefinite();
@@ -140,6 +193,11 @@ StepStatus LinearizedStep::solve_whole(const Equations& e, VecX& du) {
     return rhs_;
   };
   if (status == SolveStatus::kOk) status = solver_.solve(system_, assemble, right_hand_side, du);
+  if (status == SolveStatus::kOk && !solver_.projected() && goes_along_negative_curvature_of(A_, e, du)) {
+    solver_.count_indefinite();
+    status = solver_.factor_indefinite(A_, system_, assemble);
+    if (status == SolveStatus::kOk) status = solver_.solve(system_, assemble, right_hand_side, du);
+  }
   return status == SolveStatus::kOk ? StepStatus::kOk : StepStatus::kSolverFailed;
 }
 

@@ -32,6 +32,17 @@ struct LinearizedEquations {
 /// that of a force model without negative curvature: it may not gain energy.  With K itself there,
 /// h^2 (K_p - K) u0 more, a moving body is pushed along that curvature, which has no bound where elements are
 /// flat.  Where h is small enough for the order of the method to show, matrices are definite.
+///
+/// A matrix that is definite may still be so by the mass alone, and close to singular.  With R = h D + h^2 K
+/// and the force g = f + D u0 that does not damp, the step is
+///     (M + R) u1 = b,   b = M u0 + h g,   so that   u1.M u1 + u1.R u1 = u1.b
+/// on free directions.  Where u1.R u1 >= -eta u1.M u1, by the inequality of Cauchy and Schwarz
+///     (1 - eta) |u1| <= |u0 + h M^-1 g|   in the norm |u|^2 = u.M u:
+/// the step moves no faster than a step without any stiffness would, up to 1 / (1 - eta), whatever else the
+/// tangent has.  Where it is less, the step went along negative curvature and has no bound (with 1 + r, r the
+/// part of R near -1, it is b / (1 + r)): it is solved once more, with projected tangents, whose R is
+/// positive.  That takes b, which is one evaluation of the force, and is done only where |u1| is more than
+/// |u0| / (1 - eta), for a step that is slower keeps the bound.  eta = tuning::kNegativeCurvature.
 class LinearizedStep {
  public:
   LinearizedStep(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver,
@@ -52,6 +63,10 @@ class LinearizedStep {
   bool solve_fused(const Equations& e, VecX& du);
   bool solve_fused_projected(const Equations& e, VecX& du, dynamics::ZeroRowSumMatrix& A);
   dynamics::StepStatus solve_whole(const Equations& e, VecX& du);
+  bool is_faster(const Equations& e, const VecX& du);
+  bool goes_along_negative_curvature(const Equations& e, const VecX& du);
+  bool goes_along_negative_curvature_of(const dynamics::BorderedMatrix& A, const Equations& e,
+                                        const VecX& du);
   bool assemble_fused(const Equations& e, dynamics::ZeroRowSumMatrix& A);
   bool evaluate_right_hand_side(const Equations& e);
   bool complete_right_hand_side(const Equations& e);
@@ -63,7 +78,8 @@ class LinearizedStep {
   dynamics::StepAssembly fused_;
   dynamics::StepperCounters* counters_ = nullptr;  ///< of the solve under way
   dynamics::BorderedMatrix A_;
-  VecX rhs_, product_, s_of_x_, dv_of_x_;
+  VecX rhs_, product_, s_of_x_, dv_of_x_, u1_;
+  double speed_ = 0.0;             ///< u1.M u1 [J]
   bool known_indefinite_ = false;  ///< the matrix of the solve under way is
   double lagged_h_ = 0.0;          ///< step of the mixed-precision matrix that the solver keeps; 0: none
   std::uint64_t lagged_pattern_ = 0;
