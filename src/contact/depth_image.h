@@ -56,6 +56,13 @@ struct ImageTimes {
 class DepthImage {
  public:
   virtual ~DepthImage() = default;
+  /// Makes at once what the first requests of these sides would have to: memory, surfaces in it, programs
+  /// that a driver compiles when they are first used.  First touch then takes as long as any other.
+  /// @pre both are updated
+  virtual void prepare(ImageSide& a, ImageSide& b) {
+    (void)a;
+    (void)b;
+  }
   /// Surfaces may have moved since the last request.
   virtual void start_query() {}
   /// Answers all requests, which may be of different regions and pairs of bodies.  On the GPU many at once

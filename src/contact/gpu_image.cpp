@@ -15,7 +15,8 @@ namespace palpate::contact {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-constexpr std::uint32_t kLayered = 1u << 31;                              // as in pair.comp
+constexpr int kUsualEdge = 512;               // of an atlas: targets are no smaller [pixels]
+constexpr std::uint32_t kLayered = 1u << 31;  // as in pair.comp
 constexpr std::size_t kListOffset = gl::MappedBuffer::kStorageAlignment;  // behind the count
 
 const char* opened(const char* name) {
@@ -41,6 +42,20 @@ GpuImage::GpuImage()
       tiles_sent_(gl::MappedBuffer::For::kUpload),
       pairs_found_(gl::MappedBuffer::For::kReadback) {
   gl::check_errors("making the contact images");
+}
+
+void GpuImage::prepare(ImageSide& a, ImageSide& b) {
+  constexpr int kTile = 16;
+  static constexpr std::array<int, 1> kFirst = {0};
+  const Patch nothing;
+  DepthRequest request;
+  request.a = request.b = &nothing;
+  request.camera = {.pixel = 1.0, .width = kTile, .height = kTile, .far = 1.0};
+  request.from_a = {.side = &a, .faces = kFirst};
+  request.from_b = {.side = &b, .faces = kFirst};
+  pairs_found_.reserve(kListOffset + sizeof(Found) * kUsualEdge * kUsualEdge);
+  DepthRequest* const asked = &request;
+  answer({&asked, 1});
 }
 
 void GpuImage::answer(std::span<DepthRequest* const> requests) {
@@ -125,8 +140,8 @@ GpuImage::Layer GpuImage::add_draws(const PatchSource& source) {
 void GpuImage::draw(std::span<DepthRequest* const> requests, bool of_a) {
   std::unique_ptr<gl::Framebuffer>& target = of_a ? target_a_ : target_b_;
   if (!target || target->width() < atlas_.width() || target->height() < atlas_.height()) {
-    const int width = std::max(atlas_.width(), target ? target->width() : 0),
-              height = std::max(atlas_.height(), target ? target->height() : 0);
+    const int width = std::max(atlas_.width(), target ? target->width() : kUsualEdge),
+              height = std::max(atlas_.height(), target ? target->height() : kUsualEdge);
     target.reset();
     target = std::make_unique<gl::Framebuffer>(width, height, std::vector{gl::Format::kR32ui},
                                                gl::DepthBuffer::kDepthAndStencil);

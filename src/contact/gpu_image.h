@@ -24,6 +24,8 @@ namespace palpate::contact {
 class GpuImage final : public DepthImage {
  public:
   GpuImage();  ///< opens the GL context
+  /// Draws one face of each into a small tile.
+  void prepare(ImageSide& a, ImageSide& b) override;
   void start_query() override { surfaces_.start_query(); }
   void answer(std::span<DepthRequest* const> requests) override;
   const GpuSurfaces& surfaces() const { return surfaces_; }

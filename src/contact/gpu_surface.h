@@ -40,6 +40,7 @@ class GpuSurfaces {
   /// before they are drawn
   void send_points(const GpuSurface& surface, const ImageSide& side);
   void bind_points(unsigned index) const { buffer_.bind_storage(index); }
+  std::size_t size() const { return surfaces_.size(); }
   std::size_t sent_bytes() const { return sent_bytes_; }  ///< of points, since it was made
 
  private:

@@ -189,6 +189,11 @@ void ImageSource::query(const dynamics::StateView& state, SampleCells& samples) 
   end(samples, first);
 }
 
+void ImageSource::prepare(DepthImage& image) {
+  image.prepare(*context_.a, *context_.b);
+  prepared_ = true;
+}
+
 void ImageSource::add_image_times(double seconds, const ImageTimes& times, double share) {
   QueryStages& stages = context_.stages;
   stages.images_s += share * seconds;
@@ -223,20 +228,20 @@ void ImageSource::close(SampleCells& samples) {
 
 namespace {
 
-/// By the image of the first source; where that fails and all of them may, by the processor from now on: a
+/// Has the image of the first source work; where that fails and all of them may, the processor from now on: a
 /// request says all that any backend needs.
-void answer(std::span<ImageSource* const> sources, std::span<DepthRequest* const> requests, bool first) {
+template <class Work>
+void ask(std::span<ImageSource* const> sources, const Work& work) {
   ImageSource& asked = *sources[0];
   try {
-    if (first) asked.image().start_query();
-    asked.image().answer(requests);
+    work(asked.image());
   } catch (const Error& error) {
     for (const ImageSource* source : sources)
       if (!source->may_fall_back()) throw;
     log::warn("contact: the processor makes the images from now on, for the GPU cannot: {}", error.what());
     counters::count("contact.gpu_fallback");
     for (ImageSource* source : sources) source->fall_back(error.what());
-    asked.image().answer(requests);
+    work(asked.image());
   }
 }
 
@@ -245,6 +250,8 @@ void answer(std::span<ImageSource* const> sources, std::span<DepthRequest* const
 void answer_together(std::span<ImageSource* const> sources) {
   if (sources.empty()) return;
   auto& [requests, counts] = sources[0]->asked_together();
+  for (ImageSource* source : sources)
+    if (source->comes_new()) ask(sources, [&](DepthImage& image) { source->prepare(image); });
   bool started = false;
   counts.resize(sources.size());
   for (;;) {
@@ -258,7 +265,10 @@ void answer_together(std::span<ImageSource* const> sources) {
     double seconds = 0.0;
     {
       const ScopedTimer timer(seconds);
-      answer(sources, requests, !started);
+      ask(sources, [&](DepthImage& image) {
+        if (!started) image.start_query();
+        image.answer(requests);
+      });
       started = true;
     }
     for (std::size_t i = 0; i < sources.size(); ++i) {

@@ -41,6 +41,8 @@ class ImageSource : public SampleSource {
   void take();                                               ///< all of these were answered
   void close(SampleCells& samples);                          ///< appends samples
   DepthImage& image();                                       ///< made when it is first asked for
+  bool comes_new() const { return !prepared_; }
+  void prepare(DepthImage& image);  ///< DepthImage::prepare() for its sides.  @pre open
   bool may_fall_back() const { return context_.options.or_cpu; }
   void fall_back(const std::string& why);  ///< to the processor, for good
   /// Its share of the image's last answer, which took so long [s].
@@ -80,7 +82,7 @@ class ImageSource : public SampleSource {
   PassedVertices passed_;
   std::vector<int> met_a_, met_b_;  ///< scratch: faces
   long tunnelled_ = 0;
-  bool kept_ = false, warned_ = false;
+  bool kept_ = false, warned_ = false, prepared_ = false;
   std::unique_ptr<DepthImage> image_;
   std::string fallback_;
   SampleCells cells_;  ///< scratch
