@@ -122,8 +122,17 @@ int inspect(const InspectArguments& arguments);
 
 struct ListArguments {
   std::string what;
+  bool markdown = false;  ///< as a page of docs/: keys.md, names.md
 };
 int list(const ListArguments& arguments);
+
+struct HelpArguments {
+  std::string topic;                  ///< empty: which there are
+  bool markdown = false;              ///< the page as it is written
+  std::vector<std::string> commands;  ///< names that an unknown topic may have meant
+};
+int help(const HelpArguments& arguments);
+bool is_help_topic(const std::string& name);
 
 struct BenchArguments {
   std::string what;  ///< "fem", "contact", "continuity" or "leave-out"

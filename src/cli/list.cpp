@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "key_page.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
 #include "palpate/loop/registries.h"
@@ -39,9 +40,13 @@ loop::ChoiceList scene_choices() {
   return out;
 }
 
+bool has_orders(const loop::ChoiceList& list) {
+  return std::any_of(list.choices.begin(), list.choices.end(),
+                     [](const loop::Choice& c) { return c.order > 0; });
+}
+
 void print(const loop::ChoiceList& list) {
-  const bool orders = std::any_of(list.choices.begin(), list.choices.end(),
-                                  [](const loop::Choice& c) { return c.order > 0; });
+  const bool orders = has_orders(list);
   std::vector<std::vector<std::string>> rows;
   for (const loop::Choice& choice : list.choices) {
     rows.push_back({choice.name, choice.summary});
@@ -63,6 +68,29 @@ std::string in_short(std::vector<std::string> users) {
     users.push_back(rest);
   }
   return fmt::format("{}", fmt::join(users, ", "));
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+/// The lists as a page, docs/names.md.
+void print_names_page(const std::vector<loop::ChoiceList>& lists) {
+  fmt::print(
+      "# Every name that scenes and options know\n\n"
+      "<!-- Made by `palpate list --markdown`; a test compares them. -->\n\n"
+      "`palpate list` prints these tables in a terminal, `palpate list WHAT` one of them.\n");
+  for (const loop::ChoiceList& list : lists) {
+    fmt::print("\n## {}\n\n{}.\n\n", list.what, capitalised(markdown_cell(list.summary)));
+    const bool orders = has_orders(list);
+    fmt::print("| name |{} what it is |\n|---|{}---|\n", orders ? " order |" : "", orders ? "---|" : "");
+    for (const loop::Choice& choice : list.choices) {
+      const std::string order = choice.order > 0 ? std::to_string(choice.order) : "";
+      fmt::print("| `{}` |{} {} |\n", choice.name, orders ? fmt::format(" {} |", order) : "",
+                 markdown_cell(choice.summary));
+    }
+  }
 }
 
 /// The table that a person reads: what may stand in a scene, key by key.
@@ -91,9 +119,15 @@ int list(const ListArguments& arguments) {
   std::vector<loop::ChoiceList> lists = loop::registries();
   lists.push_back(case_choices());
   lists.push_back(scene_choices());
+  if (arguments.markdown && arguments.what.empty()) {
+    print_names_page(lists);
+    return 0;
+  }
+  if (arguments.markdown && arguments.what != kKeys)
+    fail("--markdown goes with \"keys\" or without a list, not with \"{}\"", arguments.what);
   std::vector<std::string> known = {kKeys};
   bool found = arguments.what == kKeys;
-  if (found) print_keys();
+  if (found) arguments.markdown ? print_key_page() : print_keys();
   for (const loop::ChoiceList& one : lists) {
     known.push_back(one.what);
     if (!arguments.what.empty() && arguments.what != one.what) continue;

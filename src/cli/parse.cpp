@@ -29,7 +29,7 @@ constexpr const char* kExamples = R"(Examples:
   palpate validate                               every case with a known answer
   palpate list integrators                       the names that scenes and --integrator know
 
-`palpate COMMAND --help` tells more about each.
+`palpate COMMAND --help` tells more about each, `palpate help` prints the documentation.
 
 Exit status: 0 when all that the command promises was done; 1 on an error; 3 when something of it is
 missing, which the last line names; 130 after Ctrl-C.)";
@@ -473,11 +473,42 @@ void add_list(CLI::App& app, Invocation& invocation) {
       "contact-springs, "
       "contact-laws, generators, devices, parts, cases, scenes; all of these without it; or keys: every key "
       "of a scene with its unit, range, default and meaning");
+  command->add_flag("--markdown", arguments->markdown,
+                    "as a page of the documentation: docs/keys.md with keys, docs/names.md without WHAT");
   command->footer(R"(Examples:
   palpate list
-  palpate list integrators)");
+  palpate list integrators
+  palpate list keys)");
   command->callback(
       [arguments, &invocation] { invocation.action = [arguments] { return list(*arguments); }; });
+}
+
+void add_help(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("help", "the documentation, page by page");
+  auto arguments = std::make_shared<HelpArguments>();
+  command->add_option(
+      "TOPIC", arguments->topic,
+      "a page, or a command, whose options it then prints; without it: which pages there are");
+  command->add_flag("--markdown", arguments->markdown,
+                    "the page as it is written, not filled to the terminal");
+  command->footer(R"(Examples:
+  palpate help
+  palpate help first-touch
+  palpate help keys)");
+  command->callback([arguments, &app, &invocation] {
+    for (const CLI::App* one : app.get_subcommands({})) arguments->commands.push_back(one->get_name());
+    const bool is_command =
+        std::count(arguments->commands.begin(), arguments->commands.end(), arguments->topic);
+    if (is_command && !is_help_topic(arguments->topic)) {
+      const std::string text = app.get_subcommand(arguments->topic)->help(app.get_name());
+      invocation.action = [text] {
+        fmt::print("{}", text);
+        return 0;
+      };
+      return;
+    }
+    invocation.action = [arguments] { return help(*arguments); };
+  });
 }
 
 void add_bench(CLI::App& app, Invocation& invocation) {
@@ -652,6 +683,7 @@ Invocation parse(int argc, char** argv) {
   add_diff(app, invocation);
   add_inspect(app, invocation);
   add_list(app, invocation);
+  add_help(app, invocation);
   add_bench(app, invocation);
   if (argc == 1) {
     fmt::print("{}", app.help());

@@ -5,6 +5,7 @@
 """
 import contextlib
 import csv
+import fcntl
 import json
 import os
 import pty
@@ -18,6 +19,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import time
 import unittest
 import xml.dom.minidom
@@ -29,7 +31,8 @@ except ImportError:  # package python3-h5py
     sys.exit("python3-h5py is missing")
 
 PROGRAM = Path(sys.argv[1]).resolve()
-COMMANDS = ["demo", "run", "compare", "modes", "validate", "inspect", "list", "bench"]
+TREE = Path(__file__).resolve().parents[2]
+COMMANDS = ["demo", "run", "compare", "modes", "validate", "inspect", "list", "help", "bench"]
 LONG = ["run", "one-tet", "--duration-s", "1e6"]  # ends only when it is stopped
 
 
@@ -79,6 +82,45 @@ class Help(Cli):
                     self.assertRegex(known, rf"(^|[ ,]){option}\b", line)
                 seen += 1
         self.assertGreater(seen, 15)
+
+    def test_help_lists_its_topics_and_prints_each(self):
+        pages = {page.stem: page.read_text() for page in (TREE / "docs").glob("*.md") if page.stem != "index"}
+        listed = self.good("help")
+        self.assertGreater(len(pages), 15)
+        for topic, markdown in pages.items():
+            with self.subTest(topic=topic):
+                self.assertRegex(listed, rf"(?m)^{topic} +\w")
+                self.assertEqual(self.good("help", topic, "--markdown"), markdown)
+                text = self.good("help", topic)
+                for heading in re.findall(r"^#+ (\w+)", re.sub(r"```.*?```", "", markdown, flags=re.S), re.M):
+                    self.assertIn(heading, text)
+                self.assertNotRegex(text, r"\]\(\S+\.md|\n(#+ |```)")
+
+    def test_help_is_filled_to_the_terminal(self):
+        for columns in 60, 90:
+            leader, follower = pty.openpty()
+            fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 30, columns, 0, 0))
+            child = subprocess.Popen([PROGRAM, "help", "limits"], stdout=follower, stdin=subprocess.DEVNULL)
+            os.close(follower)
+            text = b""
+            with contextlib.suppress(OSError):  # the end of a pseudo-terminal
+                while part := os.read(leader, 65536):
+                    text += part
+            child.wait()
+            os.close(leader)
+            widest = max(len(line.rstrip("\r")) for line in text.decode().split("\n"))
+            self.assertTrue(columns - 15 < widest <= columns, f"{widest} of {columns}")
+
+    def test_help_of_a_command_is_its_own(self):
+        self.assertEqual(self.good("help", "inspect"), self.good("inspect", "--help"))
+        self.assertIn("matrix", self.good("help", "stability"))  # a page as well: the page
+
+    def test_unknown_topic(self):
+        text = self.refused("help", "kys")
+        self.assertIn('did you mean "keys"?', text)
+        for topic in ("first-touch", "integrators", "limits"):
+            self.assertIn(topic, text)
+        self.assertIn("topics: first-touch", self.refused("help", "xyzzyxyzzy"))
 
     def test_version_names_the_build(self):
         self.assertRegex(self.good("--version"), r"^palpate \d+\.\d+\.\d+ \(commit ")

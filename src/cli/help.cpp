@@ -1,0 +1,63 @@
+// `palpate help`: the pages of docs/, carried in the program.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "commands.h"
+#include "help_pages.h"
+#include "palpate/core/error.h"
+#include "palpate/report/table.h"
+#include "plain_text.h"
+
+namespace palpate::cli {
+namespace {
+
+/// Of the terminal, at most 100: longer lines are hard to read.
+std::size_t text_width() {
+  constexpr std::size_t kMost = 100, kLeast = 40;
+  ::winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kMost;
+  return std::clamp<std::size_t>(size.ws_col, kLeast, kMost);
+}
+
+void print_topics() {
+  std::vector<std::vector<std::string>> rows;
+  for (const HelpPage& page : help_pages())
+    rows.push_back({std::string(page.topic), title_of(std::string(page.markdown))});
+  fmt::print(
+      "{}\n`palpate help TOPIC` prints one of these pages, `palpate COMMAND --help` the options of a "
+      "command.\n",
+      report::format_table({"topic", "what it says"}, rows));
+}
+
+}  // namespace
+
+bool is_help_topic(const std::string& name) {
+  return std::any_of(help_pages().begin(), help_pages().end(),
+                     [&](const HelpPage& page) { return page.topic == name; });
+}
+
+int help(const HelpArguments& arguments) {
+  if (arguments.topic.empty()) {
+    print_topics();
+    return 0;
+  }
+  std::vector<std::string> known;
+  for (const HelpPage& page : help_pages()) {
+    known.emplace_back(page.topic);
+    if (page.topic != arguments.topic) continue;
+    const std::string markdown(page.markdown);
+    fmt::print("{}", arguments.markdown ? markdown : plain_text(markdown, text_width()));
+    return 0;
+  }
+  std::vector<std::string> candidates = known;
+  candidates.insert(candidates.end(), arguments.commands.begin(), arguments.commands.end());
+  const std::string near = nearest_name(arguments.topic, candidates);
+  fail("there is no help topic \"{}\"{}; topics: {}", arguments.topic,
+       near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), fmt::join(known, ", "));
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+
+namespace palpate::cli {
+
+/// Prints docs/keys.md: every key of a scene, table by table, from the loader's own tables.
+void print_key_page();
+
+/// Text as a cell of a Markdown table.
+std::string markdown_cell(const std::string& text);
+
+}  // namespace palpate::cli
