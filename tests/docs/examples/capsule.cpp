@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contact/analytic_source.h"
+#include "contact/obstacles/keys.h"
+#include "palpate/mesh/generators.h"
+
+namespace palpate::contact {
+namespace {
+
+/// All that is nearer than r to the segment from (0, 0, -h) to (0, 0, h) of its own axes.
+class Capsule {
+ public:
+  static constexpr const char* kName = "capsule";
+  static constexpr bool kRound = false;
+  Capsule(const Pose& in_frame, double radius, double length)
+      : in_frame_(in_frame), inverse_(in_frame.inverse()), radius_(radius), half_(0.5 * length) {}
+  void move_to(const Pose& pose) { world_ = pose * in_frame_; }
+  Nearest at(const Vec3& world) const {
+    const Vec3 d = from_axis(world_.inverse() * world);
+    const double distance = d.norm();
+    const Vec3 normal = distance > 0.0 ? Vec3(d / distance) : Vec3(Vec3::UnitX());
+    return {distance - radius_, world_.rotation * normal, radius_};
+  }
+  /// Where the line leaves: the gap along it falls and rises again, so that its last zero is found by
+  /// halving.
+  double height(const Vec3& world, const Vec3& n) const {
+    const Vec3 x = world_.inverse() * world, d = world_.rotation.conjugate() * n;
+    const double far = x.norm() + half_ + radius_;
+    const double deepest = lowest(x, d, -far, far);
+    if (gap(x + deepest * d) > 0.0) return -std::numeric_limits<double>::infinity();
+    double inside = deepest, outside = far;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (inside + outside);
+      (gap(x + middle * d) > 0.0 ? outside : inside) = middle;
+    }
+    return outside;
+  }
+  bool is_crossed(const Vec3& a_frame, const Vec3& b_frame) const {
+    const Vec3 a = inverse_ * a_frame, b = inverse_ * b_frame;
+    return gap(a) > 0.0 && gap(b) > 0.0 && gap(a + lowest(a, b - a, 0.0, 1.0) * (b - a)) < 0.0;
+  }
+  double thickness() const { return 2.0 * radius_; }
+
+ private:
+  Vec3 from_axis(const Vec3& x) const { return x - Vec3(0.0, 0.0, std::clamp(x.z(), -half_, half_)); }
+  double gap(const Vec3& x) const { return from_axis(x).norm() - radius_; }
+  /// The distance from a convex set is convex along a line: thirds close in on its least place.
+  double lowest(const Vec3& x, const Vec3& d, double low, double high) const {
+    for (int i = 0; i < 120; ++i) {
+      const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
+      (gap(x + a * d) < gap(x + b * d) ? high : low) = gap(x + a * d) < gap(x + b * d) ? b : a;
+    }
+    return 0.5 * (low + high);
+  }
+  Pose in_frame_, inverse_;
+  double radius_, half_;
+  Pose world_;
+};
+
+Capsule capsule_of(const Settings& shape) {
+  return {pose_of(shape), radius_of(shape), std::get<double>(shape.at("length_m"))};
+}
+
+ObstaclePicture picture(const Settings& shape, const View&) {
+  TriMesh surface = mesh::sphere(radius_of(shape), 24);
+  const double half = 0.5 * std::get<double>(shape.at("length_m"));
+  for (Eigen::Index v = 0; v < surface.vertices.cols(); ++v)
+    surface.vertices(2, v) += surface.vertices(2, v) > 0.0 ? half : -half;
+  return {placed(std::move(surface), shape), {}};
+}
+
+}  // namespace
+
+const ObstacleEntry& capsule_obstacle() {
+  static const ObstacleEntry entry = {
+      "capsule",
+      "cylinder along its own z with a half ball at either end, centred at position_m",
+      {position_key("the centre"), rotation_key(), length_key("radius_m", "radius of cylinder and balls"),
+       length_key("length_m", "between the centres of the balls")},
+      [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
+         double look_ahead) {
+        return make_analytic_source(std::move(side), frame, std::move(motion), capsule_of(shape), gap,
+                                    look_ahead);
+      },
+      [](const Settings& shape, const Vec3& x) { return nearest_to(capsule_of(shape), x); },
+      picture,
+  };
+  return entry;
+}
+
+}  // namespace palpate::contact
