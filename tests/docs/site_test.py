@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""docs/ is one static site: `mkdocs build --strict`, which fails on a page or link that is not there; and every
-place in a page that a link names is there, too.  Exits with 77 (skipped, aloud) where MkDocs or its theme is
-missing.
+"""docs/ is one static site: `mkdocs build --strict`, which fails on a page or link that is not there; and
+every place in a page that a link names is there, too.  Exits with 77 (skipped, aloud) where MkDocs or its
+theme is missing.
 """
 import re
 import shutil
