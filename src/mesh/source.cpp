@@ -34,10 +34,13 @@ TetFile read_tets(const std::string& path) {
   if (kind == ".node" || kind == ".ele") return read_tetgen(path);
   if (kind == ".obj")
     fail(
-        "{}: an .obj holds a surface, a soft body needs tetrahedra (.msh, .node/.ele); mesh its inside "
-        "first, for example with Gmsh",
-        path);
-  fail("{}: unknown ending \"{}\" for tetrahedra; .msh (Gmsh), .node and .ele (TetGen) are read", path, kind);
+        "{}: an .obj holds a surface, a soft body needs tetrahedra (.msh, .node/.ele); make a model of it: "
+        "palpate model {} -o MODEL.h5",
+        path, path);
+  fail(
+      "{}: unknown ending \"{}\" for tetrahedra; .msh (Gmsh), .node and .ele (TetGen) and models (.h5) are "
+      "read; palpate model makes a model of STL, PLY, OFF, VTK, VTU and Medit files",
+      path, kind);
 }
 
 SurfaceFile read_surface(const std::string& path) {

@@ -259,8 +259,11 @@ TEST(Readers, WrongKindsOfFileAreRefusedWithAWayOut) {
                   "no.msh: no such file; check the path");
   expect_contains(error_of([&] { tet_mesh(file_spec("cow.obj"), folder.path()); }),
                   "an .obj holds a surface");
+  expect_contains(error_of([&] { tet_mesh(file_spec("cow.obj"), folder.path()); }), "palpate model ");
   expect_contains(error_of([&] { tet_mesh(file_spec("cow.stl"), folder.path()); }),
                   "unknown ending \".stl\"");
+  expect_contains(error_of([&] { tet_mesh(file_spec("cow.stl"), folder.path()); }),
+                  "palpate model makes a model of STL");
   expect_contains(error_of([&] { surface(file_spec("ball.msh"), folder.path()); }),
                   "unknown ending \".msh\" for a surface");
   std::filesystem::create_directories(folder.path() + "/folder.msh");
