@@ -66,11 +66,12 @@ class Package(unittest.TestCase):
                     self.assertEqual(status, 0, text)
                     self.assertEqual(text.count(": right"), 9, text)
 
-    def test_program_of_the_readme(self):
-        readme = (SOURCE / "README.md").read_text()
+    def test_program_of_the_documentation(self):
+        """docs/library.md's program runs the scene of README.md."""
+        pages = (SOURCE / "README.md").read_text() + (SOURCE / "docs/library.md").read_text()
         source = self.folder / "mine"
         source.mkdir()
-        fences = re.findall(r"^```(cmake|cpp|toml)\n(.*?)^```$", readme, re.M | re.S)
+        fences = re.findall(r"^```(cmake|cpp|toml)\n(.*?)^```$", pages, re.M | re.S)
         blocks = {language: text for language, text in fences}
         for language, name in {"cmake": "CMakeLists.txt", "cpp": "main.cpp", "toml": "my.toml"}.items():
             (source / name).write_text(blocks[language])
