@@ -2,12 +2,13 @@
 """Every link, anchor and picture of README.md and docs/ leads somewhere, every page is reached, and the
 navigation of the site and `palpate help` have all of them; the checks themselves can fail."""
 import re
+import statistics
 import sys
 import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from pages import DOCS, TREE, anchors, fences, links, pages, prose  # noqa: E402
+from pages import DOCS, TREE, anchors, fences, links, pages, prose, sentences  # noqa: E402
 
 
 def broken(name, text, texts):
@@ -72,6 +73,25 @@ class Lists(unittest.TestCase):
         text = (TREE / "src/cli/CMakeLists.txt").read_text()
         listed = re.search(r"set\(PALPATE_PAGES ([^)]*)\)", text).group(1).split()
         self.assertEqual(sorted(listed), sorted(self.names - {"index"}))
+
+
+class Short(unittest.TestCase):
+    """What a new user reads first stays short."""
+
+    def test_readme_is_short(self):
+        self.assertLess(len((TREE / "README.md").read_text().splitlines()), 160)
+
+    def test_first_pages_have_short_sentences(self):
+        for name in ("README.md", "docs/first-touch.md", "docs/writing-scenes.md"):
+            lengths = [len(sentence) for sentence in sentences((TREE / name).read_text())]
+            self.assertGreater(len(lengths), 25, name)
+            self.assertLessEqual(statistics.median(lengths), 15, name)
+
+    def test_sentences_are_counted(self):
+        text = ("# A heading\n\nOne two three. Four five\nsix seven: eight nine.\n\n"
+                "- `Ten` is [an item](x.md).\n"
+                "\n| a | b c d |\n\n```sh\nnot this one\n```\n")
+        self.assertEqual([len(one) for one in sentences(text)], [3, 6, 4])
 
 
 class Quotes(unittest.TestCase):

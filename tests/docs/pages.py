@@ -58,3 +58,14 @@ def table_rows(text):
             out.append((heading, [cell.strip().replace("\\|", "|") for cell in cells]))
         previous = line
     return out
+
+
+def sentences(text):
+    """The sentences of a page's paragraphs and lists, each as its words; not headings, tables and code."""
+    lines = ["" if line.startswith(("#", "|", "!")) else line for line in prose(text).splitlines()]
+    words = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", "\n".join(lines)).replace("**", "")
+    out = []
+    for block in re.split(r"\n\s*\n|\n(?=[-*] |\d+\. )", words):
+        block = re.sub(r"^([-*]|\d+\.) +", "", " ".join(block.split()))
+        out += [part.split() for part in re.split(r"(?<=[.?!:])\s+(?=[A-Z`\[(*])", block)]
+    return [sentence for sentence in out if len(sentence) >= 3]
