@@ -6,6 +6,7 @@
 
 #include "inline_svg.h"
 #include "palpate/core/error.h"
+#include "palpate/core/markup.h"
 #include "palpate/report/table.h"
 #include "palpate/store/atomic_file.h"
 #include "style.h"
@@ -14,21 +15,6 @@ namespace palpate::report {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// RFC 4648.
-std::string base64(const std::string& bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
-}
 
 /// A cell longer than this may break over lines; shorter ones never do.
 constexpr std::size_t kLongCell = 48;
@@ -62,24 +48,7 @@ std::string facts_table(const Page::Facts& facts, bool short_to_the_right) {
 
 }  // namespace
 
-std::string escape_html(const std::string& text) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default:
-        out += (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f
-                   ? std::string("\xEF\xBF\xBD")
-                   : std::string(1, c);
-    }
-  }
-  return out;
-}
+std::string escape_html(const std::string& text) { return escape_markup(text); }
 
 Page::Page(std::string title) : title_(std::move(title)) {}
 
