@@ -98,7 +98,7 @@ int modes(const ModesArguments& arguments) {
       draw_modes(*world, found, (base / "modes.png").string());
     } catch (const Error& e) { missing.add("picture " + (base / "modes.png").string(), e.what()); }
   }
-  fmt::print("in {}: modes.csv, modes.vtkhdf{}\n", folder,
+  fmt::print("in {}: modes.csv, modes.vtkhdf, modes.xdmf{}\n", folder,
              arguments.picture && missing.empty() ? ", modes.png" : "");
   if (!found.converged)
     fail(

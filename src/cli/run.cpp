@@ -176,6 +176,15 @@ void keep_picture(const loop::World& world, const Snapshot& snapshot, const std:
   } catch (const Error& e) { missing.add("picture " + path, e.what()); }
 }
 
+/// Ends the files of states; the sidecar is made then.
+void close_records(loop::Recorder& recorder, const std::string& folder, Undelivered& missing) {
+  try {
+    recorder.close();
+  } catch (const Error& e) {
+    missing.add("sidecar " + (std::filesystem::path(folder) / "run.xdmf").string(), e.what());
+  }
+}
+
 /// Draws the frames, says where they are, and whether Ctrl-C has ended it.
 bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& arguments,
                  const std::string& folder, bool run_stopped, Undelivered& missing) {
@@ -264,7 +273,8 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   loop::HapticMemory memory;
   if (arguments.against_monolithic) observers.push_back(&memory);
   const loop::RunResult result = run_watched(*world, arguments, observers);
-  recorder.reset();  // closes its files
+  if (recorder) close_records(*recorder, folder, missing);
+  recorder.reset();
   if (trace) {
     trace->close();
     fmt::print("trace: {} attempted steps, {} rejected; an error of 1 is the error test's tolerance\n",

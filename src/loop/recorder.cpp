@@ -159,6 +159,10 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
 
 Recorder::~Recorder() = default;
 
+void Recorder::close() {
+  if (impl_->states) impl_->states->close();
+}
+
 void Recorder::period(World& world, double t) {
   for (std::size_t i = 0; i < impl_->tool_motions.size(); ++i)
     impl_->tool_motions[i] = {world.tool_pose(i), world.tool_twist(i)};

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/store/xdmf.h"
 #include "store/series.h"
 
 // VTKHDF, UnstructuredGrid, temporal, as its reader takes it apart (offsets in rows):
@@ -152,6 +154,8 @@ RunFile::RunFile(const std::string& path, const std::vector<RunPart>& parts, con
     d.reference.middleCols(n, part.reference.cols()) = part.reference;
     n += part.reference.cols();
   }
+  std::error_code ignored;
+  std::filesystem::remove(xdmf_path(path), ignored);  // of an earlier run, it would pass for this one's
   d.file = h5::create_file(path);
   d.root = h5::create_group(d.file, "VTKHDF", path);
   const std::int64_t version[2] = {2, 0}, none = 0;
@@ -210,6 +214,7 @@ void RunFile::close() {
   d.values.clear(), d.zeros.clear(), d.offsets.clear(), d.fields.clear();
   d.n_steps = {}, d.steps_group = {}, d.root = {};
   d.file = {};
+  write_xdmf(d.path);
 }
 
 RunFile::RunFile(RunFile&&) noexcept = default;

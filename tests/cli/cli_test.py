@@ -181,8 +181,9 @@ class Results(Cli):
         text = self.good("run", "one-tet", "-o", "here", "--duration-s", "0.1",
                          "--set", "body.0.youngs_modulus_pa=2e5", "--report")
         self.assertIn("0.1 s simulated", text)
+        self.assertIn("in here: report.html, run.vtkhdf, run.xdmf, scene.toml, summary.json", text)
         names = {path.name for path in (self.folder / "here").iterdir()}
-        self.assertEqual(names, {"run.vtkhdf", "summary.json", "scene.toml", "report.html"})
+        self.assertEqual(names, {"run.vtkhdf", "run.xdmf", "summary.json", "scene.toml", "report.html"})
         summary = json.loads((self.folder / "here/summary.json").read_text())
         self.assertEqual(summary["outcome"], "finished")
         self.assertEqual(summary["command"], "palpate run one-tet --set body.0.youngs_modulus_pa=2e5 "
@@ -710,6 +711,8 @@ class Interrupt(Cli):
                     self.assertGreaterEqual(len(file["VTKHDF/Points"]), 4 * count)
                     times = file["VTKHDF/Steps/Values"][:count]
                     self.assertTrue(all(b > a for a, b in zip(times, times[1:])))
+                shown = xml.dom.minidom.parse(str(path.parent / "run.xdmf")).getElementsByTagName("Time")
+                self.assertEqual([float(one.getAttribute("Value")) for one in shown], list(times))
                 summary = json.loads((path.parent / "summary.json").read_text())
                 self.assertEqual(summary["outcome"], "interrupted")
 

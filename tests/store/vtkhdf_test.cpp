@@ -2,37 +2,15 @@
 // reader.
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <nlohmann/json.hpp>
-
+#include "store/python_check.h"
 #include "store/sample_run.h"
 
 namespace {
 
-struct Output {
-  int status = -1;
-  std::string text;
-};
-
-Output run(const std::string& command) {
-  Output out;
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  for (char block[4096]; const std::size_t n = std::fread(block, 1, sizeof block, pipe);)
-    out.text.append(block, n);
-  out.status = pclose(pipe);
-  return out;
-}
+using python_check::rows_of;
 
 nlohmann::json seen_by_h5py(const std::string& path) {
-  const Output out = run(std::string("'" PALPATE_TEST_PYTHON "' '" PALPATE_TEST_CHECKER "' '") + path + "'");
-  EXPECT_EQ(out.status, 0) << out.text;
-  return out.status == 0 ? nlohmann::json::parse(out.text) : nlohmann::json();
-}
-
-std::vector<std::vector<double>> rows_of(const palpate::Points& points) {
-  std::vector<std::vector<double>> rows;
-  for (const auto& column : points.colwise()) rows.push_back({column[0], column[1], column[2]});
-  return rows;
+  return python_check::seen("'" PALPATE_TEST_CHECKER "'", path);
 }
 
 void expect_sample(const nlohmann::json& file, int steps) {
@@ -52,12 +30,8 @@ void expect_sample(const nlohmann::json& file, int steps) {
   }
 }
 
-class VtkHdf : public testing::Test {
+class VtkHdf : public python_check::Test {
  protected:
-  void SetUp() override {
-    if (run("'" PALPATE_TEST_PYTHON "' -c 'import h5py'").status != 0)
-      GTEST_SKIP() << "python3-h5py is missing: apt-get install python3-h5py (it is in .packages)";
-  }
   sample_run::Folder folder_;
 };
 

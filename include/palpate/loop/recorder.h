@@ -7,15 +7,19 @@
 namespace palpate::loop {
 
 /// Keeps what the scene's [record] table asks for, in one folder: run.vtkhdf (VTKHDF time series of all
-/// bodies, bones and the tool), bones.csv (pose of each bone and wrench of the tissue on it, a line a bone
-/// and recorded instant), force.csv (a line a tick), haptic.h5 (each tick and exchange to the last bit, for
-/// replays), both of a further hand force-NAME.csv and haptic-NAME.h5, energy.csv (a line a period).  Every
-/// period on disk is complete: an interrupted run leaves valid files.  A scene without [record] gets no file.
+/// bodies, bones and the tool) and, once that is closed, run.xdmf (store/xdmf.h), bones.csv (pose of each
+/// bone and wrench of the tissue on it, a line a bone and recorded instant), force.csv (a line a tick),
+/// haptic.h5 (each tick and exchange to the last bit, for replays), both of a further hand force-NAME.csv and
+/// haptic-NAME.h5, energy.csv (a line a period).  Every period on disk is complete: an interrupted run leaves
+/// valid files.  A scene without [record] gets no file.
 class Recorder : public Observer {
  public:
   /// Creates the folder and the files.  @throws Error when they cannot be written
   Recorder(const World& world, const std::string& folder);
   ~Recorder() override;
+  /// Ends the file of states.  The destructor does it too, without a word where the disk refuses.
+  /// @throws Error
+  void close();
   void period(World& world, double t) override;
   void tick_of(std::size_t hand, const TickRecord& tick) override;
   void exchanged_of(std::size_t hand, const ContactRecord& record) override;

@@ -7,7 +7,7 @@
 
 /// A run on disk: one HDF5 file in VTKHDF form, version 2.0, UnstructuredGrid with a temporal Steps group.
 /// ParaView (5.12 or newer) opens it as a time series; h5py reads it.  The topology stands once, the points
-/// and their data once a step.
+/// and their data once a step.  Older ParaViews open the sidecar that is written beside it (xdmf.h).
 namespace palpate::store {
 
 /// One object of a run: a soft body by its tetrahedra, or a tool by its triangles.
@@ -44,7 +44,8 @@ class RunFile {
   void append(double time_s, const Points& points, const Points& velocity, const VecX& stress);
   int steps() const;
   int point_count() const;
-  /// Releases room that was not needed.  Called by the destructor too, which swallows errors.
+  /// Releases room that was not needed, and writes the sidecar for older ParaViews.  Called by the destructor
+  /// too, which swallows errors.
   void close();
 
  private:
