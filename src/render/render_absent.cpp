@@ -43,10 +43,6 @@ Surface dots(const Points&, double) {
   check_available();
   return {};
 }
-ColourScale settled(const ColourScale&, double, double) {
-  check_available();
-  return {};
-}
 Fraction fraction_of(double) {
   check_available();
   return {};
