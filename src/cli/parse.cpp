@@ -24,6 +24,7 @@ constexpr const char* kExamples = R"(Examples:
   palpate run press-ball                         a tool presses a soft ball; results in out/press-ball
   palpate run my.toml --set body.0.youngs_modulus_pa=2e4 -o out/softer
   palpate inspect press-ball                     what a scene uses, what it leaves out, how large it is
+  palpate export out/press-ball --to vtu         a run as files for other programs
   palpate model liver.obj -o liver.h5            a layered model of a closed surface
   palpate compare cantilever                     error against run time, for every integrator
   palpate validate                               every case with a known answer
@@ -154,9 +155,10 @@ void add_run(CLI::App& app, Invocation& invocation) {
   palpate run touch-head --movie touch.webm --size 640x580
   palpate run touch-head --frames --frames-per-s 50 --shade penetration
 
-Writes into the output folder: run.vtkhdf (states as a time series: ParaView, h5py), force.csv (force and
-torque on the hand), summary.json (versions, options, counts, timings).  Ctrl-C ends the run; what was
-recorded by then is whole.
+Writes into the output folder: run.vtkhdf (states as a time series: ParaView 5.12, h5py), run.xdmf (the same
+for older ParaViews: it points into run.vtkhdf), force.csv (force and torque on the hand), summary.json
+(versions, options, counts, timings).  Ctrl-C ends the run; what was recorded by then is whole.  For other
+programs see `palpate export`.
 
 Movies end in .webm, which takes the Debian package ffmpeg, or in .png; for other kinds the run prints how
 ffmpeg makes one of --frames, with its own rate:
@@ -435,6 +437,47 @@ the hand beneath, and computes nothing anew.)");
       [arguments, &invocation] { invocation.action = [arguments] { return movie(*arguments); }; });
 }
 
+void add_export(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("export", "a run that is over, as files for other programs");
+  auto arguments = std::make_shared<ExportArguments>();
+  command->add_option("run", arguments->run, "folder of a run, with run.vtkhdf in it; or such a file")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--to", arguments->to, "vtu, obj, ply, csv or gltf")->required()->type_name("FORMAT");
+  command->add_option("-o,--output", arguments->folder, "folder for the files; default DIR/FORMAT")
+      ->type_name("DIR");
+  command->add_option("--body", arguments->body, "only this body, tool or bone")->type_name("NAME");
+  CLI::Option* at =
+      command->add_option("--at", arguments->at_s, "only the recorded state nearest to this time [s]")
+          ->type_name("SECONDS");
+  CLI::Option* step = command->add_option("--step", arguments->step, "only this recorded state, from 0")
+                          ->type_name("N")
+                          ->excludes(at);
+  command->add_option("--every", arguments->every, "each Nth recorded state, beginning with the first")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000000))
+      ->excludes(at)
+      ->excludes(step);
+  command->add_flag("--no-skin", arguments->no_skin,
+                    "obj, ply, gltf: the surfaces of the tetrahedra instead of skins; the run file suffices");
+  command->footer(R"(Examples:
+  palpate export out/press-ball --to vtu                     run_0000.vtu ..., and run.pvd for ParaView
+  palpate export out/touch-head --to ply --at 0.12           the skin, coloured by displacement
+  palpate export out/press-ball --to obj --body ball --every 10 -o shapes
+  palpate export out/press-ball --to csv                     nodes.csv, and the run's own tables
+  palpate export out/two-heads --to gltf                     run.glb, an animation for browsers
+
+Every recorded state, unless --at, --step or --every says otherwise.  Metres, seconds, pascals.
+  vtu   tetrahedra and tools with displacement, velocity and stress
+  obj   skins, or the surfaces of tetrahedra where there are none, and tools: a file a state
+  ply   the same with displacement, stress and colours, one range of colours for all states
+  csv   a row a node and state
+  gltf  the surfaces as one animated .glb of at most 100 states, thinned evenly where the run has more
+Files get their names when all are whole; after an error or Ctrl-C nothing is left.)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return export_run(*arguments); }; });
+}
+
 void add_diff(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("diff", "what a hand would feel of the difference of two runs");
   auto arguments = std::make_shared<DiffArguments>();
@@ -680,6 +723,7 @@ Invocation parse(int argc, char** argv) {
   add_stability(app, invocation);
   add_replay(app, invocation);
   add_movie(app, invocation);
+  add_export(app, invocation);
   add_diff(app, invocation);
   add_inspect(app, invocation);
   add_list(app, invocation);
