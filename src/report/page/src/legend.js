@@ -1,0 +1,58 @@
+// The key of a plot as buttons: one switches all series of its name.
+import { fullRange } from "./axes.js";
+import { cssColourOf } from "./colours.js";
+
+/// Series by what they are called in the key: a family's ladders share one entry.
+function groupsOf(data) {
+  const groups = new Map();
+  data.series.forEach((one, s) => {
+    const key = one.group || one.name;
+    if (!key) return;
+    if (!groups.has(key)) groups.set(key, []);
+    groups.get(key).push(s);
+  });
+  return groups;
+}
+
+function resetButton(plot, data) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = "reset";
+  button.textContent = "show all";
+  button.title = "drag in the plot to zoom; a double click or 0 shows all again";
+  button.hidden = true;
+  plot.showAll = () => {
+    const x = plot.data[0];
+    plot.setScale("x", { min: x[0], max: x[x.length - 1] });
+  };
+  button.addEventListener("click", plot.showAll);
+  const isAll = (name) => {
+    const [low, high] = fullRange(data, name), { min, max } = plot.scales[name];
+    return min <= low && max >= high;
+  };
+  (plot.hooks.setScale ||= []).push(() => { button.hidden = isAll("x") && isAll("y"); });
+  return button;
+}
+
+export function makeLegend(plot, data) {
+  const legend = document.createElement("div");
+  legend.className = "legend";
+  for (const [name, members] of groupsOf(data)) {
+    const button = document.createElement("button"), swatch = document.createElement("i");
+    button.type = "button";
+    button.setAttribute("aria-pressed", "true");
+    button.title = `switch ${name} on or off`;
+    const first = data.series[members[0]];
+    swatch.style.setProperty("--swatch", cssColourOf(first));
+    if (first.mark === "dashed") swatch.className = "dashed";
+    button.append(swatch, name);
+    button.addEventListener("click", () => {
+      const show = button.getAttribute("aria-pressed") !== "true";
+      button.setAttribute("aria-pressed", String(show));
+      plot.batch(() => members.forEach((s) => plot.setSeries(s + 1, { show })));
+    });
+    legend.append(button);
+  }
+  legend.append(resetButton(plot, data));
+  return legend;
+}

@@ -1,0 +1,5 @@
+import { makeTablesSortable } from "./tables.js";
+import { makePlotsLive } from "./plots.js";
+
+makeTablesSortable();
+makePlotsLive();

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""The committed scripts of the page were made of the sources beside them, are small, hold their licences, and
+name no registry; the checks themselves can fail."""
+import hashlib
+import json
+import re
+import sys
+import unittest
+from pathlib import Path
+
+PAGE = Path(__file__).resolve().parents[2] / "src/report/page"
+MOST_BYTES = 700_000
+PERMISSION = "The above copyright notice and this permission notice shall be included"
+HOLDERS = {"page.js": ["Leon Sorokin"], "view.js": ["three.js authors"]}
+
+
+def hash_of(files):
+    """As build.mjs computes it."""
+    digest = hashlib.sha256()
+    for content in files:
+        digest.update(content)
+    return digest.hexdigest()
+
+
+def sources():
+    names = ["build.mjs", "package-lock.json",
+             *(f"src/{path.name}" for path in sorted((PAGE / "src").iterdir()))]
+    return [(PAGE / name).read_bytes() for name in names]
+
+
+def problems(name, text, expected_hash):
+    found = []
+    if expected_hash not in text[:300]:
+        found.append(f"{name} was not made of the sources beside it: npm ci && npm run build")
+    for holder in HOLDERS[name]:
+        if holder not in text or PERMISSION not in text:
+            found.append(f"{name} lacks the licence of {holder}")
+    if re.search(r"</script|<!--|]]>", text, re.IGNORECASE):
+        found.append(f"{name} would end the element that holds it")
+    if re.search(r"\b(fetch|XMLHttpRequest|WebSocket)\s*\(\s*[\"']https?:", text):
+        found.append(f"{name} asks the network")
+    return found
+
+
+class Bundle(unittest.TestCase):
+    def test_bundles(self):
+        expected = hash_of(sources())
+        for name in HOLDERS:
+            with self.subTest(name):
+                self.assertEqual(problems(name, (PAGE / "dist" / name).read_text("utf-8"), expected), [])
+
+    def test_size(self):
+        sizes = [(PAGE / "dist" / name).stat().st_size for name in HOLDERS]
+        self.assertGreater(min(sizes), 20_000)  # a library is in each
+        self.assertLess(sum(sizes), MOST_BYTES)
+
+    def test_licences(self):
+        text = (PAGE / "dist/LICENSES.txt").read_text("utf-8")
+        self.assertEqual(text.count(PERMISSION), 2)
+        for holders in HOLDERS.values():
+            for holder in holders:
+                self.assertIn(holder, text)
+
+    def test_lock_file_pins_versions_and_names_no_host(self):
+        text = (PAGE / "package-lock.json").read_text("utf-8")
+        self.assertNotIn("://", text)
+        packages = json.loads(text)["packages"]
+        for name in ("three", "uplot", "esbuild"):
+            self.assertTrue(packages[f"node_modules/{name}"]["integrity"].startswith("sha512-"))
+
+    def test_what_is_wrong_is_found(self):
+        good = f"/* {hash_of([b'x'])} */ Leon Sorokin {PERMISSION}"
+        self.assertEqual(problems("page.js", good, hash_of([b"x"])), [])
+        self.assertEqual(len(problems("page.js", good, hash_of([b"y"]))), 1)
+        self.assertEqual(len(problems("page.js", good + "</SCRIPT>", hash_of([b"x"]))), 1)
+        self.assertEqual(len(problems("view.js", good, hash_of([b"x"]))), 1)
+        self.assertEqual(len(problems("page.js", good + " fetch('https://a')", hash_of([b"x"]))), 1)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
