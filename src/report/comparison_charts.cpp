@@ -18,8 +18,10 @@ void add_restarts(Page& page, const Table& restarts) {
     const Table own = rows_where(restarts, "scene", scene);
     add_plot(page, restart_plot(own, "steps", "steps per simulated second"),
              scene + ": steps. A line that climbs pays for its restarts; a level one does not.");
+    page.begin_details("Force evaluations");
     add_plot(page, restart_plot(own, "force_evaluations", "force evaluations per simulated second"),
              scene + ": force evaluations.");
+    page.end_details();
     std::vector<std::vector<std::string>> rows;
     std::vector<RowMark> marks;
     for (std::size_t r = 0; r < own.rows.size(); ++r) {

@@ -38,7 +38,7 @@ std::string times(const CostRatio& ratio) {
 std::string winner_in_words(const Winner& win, const std::string& target) {
   if (std::isnan(win.cost.high))
     return fmt::format(
-        "For {}, {} is the cheapest ({} s), but no run was repeated: a winner is not declared. ", target,
+        "For {}, {} is the cheapest ({} s), but no run was repeated: a winner is not declared.", target,
         win.label, short_number(win.cost.value));
   if (!win.declared()) {
     std::vector<std::string> alike = {win.label};
@@ -47,7 +47,7 @@ std::string winner_in_words(const Winner& win, const std::string& target) {
     const std::size_t more = win.rivals.size() + 1 - alike.size();
     if (more > 0) alike.push_back(fmt::format("{} more", more));
     return fmt::format(
-        "For {} there is no winner: {} cost the same within their spread ({} s for the first). ", target,
+        "For {} there is no winner: {} cost the same within their spread ({} s for the first).", target,
         list_of(alike), short_number(win.cost.value));
   }
   std::string out = fmt::format("For {}, {} is the cheapest ({}{} s)", target, win.label,
@@ -56,13 +56,13 @@ std::string winner_in_words(const Winner& win, const std::string& target) {
     out += fmt::format("; the next, {}, takes {} as long", win.runner_up, times(win.runner_up_ratio));
   if (win.label != kBaseline && win.runner_up != kBaseline && std::isfinite(win.baseline_ratio.value))
     out += fmt::format(", {} {}", kBaseline, times(win.baseline_ratio));
-  return out + ". ";
+  return out + ".";
 }
 
 /// @param scale  what the targets are shares of
-std::string winners_in_words(const Table& compare, const std::string& column, const std::string& what,
-                             double scale, double reference_error) {
-  std::string out;
+std::vector<std::string> winners_in_words(const Table& compare, const std::string& column,
+                                          const std::string& what, double scale, double reference_error) {
+  std::vector<std::string> out;
   std::vector<std::string> unreached, unresolved;
   std::vector<double> targets = kTargets;
   for (double& target : targets) target *= scale;
@@ -74,22 +74,19 @@ std::string winners_in_words(const Table& compare, const std::string& column, co
     else if (!all[i].found)
       unreached.push_back(target);
     else
-      out += winner_in_words(all[i], what + target);
+      out.push_back(winner_in_words(all[i], what + target));
   }
-  if (!unreached.empty()) out += fmt::format("No point reaches {}. ", list_of(unreached));
+  if (!unreached.empty()) out.push_back(fmt::format("No point reaches {}.", list_of(unreached)));
   if (!unresolved.empty() && std::isfinite(reference_error))
-    out += fmt::format("The reference cannot tell {}. ", list_of(unresolved));
+    out.push_back(fmt::format("The reference cannot tell {}.", list_of(unresolved)));
   return out;
 }
 
-std::string force_winners_in_words(const Table& compare, const ReferenceError& reference) {
-  constexpr const char* kForce = "force_error_rms_n";
-  if (!compare.has(kForce) || !(reference.peak_force_n > kLeastPeak) ||
-      !std::isfinite(reference.force_error_rms_n))
-    return "";
-  return fmt::format("The force on the hand, its error over the peak of {} N. ",
-                     short_number(reference.peak_force_n)) +
-         winners_in_words(compare, kForce, "", reference.peak_force_n, reference.force_error_rms_n);
+constexpr const char* kForce = "force_error_rms_n";
+
+bool has_force(const Table& compare, const ReferenceError& reference) {
+  return compare.has(kForce) && reference.peak_force_n > kLeastPeak &&
+         std::isfinite(reference.force_error_rms_n);
 }
 
 std::string baseline_in_words(const std::vector<Ladder>& all) {
@@ -205,18 +202,42 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
 
 }  // namespace
 
-std::string in_words(const Table& compare, const ReferenceError& reference) {
+std::vector<Answer> cheapest_in_words(const Table& compare, const ReferenceError& reference) {
   const double reference_error = reference.position_error_rel_l2;
   const std::vector<Ladder> all = ladders(compare, kError, "cpu_s_median");
-  std::string out;
-  for (std::string paragraph :
-       {winners_in_words(compare, kError, "an error of ", 1.0, reference_error) + baseline_in_words(all) +
-            families_in_words(all, kTargets.back(), reference_error),
-        force_winners_in_words(compare, reference), explicit_in_words(compare) + failures_in_words(all),
-        reference_in_words(all, reference_error)}) {
-    paragraph.erase(paragraph.find_last_not_of(' ') + 1);
-    if (!paragraph.empty()) out += (out.empty() ? "" : "\n") + paragraph;
+  Answer positions{"The positions, their error relative to the deformation.",
+                   winners_in_words(compare, kError, "an error of ", 1.0, reference_error), true};
+  std::string reach = baseline_in_words(all) + families_in_words(all, kTargets.back(), reference_error);
+  reach.erase(reach.find_last_not_of(' ') + 1);
+  if (!reach.empty()) positions.points.push_back(std::move(reach));
+  std::vector<Answer> out;
+  if (!positions.points.empty()) out.push_back(std::move(positions));
+  if (!has_force(compare, reference)) return out;
+  Answer force{fmt::format("The force on the hand, its error over the peak of {} N.",
+                           short_number(reference.peak_force_n)),
+               winners_in_words(compare, kForce, "", reference.peak_force_n, reference.force_error_rms_n),
+               true};
+  if (!force.points.empty()) out.push_back(std::move(force));
+  return out;
+}
+
+std::vector<std::string> remarks_in_words(const Table& compare, const ReferenceError& reference) {
+  const std::vector<Ladder> all = ladders(compare, kError, "cpu_s_median");
+  std::vector<std::string> out;
+  for (std::string remark : {explicit_in_words(compare) + failures_in_words(all),
+                             reference_in_words(all, reference.position_error_rel_l2)}) {
+    remark.erase(remark.find_last_not_of(' ') + 1);
+    if (!remark.empty()) out.push_back(std::move(remark));
   }
+  return out;
+}
+
+std::string in_words(const Table& compare, const ReferenceError& reference) {
+  std::string out;
+  const auto add = [&](const std::string& paragraph) { out += (out.empty() ? "" : "\n") + paragraph; };
+  for (const Answer& answer : cheapest_in_words(compare, reference))
+    add(fmt::format("{} {}", answer.lead, fmt::join(answer.points, " ")));
+  for (const std::string& remark : remarks_in_words(compare, reference)) add(remark);
   return out;
 }
 

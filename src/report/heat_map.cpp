@@ -6,7 +6,9 @@
 namespace palpate::report {
 
 std::string heat_map_html(const std::vector<std::string>& columns, const std::vector<HeatGroup>& groups) {
-  std::string html = "<div class=\"scroll wide\"><table class=\"heat\">\n<thead><tr><th></th>";
+  std::string html =
+      "<div class=\"scroll wide\" tabindex=\"0\" role=\"region\" "
+      "aria-label=\"heat map\"><table class=\"heat\">\n<thead><tr><th></th>";
   for (const std::string& column : columns)
     html += "<th class=\"up\"><span>" + escape_html(column) + "</span></th>";
   html += "</tr></thead>\n";

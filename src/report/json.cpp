@@ -46,11 +46,25 @@ std::string value_text(const Json& value) {
 }
 
 std::string key_text(const std::string& key) {
-  static const std::vector<std::pair<std::string, std::string>> units = {
-      {"_kg_m3", "kg/m³"}, {"_n_s_m", "N s/m"}, {"_n_m", "N m"}, {"_m_s2", "m/s²"},
-      {"_m_s", "m/s"},     {"_pa", "Pa"},       {"_kg", "kg"},   {"_mib", "MiB"},
-      {"_hz", "Hz"},       {"_rad", "rad"},     {"_ms", "ms"},   {"_us", "µs"},
-      {"_s", "s"},         {"_n", "N"},         {"_m", "m"},     {"_j", "J"}};
+  static const std::vector<std::pair<std::string, std::string>> units = {{"_gflop_s", "Gflop/s"},
+                                                                         {"_gb_s", "GB/s"},
+                                                                         {"_kg_m3", "kg/m³"},
+                                                                         {"_n_s_m", "N s/m"},
+                                                                         {"_n_m", "N m"},
+                                                                         {"_m_s2", "m/s²"},
+                                                                         {"_m_s", "m/s"},
+                                                                         {"_pa", "Pa"},
+                                                                         {"_kg", "kg"},
+                                                                         {"_mib", "MiB"},
+                                                                         {"_hz", "Hz"},
+                                                                         {"_rad", "rad"},
+                                                                         {"_ms", "ms"},
+                                                                         {"_us", "µs"},
+                                                                         {"_s", "s"},
+                                                                         {"_n", "N"},
+                                                                         {"_m", "m"},
+                                                                         {"_j", "J"}};
+  if (key == "gflop_s") return "Gflop/s";
   std::string name = key, unit;
   for (const auto& [ending, text] : units) {
     if (!key.ends_with(ending) || key.size() == ending.size()) continue;

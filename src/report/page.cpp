@@ -1,13 +1,10 @@
 #include "palpate/report/page.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
-#include "inline_svg.h"
+#include "embedded_scripts.h"
 #include "palpate/core/error.h"
 #include "palpate/core/markup.h"
-#include "palpate/report/table.h"
 #include "palpate/store/atomic_file.h"
 #include "style.h"
 
@@ -16,35 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A cell longer than this may break over lines; shorter ones never do.
-constexpr std::size_t kLongCell = 48;
-
-const char* class_of(RowMark mark) {
-  switch (mark) {
-    case RowMark::kGood: return " class=\"good\"";
-    case RowMark::kBad: return " class=\"bad\"";
-    case RowMark::kFaint: return " class=\"faint\"";
-    case RowMark::kNone: break;
-  }
-  return "";
-}
-
-std::string figure(const std::string& content, const std::string& caption) {
-  return "<figure>\n" + content +
-         (caption.empty() ? "" : "\n<figcaption>" + escape_html(caption) + "</figcaption>") + "\n</figure>\n";
-}
-
-/// Beside other tables, short values stand to the right, so that numbers line up.
-std::string facts_table(const Page::Facts& facts, bool short_to_the_right) {
-  std::string table = "<table class=\"facts\"><tbody>\n";
-  for (const auto& [name, value] : facts)
-    table += fmt::format("<tr><th>{}</th><td{}>{}</td></tr>\n", escape_html(name),
-                         value.size() > kLongCell ? " class=\"w\""
-                         : short_to_the_right     ? " class=\"n\""
-                                                  : "",
-                         escape_html(value));
-  return table + "</tbody></table>\n";
-}
+std::string list_item(const std::string& text) { return "<li>" + escape_html(text) + "</li>\n"; }
 
 }  // namespace
 
@@ -54,7 +23,7 @@ Page::Page(std::string title) : title_(std::move(title)) {}
 
 Page& Page::add_heading(const std::string& text, int level) {
   PALPATE_CHECK(level >= 2 && level <= 3, "heading level {}", level);
-  body_ += fmt::format("<h{0}>{1}</h{0}>\n", level, escape_html(text));
+  body_ += fmt::format("<h{0}>{1}</h{0}>\n", level + level_, escape_html(text));
   return *this;
 }
 
@@ -63,67 +32,18 @@ Page& Page::add_paragraph(const std::string& text) {
   return *this;
 }
 
-Page& Page::add_table(const std::vector<std::string>& headers,
-                      const std::vector<std::vector<std::string>>& rows, const std::string& caption,
-                      const std::vector<RowMark>& marks) {
-  PALPATE_CHECK(marks.empty() || marks.size() == rows.size(), "{} marks for {} rows", marks.size(),
-                rows.size());
-  for (const auto& row : rows)
-    PALPATE_CHECK(row.size() == headers.size(), "a row of {} cells under {} headers", row.size(),
-                  headers.size());
-  std::vector<const char*> classes;
-  for (std::size_t c = 0; c < headers.size(); ++c)
-    classes.push_back(is_numeric_column(rows, c) ? " class=\"n\"" : "");
-  body_ += "<div class=\"scroll\"><table>\n";
-  if (!caption.empty()) body_ += "<caption>" + escape_html(caption) + "</caption>\n";
-  body_ += "<thead><tr>";
-  for (std::size_t c = 0; c < headers.size(); ++c)
-    body_ += fmt::format("<th{}>{}</th>", classes[c], escape_html(headers[c]));
-  body_ += "</tr></thead>\n<tbody>\n";
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    body_ += fmt::format("<tr{}>", marks.empty() ? "" : class_of(marks[r]));
-    for (std::size_t c = 0; c < headers.size(); ++c)
-      body_ += fmt::format("<td{}>{}</td>", rows[r][c].size() > kLongCell ? " class=\"w\"" : classes[c],
-                           escape_html(rows[r][c]));
-    body_ += "</tr>\n";
+Page& Page::add_answer(const std::vector<Answer>& answers) {
+  if (std::all_of(answers.begin(), answers.end(), [](const Answer& a) { return a.empty(); })) return *this;
+  body_ += "<div class=\"answer\">\n";
+  for (const Answer& answer : answers) {
+    if (!answer.lead.empty()) add_paragraph(answer.lead);
+    if (answer.points.empty()) continue;
+    body_ += "<ul>\n";
+    for (const std::string& point : answer.points) body_ += list_item(point);
+    body_ += "</ul>\n";
   }
-  body_ += "</tbody></table></div>\n";
-  return *this;
-}
-
-Page& Page::add_facts(const Facts& facts) {
-  if (!facts.empty()) body_ += "<div class=\"scroll\">" + facts_table(facts, false) + "</div>\n";
-  return *this;
-}
-
-Page& Page::add_fact_groups(const std::vector<std::pair<std::string, Facts>>& groups) {
-  body_ += "<div class=\"groups\">\n";
-  for (const auto& [name, facts] : groups)
-    body_ += "<section>\n<h3>" + escape_html(name) + "</h3>\n" + facts_table(facts, true) + "</section>\n";
   body_ += "</div>\n";
   return *this;
-}
-
-Page& Page::add_svg(const std::string& svg, const std::string& caption) {
-  body_ += figure(inline_svg(svg, fmt::format("f{}-", ++figures_)), caption);
-  return *this;
-}
-
-Page& Page::add_png(const fs::path& png, const std::string& caption) {
-  std::ifstream in(png, std::ios::binary);
-  if (!in) fail("{}: cannot be opened for reading; check the path and its permissions", png.string());
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n"))
-    fail("{}: is not a PNG file; only PNG pictures can be embedded", png.string());
-  body_ += figure("<img alt=\"" + escape_html(caption.empty() ? png.stem().string() : caption) +
-                      "\" src=\"data:image/png;base64," + base64(bytes) + "\"/>",
-                  caption);
-  return *this;
-}
-
-Page& Page::add_missing_figure(const std::string& caption, const std::string& why) {
-  missing_figures_.push_back({caption, why});
-  return add_paragraph("Figure not drawn (" + caption + "): " + why);
 }
 
 Page& Page::add_fragment(const std::string& html) {
@@ -156,12 +76,42 @@ Page& Page::end_details() {
   return *this;
 }
 
+Page& Page::begin_part(const std::string& id, const std::string& title) {
+  PALPATE_CHECK(level_ == 0, "part \"{}\" inside a part", id);
+  body_ += "<section class=\"part\" id=\"" + escape_html(id) + "\">\n";
+  add_heading(title);
+  level_ = 1;
+  return *this;
+}
+
+Page& Page::end_part() {
+  level_ = 0;
+  body_ += "</section>\n";
+  return *this;
+}
+
+Page& Page::add_contents(const std::vector<Link>& links) {
+  body_ += "<nav aria-label=\"Contents\"><ol>\n";
+  for (const Link& link : links)
+    body_ += fmt::format("<li><a href=\"#{}\">{}</a><span>{}</span></li>\n", escape_html(link.id),
+                         escape_html(link.title), escape_html(link.answer));
+  body_ += "</ol></nav>\n";
+  return *this;
+}
+
 std::string Page::html() const {
   const std::string title = escape_html(title_);
+  std::string scripts;
+  // CDATA: the page is well-formed XML with its scripts in it
+  const auto add = [&](std::string_view script) {
+    scripts += fmt::format("<script>/*<![CDATA[*/\n{}/*]]>*/</script>\n", script);
+  };
+  if (interacts_) add(page_script());
+  if (turns_) add(view_script());
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>" +
-         title + "</title>\n<style>" + kStyleSheet + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n" +
-         body_ + "</body>\n</html>\n";
+         title + "</title>\n<style>" + kStyleSheet + "</style>\n</head>\n<body>\n<main>\n<h1>" + title +
+         "</h1>\n" + body_ + "</main>\n" + scripts + "</body>\n</html>\n";
 }
 
 void write(const Page& page, const fs::path& path) { store::write_atomically(path.string(), page.html()); }

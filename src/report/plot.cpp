@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "axis.h"
+#include "drawable.h"
 #include "gnuplot.h"
 #include "palpate/core/error.h"
 #include "style.h"
-#include "thin.h"
 
 namespace palpate::report {
 namespace {
@@ -32,36 +32,6 @@ std::string data_cell(const std::string& text) {
   return out + "\"";
 }
 
-bool drawable(const Plot& plot, double x, double y) {
-  return std::isfinite(x) && std::isfinite(y) && (!plot.log_x || x > 0.0) && (!plot.log_y || y > 0.0);
-}
-
-/// A series as it is drawn: only drawable points, thinned.
-Series clean(const Plot& plot, const Series& series) {
-  PALPATE_CHECK(series.x.size() == series.y.size(), "series \"{}\": {} x, {} y", series.name, series.x.size(),
-                series.y.size());
-  PALPATE_CHECK(series.labels.empty() || series.labels.size() == series.x.size(), "series \"{}\": {} labels",
-                series.name, series.labels.size());
-  PALPATE_CHECK(series.hollow.empty() || series.hollow.size() == series.x.size(), "series \"{}\": {} rings",
-                series.name, series.hollow.size());
-  Series out = series;
-  out.x.clear(), out.y.clear(), out.labels.clear(), out.hollow.clear();
-  for (std::size_t i = 0; i < series.x.size(); ++i) {
-    if (!drawable(plot, series.x[i], series.y[i])) continue;
-    out.x.push_back(series.x[i]);
-    out.y.push_back(series.y[i]);
-    if (!series.labels.empty()) out.labels.push_back(series.labels[i]);
-    if (!series.hollow.empty()) out.hollow.push_back(series.hollow[i]);
-  }
-  if (out.labels.empty() && out.hollow.empty()) thin(out.x, out.y, static_cast<std::size_t>(plot.width));
-  return out;
-}
-
-std::string colour_of(const Series& series, std::size_t& next) {
-  if (series.colour == "ink") return "black";
-  return series.colour.empty() ? std::string(kPalette[next++ % kPalette.size()]) : series.colour;
-}
-
 /// The data block $dI: x, y, label, ring (0 or 1).
 std::string data_block(std::size_t index, const Series& series) {
   std::string block = fmt::format("$d{} << EOD\n", index);
@@ -73,7 +43,8 @@ std::string data_block(std::size_t index, const Series& series) {
 }
 
 /// The clauses of `plot` for one series: the line, rings over its points, labels.
-std::string plot_items(std::size_t index, const Series& series, const std::string& colour) {
+std::string plot_items(std::size_t index, const Series& series) {
+  const std::string colour = series.colour == "ink" ? "black" : series.colour;
   const std::string data = fmt::format("$d{}", index);
   const std::string title =
       series.name.empty() ? "notitle" : fmt::format("title {} noenhanced", quoted(series.name));
@@ -162,19 +133,12 @@ std::string frame(const Plot& plot, const Axis& x, const Axis& y) {
 }  // namespace
 
 std::string plot_svg(const Plot& plot) {
-  std::vector<Series> series;
-  for (const Series& s : plot.series)
-    if (Series c = clean(plot, s); !c.x.empty()) series.push_back(std::move(c));
-  if (series.empty())
-    fail("plot \"{}\": there is nothing to draw: no point is finite{}",
-         plot.title.empty() ? plot.y_label : plot.title,
-         plot.log_x || plot.log_y ? " and positive, as a logarithmic axis needs" : "");
+  const std::vector<Series> series = drawable_series(plot, static_cast<std::size_t>(plot.width));
   std::string script = frame(plot, x_axis(plot, series), y_axis(plot, series));
   std::string items;
-  std::size_t next_colour = 0;
   for (std::size_t i = 0; i < series.size(); ++i) {
     script += data_block(i, series[i]);
-    items += (i > 0 ? ", \\\n  " : "") + plot_items(i, series[i], colour_of(series[i], next_colour));
+    items += (i > 0 ? ", \\\n  " : "") + plot_items(i, series[i]);
   }
   return run_gnuplot(script + "plot " + items + "\n");
 }

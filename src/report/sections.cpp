@@ -6,6 +6,8 @@
 
 #include "palpate/core/error.h"
 #include "palpate/report/force_plot.h"
+#include "palpate/store/atomic_file.h"
+#include "plot_json.h"
 
 namespace palpate::report {
 namespace {
@@ -50,7 +52,7 @@ std::string limit_text(double limit, const char* unit) {
 
 void add_plot(Page& page, const Plot& plot, const std::string& caption) {
   try {
-    page.add_svg(plot_svg(plot), caption);
+    page.add_chart(plot_svg(plot), plot_json(plot), caption);
   } catch (const Error& e) { page.add_missing_figure(caption, e.what()); }
 }
 
@@ -68,26 +70,34 @@ void add_head(Page& page, const Json& summary) {
                                     {&timings, "simulated_s"},
                                     {&timings, "loop_cpu_s"}})
     if (object->contains(key)) facts.emplace_back(key_text(key), value_text((*object)[key]));
+  if (facts.empty()) return;
+  page.add_heading("What was run");
   page.add_facts(facts);
 }
 
 void add_figures(Page& page, const Json& summary) {
   if (!summary.is_object() || !summary.contains("figures")) return;
-  page.add_heading("Figures of the run");
+  page.begin_details("All that was counted and timed");
   add_object(page, summary["figures"], kElsewhere);
+  page.end_details();
 }
 
 void add_pictures(Page& page, const Json& summary, const fs::path& dir) {
-  std::vector<fs::path> pngs;
+  std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(dir))
-    if (entry.path().extension() == ".png") pngs.push_back(entry.path());
-  std::sort(pngs.begin(), pngs.end());
+    if (entry.path().extension() == ".png" || entry.path().extension() == ".svg")
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
   const Json captions = figures_of(summary, "pictures");
-  for (const fs::path& png : pngs) {
+  for (const fs::path& file : files) {
     // "picture" alone says nothing; the picture has its own title
-    const std::string stem = png.stem().string();
-    page.add_png(png,
-                 text_at(captions, png.filename().c_str(), stem == "picture" ? "" : sentence_case(stem)));
+    const std::string stem = file.stem().string();
+    const std::string caption =
+        text_at(captions, file.filename().c_str(), stem == "picture" ? "" : sentence_case(stem));
+    if (file.extension() == ".png")
+      page.add_png(file, caption);
+    else
+      page.add_svg(store::read_file(file.string()), caption);
   }
 }
 
@@ -122,8 +132,10 @@ void add_parts(Page& page, const Json& summary) {
     rows.push_back({part, "left out", value_text(why)});
     marks.push_back(RowMark::kFaint);
   }
-  if (!rows.empty())
-    page.add_heading("Parts in use, parts left out").add_table({"part", "", "why"}, rows, "", marks);
+  if (rows.empty()) return;
+  page.begin_details(fmt::format("{} parts in use or left out, and why", rows.size()));
+  page.add_table({"part", "", "why"}, rows, "", marks);
+  page.end_details();
 }
 
 void add_provenance(Page& page, const Json& summary) {

@@ -33,6 +33,11 @@ void add_methods(Page& page, const Table& methods);
 void add_haptic(Page& page, const Table& haptic, const Json& summary);
 void add_validation(Page& page, const Json& validation);
 void add_stability(Page& page, const Json& stability);
+/// @param file  its name
+void add_bench(Page& page, const std::string& file, const Json& bench);
+/// The view of the run's bodies over time; nothing where it recorded no step.
+/// @param shown_at_s  when it is shown first; NaN: when the displacement is largest
+void add_motion(Page& page, const std::filesystem::path& vtkhdf, double shown_at_s);
 void add_parts(Page& page, const Json& summary);
 void add_provenance(Page& page, const Json& summary);
 

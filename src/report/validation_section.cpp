@@ -77,7 +77,10 @@ void add_convergence(Page& page, const Json& cases) {
     if (!one.is_object() || !one.contains("measurements")) continue;
     const std::vector<Ladder> ladders = ladders_of(one);
     if (ladders.empty()) continue;
-    if (!any) page.add_heading("Convergence");
+    if (!any) {
+      page.add_heading("Convergence");
+      page.begin_details("Error against size and run time, case by case");
+    }
     any = true;
     std::vector<std::string> labels;
     for (const Ladder& ladder : ladders)
@@ -89,6 +92,7 @@ void add_convergence(Page& page, const Json& cases) {
     if (const Plot cost = cost_plot(ladders); !cost.series.empty())
       add_plot(page, cost, text_at(one, "name") + ": error against run time.");
   }
+  if (any) page.end_details();
 }
 
 }  // namespace
@@ -117,10 +121,7 @@ void add_validation(Page& page, const Json& validation) {
       marks.push_back(passed ? RowMark::kGood : RowMark::kBad);
     }
   }
-  const auto failed = std::count(marks.begin(), marks.end(), RowMark::kBad);
   page.add_heading("Validation against exact answers");
-  page.add_paragraph(failed == 0 ? fmt::format("All {} measurements pass.", rows.size())
-                                 : fmt::format("{} of {} measurements FAIL.", failed, rows.size()));
   page.add_table({"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"}, rows,
                  "Errors are relative unless the quantity says otherwise.", marks);
   add_convergence(page, cases);

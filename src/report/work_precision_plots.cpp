@@ -34,11 +34,13 @@ std::map<std::string, std::string> family_colours(const std::vector<Ladder>& all
 
 Series line_of(const Ladder& ladder, bool labelled) {
   Series series{.name = ladder.label, .x = {}, .y = {}, .mark = Mark::kLinePoints};
+  series.reading = ladder.label;
   for (const LadderPoint& p : ladder.points) {
     if (!(p.error <= kLargestDrawn)) continue;
     series.x.push_back(p.cost);
     series.y.push_back(p.error);
-    if (labelled) series.labels.push_back(setting_text(ladder.setting_name, p.setting));
+    series.notes.push_back(setting_text(ladder.setting_name, p.setting));
+    if (labelled) series.labels.push_back(series.notes.back());
     series.hollow.push_back(p.unresolved);
   }
   return series;
@@ -101,6 +103,7 @@ Plot work_precision_plot(const Table& compare, const std::string& error_column,
     Series series = line_of(ladder, false);
     const bool drawn = std::any_of(series.x.begin(), series.x.end(), [](double x) { return x > 0.0; });
     series.name = !drawn || named[ladder.family] ? "" : ladder.family;
+    series.group = ladder.family;
     named[ladder.family] |= drawn;
     series.colour = colours.at(ladder.family);
     series.width = 1.0;
@@ -135,6 +138,8 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
       if (panel_of(ladder) == panel) continue;
       Series series = line_of(ladder, false);
       series.name = "";
+      series.reading.clear();
+      series.notes.clear();
       series.mark = Mark::kLine;
       series.hollow.clear();
       series.colour = kFaintColour;

@@ -39,7 +39,7 @@ ALLOWED = {
     "compare": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
     "stability": BELOW_LOOP + ["loop"],  # builds its cases from the parts themselves, as validation does
     "bench": BELOW_LOOP + ["loop"],  # bench/fem: a beam made of the parts themselves, without a scene
-    "report": ["core", "store"],
+    "report": ["core", "mesh", "store"],
     "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "stability", "bench", "report",
             "validation"],
     "validation": BELOW_LOOP + ["loop", "compare", "report", "simbody"],  # the cases in validation/

@@ -13,6 +13,11 @@ inline std::string well_formed_problem(const std::string& html) {
       if (end == std::string::npos || end - at > 8) return "a bare & at " + html.substr(at, 40);
     }
     if (html[at] != '<') continue;
+    if (html.compare(at, 9, "<![CDATA[") == 0) {
+      at = html.find("]]>", at);
+      if (at == std::string::npos) return "a CDATA section is never closed";
+      continue;
+    }
     if (html.compare(at, 2, "<!") == 0) {
       at = html.find('>', at);
       continue;

@@ -21,6 +21,11 @@ struct Series {
   /// "#rrggbb", or "ink" for the text's colour; empty: the next of the palette
   std::string colour = {};
   double width = 0.0;  ///< of the line; 0: the mark's own
+
+  // what the page's script shows, where there is one
+  std::string group = {};               ///< the key's entry that switches it; empty: `name`
+  std::string reading = {};             ///< its name beside a value that is read; empty: `name`
+  std::vector<std::string> notes = {};  ///< of each point, read with its value; empty: none
 };
 
 /// A horizontal line with its name: a force limit, a bar.

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/report/answer.h"
 #include "palpate/report/plot.h"
 #include "palpate/report/table.h"
 
@@ -101,6 +102,14 @@ struct Winner {
 std::vector<Winner> winners(const Table& compare, const std::string& error_column,
                             const std::string& cost_column, const std::vector<double>& targets,
                             double reference_error);
+
+/// Which ladder is cheapest at each wanted error, with its margin: of positions, and where there is one of
+/// the force on the hand.
+std::vector<Answer> cheapest_in_words(const Table& compare, const ReferenceError& reference);
+
+/// How far those answers go: which methods failed and why, which explicit ones are at their stability limit,
+/// and whether the reference is good enough.  One paragraph each.
+std::vector<std::string> remarks_in_words(const Table& compare, const ReferenceError& reference);
 
 /// The numbers as sentences: which ladder wins where, for positions and for the force on the hand, which
 /// failed and why, which explicit methods are at their stability limit, and whether the reference is good

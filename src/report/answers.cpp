@@ -1,0 +1,150 @@
+#include "answers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/core/error.h"
+
+namespace palpate::report {
+namespace {
+
+Json group_of(const Json& summary, const char* name) {
+  if (!summary.is_object() || !summary.contains("figures") || !summary["figures"].is_object() ||
+      !summary["figures"].contains(name))
+    return Json::object();
+  return summary["figures"][name];
+}
+
+constexpr double kNothing = 1e-12;  ///< a peak below it is rounding [N], [N m]
+
+/// The largest magnitude of a vector in force.csv, and when.
+struct Peak {
+  double value = 0.0, time_s = 0.0;
+};
+Peak peak_of(const Table& force, const std::string& prefix, const std::string& unit) {
+  Peak peak;
+  const auto column = [&](const char* axis) { return fmt::format("{}_{}_{}", prefix, axis, unit); };
+  for (const char* axis : {"x", "y", "z"})
+    if (!force.has(column(axis))) return peak;
+  const std::vector<double> time = force.numbers("time_s"), x = force.numbers(column("x")),
+                            y = force.numbers(column("y")), z = force.numbers(column("z"));
+  for (std::size_t i = 0; i < time.size(); ++i)
+    if (const double value = std::hypot(x[i], y[i], z[i]); value > peak.value) peak = {value, time[i]};
+  return peak;
+}
+
+std::string of_limit(double limit, const char* unit) {
+  return limit > 0.0 ? fmt::format(", of the {:g} {} that the device can do", limit, unit) : "";
+}
+
+/// The one ladder that is the cheapest at every target that some ladder reaches; empty where there is none.
+std::string always_cheapest(const Table& compare, const std::string& column, double scale, double own_error) {
+  std::vector<double> targets = kTargets;
+  for (double& target : targets) target *= scale;
+  std::string label;
+  for (const Winner& win : winners(compare, column, "cpu_s_median", targets, own_error)) {
+    if (!win.found) continue;
+    if (!win.declared() || !std::isfinite(win.cost.high) || (!label.empty() && label != win.label)) return "";
+    label = win.label;
+  }
+  return label;
+}
+
+/// What is asked, or in one sentence its answer where there is one for all errors.
+Answer headline(const Table& compare, const ReferenceError& reference) {
+  const std::string positions =
+      always_cheapest(compare, "position_error_rel_l2", 1.0, reference.position_error_rel_l2);
+  const bool felt = compare.has("force_error_rms_n") && std::isfinite(reference.force_error_rms_n) &&
+                    reference.peak_force_n > kNothing;
+  const std::string force = felt ? always_cheapest(compare, "force_error_rms_n", reference.peak_force_n,
+                                                   reference.force_error_rms_n)
+                                 : positions;
+  if (positions.empty() || force != positions)
+    return {"Which integrator is the cheapest for a wanted error?", {}, true};
+  return {fmt::format("{} is the cheapest at every wanted error that can be judged{}.", positions,
+                      felt ? ", of positions and of the force on the hand" : "")};
+}
+
+}  // namespace
+
+Answer run_answer(const Json& summary, const std::optional<Table>& force) {
+  Answer out;
+  const Json options = group_of(summary, "options"), sizes = group_of(summary, "sizes"),
+             timings = group_of(summary, "timings"), counts = group_of(summary, "counts");
+  const double simulated = number_at(timings, "simulated_s"), cpu = number_at(timings, "loop_cpu_s"),
+               steps = number_at(counts, "steps"), nodes = number_at(sizes, "nodes");
+  const std::string outcome = text_at(summary, "outcome"), by = text_at(options, "integrator");
+  if (!outcome.empty())
+    out.lead = fmt::format("The run {}", outcome == "finished" ? outcome : "was " + outcome);
+  if (outcome == "failed") out.lead = "The run failed";
+  if (!out.lead.empty() && std::isfinite(simulated) && std::isfinite(cpu))
+    out.lead += fmt::format(": {} s simulated in {} s of CPU time{}{}", short_number(simulated),
+                            short_number(cpu), by.empty() ? "" : " by " + by,
+                            std::isfinite(steps) ? fmt::format(" in {:.0f} steps", steps) : "");
+  if (!out.lead.empty() && nodes > 0.0) out.lead += fmt::format(", with {:.0f} nodes", nodes);
+  if (!out.lead.empty()) out.lead += ".";
+  if (const std::string message = text_at(summary, "message"); !message.empty())
+    out.points.push_back(message);
+  if (!force || force->rows.empty()) return out;
+  if (const Peak f = peak_of(*force, "force", "n"); f.value > kNothing)
+    out.points.push_back(fmt::format("The hand feels at most {} N, at {} s{}.", short_number(f.value),
+                                     short_number(f.time_s),
+                                     of_limit(number_at(options, "max_force_n"), "N")));
+  else
+    out.points.push_back("The hand feels no force.");
+  if (const Peak t = peak_of(*force, "torque", "n_m"); t.value > kNothing)
+    out.points.push_back(fmt::format("The torque on it is at most {} N m, at {} s{}.", short_number(t.value),
+                                     short_number(t.time_s),
+                                     of_limit(number_at(options, "max_torque_n_m"), "N m")));
+  return out;
+}
+
+double time_of_peak_force(const Table& force) {
+  const Peak peak = peak_of(force, "force", "n");
+  return peak.value > kNothing ? peak.time_s : kUnknown;
+}
+
+std::vector<Answer> comparison_answers(const Table& compare,
+                                       const std::map<std::string, ReferenceError>& references) {
+  std::vector<Answer> out;
+  const std::vector<std::string> scenes = distinct(compare, "scene");
+  for (const std::string& scene : scenes) {
+    const auto found = references.find(scene);
+    const ReferenceError reference = found == references.end() ? ReferenceError{} : found->second;
+    const Table own = rows_where(compare, "scene", scene);
+    out.push_back(headline(own, reference));
+    if (scenes.size() > 1) out.back().lead = scene + ": " + out.back().lead;
+    for (Answer& answer : cheapest_in_words(own, reference)) out.push_back(std::move(answer));
+  }
+  return out;
+}
+
+Answer haptic_answer(const Table& haptic, const Json& summary) {
+  Answer out;
+  const Json own = group_of(summary, "the scene's own settings");
+  const double force = number_at(own, "force_error_rms_of_peak"),
+               torque = number_at(own, "torque_error_rms_of_peak");
+  if (!std::isfinite(force)) return out;
+  out.lead = fmt::format(
+      "At the scene's own settings the force on the hand is {} % of its peak away from that of tool and "
+      "bodies as one system (root mean square){}.",
+      short_number(100.0 * force),
+      std::isfinite(torque) && torque > 0.0 ? fmt::format(", the torque {} %", short_number(100.0 * torque))
+                                            : "");
+  const std::vector<double> errors = haptic.numbers("force_error_rms_of_peak"),
+                            costs = haptic.numbers("cpu_s_median");
+  std::size_t best = errors.size();
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (haptic.rows[i][haptic.column("variable")] != "exchange alone" && std::isfinite(errors[i]) &&
+        (best == errors.size() || errors[i] < errors[best]))
+      best = i;
+  if (best < errors.size() && errors[best] < force)
+    out.points.push_back(
+        fmt::format("Of the changes that were tried, {} of {} helps most: {} %, in {} s of CPU "
+                    "time.",
+                    haptic.rows[best][haptic.column("variable")], haptic.rows[best][haptic.column("value")],
+                    short_number(100.0 * errors[best]), short_number(costs[best])));
+  return out;
+}
+
+}  // namespace palpate::report

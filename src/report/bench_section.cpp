@@ -1,0 +1,95 @@
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "palpate/core/error.h"
+#include "sections.h"
+
+/// What `palpate bench -o` writes: JSON whose lists of objects become tables, whatever their columns.
+namespace palpate::report {
+namespace {
+
+/// What the lists of the benchmarks hold.
+std::string name_of(const std::string& key) {
+  static const std::map<std::string, std::string> names = {{"rows", "Steps, by stages"},
+                                                           {"elements", "Loops over elements"},
+                                                           {"limits", "Limits of the machine"},
+                                                           {"points", "Error against run time"},
+                                                           {"prices", "What contact costs beside a step"},
+                                                           {"bars", "Bars"}};
+  const auto known = names.find(key);
+  return known == names.end() ? key_text(key) : known->second;
+}
+
+/// An object's cells in the order of its keys; an object inside it as "outer, inner".
+void flatten(const Json& object, const std::string& prefix,
+             std::vector<std::pair<std::string, std::string>>& out) {
+  for (const auto& [key, value] : object.items()) {
+    const std::string name = prefix + key_text(key);
+    if (value.is_object())
+      flatten(value, name + ", ", out);
+    else if (!value.is_array() || value.empty() || !value[0].is_object())
+      out.emplace_back(name, value_text(value));
+  }
+}
+
+bool is_list_of_objects(const Json& value) {
+  return value.is_array() && !value.empty() && value[0].is_object();
+}
+
+void add_list(Page& page, const std::string& name, const Json& list) {
+  std::vector<std::string> headers;
+  std::vector<std::map<std::string, std::string>> lines;
+  std::set<std::string> known;
+  for (const Json& one : list) {
+    std::vector<std::pair<std::string, std::string>> cells;
+    flatten(one, "", cells);
+    for (const auto& [header, cell] : cells)
+      if (known.insert(header).second) headers.push_back(header);
+    lines.emplace_back(cells.begin(), cells.end());
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& line : lines) {
+    rows.emplace_back();
+    for (const std::string& header : headers) {
+      const auto cell = line.find(header);
+      rows.back().push_back(cell == line.end() || cell->second.empty() ? "-" : cell->second);
+    }
+  }
+  page.add_heading(name, 3);
+  page.add_table(headers, rows);
+}
+
+/// The lists inside an object, each under the names of what holds it.
+void add_lists(Page& page, const std::string& path, const Json& value) {
+  if (value.is_object())
+    for (const auto& [key, inner] : value.items())
+      add_lists(page, path.empty() ? key_text(key) : path + ": " + key_text(key), inner);
+  if (!is_list_of_objects(value)) return;
+  const auto own = [&](const Json& one) {
+    const std::string scene = text_at(one, "scene", text_at(one, "with"));
+    return scene.empty() ? path : path + ", " + scene;
+  };
+  std::vector<std::pair<std::string, std::string>> cells;
+  for (const Json& one : value)
+    if (one.is_object()) flatten(one, "", cells);
+  if (cells.size() > value.size()) add_list(page, path, value);  // more than a name each
+  for (const Json& one : value)
+    if (one.is_object())
+      for (const auto& [key, inner] : one.items())
+        if (is_list_of_objects(inner)) add_lists(page, own(one) + ": " + key_text(key), inner);
+}
+
+}  // namespace
+
+void add_bench(Page& page, const std::string& file, const Json& bench) {
+  page.add_heading("Benchmark: " + file);
+  page.add_facts(facts_of(bench));
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : bench.items()) keys.push_back(key);
+  // what bears the figures stands after them
+  std::stable_partition(keys.begin(), keys.end(), [](const std::string& key) { return key != "limits"; });
+  for (const std::string& key : keys) add_lists(page, name_of(key), bench[key]);
+}
+
+}  // namespace palpate::report

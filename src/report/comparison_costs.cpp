@@ -1,0 +1,95 @@
+#include <cmath>
+
+#include "comparison_tables.h"
+#include "palpate/core/error.h"
+
+namespace palpate::report {
+namespace {
+
+std::string order_text(const FittedOrder& fitted) {
+  if (!std::isfinite(fitted.order)) return "-";
+  return fmt::format("{:.2f} ({} points)", fitted.order, fitted.points);
+}
+
+}  // namespace
+
+void add_orders_table(Page& page, const Table& compare, const std::vector<Quantity>& quantities) {
+  std::vector<std::string> headers = {"integrator", "against"};
+  std::vector<std::vector<std::string>> rows;
+  for (const Quantity& q : quantities) {
+    headers.push_back(q.label);
+    const std::vector<FittedOrder> orders = fitted_orders(compare, q.column);
+    if (rows.empty())
+      for (const FittedOrder& f : orders)
+        rows.push_back({f.label, f.setting_name == "step_s"   ? "step"
+                                 : f.setting_name == "tick_s" ? "tick"
+                                                              : f.setting_name});
+    for (std::size_t i = 0; i < orders.size(); ++i) rows[i].push_back(order_text(orders[i]));
+  }
+  page.add_heading("Fitted order", 3);
+  page.add_table(headers, rows,
+                 "Least-squares slope of log error against log step (or tolerance: 1 means that the error "
+                 "follows the tolerance). Points within 10 times of the reference's own error are left out.");
+}
+
+void add_winners_table(Page& page, const Table& compare, const Quantity& q, double scale,
+                       const std::string& cost_column, const std::string& cost_label, bool explained) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<double> targets = kTargets;
+  for (double& target : targets) target *= scale;
+  const std::vector<Winner> all = winners(compare, q.column, cost_column, targets, q.reference);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Winner& win = all[i];
+    const std::string target = fmt::format("{:g}", kTargets[i]);
+    if (!win.found) {
+      rows.push_back(
+          {target, win.resolved ? "none reaches it" : "the reference cannot tell", "-", "-", "-", "-", "-"});
+      continue;
+    }
+    const std::string winner =
+        win.declared() ? win.label : fmt::format("no winner: {}, {}", win.label, fmt::join(win.rivals, ", "));
+    rows.push_back({target, winner, cost_text(win.cost), spread_text(win.cost),
+                    win.runner_up.empty() ? "-" : win.runner_up, ratio_text(win.runner_up_ratio),
+                    ratio_text(win.baseline_ratio)});
+  }
+  page.add_table(
+      {scale == 1.0 ? "position error" : "force error / peak", "cheapest", cost_label, "from, to",
+       "runner-up", "runner-up / cheapest", kBaseline + " / cheapest"},
+      rows,
+      !explained
+          ? ""
+          : "Log cost against log error on each ladder's monotone envelopes, never extrapolated nor across "
+            "rungs "
+            "that failed. “From, to”: by the spread of repeats, and of rungs that lie out of line. No "
+            "winner: the "
+            "spreads overlap. “<=”: the coarsest usable rung is better than asked for, and costs this much.");
+}
+
+void add_costs_table(Page& page, const Table& compare, double reference_error) {
+  const std::vector<Ladder> all = ladders(compare, kPosition, "cpu_s_median");
+  const std::vector<FittedOrder> orders = fitted_orders(compare, kPosition);
+  std::vector<double> best(kTargets.size(), kUnknown);
+  for (const Ladder& ladder : all)
+    for (std::size_t t = 0; t < kTargets.size(); ++t)
+      if (const double value = cost_at(ladder, kTargets[t], reference_error).value; !(value >= best[t]))
+        best[t] = value;
+  std::vector<std::string> headers = {"integrator", "family", "order in theory", "fitted", "against"};
+  for (const double target : kTargets)
+    headers.push_back(fmt::format("CPU [s] at {:g}", target)), headers.push_back("of the best");
+  std::vector<std::vector<std::string>> rows;
+  std::vector<RowMark> marks;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    rows.push_back({all[i].label, all[i].family, all[i].order > 0 ? std::to_string(all[i].order) : "-",
+                    order_text(orders[i]), orders[i].setting_name == "rtol" ? "rtol" : "step"});
+    for (std::size_t t = 0; t < kTargets.size(); ++t) {
+      const Cost cost = cost_at(all[i], kTargets[t], reference_error);
+      rows.back().push_back(cost_text(cost));
+      rows.back().push_back(std::isnan(cost.value) ? "-" : fmt::format("{:.2f}", cost.value / best[t]));
+    }
+    marks.push_back(all[i].points.empty() ? RowMark::kBad : RowMark::kNone);
+  }
+  page.add_table(headers, rows, "“Of the best”: times the cheapest cost at that error. Red: no usable point.",
+                 marks);
+}
+
+}  // namespace palpate::report

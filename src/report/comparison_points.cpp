@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+
+#include "comparison_cells.h"
+#include "comparison_tables.h"
+#include "palpate/core/error.h"
+#include "palpate/store/study_columns.h"
+
+namespace palpate::report {
+namespace {
+
+bool is_yes(const std::string& cell) { return cell == "true" || cell == "1" || cell == "yes"; }
+
+std::string point_text(const Table& compare, std::size_t row) {
+  return setting_text(compare.rows[row][compare.column("setting_name")],
+                      to_number(compare.rows[row][compare.column("setting")]));
+}
+
+/// Achieved over wanted error of a point that is steered by a tolerance.
+std::string achieved_text(const Table& compare, std::size_t row) {
+  if (compare.rows[row][compare.column("setting_name")] != "rtol") return "-";
+  const double error = to_number(compare.rows[row][compare.column("position_error_rel_l2")]),
+               wanted = to_number(compare.rows[row][compare.column("setting")]);
+  return std::isfinite(error) ? short_number(error / wanted) : "-";
+}
+
+/// One line a point, under the columns of compare.csv that are named.
+void add_columns_table(Page& page, const Table& compare,
+                       const std::vector<std::pair<std::string, std::string>>& columns,
+                       const std::string& caption) {
+  std::vector<std::string> headers = {"integrator", "setting"};
+  for (const auto& [column, header] : columns) headers.push_back(header);
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t r = 0; r < compare.rows.size(); ++r) {
+    rows.push_back({compare.rows[r][compare.column("label")], point_text(compare, r)});
+    for (const auto& [column, header] : columns) rows.back().push_back(cell_text(compare, r, column));
+  }
+  page.add_table(headers, rows, caption);
+}
+
+/// The counts that follow the known columns of compare.csv, where any point has one that is not zero.
+std::vector<std::pair<std::string, std::string>> further_counts(const Table& compare) {
+  const std::vector<std::string>& known = store::compare_columns();
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const std::string& column : compare.headers) {
+    if (column.ends_with("_s") || std::find(known.begin(), known.end(), column) != known.end()) continue;
+    const std::vector<double> counts = compare.numbers(column);
+    if (std::none_of(counts.begin(), counts.end(), [](double count) { return count > 0.0; })) continue;
+    std::string words = column;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    out.emplace_back(column, words);
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_points_table(Page& page, const Table& compare) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<RowMark> marks;
+  const std::size_t label = compare.column("label"), status = compare.column("status"),
+                    reason = compare.column("reason"), below = compare.column("unresolved");
+  for (std::size_t r = 0; r < compare.rows.size(); ++r) {
+    const auto& row = compare.rows[r];
+    const bool ok = row[status] == "ok", under = is_yes(row[below]);
+    rows.push_back({row[label], point_text(compare, r), cell_text(compare, r, "error_test_rtol"),
+                    achieved_text(compare, r), cell_text(compare, r, "position_error_rel_l2"),
+                    cell_text(compare, r, "force_error_rms_n"), cell_text(compare, r, "torque_error_rms_n_m"),
+                    cell_text(compare, r, "energy_error_j"), cell_text(compare, r, "cpu_s_median"),
+                    cell_text(compare, r, "cpu_s_min") + " – " + cell_text(compare, r, "cpu_s_max"),
+                    cell_text(compare, r, "repeats"), cell_text(compare, r, "linear_solver"),
+                    cell_text(compare, r, "against"),
+                    !ok     ? (row[reason].empty() ? row[status] : row[reason])
+                    : under ? "below reference"
+                            : "ok"});
+    marks.push_back(!ok ? RowMark::kBad : under ? RowMark::kFaint : RowMark::kNone);
+  }
+  page.add_table(
+      {"integrator", "setting", "its error test", "position error / rtol", "position error, rel. L2",
+       "force error, RMS [N]", "torque error, RMS [N m]", "energy error [J]", "CPU [s], median",
+       "CPU [s], least – most", "runs", "linear solver", "held against", "status"},
+      rows,
+      "“Below reference”: the error is within ten times the reference's own, and says no more than that.",
+      marks);
+}
+
+void add_counts_and_maxima(Page& page, const Table& compare) {
+  std::vector<std::pair<std::string, std::string>> counts = {{"steps", "steps"},
+                                                             {"force_evaluations", "force evaluations"},
+                                                             {"tangent_evaluations", "tangent evaluations"},
+                                                             {"factorisations", "factorisations"},
+                                                             {"linear_solves", "linear solves"},
+                                                             {"newton_iterations", "Newton iterations"},
+                                                             {"rejected_steps", "rejected steps"},
+                                                             {"reinitialisations", "restarts"},
+                                                             {"contact_queries", "contact queries"}};
+  for (auto& further : further_counts(compare)) counts.push_back(std::move(further));
+  add_columns_table(page, compare, counts, "Counts, which no noise of the machine touches.");
+  add_columns_table(page, compare,
+                    {{"cpu_s_median", "all but set-up and recording, median"},
+                     {"method_s", "the method"},
+                     {"contact_query_s", "contact queries"},
+                     {"linearise_s", "linearisation for the tool"},
+                     {"tool_ticks_s", "the tool's ticks"},
+                     {"setup_s", "set-up"},
+                     {"record_s", "recording, with the bodies' energy"}},
+                    "Where the time went, of the first repeat [s].");
+  add_columns_table(page, compare,
+                    {{"position_error_max_m", "position error [m]"},
+                     {"force_error_max_n", "force error [N]"},
+                     {"torque_error_max_n_m", "torque error [N m]"}},
+                    "The largest errors over all nodes and times.");
+}
+
+}  // namespace palpate::report

@@ -1,0 +1,183 @@
+#include "surface_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "decimate.h"
+#include "json.h"
+#include "palpate/core/error.h"
+#include "palpate/core/markup.h"
+#include "palpate/mesh/boundary.h"
+
+namespace palpate::report {
+namespace {
+
+constexpr int kLeastVertices = 64;  // of a part
+constexpr double kLevels = 65535.0;
+
+/// One part as it is shown: which points of the run, and the faces between them.
+struct Shown {
+  std::string name;
+  bool body = false;
+  std::vector<int> points;
+  Faces faces;
+  int first = 0;  ///< among the points of all that is shown
+  int count() const { return static_cast<int>(points.size()); }
+};
+
+int part_points(const store::RunPart& part) { return static_cast<int>(part.reference.cols()); }
+
+Shown shown_of(const store::RunPart& part, int first_point, int most) {
+  Shown out{part.name, part.tets.cols() > 0, {}, part.faces};
+  Points vertices = part.reference;
+  std::vector<int> node_of_vertex;
+  if (out.body) {
+    const mesh::Boundary outer = mesh::boundary({part.reference, part.tets});
+    vertices = outer.surface.vertices;
+    out.faces = outer.surface.faces;
+    node_of_vertex = outer.node_of_vertex;
+  }
+  const CoarseSurface coarse = decimate(vertices, out.faces, most);
+  out.faces = coarse.faces;
+  for (const int v : coarse.kept)
+    out.points.push_back(first_point + (out.body ? node_of_vertex[static_cast<std::size_t>(v)] : v));
+  return out;
+}
+
+std::vector<Shown> shown_parts(const store::RunReader& run, int most) {
+  std::vector<Shown> out;
+  const double share = std::min(1.0, static_cast<double>(most) / std::max(1, run.point_count()));
+  for (std::size_t i = 0; i < run.parts().size(); ++i) {
+    const store::RunPart& part = run.parts()[i];
+    if (part.tets.cols() == 0 && part.faces.cols() == 0) continue;
+    // points inside a body are not shown, so that a part's share of all points is more than it needs
+    const int own = std::max(kLeastVertices, static_cast<int>(share * part_points(part)));
+    const int first = out.empty() ? 0 : out.back().first + out.back().count();
+    out.push_back(shown_of(part, run.first_point(static_cast<int>(i)), own));
+    out.back().first = first;
+  }
+  return out;
+}
+
+/// The points that are shown, of all points of the run.
+Points gathered(const Points& all, const std::vector<Shown>& parts) {
+  Points out(3, parts.empty() ? 0 : parts.back().first + parts.back().count());
+  for (const Shown& part : parts)
+    for (int i = 0; i < part.count(); ++i)
+      out.col(part.first + i) = all.col(part.points[static_cast<std::size_t>(i)]);
+  return out;
+}
+
+/// Evenly spread, the last included.
+std::vector<int> shown_steps(int steps, long most) {
+  const long count = std::clamp<long>(most, 1, steps);
+  std::vector<int> out;
+  for (long i = 0; i < count; ++i)
+    out.push_back(count == 1 ? steps - 1 : static_cast<int>(i * (steps - 1) / (count - 1)));
+  return out;
+}
+
+Points rest_of(const store::RunReader& run) {
+  Points out(3, run.point_count());
+  for (std::size_t i = 0; i < run.parts().size(); ++i)
+    out.middleCols(run.first_point(static_cast<int>(i)), part_points(run.parts()[i])) =
+        run.parts()[i].reference;
+  return out;
+}
+
+void append_16(std::string& bytes, int value) {
+  bytes += static_cast<char>(value & 0xFF);
+  bytes += static_cast<char>(value >> 8 & 0xFF);
+}
+
+/// The box around all that is shown.
+struct Box {
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = Vec3::Constant(-HUGE_VAL);
+  void add(const Points& points) {
+    low = low.cwiseMin(points.rowwise().minCoeff());
+    high = high.cwiseMax(points.rowwise().maxCoeff());
+  }
+  std::string quantised(const Points& points, const Shown& part) const {
+    std::string bytes;
+    for (int p = part.first; p < part.first + part.count(); ++p)
+      for (int k = 0; k < 3; ++k) {
+        const double extent = high[k] - low[k], at = extent > 0.0 ? (points(k, p) - low[k]) / extent : 0.0;
+        append_16(bytes, static_cast<int>(std::lround(kLevels * std::clamp(at, 0.0, 1.0))));
+      }
+    return bytes;
+  }
+};
+
+double most_displacement(const Points& points, const Points& rest, const std::vector<Shown>& parts) {
+  double most = 0.0;
+  for (const Shown& part : parts)
+    if (part.body)
+      most = std::max(most, (points - rest).middleCols(part.first, part.count()).colwise().norm().maxCoeff());
+  return most;
+}
+
+Json list_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+Json parts_json(const std::vector<Shown>& parts, const Box& box, const Points& rest,
+                const std::vector<Points>& positions) {
+  Json out = Json::array();
+  for (const Shown& part : parts) {
+    std::string faces, all;
+    for (Eigen::Index f = 0; f < part.faces.cols(); ++f)
+      for (int k = 0; k < 3; ++k) append_16(faces, part.faces(k, f));
+    for (const Points& now : positions) all += box.quantised(now, part);
+    out.push_back({{"name", part.name},
+                   {"kind", part.body ? "body" : "tool"},
+                   {"vertices", part.count()},
+                   {"faces", base64(faces)},
+                   {"rest", base64(box.quantised(rest, part))},
+                   {"positions", base64(all)}});
+  }
+  return out;
+}
+
+std::size_t nearest(const std::vector<double>& times, double time) {
+  const auto at = std::min_element(times.begin(), times.end(), [time](double a, double b) {
+    return std::abs(a - time) < std::abs(b - time);
+  });
+  return static_cast<std::size_t>(at - times.begin());
+}
+
+}  // namespace
+
+std::string surface_json(const store::RunReader& run, const ViewBudget& budget, double shown_at_s) {
+  const std::vector<Shown> parts = shown_parts(run, budget.vertices);
+  const long vertices = parts.empty() ? 0 : parts.back().first + parts.back().count();
+  if (vertices == 0 || run.steps() == 0) return "";
+  const std::vector<int> steps =
+      shown_steps(run.steps(), std::min<long>(budget.steps, budget.position_bytes / (6 * vertices)));
+
+  const Points rest = gathered(rest_of(run), parts);
+  std::vector<Points> positions;
+  std::vector<double> times;
+  Box box;
+  box.add(rest);
+  double most = 0.0;
+  std::size_t first_shown = 0;
+  for (const int step : steps) {
+    Points now = gathered(run.points(step), parts);
+    if (!now.allFinite()) break;
+    box.add(now);
+    if (const double own = most_displacement(now, rest, parts); own > most)
+      most = own, first_shown = positions.size();
+    times.push_back(run.times_s()[static_cast<std::size_t>(step)]);
+    positions.push_back(std::move(now));
+  }
+  if (positions.empty()) return "";
+  if (std::isfinite(shown_at_s)) first_shown = nearest(times, shown_at_s);
+  return Json{{"times_s", times},
+              {"low_m", list_of(box.low)},
+              {"high_m", list_of(box.high)},
+              {"most_displacement_m", most},
+              {"first_shown", first_shown},
+              {"parts", parts_json(parts, box, rest, positions)}}
+      .dump();
+}
+
+}  // namespace palpate::report
