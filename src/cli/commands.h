@@ -127,6 +127,12 @@ int stability(const StabilityArguments& arguments);
 int stability_haptic(const StabilityArguments& arguments);
 inline constexpr double kHapticDuration = 4.0;  ///< of a simulation [s]
 
+struct ReportArguments {
+  std::vector<std::string> folders;
+  std::string file;  ///< empty: report.html, in the folder where there is one
+};
+int report(const ReportArguments& arguments);
+
 struct InspectArguments {
   SceneArguments scene;
 };

@@ -495,6 +495,28 @@ torque).)");
       [arguments, &invocation] { invocation.action = [arguments] { return diff(*arguments); }; });
 }
 
+void add_report(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("report", "one HTML page of any results");
+  auto arguments = std::make_shared<ReportArguments>();
+  command
+      ->add_option("folders", arguments->folders,
+                   "folders that run, compare, validate, stability or bench wrote, in any mix")
+      ->required()
+      ->type_name("DIR...");
+  command
+      ->add_option("-o,--output", arguments->file,
+                   "the page; default report.html, in the folder where only one is given")
+      ->type_name("FILE");
+  command->footer(R"(Examples:
+  palpate report out/press-ball
+  palpate report out/press-ball out/compare-press-ball out/stability -o out/report.html
+
+The page needs no other file and no network.  It says in words first what each result answers; its tables
+sort, its charts zoom and tell their values, and a run's bodies turn and play (decimated, at most 4 MB).)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return report(*arguments); }; });
+}
+
 void add_inspect(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("inspect", "what a scene uses, what it leaves out, sizes and memory");
@@ -725,6 +747,7 @@ Invocation parse(int argc, char** argv) {
   add_movie(app, invocation);
   add_export(app, invocation);
   add_diff(app, invocation);
+  add_report(app, invocation);
   add_inspect(app, invocation);
   add_list(app, invocation);
   add_help(app, invocation);

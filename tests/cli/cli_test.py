@@ -32,7 +32,7 @@ except ImportError:  # package python3-h5py
 
 PROGRAM = Path(sys.argv[1]).resolve()
 TREE = Path(__file__).resolve().parents[2]
-COMMANDS = ["demo", "run", "compare", "modes", "validate", "inspect", "export", "list", "help", "bench"]
+COMMANDS = ["demo", "run", "compare", "modes", "validate", "report", "inspect", "export", "list", "help", "bench"]
 LONG = ["run", "one-tet", "--duration-s", "1e6"]  # ends only when it is stopped
 
 
@@ -204,6 +204,29 @@ class Results(Cli):
         self.assertTrue(lines[0].startswith(columns))
         self.assertEqual(len(lines) - 1, int(re.search(r"trace: (\d+)", text).group(1)))
         self.assertIn("why they were rejected", (self.folder / "traced/report.html").read_text())
+
+    def test_report_is_one_page_of_any_results(self):
+        self.good("run", "one-tet", "-o", "one", "--duration-s", "0.1")
+        self.good("validate", "patch-test", "-o", "checked")
+        self.assertEqual(self.good("report", "one"), "written: one/report.html\n")
+        self.good("report", "one", "checked", "-o", "deep/all.html")
+        page = (self.folder / "deep/all.html").read_text()
+        xml.dom.minidom.parseString(page)
+        part = {name: page.index(f'id="result-{number}"') for number, name in ((1, "run"), (2, "checks"))}
+        self.assertLess(page.index("The run finished: 0.1 s simulated"), part["run"], "the answer is first")
+        self.assertLess(page.index("The library answers as theory says"), part["run"])
+        self.assertLess(part["run"], part["checks"])
+        view = json.loads(re.search(r'class="view-data">(.*?)</script>', page)[1])
+        with h5py.File(self.folder / "one/run.vtkhdf") as file:
+            steps = file["VTKHDF/Steps"]
+            self.assertEqual(view["times_s"], list(steps["Values"][:steps.attrs["NSteps"]]))
+        self.assertLess(len(page), 1_000_000)
+
+    def test_report_refuses_a_folder_without_results(self):
+        (self.folder / "empty").mkdir()
+        self.assertIn("empty: holds no results to report", self.refused("report", "empty"))
+        self.assertIn("nowhere: is not a directory", self.refused("report", "nowhere"))
+        self.assertFalse((self.folder / "empty/report.html").exists())
 
     def test_modes_are_a_table_and_a_time_series(self):
         text = self.good("modes", "cantilever", "--count", "4", "-o", "here")
