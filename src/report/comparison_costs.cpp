@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "comparison_tables.h"
@@ -9,6 +10,18 @@ namespace {
 std::string order_text(const FittedOrder& fitted) {
   if (!std::isfinite(fitted.order)) return "-";
   return fmt::format("{:.2f} ({} points)", fitted.order, fitted.points);
+}
+
+constexpr std::size_t kMostRivals = 3;  ///< named one by one
+
+/// The winner's name, or those that nothing can be declared between.
+std::string winner_text(const Winner& win) {
+  if (win.declared()) return win.label;
+  if (std::isnan(win.cost.high)) return fmt::format("{}, but no run was repeated", win.label);
+  const std::size_t named = std::min(kMostRivals, win.rivals.size());
+  std::string out = "no winner: " + win.label;
+  for (std::size_t i = 0; i < named; ++i) out += ", " + win.rivals[i];
+  return win.rivals.size() > named ? fmt::format("{} and {} more", out, win.rivals.size() - named) : out;
 }
 
 }  // namespace
@@ -46,9 +59,7 @@ void add_winners_table(Page& page, const Table& compare, const Quantity& q, doub
           {target, win.resolved ? "none reaches it" : "the reference cannot tell", "-", "-", "-", "-", "-"});
       continue;
     }
-    const std::string winner =
-        win.declared() ? win.label : fmt::format("no winner: {}, {}", win.label, fmt::join(win.rivals, ", "));
-    rows.push_back({target, winner, cost_text(win.cost), spread_text(win.cost),
+    rows.push_back({target, winner_text(win), cost_text(win.cost), spread_text(win.cost),
                     win.runner_up.empty() ? "-" : win.runner_up, ratio_text(win.runner_up_ratio),
                     ratio_text(win.baseline_ratio)});
   }

@@ -120,6 +120,7 @@ std::string cost_text(const Cost& cost) { return (cost.at_most ? "<= " : "") + s
 std::string spread_text(const Cost& cost) {
   if (std::isnan(cost.value)) return "-";
   if (cost.low == cost.high) return short_number(cost.low);
+  if (!(cost.low > 0.0) && std::isnan(cost.high)) return "-";
   return fmt::format("{} to {}", cost.low > 0.0 ? short_number(cost.low) : "?",
                      std::isnan(cost.high) ? "?" : short_number(cost.high));
 }
@@ -168,7 +169,7 @@ std::string ratio_text(const CostRatio& ratio) {
   const auto number = [](double value) {
     return value < 9.95 ? fmt::format("{:.2f}", value) : fmt::format("{:.0f}", value);
   };
-  if (ratio.low == ratio.high) return number(ratio.value);
+  if (ratio.low == ratio.high || !std::isfinite(ratio.low)) return number(ratio.value);
   return fmt::format("{} ({} to {})", number(ratio.value), number(ratio.low),
                      std::isfinite(ratio.high) ? number(ratio.high) : "?");
 }

@@ -218,6 +218,13 @@ TEST(Winners, AreNotDeclaredWithinTheSpread) {
     EXPECT_FALSE(win.found) << "nothing is declared against a reference whose error is unknown";
 }
 
+TEST(Winners, SayNothingOfASpreadThatIsNotKnown) {
+  EXPECT_EQ(report::ratio_text({2.0, report::kUnknown, report::kUnknown}), "2.00");
+  EXPECT_EQ(report::ratio_text({2.0, 1.5, report::kUnknown}), "2.00 (1.50 to ?)");
+  EXPECT_EQ(report::spread_text({2.0, report::kUnknown, report::kUnknown}), "-");
+  EXPECT_EQ(report::spread_text({2.0, 1.5, report::kUnknown}), "1.5 to ?");
+}
+
 TEST(Winners, TellHowMuchSlowerTheInteractiveMethodIs) {
   report::Table table = compare_table();
   for (auto& row : table.rows)
