@@ -502,7 +502,7 @@ void add_report(CLI::App& app, Invocation& invocation) {
       ->add_option("folders", arguments->folders,
                    "folders that run, compare, validate, stability or bench wrote, in any mix")
       ->required()
-      ->type_name("DIR...");
+      ->type_name("DIR");
   command
       ->add_option("-o,--output", arguments->file,
                    "the page; default report.html, in the folder where only one is given")
