@@ -109,6 +109,7 @@ ValidationCase box_corner() {
       .why =
           "corners and edges are where an image has kinks; flat facets leave the pixels alone to err "
           "(tetrahedron with a right-angled corner)",
+      .quick = true,
       .run = run,
       .faults = {{"gaps-as-depths", "volume of the corner"}, {"conservative-pixels", "area of the section"}}};
 }

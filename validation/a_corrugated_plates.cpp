@@ -130,6 +130,7 @@ ValidationCase corrugated_plates() {
       .why =
           "rough on rough is the contact that images are for: several islands in one image, none of them "
           "lost or merged (closed form of the sines and of their facets)",
+      .quick = true,
       .run = run,
       .faults = {{"gaps-as-depths", "overlap area against"}, {"sixteen-steps", "overlap volume against"}}};
 }

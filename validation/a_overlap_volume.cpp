@@ -230,6 +230,7 @@ ValidationCase overlap_volume() {
           "k times this volume is the penalty force; the image decides who faces whom, the rest is exact in "
           "double (closed form of the lens).",
           false,
+          true,
           run,
           {{"skin-area", "against the"}, {"gaps-as-depths", "against the facets"}}};
 }

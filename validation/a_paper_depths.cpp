@@ -127,6 +127,7 @@ ValidationCase paper_depths() {
           .why =
               "what the paper's reading of its images costs in accuracy, beside the exact depth at the same "
               "vertices (mean error of bilinear interpolation, in closed form)",
+          .quick = true,
           .run = run,
           .faults = {{"reads-triangles", "as the paper reads it"},
                      {"neighbours-depth", "on the triangle opposite"}}};

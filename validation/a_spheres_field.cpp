@@ -170,6 +170,7 @@ ValidationCase spheres_field() {
           .why =
               "every force comes from this field; a pixel that reads its neighbour, or a depth of few bits, "
               "is felt as texture that no surface has (line and sphere, in closed form)",
+          .quick = true,
           .run = run,
           .faults = {{"sixteen-bits", "against the facets"},
                      {"neighbours-depth", "depth field against"},

@@ -157,6 +157,7 @@ ValidationCase vertex_list() {
       .why =
           "a vertex that is missed is a spring that is missing (line and triangle, in double); the paper's "
           "interpolated depths stand beside it",
+      .quick = true,
       .run = run,
       .faults = {{"neighbours-depth", "depths of the colliding"}, {"lost-samples", "missed or extra"}}};
 }

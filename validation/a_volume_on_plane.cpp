@@ -118,6 +118,7 @@ ValidationCase volume_on_plane() {
           .why =
               "the simplest contact there is; its force is k times this volume (closed form of a spherical "
               "cap)",
+          .quick = true,
           .run = run,
           .faults = {{"pixels-lost", "against the facets"}, {"radial-depth", "against the true sphere"}}};
 }

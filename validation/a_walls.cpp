@@ -121,6 +121,7 @@ ValidationCase walls() {
           .why =
               "an image shows one layer and no wall; what it cannot show must be found and asked of exact "
               "lines, or gears pass through each other (line and triangle, in double)",
+          .quick = true,
           .run = run,
           .faults = {{"ground-for-top", "depth field"}, {"walls-lost", "missed or extra"}}};
 }

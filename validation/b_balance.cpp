@@ -198,6 +198,7 @@ ValidationCase balance() {
           .why =
               "a contact that is out of balance drives bodies that touch, on their own (action and reaction, "
               "points on one line)",
+          .quick = true,
           .run = run,
           .faults = {{"no-rest-offset", "sum of their moments"},
                      {"force-on-one-side", "sum of normal forces"},

@@ -107,6 +107,7 @@ ValidationCase closed_loop() {
       .why =
           "force along a common normal is conservative against a plane, not between two rough skins; how "
           "much it is not has a closed form (k times the loop integral of V dh)",
+      .quick = true,
       .run = run,
       .faults = {{"skin-normals", "net work"}}};
 }

@@ -225,6 +225,7 @@ ValidationCase contact_refresh() {
       .why =
           "the price of a slow query must be known apart from the integrator's: first order, as normals "
           "and areas are held between two queries (one-step error analysis)",
+      .quick = true,
       .run = run,
       .faults = {{"samples-stay", "exact gaps"}, {"one-query", "error of a refresh"}}};
 }

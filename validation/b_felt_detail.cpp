@@ -208,6 +208,7 @@ ValidationCase felt_detail() {
               "the hand feels detail that only the skin has, at the right strength, through image, law, "
               "exchange and coupling; nothing of it comes from the coarse levels (volume law over the disc "
               "of contact: a Bessel function)",
+          .quick = true,
           .run = run,
           .faults = {{"coarse-surface", "on the skin [N]"},
                      {"no-rest-offset", "at frequency q v"},

@@ -135,6 +135,7 @@ ValidationCase block_on_incline() {
           .why =
               "friction that is a few per cent off lets objects slide that should stay; the regularisation's "
               "creep is known and stated (balance along the plane)",
+          .quick = true,
           .run = run_block,
           .faults = {{"half-friction", "creep"}, {"friction-without-cap", "acceleration of a block"}}};
 }
@@ -146,6 +147,7 @@ ValidationCase rolling_sphere() {
           .why =
               "friction must have its moment about the centre too: without it the sphere slides with g sin a "
               "(linear and angular momentum of a rolling sphere)",
+          .quick = true,
           .run = run_sphere,
           .faults = {{"no-friction", "acceleration of a sphere"}}};
 }

@@ -372,6 +372,7 @@ ValidationCase punch_bounce() {
           "Undamped bounce of a flat punch on a plane: duration, speed, energy; fixed-step order in contact",
           "A flat contact is one linear spring k A: it must give back what it took, through any integrator.",
           false,
+          true,
           run_undamped,
           {{"half-area", "contact duration"},
            {"tolerance-ignored", "contact duration"},
@@ -387,6 +388,7 @@ ValidationCase punch_bounce_damped() {
       "The pressure is cut where it would pull, so the punch separates before the depth is gone: the closed "
       "form of exactly that.",
       false,
+      true,
       run_damped,
       {{"half-damping", "coefficient of restitution"},
        {"other-law", "contact duration"},
@@ -400,6 +402,7 @@ ValidationCase punch_bounce_hunt_crossley() {
       "Bounce with Hunt-Crossley damping against its implicit closed form, 3/2 c v0 = 0.3 and 1, two shapes",
       "The continuous damping law: its loss depends on speed in a way that no linear damper copies.",
       false,
+      true,
       run_hunt_crossley,
       {{"other-law", "coefficient of restitution"}, {"half-damping", "coefficient of restitution"}}};
 }

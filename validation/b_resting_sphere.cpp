@@ -117,6 +117,7 @@ ValidationCase resting_sphere() {
           .why =
               "force and stiffness of one contact, through image, law and integrator: wrong areas show in "
               "the depth, a wrong tangent or too few candidates in the frequency (volume law)",
+          .quick = true,
           .run = run,
           .faults = {{"half-force", "at rest"}, {"more-inertia", "angular frequency"}}};
 }

@@ -123,6 +123,7 @@ ValidationCase sphere_on_plane() {
           "Penalty force per area is stiffness times overlap volume: independent of the mesh up to its own "
           "facets (volume of a spherical cap).",
           false,
+          true,
           run,
           {{"half-area", "force on the"}, {"surface-area", "force on the"}}};
 }

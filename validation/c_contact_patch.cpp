@@ -219,6 +219,7 @@ ValidationCase contact_patch() {
           .why =
               "whether meshes that do not match pass on a uniform pressure decides whether contact converges "
               "with the mesh (the contact patch test, Taylor and Papadopoulos 1991)",
+          .quick = true,
           .run = run,
           .faults = {{"force-on-first-corner", "pixel: largest error"},
                      {"half-area", "pixel: mean pressure"},

@@ -137,6 +137,7 @@ ValidationCase gradient_and_tangent() {
           .why =
               "energy is kept and Newton converges only if both hold; finite differences know nothing of the "
               "derivation",
+          .quick = true,
           .run = run,
           .faults = {{"wrong-sign", "energy + force"},
                      {"half-stiffness", "force + tangent"},

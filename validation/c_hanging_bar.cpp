@@ -101,6 +101,7 @@ ValidationCase hanging_bar() {
           .why =
               "the simplest non-uniform stress: shows that weight, stiffness and mesh refinement fit "
               "together; one-dimensional theory",
+          .quick = true,
           .run = run,
           .faults = {{"half-stiffness", "32 cells along"}, {"one-point-weight", "RMS error"}}};
 }

@@ -137,6 +137,7 @@ ValidationCase layered_bar() {
       .why =
           "shows that each element has its own material, on the right side of the border, and that the two "
           "share its nodes; exact for nu = 0",
+      .quick = true,
       .run = run,
       .faults = {{"one-material", "layers in parallel"}, {"layers-swapped", "the border between"}}};
 }

@@ -264,6 +264,7 @@ ValidationCase newton_convergence() {
               "exponent of Newton's residuals: 2 with the exact tangent, statics and a step of backward "
               "Euler, damping too; 1 with inexact ones",
           .why = "quadratic convergence shows that force and tangent belong together, where it counts",
+          .quick = true,
           .run = run,
           .faults = {{"warped-for-exact", "bent beam, exact tangent"},
                      {"warped-for-exact", "backward Euler, exact tangent"},

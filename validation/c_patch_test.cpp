@@ -106,6 +106,7 @@ ValidationCase patch_test() {
           .why =
               "an element that fails it does not converge on irregular meshes (Irons 1966); exact by theory, "
               "on any mesh",
+          .quick = true,
           .run = run,
           .faults = {{"one-element-counted-twice", "largest error of a node"},
                      {"half-stiffness", "mean stress"}}};

@@ -102,6 +102,7 @@ ValidationCase torsion() {
           .why =
               "shear stress that varies over the section, and warping; Timoshenko and Goodier, Theory of "
               "Elasticity",
+          .quick = true,
           .run = run,
           .faults = {{"half-stiffness", "torque"}, {"no-lateral-strain", "torque"}}};
 }

@@ -88,6 +88,7 @@ ValidationCase axial_vibration() {
       .why =
           "stiffness and mass together against the wave equation, whose solution is exact for nu = 0 "
           "(Rayleigh 1877)",
+      .quick = true,
       .run = run,
       .faults = {
           {"half-stiffness", "frequency"}, {"double-mass", "frequency"}, {"lateral-strain", "frequency"}}};

@@ -97,6 +97,7 @@ ValidationCase bar_on_bone() {
           .why =
               "momentum goes from tissue to bone and back at the right rate, also where the bone is a "
               "thousandth of the tissue (Timoshenko 1937)",
+          .quick = true,
           .run = run,
           .faults = {{"half-stiffness", "frequency"}, {"light-bone", "bone of 3 "}}};
 }

@@ -168,6 +168,7 @@ ValidationCase colliding_bars() {
           .why =
               "contact, waves and their release in one: only the right stiffness, mass and opening of the "
               "contact give 2 L/c and the exchange of velocities (d'Alembert; St Venant 1867)",
+          .quick = true,
           .run = run,
           .faults = {{"force-on-one-side", "mean velocity"}, {"few-samples", "contact lasts"}}};
 }

@@ -148,6 +148,7 @@ ValidationCase explicit_limit() {
           .why =
               "what an explicit method costs on a stiff body is set by one number, the highest frequency; "
               "linear stability theory",
+          .quick = true,
           .run = run,
           .faults = {{"stiffer", "largest stable step"},
                      {"lighter", "largest stable step"},

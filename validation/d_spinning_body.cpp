@@ -236,6 +236,7 @@ ValidationCase spinning_body() {
       .why =
           "damping that is not objective brakes every rotating body; relative equilibrium by Newton (Simo, "
           "Posbergh, Marsden 1990)",
+      .quick = true,
       .run = run,
       .faults = {{"mass-damping", "drift of angular momentum"},
                  {"rayleigh-damping", "damping power"},

@@ -105,6 +105,7 @@ ValidationCase coupling_limit() {
       .why =
           "the stiffness of a virtual wall is bounded by the coupling's; which scheme bounds it, and where, "
           "must be known beforehand",
+      .quick = true,
       .run = run,
       .faults = {{"no-damping", "semi-implicit-euler: largest stable k, b = 40"},
                  {"half-stiffness", "largest stable k"},

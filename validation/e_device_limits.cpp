@@ -83,6 +83,7 @@ ValidationCase device_limits() {
               "200,000 random ticks: force, torque and slew never above their bounds, zero 20 ms after the "
               "last valid pose",
           .why = "the last thing before motors that a person holds",
+          .quick = true,
           .run = run,
           .faults = {{"no-limiter", "number not finite"},
                      {"componentwise-clip", "largest"},

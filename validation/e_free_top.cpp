@@ -181,6 +181,7 @@ ValidationCase free_top() {
           .why =
               "gyroscopic forces are small in a hand's motion, so that nothing else shows when they are "
               "wrong (Jacobi's solution of Euler's equations)",
+          .quick = true,
           .run = run,
           .faults = {{"first-two-axes-swapped", "tool, "},
                      {"no-gyroscopic-force", "State, cvode-bdf: period"},

@@ -116,6 +116,7 @@ ValidationCase handle_step() {
       .why =
           "what a user feels of the coupling is this response; a fixed tick must be off by its own "
           "closed form and by nothing else",
+      .quick = true,
       .run = run,
       .faults = {
           {"half-stiffness", "translation"}, {"axes-swapped", "rotation"}, {"late-handle", "closed form"}}};

@@ -48,6 +48,7 @@ ValidationCase handle_below_wall() {
       .section = "E",
       .summary = "steady force of a handle held below a linear wall: coupling and wall in series",
       .why = "the force that a device renders is the wall's softened by the coupling, by exactly k K/(k + K)",
+      .quick = true,
       .run = run,
       .faults = {{"half-contact", "force on the hand"},
                  {"half-stiffness", "force on the hand"},

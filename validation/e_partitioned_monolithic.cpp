@@ -142,6 +142,7 @@ ValidationCase partitioned_monolithic() {
       .why =
           "an exchange that lacks a part of the bodies' answer stays away from the reference at any period; "
           "the device force is only as good as this distance",
+      .quick = true,
       .run = run,
       .faults = {{"half-contact", "RMS distance"}, {"half-stiffness", "nodes of the block"}}};
 }

@@ -140,6 +140,7 @@ ValidationCase sampled_wall() {
           .section = "E",
           .summary = "passivity of a sampled virtual wall: b > K T/2 + |B|, and 3 K T/2 with a tick of delay",
           .why = "a wall that gives back more than the hand puts in makes it vibrate, whatever the hand does",
+          .quick = true,
           .run = run,
           .faults = {{"friction-left-out", "energy"}, {"held-too-early", "triangle wave"}}};
 }

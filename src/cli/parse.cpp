@@ -262,7 +262,9 @@ void add_validate(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("validate", "run the cases with a known answer");
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("CASE", arguments->cases, "only these; see `palpate list cases`");
-  command->add_flag("--slow", arguments->slow, "also the cases that take minutes");
+  CLI::Option* slow = command->add_flag("--slow", arguments->slow, "also the cases that take minutes");
+  command->add_flag("--quick", arguments->quick, "only the cases that take seconds: a minute for all of them")
+      ->excludes(slow);
   command->add_flag("--inject-faults", arguments->inject_faults,
                     "break the library on purpose: what each fault is measured by must then fail");
   command->add_flag("--sabotage", arguments->inject_faults)->group("");  // its name before 0.1, not shown

@@ -35,7 +35,7 @@ std::vector<const ValidationCase*> chosen(const ValidateArguments& arguments) {
   }
   if (arguments.cases.empty())
     for (const ValidationCase& one : validation::validation_cases())
-      if (!one.slow || arguments.slow) out.push_back(&one);
+      if (arguments.quick ? one.quick : !one.slow || arguments.slow) out.push_back(&one);
   return out;
 }
 
@@ -123,6 +123,13 @@ void run_with_faults(const ValidationCase& one, Run& out) {
   if (!all_found) ++out.failed;
 }
 
+/// A line a case: its section, and what its figures mean.
+void print_meanings(const std::vector<const ValidationCase*>& cases) {
+  std::vector<std::vector<std::string>> rows;
+  for (const ValidationCase* one : cases) rows.push_back({one->name, one->section, one->summary});
+  fmt::print("{}\n", report::format_table({"case", "section", "what it measures"}, rows));
+}
+
 void write_results(const Run& run, const std::string& folder, Undelivered& missing) {
   make_folder(folder);
   const std::string path = (std::filesystem::path(folder) / "validation.json").string();
@@ -147,6 +154,7 @@ int validate(const ValidateArguments& arguments) {
       ++done;
     }
   }
+  print_meanings({cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(done)});
   using Headers = std::vector<std::string>;
   fmt::print("{}",
              report::format_table(arguments.inject_faults ? Headers{"case", "fault", "measured by", "outcome"}

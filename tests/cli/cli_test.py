@@ -602,7 +602,9 @@ class Results(Cli):
         self.assertRegex(self.good("inspect", "press-ball"), r"(?m)^tool +in use")
 
     def test_validate(self):
+        self.assertIn("--slow excludes --quick", self.refused("validate", "--quick", "--slow"))
         text = self.good("validate", "rigid-motion", "-o", "val")
+        self.assertRegex(text, r"(?m)^rigid-motion +C +any rotation and translation: no force, no energy")
         self.assertRegex(text, r"(?m)^rigid-motion .* pass$")
         cases = json.loads((self.folder / "val/validation.json").read_text())["cases"]
         self.assertEqual([case["name"] for case in cases], ["rigid-motion"])

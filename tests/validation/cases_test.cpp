@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <ostream>
 #include <set>
 
@@ -75,6 +76,22 @@ TEST(ValidationRegistry, EveryCaseSaysWhatItIsAndHasANameOfItsOwn) {
     EXPECT_FALSE(c.why.empty()) << c.name;
     EXPECT_NE(c.run, nullptr) << c.name;
     EXPECT_FALSE(c.faults.empty()) << c.name << ": a case that cannot fail is worthless";
+  }
+}
+
+// `validate --quick` says something of each section.
+TEST(ValidationRegistry, QuickCasesAreOfEverySectionAndNoneIsSlow) {
+  std::map<std::string, std::pair<int, int>> quick_of_all;  // by section
+  for (const ValidationCase& one : validation_cases()) {
+    EXPECT_FALSE(one.quick && one.slow) << one.name;
+    auto& [quick, all] = quick_of_all[one.section];
+    quick += one.quick;
+    ++all;
+  }
+  ASSERT_GE(quick_of_all.size(), 4u);  // without tools none of E
+  for (const auto& [section, counts] : quick_of_all) {
+    EXPECT_GE(counts.first, 4) << section;
+    EXPECT_LT(counts.first, counts.second) << section;
   }
 }
 

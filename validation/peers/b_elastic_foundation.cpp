@@ -127,6 +127,7 @@ ValidationCase elastic_foundation_peer() {
           .why =
               "two codes that share nothing, on one problem: they must differ by what their laws differ by, "
               "and by nothing else (area on the sphere against projected area)",
+          .quick = true,
           .run = run,
           .faults = {{"skin-area", "force over ours"}}};
 }

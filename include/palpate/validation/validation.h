@@ -44,6 +44,7 @@ struct ValidationCase {
   std::string summary;  ///< one line: what is measured
   std::string why;      ///< why it matters, and the source of the exact answer
   bool slow = false;    ///< minutes; ctest label `slow`
+  bool quick = false;   ///< at most about 5 s on one core
   /// Runs it.  `fault` is empty, or the name of one of `faults`.
   std::vector<Measurement> (*run)(const std::string& fault) = nullptr;
   std::vector<Fault> faults;  ///< at least one
