@@ -182,6 +182,11 @@ bool BodySide::ended() {
 
 void BodySide::finish() {
   if (world_.stepper) world_.stepper->set_interrupt(nullptr);
+  sum_up();
+}
+
+void BodySide::sum_up() {
+  result_.more_hands.clear();
   if (world_.stepper) result_.counters = world_.stepper->counters();
   if (world_.contact) {
     result_.contact_queries = world_.contact->queries();

@@ -46,6 +46,8 @@ class BodySide {
   bool ended();
   /// Steps go through these ticks, where tool and bodies are one system.
   void set_ticks(MonolithicTicks* ticks) { ticks_ = ticks; }
+  /// What stepper, contact, limiters and devices have counted so far, into the result.
+  void sum_up();
   void finish();
 
  private:

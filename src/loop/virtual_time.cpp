@@ -1,120 +1,94 @@
-#include <deque>
-#include <optional>
+#include "virtual_time.h"
 
-#include "body_side.h"
 #include "palpate/core/clock.h"
-#include "tick_side.h"
 
 namespace palpate::loop {
-namespace {
 
-/// Both sides in one thread, by turns: the order of everything is fixed, so that every run is the same to the
-/// last bit.
-class VirtualTime {
- public:
-  VirtualTime(World& world, BodySide& bodies, RunResult& result)
-      : world_(world), bodies_(bodies), result_(result) {
-    const scene::Description& d = world.description;
-    if (!d.tool) return;
+VirtualTime::VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result)
+    : world_(world), bodies_(bodies), options_(options), result_(result) {
+  const scene::Description& d = world.description;
+  if (d.tool) {
     for (const auto& side : ToolSide::all(world)) {
       hands_.emplace_back(d, *side);
       hands_.back().ticks.start(0.0);
     }
-    if (!world.monolithic()) {
+    if (world.monolithic()) {
+      dense_.emplace(world, [this](std::size_t hand, TickRecord tick) {
+        hands_[hand].ticks.feel(tick);
+        bodies_.felt(hand, tick);
+      });
+      bodies.set_ticks(&*dense_);
+    } else {
       bodies.restart_path();
-      return;
-    }
-    dense_.emplace(world, [this](std::size_t hand, TickRecord tick) {
-      hands_[hand].ticks.feel(tick);
-      bodies_.felt(hand, tick);
-    });
-    bodies.set_ticks(&*dense_);
-  }
-
-  void one_period(double t0, double t1) {
-    bodies_.query();
-    // a tool feels the contact that was found before its ticks: these end where the next query is due
-    for (double t = t0, next;; t = next) {
-      const bool exchanged = world_.has_tool_of_ticks();
-      next = exchanged ? bodies_.next_query(t, t1) : t1;
-      if (exchanged) tick_tools(t, next);
-      if (!result_.status.ok()) return;
-      bodies_.advance(t, next, world_.description.exchange.contact_refresh_s);
-      if (!result_.status.ok() || next >= t1) return;
-      bodies_.query();
     }
   }
+  bodies.start();
+}
 
-  void end() {
-    for (Hand& hand : hands_) hand.ticks.end();
-  }
+bool VirtualTime::next() {
+  if (periods_ == bodies_.periods()) return false;
+  result_.stopped = options_.stop && options_.stop->load();
+  if (result_.stopped) return false;
+  one_period(bodies_.period_start(periods_), bodies_.period_start(periods_ + 1));
+  if (bodies_.ended()) return false;
+  bodies_.close_period(bodies_.period_start(++periods_));
+  return true;
+}
 
- private:
-  struct Coming {
-    long tick;
-    ContactRecord record;
-  };
-  struct Hand {
-    Hand(const scene::Description& d, ToolSide& side) : tick_s(side.spec->tick_s), ticks(d, side) {}
-    double tick_s;
-    TickSide ticks;
-    ContactRecord in_force;
-    std::deque<Coming> coming;
-    long count = 0;  ///< of ticks
-  };
+void VirtualTime::end() {
+  for (Hand& hand : hands_) hand.ticks.end();
+}
 
-  /// Every hand feels the bodies as all have left them, then each goes through the period by itself.
-  void tick_tools(double t0, double t1) {
-    for (std::size_t i = 0; i < hands_.size(); ++i) adopt(hands_[i], bodies_.linearise(i, t1 - t0));
-    bodies_.restart_path();
-    const ScopedTimer timer(result_.tool_s);
-    for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
-      const int ticks = whole_number((t1 - t0) / hands_[hand].tick_s);
-      const double h = (t1 - t0) / ticks;
-      for (int i = 0; i < ticks && result_.status.ok(); ++i) tick(hand, t0 + (i + 1) * h, h);
-    }
-  }
-
-  /// A linearisation is in force from latency_ticks on; the first of a run at once.
-  void adopt(Hand& hand, const ContactRecord& record) {
-    const int latency = record.linear.version == 1 ? 0 : world_.description.exchange.latency_ticks;
-    if (latency == 0)
-      hand.in_force = record;
-    else
-      hand.coming.push_back({hand.count + latency, record});
-  }
-
-  void tick(std::size_t number, double t, double h) {
-    Hand& hand = hands_[number];
-    for (; !hand.coming.empty() && hand.coming.front().tick <= hand.count; hand.coming.pop_front())
-      hand.in_force = hand.coming.front().record;
-    ++hand.count;
-    TickRecord tick;
-    result_.status = hand.ticks.tick(t, h, hand.ticks.contact(t, h, hand.in_force), tick);
+void VirtualTime::one_period(double t0, double t1) {
+  bodies_.query();
+  // a tool feels the contact that was found before its ticks: these end where the next query is due
+  for (double t = t0, next;; t = next) {
+    const bool exchanged = world_.has_tool_of_ticks();
+    next = exchanged ? bodies_.next_query(t, t1) : t1;
+    if (exchanged) tick_tools(t, next);
     if (!result_.status.ok()) return;
-    bodies_.follow(number, t, tick.tool, tick.tool_twist);
-    bodies_.felt(number, tick);
+    bodies_.advance(t, next, world_.description.exchange.contact_refresh_s);
+    if (!result_.status.ok() || next >= t1) return;
+    bodies_.query();
   }
+}
 
-  World& world_;
-  BodySide& bodies_;
-  RunResult& result_;
-  std::deque<Hand> hands_;
-  std::optional<MonolithicTicks> dense_;  ///< where tool and bodies are one system
-};
+/// Every hand feels the bodies as all have left them, then each goes through the period by itself.
+void VirtualTime::tick_tools(double t0, double t1) {
+  for (std::size_t i = 0; i < hands_.size(); ++i) adopt(hands_[i], bodies_.linearise(i, t1 - t0));
+  bodies_.restart_path();
+  const ScopedTimer timer(result_.tool_s);
+  for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
+    const int ticks = whole_number((t1 - t0) / hands_[hand].tick_s);
+    const double h = (t1 - t0) / ticks;
+    for (int i = 0; i < ticks && result_.status.ok(); ++i) tick(hand, t0 + (i + 1) * h, h);
+  }
+}
 
-}  // namespace
+/// A linearisation is in force from latency_ticks on; the first of a run at once.
+void VirtualTime::adopt(Hand& hand, const ContactRecord& record) {
+  const int latency = record.linear.version == 1 ? 0 : world_.description.exchange.latency_ticks;
+  if (latency == 0)
+    hand.in_force = record;
+  else
+    hand.coming.push_back({hand.count + latency, record});
+}
+
+void VirtualTime::tick(std::size_t number, double t, double h) {
+  Hand& hand = hands_[number];
+  for (; !hand.coming.empty() && hand.coming.front().tick <= hand.count; hand.coming.pop_front())
+    hand.in_force = hand.coming.front().record;
+  ++hand.count;
+  TickRecord tick;
+  result_.status = hand.ticks.tick(t, h, hand.ticks.contact(t, h, hand.in_force), tick);
+  if (!result_.status.ok()) return;
+  bodies_.follow(number, t, tick.tool, tick.tool_twist);
+  bodies_.felt(number, tick);
+}
 
 void run_in_virtual_time(World& world, BodySide& bodies, const RunOptions& options, RunResult& result) {
-  VirtualTime clock(world, bodies, result);
-  bodies.start();
-  for (int i = 0; i < bodies.periods(); ++i) {
-    result.stopped = options.stop && options.stop->load();
-    if (result.stopped) break;
-    clock.one_period(bodies.period_start(i), bodies.period_start(i + 1));
-    if (bodies.ended()) break;
-    bodies.close_period(bodies.period_start(i + 1));
-  }
+  VirtualTime clock(world, bodies, options, result);
+  while (clock.next()) {}
   clock.end();
 }
 

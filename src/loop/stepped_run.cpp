@@ -1,0 +1,47 @@
+#include "palpate/loop/stepped_run.h"
+
+#include "palpate/core/clock.h"
+#include "palpate/core/workers.h"
+#include "virtual_time.h"
+
+namespace palpate::loop {
+
+struct SteppedRun::Impl {
+  Impl(World& world_in, RunOptions options_in)
+      : world(world_in),
+        options(std::move(options_in)),
+        bodies(world, options, result),
+        clock(world, bodies, options, result) {}
+  World& world;
+  RunOptions options;
+  RunResult result;
+  BodySide bodies;
+  VirtualTime clock;
+  bool over = false;
+};
+
+SteppedRun::SteppedRun(World& world, RunOptions options)
+    : impl_(std::make_unique<Impl>(world, std::move(options))) {}
+
+SteppedRun::~SteppedRun() {
+  impl_->clock.end();
+  impl_->bodies.finish();
+}
+
+bool SteppedRun::next() {
+  Impl& run = *impl_;
+  if (run.over) return false;
+  const workers::Count threads(run.world.description.integrator.threads);
+  const double wall = wall_seconds(), cpu = cpu_seconds();
+  run.over = true;  // unless the period is gone through: not where something is thrown
+  run.over = !run.clock.next();
+  run.result.wall_s += wall_seconds() - wall;
+  run.result.cpu_s += cpu_seconds() - cpu;
+  run.bodies.sum_up();
+  return !run.over;
+}
+
+const RunResult& SteppedRun::result() const { return impl_->result; }
+double SteppedRun::duration() const { return impl_->bodies.duration(); }
+
+}  // namespace palpate::loop
