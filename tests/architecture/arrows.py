@@ -42,6 +42,7 @@ ALLOWED = {
     "report": ["core", "mesh", "store"],
     "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "stability", "bench", "report",
             "validation"],
+    "python": BELOW_LOOP + ["loop", "compare", "validation"],  # the module of `import palpate`
     "validation": BELOW_LOOP + ["loop", "compare", "report", "simbody"],  # the cases in validation/
 }
 
@@ -59,6 +60,7 @@ OUTSIDE = [
     ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/linear"]),
     ("Spectra", r"Spectra/", ["src/modes"]),
     ("CLI11", r"CLI/", ["src/cli"]),
+    ("pybind11", r"pybind11/", ["src/python"]),
     ("toml++", r"toml\+\+/", ["src/scene"]),
     ("SQLite", r"sqlite3\.h", ["src/store"]),
     ("CGAL", r"CGAL/", ["src/model"]),

@@ -1,0 +1,50 @@
+#pragma once
+#include <pybind11/numpy.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+/// NumPy arrays that look at memory of C++, read-only: nothing is copied.
+namespace palpate::python {
+
+/// @param shape, strides  rows and what follows; strides in bytes
+/// @param owner  a Python object that keeps the memory alive; the array keeps it
+template <class T>
+pybind11::array view(const T* data, std::vector<pybind11::ssize_t> shape,
+                     std::vector<pybind11::ssize_t> strides, const pybind11::handle& owner) {
+  const pybind11::array out(pybind11::dtype::of<T>(), std::move(shape), std::move(strides), data, owner);
+  out.attr("setflags")(false);
+  return out;
+}
+
+/// n values, one row each.
+template <class T>
+pybind11::array rows(const T* data, pybind11::ssize_t n, const pybind11::handle& owner) {
+  return view(data, {n}, {sizeof(T)}, owner);
+}
+
+/// n rows of `width` values, one after the other: a column-major matrix of `width` rows.
+template <class T>
+pybind11::array rows(const T* data, pybind11::ssize_t n, pybind11::ssize_t width,
+                     const pybind11::handle& owner) {
+  constexpr pybind11::ssize_t size = sizeof(T);
+  return view(data, {n, width}, {width * size, size}, owner);
+}
+
+/// Keeps a value alive as long as arrays look at it; get() is where it then is.
+template <class T>
+class Kept {
+ public:
+  explicit Kept(T value) : value_(new T(std::move(value))) {
+    owner_ = pybind11::capsule(value_, [](void* p) { delete static_cast<T*>(p); });
+  }
+  const T& get() const { return *value_; }
+  const pybind11::capsule& owner() const { return owner_; }
+
+ private:
+  T* value_;
+  pybind11::capsule owner_;
+};
+
+}  // namespace palpate::python

@@ -1,0 +1,14 @@
+#pragma once
+#include <pybind11/pybind11.h>
+
+/// One function a file of bindings; module.cpp calls them in this order.
+namespace palpate::python {
+
+void bind_scene(pybind11::module_& module);
+void bind_body(pybind11::module_& module);
+void bind_hand(pybind11::module_& module);
+void bind_contact(pybind11::module_& module);
+void bind_simulation(pybind11::module_& module);
+void bind_studies(pybind11::module_& module);
+
+}  // namespace palpate::python

@@ -1,0 +1,23 @@
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <string>
+
+#include "simulation.h"
+
+namespace palpate::python {
+
+/// One body of a simulation.
+struct BodyOf {
+  std::shared_ptr<Simulation> simulation;
+  std::size_t index;
+  const loop::Body& body() const { return simulation->world().bodies[index]; }
+  const dynamics::Block& block() const { return *simulation->world().state.layout().find(body().block_id); }
+  pybind11::object owner() const { return pybind11::cast(simulation); }
+};
+
+/// @throws Error for a body that is not there
+BodyOf find_body(const std::shared_ptr<Simulation>& self, const std::string& name);
+
+}  // namespace palpate::python

@@ -1,0 +1,102 @@
+#include "contact.h"
+
+#include "bindings.h"
+
+namespace py = pybind11;
+
+namespace palpate::python {
+
+ContactNow contact_of(const std::shared_ptr<Simulation>& self) {
+  const Simulation::Lease lease(*self);
+  loop::World& world = self->world();
+  return {
+      Kept(world.contact ? world.contact->points(world.state.view()) : std::vector<contact::ContactPoint>())};
+}
+
+namespace {
+
+/// One row a sample: `width` values of a member of its record; width 0: one value.
+template <class T>
+py::array sample_rows(const ContactNow& self, const T& (*member)(const contact::ContactPoint&),
+                      py::ssize_t width) {
+  static const contact::ContactPoint none{};
+  const auto& points = self.points.get();
+  const T* data = &member(points.empty() ? none : points.front());
+  constexpr py::ssize_t step = sizeof(contact::ContactPoint);
+  if (width == 0) return view(data, {self.size()}, {step}, self.points.owner());
+  return view(data, {self.size(), width}, {step, static_cast<py::ssize_t>(sizeof(T))}, self.points.owner());
+}
+
+py::array sample_forces(const ContactNow& self) {
+  Points forces(3, self.size());
+  for (Eigen::Index i = 0; i < forces.cols(); ++i) {
+    const contact::ContactPoint& point = self.points.get()[static_cast<std::size_t>(i)];
+    forces.col(i) = point.pressure * point.area * point.normal;
+  }
+  const Kept<Points> kept(std::move(forces));
+  return rows(kept.get().data(), kept.get().cols(), 3, kept.owner());
+}
+
+}  // namespace
+
+void bind_contact(py::module_& module) {
+  using Point = contact::ContactPoint;
+  using Now = ContactNow;
+  py::class_<Now>(module, "Contact",
+                  "The contact samples of the last query at the state when they were asked for, a row a "
+                  "sample; those that are still apart included.")
+      .def_property_readonly(
+          "positions",
+          [](const Now& self) {
+            return sample_rows<double>(
+                self, [](const Point& p) -> const double& { return p.a[0]; }, 3);
+          },
+          "On the surface that normals push away, (s, 3) [m].")
+      .def_property_readonly(
+          "opposite_positions",
+          [](const Now& self) {
+            return sample_rows<double>(
+                self, [](const Point& p) -> const double& { return p.b[0]; }, 3);
+          },
+          "On the other surface, (s, 3) [m].")
+      .def_property_readonly(
+          "normals",
+          [](const Now& self) {
+            return sample_rows<double>(
+                self, [](const Point& p) -> const double& { return p.normal[0]; }, 3);
+          },
+          "Unit vectors, (s, 3).")
+      .def_property_readonly(
+          "gaps",
+          [](const Now& self) {
+            return sample_rows<double>(
+                self, [](const Point& p) -> const double& { return p.gap; }, 0);
+          },
+          "(s,) [m]; negative is penetration.")
+      .def_property_readonly(
+          "areas",
+          [](const Now& self) {
+            return sample_rows<double>(
+                self, [](const Point& p) -> const double& { return p.area; }, 0);
+          },
+          "(s,) [m^2].")
+      .def_property_readonly(
+          "pressures",
+          [](const Now& self) {
+            return sample_rows<double>(
+                self, [](const Point& p) -> const double& { return p.pressure; }, 0);
+          },
+          "(s,) [Pa]; 0 where it is apart.")
+      .def_property_readonly("forces", &sample_forces,
+                             "Pressure times area along the normal, (s, 3) [N]; without friction.")
+      .def_property_readonly(
+          "pairs",
+          [](const Now& self) {
+            return sample_rows<int>(
+                self, [](const Point& p) -> const int& { return p.pair; }, 0);
+          },
+          "Which [[contact]] of the scene, (s,).")
+      .def("__len__", [](const Now& self) { return self.size(); });
+}
+
+}  // namespace palpate::python

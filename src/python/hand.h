@@ -1,0 +1,25 @@
+#pragma once
+#include <pybind11/numpy.h>
+
+#include <memory>
+#include <string>
+
+#include "simulation.h"
+
+namespace palpate::python {
+
+/// One hand of a simulation.
+struct HandOf {
+  std::shared_ptr<Simulation> simulation;
+  std::size_t index;
+  std::string name;
+};
+
+/// @throws Error for a hand that is not there
+HandOf find_hand(const std::shared_ptr<Simulation>& self, const std::string& name);
+
+/// On that hand at its last tick, (3,) [N], [N m]; zero before the first.
+pybind11::array last_force(const HandOf& hand);
+pybind11::array last_torque(const HandOf& hand);
+
+}  // namespace palpate::python

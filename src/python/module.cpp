@@ -1,0 +1,21 @@
+// The extension module palpate._palpate.  What a user imports is the package around it (palpate/__init__.py).
+#include "bindings.h"
+#include "palpate/core/error.h"
+#include "simulation.h"
+
+namespace py = pybind11;
+using namespace palpate;
+
+PYBIND11_MODULE(_palpate, module) {
+  module.doc() = "Scenes, simulations and studies of palpate; SI units, arrays of one row a point.";
+  py::register_exception<Error>(module, "Error", PyExc_ValueError).doc() =
+      "A scene, a name or a value is refused; the message says what, where, and what to do.";
+  py::register_exception<python::GaveUp>(module, "IntegratorError", PyExc_RuntimeError).doc() =
+      "An integrator gave up; the state is its last good one.";
+  python::bind_scene(module);
+  python::bind_body(module);
+  python::bind_hand(module);
+  python::bind_contact(module);
+  python::bind_simulation(module);
+  python::bind_studies(module);
+}

@@ -1,0 +1,98 @@
+// Simulation for Python.  Arrays of the state are views of the simulation's own memory: they keep it alive,
+// and show what the next steps make of it.
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "bindings.h"
+#include "body.h"
+#include "contact.h"
+#include "hand.h"
+#include "interrupt.h"
+#include "missing_models.h"
+#include "palpate/core/error.h"
+#include "scene.h"
+
+namespace py = pybind11;
+
+namespace palpate::python {
+namespace {
+
+using Shared = std::shared_ptr<Simulation>;
+
+/// Calls a step without the GIL; Ctrl-C ends it after the integrator's current step.
+template <class Step>
+auto interruptible(Simulation& self, const Step& step) {
+  const bool main = is_main_thread();
+  try {
+    const auto out = [&] {
+      const py::gil_scoped_release release;
+      const Interrupt interrupt(self.stop(), main);
+      return step();
+    }();
+    if (main) run_due_handlers();
+    return out;
+  } catch (const Error&) {  // where Ctrl-C is the reason, what Python's handler raises comes first
+    if (main) run_due_handlers();
+    throw;
+  }
+}
+
+Shared make_simulation(const Scene& scene, double duration_s) {
+  const py::gil_scoped_release release;
+  refuse_missing_models(scene.description());
+  return std::make_shared<Simulation>(scene.description(), duration_s);
+}
+
+py::list all_bodies(const Shared& self) {
+  py::list out;
+  for (std::size_t i = 0; i < self->world().bodies.size(); ++i) out.append(BodyOf{self, i});
+  return out;
+}
+
+py::dict counters_of(Simulation& self) {
+  const Simulation::Lease lease(self);
+  py::dict out;
+  loop::visit_counters([&out](const char* name, const auto& value) { out[name] = value; }, self.result());
+  return out;
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  py::class_<Simulation, Shared>(module, "Simulation",
+                                 "A scene that is simulated in virtual time, period by period.")
+      .def(py::init(&make_simulation), py::arg("scene"), py::arg("duration_s") = 0.0,
+           "Assembles a scene.  duration_s: 0 for the scene's.")
+      .def(
+          "step", [](Simulation& self) { return interruptible(self, [&] { return self.step(); }); },
+          "Goes through one period of the scene's loop.  False at the end, where nothing is done.")
+      .def(
+          "advance",
+          [](Simulation& self, double seconds) {
+            interruptible(self, [&] { return self.advance(seconds), 0; });
+          },
+          py::arg("seconds"), "Steps until so much simulated time has passed, or to the end.")
+      .def(
+          "run", [](Simulation& self) { interruptible(self, [&] { return self.run(), 0; }); },
+          "Steps to the end.")
+      .def_property_readonly("time", &Simulation::time, "Simulated so far [s].")
+      .def_property_readonly("duration", &Simulation::duration, "Of the whole [s].")
+      .def_property_readonly("finished", &Simulation::finished)
+      .def_property_readonly("bodies", &all_bodies)
+      .def("body", &find_body, py::arg("name"), "The body of that name.")
+      .def("hand", &find_hand, py::arg("name") = "tool",
+           "What the hand with that tool did and felt: \"tool\" is that of [tool], a [[hand]] has its name.")
+      .def_property_readonly(
+          "force", [](const Shared& self) { return last_force(find_hand(self, "tool")); },
+          "On the first hand at the last tick, (3,) [N].")
+      .def_property_readonly(
+          "torque", [](const Shared& self) { return last_torque(find_hand(self, "tool")); },
+          "On the first hand at the last tick, (3,) [N m].")
+      .def_property_readonly("contact", &contact_of, "The contact samples now.")
+      .def_property_readonly("counters", &counters_of, "Counts and times [s] of the run so far, by name.")
+      .def("__repr__", [](const Simulation& self) {
+        return fmt::format("<palpate.Simulation at {:g} of {:g} s>", self.time(), self.duration());
+      });
+}
+
+}  // namespace palpate::python
