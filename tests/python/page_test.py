@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""The examples of docs/python.md print what the page says, each in a Python of its own; the notebook runs
+from its first cell to its last, and finds what its text says."""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from built import PACKAGE, TREE
+
+sys.path.insert(0, str(TREE / "tests/docs"))
+from pages import fences  # noqa: E402
+
+try:
+    import matplotlib
+except ImportError:
+    matplotlib = None
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE), "MPLBACKEND": "Agg"}
+
+
+def examples(text):
+    """(code, output) of each example; output None where the page shows none."""
+    blocks = fences(text)
+    after = blocks[1:] + [("", "")]
+    return [(code, following if kind == "text" else None)
+            for (language, code), (kind, following) in zip(blocks, after) if language == "python"]
+
+
+def run(code, folder):
+    done = subprocess.run([sys.executable, "-B", "-c", code], cwd=folder, env=ENVIRONMENT, text=True,
+                          capture_output=True, check=False)
+    return done.stdout if done.returncode == 0 else done.stdout + done.stderr
+
+
+def in_scope(cells, scope):
+    """Runs the code cells in their order in one scope, as a kernel does."""
+    for number, source in enumerate(cells, 1):
+        exec(compile(source, f"cell {number}", "exec"), scope)
+
+
+class Page(unittest.TestCase):
+    found = examples((TREE / "docs/python.md").read_text())
+
+    def test_examples(self):
+        self.assertGreaterEqual(len(self.found), 8)
+        self.assertGreaterEqual(sum(output is not None for _, output in self.found), 7)
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "scenes").symlink_to(TREE / "scenes")
+            for code, output in self.found:
+                with self.subTest(code=code):
+                    self.assertLessEqual(len(re.findall(r"^(?!import|from)", code.strip(), re.M)), 5)
+                    if "plot" in code and matplotlib is None:
+                        continue
+                    self.assertEqual(run(code, folder), output or "")
+            if matplotlib is not None:
+                self.assertGreater((Path(folder) / "force.png").stat().st_size, 5000)
+
+    def test_a_wrong_example_is_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertIn("No module named 'palpat'", run("import palpat", folder))
+            self.assertEqual(examples("```python\nx\n```\n\n```text\ny\n```\n```python\nz\n```\n"),
+                             [("x\n", "y\n"), ("z\n", None)])
+
+
+class Notebook(unittest.TestCase):
+    @unittest.skipIf(matplotlib is None, "Matplotlib is missing (Debian package python3-matplotlib)")
+    def test_it_runs(self):
+        notebook = json.loads((TREE / "docs/python.ipynb").read_text())
+        self.assertEqual(notebook["nbformat"], 4)
+        cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+        self.assertGreaterEqual(len(cells), 5)
+        self.assertEqual(len({cell["id"] for cell in notebook["cells"]}), len(notebook["cells"]))
+        for cell in notebook["cells"]:  # what it printed elsewhere is no part of it
+            self.assertEqual(cell.get("outputs", []), [])
+        os.environ["MPLBACKEND"] = "Agg"
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        os.chdir(TREE / "docs")
+        scope = {"__name__": "__main__"}
+        in_scope(cells, scope)
+        self.assertEqual(len(scope["times"]), 39 + 1)
+        self.assertGreater(max(scope["dents"]), 3e-3)
+        self.assertGreater(scope["pressing"].sum(), 1)
+        self.assertGreater(scope["forces"][4e4], 1.1 * scope["forces"][1e4])
+        self.assertEqual(len(scope["axes"].get_lines()), 2)
+
+    def test_a_cell_that_fails_is_found(self):
+        with self.assertRaises(NameError):
+            in_scope(["x = 1", "y = x + z"], {})
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[__file__])
