@@ -6,11 +6,10 @@
 namespace palpate::stability {
 
 /// A stepper that does nothing keeps a body at rest as well as any.  So what rests is let go a second time,
-/// all of it at a speed v, and must be where v t is after each of ten periods: nothing acts on it, for what
-/// it touches is taken away.  Every method's formula is exact there, but stages are solved to a share of the
-/// tolerance: to rtol of the way, RMS over the nodes; to 1e-6 where rtol is less.  (Cash's SDIRK methods have
-/// a stage at -0.7 of a step, which would find a body that leaves a floor still in it.)  What is missing of
-/// that; empty for nothing, and for statics, which knows no speed.
+/// all of it at a speed v, and must be where v t is after each of ten periods, to 1e-6 of it: nothing acts on
+/// it, for what it touches is taken away.  (Cash's SDIRK methods have a stage at -0.7 of a step, which would
+/// find a body that leaves a floor still in it.)  What is missing of that; empty for nothing, and for
+/// statics, which knows no speed.
 /// @param d  without gravity
 std::string does_not_move(const Lab& lab, scene::Description d, double rtol);
 
