@@ -10,9 +10,9 @@
 // the contact.
 //
 // Unloaded, the cube stays where it was put: rounding of eps a period, not summed but in the worst case, 1e5
-// eps = 2e-11 of its size.  The same cube must move when it is let go at a speed, to 1e-6 of its way (alive.h).
-// Stages are solved to a share of rtol, and what that leaves is in proportion to it: with 1e-5 up to 2.8e-6 of
-// the way (ark-dirk-sdirk534).  It is let go with 1e-6.
+// eps = 2e-11 of its size.  The same cube must move when it is let go at a speed, to 1e-6 of its way
+// (alive.h). Stages are solved to a share of rtol, and what that leaves is in proportion to it: with 1e-5 up
+// to 2.8e-6 of the way (ark-dirk-sdirk534).  It is let go with 1e-6.
 //   -> accurate
 //   w H = 0.3 of its fastest mode, and light damping: within every explicit limit, that of the two-stage
 //   methods too, which have none on the imaginary axis but grow by y^4/8 a step, y = w H, less than the
@@ -47,7 +47,7 @@ namespace {
 
 constexpr double kPeriod = 0.01, kDuration = 1000.0, kRtol = 1e-5;
 constexpr double kMovingRtol = 1e-6;  // of what is let go
-constexpr double kSize = 0.05;  // of the cube [m]
+constexpr double kSize = 0.05;        // of the cube [m]
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kFriction = 0.5, kSlope = 0.2, kRegularisation = 0.05;  // tan a, v_r [m/s]
 constexpr double kSettling = 2.0;                                        // [s]
