@@ -97,8 +97,8 @@ class StepSolver {
   bool projects() const { return project_; }
   /// Whether the matrix last factored is of projected tangents, in place of one that was indefinite.
   bool projected() const { return projected_; }
-  /// Counts a matrix that its owner gave to the chosen solver itself: it was indefinite; its projection was
-  /// solved with.
+  /// Counts a matrix that its owner found out about itself: it was indefinite, or the step went along its
+  /// negative curvature; its projection was solved with.
   void count_indefinite() { ++indefinite_count_; }
   void count_projected() { ++projected_count_; }
   /// Sum over the solvers.
