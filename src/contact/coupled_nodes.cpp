@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace palpate::contact {
 namespace {
@@ -38,55 +39,61 @@ std::span<const int> NodeNeighbours::of(int node) const {
 
 /// visit(i, j) for the nodes that two carriers couple, until it says false.
 template <class Visit>
-bool CoupledNodes::for_each_pair(const Carrier& a, const Carrier& b, Visit visit) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i)
-    for (std::size_t j = 0; j < static_cast<std::size_t>(b.count); ++j)
-      if (!visit(a.node[i], b.node[j])) return false;
+bool CoupledNodes::for_each_pair(const Joint& joint, Visit visit) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(joint.count_a); ++i)
+    for (std::size_t j = 0; j < static_cast<std::size_t>(joint.count_b); ++j)
+      if (!visit(joint.a[i], joint.b[j])) return false;
   return true;
 }
 
-/// Whether all that the cells from `first` on couple is there.  Most of them were met before: they are known
-/// by their carriers.
-bool CoupledNodes::holds(const SampleCells& samples, std::size_t first) {
+/// Whether all that the joints couple is there.  Most of them were met before: they are known by their
+/// carriers.
+bool CoupledNodes::holds() {
+  for (const Joint& joint : joints_) {
+    if (known_.contains(joint.key)) continue;
+    const bool there = for_each_pair(joint, [&](int i, int j) {
+      return std::binary_search(pairs_.begin(), pairs_.end(), std::pair(i, j));
+    });
+    if (!there) return false;
+    known_.insert(joint.key);
+  }
+  return true;
+}
+
+void CoupledNodes::widen() {
+  both_.clear();
+  for (const auto& [i, j] : met_)
+    for (const int near : of_a_->of(i)) both_.emplace_back(near, j);
+  dynamics::sort_unique(both_, node_count(both_));
+  wide_.clear();
+  for (const auto& [i, j] : both_)
+    for (const int near : of_b_->of(j)) wide_.emplace_back(i, near);
+  dynamics::sort_unique(wide_, node_count(wide_));
+}
+
+void CoupledNodes::take(const SampleCells& samples, std::size_t first) {
+  joints_.clear();
   for (std::size_t c = first; c < samples.cells.size(); ++c) {
     const Carrier &a = samples.carriers[static_cast<std::size_t>(samples.cells[c].a)],
                   &b = samples.carriers[static_cast<std::size_t>(samples.cells[c].b)];
     const auto key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(a.number)) << 32 |
                      static_cast<std::uint32_t>(b.number);
-    if (known_.contains(key)) continue;
-    const bool there = for_each_pair(a, b, [&](int i, int j) {
-      return std::binary_search(pairs_.begin(), pairs_.end(), std::pair(i, j));
-    });
-    if (!there) return false;
-    known_.insert(key);
+    joints_.push_back({key, a.count, b.count, a.node, b.node});
   }
-  return true;
+  behind_ = true;
 }
 
-void CoupledNodes::widen(const NodeNeighbours& a, const NodeNeighbours& b) {
-  both_.clear();
-  for (const auto& [i, j] : met_)
-    for (const int near : a.of(i)) both_.emplace_back(near, j);
-  dynamics::sort_unique(both_, node_count(both_));
-  wide_.clear();
-  for (const auto& [i, j] : both_)
-    for (const int near : b.of(j)) wide_.emplace_back(i, near);
-  dynamics::sort_unique(wide_, node_count(wide_));
-}
-
-void CoupledNodes::take(const SampleCells& samples, std::size_t first, const NodeNeighbours& a,
-                        const NodeNeighbours& b) {
+void CoupledNodes::catch_up() {
   constexpr std::size_t kLargest = 2;
-  if (holds(samples, first)) return;
+  if (!std::exchange(behind_, false) || holds()) return;
   met_.clear();
-  for (std::size_t c = first; c < samples.cells.size(); ++c)
-    for_each_pair(samples.carriers[static_cast<std::size_t>(samples.cells[c].a)],
-                  samples.carriers[static_cast<std::size_t>(samples.cells[c].b)], [&](int i, int j) {
-                    met_.emplace_back(i, j);
-                    return true;
-                  });
+  for (const Joint& joint : joints_)
+    for_each_pair(joint, [&](int i, int j) {
+      met_.emplace_back(i, j);
+      return true;
+    });
   dynamics::sort_unique(met_, node_count(met_));
-  widen(a, b);
+  widen();
   both_.clear();
   std::set_union(pairs_.begin(), pairs_.end(), wide_.begin(), wide_.end(), std::back_inserter(both_));
   pairs_ = both_.size() > kLargest * wide_.size() ? wide_ : both_;
@@ -94,15 +101,25 @@ void CoupledNodes::take(const SampleCells& samples, std::size_t first, const Nod
   ++version_;
 }
 
-void CoupledNodes::forget() {
+void CoupledNodes::start(const NodeNeighbours& a, const NodeNeighbours& b) {
+  of_a_ = &a;
+  of_b_ = &b;
+  joints_.clear();
+  behind_ = false;
   if (pairs_.empty()) return;
   pairs_.clear();
   known_.clear();
   ++version_;
 }
 
-void CoupledNodes::add_pattern(dynamics::PatternBuilder& pattern) const {
+void CoupledNodes::add_pattern(dynamics::PatternBuilder& pattern) {
+  catch_up();
   for (const auto& [i, j] : pairs_) pattern.add_pair(i, j);
+}
+
+std::uint64_t CoupledNodes::version() {
+  catch_up();
+  return version_;
 }
 
 }  // namespace palpate::contact

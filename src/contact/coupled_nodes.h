@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <unordered_set>
@@ -33,21 +34,35 @@ class NodeNeighbours {
 /// holds what was met, with the neighbours of both nodes, so that contact may slide by an element before
 /// anything new is met (each change costs a symbolic analysis, many times the product with some more blocks).
 /// It grows as contact slides on; where it has become twice what is needed now, it starts anew.
+///
+/// Steps that keep contact's tangent beside their matrix (point_operator) never ask for a pattern: a query
+/// only notes what its samples hang on, and the pattern is made when somebody asks.
 class CoupledNodes {
  public:
+  /// The nodes are counted otherwise from now on.  @pre both are there as long as this is
+  void start(const NodeNeighbours& a, const NodeNeighbours& b);
   /// @param first  of the cells that these bodies have made
-  void take(const SampleCells& samples, std::size_t first, const NodeNeighbours& a, const NodeNeighbours& b);
-  void forget();  ///< the nodes are counted otherwise from now on
-  void add_pattern(dynamics::PatternBuilder& pattern) const;
-  std::uint64_t version() const { return version_; }  ///< grows with every change
+  void take(const SampleCells& samples, std::size_t first);
+  void add_pattern(dynamics::PatternBuilder& pattern);
+  std::uint64_t version();  ///< grows with every change
 
  private:
   using Pairs = std::vector<std::pair<int, int>>;
+  /// What carries the samples of a cell.
+  struct Joint {
+    std::uint64_t key;  ///< both carriers' numbers
+    int count_a, count_b;
+    std::array<int, 4> a, b;  ///< nodes
+  };
   template <class Visit>
-  static bool for_each_pair(const Carrier& a, const Carrier& b, Visit visit);
-  bool holds(const SampleCells& samples, std::size_t first);
-  void widen(const NodeNeighbours& a, const NodeNeighbours& b);
+  static bool for_each_pair(const Joint& joint, Visit visit);
+  void catch_up();  ///< with what was taken last
+  bool holds();
+  void widen();
 
+  const NodeNeighbours *of_a_ = nullptr, *of_b_ = nullptr;
+  std::vector<Joint> joints_;                // of the last query
+  bool behind_ = false;                      // these were not looked at
   Pairs pairs_, met_, wide_, both_;          // ascending
   std::unordered_set<std::uint64_t> known_;  // cells, by their carriers, whose pairs are there
   std::uint64_t version_ = 0;

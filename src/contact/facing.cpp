@@ -8,45 +8,39 @@ namespace palpate::contact {
 
 void FacePlanes::start(const Patch& patch) {
   patch_ = &patch;
-  planes_.resize(patch.visible.size());
-  for (Plane& plane : planes_) plane.state = Plane::kUnknown;
+  if (planes_.size() < patch.visible.size()) planes_.resize(patch.visible.size());
+  kinds_.assign(patch.visible.size(), Kind::kUnknown);
 }
 
 // With corners p0, p1, p2 seen along w and d_i = p_i - p0, the weights of corners 1 and 2 at p0 + d are
 // (d x d_2) / (d_1 x d_2) and (d_1 x d) / (d_1 x d_2).
-void FacePlanes::prepare(Plane& plane, int face) const {
+FacePlanes::Kind FacePlanes::prepare(Plane& plane, int face) const {
   constexpr double kFlat = 1e-12;
   const auto corner = [&](int k) { return patch_->uvw.col((*patch_->faces)(k, face)); };
   const Vec3 d1 = corner(1) - corner(0), d2 = corner(2) - corner(0);
   const double area = d1.x() * d2.y() - d1.y() * d2.x();
-  if (std::abs(area) <= kFlat * (d1.squaredNorm() + d2.squaredNorm())) {
-    plane.state = Plane::kEdgeOn;
-    return;
-  }
+  if (std::abs(area) <= kFlat * (d1.squaredNorm() + d2.squaredNorm())) return Kind::kEdgeOn;
   constexpr double kSteep = 5.0;  // slope: 79 degrees
   const Vec3 p0 = corner(0);
-  plane = {p0.x(), p0.y(), d2.y() / area, -d2.x() / area, -d1.y() / area, d1.x() / area,
-           p0.z(), d1.z(), d2.z(),        Plane::kReady,  false};
+  plane = {p0.x(),        p0.y(), d2.y() / area, -d2.x() / area, -d1.y() / area,
+           d1.x() / area, p0.z(), d1.z(),        d2.z()};
   const double along_u = plane.u1 * plane.w1 + plane.u2 * plane.w2,
                along_v = plane.v1 * plane.w1 + plane.v2 * plane.w2;
-  plane.wall = along_u * along_u + along_v * along_v > kSteep * kSteep;
+  return along_u * along_u + along_v * along_v > kSteep * kSteep ? Kind::kWall : Kind::kPlain;
 }
 
-FacePlanes::Plane& FacePlanes::plane(int visible) {
-  Plane& plane = planes_[static_cast<std::size_t>(visible)];
-  if (plane.state == Plane::kUnknown) prepare(plane, patch_->visible[static_cast<std::size_t>(visible)]);
-  return plane;
+FacePlanes::Kind FacePlanes::kind(int visible) {
+  const auto at = static_cast<std::size_t>(visible);
+  if (kinds_[at] == Kind::kUnknown) kinds_[at] = prepare(planes_[at], patch_->visible[at]);
+  return kinds_[at];
 }
 
-bool FacePlanes::is_wall(int visible) {
-  const Plane& p = plane(visible);
-  return p.state == Plane::kEdgeOn || p.wall;
-}
+bool FacePlanes::is_wall(int visible) { return kind(visible) != Kind::kPlain; }
 
 bool FacePlanes::at(int visible, double u, double v, Vec3& weights, double& w) {
   constexpr double kOutside = -0.25;
-  const Plane& plane = this->plane(visible);
-  if (plane.state == Plane::kEdgeOn) return false;
+  if (kind(visible) == Kind::kEdgeOn) return false;
+  const Plane& plane = planes_[static_cast<std::size_t>(visible)];
   const double du = u - plane.u0, dv = v - plane.v0;
   const double first = plane.u1 * du + plane.v1 * dv, second = plane.u2 * du + plane.v2 * dv;
   weights = Vec3(1.0 - first - second, first, second);

@@ -29,14 +29,14 @@ class FacePlanes {
     double u0, v0;          ///< corner 0
     double u1, v1, u2, v2;  ///< gradients of the weights of corners 1 and 2
     double w0, w1, w2;      ///< heights: of corner 0, of the others against it
-    enum : int { kUnknown, kEdgeOn, kReady } state;
-    bool wall;  ///< so steep that an image is not enough
   };
-  Plane& plane(int visible);
-  void prepare(Plane& plane, int face) const;
+  enum class Kind : unsigned char { kUnknown, kEdgeOn, kPlain, kWall };
+  Kind kind(int visible);
+  Kind prepare(Plane& plane, int face) const;
 
   const Patch* patch_ = nullptr;
   std::vector<Plane> planes_;
+  std::vector<Kind> kinds_;  ///< apart from the planes: it alone is written for faces that nobody asks for
 };
 
 /// The image said which triangles; the gap is theirs at (out.u, out.v), in double.  False where one of them

@@ -150,12 +150,12 @@ void ImageSource::end(const SampleCells& samples, std::size_t first_cell) {
   }
   if (!context_.b->soft()) return;
   if (const std::uint64_t now = sides_version(); now != counted_ || neighbours_a_.empty()) {
-    coupled_.forget();
     neighbours_a_ = context_.a->soft()->neighbours();
     neighbours_b_ = context_.of_one_body() ? neighbours_a_ : context_.b->soft()->neighbours();
+    coupled_.start(neighbours_a_, neighbours_b_);
     counted_ = now;
   }
-  coupled_.take(samples, first_cell, neighbours_a_, neighbours_b_);
+  coupled_.take(samples, first_cell);
 }
 
 void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSample>& samples) {

@@ -88,8 +88,8 @@ class ImageSource : public SampleSource {
   SampleCells cells_;  ///< scratch
   AskedTogether asked_together_;
   std::vector<std::unique_ptr<ImageRegion>> regions_;
-  std::size_t open_ = 0;  ///< of `regions_`, in the query under way
-  CoupledNodes coupled_;  // of two soft sides
+  std::size_t open_ = 0;          ///< of `regions_`, in the query under way
+  mutable CoupledNodes coupled_;  // of two soft sides; the pattern is made when it is asked for
   NodeNeighbours neighbours_a_, neighbours_b_;
   std::uint64_t sides_version() const;  // grows with what either side couples by itself
   std::uint64_t counted_ = 0;           // the one that `coupled_` was made for

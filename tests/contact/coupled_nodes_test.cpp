@@ -34,7 +34,7 @@ SampleCells cell_at(int node) {
   return out;
 }
 
-std::set<std::pair<int, int>> pairs_of(const CoupledNodes& coupled) {
+std::set<std::pair<int, int>> pairs_of(CoupledNodes& coupled) {
   dynamics::PatternBuilder pattern(kFirst + kNodes);
   coupled.add_pattern(pattern);
   std::set<std::pair<int, int>> out;
@@ -55,12 +55,15 @@ TEST(NodeNeighbours, AreThoseOfTheElements) {
 TEST(CoupledNodes, WaitForContactThatSlidesByAnElement) {
   const NodeNeighbours a = chain(0), b = chain(kFirst);
   CoupledNodes coupled;
-  coupled.take(cell_at(10), 0, a, b);
+  coupled.start(a, b);
+  coupled.take(cell_at(10), 0);
   EXPECT_EQ(pairs_of(coupled).size(), 9u) << "each of three with each of three";
   const auto version = coupled.version();
-  for (const int node : {9, 11, 10}) coupled.take(cell_at(node), 0, a, b);
-  EXPECT_EQ(coupled.version(), version);
-  coupled.take(cell_at(12), 0, a, b);
+  for (const int node : {9, 11, 10}) {
+    coupled.take(cell_at(node), 0);
+    EXPECT_EQ(coupled.version(), version);
+  }
+  coupled.take(cell_at(12), 0);
   EXPECT_GT(coupled.version(), version);
   EXPECT_TRUE(pairs_of(coupled).contains({9, 9})) << "what was met stays for a while";
   EXPECT_TRUE(pairs_of(coupled).contains({13, 13}));
@@ -70,13 +73,32 @@ TEST(CoupledNodes, WaitForContactThatSlidesByAnElement) {
 TEST(CoupledNodes, StartAnewWhereMostIsPast) {
   const NodeNeighbours a = chain(0), b = chain(kFirst);
   CoupledNodes coupled;
+  coupled.start(a, b);
   for (int node = 2; node < 36; node += 3)
-    for (int again = 0; again < 2; ++again) coupled.take(cell_at(node), 0, a, b);
+    for (int again = 0; again < 2; ++again) {
+      coupled.take(cell_at(node), 0);
+      coupled.version();
+    }
   EXPECT_LE(pairs_of(coupled).size(), 18u);
   EXPECT_TRUE(pairs_of(coupled).contains({35, 35}));
   EXPECT_FALSE(pairs_of(coupled).contains({2, 2}));
-  coupled.take(cell_at(2), 0, a, b);
+  coupled.take(cell_at(2), 0);
   EXPECT_TRUE(pairs_of(coupled).contains({2, 2})) << "was known, and forgotten";
-  coupled.forget();
+  const auto version = coupled.version();
+  coupled.start(a, b);
   EXPECT_TRUE(pairs_of(coupled).empty());
+  EXPECT_GT(coupled.version(), version);
+}
+
+TEST(CoupledNodes, AreMadeOfTheLastQueryWhenSomebodyAsks) {
+  const NodeNeighbours a = chain(0), b = chain(kFirst);
+  CoupledNodes coupled;
+  coupled.start(a, b);
+  for (const int node : {5, 10, 30}) coupled.take(cell_at(node), 0);
+  EXPECT_EQ(pairs_of(coupled).size(), 9u) << "nobody asked for the first two";
+  EXPECT_TRUE(pairs_of(coupled).contains({30, 30}));
+  const auto version = coupled.version();
+  EXPECT_GT(version, 0u);
+  coupled.take(cell_at(12), 0);
+  EXPECT_GT(coupled.version(), version) << "the version alone is an answer, too";
 }
