@@ -10,11 +10,22 @@
 // the error, measured as 0.05 to 0.2 on the paper's scenes.  Two looks leave r^2.  Jumps of the pruner's
 // normal by phi are thus jumps by r^2 phi of the force, below a hundredth for phi = 0.2 rad.
 //
-// Where the second look still turns the normal, r is near 1: an overlap as deep as it is wide pushes along
-// whatever it is seen along.  There are more looks then, each along what the last one found.  None comes or
-// goes at once: look k + 1 moves the normal by W_k (n_k+1 - n_k), W_k the product of weights that rise
-// smoothly with the turn of each look before it.  The normal is a function of the pose alone; what the last
-// query found would make it smoother along a slow path, and wrong on a fast one.
+// Where the second look still turns the normal, r is not small.  It is near 1 where an overlap is as deep as
+// it is wide: that pushes along whatever it is seen along.  It is negative where two flanks press, as those
+// of a nose on a ball: seen from nearer to one, the other pushes more, -tan^2(a) of the error where both
+// stand at an angle a from the normal.  From 45 degrees on looks along what the last one found would go to
+// and fro for ever, and where they end would be chance.  So a look goes a part s of the way to what it has
+// found,
+//     n_k+1 = n_k + s (P(n_k) - n_k),    s = 1 / (1 - r),    r = (P(n_k) - P(n_k-1)) . e / |e|^2,
+// e = n_k - n_k-1: the secant's zero of P(n) - n, exact where P is linear.  s is never more than 1, nor more
+// than it was at the last look: P is bent where skin comes into view, and the next secant may tell of one
+// side alone.  An |e| of a few hundredths of a radian tells of pixels and triangles more than of r, so its
+// square is taken to be larger than it is by kBlur^2.
+//
+// More looks than two do not come or go at once: look k + 1 moves the normal by W_k (n_k+2 - n_k+1), W_k the
+// product of weights that rise smoothly with the turn of each look before it.  The normal is a function of
+// the pose alone; what the last query found would make it smoother along a slow path, and wrong on a fast
+// one.
 #include "contact/pruned_region.h"
 
 #include <algorithm>
@@ -26,10 +37,19 @@ namespace {
 
 constexpr double kAligned = 1e-3;  // [rad]: an image along such a normal is one along the overlap's own
 // How far the second look turns a normal that is decided, and one that is not.
-constexpr double kEnough = 0.02;  // [rad]
-constexpr double kTooFar = 0.06;  // [rad]
-constexpr double kCloser = 0.05;  // of the candidate gap: see overlap_push.cpp
-constexpr int kLooks = 6;         // along a region's axes, until they settle
+constexpr double kEnough = 0.02;    // [rad]
+constexpr double kTooFar = 0.06;    // [rad]
+constexpr double kCloser = 0.05;    // of the candidate gap: see overlap_push.cpp
+constexpr int kLooks = 6;           // along a region's axes, until they settle
+constexpr double kBlur = 0.02;      // [rad]: of what looks find
+constexpr double kLeastStep = 0.1;  // of the way to what a look has found
+
+/// How far to go to what a look has found.
+/// @param way  between the normals of the last two looks  @param found  between what they found
+double part_of_the_way(const Vec3& way, const Vec3& found) {
+  const double square = way.squaredNorm() + kBlur * kBlur;
+  return std::max(kLeastStep, square / (square - std::min(0.0, found.dot(way))));
+}
 
 }  // namespace
 
@@ -37,7 +57,7 @@ void PrunedRegion::start(const proxy::ContactRegion& region) {
   proxies_ = &region.pairs;
   candidate_gap_ = region.gap;
   looks_ = 0;
-  share_ = 1.0;
+  step_ = share_ = 1.0;
   {
     const ScopedTimer timer(context_.stages.positions_s);
     RegionMesh &a = pruned_.next_mesh(), &b = pruned_.next_mesh();
@@ -67,18 +87,25 @@ void PrunedRegion::take() {
 }
 
 void PrunedRegion::take_normal(const Vec3& normal) {
-  if (fresh_) weight_ = next_weight_;
-  final_ = first_ ? normal : Vec3(final_ + weight_ * (normal - found_));
-  found_ = normal;
+  const Vec3 along = axes_.normal();
+  if (fresh_) {
+    weight_ = next_weight_;
+    if (!first_) step_ = std::min(step_, part_of_the_way(along - last_along_, normal - last_found_));
+    last_along_ = along;
+  }
+  last_found_ = normal;
+  const Vec3 next = (along + step_ * (normal - along)).normalized();
+  final_ = first_ ? next : Vec3(final_ + weight_ * (next - next_));
+  next_ = next;
   first_ = false;
   if (!std::exchange(fresh_, false)) return;
-  const double turn = (normal - axes_.normal()).norm();
+  const double turn = (normal - along).norm();
   if (overlaps_.empty()) next_weight_ = 0.0;
   if (looks_ > 1) next_weight_ *= smooth_step((turn - kEnough) / (kTooFar - kEnough));
 }
 
 void PrunedRegion::look_again() {
-  const ContactAxes axes(axes_.origin, found_);
+  const ContactAxes axes(axes_.origin, next_);
   std::optional<Extent> seen;
   if (!hits_.empty()) seen = seen_along(axes);
   axes_ = axes;

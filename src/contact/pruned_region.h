@@ -61,7 +61,9 @@ class PrunedRegion final : public ImageRegion {
     piece_a_.take_part(whole.piece_a_, belongs);
     piece_b_.take_part(whole.piece_b_, [](int) { return true; });
     looks_ = whole.looks_;
-    start(whole.axes_.origin, normal);
+    step_ = whole.step_;
+    const Vec3 along = whole.axes_.normal();
+    start(whole.axes_.origin, (along + step_ * (normal - along)).normalized());
   }
 
   void take() override;
@@ -100,8 +102,10 @@ class PrunedRegion final : public ImageRegion {
   std::vector<PixelPush> pushes_;      ///< theirs
   int looks_ = 0;
   bool waits_ = false, fresh_ = false, first_ = true;
-  Vec3 found_ = Vec3::Zero(), final_ = Vec3::Zero();  ///< normal by the last look, by all
-  double weight_ = 1.0, next_weight_ = 1.0;           ///< of the last look and of the next one
+  Vec3 last_along_ = Vec3::Zero(), last_found_ = Vec3::Zero();  ///< the last look's normal, and what it saw
+  double step_ = 1.0;  ///< the part of the way that is gone from one to the other
+  Vec3 next_ = Vec3::Zero(), final_ = Vec3::Zero();  ///< normal by the last look, by all
+  double weight_ = 1.0, next_weight_ = 1.0;          ///< of the last look and of the next one
   bool seen_ = false;
 };
 
