@@ -22,10 +22,13 @@
 // side alone.  An |e| of a few hundredths of a radian tells of pixels and triangles more than of r, so its
 // square is taken to be larger than it is by kBlur^2.
 //
+// Where r is more than 1, at the edge of a ridge between two ways out, looks drive apart what is near, and
+// none of them says more than the one before: they end to count as r goes there.
+//
 // More looks than two do not come or go at once: look k + 1 moves the normal by W_k (n_k+2 - n_k+1), W_k the
 // product of weights that rise smoothly with the turn of each look before it.  The normal is a function of
-// the pose alone; what the last query found would make it smoother along a slow path, and wrong on a fast
-// one.
+// the pose alone: what the last query found would make it smoother along a slow path, and wrong on a fast
+// path.
 #include "contact/pruned_region.h"
 
 #include <algorithm>
@@ -43,12 +46,13 @@ constexpr double kCloser = 0.05;    // of the candidate gap: see overlap_push.cp
 constexpr int kLooks = 6;           // along a region's axes, until they settle
 constexpr double kBlur = 0.02;      // [rad]: of what looks find
 constexpr double kLeastStep = 0.1;  // of the way to what a look has found
+// Of r: looks that lead somewhere, and such as only drive apart what is near.
+constexpr double kLeads = 0.7, kDrivesAway = 1.2;
 
-/// How far to go to what a look has found.
-/// @param way  between the normals of the last two looks  @param found  between what they found
-double part_of_the_way(const Vec3& way, const Vec3& found) {
-  const double square = way.squaredNorm() + kBlur * kBlur;
-  return std::max(kLeastStep, square / (square - std::min(0.0, found.dot(way))));
+/// The part r of the way between two looks that comes back in what they find.
+/// @param way  between their normals  @param found  between what they found
+double part_that_comes_back(const Vec3& way, const Vec3& found) {
+  return found.dot(way) / (way.squaredNorm() + kBlur * kBlur);
 }
 
 }  // namespace
@@ -89,8 +93,12 @@ void PrunedRegion::take() {
 void PrunedRegion::take_normal(const Vec3& normal) {
   const Vec3 along = axes_.normal();
   if (fresh_) {
+    if (!first_) {
+      const double r = part_that_comes_back(along - last_along_, normal - last_found_);
+      step_ = std::clamp(1.0 / (1.0 + std::max(0.0, -r)), kLeastStep, step_);
+      next_weight_ *= smooth_step((kDrivesAway - r) / (kDrivesAway - kLeads));
+    }
     weight_ = next_weight_;
-    if (!first_) step_ = std::min(step_, part_of_the_way(along - last_along_, normal - last_found_));
     last_along_ = along;
   }
   last_found_ = normal;
@@ -100,6 +108,7 @@ void PrunedRegion::take_normal(const Vec3& normal) {
   first_ = false;
   if (!std::exchange(fresh_, false)) return;
   const double turn = (normal - along).norm();
+  unaligned_ = !overlaps_.empty() && turn > kEnough;
   if (overlaps_.empty()) next_weight_ = 0.0;
   if (looks_ > 1) next_weight_ *= smooth_step((turn - kEnough) / (kTooFar - kEnough));
 }

@@ -74,8 +74,10 @@ class PrunedRegion final : public ImageRegion {
   std::span<const PairOverlap> overlaps() const { return overlaps_; }
   Vec3 normal() const { return axes_.normal(); }
   bool may_look_again() const;
-  /// The last look was too far from the normal that it found.
+  /// Another look would bring its normal nearer to what the overlap's is.
   bool wants_another() const { return next_weight_ > 0.0; }
+  /// The last look was too far from the normal that it found.
+  bool is_unaligned() const { return unaligned_; }
 
   /// What the planes of all regions say about its normal.
   void take_normal(const Vec3& normal);
@@ -101,7 +103,7 @@ class PrunedRegion final : public ImageRegion {
   std::vector<PairOverlap> overlaps_;  ///< of the last look along the axes
   std::vector<PixelPush> pushes_;      ///< theirs
   int looks_ = 0;
-  bool waits_ = false, fresh_ = false, first_ = true;
+  bool waits_ = false, fresh_ = false, first_ = true, unaligned_ = false;
   Vec3 last_along_ = Vec3::Zero(), last_found_ = Vec3::Zero();  ///< the last look's normal, and what it saw
   double step_ = 1.0;  ///< the part of the way that is gone from one to the other
   Vec3 next_ = Vec3::Zero(), final_ = Vec3::Zero();  ///< normal by the last look, by all

@@ -125,11 +125,10 @@ void PrunedSource::settle(std::size_t count) {
   const bool done = plan(count);
   for (const Plan& plan : plans_) {
     PrunedRegion& region = at(plan.region);
-    const bool unfinished = !plan.one_plane || region.wants_another();
     if (done) {
-      context_.stages.unaligned += unfinished;
+      context_.stages.unaligned += !plan.one_plane || region.is_unaligned();
       region.go_on();
-    } else if (unfinished && region.may_look_again()) {
+    } else if ((!plan.one_plane || region.wants_another()) && region.may_look_again()) {
       plan.one_plane ? region.look_again() : split(region, parts_.of(region.overlaps()));
     }
   }
