@@ -338,7 +338,7 @@ void add_stability(CLI::App& app, Invocation& invocation) {
       "--haptic", arguments->haptic,
       "instead: how stiff a wall the loop of a scene's device, coupling and tool renders, by passivity, by "
       "its exact linear map, and by simulation");
-  command->add_option("SCENE", arguments->scene.scene, std::string("haptic: ") + kSceneHelp)->needs(haptic);
+  command->add_option("SCENE", arguments->scene.scene, std::string("haptic: ") + kSceneHelp);
   command->add_option("--set", arguments->scene.overrides, "haptic: change one value of the scene, KEY=VALUE")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
@@ -375,6 +375,8 @@ Writes stability.csv, stability.json and report.html with the heat map; haptic: 
 Exit status 0 when every cell is as theory expects; haptic: when passive lies within stable; else 1.)");
   command->callback([arguments, &invocation] {
     if (arguments->haptic && arguments->scene.scene.empty()) throw CLI::RequiredError("--haptic: SCENE");
+    // here, after options with a typing error were named: what follows such an option is no scene
+    if (!arguments->haptic && !arguments->scene.scene.empty()) throw CLI::RequiresError("SCENE", "--haptic");
     if (arguments->haptic && !(arguments->rows.empty() && arguments->integrators.empty()))
       throw CLI::ExcludesError("--haptic", "--row and --integrator");
     invocation.action = [arguments] {

@@ -568,6 +568,8 @@ class Results(Cli):
         text = self.good("stability", "--haptic", "press-ball", "-o", "wall")
         self.assertRegex(text, r"passive lies within stable; simulation and theory differ by at most \S+ %")
         self.assertIn("z_width.csv", os.listdir(self.folder / "wall"))
+        self.assertIn("SCENE requires --haptic", self.refused("stability", "press-ball"))
+        self.assertIn("--rows", self.refused("stability", "--rows", "slivers"))
 
     def test_keys_are_listed_with_unit_range_default_and_meaning(self):
         text = self.good("list", "keys")
