@@ -81,7 +81,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
-set(CPACK_OUTPUT_FILE_PREFIX ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${PALPATE_MAINTAINER}")
@@ -94,7 +94,8 @@ to the hand. It needs no device and no display. Every figure has a known error,
 and every error has its price in run time.
 .
 ")
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${about}This package has the programs palpate and palpate-model, their shared libraries
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${about}\
+This package has the programs palpate and palpate-model, their shared libraries
 and the scenes that come with them.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME palpate)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
@@ -112,7 +113,8 @@ if(PALPATE_WITH_MODEL)  # opened by name, for the mesh formats that it alone rea
   string(APPEND CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS ", ${PALPATE_GMSH_PACKAGE}")
 endif()
 
-set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${about}This package has C++ headers and libraries of its parts (soft bodies, contact,
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${about}\
+This package has C++ headers and libraries of its parts (soft bodies, contact,
 integrators, devices), for programs that find them by CMake:
 find_package(palpate COMPONENTS fem integrate).")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpalpate-dev)
