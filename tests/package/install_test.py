@@ -130,8 +130,8 @@ class Package(unittest.TestCase):
         (source / "all.cpp").write_text("".join(f'#include "{header}"\n' for header in headers))
         (source / "CMakeLists.txt").write_text(
             "cmake_minimum_required(VERSION 3.25)\nproject(headers CXX)\nfind_package(palpate REQUIRED)\n"
-            "add_library(all OBJECT all.cpp)\nforeach(part ${palpate_COMPONENTS})\n"
-            "  target_link_libraries(all PRIVATE palpate::${part})\nendforeach()\n")
+            "add_library(headers OBJECT all.cpp)\nforeach(part ${palpate_COMPONENTS})\n"
+            "  target_link_libraries(headers PRIVATE palpate::${part})\nendforeach()\n")
         self.build(source, "headers-build")
 
     def test_components_are_the_parts_with_headers(self):

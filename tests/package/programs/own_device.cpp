@@ -38,6 +38,8 @@ gravity_m_s2 = [0.0, 0.0, -9.81]
 mass_kg = 0.1
 gravity = true
 [device]
+[[device.keyframe]]
+position_m = [0.0, 0.0, 0.0]
 )",
                                                      "weight.toml");
   const auto felt = std::make_shared<Wrench>();
