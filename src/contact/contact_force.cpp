@@ -6,6 +6,7 @@
 #include "contact/contact_force_impl.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/proxy/pruner.h"
 
 namespace palpate::contact {
 

@@ -11,6 +11,7 @@
 #include "palpate/linear/solvers.h"
 #include "palpate/mesh/checks.h"
 #include "palpate/mesh/spatial_order.h"
+#include "palpate/proxy/proxy_set.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
 #include "tool_side.h"

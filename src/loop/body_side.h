@@ -3,6 +3,8 @@
 
 #include "monolithic_ticks.h"
 #include "palpate/device/buzz.h"
+#include "palpate/loop/contact_record.h"
+#include "palpate/loop/energy.h"
 #include "palpate/loop/run.h"
 #include "tool_side.h"
 

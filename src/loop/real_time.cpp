@@ -13,6 +13,7 @@
 #include "palpate/core/error.h"
 #include "palpate/core/spsc_ring.h"
 #include "palpate/dynamics/exchange.h"
+#include "palpate/loop/contact_record.h"
 #include "real_time_thread.h"
 #include "tick_side.h"
 

@@ -5,6 +5,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/device/profile.h"
+#include "palpate/loop/contact_record.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/bone_file.h"

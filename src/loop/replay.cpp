@@ -5,6 +5,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/dynamics/path.h"
+#include "palpate/loop/contact_record.h"
 #include "palpate/scene/hands.h"
 #include "tick_side.h"
 

@@ -10,6 +10,7 @@
 #include "palpate/device/profile.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
+#include "palpate/proxy/pruner.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"

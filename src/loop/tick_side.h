@@ -2,6 +2,7 @@
 #include <array>
 #include <optional>
 
+#include "palpate/loop/contact_record.h"
 #include "palpate/loop/run.h"
 #include "tool_side.h"
 

@@ -6,6 +6,7 @@
 #include "palpate/device/limiter.h"
 #include "palpate/device/passivity.h"
 #include "palpate/loop/world.h"
+#include "palpate/proxy/proxy_set.h"
 #include "palpate/scene/hands.h"
 #include "palpate/tool/hand_block.h"
 #include "palpate/tool/tool.h"

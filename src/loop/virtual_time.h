@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "body_side.h"
+#include "palpate/loop/contact_record.h"
 #include "tick_side.h"
 
 namespace palpate::loop {

@@ -54,7 +54,7 @@ OUTSIDE = [
     ("Simbody", r"(Simbody|SimTK\w*|simbody|simmath)(\.h$|/)",
      ["src/simbody", "src/tool", "src/bones", "tests/isolation", "validation/peers"]),
     ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/",
-     ["src/gl", "include/palpate/gl", "src/render", "tests/gl", "tests/render"]),
+     ["src/gl", "src/palpate/gl", "src/render", "tests/gl", "tests/render"]),
     ("libccd", r"ccd/", ["src/proxy", "tests/proxy"]),
     ("Qhull", r"libqhull", ["src/proxy"]),
     ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/linear"]),
@@ -72,20 +72,25 @@ OUTSIDE = [
 # Parts that only wrap a library for others: what stands in src/ there is for all that may include them.
 WRAPPERS = ["simbody"]
 
+# Headers that a user of the library may include, and those that parts share with each other alone: both are
+# included as "palpate/PART/NAME.h".  What stands in src/PART is the part's own.
+PROMISED = "include/palpate/"
+SHARED = "src/palpate/"
+
 LONG_FILE = 400
 SUFFIXES = {".h", ".hpp", ".cpp", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 
 
 def part_of(path):
-    """The part that a file belongs to: by its folder under src/ or include/palpate/."""
+    """The part that a file belongs to: by its folder under src/, src/palpate/ or include/palpate/."""
     pieces = path.split("/")
     if pieces[0] == "validation":
         return "validation"
-    if pieces[0] == "src" and len(pieces) > 2:
-        part = pieces[1]
-    elif pieces[:2] == ["include", "palpate"] and len(pieces) > 3:
+    if path.startswith((PROMISED, SHARED)) and len(pieces) > 3:
         part = pieces[2]
+    elif pieces[0] == "src" and len(pieces) > 2 and not path.startswith(SHARED):
+        part = pieces[1]
     else:
         return None
     if part == "cli" and pieces[2] == "model_program":
@@ -181,11 +186,12 @@ def check(tree):
                 continue
             if not is_allowed(path, target):
                 breaches.append(f"{path}:{number}: {own} may not include {part_of(target)} ({name})")
-            elif (own != part_of(target) and target.startswith("src/") and part_of(target) not in WRAPPERS
+            elif (own != part_of(target) and target.startswith("src/") and not target.startswith(SHARED)
+                  and part_of(target) not in WRAPPERS
                   and not path.startswith(Path(target).parent.as_posix() + "/")):
                 breaches.append(f"{path}:{number}: {name} is private to {part_of(target)}")
             elif path.startswith("include/") and not target.startswith("include/"):
-                breaches.append(f"{path}:{number}: a public header includes the private {name}")
+                breaches.append(f"{path}:{number}: a promised header includes {name}, which is not installed")
 
     for path in files + source_files(tree, ["tests"]):
         for number, _, name in includes(tree, path):
@@ -197,6 +203,9 @@ def check(tree):
         if lines > LONG_FILE:
             remarks.append(f"{path}: {lines} lines, more than {LONG_FILE}: wants a reason")
 
+    for path in files:
+        if path.startswith(SHARED) and path.replace(SHARED, PROMISED) in known:
+            breaches.append(f"{path}:1: {path.replace(SHARED, PROMISED)} has the same name")
     breaches += link_breaches(tree)
     cycle = find_cycle(graph)
     if cycle:

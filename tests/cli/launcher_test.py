@@ -44,6 +44,12 @@ echo "[1/1 1s] Linking"
 printf '#!/bin/sh\nfor a; do echo "[$a]"; done\nexit 7\n' >"$2/bin/palpate"
 chmod +x "$2/bin/palpate"
 """,
+    "cpack": r"""
+echo "cpack $* in $PWD" >>"$CALLS"
+[ ! -e "$FAKE/cpack-fails" ] || { echo "CPack Error: no"; exit 1; }
+mkdir -p packages/_CPack_Packages
+touch packages/palpate_1.deb packages/libpalpate-dev_1.deb
+""",
     # Copies the file `results`, if there is one, to the path that it is given; ends as `ctest-status` says.
     "ctest": r"""
 echo "ctest $*" >>"$CALLS"
@@ -228,6 +234,30 @@ class Launcher(unittest.TestCase):
         self.assertIn("build/release/build.log", done.stderr)
         self.assertEqual(done.stdout, "")
 
+    def test_package_builds_what_is_installed_and_names_the_packages(self):
+        done = self.launch("package")
+        packages = self.tree / "build/release/packages"
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(self.called("ninja")[0].endswith(" installable"), self.calls)
+        self.assertEqual(self.called("cpack"), [f"cpack  in {self.tree}/build/release"])
+        self.assertEqual(done.stdout, f"{packages}/libpalpate-dev_1.deb\n{packages}/palpate_1.deb\n")
+        self.assertFalse((packages / "_CPack_Packages").exists())
+        (packages / "palpate_0.deb").touch()
+        self.assertNotIn("palpate_0", self.launch("package").stdout)  # of an earlier version
+
+    def test_package_that_fails_shows_why(self):
+        (self.fake / "cpack-fails").write_text("")
+        done = self.launch("package")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("CPack Error: no", done.stderr)
+        self.assertIn("cpack failed", done.stderr)
+
+    def test_package_takes_no_argument(self):
+        done = self.launch("package", "deb")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("package takes no argument", done.stderr)
+        self.assertFalse(self.called("cpack"))
+
     def test_test_builds_all_and_leaves_slow_ones_out(self):
         self.launch("test", "-R", "fem")
         self.assertTrue(self.called("ninja")[0].endswith(" all"), self.calls)
@@ -259,7 +289,7 @@ class Launcher(unittest.TestCase):
 
     def test_help_of_test_and_build_builds_nothing(self):
         (self.fake / "missing").write_text("libccd-dev\n")  # and installs nothing
-        for command, word in {"test": "--slow", "build": "[target...]"}.items():
+        for command, word in {"test": "--slow", "build": "[target...]", "package": "libpalpate-dev"}.items():
             for option in "--help", "-h":
                 done = self.launch(command, "-R", "fem", option)
                 self.assertEqual((done.returncode, done.stderr, self.calls), (0, "", []), command)

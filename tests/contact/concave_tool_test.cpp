@@ -4,6 +4,7 @@
 
 #include "backends.h"
 #include "grid_proxies.h"
+#include "palpate/proxy/pruner.h"
 #include "proxy/tools.h"
 #include "surfaces.h"
 

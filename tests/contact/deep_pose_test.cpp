@@ -1,5 +1,6 @@
 // Poses so deep that the shortest way out is the other side: the contact pushes back to where it came from.
 #include "ball_and_slab.h"
+#include "palpate/proxy/region.h"
 
 using namespace contact_tests;
 using namespace contact_tests::ball_and_slab;

@@ -1,6 +1,7 @@
 // A query of skins with proxies pays for the skin that may touch, not for the skin.
 #include "contact/image_side.h"
 #include "contact/image_source.h"
+#include "palpate/proxy/pruner.h"
 #include "touching.h"
 
 using namespace contact_tests;

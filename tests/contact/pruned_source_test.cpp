@@ -1,6 +1,7 @@
 // Image space with convex proxies: only skin that may be near is looked at, in regions of their own.
 #include "backends.h"
 #include "grid_proxies.h"
+#include "palpate/proxy/pruner.h"
 #include "surfaces.h"
 
 using namespace contact_tests;

@@ -1,4 +1,5 @@
 // Skins as fine as those of the scenes, that deform and slide: who draws the images changes no force.
+#include "palpate/proxy/pruner.h"
 #include "two_balls.h"
 
 using namespace contact_tests;

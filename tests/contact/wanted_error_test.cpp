@@ -5,6 +5,7 @@
 #include "backends.h"
 #include "ball_between_walls.h"
 #include "grid_proxies.h"
+#include "palpate/proxy/pruner.h"
 #include "surfaces.h"
 
 using namespace contact_tests;

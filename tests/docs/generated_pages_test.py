@@ -20,8 +20,8 @@ INTRODUCTION = """# Every command with every option
 <!-- Made by tests/docs/generated_pages_test.py of `palpate COMMAND --help`; a test compares them. -->
 
 `palpate COMMAND --help` prints these texts in a terminal. [running.md](running.md) and
-[comparing.md](comparing.md) say when to use which. `./palpate test` and `./palpate build` are the launcher's:
-`./palpate test --help` says what they take.
+[comparing.md](comparing.md) say when to use which. `./palpate test`, `./palpate build` and
+`./palpate package` are the launcher's: `./palpate test --help` says what they take.
 """
 
 

@@ -13,6 +13,7 @@
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
 #include "palpate/loop/world.h"
+#include "palpate/proxy/pruner.h"
 
 using namespace palpate;
 using block_model::block;

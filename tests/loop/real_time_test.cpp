@@ -12,6 +12,7 @@
 #include "palpate/core/error.h"
 #include "palpate/core/spsc_ring.h"
 #include "palpate/dynamics/exchange.h"
+#include "palpate/loop/contact_record.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 

@@ -10,24 +10,24 @@ namespace palpate {
 /// The `[[bone]]` tables of a scene: a rigid body inside soft ones, which carries nodes of theirs.  Free
 /// unless it is fixed or has keyframes.
 struct BoneSpec {
-  std::string name;
+  std::string name;  ///< unique in the scene
   /// "sphere", "box", "cylinder" or "capsule" (both along z), around its origin; empty: mass and inertia are
   /// given
   std::string shape;
-  double radius_m = 0.0;
+  double radius_m = 0.0;  ///< of a sphere, a cylinder, a capsule
   /// of a cylinder, and of a capsule between the middles of its caps
   double length_m = 0.0;
   Vec3 size_m = Vec3::Zero();  ///< of a box
   double mass_kg = 0.0;        ///< or density_kg_m3 of the shape
-  double density_kg_m3 = 0.0;
+  double density_kg_m3 = 0.0;  ///< of the shape; then mass_kg is left out
   /// principal, about the centre of mass; zero: the shape's, filled evenly
   Vec3 inertia_kg_m2 = Vec3::Zero();
-  Vec3 position_m = Vec3::Zero();  ///< of its centre of mass, at the start
-  Vec3 rotation_vector_rad = Vec3::Zero();
-  Vec3 velocity_m_s = Vec3::Zero();
-  Vec3 angular_velocity_rad_s = Vec3::Zero();
-  bool gravity = true;  ///< false: the bone itself has no weight
-  bool fixed = false;   ///< stays where it is placed
+  Vec3 position_m = Vec3::Zero();              ///< of its centre of mass, at the start
+  Vec3 rotation_vector_rad = Vec3::Zero();     ///< its orientation at the start
+  Vec3 velocity_m_s = Vec3::Zero();            ///< of its origin at the start, world axes
+  Vec3 angular_velocity_rad_s = Vec3::Zero();  ///< at the start, world axes
+  bool gravity = true;                         ///< false: the bone itself has no weight
+  bool fixed = false;                          ///< stays where it is placed
   /// moves from where it is placed: by these positions, and by these rotations about its own origin
   std::vector<KeyframeSpec> keyframes;
 };
@@ -53,8 +53,8 @@ struct SkeletonSpec {
   /// of bones that move freely, on top of the tissue that their nodes weigh
   double density_kg_m3 = 0.0;
   double stiffness_n_m_rad = 0.0;  ///< of hinges and balls, towards the start
-  double damping_n_m_s_rad = 0.0;
-  std::vector<JointSpec> joints;
+  double damping_n_m_s_rad = 0.0;  ///< of hinges and balls
+  std::vector<JointSpec> joints;   ///< those that differ from the rest
 };
 
 }  // namespace palpate

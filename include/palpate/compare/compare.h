@@ -19,37 +19,38 @@ enum class PointStatus {
   kNotTried,  ///< a coarser rung ran out of time
   kMissing,   ///< the study was stopped before it
 };
+/// For tables: "ok", "failed".
 const char* to_string(PointStatus status);
 
 /// One point of the work-precision chart: one integrator at one tolerance or step.
 struct ComparePoint {
-  std::string label;  ///< what reports call its ladder; unique in a scene
-  std::string integrator, family, stability;
-  int order = 0;  ///< theoretical
-  bool multistep = false;
-  std::string setting_name;  ///< "rtol", "step_s" or "tick_s"
-  double setting = 0.0;
+  std::string label;                          ///< what reports call its ladder; unique in a scene
+  std::string integrator, family, stability;  ///< of the method, as the registry has them
+  int order = 0;                              ///< theoretical
+  bool multistep = false;                     ///< it forgets its history at each exchange
+  std::string setting_name;                   ///< "rtol", "step_s" or "tick_s"
+  double setting = 0.0;                       ///< its value
   /// relative tolerance of the method's own error test; NaN where it has none
   double error_test_rtol = std::numeric_limits<double>::quiet_NaN();
   bool coarsest = false;      ///< a coarser setting makes no sense
   bool open_ended = false;    ///< of a default ladder, which ends where the reference cannot tell errors
   std::string linear_solver;  ///< empty: it solves no linear systems
   std::string against;        ///< integrator of the reference that it is held against: not its own method
-  scene::Description description;  ///< the scene with everything set for this point
-  PointStatus status = PointStatus::kMissing;
-  std::string reason;  ///< where the status is not kOk
+  scene::Description description;              ///< the scene with everything set for this point
+  PointStatus status = PointStatus::kMissing;  ///< how it ended
+  std::string reason;                          ///< where the status is not kOk
   /// NaN throughout where the status is not kOk, or where there is no reference
   TrajectoryError error;
   loop::RunResult result;     ///< of the first repeat; counts are the same in all
   std::vector<double> cpu_s;  ///< of each repeat: the loop's, without assembly and recording
-  double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;
+  double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;  ///< of all repeats
   double setup_s = 0.0, record_s = 0.0;  ///< of the first repeat: assembly; recording and the bodies' energy
   /// of the first repeat: the loop without contact queries, linearisations and ticks
   double method_s() const { return result.cpu_s - result.query_s - result.linearise_s - result.tool_s; }
   /// whether the position error is less than kResolution times the reference's own: not to be trusted
   bool unresolved = false;
-  bool force_unresolved = false,
-       torque_unresolved = false;  ///< likewise for the RMS of force and torque on the hand
+  bool force_unresolved = false;   ///< likewise for the RMS of the force on the hand
+  bool torque_unresolved = false;  ///< likewise for that of the torque
 };
 
 /// The reference that the points are compared with, and how far it can be trusted.
@@ -60,48 +61,50 @@ struct Reference {
   /// distance of two families at tight tolerance; NaN where there was no check
   TrajectoryError own_error = no_distance();
   double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< on the hand
-  double cpu_s = 0.0;
+  double cpu_s = 0.0;                                ///< of the reference and its check
 };
 
 /// One method of finding the tool's contact, compared with the first of the scene's list: how far the choice
 /// of method moves the result.
 struct MethodPoint {
-  std::string method;
-  TrajectoryError difference;  ///< zero for the first
-  double peak_force_n = 0.0;   ///< on the hand
-  long most_samples = 0;       ///< contact samples at one time
-  double query_s = 0.0, cpu_s = 0.0;
-  std::string trouble{};  ///< why the scene could not be run with it; empty: it was
+  std::string method;                 ///< as `contact.method` names it
+  TrajectoryError difference;         ///< zero for the first
+  double peak_force_n = 0.0;          ///< on the hand
+  long most_samples = 0;              ///< contact samples at one time
+  double query_s = 0.0, cpu_s = 0.0;  ///< of the contact queries; of the loop
+  std::string trouble{};              ///< why the scene could not be run with it; empty: it was
 };
 
 /// A chart, or a part of one, that could not be made.
 struct MissingChart {
-  std::string of;  ///< "the contact methods", "the contact method \"gpu\""
-  std::string why;
+  std::string of;   ///< "the contact methods", "the contact method \"gpu\""
+  std::string why;  ///< in words, with what to do
+  /// One sentence.
   std::string text() const { return "no chart of " + of + ": " + why; }
 };
 
 /// Everything about one scene.
 struct SceneComparison {
-  std::string scene, path;
-  bool tool = false;
-  Reference reference;
-  std::vector<ComparePoint> points;
+  std::string scene, path;           ///< its name, and its file
+  bool tool = false;                 ///< whether it has a tool
+  Reference reference;               ///< what errors are distances from
+  std::vector<ComparePoint> points;  ///< every rung of every ladder
   /// setting "contact_refresh_s": what re-initialisation costs; empty where the scene asks for none
   std::vector<ComparePoint> restarts;
   /// error of the exchange period itself; empty where the scene asks for none
   ExchangeStudy exchange;
-  std::vector<MethodPoint> methods;  ///< those that could be run; empty where the scene names none
-  std::vector<MissingChart> missing_charts;
+  std::vector<MethodPoint> methods;          ///< those that could be run; empty where the scene names none
+  std::vector<MissingChart> missing_charts;  ///< and why they are missing
   /// what LinearSolvers::kBest tried: each method's middle rung, by each solver; labels are the ladders'
   std::vector<ComparePoint> trials;
 };
 
+/// What `palpate compare` found.
 struct Comparison {
-  std::vector<SceneComparison> scenes;
-  std::string rules;  ///< how runs were repeated and limited, in words
-  long reused = 0;    ///< runs that an earlier, unfinished study had done
-  bool stopped = false;
+  std::vector<SceneComparison> scenes;  ///< in the order in which they were given
+  std::string rules;                    ///< how runs were repeated and limited, in words
+  long reused = 0;                      ///< runs that an earlier, unfinished study had done
+  bool stopped = false;                 ///< from outside: the rest of the points is missing
 };
 
 /// Which linear solver each implicit method is given.
@@ -111,9 +114,10 @@ enum class LinearSolvers {
   kNamed,  ///< the scene's own, or else what the method takes by itself
 };
 
+/// How `palpate compare` works.
 struct CompareOptions {
-  LinearSolvers linear_solvers = LinearSolvers::kSame;
-  std::string linear_solver = "cholmod";  ///< of kSame: a direct one leaves no error of its own
+  LinearSolvers linear_solvers = LinearSolvers::kSame;  ///< which one a method gets
+  std::string linear_solver = "cholmod";                ///< of kSame: a direct one leaves no error of its own
   /// at most; a point is repeated only while its runs together took less than a fifth of the limit
   int repeats = 3;
   double limit_s = 10.0;             ///< CPU seconds a point
@@ -124,8 +128,9 @@ struct CompareOptions {
   std::vector<std::string> integrators;
   bool all = false;      ///< every integrator that is not static, beside those named
   std::string database;  ///< file to keep results in and to go on from; empty: none
+  /// called after each run
   std::function<void(double fraction, const std::string& what)> progress;
-  const std::atomic<bool>* stop = nullptr;
+  const std::atomic<bool>* stop = nullptr;  ///< set from outside: runs that have begun are ended
 };
 
 /// Runs every ladder of every scene at the scene's fixed exchange period against the scene's tight reference
@@ -133,6 +138,7 @@ struct CompareOptions {
 /// interleaved over all points, so that a noisy machine hurts all alike.  The processes come from core's
 /// ProcessPool: a program that has started threads or drawn a picture by now must have called
 /// ProcessPool::prepare() before.
+/// @param options  what is compared, how often, and within which limits
 /// @param scenes  from loop::load or loop::parse: their text is what results are kept under
 /// @throws Error for ladders that make no sense
 Comparison run(const std::vector<scene::Description>& scenes, const CompareOptions& options);

@@ -10,17 +10,17 @@ namespace palpate::compare {
 
 /// One exchange period of a scene with a tool, against the monolithic reference.
 struct ExchangePoint {
-  double exchange_period_s = 0.0;
-  TrajectoryError error;  ///< NaN throughout when the run, or the one it is held against, failed
-  double cpu_s = 0.0;
-  std::string trouble{};  ///< why there is no error; empty: there is one
+  double exchange_period_s = 0.0;  ///< its length
+  TrajectoryError error;           ///< NaN throughout when the run, or the one it is held against, failed
+  double cpu_s = 0.0;              ///< of the run
+  std::string trouble{};           ///< why there is no error; empty: there is one
   /// whether the errors are less than ten times the reference's own
   bool unresolved = false, force_unresolved = false, torque_unresolved = false;
 };
 
 /// What an exchange study found.
 struct ExchangeStudy {
-  std::vector<ExchangePoint> points;
+  std::vector<ExchangePoint> points;          ///< in the scene's order
   std::string made_by = {}, checked_by = {};  ///< the reference and its check, in words
   /// distance of the two; NaN where there was no check
   TrajectoryError own_error = no_distance();
@@ -30,7 +30,7 @@ struct ExchangeStudy {
 /// Options of an exchange study.
 struct ExchangeOptions {
   std::function<void(const std::string& what)> done;  ///< after each run
-  const std::atomic<bool>* stop = nullptr;
+  const std::atomic<bool>* stop = nullptr;            ///< set from outside: no further run
   /// changes each partitioned World once it is assembled: a defect that the study must find
   std::function<void(loop::World& world)> spoil = {};
 };

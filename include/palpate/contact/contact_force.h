@@ -12,7 +12,10 @@
 #include "palpate/dynamics/force_term.h"
 #include "palpate/dynamics/step_assembly.h"
 #include "palpate/mesh/embedding.h"
-#include "palpate/proxy/pruner.h"
+
+namespace palpate::proxy {
+struct PruneCounts;
+}  // namespace palpate::proxy
 
 namespace palpate::contact {
 
@@ -20,7 +23,7 @@ namespace palpate::contact {
 /// `node_of_vertex[i]` counted inside the block; or points of a skin: vertex i hangs on the tetrahedron
 /// `tets.col(embedding.tet[i])` by four weights (docs/design.md 4.2).
 struct NodeSurface {
-  int block_id = -1;
+  int block_id = -1;                ///< the node block that carries it
   std::vector<int> node_of_vertex;  ///< empty of a skin
   Faces faces;                      ///< vertex indices, outward
   mesh::Embedding embedding{};      ///< of a skin
@@ -38,7 +41,7 @@ struct QueryStages {
   double gather_s = 0.0;     ///< both compared, and the pairs brought into one list
   double readback_s = 0.0;   ///< on the GPU all else of the images: commands, fence, and the list handed out
   double gaps_s = 0.0;       ///< gaps in double, and samples
-  long images = 0, pairs = 0;
+  long images = 0, pairs = 0;    ///< images taken, and pairs of triangles in them
   long pixels = 0;               ///< of all images
   long vertices = 0, faces = 0;  ///< in axes of all images, of both sides; faces that these images show
   long hits = 0;                 ///< pairs that are near enough, of all images
@@ -56,6 +59,7 @@ class ImageSource;
 class SampleSource {
  public:
   virtual ~SampleSource() = default;
+  /// As `contact.method` of a scene calls it, or the obstacle's type.
   virtual std::string_view name() const = 0;
   /// Appends samples; candidates with a small positive gap included.
   virtual void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) = 0;
@@ -66,6 +70,7 @@ class SampleSource {
   virtual void follow(const dynamics::StateView&, std::span<ContactSample>) {}
   /// Node pairs its samples may couple (faces of each surface; of two soft bodies also across).
   virtual void add_pattern(dynamics::PatternBuilder& pattern) const = 0;
+  /// Grows whenever add_pattern() would add other pairs.
   virtual std::uint64_t pattern_version() const { return 0; }
   /// Whether a sample's opening and closing is a kink of the force that a root finder should stop at.
   virtual bool has_events() const { return true; }
@@ -104,8 +109,10 @@ class SampleSource {
 /// off in parting it stays continuous, with a kink. `energy_density` is that of the spring, k times the
 /// integral of s [J/m^2].
 struct Pressure {
-  double p, dp_dgap, dp_drate, energy_density;
+  double p, dp_dgap, dp_drate, energy_density;  ///< p [Pa], its derivatives by gap [Pa/m] and by gap rate [Pa
+                                                ///< s/m], and that of the spring
 };
+/// @param law  stiffness, damping and onset  @param gap  [m], negative inside  @param gap_rate  [m/s]
 Pressure pressure(const ContactSpec& law, double gap, double gap_rate);
 
 /// Derivatives of the contact seen from one frame, about its origin, angular first.
@@ -146,6 +153,7 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   ContactForce();
   ~ContactForce() override;
   int add_frame(std::shared_ptr<MovingFrame> frame);  ///< index for SurfacePoint::frame
+  /// One [[contact]]: where its samples come from, and the law of their pressure.  @return its number
   int add_pair(std::unique_ptr<SampleSource> source, const ContactSpec& law);
 
   std::string_view name() const override;
@@ -178,17 +186,22 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   /// against being pulled off and along the surface (src/contact/grasp.cpp); or lets all go.  What comes to
   /// press later is not held.
   void set_grasp(int frame, bool closed);
+  /// Since the start.
   GraspCounts grasp_counts() const;
   /// Of the last query, one by one: made when they are asked for, at the price of a copy.
   const std::vector<ContactSample>& samples() const;
+  /// Of the last query, candidates included.
   int sample_count() const;
   /// What the samples of the last query are kept in: places, cells, carriers, and the groups that their sums
   /// are made by [bytes].
   double sample_bytes() const;
+  /// On a frame, about its origin, world axes [N m, N].
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
+  /// Contact of a frame at a state, with its derivatives; `out` is resized.
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out,
                  Partners partners = Partners::kAll) const;
   /// The samples of a frame on nodes, at the state given; candidates that are apart included.
+  /// @param state  where the gaps are taken  @param frame  as add_frame() counts
   /// @param tangents  of each, where it is wanted
   std::vector<TouchSample> touch_samples(const dynamics::StateView& state, int frame,
                                          std::vector<TouchTangent>* tangents = nullptr) const;
@@ -197,11 +210,13 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   ResultantSize refresh_jump() const;
   /// The largest of them so far, and the largest resultants after a refresh, to judge them by.
   ResultantSize largest_jump() const;
+  /// On one body, of one pair.
   ResultantSize largest_resultant() const;
   /// Of the pairs whose tangent is symmetric ("friction_tangent" symmetric or secant): the largest friction
   /// that a step left out, for the pressure changed and the friction did not, and the largest friction, both
   /// as the norm of a pair's sum [N].
   double largest_friction_lag() const;
+  /// See largest_friction_lag().
   double largest_lagged_friction() const;
   /// Vertices of each pair, in their order, that went through unseen so far (SampleSource::tunnelled).
   std::vector<long> tunnelled() const;
@@ -214,6 +229,7 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   std::vector<const QueryStages*> stages() const;
   /// The name of each pair's source ("cpu", "plane"), and why it is another than the scene asked for.
   std::vector<std::string> methods() const;
+  /// Empty for a pair whose source is the one that was asked for.
   std::vector<std::string> fallbacks() const;
   /// Asks every source to keep what pictures show of its queries, from the next one on.
   void keep_views();
@@ -221,7 +237,9 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   std::vector<const QueryView*> views() const;
   /// All samples of the last query, candidates included, at the state given.
   std::vector<ContactPoint> points(const dynamics::StateView& state) const;
+  /// Refreshes so far, the first included.
   long queries() const;
+  /// Wall time in them [s].
   double query_seconds() const;
 
  private:
@@ -234,6 +252,7 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
 /// symmetric, and those of a tick.  What a step leaves out (largest_friction_lag) does not count them.
 class SecantTangents {
  public:
+  /// @param contact  outlives this
   explicit SecantTangents(ContactForce& contact);
   ~SecantTangents();
   SecantTangents(const SecantTangents&) = delete;

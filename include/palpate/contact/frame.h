@@ -11,7 +11,9 @@ namespace palpate::contact {
 class MovingFrame {
  public:
   virtual ~MovingFrame() = default;
+  /// Of the frame in the world at state.time.
   virtual Pose pose(const dynamics::StateView& state) const = 0;
+  /// Its velocity there, world axes.
   virtual Twist twist(const dynamics::StateView& state) const = 0;
   /// False where nothing can move it: forces on it are of no consequence.
   virtual bool moves() const { return true; }
@@ -34,9 +36,12 @@ std::shared_ptr<MovingFrame> block_frame(int block_id);
 /// little ahead).  Each tick rotates by less than half a turn.
 class TrajectoryFrame : public MovingFrame {
  public:
+  /// No knots any more.
   void clear();
   void append(double t, const Pose& pose, const Twist& twist);  ///< times increase
+  /// @pre at least one knot
   Pose pose(const dynamics::StateView& state) const override;
+  /// @pre at least one knot
   Twist twist(const dynamics::StateView& state) const override;
 
  private:

@@ -26,28 +26,34 @@ struct Nearest {
 
 /// What a picture is of: its middle and its size.
 struct View {
-  Vec3 centre = Vec3::Zero();
-  double extent = 1.0;  ///< [m]
+  Vec3 centre = Vec3::Zero();  ///< what the picture looks at [m]
+  double extent = 1.0;         ///< [m]
 };
 
+/// A surface for pictures.
 struct ObstaclePicture {
   TriMesh surface;  ///< in the world
   /// of a horizontal surface without an end that looks up: its height, for a picture that can draw a ground
   std::optional<double> ground_m = {};
 };
 
+/// Makes the contact of one side with a shape that `motion` carries.  Samples beyond `candidate_gap` [m] are
+/// left out; `look_ahead` [s] is the time to the next query.
 using MakeObstacleSource = std::unique_ptr<SampleSource> (*)(ContactSide side, int frame,
                                                              std::shared_ptr<MovingFrame> motion,
                                                              const Settings& shape, double candidate_gap,
                                                              double look_ahead);
 /// One obstacle.  `shape` is complete: every key of the entry has a value (complete() of core/keys.h).
 struct ObstacleEntry {
-  std::string name, summary;
-  std::vector<PartKey> keys;
-  MakeObstacleSource make_source;
+  std::string name, summary;       ///< as a scene's `obstacle.type`; one line about it
+  std::vector<PartKey> keys;       ///< what its shape is made of
+  MakeObstacleSource make_source;  ///< its contact
+  /// the surface's point nearest to x, in world axes, where the shape does not move
   Nearest (*nearest)(const Settings& shape, const Vec3& x);
+  /// its surface, for pictures
   ObstaclePicture (*picture)(const Settings& shape, const View& view);
 };
+/// All of them, in the order of `palpate list obstacles`.
 const std::vector<ObstacleEntry>& obstacle_registry();
 
 /// The entry that the spec names.  @throws Error for an unknown type

@@ -23,7 +23,7 @@ struct SurfacePoint {
 /// the GPU, the CPU or the exact query. Between queries the gap is linear in the positions: gap = normal .
 /// (x_a - x_b); negative is penetration.  The force on a is p area normal, on b its opposite.
 struct ContactSample {
-  SurfacePoint a, b;
+  SurfacePoint a, b;            ///< on the two surfaces
   Vec3 normal = Vec3::UnitZ();  ///< unit, from b to a: pushes a away
   double area = 0.0;            ///< projected on the contact plane [m^2]; 1 where springs are per point
   double gap = 0.0;             ///< at the query [m]

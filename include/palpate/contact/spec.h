@@ -8,7 +8,7 @@ namespace palpate {
 
 /// A rigid shape fixed in the world, with exact gaps.  The `[[obstacle]]` tables of a scene.
 struct ObstacleSpec {
-  std::string name;
+  std::string name;  ///< unique in the scene
   std::string type;  ///< of contact::obstacle_registry(), which says what its shape is made of
   /// all other keys: `shape["radius_m"] = 0.1`; what is not given has the default of the registry
   Settings shape = {};
@@ -53,20 +53,26 @@ struct ContactSpec {
 
 /// What they may be: checked by the loader of scenes and by the pressure law.
 struct ContactRanges {
+  /// [Pa/m]
   static constexpr Range stiffness_pa_m =
       Range::positive("10 x Young's modulus / the size of the dent is a start");
+  /// [N/m]
   static constexpr Range stiffness_n_m =
       Range::positive("stiffness_pa_m times the area of a vertex is a start");
-  static constexpr Range damping_pa_s_m = Range::at_least(0.0);
-  static constexpr Range damping_n_s_m = Range::at_least(0.0);
-  static constexpr Range hunt_crossley_s_m = Range::at_least(0.0);
+  static constexpr Range damping_pa_s_m = Range::at_least(0.0);     ///< [Pa s/m]
+  static constexpr Range damping_n_s_m = Range::at_least(0.0);      ///< [N s/m]
+  static constexpr Range hunt_crossley_s_m = Range::at_least(0.0);  ///< [s/m]
+  /// [m]
   static constexpr Range onset_width_m =
       Range::at_least(0.0, "0 lets the pressure set in at once; a tenth of the depth is a smooth onset");
-  static constexpr Range friction = Range::at_least(0.0);
+  static constexpr Range friction = Range::at_least(0.0);  ///< coefficient of friction [1]
+  /// [m/s]
   static constexpr Range friction_regularisation_m_s =
       Range::positive("below this sliding speed friction is viscous");
+  /// [m]
   static constexpr Range candidate_gap_m = Range::at_least(0.0, "0 lets the mesh choose");
-  static constexpr Range pixels = Range::closed(16, 4096);
+  static constexpr Range pixels = Range::closed(16, 4096);  ///< along an image's longer edge
+  /// relative, of a region's force
   static constexpr Range quadrature_error = Range::closed(0.0, 0.1, "0 takes all the pixels always");
 };
 

@@ -5,28 +5,32 @@ namespace palpate {
 
 /// Rigid transform X_AB: p_A = rotation * p_B + translation.  `rotation` is a unit quaternion.
 struct Pose {
-  Quat rotation = Quat::Identity();
-  Vec3 translation = Vec3::Zero();  ///< [m]
+  Quat rotation = Quat::Identity();  ///< R_AB, of unit length
+  Vec3 translation = Vec3::Zero();   ///< [m]
 
+  /// The point p_B, given in B [m], in A.
   Vec3 operator*(const Vec3& p) const { return rotation * p + translation; }
+  /// X_AB X_BC = X_AC.
   Pose operator*(const Pose& other) const {
     return {rotation * other.rotation, rotation * other.translation + translation};
   }
+  /// X_BA.
   Pose inverse() const { return {rotation.conjugate(), -(rotation.conjugate() * translation)}; }
 };
 
 /// Velocity of a rigid frame in world axes: angular [rad/s], and linear velocity of its origin [m/s].
 struct Twist {
-  Vec3 angular = Vec3::Zero();
-  Vec3 linear = Vec3::Zero();
+  Vec3 angular = Vec3::Zero();  ///< angular velocity [rad/s]
+  Vec3 linear = Vec3::Zero();   ///< velocity of the frame's origin [m/s]
   /// Velocity of the point at `arm` = p - origin, world axes.
   Vec3 at(const Vec3& arm) const { return linear + angular.cross(arm); }
 };
 
 /// Moment about the frame's origin [N m] and force [N], world axes.
 struct Wrench {
-  Vec3 moment = Vec3::Zero();
-  Vec3 force = Vec3::Zero();
+  Vec3 moment = Vec3::Zero();  ///< about the frame's origin [N m]
+  Vec3 force = Vec3::Zero();   ///< [N]
+  /// Sum of two wrenches about the same point.
   Wrench& operator+=(const Wrench& o) {
     moment += o.moment;
     force += o.force;

@@ -14,6 +14,7 @@ namespace palpate {
 /// of the registry does.
 template <class Make>
 struct RegistryEntry {
+  /// @param its_name, its_summary, its_order, its_make, its_keys  the members of those names
   RegistryEntry(std::string its_name, std::string its_summary, int its_order, Make its_make,
                 std::vector<PartKey> its_keys = {})
       : name(std::move(its_name)),
@@ -21,14 +22,15 @@ struct RegistryEntry {
         order(its_order),
         make(std::move(its_make)),
         keys(std::move(its_keys)) {}
-  std::string name;
-  std::string summary;
-  int order;
-  Make make;
-  std::vector<PartKey> keys;
+  std::string name;           ///< what a scene, the command line and reports call the part
+  std::string summary;        ///< one line
+  int order;                  ///< theoretical order; 0 where there is none
+  Make make;                  ///< makes the part, or describes it
+  std::vector<PartKey> keys;  ///< keys of the scene's table that this entry alone uses
 };
 
 template <class Make>
+/// A registry whose entries have nothing more.
 using Registry = std::vector<RegistryEntry<Make>>;
 
 /// A registry is a vector of entries that have a `name`: RegistryEntry, or a struct with more members.

@@ -6,13 +6,19 @@
 /// says otherwise.
 namespace palpate {
 
+/// position, vector or rotation vector, of three components
 using Vec3 = Eigen::Vector3d;
 /// spatial vector: angular part first, then linear (Simbody's order)
 using Vec6 = Eigen::Matrix<double, 6, 1>;
+/// 3 x 3
 using Mat3 = Eigen::Matrix3d;
+/// 6 x 6, on spatial vectors
 using Mat6 = Eigen::Matrix<double, 6, 6>;
+/// column of any length
 using VecX = Eigen::VectorXd;
+/// matrix of any size
 using MatX = Eigen::MatrixXd;
+/// rotation; of unit length wherever it stands for one
 using Quat = Eigen::Quaterniond;
 using Points = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< 3 x n, one point a column [m]
 /// 3 x n, vertex indices, counter-clockwise seen from outside

@@ -26,12 +26,15 @@ class Count {
   int outside_;
 };
 
+/// One task of a loop: its number, and that of the thread that runs it.  `context` is whatever run() was
+/// given.
+using Task = void (*)(void* context, int task, int worker);
+
 /// Runs task(context, t, w) for every t in [0, tasks), w in [0, count()) naming the thread; returns when all
 /// are done.  One thread takes them in their order.  Allocates nothing once the pool has its threads, which
 /// spin for some tens of microseconds after a loop, then sleep.  A loop inside a loop, or concurrent with one
 /// of another thread, is run by its caller alone, as w = 0.  Tasks must not throw.
-/// @param tasks  at most 2^20 - 1
-using Task = void (*)(void* context, int task, int worker);
+/// @param tasks  at most 2^20 - 1  @param task  may run on any thread  @param context  handed to each task
 void run(int tasks, Task task, void* context);
 
 /// Runs task(context, k, w) for every k in [0, threads), each on a thread of its own: they may wait for each
@@ -42,6 +45,7 @@ void run_together(int threads, Task task, void* context);
 long tasks_of(int worker);
 
 template <class F>
+/// run() of a callable f(task, worker).
 void for_each(int tasks, F&& f) {
   using Function = std::remove_reference_t<F>;
   run(

@@ -40,9 +40,12 @@ class Device {
   void open();
   /// Motors off, and lets go; nothing where it is closed.
   void close();
+  /// Whether it holds what it works with.
   bool is_open() const { return open_; }
 
+  /// The handle at time t [s]; opens the device where it is closed.  @throws Error where it cannot be opened
   HandleSample sample(double t);
+  /// @param t  time of the tick [s]
   /// @param on_hand  force [N] and moment about the handle's origin [N m] on the hand, scene's axes
   void feedback(double t, const Wrench& on_hand);
   /// `feedback` at the time of the last sample.
@@ -62,9 +65,13 @@ class Device {
   virtual std::function<HandleSample(double t)> path() const { return {}; }
 
  protected:
+  /// Takes hold of what the device works with; nothing for devices without.  @throws Error where it cannot
   virtual void do_open() {}
+  /// Lets go; called at most once for each do_open().  Must not throw.
   virtual void do_close() {}
+  /// The handle at time t [s], without waiting; `valid` is false while nothing new has come.
   virtual HandleSample do_sample(double t) = 0;
+  /// The wrench from t [s] on, about the handle's origin, scene's axes; nothing for devices without motors.
   virtual void do_feedback(double /*t*/, const Wrench& /*on_hand*/) {}
 
  private:
@@ -77,7 +84,9 @@ class Device {
 /// what limits its force serves every device.
 /// @param folder  where relative paths in the spec start: the scene's
 using MakeDevice = std::unique_ptr<Device> (*)(const DeviceSpec& spec, const std::string& folder);
+/// Devices by the name in `device.type`.
 const Registry<MakeDevice>& device_registry();
+/// The device that the spec names.  @throws Error for an unknown name and bad settings
 std::unique_ptr<Device> make_device(const DeviceSpec& spec, const std::string& folder = {});
 
 /// The path through keyframes: before the first and after the last it rests there.  Rotations interpolate on

@@ -34,8 +34,10 @@ class WrenchLimiter {
       : WrenchLimiter(max_force_n, max_torque_n_m, ramp_s, kDefaultSlew * max_force_n,
                       kDefaultSlew * max_torque_n_m) {}
   /// From now on a force at a position of the device outside `workspace` is wanted less, by its share.
+  /// @param workspace  where the device can be
   /// @param device  whose last sample says where the handle is; it must outlive this
   void confine(const Workspace& workspace, const Device& device);
+  /// @param wanted  force and moment on the hand before the limit
   /// @param t [s], increasing  @param valid  whether the handle's pose of this tick is valid
   Wrench limit(double t, const Wrench& wanted, bool valid);
   /// valid ticks whose wanted force or torque was above its maximum

@@ -49,19 +49,25 @@ class PassivityObserver {
 /// Known limit: `a` is bounded by the device's maximum alone, so that a slow device is braked in jerks.
 class PassivityController {
  public:
+  /// Off: nothing is counted; observe: counted; control: counted, and made up for.
   enum class Mode { kOff, kObserve, kControl };
   /// @throws Error for a name that is not "off", "observe" or "control"
   static Mode mode_of(const std::string& name);
 
+  /// @param mode  what it does  @param observer  with the device's friction and resolution
   /// @param max_force_n, max_torque_n_m  of the device: the damper's wrench keeps within them too
   PassivityController(Mode mode, double max_force_n, double max_torque_n_m,
                       PassivityObserver observer = PassivityObserver());
+  /// @param t  of the sample [s]  @param handle  its pose
   /// @param limited  what the limiter lets out for this sample  @param valid  whether the handle's pose is:
   ///   else nothing is added  @return what goes to the motors
   Wrench apply(double t, const Pose& handle, const Wrench& limited, bool valid = true);
+  /// Its count of the energy.
   const PassivityObserver& observer() const { return observer_; }
   double dissipated() const { return dissipated_; }  ///< by the damper so far [J]
+  /// Ticks in which the damper acted.
   long active_ticks() const { return active_; }
+  /// What it does.
   Mode mode() const { return mode_; }
 
  private:

@@ -27,37 +27,46 @@
 /// the port first moves the handle.
 namespace palpate::device {
 
+/// the bytes P L P T
 inline constexpr std::uint32_t kUdpMagic = 0x54504c50;  // the bytes P L P T
-inline constexpr std::uint16_t kUdpVersion = 1;
+inline constexpr std::uint16_t kUdpVersion = 1;         ///< of both packets
 
+/// What a peer sends.
 struct PosePacket {
-  std::uint64_t sequence = 0;
-  double time = 0.0;
-  Pose pose;
-  Twist twist;
-  std::uint32_t switches = 0;
+  std::uint64_t sequence = 0;  ///< rises from packet to packet
+  double time = 0.0;           ///< the peer's own [s]
+  Pose pose;                   ///< of the handle, scene's axes
+  Twist twist;                 ///< [rad/s, m/s]
+  std::uint32_t switches = 0;  ///< bit i: switch i is pressed
 };
+/// What it gets back, a packet a tick.
 struct WrenchPacket {
-  std::uint64_t sequence = 0;
-  double time = 0.0;
-  Wrench on_hand;
+  std::uint64_t sequence = 0;  ///< of the last pose that counted
+  double time = 0.0;           ///< of the tick [s]
+  Wrench on_hand;              ///< force and moment about the handle's origin [N, N m]
 };
+/// A pose as it travels.
 using PoseBytes = std::array<unsigned char, 132>;
+/// A wrench as it travels.
 using WrenchBytes = std::array<unsigned char, 72>;
 
+/// Why a packet does not count.
 enum class PacketFault { kNone, kMalformed, kVersion };
 
+/// The bytes of a packet, as the table above has them.
 PoseBytes encode(const PosePacket& packet);
+/// The bytes of a packet, as the table above has them.
 WrenchBytes encode(const WrenchPacket& packet);
 /// Malformed: another size, magic or kind, a number that is not finite, a quaternion whose length is not 1 to
 /// 1e-3.  `out` is written only where there is no fault.
 PacketFault decode(std::span<const unsigned char> bytes, PosePacket& out);
+/// Likewise, of a wrench.
 PacketFault decode(std::span<const unsigned char> bytes, WrenchPacket& out);
 
 /// Packets by what became of them.
 struct UdpCounts {
-  long accepted = 0, malformed = 0, wrong_version = 0;
-  long stale = 0;    ///< a sequence that did not rise
+  long accepted = 0, malformed = 0, wrong_version = 0;  ///< packets by what they were
+  long stale = 0;                                       ///< a sequence that did not rise
   long foreign = 0;  ///< from another address than the first that was accepted
   long unsent = 0;   ///< wrenches that the network did not take
 };
@@ -71,6 +80,7 @@ class UdpDevice : public Device {
   explicit UdpDevice(const DeviceSpec& spec);
   ~UdpDevice() override { close(); }
   DeviceSpecification specification() const override { return specification_; }
+  /// Since it was made.
   const UdpCounts& counts() const { return counts_; }
   int port() const { return port_; }  ///< that it is bound to, once it is open
 

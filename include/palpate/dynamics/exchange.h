@@ -16,14 +16,16 @@ struct LinearisedContact {
   std::uint64_t version = 0;                      ///< grows with each record; 0: none yet
   double time = 0.0;                              ///< of x0 [s]
   std::array<double, 7> x0{1, 0, 0, 0, 0, 0, 0};  ///< pose: qw qx qy qz px py pz
-  std::array<double, 6> v0{};
-  std::array<double, 6> F0{};
-  std::array<double, 6> F1{};  ///< [N m/s, N/s]
+  std::array<double, 6> v0{};                     ///< twist at x0 [rad/s, m/s]
+  std::array<double, 6> F0{};                     ///< wrench at x0 and v0 [N m, N]
+  std::array<double, 6> F1{};                     ///< [N m/s, N/s]
   /// dF/dx, row-major [N/m, N m/rad, mixed]; negative definite for a stable contact
   std::array<double, 36> J{};
   std::array<double, 36> B{};  ///< dF/dv, row-major
-  enum class Source : int { kNone, kFrozen, kCondensed, kPoints } source = Source::kNone;
-  int samples = 0;  ///< contact samples it was made from
+  /// How a record is made: `exchange.linearisation` of a scene; kNone: there is no contact.
+  enum class Source : int { kNone, kFrozen, kCondensed, kPoints };
+  Source source = Source::kNone;  ///< how this one was made
+  int samples = 0;                ///< contact samples it was made from
 };
 static_assert(std::is_trivially_copyable_v<LinearisedContact>);
 
@@ -37,6 +39,7 @@ class Exchange {
   static_assert(std::is_trivially_copyable_v<Record>);
 
  public:
+  /// Makes a copy of the record the newest one.  Called by the writer's thread alone.
   void publish(const Record& record) {
     slots_[back_] = record;
     back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex;

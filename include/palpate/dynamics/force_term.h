@@ -34,11 +34,14 @@ struct Diagnostic {
 class ForceTerm {
  public:
   virtual ~ForceTerm() = default;
+  /// What messages and traces call it.
   virtual std::string_view name() const = 0;
+  /// Read when the term is added to a System, and constant from then on but for symmetric_tangent.
   virtual TermTraits traits() const = 0;
 
   /// Node pairs that add_tangent may touch.  Called again when pattern_version() has grown.
   virtual void add_pattern(PatternBuilder&) const {}
+  /// Grows whenever add_pattern() would add other pairs.
   virtual std::uint64_t pattern_version() const { return 0; }
 
   /// f += force at this state [N, N m]
@@ -67,6 +70,7 @@ class ForceTerm {
   /// Grows whenever event_count() or the meaning of one of the functions changed: a root finder then
   /// compares no old value with a new one.
   virtual std::uint64_t events_version() const { return 0; }
+  /// g receives event_count() values.
   virtual void events(const StateView&, double* /*g*/) {}
 };
 

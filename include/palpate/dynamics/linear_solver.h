@@ -11,8 +11,10 @@
 
 namespace palpate::dynamics {
 
+/// Outcome of a factorisation or a solve: done; no Cholesky factor; no inverse; the iteration gave up.
 enum class SolveStatus { kOk, kIndefinite, kSingular, kNotConverged };
 
+/// What a linear solver did since it was made.
 struct SolverCounters {
   long symbolic = 0;  ///< symbolic analyses (once a pattern)
   /// of them, those that looked for a fill-reducing ordering, where the solver keeps one from pattern to
@@ -73,7 +75,9 @@ inline SolverCounters& SolverCounters::operator+=(const SolverCounters& other) {
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
+  /// As scenes call it.
   virtual std::string name() const = 0;
+  /// Whether it takes matrices that are not symmetric.
   virtual bool supports_unsymmetric() const = 0;
   /// Whether it takes matrices that are not positive definite, or whose symmetric part is not.
   virtual bool supports_indefinite() const { return supports_unsymmetric(); }
@@ -83,11 +87,15 @@ class LinearSolver {
   virtual SolveStatus factor(const BorderedMatrix& A) = 0;
   /// X = A^-1 B for the matrix last factored; B and X are size x nrhs, may be the same object.
   virtual SolveStatus solve(const MatX& B, MatX& X) = 0;
+  /// Likewise, of one right-hand side.
   virtual SolveStatus solve(const VecX& b, VecX& x) = 0;
+  /// Of its whole life.
   virtual const SolverCounters& counters() const = 0;
 };
 
+/// Makes a solver from the keys of the spec that it uses.
 using MakeLinearSolver = std::unique_ptr<LinearSolver> (*)(const IntegratorSpec&);
+/// Linear solvers by name.
 using LinearSolverRegistry = Registry<MakeLinearSolver>;
 
 }  // namespace palpate::dynamics

@@ -8,10 +8,11 @@ namespace palpate::dynamics {
 
 /// Pose of a frame, and its first two derivatives (angular and linear, world axes).
 struct PathPoint {
-  Pose pose;
-  Twist twist;
+  Pose pose;           ///< in the world
+  Twist twist;         ///< [rad/s, m/s]
   Twist acceleration;  ///< [rad/s^2, m/s^2]
 };
+/// A motion as a function of time [s].
 using Path = std::function<PathPoint(double t)>;
 
 /// The motion between two known ones, h [s] apart, at s in [0, 1]: position and rotation vector are cubics

@@ -14,30 +14,34 @@ namespace palpate::dynamics {
 /// with them take the nodes' motions against that of the first node, so that rounding acts on differences
 /// (as in zero_row_sum_matrix.h).
 struct PointStiffness {
-  static constexpr int kMostNodes = 8;
+  static constexpr int kMostNodes = 8;  ///< four of each side
+  /// of the nodes; zero beyond their count
   using Weights = Eigen::Matrix<double, kMostNodes, 1>;
+  /// The nodes that one sum couples.
   struct Nodes {
-    int count = 0;
-    bool relative = false;
+    int count = 0;                       ///< how many there are
+    bool relative = false;               ///< row sums are zero: rigid translations feel nothing
     std::array<int, kMostNodes> node{};  ///< over all node blocks; one may stand there twice
   };
   /// The motions along one normal: block (i, j) is G_ij n n^T.
   struct AlongNormal {
-    Nodes nodes;
-    Vec3 normal = Vec3::Zero();
+    Nodes nodes;                 ///< which are coupled
+    Vec3 normal = Vec3::Zero();  ///< n, of unit length
     /// zero beyond nodes.count
     Eigen::Matrix<double, kMostNodes, kMostNodes> G = Eigen::Matrix<double, kMostNodes, kMostNodes>::Zero();
   };
   /// The motion of one point, sum w_i x_i: block (i, j) is w_i w_j C.
   struct OfPoint {
-    Nodes nodes;
-    Weights weight = Weights::Zero();
-    Mat3 C = Mat3::Zero();
+    Nodes nodes;                       ///< that carry the point
+    Weights weight = Weights::Zero();  ///< w_i, of each node
+    Mat3 C = Mat3::Zero();             ///< symmetric, positive semi-definite [N/m]
   };
-  std::vector<AlongNormal> along;
-  std::vector<OfPoint> points;
+  std::vector<AlongNormal> along;  ///< stiffness along normals
+  std::vector<OfPoint> points;     ///< stiffness of points
 
+  /// Whether there are no sums.
   bool empty() const { return along.empty() && points.empty(); }
+  /// Takes all sums out; memory is kept.
   void clear() {
     along.clear();
     points.clear();

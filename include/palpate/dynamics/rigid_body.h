@@ -15,6 +15,7 @@ namespace palpate::dynamics {
 /// angle counts as length/`length`).
 BlockSpec rigid_block(std::string name, double length, double speed);
 
+/// @param block_id  of the body  @param mass  m > 0 [kg]
 /// M = diag(R I R^T, m): rotates with the body.  @param inertia principal moments [kg m^2]  @throws Error for
 /// moments that are no body's
 std::shared_ptr<InertiaTerm> make_rigid_inertia(int block_id, double mass, const Vec3& inertia);
@@ -31,8 +32,8 @@ void check_inertia(double mass, const Vec3& inertia, const char* where);
 
 /// A pose and its twist.
 struct RigidMotion {
-  Pose pose;
-  Twist twist;
+  Pose pose;    ///< of the body's axes in the world
+  Twist twist;  ///< of its origin, world axes
 };
 
 /// The free rigid body with that block id.  @throws InternalError where there is none
@@ -51,8 +52,11 @@ Mat6 gyroscopic_tangent(const RigidMotion& motion, const Vec3& inertia, double k
 /// A force on one rigid block alone: its six rows, K and D its own 6x6.
 class RigidForce : public ForceTerm {
  public:
+  /// @param block_id  the rigid block that it acts on
   explicit RigidForce(int block_id) : block_id_(block_id) {}
+  /// Moment about the origin and force [N m, N], world axes.
   virtual Vec6 force(double t, const RigidMotion& motion) const = 0;
+  /// k_scale K + d_scale D, K = -dF/dx along (rotation vector, position), D = -dF/du.
   virtual Mat6 tangent(double t, const RigidMotion& motion, double k_scale, double d_scale) const = 0;
 
   void add_force(const StateView& state, VecX& f) override;
@@ -60,6 +64,7 @@ class RigidForce : public ForceTerm {
   void apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) override;
 
  protected:
+  /// Of the block at a state.
   RigidMotion motion(const StateView& state) const;
 
  private:

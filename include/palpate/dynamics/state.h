@@ -6,12 +6,13 @@ namespace palpate::dynamics {
 /// What a force term sees: time, coordinates and velocities, not owned.  Integrators hand out views of their
 /// own vectors, so nothing is copied.
 struct StateView {
-  const Layout* layout = nullptr;
-  double time = 0.0;  ///< [s]
-  Eigen::Map<const VecX> q{nullptr, 0};
-  Eigen::Map<const VecX> u{nullptr, 0};
+  const Layout* layout = nullptr;        ///< what stands where in q and u
+  double time = 0.0;                     ///< [s]
+  Eigen::Map<const VecX> q{nullptr, 0};  ///< coordinates of all blocks; of nodes, positions [m]
+  Eigen::Map<const VecX> u{nullptr, 0};  ///< velocities of all blocks; of nodes [m/s]
 
   Vec3 position(int node) const { return q.segment<3>(3 * node); }  ///< node counted over all node blocks
+  /// node counted over all node blocks
   Vec3 velocity(int node) const { return u.segment<3>(3 * node); }
 };
 
@@ -19,6 +20,7 @@ struct StateView {
 /// capacity allocates no vector storage.
 class State {
  public:
+  /// @param q_capacity, u_capacity, block_capacity  sizes that are reserved; it grows beyond them
   explicit State(int q_capacity = 0, int u_capacity = 0, int block_capacity = 8);
 
   /// Adds a block, nodes before bodies; returns its id.  @throws InternalError when sizes do not fit.
@@ -26,17 +28,27 @@ class State {
   /// Takes a block out; its q and u are copied to the arguments (sized by the caller or resized).
   BlockSpec extract(int id, VecX& q, VecX& u);
 
+  /// Which blocks there are, and where.
   const Layout& layout() const { return layout_; }
+  /// [s]
   double time() const { return time_; }
+  /// The coordinates stay as they are.
   void set_time(double t) { time_ = t; }
 
+  /// All coordinates.
   Eigen::Map<VecX> q() { return {q_.data(), layout_.q_size}; }
+  /// All velocities.
   Eigen::Map<VecX> u() { return {u_.data(), layout_.u_size}; }
+  /// All coordinates.
   Eigen::Map<const VecX> q() const { return {q_.data(), layout_.q_size}; }
+  /// All velocities.
   Eigen::Map<const VecX> u() const { return {u_.data(), layout_.u_size}; }
+  /// The coordinates of one block.
   Eigen::Map<VecX> q(const Block& b) { return {q_.data() + b.q_offset, b.q_size}; }
+  /// The velocities of one block.
   Eigen::Map<VecX> u(const Block& b) { return {u_.data() + b.u_offset, b.u_size}; }
 
+  /// Of its own vectors, valid until blocks come or go.
   StateView view() const { return view(time_, q_.data(), u_.data()); }
   /// A view of somebody else's vectors in this layout (an integrator's trial state).
   StateView view(double t, const double* q, const double* u) const;

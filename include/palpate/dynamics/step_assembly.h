@@ -42,6 +42,7 @@ class PointStiffnessTerm {
 /// force alone.
 class StepAssembly {
  public:
+  /// @param system  outlives this
   explicit StepAssembly(System& system) : system_(system) {}
 
   /// Whether this state's step can be assembled so: every term takes part, no two of them couple the same

@@ -12,38 +12,45 @@ namespace palpate::dynamics {
 
 class System;
 
+/// How a call of a stepper ended.
 enum class StepStatus {
   kOk,
-  kNewtonFailed,
-  kErrorTestFailed,
-  kSolverFailed,
-  kNotFinite,
-  kTooManySteps,
-  kBadSettings,
-  kInterrupted
+  kNewtonFailed,     ///< Newton's method did not converge at the smallest step
+  kErrorTestFailed,  ///< no step that the method takes keeps the tolerance
+  kSolverFailed,     ///< the linear solver gave no answer
+  kNotFinite,        ///< a force, a position or a velocity is NaN or infinite
+  kTooManySteps,     ///< IntegratorSpec::max_steps were not enough
+  kBadSettings,      ///< the method cannot run with these settings
+  kInterrupted       ///< the flag of set_interrupt() was set
 };
+/// In words, for messages: "ok", "Newton did not converge".
 const char* to_string(StepStatus status);
 
 /// Numerical outcomes are data: the loop decides what to do with them.
 struct StepResult {
-  StepStatus status = StepStatus::kOk;
-  double t = 0.0;         ///< time reached [s]
-  double h = 0.0;         ///< last step [s]
-  int order = 0;          ///< order used in it
-  int iterations = 0;     ///< Newton iterations in it
-  double residual = 0.0;  ///< of the nonlinear solve, in the method's norm
-  std::string message;    ///< on failure: the library's flag name, time and step
+  StepStatus status = StepStatus::kOk;  ///< why it ended
+  double t = 0.0;                       ///< time reached [s]
+  double h = 0.0;                       ///< last step [s]
+  int order = 0;                        ///< order used in it
+  int iterations = 0;                   ///< Newton iterations in it
+  double residual = 0.0;                ///< of the nonlinear solve, in the method's norm
+  std::string message;                  ///< on failure: the library's flag name, time and step
+  /// Whether it got where it should.
   bool ok() const { return status == StepStatus::kOk; }
 };
 
+/// Why a stepper is told to start anew: what happened to the system or its state.
 enum class ReinitReason { kContactRefreshed, kStateChanged, kLayoutChanged, kParametersChanged };
 
+/// What a stepper did since it was made.
 struct StepperCounters {
-  long steps = 0, rejected = 0;
-  long error_test_failures = 0, newton_failures = 0, newton_iterations = 0;
-  long force_evaluations = 0, tangent_evaluations = 0;
-  long reinits = 0;
-  long events = 0;  ///< roots that a step was cut short at
+  long steps = 0, rejected = 0;                     ///< accepted; attempted and refused
+  long error_test_failures = 0;                     ///< steps that the error test refused
+  long newton_failures = 0, newton_iterations = 0;  ///< solves that failed; iterations of all
+  long force_evaluations = 0;                       ///< of the whole right-hand side
+  long tangent_evaluations = 0;                     ///< of step matrices
+  long reinits = 0;                                 ///< calls of reinit()
+  long events = 0;                                  ///< roots that a step was cut short at
   /// matrices with no Cholesky factor, or of negative curvature: definite tangents (projected); the rest: LU
   long indefinite = 0;
   long projected = 0;  ///< of those, answered by definite tangents
@@ -64,7 +71,7 @@ struct StepperCounters {
   /// The smallest part of a fixed step was 1/2^most_halvings of it.  The largest of all: no sum, not visited.
   long most_halvings = 0;
   double force_s = 0.0, tangent_s = 0.0;  ///< wall time [s]
-  SolverCounters solver;
+  SolverCounters solver;                  ///< of its linear solver
 };
 
 /// As of SolverCounters (linear_solver.h), which it visits too.
@@ -114,11 +121,11 @@ struct StepAttempt {
   enum class Outcome { kAccepted, kErrorTest, kNewton, kNotFinite, kEvent };
   double t = 0.0;  ///< start of the step [s]
   double h = 0.0;  ///< its length [s]
-  int order = 0;
+  int order = 0;   ///< of the method
   /// estimate in the method's weighted norm, 1 is the tolerance; NaN where the method has none
   double error = 0.0;
-  int newton_iterations = 0;
-  Outcome outcome = Outcome::kAccepted;
+  int newton_iterations = 0;             ///< in this attempt
+  Outcome outcome = Outcome::kAccepted;  ///< what became of it
   /// entry of u (a node's axis, a rigid body's direction) with the largest share of the error; -1: unknown
   int worst_dof = -1;
   /// the most inverted element at the attempted state, over the terms in their order; -1: none
@@ -127,12 +134,14 @@ struct StepAttempt {
   /// of a fixed step that is taken in parts: this is 1/2^halvings of it; 0: whole
   int halvings = 0;
 };
+/// As traces call it.
 const char* to_string(StepAttempt::Outcome outcome);
 
 /// Sees every attempted step.
 class StepTrace {
  public:
   virtual ~StepTrace() = default;
+  /// After each attempted step.
   virtual void attempt(const StepAttempt& attempt) = 0;
 };
 
@@ -144,6 +153,7 @@ class Stepper;
 class StepFollower {
  public:
   virtual ~StepFollower() = default;
+  /// After each accepted step from t0 to t1 [s]; the stepper's dense output covers it.
   virtual void stepped(const Stepper& stepper, double t0, double t1) = 0;
 };
 
@@ -151,6 +161,7 @@ class StepFollower {
 class Stepper {
  public:
   virtual ~Stepper() = default;
+  /// As scenes call it.
   virtual std::string name() const = 0;
   /// Steps until exactly t_end (> state time); on success the State's time is t_end.  On failure the State
   /// holds the last good step.
@@ -160,6 +171,7 @@ class Stepper {
   virtual bool dense_output(double t, VecX& q, VecX& u) const = 0;
   /// The right-hand side or the State was changed from outside: forget history.
   virtual void reinit(ReinitReason reason) = 0;
+  /// Of its whole life.
   virtual const StepperCounters& counters() const = 0;
 
   /// Tells a trace of every attempted step from now on; null for none.  What a step costs without a trace
@@ -173,7 +185,9 @@ class Stepper {
   void set_interrupt(const std::atomic<bool>* flag) { interrupt_ = flag; }
 
  protected:
+  /// Null where nobody wants a trace.
   StepTrace* trace() const { return trace_; }
+  /// Whether the flag of set_interrupt() is set.
   bool interrupted() const { return interrupt_ && interrupt_->load(std::memory_order_relaxed); }
 
  private:
@@ -184,6 +198,7 @@ class Stepper {
 /// What theory says of a method: read by the conformance suite, the stability matrix, reports and `palpate
 /// list`.
 enum class StepControl { kAdaptive, kFixed, kEither };  ///< rtol; step_s; either, by fixed_step
+/// How a method answers stiff, stable problems.
 enum class Stability {
   kExplicit,  ///< stable up to a step that the largest frequency bounds
   kStatic,    ///< no dynamics: equilibria
@@ -191,18 +206,20 @@ enum class Stability {
   kA,         ///< A-stable: every stable linear problem decays, at any step
   kL,         ///< A-stable, and stiff modes vanish at once
 };
+/// In words, as `palpate list integrators` prints it.
 const char* to_string(Stability stability);
 
+/// What theory says of one method.
 struct StepperTraits {
   /// "BDF", "DIRK", "explicit Runge-Kutta": references are checked across families
   std::string family;
   int order = 1;  ///< of a smooth, non-stiff problem; of a variable-order method the highest
   /// of a stiff, strongly damped mode that the step does not resolve (order reduction); 0: unstable there
   int stiff_order = 1;
-  StepControl control = StepControl::kFixed;
-  Stability stability = Stability::kExplicit;
-  bool implicit = false;   ///< asks for tangents and a linear solver
-  bool multistep = false;  ///< forgets its history at every re-initialisation
+  StepControl control = StepControl::kFixed;   ///< how its steps are chosen
+  Stability stability = Stability::kExplicit;  ///< see there
+  bool implicit = false;                       ///< asks for tangents and a linear solver
+  bool multistep = false;                      ///< forgets its history at every re-initialisation
   /// of the system, in words: "force", "force, tangent", "tool or contact as the fast part"
   std::string needs;
   /// where the spec names none: "auto" where a matrix serves a solve or two, as those did that it chooses by;
@@ -213,12 +230,14 @@ struct StepperTraits {
   bool linearised = false;
 };
 
+/// Makes a stepper of a system at a state; both outlive it.
 using MakeStepper = std::unique_ptr<Stepper> (*)(System&, State&, const IntegratorSpec&,
                                                  std::unique_ptr<LinearSolver>);
+/// One integrator of the registry.
 struct StepperEntry {
-  std::string name;
-  std::string summary;
-  StepperTraits traits;
+  std::string name;                ///< as scenes call it
+  std::string summary;             ///< one line
+  StepperTraits traits;            ///< what theory says of it
   MakeStepper make;                ///< of an explicit method the linear solver is null
   std::vector<PartKey> keys = {};  ///< of [integrator] that the method uses
   /// The relative tolerance that the method's own error test holds a step to, so that the error over a given
@@ -229,6 +248,7 @@ struct StepperEntry {
   /// where error_test_rtol is.
   double (*tightest_rtol)(const IntegratorSpec& spec) = nullptr;
 };
+/// All integrators.
 using StepperRegistry = std::vector<StepperEntry>;
 
 }  // namespace palpate::dynamics

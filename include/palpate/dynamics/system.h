@@ -25,32 +25,43 @@ namespace palpate::dynamics {
 /// nodes exert on it.
 class System {
  public:
+  /// A force; its order among others decides the order of sums alone.
   void add(std::shared_ptr<ForceTerm> term);
+  /// The mass of a block; each block has one.
   void add(std::shared_ptr<InertiaTerm> inertia);
+  /// Directions that are given; none is driven twice.
   void add(std::shared_ptr<DrivenMotion> motion);
   /// Needed where a mass matrix is not diagonal: M a = f is then solved by this.
   void set_mass_solver(std::unique_ptr<LinearSolver> solver);
   /// Call after the last add and whenever the layout changed: masks, maps, scratch memory.
   void prepare(const StateView& state);
 
+  /// In the order in which they were added.
   const std::vector<std::shared_ptr<ForceTerm>>& terms() const { return terms_; }
+  /// In the order in which they were added.
   const std::vector<std::shared_ptr<InertiaTerm>>& inertias() const { return inertias_; }
   /// One entry a u-direction: true where it is driven.
   const std::vector<char>& driven_mask() const { return driven_mask_; }
+  /// u-directions that are driven, ascending.
   const std::vector<int>& driven_dofs() const { return driven_dofs_; }
+  /// Whether any direction is driven.
   bool any_driven() const { return !driven_dofs_.empty(); }
   bool symmetric() const;  ///< all terms' tangents are
   /// Projects the tangents of all terms that can be (PsdProjectedTerm), or no longer.
   void project_to_psd(bool on);
+  /// Whether project_to_psd() is on.
   bool projects_to_psd() const { return projects_to_psd_; }
   /// Root functions of all terms, one after the other (event location).
   int event_count() const;
+  /// Grows whenever the meaning of one of the functions changed.
   std::uint64_t events_version() const;
+  /// g receives event_count() values.
   void events(const StateView& state, double* g) const;
   /// The first term's diagnostic that names an element, with the term's name; element -1 where none does.
   std::pair<Diagnostic, std::string> inspect(const StateView& state) const;
   long clamped_tangents() const;  ///< sum over all terms
 
+  /// Which terms take part: true for those that do.
   using TermFilter = std::function<bool(const TermTraits&)>;
 
   /// Writes the driven q and u for time t into vectors of the layout's size.
@@ -73,6 +84,7 @@ class System {
   const NodePairs& node_pairs(std::size_t term) const { return term_pairs_[term].pairs; }
   /// Masses of the nodal u-directions where they are lumped [kg]; empty where they are not.
   const VecX& nodal_mass() const { return nodal_mass_; }
+  /// Mean of nodal_mass() [kg]; 0 where it is empty.
   double mean_nodal_mass() const { return mean_nodal_mass_; }
   /// Nodes with driven directions.
   const std::vector<HeldNode>& driven_nodes() const { return driven_nodes_; }

@@ -10,8 +10,8 @@ namespace palpate::dynamics {
 
 /// A node that is held along some axes: those rows and columns are the identity's.
 struct HeldNode {
-  int node;
-  std::array<bool, 3> axes;
+  int node;                  ///< counted over all node blocks
+  std::array<bool, 3> axes;  ///< x, y, z: which are held
 };
 
 /// A mixed-precision step matrix, in half the memory of one in double and assembled in one pass less:
@@ -33,8 +33,8 @@ struct ZeroRowSumMatrix {
   PointStiffness points;  ///< C
   /// of the nodes [m], as in BorderedMatrix; valid until MixedPrecisionSolver::factor_step_matrix() returns
   const double* positions = nullptr;
-  const std::vector<HeldNode>* held = nullptr;
-  std::uint64_t slot_map_version = 0;  ///< grows with every change of `slot_map`
+  const std::vector<HeldNode>* held = nullptr;  ///< nodes whose rows are the identity's; null: none
+  std::uint64_t slot_map_version = 0;           ///< grows with every change of `slot_map`
 };
 
 }  // namespace palpate::dynamics

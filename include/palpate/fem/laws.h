@@ -12,6 +12,7 @@ struct Law;
 const Registry<const Law*>& law_registry();
 
 /// Refuses what a law does not have.
+/// @param law  its name  @param tangent  which it is to have  @param where  begins the message
 /// @param nodal_dilatation  whether part of the resistance to a change of volume is left to NodalDilatation
 /// @throws Error where `law` is unknown, or lacks what is asked for; `where` begins the message
 void check_law(const std::string& law, Tangent tangent, bool nodal_dilatation, const std::string& where);

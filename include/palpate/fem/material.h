@@ -6,7 +6,7 @@ namespace palpate::fem {
 
 /// Lame's constants [Pa].
 struct Lame {
-  double mu = 0.0, lambda = 0.0;
+  double mu = 0.0, lambda = 0.0;  ///< shear modulus, and its companion
 };
 
 /// Isotropic material by its behaviour at small strain, and its damping; what it does at large strain is the
@@ -18,7 +18,9 @@ struct Material {
   double mass_damping = 0.0;       ///< alpha [1/s]
   double stiffness_damping = 0.0;  ///< beta [s]: mu_d = beta mu, lambda_d = beta lambda
 
+  /// Shear modulus, E / (2 (1 + nu)) [Pa].
   double mu() const { return youngs_modulus / (2.0 * (1.0 + poissons_ratio)); }
+  /// Lame's first constant, E nu / ((1 + nu) (1 - 2 nu)) [Pa].
   double lambda() const {
     return youngs_modulus * poissons_ratio / ((1.0 + poissons_ratio) * (1.0 - 2.0 * poissons_ratio));
   }
@@ -29,10 +31,14 @@ struct Materials {
   std::vector<Material> list;   ///< at least one
   std::vector<int> of_element;  ///< in the order of the mesh; empty: all are list[0]
 
+  /// One material throughout.
   Materials(const Material& all) : list{all} {}
+  /// @param materials  the list  @param numbers  place in it of each tetrahedron, as many as the mesh has
   Materials(std::vector<Material> materials, std::vector<int> numbers)
       : list(std::move(materials)), of_element(std::move(numbers)) {}
+  /// Place of an element's material in the list.
   int number(std::size_t element) const { return of_element.empty() ? 0 : of_element[element]; }
+  /// An element's material.
   const Material& of(std::size_t element) const { return list[static_cast<std::size_t>(number(element))]; }
 };
 

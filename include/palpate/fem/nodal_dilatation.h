@@ -27,6 +27,7 @@ double kept_volumetric_share(const Material& material);
 /// inside alone.
 class NodalDilatation : public dynamics::ForceTerm, public dynamics::PsdProjectedTerm {
  public:
+  /// @param name  of the term  @param rest, materials, block_id  those of the SoftBody
   /// @param options  of the SoftBody: 1 - share_of(material) of lambda acts here; both tangent settings act
   ///   as there
   NodalDilatation(std::string name, const TetMesh& rest, const Materials& materials,

@@ -10,8 +10,9 @@ namespace palpate::fem {
 /// rotated with each element (Mueller and Gross 2004).
 enum class Tangent { kExact, kProjected, kWarped };
 
+/// How a body's force and its derivatives are evaluated.
 struct SoftBodyOptions {
-  Tangent tangent = Tangent::kExact;
+  Tangent tangent = Tangent::kExact;  ///< derivative of the elastic force
   bool full_damping_tangent = false;  ///< keep the unsymmetric part of the damping's derivative by position
   /// share of lambda (and of lambda_d) that acts element by element; the rest belongs to a NodalDilatation
   double volumetric_share = 1.0;
@@ -23,6 +24,7 @@ struct SoftBodyOptions {
   /// constitutive law, a name of law_registry() (laws.h)
   std::string law = "corotational";
 
+  /// The share of lambda that the elements of a material keep.
   double share_of(std::size_t material) const {
     return volumetric_shares.empty() ? volumetric_share : volumetric_shares[material];
   }

@@ -42,6 +42,8 @@ class SoftBody : public dynamics::ForceTerm,
                  public dynamics::FusedStepTerm,
                  public dynamics::PsdProjectedTerm {
  public:
+  /// @param name  of the term, in messages and reports  @param materials  of the elements  @param options how
+  /// it is evaluated
   /// @param rest  rest positions and tetrahedra, volumes positive  @param block_id  the node block in the
   ///   State
   SoftBody(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options,
@@ -73,16 +75,21 @@ class SoftBody : public dynamics::ForceTerm,
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;
 
+  /// Counts since the last reset_counts().
   const ElementCounts& counts() const;
+  /// All counts from zero.
   void reset_counts();
   const std::vector<Material>& materials() const;  ///< the list that it was made with
   /// Others in their places, as many; they take effect at the next evaluation.  Which element has which
   /// stays.
   void set_materials(const std::vector<Material>& materials);
+  /// Nodes of the mesh.
   int node_count() const;
+  /// Tetrahedra of the mesh.
   int element_count() const;
   /// Name of the instruction set in use.
   std::string_view instructions() const;
+  /// What it holds now.
   MemoryUse memory() const;
   /// Von Mises norm of the element Cauchy stress, averaged to nodes by volume [Pa]; size node_count (pictures
   /// and records).
@@ -95,14 +102,19 @@ class SoftBody : public dynamics::ForceTerm,
 
 /// Nodal masses [kg] of a mesh, one a node: rho V / 4 from each tetrahedron.
 VecX lumped_masses(const TetMesh& rest, double density);
+/// Likewise, with the density of each tetrahedron's material.
 VecX lumped_masses(const TetMesh& rest, const Materials& materials);
 
 /// Lumped or consistent mass of one node block; of the materials only the densities count.
 std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, double density, int block_id);
+/// Likewise, with the density of each tetrahedron's material.
 std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, const Materials& materials,
                                                         int block_id);
+/// Consistent mass, the integral of rho N_i N_j: rho V / 10 on the diagonal and rho V / 20 beside it, from
+/// each tetrahedron.
 std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density,
                                                             int block_id);
+/// Likewise, with the density of each tetrahedron's material.
 std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, const Materials& materials,
                                                             int block_id);
 

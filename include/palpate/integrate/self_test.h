@@ -10,12 +10,15 @@ namespace palpate::integrate::self_test {
 /// 1e-10, atol 1e-12: y(t), exp(-t) to 1e-6. NaN when a call fails (as it does where another library's
 /// symbols of the same names were bound).
 double cvode(double t);
+/// As cvode(), by ARKODE.
 double arkode(double t);
+/// As cvode(), by IDA.
 double ida(double t);
 
+/// What one of the libraries answered.
 struct Answer {
-  std::string library;
-  double y = 0.0;
+  std::string library;  ///< "CVODE", "ARKODE" or "IDA"
+  double y = 0.0;       ///< y(t); NaN where a call failed
 };
 /// The three of them.
 std::vector<Answer> all(double t);

@@ -18,6 +18,7 @@ std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& na
 /// Solves unsymmetric matrices with the help of a solver of symmetric ones, to spec.linear_rtol.  Where
 /// `symmetric` is a direct solver: the border by its Schur complement, the body by conjugate residuals over
 /// the factor of its symmetric part, or by that factor alone where the body is symmetric; else by gmres.
+/// @param spec  its settings are the solver's
 /// @param symmetric  outlives the result, whose counters are to be added to its own; what it factors in
 ///   between costs another factorisation at the next factor()
 std::unique_ptr<dynamics::LinearSolver> make_unsymmetric_solver(dynamics::LinearSolver& symmetric,

@@ -27,6 +27,7 @@ struct RealTimeResult {
     const double lasted = tick_s * static_cast<double>(lateness_s.size());
     return lasted > 0.0 ? static_cast<double>(latency_s.size()) / lasted : 0.0;
   }
+  /// Simulated time that the bodies stood still in [s].
   double dropped_s() const { return static_cast<double>(dropped_periods) * period_s; }
 };
 

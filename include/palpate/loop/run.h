@@ -6,19 +6,20 @@
 #include <vector>
 
 #include "palpate/device/passivity.h"
-#include "palpate/loop/contact_record.h"
-#include "palpate/loop/energy.h"
+#include "palpate/loop/energy_balance.h"
 #include "palpate/loop/real_time.h"
 #include "palpate/loop/world.h"
 
 namespace palpate::loop {
 
+struct ContactRecord;
+
 /// One haptic tick as it happened.
 struct TickRecord {
-  double time = 0.0;    ///< at the tick's end [s]
-  double length = 0.0;  ///< of the tick; 0 where the tool has no ticks of its own [s]
-  Pose handle, tool;
-  Twist handle_twist, tool_twist;
+  double time = 0.0;               ///< at the tick's end [s]
+  double length = 0.0;             ///< of the tick; 0 where the tool has no ticks of its own [s]
+  Pose handle, tool;               ///< of the hand's handle and of the tool at the tick's end, world axes
+  Twist handle_twist, tool_twist;  ///< of the same two
   /// on the tool: from the linearised contact, or, monolithic, from the contact itself
   Wrench contact;
   Wrench wanted;  ///< on the hand, before the limit
@@ -35,6 +36,7 @@ class Observer {
   virtual ~Observer() = default;
   /// At the start and after every period.
   virtual void period(World&, double /*t*/) {}
+  /// Of the first hand.
   virtual void tick(const TickRecord&) {}
   /// A tick of any hand, as scene::hands_of() counts them.  What does not ask for it sees those of the first.
   virtual void tick_of(std::size_t hand, const TickRecord& tick_record) {
@@ -50,15 +52,18 @@ class Observer {
   virtual void queried(World&, double /*t*/) {}
   /// After every period, in runs of which an observer wants it: a run that nobody asks keeps no balance.
   virtual bool wants_energy() const { return false; }
+  /// The balance at the period's end.
   virtual void energy(const EnergyBalance&) {}
 };
 
+/// How a run is made; a default is the scene's, or none.
 struct RunOptions {
   double duration_s = 0.0;  ///< 0: the scene's
   /// ticks by the machine's clock, in a thread of their own; else in virtual time
   bool real_time = false;
+  /// whether the energy at the device is counted, or also made up for
   device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
-  std::vector<Observer*> observers;
+  std::vector<Observer*> observers;               ///< called in their order; they outlive the run
   std::function<void(double fraction)> progress;  ///< called after every period
   const std::atomic<bool>* stop = nullptr;        ///< set from outside: the run ends after the current step
 };
@@ -72,29 +77,35 @@ struct PortEnergy {
 
 /// What a run keeps of each further hand; of the first it stands in the RunResult itself.
 struct HandResult {
-  long ticks = 0, limited_ticks = 0, outside_ticks = 0;
-  std::optional<PortEnergy> port;
-  std::optional<double> buzz_n;
+  long ticks = 0;                  ///< of its tool
+  long limited_ticks = 0;          ///< in which the device's limit held the wrench
+  long outside_ticks = 0;          ///< with the handle outside the device's workspace
+  std::optional<PortEnergy> port;  ///< where passivity is observed or controlled
+  std::optional<double> buzz_n;    ///< force on the hand above 30 Hz, RMS [N]
 };
 
+/// What a run did: where it ended, what it cost, what it counted.
 struct RunResult {
-  dynamics::StepResult status;  ///< not ok: the integrator gave up; what was recorded stands
-  bool stopped = false;
-  double time = 0.0;                 ///< reached [s]
-  double cpu_s = 0.0, wall_s = 0.0;  ///< of the loop, assembly left out
-  double query_s = 0.0;              ///< wall time in contact queries
-  double linearise_s = 0.0;          ///< wall time in linearising contact for the tool
-  double tool_s = 0.0;               ///< wall time in the tool's ticks
-  long periods = 0, ticks = 0, contact_queries = 0, limited_ticks = 0;
+  dynamics::StepResult status;          ///< not ok: the integrator gave up; what was recorded stands
+  bool stopped = false;                 ///< `RunOptions::stop` was set
+  double time = 0.0;                    ///< reached [s]
+  double cpu_s = 0.0, wall_s = 0.0;     ///< of the loop, assembly left out
+  double query_s = 0.0;                 ///< wall time in contact queries
+  double linearise_s = 0.0;             ///< wall time in linearising contact for the tool
+  double tool_s = 0.0;                  ///< wall time in the tool's ticks
+  long periods = 0;                     ///< of the loop
+  long ticks = 0;                       ///< of the first hand's tool
+  long contact_queries = 0;             ///< refreshes of all pairs together
+  long limited_ticks = 0;               ///< in which the device's limit held the wrench
   long outside_ticks = 0;               ///< with the handle outside the device's workspace, where forces fade
   std::vector<long> tunnelled;          ///< vertices that went through unseen, for each [[contact]]
   std::optional<EnergyBalance> energy;  ///< at the end, where an observer wanted it
   long sub_steps = 0;                   ///< contact queries that tunnelling = "substep" made besides
   long shortest_refreshes = 0;  ///< of these, the ones that shortest_refresh_s made later than they were due
   long frozen_fallbacks = 0;    ///< condensed linearisations that had no factor and were frozen instead
-  dynamics::StepperCounters counters;
-  std::optional<RealTimeResult> real_time;
-  std::optional<PortEnergy> port;  ///< where passivity is observed or controlled
+  dynamics::StepperCounters counters;       ///< of the integrator
+  std::optional<RealTimeResult> real_time;  ///< of the clock, where ticks went by it
+  std::optional<PortEnergy> port;           ///< where passivity is observed or controlled
   std::optional<double> buzz_n;  ///< force on the hand above 30 Hz, RMS [N]; with a tool of fast enough ticks
   std::vector<HandResult> more_hands;  ///< of each [[hand]]
 };

@@ -9,8 +9,9 @@ namespace palpate::mesh {
 struct Boundary {
   std::vector<int> node_of_vertex;  ///< boundary vertex -> node
   TriMesh surface;                  ///< at the rest positions
-  std::vector<int> tet_of_face;
+  std::vector<int> tet_of_face;     ///< tetrahedron behind each triangle
 };
+/// The triangles that belong to one tetrahedron alone, outward, and the nodes on them.
 Boundary boundary(const TetMesh& mesh);
 
 /// Volume enclosed by a closed surface [m^3] (divergence theorem).

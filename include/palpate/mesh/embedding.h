@@ -17,6 +17,7 @@ struct Embedding {
   std::vector<int> tet;                              ///< tetrahedron of each point
   Eigen::Matrix<double, 4, Eigen::Dynamic> weights;  ///< 4 x number of points
 
+  /// Number of points.
   int size() const { return static_cast<int>(tet.size()); }
 };
 

@@ -43,8 +43,11 @@ TetMesh perturbed(TetMesh mesh, double amplitude, unsigned seed);
 
 /// Generators by the name in a scene; the spec's sizes are checked first.
 using MakeTets = TetMesh (*)(const MeshSpec&);
+/// Makes a surface of a spec whose numbers are checked.
 using MakeSurface = TriMesh (*)(const MeshSpec&);
+/// Generators of tetrahedra, by the name in `mesh.generator`.
 const Registry<MakeTets>& tet_generators();
+/// Generators of closed surfaces, by the same names.
 const Registry<MakeSurface>& surface_generators();
 /// Keys of a mesh that comes from a file.
 std::vector<PartKey> file_keys();

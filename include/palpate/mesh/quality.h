@@ -7,12 +7,14 @@ namespace palpate::mesh {
 
 /// Signed volume [m^3], det[b-a, c-a, d-a] / 6: positive when d sees (a, b, c) counter-clockwise.
 double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+/// Of one tetrahedron of a mesh, likewise.
 double tet_volume(const TetMesh& mesh, int tet);
 
 /// The six angles between faces, inside a tetrahedron of positive volume [rad]; entry e belongs to edge
 /// kTetEdges[e].
 std::array<double, 6> dihedral_angles(const TetMesh& mesh, int tet);
 
+/// The two nodes of each edge of a tetrahedron.
 inline constexpr int kTetEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 /// Faces of a positive tetrahedron, outwards; face f lies opposite node f.
 inline constexpr int kTetFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};

@@ -9,10 +9,10 @@ namespace palpate::mesh {
 
 /// Report of a mesh check: what it changed or found.
 struct MeshReport {
-  int nodes = 0, elements = 0;
-  int flipped = 0;      ///< elements whose orientation was mended
-  double volume = 0.0;  ///< [m^3]
-  double smallest_dihedral_deg = 180.0;
+  int nodes = 0, elements = 0;                     ///< of the mesh as it is used
+  int flipped = 0;                                 ///< elements whose orientation was mended
+  double volume = 0.0;                             ///< [m^3]
+  double smallest_dihedral_deg = 180.0;            ///< between two faces of one tetrahedron
   double largest_edge = 0.0, smallest_edge = 0.0;  ///< [m]
 };
 
@@ -21,6 +21,7 @@ struct MeshReport {
 /// `folder`: where a relative file starts.  Formats by ending: .msh (Gmsh 2.2, 4.1 ASCII), .node/.ele
 /// (TetGen); .h5 is read by store/mesh_file.h.
 /// @param regions  of the file, if wanted; a generator has none
+/// @param spec  what to read or generate  @param folder  see above  @param report  what was found, if wanted
 TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr,
                  std::vector<MaterialRegion>* regions = nullptr);
 

@@ -19,14 +19,17 @@ struct MeshSpec {
   double grading = 1.0;               ///< element size in the middle / at the surface; 1 is uniform
   double scale = 1.0;                 ///< applied to a file's coordinates
 
+  /// Whether the file is a layered model, with skin, proxies and bones, rather than a plain mesh.
   bool has_model() const { return file.ends_with(".h5") || file.starts_with("model:"); }
 };
 
 /// What they may be: checked by the loader of scenes, by the readers and by the generators.
 struct MeshRanges {
-  static constexpr Range length = Range::open(0.0, 1e6, "lengths are in metres");
+  static constexpr Range length = Range::open(0.0, 1e6, "lengths are in metres");  ///< [m]
+  /// Ratio of element sizes, middle to surface.
   static constexpr Range grading = Range::closed(
       0.5, 32.0, "1 is uniform, 2 makes elements in the middle twice as large as at the surface");
+  /// Factor on a file's coordinates.
   static constexpr Range scale = Range::positive("0.001 turns a file in millimetres into metres");
 };
 

@@ -3,7 +3,9 @@
 
 namespace palpate::modes {
 
+/// Which modes are wanted.
 struct ModesOptions {
+  /// Which end of the spectrum.
   enum class End { kLowest, kHighest };
   int count = 10;          ///< modes wanted; as many as there are free directions where that is fewer
   End end = End::kLowest;  ///< of the spectrum
@@ -19,9 +21,10 @@ struct Modes {
   MatX shapes;
   /// |K phi - w^2 M phi| / |K phi|; of a rigid motion |K phi| over the norm of its summands
   VecX residuals;
-  bool converged = false;  ///< every residual is at most 1e-8, or at rounding
-  long factorisations = 0, solves = 0;
+  bool converged = false;               ///< every residual is at most 1e-8, or at rounding
+  long factorisations = 0, solves = 0;  ///< numeric factorisations, and solves with them
 
+  /// Number of modes that were found.
   int count() const { return static_cast<int>(omega_squared.size()); }
   double omega(int mode) const;         ///< [rad/s]; 0 where w^2 is not positive
   double frequency_hz(int mode) const;  ///< w / 2 pi

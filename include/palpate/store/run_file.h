@@ -12,14 +12,15 @@ namespace palpate::store {
 
 /// One object of a run: a soft body by its tetrahedra, or a tool by its triangles.
 struct RunPart {
-  std::string name;
+  std::string name;  ///< of the object in the scene
   Points reference;  ///< positions at the start, from which displacements are measured [m]
   Tets tets;         ///< of a body; indices into its own points
   Faces faces;       ///< of a tool
 };
 
+/// What a run says of itself.
 struct RunInfo {
-  std::string scene_name;
+  std::string scene_name;    ///< as the scene calls itself
   std::string scene_source;  ///< the effective TOML
   std::string version;       ///< of palpate, with its commit
   /// steps that the file has room for from the start: duration over period.  More can be appended, but a kill
@@ -32,17 +33,22 @@ struct RunInfo {
 /// leaves a readable file with every committed step.
 class RunFile {
  public:
+  /// @param path  of the file, which is replaced  @param info  kept with it
   /// @param parts  their points follow one another in this order  @throws Error when the file cannot be made
   RunFile(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info);
   ~RunFile();
+  /// Moved from, it may only be destroyed.
   RunFile(RunFile&&) noexcept;
 
   /// Appends one instant.
+  /// @param time_s  greater than the last one's
   /// @param points, velocity  3 x point_count [m], [m/s]
   /// @param stress  point_count, von Mises [Pa]; all finite
   /// @throws Error when the disk refuses; the steps before stay readable
   void append(double time_s, const Points& points, const Points& velocity, const VecX& stress);
+  /// Instants so far.
   int steps() const;
+  /// Points of all parts together.
   int point_count() const;
   /// Releases room that was not needed, and writes the sidecar for older ParaViews.  Called by the destructor
   /// too, which swallows errors.
@@ -58,18 +64,28 @@ class RunReader {
  public:
   explicit RunReader(const std::string& path);  ///< @throws Error when this is no run of ours
   ~RunReader();
+  /// Moved from, it may only be destroyed.
   RunReader(RunReader&&) noexcept;
 
+  /// Complete instants in the file.
   int steps() const;
+  /// Points of all parts together.
   int point_count() const;
+  /// Of each instant [s].
   const std::vector<double>& times_s() const;
+  /// What was kept with it.
   const RunInfo& info() const;
+  /// As they were given to RunFile.
   const std::vector<RunPart>& parts() const;
   int first_point(int part) const;  ///< where a part's points begin
 
+  /// Positions [m], 3 x point_count.
   Points points(int step) const;
+  /// From the reference positions [m], 3 x point_count.
   Points displacement(int step) const;
+  /// [m/s], 3 x point_count.
   Points velocity(int step) const;
+  /// Von Mises stress at the points [Pa].
   VecX stress(int step) const;
 
  private:

@@ -13,21 +13,27 @@ namespace palpate::tool {
 /// The handle's motion over one tick, as the coupling sees it: pose and twist at the tick's end (implicit
 /// schemes) and start.
 struct HandleMotion {
-  Pose pose0, pose1;
-  Twist twist0, twist1;
+  Pose pose0, pose1;     ///< at the start and at the end of the tick
+  Twist twist0, twist1;  ///< likewise
 };
 
 /// A Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact
 /// (docs/design.md, 4.5).  The Simbody System stays behind the pimpl.
 class Tool {
  public:
+  /// @param spec  the [tool] table, checked  @param gravity  [m/s^2], world axes; acts where the spec says so
   Tool(const ToolSpec& spec, const Vec3& gravity);
   ~Tool();
+  /// Moved from, it may only be destroyed or assigned to.
   Tool(Tool&&) noexcept;
 
+  /// End of the last tick [s].
   double time() const;
+  /// Of the tool's frame in the world: origin at its centre of mass.
   Pose pose() const;
+  /// In world axes, of its origin.
   Twist twist() const;
+  /// Puts it there at time t [s], as if it had come so.
   void set_state(double t, const Pose& pose, const Twist& twist);
 
   /// One tick of `h` seconds with the contact linear about its record, by the scheme that the spec names.
@@ -43,6 +49,7 @@ class Tool {
   /// rows by `condensed` linearisations and monolithic coupling.
   void coupling_tangent(const Pose& handle, const Twist& handle_twist, Mat6& K, Mat6& B) const;
   Mat6 mass_matrix() const;  ///< at the current pose, world axes, about the origin
+  /// Of its motion now [J].
   double kinetic_energy() const;
   double potential_energy(const Pose& handle) const;  ///< of the coupling to a handle, and of the weight [J]
 
@@ -53,9 +60,10 @@ class Tool {
 
 /// Names and orders of the tool's own tick schemes.
 struct ToolIntegratorInfo {
-  std::string name, summary;
-  int order;
+  std::string name, summary;  ///< as scenes call it, and one line about it
+  int order;                  ///< theoretical order in the tick's length
 };
+/// All of them, in the order of `palpate list tool-integrators`.
 const std::vector<ToolIntegratorInfo>& tool_integrators();
 
 /// Whether this was built with Simbody: without it there are no tools and no bones on joints.

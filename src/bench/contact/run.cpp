@@ -9,6 +9,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
+#include "palpate/proxy/pruner.h"
 
 namespace palpate::bench {
 namespace {

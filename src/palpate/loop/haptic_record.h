@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/loop/contact_record.h"
 #include "palpate/loop/run.h"
 
 namespace palpate::loop {

@@ -21,15 +21,15 @@ struct ProxyHull {
 
 /// The three levels of a soft object, as one asset file holds them.  Absent parts are empty.
 struct LayeredModel {
-  std::string name;
-  TetMesh tets;
-  TriMesh skin;               ///< closed, outwards, at rest
-  mesh::Embedding embedding;  ///< of skin.vertices in tets
-  std::vector<ProxyHull> proxies;
-  Skeleton skeleton;
+  std::string name;                ///< of the model
+  TetMesh tets;                    ///< the body's tetrahedra
+  TriMesh skin;                    ///< closed, outwards, at rest
+  mesh::Embedding embedding;       ///< of skin.vertices in tets
+  std::vector<ProxyHull> proxies;  ///< convex hulls around its skin
+  Skeleton skeleton;               ///< bones, where it has any
   /// the bone that carries the node, -1 for tissue; empty without a skeleton
   std::vector<int> bone_of_node;
-  std::vector<MaterialRegion> regions;
+  std::vector<MaterialRegion> regions;  ///< elements of other materials; empty: one material
 };
 
 }  // namespace palpate

@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""The Debian packages on an empty Debian: made by `cpack`, installed by apt on a root that debootstrap makes,
+and run there by a user without rights, in an empty folder.
+
+    clean_root_test.py BUILD       exits 77 (skipped, aloud) without root, debootstrap, or mounts of one's own
+
+It takes minutes and needs the network: apt's own mirror, as it is set up on this machine.
+"""
+import gzip
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+TREE = HERE.parents[1]
+BUILD = Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else None
+USER = 1000
+
+
+def output(*command, **options):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
+
+
+def must(*command, **options):
+    done = output(*command, **options)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, command))}\n{(done.stdout + done.stderr)[-4000:]}")
+    return done.stdout
+
+
+def release():
+    """Name of this Debian release: the packages are for it."""
+    return re.search(r"^VERSION_CODENAME=(\w+)", Path("/etc/os-release").read_text(), re.M).group(1)
+
+
+def mirror():
+    """Where this machine's apt gets that release from."""
+    lines = output("apt-get", "indextargets", "--format", "$(SITE) $(CODENAME) $(COMPONENT)",
+                   "Identifier: Packages").stdout.splitlines()
+    sites = [line.split()[0] for line in lines if line.split()[1:] == [release(), "main"]]
+    return sites[0].rstrip("/") if sites else None
+
+
+def missing():
+    """Why this cannot run here; empty: it can."""
+    if os.geteuid() != 0:
+        return "it needs root, for debootstrap and chroot"
+    for program, package in (("debootstrap", "debootstrap"), ("dpkg-shlibdeps", "dpkg-dev")):
+        if shutil.which(program) is None:
+            return f"{program} is missing (Debian package {package})"
+    if output("unshare", "--mount", "--pid", "--fork", "true").returncode != 0:
+        return "no mounts of one's own are allowed here (unshare --mount)"
+    if mirror() is None:
+        return "apt has no package lists of this release (apt-get update fetches them)"
+    return ""
+
+
+class Root:
+    """A folder with an empty Debian.  Nothing stays mounted: /proc is that of a namespace of each command."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        proxy = output("apt-config", "shell", "P", "Acquire::http::Proxy").stdout
+        address = re.search(r"P='(.*)'", proxy)
+        self.proxy = address.group(1) if address else ""
+        environment = dict(os.environ, **({"http_proxy": self.proxy} if self.proxy else {}))
+        must("debootstrap", "--variant=minbase", release(), folder, mirror(), env=environment)
+        if self.proxy:
+            (folder / "etc/apt/apt.conf.d/proxy").write_text(f'Acquire::http::Proxy "{self.proxy}";\n')
+        home = folder / "home/user"
+        home.mkdir(parents=True)
+        os.chown(home, USER, USER)
+
+    def command(self, words, user=None, folder="/"):
+        identity = ["--userspec", f"{user}:{user}"] if user else []
+        home = "/home/user" if user else "/root"
+        return ["unshare", "--mount", "--pid", "--fork", f"--mount-proc={self.folder}/proc", "chroot", *identity,
+                self.folder, "env", "-i", "PATH=/usr/sbin:/usr/bin:/sbin:/bin", f"HOME={home}", "LC_ALL=C.UTF-8",
+                "DEBIAN_FRONTEND=noninteractive", "sh", "-c", 'cd "$0" && exec "$@"', folder, *words]
+
+    def install(self, *packages):
+        """What they depend on alone: what apt would bring besides must not be needed."""
+        return must(*self.command(["apt-get", "install", "--yes", "--no-install-recommends", *packages]))
+
+    def run(self, *words, folder="/home/user"):
+        return output(*self.command(words, USER, folder))
+
+
+class CleanRoot(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(tempfile.mkdtemp(prefix="palpate-root-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.folder.chmod(0o755)
+        packages = cls.folder / "packages"
+        must("cpack", "--config", BUILD / "CPackConfig.cmake", "-B", packages, cwd=BUILD)
+        found = sorted(packages.glob("*.deb"))
+        cls.runtime = next(path for path in found if path.name.startswith("palpate_"))
+        cls.library = next(path for path in found if path.name.startswith("libpalpate-dev_"))
+        cls.root = Root(cls.folder / "root")
+        for package in (cls.runtime, cls.library):
+            shutil.copy(package, cls.folder / "root")
+        cls.root.install(f"/{cls.runtime.name}")
+
+    def field(self, package, name):
+        return must("dpkg-deb", "--field", package, name).strip()
+
+    def test_fields(self):
+        depends = {word.split()[0] for word in self.field(self.runtime, "Depends").split(", ")}
+        for package in ("libc6", "libcholmod3", "libsimbody3.7", "libhdf5-103-1", "libsqlite3-0", "libcairo2",
+                        "libepoxy0", "libegl1", "libgl1-mesa-dri", "libopenblas0-pthread"):
+            self.assertIn(package, depends)
+        # SUNDIALS, Qhull's archive and CGAL are inside; nobody runs a compiler
+        self.assertFalse([name for name in depends if name.endswith("-dev") or "sundials" in name])
+        version = self.field(self.runtime, "Version")
+        self.assertIn(f"palpate (= {version})", self.field(self.library, "Depends"))
+        self.assertRegex(self.field(self.runtime, "Maintainer"), r".+ <.+@.+>")
+        self.assertEqual(self.field(self.runtime, "Section"), "science")
+        self.assertIn("virtual spring", self.field(self.runtime, "Description"))
+
+    def test_documents(self):
+        documents = self.folder / "root/usr/share/doc/palpate"
+        notice = (documents / "copyright").read_text()
+        for name in ("GPL-3", "three.js authors", "Lawrence Livermore", "qhull", "CLI11", "Lohmann"):
+            self.assertIn(name.lower(), notice.lower())
+        self.assertIn("palpate (", gzip.decompress((documents / "changelog.Debian.gz").read_bytes()).decode())
+
+    @unittest.skipUnless(shutil.which("lintian"), "lintian is missing")
+    def test_lintian(self):
+        done = output("lintian", "--allow-root", self.runtime, self.library)
+        self.assertEqual([line for line in done.stdout.splitlines() if line[:2] in ("E:", "W:")], [])
+
+    def test_validate_quick(self):
+        done = self.root.run("palpate", "validate", "--quick")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"(\d+) of \1 cases keep their bars")
+
+    def test_program_in_an_empty_folder(self):
+        version = (BUILD / "CMakeCache.txt").read_text()
+        number = re.search(r"^CMAKE_PROJECT_VERSION:STATIC=(.*)$", version, re.M).group(1)
+        self.assertIn(f"palpate {number} ", self.root.run("palpate", "--version").stdout)
+        scenes = self.root.run("palpate", "list", "scenes").stdout
+        for scene in (TREE / "scenes").glob("*.toml"):
+            self.assertIn(scene.stem, scenes)
+        self.assertIn("libpalpate-dev", self.root.run("palpate", "help", "installing").stdout)
+        done = self.root.run("palpate", "run", "falling-ball")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.folder / "root/home/user/out/falling-ball/run.vtkhdf").exists())
+
+    def test_pictures_and_images_by_software(self):
+        """EGL and Mesa come with the package."""
+        done = self.root.run("palpate", "run", "press-ball", "--picture", "--set", "contact.1.method=gpu")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("taken over", done.stderr)
+        picture = self.folder / "root/home/user/out/press-ball/picture.png"
+        self.assertGreater(picture.stat().st_size, 50_000)
+
+    def test_models_are_made(self):
+        done = self.root.run("palpate", "run", "gears", "--set", "scene.duration_s=0.01")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(list((self.folder / "root/home/user/.cache/palpate").rglob("gear.h5")))
+
+    def test_plots_without_gnuplot_say_what_to_install(self):
+        done = self.root.run("palpate", "run", "press-ball", "--report")
+        self.assertIn("install the package gnuplot-nox", done.stderr)
+
+    def test_z_programs_of_ones_own(self):
+        """Last: it brings a compiler."""
+        self.root.install(f"/{self.library.name}", "cmake", "g++", "make")
+        shutil.copytree(HERE / "programs", self.folder / "root/home/user/programs")
+        source = "/home/user/programs"
+        os.chown(self.folder / f"root{source}", USER, USER)
+        for words in (["cmake", "-S", source, "-B", f"{source}/build", "-DWITH_LOOP=ON"],
+                      ["cmake", "--build", f"{source}/build"], [f"{source}/build/step_body"],
+                      [f"{source}/build/own_force"], [f"{source}/build/own_device"]):
+            done = self.root.run(*words)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            if len(words) == 1:
+                self.assertRegex(done.stdout, r"^ok")
+
+    def test_zz_removal_leaves_nothing(self):
+        must(*self.root.command(["apt-get", "remove", "--purge", "--yes", "palpate"]))
+        root = self.folder / "root"
+        left = [path for folder in ("usr/bin", "usr/lib", "usr/share", "usr/include")
+                for path in (root / folder).rglob("*palpate*")]
+        self.assertEqual(left, [])
+
+
+if __name__ == "__main__":
+    reason = missing()
+    if reason:
+        print(f"SKIPPED: {reason}")
+        sys.exit(77)
+    unittest.main(argv=sys.argv[:1] + sys.argv[2:])
