@@ -79,9 +79,10 @@ class Root:
     def command(self, words, user=None, folder="/"):
         identity = ["--userspec", f"{user}:{user}"] if user else []
         home = "/home/user" if user else "/root"
-        return ["unshare", "--mount", "--pid", "--fork", f"--mount-proc={self.folder}/proc", "chroot", *identity,
-                self.folder, "env", "-i", "PATH=/usr/sbin:/usr/bin:/sbin:/bin", f"HOME={home}", "LC_ALL=C.UTF-8",
-                "DEBIAN_FRONTEND=noninteractive", "sh", "-c", 'cd "$0" && exec "$@"', folder, *words]
+        inside = ["env", "-i", "PATH=/usr/sbin:/usr/bin:/sbin:/bin", f"HOME={home}", "LC_ALL=C.UTF-8",
+                  "DEBIAN_FRONTEND=noninteractive", "sh", "-c", 'cd "$0" && exec "$@"', folder, *words]
+        return ["unshare", "--mount", "--pid", "--fork", f"--mount-proc={self.folder}/proc",
+                "chroot", *identity, self.folder, *inside]
 
     def install(self, *packages):
         """What they depend on alone: what apt would bring besides must not be needed."""

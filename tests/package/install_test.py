@@ -137,7 +137,8 @@ class Package(unittest.TestCase):
     def test_components_are_the_parts_with_headers(self):
         parts = {path.name for path in (self.prefix / "include/palpate").iterdir()}
         text = next(self.prefix.rglob("palpateConfig.cmake")).read_text()
-        self.assertEqual(set(re.search(r"set\(palpate_COMPONENTS ([\w;]+)\)", text).group(1).split(";")), parts)
+        components = re.search(r"set\(palpate_COMPONENTS ([\w;]+)\)", text).group(1).split(";")
+        self.assertEqual(set(components), parts)
         page = (SOURCE / "docs/library.md").read_text().split("## Components")[1].split("\n## ")[0]
         told = {name for row in re.findall(r"^\| ([a-z, ]+) \|", page, re.M) for name in row.split(", ")}
         self.assertEqual(told - {"component"}, parts)
