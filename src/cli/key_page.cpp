@@ -8,6 +8,7 @@
 
 #include "palpate/loop/load.h"
 #include "palpate/scene/kinds.h"
+#include "palpate/scene/study.h"
 
 namespace palpate::cli {
 namespace {
@@ -25,6 +26,19 @@ file, line and column, and with the nearest known key.
 [0, 1] includes its ends, (0, 1) does not. [names.md](names.md) has the names of integrators, solvers,
 obstacles and other parts. `--set TABLE.KEY=VALUE` changes one value for one run; the tables of `[[x]]` count
 from 0: `--set body.0.youngs_modulus_pa=2e4`.
+
+| table | what it is |
+|---|---|
+)";
+
+constexpr const char* kStudyIntroduction = R"(# Every key of a study: unit, range, default and meaning
+
+<!-- Made by `palpate list study-keys --markdown` from the loader's own tables; a test compares them. -->
+
+A study is a TOML file of the tables below, which `palpate study` runs; [studies.md](studies.md) says how.
+`[x]` stands once, `[[x]]` as often as needed. All numbers are in SI units. An unknown key is refused with
+file, line and column, and with the nearest known key. [keys.md](keys.md) has the keys of a scene, which the
+`key` of `[[sweep]]` and `[[random]]` names.
 
 | table | what it is |
 |---|---|
@@ -77,30 +91,21 @@ std::string users_of(const scene::KeyRow& row) {
   return fmt::format("{}", fmt::join(shown, ", "));
 }
 
+/// Without kinds no row has a user: the column is left out.
 void print_table(const scene::KeyRow& table, const Rows& rows, const scene::Kinds& kinds) {
+  const bool users = !kinds.empty();
   fmt::print("\n## {}\n\n`{}`:\n{}.\n\n", path_of(table), bracketed(table), table.meaning);
-  fmt::print("| key | type | unit | range | default | meaning | used by |\n|---|---|---|---|---|---|---|\n");
+  fmt::print("| key | type | unit | range | default | meaning |{}\n|---|---|---|---|---|---|{}\n",
+             users ? " used by |" : "", users ? "---|" : "");
   for (const scene::KeyRow& row : rows)
     if (row.table == path_of(table))
-      fmt::print("| `{}` | {} | {} | {} | {} | {} | {} |\n", row.name, row.type, row.unit,
-                 range_of(row, kinds), default_of(row), markdown_cell(row.meaning), users_of(row));
+      fmt::print("| `{}` | {} | {} | {} | {} | {} |{}\n", row.name, row.type, row.unit, range_of(row, kinds),
+                 default_of(row), markdown_cell(row.meaning),
+                 users ? fmt::format(" {} |", users_of(row)) : "");
 }
 
-}  // namespace
-
-std::string markdown_cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '|' || c == '*') out += '\\';
-    out += c;
-  }
-  return out;
-}
-
-void print_key_page() {
-  const scene::Kinds kinds = loop::kinds();
-  const Rows rows = scene::key_rows(kinds);
-  fmt::print("{}", kIntroduction);
+void print_page(const char* introduction, const Rows& rows, const scene::Kinds& kinds) {
+  fmt::print("{}", introduction);
   Rows tables;
   for (const scene::KeyRow& row : rows)
     if (is_table(row) && std::any_of(rows.begin(), rows.end(),
@@ -120,5 +125,23 @@ void print_key_page() {
     fmt::print("| [`{}`](#{}) | {} |\n", bracketed(table), anchor(table), markdown_cell(table.meaning));
   for (const scene::KeyRow& table : tables) print_table(table, rows, kinds);
 }
+
+}  // namespace
+
+std::string markdown_cell(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '|' || c == '*') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+void print_key_page() {
+  const scene::Kinds kinds = loop::kinds();
+  print_page(kIntroduction, scene::key_rows(kinds), kinds);
+}
+
+void print_study_key_page() { print_page(kStudyIntroduction, scene::study_key_rows(), {}); }
 
 }  // namespace palpate::cli

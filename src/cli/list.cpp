@@ -10,6 +10,7 @@
 #include "palpate/loop/load.h"
 #include "palpate/loop/registries.h"
 #include "palpate/report/table.h"
+#include "palpate/scene/study.h"
 #include "palpate/validation/validation.h"
 #include "paths.h"
 
@@ -17,6 +18,7 @@ namespace palpate::cli {
 namespace {
 
 const char* const kKeys = "keys";
+const char* const kStudyKeys = "study-keys";
 
 loop::ChoiceList case_choices() {
   loop::ChoiceList out{"cases", "with a known answer: palpate validate", {}};
@@ -93,8 +95,8 @@ void print_names_page(const std::vector<loop::ChoiceList>& lists) {
   }
 }
 
-/// The table that a person reads: what may stand in a scene, key by key.
-void print_keys() {
+/// The table that a person reads: what may stand in a scene or a study, key by key.
+void print_keys(const std::vector<scene::KeyRow>& all) {
   std::string table = "\n";
   std::vector<std::vector<std::string>> rows;
   const auto flush = [&] {
@@ -103,7 +105,7 @@ void print_keys() {
                report::format_table({"key", "type", "unit", "range", "default", "meaning", "used by"}, rows));
     rows.clear();
   };
-  for (const scene::KeyRow& row : scene::key_rows(loop::kinds())) {
+  for (const scene::KeyRow& row : all) {
     if (row.table.empty()) continue;  // the tables themselves
     if (row.table != table) flush();
     table = row.table;
@@ -123,11 +125,15 @@ int list(const ListArguments& arguments) {
     print_names_page(lists);
     return 0;
   }
-  if (arguments.markdown && arguments.what != kKeys)
-    fail("--markdown goes with \"keys\" or without a list, not with \"{}\"", arguments.what);
-  std::vector<std::string> known = {kKeys};
-  bool found = arguments.what == kKeys;
-  if (found) arguments.markdown ? print_key_page() : print_keys();
+  std::vector<std::string> known = {kKeys, kStudyKeys};
+  bool found = std::find(known.begin(), known.end(), arguments.what) != known.end();
+  if (arguments.markdown && !found)
+    fail("--markdown goes with \"keys\", with \"study-keys\" or without a list, not with \"{}\"",
+         arguments.what);
+  if (arguments.what == kKeys)
+    arguments.markdown ? print_key_page() : print_keys(scene::key_rows(loop::kinds()));
+  if (arguments.what == kStudyKeys)
+    arguments.markdown ? print_study_key_page() : print_keys(scene::study_key_rows());
   for (const loop::ChoiceList& one : lists) {
     known.push_back(one.what);
     if (!arguments.what.empty() && arguments.what != one.what) continue;

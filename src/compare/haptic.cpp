@@ -8,9 +8,9 @@
 
 #include "codec.h"
 #include "haptic_plan.h"
-#include "key.h"
 #include "palpate/core/error.h"
 #include "palpate/core/process_pool.h"
+#include "palpate/loop/result_key.h"
 #include "plan.h"
 #include "run.h"
 #include "work.h"
@@ -68,7 +68,7 @@ class Runner {
 
  private:
   void begin(ProcessPool& pool, const Job& job, double limit_s) {
-    const std::string key = result_key(*job.description, fmt::format("haptic {}", job.repeat));
+    const std::string key = loop::result_key(*job.description, fmt::format("haptic {}", job.repeat));
     const auto kept = database_.artefact(key);
     if (kept && !(kept->status == to_string(PointStatus::kOutOfTime) && kept->cpu_s < limit_s)) {
       ++reused_;

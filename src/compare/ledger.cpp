@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "key.h"
 #include "palpate/core/error.h"
+#include "palpate/loop/result_key.h"
 
 namespace palpate::compare {
 
@@ -25,12 +25,12 @@ void Ledger::plan(const scene::Description& d, const SolverChoice& choice) {
       trials_ ? plan_trials(own.description, options_) : plan_points(own.description, options_, choice);
   if (!trials_) comparison.restarts = plan_restarts(own.description, options_, choice);
   own.planned = plan_reference(own.description, comparison.points);
-  own.primary_key = result_key(own.planned.primary, "reference");
-  own.check_key = result_key(own.planned.check, "reference");
+  own.primary_key = loop::result_key(own.planned.primary, "reference");
+  own.check_key = loop::result_key(own.planned.check, "reference");
   for (const ComparePoint& p : comparison.points)
-    own.point_keys.push_back(result_key(p.description, "point " + own.primary_key + own.check_key));
+    own.point_keys.push_back(loop::result_key(p.description, "point " + own.primary_key + own.check_key));
   for (const ComparePoint& p : comparison.restarts)
-    own.restart_keys.push_back(result_key(p.description, "restart"));
+    own.restart_keys.push_back(loop::result_key(p.description, "restart"));
   work.push_back(std::move(own));
   out.scenes.push_back(std::move(comparison));
 }
@@ -127,8 +127,10 @@ std::string Ledger::artefact_key(const Task& task) const {
     case Task::Kind::kPrimary: return own.primary_key;
     case Task::Kind::kCheck: return own.check_key;
     case Task::Kind::kExchange:
-      return result_key(own.description, fmt::format("exchange {}", fmt::join(c.exchange_periods_s, " ")));
-    default: return result_key(own.description, fmt::format("methods {}", fmt::join(c.contact_methods, " ")));
+      return loop::result_key(own.description,
+                              fmt::format("exchange {}", fmt::join(c.exchange_periods_s, " ")));
+    default:
+      return loop::result_key(own.description, fmt::format("methods {}", fmt::join(c.contact_methods, " ")));
   }
 }
 

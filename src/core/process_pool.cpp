@@ -102,12 +102,13 @@ void ProcessPool::finish(std::list<Child>::iterator at) {
   Outcome outcome;
   const bool timed_out = child.killed || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU);
   if (child.lost) {
-    outcome = {Outcome::End::kCrash, "lost: the process that had started it has died"};
+    outcome = {Outcome::End::kCrash, "lost: the process that had started it has died", SIGKILL};
   } else if (timed_out) {
     outcome = {Outcome::End::kOutOfTime, fmt::format("out of time: {:g} s", child.limit_s)};
   } else if (WIFSIGNALED(status)) {
     outcome = {Outcome::End::kCrash,
-               fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))};
+               fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status))),
+               WTERMSIG(status)};
   } else if (WEXITSTATUS(status) != 0 || child.bytes.empty()) {
     outcome = {Outcome::End::kCrash,
                fmt::format("ended with exit status {} and no result", WEXITSTATUS(status))};

@@ -21,6 +21,8 @@ std::vector<Answer> comparison_answers(const Table& compare,
                                        const std::map<std::string, ReferenceError>& references);
 /// How far the force at the scene's own settings is from that of one system, and what would halve it.
 Answer haptic_answer(const Table& haptic, const Json& summary);
+/// How many tasks reached their end, and between what the figures lie.
+Answer study_answer(const Table& study);
 Answer validation_answer(const Json& validation);
 Answer stability_answer(const Json& stability);
 /// The fastest step of each size, and how many bars are met.

@@ -22,6 +22,7 @@ const std::vector<Kind>& kinds() {
       {"Run", {"force.csv", "clock.csv", "trace.csv", "run.vtkhdf"}},
       {"Comparison", {"compare.csv", "restarts.csv", "exchange.csv", "methods.csv"}},
       {"Haptic comparison", {"haptic.csv"}},
+      {"Study", {"study.csv"}},
       {"Validation", {"validation.json"}},
       {"Stability", {"stability.json"}},
       {"Stability of the haptic loop", {"z_width.csv"}},
@@ -63,6 +64,13 @@ Json json_in(const fs::path& dir, const char* file) {
   return fs::exists(dir / file) ? read_json(dir / file) : Json::object();
 }
 
+/// A study's table, with times where they are there.
+Table study_in(const fs::path& dir) {
+  Table study = read_csv(dir / "study.csv");
+  return fs::exists(dir / "study-times.csv") ? with_times(std::move(study), read_csv(dir / "study-times.csv"))
+                                             : study;
+}
+
 /// The scene as it was run: kept in summary.json, else the file beside the results.
 std::string scene_source(const Result& result) {
   if (std::string source = text_at(result.summary, "scene_source"); !source.empty()) return source;
@@ -84,6 +92,7 @@ std::vector<Answer> answers_of(const Result& result) {
                                              read_references(json_in(result.dir, "reference.json"))))
       out.push_back(std::move(answer));
   if (has("haptic.csv")) out.push_back(haptic_answer(read_csv(result.dir / "haptic.csv"), result.summary));
+  if (has("study.csv")) out.push_back(study_answer(study_in(result.dir)));
   if (has("validation.json")) out.push_back(validation_answer(read_json(result.dir / "validation.json")));
   if (has("stability.json")) out.push_back(stability_answer(read_json(result.dir / "stability.json")));
   for (const char* file : kinds().back().files)
@@ -120,8 +129,8 @@ Result open_result(const fs::path& dir) {
   if (out.kinds.empty())
     fail(
         "{}: holds no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, "
-        "haptic.csv, validation.json, stability.json, bench-*.json); give the directory that a run, a "
-        "comparison, a validation, a stability matrix or a benchmark wrote",
+        "haptic.csv, study.csv, validation.json, stability.json, bench-*.json); give the directory that a "
+        "run, a comparison, a study, a validation, a stability matrix or a benchmark wrote",
         dir.string());
   out.of = text_at(out.summary, "scene");
   if (out.of == "stability") out.of.clear();  // the matrix has cases of its own
@@ -151,6 +160,9 @@ void add_result(Page& page, const Result& result) {
   if (has("exchange.csv")) add_exchange(page, csv("exchange.csv"));
   if (has("methods.csv")) add_methods(page, csv("methods.csv"));
   if (has("haptic.csv")) add_haptic(page, csv("haptic.csv"), result.summary);
+  if (has("study.csv"))
+    add_study(page, study_in(dir),
+              has("study.toml") ? store::read_file((dir / "study.toml").string()) : std::string());
   if (has("validation.json")) add_validation(page, read_json(dir / "validation.json"));
   if (has("stability.json")) add_stability(page, read_json(dir / "stability.json"));
   for (const char* file : kinds().back().files)

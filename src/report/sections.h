@@ -31,6 +31,10 @@ void add_exchange(Page& page, const Table& exchange);
 void add_methods(Page& page, const Table& methods);
 /// @param summary  of the comparison: the reference's peaks and own errors, and fitted orders
 void add_haptic(Page& page, const Table& haptic, const Json& summary);
+/// study.csv with the times of its tasks in a column "cpu_s".
+Table with_times(Table study, const Table& times);
+/// @param text  of the study file
+void add_study(Page& page, const Table& study, const std::string& text);
 void add_validation(Page& page, const Json& validation);
 void add_stability(Page& page, const Json& stability);
 /// @param file  its name

@@ -37,11 +37,12 @@ ALLOWED = {
     "scene": ["core"],  # and the spec.h of every part: see is_allowed
     "loop": BELOW_LOOP,
     "compare": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
+    "study": ["core", "scene", "loop", "store"],
     "stability": BELOW_LOOP + ["loop"],  # builds its cases from the parts themselves, as validation does
     "bench": BELOW_LOOP + ["loop"],  # bench/fem: a beam made of the parts themselves, without a scene
     "report": ["core", "mesh", "store"],
-    "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "stability", "bench", "report",
-            "validation"],
+    "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "study", "stability", "bench",
+            "report", "validation"],
     "python": BELOW_LOOP + ["loop", "compare", "validation"],  # the module of `import palpate`
     "validation": BELOW_LOOP + ["loop", "compare", "report", "simbody"],  # the cases in validation/
 }

@@ -32,8 +32,8 @@ except ImportError:  # package python3-h5py
 
 PROGRAM = Path(sys.argv[1]).resolve()
 TREE = Path(__file__).resolve().parents[2]
-COMMANDS = ["demo", "run", "compare", "modes", "validate", "report", "inspect", "export", "list", "help",
-            "bench"]
+COMMANDS = ["demo", "run", "compare", "study", "modes", "validate", "report", "inspect", "export", "list",
+            "help", "bench"]
 LONG = ["run", "one-tet", "--duration-s", "1e6"]  # ends only when it is stopped
 
 

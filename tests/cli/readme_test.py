@@ -2,7 +2,7 @@
 """Runs every command of a page, in order, as a newcomer would: in one folder, with the files that the page
 says to save there.
 
-    readme_test.py PROGRAM Readme|FirstTouch
+    readme_test.py PROGRAM Readme|FirstTouch|Studies
 """
 import csv
 import re
@@ -16,9 +16,10 @@ from pathlib import Path
 
 PROGRAM = Path(sys.argv[1]).resolve()
 TREE = Path(__file__).resolve().parents[2]
-# Done by other tests: the launcher's own commands (cli.launcher), installation (package.install).
+# Done by other tests: the launcher's own commands (cli.launcher), installation (package.install), a Slurm
+# cluster (cli.study_slurm).
 ELSEWHERE = [r"git clone ", r"cd palpate$", r"\./palpate test$", r"\./palpate build$",
-             r"cmake --install build/release --prefix "]
+             r"cmake --install build/release --prefix ", r"\./palpate study .* --slurm"]
 
 
 class Page:
@@ -135,6 +136,46 @@ class FirstTouch(Page, unittest.TestCase):
         for method in ("cvode-bdf", "linearly-implicit-euler"):
             self.assertGreaterEqual(len(re.findall(rf"^{method} +\S", table, re.M)), 3)
         self.assertTrue((self.folder / "out/compare/report.html").exists())
+
+
+class Studies(Page, unittest.TestCase):
+    page = "docs/studies.md"
+    least = 5
+
+    def rows(self):
+        with open(self.folder / "out/softness/study.csv", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_the_table_begins_as_the_page_shows(self):
+        self.assertIn("24 tasks: 24 ok", self.said_by("-o out/softness"))
+        shown = re.search(r"```text\n(task.*?)```", (TREE / self.page).read_text(), re.S).group(1)
+        lines = self.said_by("-o out/softness").splitlines()
+        for line in shown.splitlines():
+            self.assertTrue(any(said.startswith(line) for said in lines), line)
+
+    def test_the_folder_has_what_the_page_lists(self):
+        listed = re.findall(r"^- `([\w.-]+)`(?: and `([\w.]+)`)?:", (TREE / self.page).read_text(), re.M)
+        names = [name for pair in listed for name in pair if name]
+        self.assertEqual(len(names), 6)
+        for name in names:
+            self.assertTrue((self.folder / "out/softness" / name).exists(), name)
+
+    def test_every_status_is_in_the_page(self):
+        text = (TREE / "src/study/figures.cpp").read_text() + (TREE / "src/study/run.cpp").read_text() + (
+            TREE / "src/study/results.cpp").read_text()
+        known = set(re.findall(r'"(ok|failed|refused|out of time|crashed|missing)"', text))
+        self.assertEqual(len(known), 6)
+        self.assertEqual(known, set(re.findall(r"^\| `([a-z ]+)` \|", (TREE / self.page).read_text(), re.M)))
+
+    def test_stiffer_is_felt_and_a_coarse_step_spoils_it(self):
+        force = {}
+        for row in self.rows():
+            key = row["integrator"], float(row["body.0.youngs_modulus_pa"])
+            force.setdefault(key, []).append(float(row["peak_force_n"]))
+        mean = {key: sum(values) / len(values) for key, values in force.items()}
+        for integrator in ("cvode-bdf", "linearly-implicit-euler"):
+            self.assertGreater(mean[integrator, 4e4], 1.5 * mean[integrator, 5e3])
+        self.assertEqual({len(values) for values in force.values()}, {3})
 
 
 if __name__ == "__main__":

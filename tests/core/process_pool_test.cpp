@@ -59,6 +59,7 @@ TEST(ProcessPool, ACrashIsItsSignal) {
   });
   EXPECT_EQ(outcome.end, End::kCrash);
   EXPECT_NE(outcome.bytes.find("killed by signal 11"), std::string::npos) << outcome.bytes;
+  EXPECT_EQ(outcome.signal, 11);
   const auto left = outcome_of([](const auto&, const auto&) -> std::string { _exit(3); });
   EXPECT_EQ(left.end, End::kCrash);
   EXPECT_NE(left.bytes.find("exit status 3"), std::string::npos) << left.bytes;

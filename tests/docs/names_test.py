@@ -39,6 +39,8 @@ class Program:
             self.options[name] |= everywhere
         rows = table_rows((DOCS / "keys.md").read_text())
         self.keys = {f"{table}.{cells[0].strip('`')}" for table, cells in rows if len(cells) == 7}
+        studies = table_rows((DOCS / "study-keys.md").read_text())
+        self.keys |= {f"{table}.{cells[0].strip('`')}" for table, cells in studies if len(cells) == 6}
         self.tables = {key.rpartition(".")[0] for key in self.keys}
         self.lists = {}
         for name, cells in table_rows((DOCS / "names.md").read_text()):
@@ -88,7 +90,8 @@ def command_faults(line, program):
             if word not in program.lists["integrators"]:
                 out.append(f"integrator {word}")
     first = next((word for word in rest if not word.startswith("-")), "")
-    if command == "list" and first and not first.isupper() and first not in {*program.lists, "keys"}:
+    lists = {*program.lists, "keys", "study-keys"}
+    if command == "list" and first and not first.isupper() and first not in lists:
         out.append(f"list {first}")
     if command == "validate":
         out += [f"case {word}" for word in rest if re.fullmatch(r"[a-z]+(-[a-z]+)*", word)
@@ -200,6 +203,7 @@ class FromThePages(unittest.TestCase):
                 ("`[body.mash]`", "table [body.mash]"),
                 ("`src/no/such/file.cpp`", "file src/no/such/file.cpp"),
                 ("```toml\n[[body]]\nmash = 3\n```", "key body.mash"),
+                ("```toml\n[[sweep]]\nkye = 3\n```", "key sweep.kye"),
                 ("```toml\n[[hand]]\n[hand.tool]\nmash = 3\n```", "key hand.tool.mash")):
             with self.subTest(text=text):
                 found = faults(text, self.program)
@@ -232,7 +236,8 @@ class FromTheProgram(unittest.TestCase):
 
     def test_every_key_of_the_specs_is_in_the_page(self):
         """A key's row is `name("key", ...`: none of the loader's tables is missing."""
-        text = "\n".join(file.read_text() for file in (TREE / "src/scene").glob("keys*.cpp"))
+        text = "\n".join(file.read_text() for pattern in ("keys*.cpp", "study_keys.cpp")
+                         for file in (TREE / "src/scene").glob(pattern))
         kinds = "number|numbers|text|texts|integer|boolean|vec3|table|tables|rungs|group"
         written = set(re.findall(rf"\b(?:{kinds})"
                                  r"\(\s*\"(\w+)\"", text))

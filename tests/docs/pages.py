@@ -4,7 +4,7 @@ from pathlib import Path
 
 TREE = Path(__file__).resolve().parents[2]
 DOCS = TREE / "docs"
-GENERATED = ("keys", "names", "commands")  # by the program: generated_pages_test.py
+GENERATED = ("keys", "study-keys", "names", "commands")  # by the program: generated_pages_test.py
 
 
 def pages():

@@ -31,6 +31,7 @@ class ProcessPool {
     End end = End::kDone;
     /// the result of the work; the message of its exception; "killed by signal 11"; "out of time: 10 s"
     std::string bytes;
+    int signal = 0;  ///< that ended the process; 0: none did
   };
   /// Runs in the child, on the bytes that start() was given.  `out_of_time` becomes true after the limit [CPU
   /// seconds]; the work should then return.  A function of the program, or of a library that was loaded

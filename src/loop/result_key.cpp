@@ -1,4 +1,4 @@
-#include "key.h"
+#include "palpate/loop/result_key.h"
 
 #include <filesystem>
 #include <fstream>
@@ -10,13 +10,22 @@
 #include "palpate/store/content_hash.h"
 #include "palpate/store/provenance.h"
 
-namespace palpate::compare {
+namespace palpate::loop {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Version and commit.  A commit does not name sources that were changed since: there, size and time of the
-/// program and of its own libraries do.
+void add_mesh(store::ContentHash& hash, const MeshSpec& mesh, const std::string& folder) {
+  if (mesh.file.empty()) return;
+  const fs::path path = fs::path(folder) / mesh.file;
+  hash.add_file(path.string());
+  for (const char* beside : {".node", ".ele"})  // TetGen's pair
+    if (path.extension() == ".node" || path.extension() == ".ele")
+      hash.add_file(fs::path(path).replace_extension(beside).string());
+}
+
+}  // namespace
+
 const std::string& made_by() {
   static const std::string made = [] {
     const store::Provenance p = store::provenance();
@@ -37,17 +46,6 @@ const std::string& made_by() {
   }();
   return made;
 }
-
-void add_mesh(store::ContentHash& hash, const MeshSpec& mesh, const std::string& folder) {
-  if (mesh.file.empty()) return;
-  const fs::path path = fs::path(folder) / mesh.file;
-  hash.add_file(path.string());
-  for (const char* beside : {".node", ".ele"})  // TetGen's pair
-    if (path.extension() == ".node" || path.extension() == ".ele")
-      hash.add_file(fs::path(path).replace_extension(beside).string());
-}
-
-}  // namespace
 
 std::string without_compare(const std::string& source) {
   if (source.find("\"\"\"") != std::string::npos || source.find("'''") != std::string::npos) return source;
@@ -75,4 +73,4 @@ std::string result_key(const scene::Description& d, const std::string& more) {
   return hash.hex();
 }
 
-}  // namespace palpate::compare
+}  // namespace palpate::loop

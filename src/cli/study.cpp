@@ -1,0 +1,232 @@
+#include "study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+
+#include "model_cache.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "palpate/report/run_report.h"
+#include "palpate/report/table.h"
+#include "palpate/store/summary.h"
+#include "palpate/study/results.h"
+#include "paths.h"
+#include "progress.h"
+#include "stop.h"
+#include "undelivered.h"
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using study::Plan;
+using study::Results;
+using study::Row;
+using study::Task;
+
+constexpr std::size_t kMostRows = 60;  ///< of a table on the terminal
+/// Figures on the terminal; study.csv has all.
+const std::vector<std::string> kShown = {"steps", "peak_force_n", "largest_displacement_m"};
+
+std::string command_of(const StudyArguments& a) {
+  std::string out = "palpate study " + a.study;
+  if (!a.folder.empty()) out += " -o " + a.folder;
+  return out;
+}
+
+/// Columns whose cells are not all the same: those of a study of one scene need not name it in every row.
+std::vector<std::size_t> varying(const Results& results) {
+  std::vector<std::size_t> out;
+  for (std::size_t c = 0; c < results.settings.size(); ++c)
+    if (std::any_of(results.rows.begin(), results.rows.end(),
+                    [&](const Row& row) { return row.settings[c] != results.rows[0].settings[c]; }))
+      out.push_back(c);
+  return out;
+}
+
+/// Whole numbers as they are, all others short.
+std::string short_cell(const std::string& cell) {
+  if (cell.find_first_not_of("0123456789") == std::string::npos && !cell.empty()) return cell;
+  const double number = report::to_number(cell);
+  return cell.empty() ? "-" : number == number ? report::short_number(number) : cell;
+}
+
+const std::string& cell_at(const std::vector<std::string>& names, const std::vector<std::string>& cells,
+                           const std::string& name) {
+  static const std::string none;
+  const auto at = std::find(names.begin(), names.end(), name);
+  return at == names.end() ? none : cells[static_cast<std::size_t>(at - names.begin())];
+}
+
+void print_results(const Results& results) {
+  const std::vector<std::size_t> settings = varying(results);
+  std::vector<std::string> headers = {"task"}, shown;
+  for (const std::size_t c : settings) headers.push_back(results.settings[c]);
+  headers.emplace_back("status");
+  for (const std::string& one : kShown)
+    if (std::find(results.figures.begin(), results.figures.end(), one) != results.figures.end())
+      shown.push_back(one);
+  headers.insert(headers.end(), shown.begin(), shown.end());
+  headers.emplace_back("CPU [s]");
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < std::min(kMostRows, results.rows.size()); ++i) {
+    const Row& row = results.rows[i];
+    std::vector<std::string>& cells = rows.emplace_back();
+    cells.push_back(std::to_string(i));
+    for (const std::size_t c : settings) cells.push_back(row.settings[c]);
+    cells.push_back(row.status);
+    for (const std::string& one : shown)
+      cells.push_back(short_cell(cell_at(results.figures, row.figures, one)));
+    cells.push_back(short_cell(cell_at(results.times, row.times, "loop_cpu_s")));
+  }
+  fmt::print("{}", report::format_table(headers, rows));
+  if (results.rows.size() > kMostRows)
+    fmt::print("... and {} more; study.csv has them all\n", results.rows.size() - kMostRows);
+}
+
+std::string counts_of(const Results& results) {
+  std::string out;
+  for (const char* status : {"ok", "failed", "out of time", "crashed", "refused", "missing"})
+    if (const std::size_t n = results.count(status); n > 0)
+      out += fmt::format("{}{} {}", out.empty() ? "" : ", ", n, status);
+  return out;
+}
+
+/// The first reason of each kind of end that is not "ok".
+void print_reasons(const Results& results) {
+  for (const char* status : {"failed", "out of time", "crashed", "refused"}) {
+    const auto at = std::find_if(results.rows.begin(), results.rows.end(),
+                                 [&](const Row& row) { return row.status == status; });
+    if (at == results.rows.end()) continue;
+    fmt::print("{}: task {}: {}\n", status, at - results.rows.begin(), at->reason);
+  }
+}
+
+void print_plan(const Plan& plan) {
+  std::vector<std::string> headers = {"task", "scene", "integrator", "rtol", "step_s"};
+  for (const auto& [name, value] : plan.tasks[0].varied) headers.push_back(name);
+  headers.emplace_back("key");
+  std::vector<std::vector<std::string>> rows;
+  for (const Task& task : plan.tasks) {
+    std::vector<std::string>& row = rows.emplace_back(std::vector<std::string>{
+        std::to_string(task.index), plan.scenes[task.scene].name, task.integrator, task.rtol, task.step_s});
+    for (const auto& [name, value] : task.varied) row.push_back(value);
+    row.push_back(task.refused.empty() ? task.key : "refused: " + task.refused);
+  }
+  fmt::print("{}{} tasks\n", report::format_table(headers, rows), plan.tasks.size());
+}
+
+study::PlanHelp help_of() { return {find_scene, make_missing_models}; }
+
+std::vector<std::size_t> all_of(const Plan& plan) {
+  std::vector<std::size_t> out(plan.tasks.size());
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  return out;
+}
+
+study::RunOutcome run_here(Plan& plan, const std::vector<std::size_t>& tasks, const StudyArguments& arguments,
+                           const std::string& folder) {
+  Progress progress("running " + plan.spec.name);
+  study::RunOptions options;
+  options.folder = folder;
+  options.jobs = arguments.jobs;
+  options.stop = &stop_flag();
+  options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
+  return study::run_tasks(plan, tasks, help_of(), options);
+}
+
+std::string why_lost(const study::RunOutcome& outcome) {
+  if (outcome.lost.empty()) return "not run yet; the same command without --merge runs them";
+  const study::LostTask& first = outcome.lost.front();
+  return fmt::format("task {}: {}; the same command runs {} again", first.index, first.why,
+                     outcome.lost.size() == 1 ? "it" : "them");
+}
+
+/// `--task`: these tasks alone, as an element of an array job does; no table.
+int run_some(Plan& plan, const StudyArguments& arguments, const std::string& folder) {
+  const auto tasks = study::indices_of(arguments.tasks, plan.tasks.size());
+  const study::RunOutcome outcome = run_here(plan, tasks, arguments, folder);
+  fmt::print("{} run, {} done before, {} refused by their scenes; results in {}/tasks\n", outcome.run,
+             outcome.reused, outcome.refused, folder);
+  if (outcome.stopped) return kExitStopped;
+  Undelivered missing;
+  for (const study::LostTask& one : outcome.lost)
+    missing.add(fmt::format("result of task {}", one.index), one.why);
+  return missing.close(0);
+}
+
+StudyEnd run_all(Plan& plan, const StudyArguments& arguments, const std::string& folder) {
+  if (arguments.merge) return {false, false, why_lost({})};
+  if (arguments.slurm) return study_by_slurm(plan, arguments, folder);
+  const study::RunOutcome outcome = run_here(plan, all_of(plan), arguments, folder);
+  if (outcome.reused > 0)
+    fmt::print("{} tasks were done before, and were not done again (--fresh starts anew)\n\n",
+               outcome.reused);
+  return {outcome.stopped, false, why_lost(outcome)};
+}
+
+void keep_summary(const Plan& plan, const Results& results, const StudyArguments& arguments, bool stopped,
+                  double wall_s, const std::string& folder) {
+  store::Summary summary;
+  summary.command = command_of(arguments);
+  summary.scene = plan.spec.name;
+  summary.outcome = stopped ? "interrupted" : "finished";
+  summary.provenance = store::provenance();
+  store::SummarySection& counts = summary.section("counts");
+  counts.values.emplace_back("tasks", static_cast<long long>(results.rows.size()));
+  for (const char* status : {"ok", "failed", "out of time", "crashed", "refused", "missing"})
+    counts.values.emplace_back(status, static_cast<long long>(results.count(status)));
+  summary.section("timings").values = {{"wall_s", wall_s}};
+  store::write_summary((fs::path(folder) / "summary.json").string(), summary);
+}
+
+}  // namespace
+
+int study(const StudyArguments& arguments) {
+  const double start = wall_seconds();
+  const scene::StudySpec spec = scene::load_study(arguments.study);
+  const std::string folder = arguments.folder.empty()
+                                 ? default_folder("study-" + fs::path(arguments.study).stem().string())
+                                 : arguments.folder;
+  Plan plan = study::list_tasks(spec, help_of());
+  if (!arguments.plan.empty() && arguments.plan != plan.key)
+    fail(
+        "{}: the study, one of its scenes or palpate itself is not what it was when the job was submitted; "
+        "submit it anew",
+        arguments.study);
+  if (!arguments.tasks.empty()) return run_some(plan, arguments, folder);
+  study::settle_all(plan, help_of());
+  if (arguments.dry_run) {
+    print_plan(plan);
+    return 0;
+  }
+  make_folder(folder);
+  if (arguments.fresh) study::forget_results(folder);
+  const StudyEnd end = run_all(plan, arguments, folder);
+  if (end.submitted) return 0;
+
+  const Results results = study::merge(plan, folder);
+  study::write(plan, results, folder);
+  keep_summary(plan, results, arguments, end.stopped, wall_seconds() - start, folder);
+  print_results(results);
+  print_reasons(results);
+  const report::RunReport written = report::write_run_report(folder);
+  fmt::print("\nwritten: {0}/study.csv, {0}/study-times.csv, {1}\n", folder, written.page.string());
+  fmt::print("{} tasks: {}\n", results.rows.size(), counts_of(results));
+  if (end.stopped) {
+    fmt::print(stderr, "palpate: stopped; the same command goes on from {}\n", folder);
+    return kExitStopped;
+  }
+  Undelivered missing;
+  if (!results.missing.empty())
+    missing.add(fmt::format("result of task{} {}", results.missing.size() == 1 ? "" : "s",
+                            study::text_of(results.missing)),
+                end.lost);
+  missing.add(written);
+  return missing.close(0);
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,63 @@
+#include "study_columns.h"
+
+#include <algorithm>
+
+#include "palpate/report/work_precision.h"
+
+namespace palpate::report {
+namespace {
+
+bool contains(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// Columns that a study has whether or not they are varied.
+const std::vector<std::string> kAlways = {"scene", "integrator", "rtol", "step_s", "seed"};
+
+}  // namespace
+
+StudyColumns columns_of_study(const Table& study) {
+  StudyColumns out;
+  const std::size_t first = study.column("task") + 1, last = study.column("status");
+  for (std::size_t c = first; c < last; ++c) {
+    const std::string& name = study.headers[c];
+    out.settings.push_back(name);
+    if (name == "seed") out.seeds = true;
+    if (!contains(kAlways, name)) (out.seeds ? out.drawn : out.swept).push_back(name);
+  }
+  return out;
+}
+
+std::vector<StudyFigure> shown_figures(const Table& study) {
+  static const std::vector<StudyFigure> all = {{"peak_force_n", "peak force on the hand [N]"},
+                                               {"largest_displacement_m", "largest displacement [m]"},
+                                               {"steps", "steps"},
+                                               {"cpu_s", "CPU [s]"}};
+  std::vector<StudyFigure> out;
+  for (const StudyFigure& one : all)
+    if (study.has(one.column) && distinct(study, one.column).size() > 1) out.push_back(one);
+  return out;
+}
+
+std::vector<StudyGroup> groups_of(const Table& study, const StudyColumns& columns,
+                                  const std::vector<std::string>& without) {
+  std::vector<std::size_t> by;
+  for (const std::string& name : columns.settings)
+    if (!contains(without, name) && distinct(study, name).size() > 1) by.push_back(study.column(name));
+  std::vector<StudyGroup> out;
+  for (std::size_t r = 0; r < study.rows.size(); ++r) {
+    std::string name;
+    for (const std::size_t c : by) {
+      const std::string& cell = study.rows[r][c];
+      const bool named =
+          contains(kAlways, study.headers[c]) && study.headers[c] != "rtol" && study.headers[c] != "step_s";
+      if (!cell.empty()) name += (name.empty() ? "" : ", ") + (named ? cell : study.headers[c] + " " + cell);
+    }
+    const auto at =
+        std::find_if(out.begin(), out.end(), [&](const StudyGroup& group) { return group.name == name; });
+    (at == out.end() ? out.emplace_back(StudyGroup{name, {}}) : *at).rows.push_back(r);
+  }
+  return out;
+}
+
+}  // namespace palpate::report

@@ -1,0 +1,105 @@
+#include "scene/study_keys.h"
+
+#include <algorithm>
+
+namespace palpate::scene {
+namespace {
+
+constexpr int kMostSeeds = 1000000;
+
+/// A TOML value as text that reads back as it: of what `--set` takes after its `=`.
+std::string value_text(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return to_toml(number->get());
+  std::ostringstream out;
+  node.visit([&](const auto& typed) {
+    if constexpr (toml::is_array<decltype(typed)>) {
+      std::string items;
+      for (const toml::node& one : typed) items += (items.empty() ? "" : ", ") + value_text(one);
+      out << '[' << items << ']';
+    } else {
+      out << toml::toml_formatter(
+          typed, toml::toml_formatter::default_flags & ~toml::format_flags::allow_literal_strings);
+    }
+  });
+  return out.str();
+}
+
+void read_values(const Value& value, SweepSpec& spec) {
+  const toml::array* array = value.node.as_array();
+  if (!array || array->empty())
+    refuse(location(value.node.source()), value.where, "values must be a list with at least one value");
+  for (const toml::node& one : *array) spec.values.push_back(value_text(one));
+}
+
+/// `seeds = 5` is `seeds = [1, 2, 3, 4, 5]`.
+void read_seeds(const Value& value, StudySpec& spec) {
+  if (value.node.is_array()) {
+    for (const toml::node& one : *value.node.as_array())
+      spec.seeds.push_back(read_integer(Value{one, value.where, value.key}, at_least(0)));
+    return;
+  }
+  const int count = read_integer(value, closed(1, kMostSeeds));
+  for (int seed = 1; seed <= count; ++seed) spec.seeds.push_back(seed);
+}
+
+const KeyTable<StudySpec>& study_keys() {
+  static const KeyTable<StudySpec> keys = {
+      unless("the file's name", text("name", &StudySpec::name, {}, "what reports call the study")),
+      required(texts("scenes", &StudySpec::scenes,
+                     "files, relative to the study's folder, or names of `palpate list scenes`")),
+      unless("each scene's own",
+             texts("integrators", &StudySpec::integrators, "methods: palpate list integrators")),
+      unless("each scene's own",
+             numbers("rtol", &StudySpec::rtol, positive(), "tolerances, for each method with error control")),
+      unless("each scene's own",
+             numbers("step_s", &StudySpec::step_s, positive(), "steps, for each method with fixed steps")),
+      own_key<StudySpec>("seeds", read_seeds, "whole number or list", "none",
+                         "how many, from 1, or which: each draws a value for every [[random]] key"),
+      unless("nothing", texts("set", &StudySpec::set, "KEY=VALUE, in every scene, as for --set")),
+      number("duration_s", &StudySpec::duration_s, at_least(0.0, "0 is each scene's own"),
+             "simulated time; 0: each scene's own"),
+      number("limit_s", &StudySpec::limit_s, positive(), "CPU time of a task, its repeats together"),
+      integer("repeats", &StudySpec::repeats, closed(1, 1000), "runs of each task, whose median times count"),
+  };
+  return keys;
+}
+
+const KeyTable<SweepSpec>& sweep_keys() {
+  static const KeyTable<SweepSpec> keys = {
+      required(text("key", &SweepSpec::key, {}, "a key of the scenes, dotted, tables counted from 0")),
+      own_key<SweepSpec>("values", read_values, "list", "of from, to and count", "what it takes, in order"),
+      unless("none", number("from", &SweepSpec::from, any(), "the first of `count` values")),
+      unless("none", number("to", &SweepSpec::to, any(), "the last of them")),
+      unless("none", integer("count", &SweepSpec::count, closed(2, 100000), "how many values")),
+      text("spacing", &SweepSpec::spacing, {"linear", "log"}, "equal differences, or equal ratios"),
+      boolean("together", &SweepSpec::together,
+              "moves with the sweep before it, value by value, instead of making all combinations"),
+  };
+  return keys;
+}
+
+const KeyTable<RandomSpec>& random_keys() {
+  static const KeyTable<RandomSpec> keys = {
+      required(text("key", &RandomSpec::key, {}, "a key of the scenes, dotted, tables counted from 0")),
+      text("distribution", &RandomSpec::distribution, {"uniform", "log-uniform", "normal"},
+           "how values are drawn"),
+      unless("none", number("min", &RandomSpec::min, any(), "least value; of normal: where it is cut off")),
+      unless("none", number("max", &RandomSpec::max, any(), "greatest; of normal: where it is cut off")),
+      unless("none", number("mean", &RandomSpec::mean, any(), "of normal")),
+      unless("none", number("standard_deviation", &RandomSpec::standard_deviation, positive(), "of normal")),
+  };
+  return keys;
+}
+
+}  // namespace
+
+const KeyTable<StudySpec>& study_file_keys() {
+  static const KeyTable<StudySpec> keys = {
+      required(group("study", study_keys(), "what is run, and how long it may take")),
+      tables("sweep", &StudySpec::sweeps, sweep_keys(), "a parameter that takes several values"),
+      tables("random", &StudySpec::randoms, random_keys(), "a parameter whose value each seed draws"),
+  };
+  return keys;
+}
+
+}  // namespace palpate::scene

@@ -1,0 +1,163 @@
+#include "figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "palpate/loop/run.h"
+#include "palpate/store/content_hash.h"
+
+namespace palpate::study {
+namespace {
+
+using Times = std::vector<std::pair<std::string, std::vector<double>>>;
+
+/// What a study keeps of a run: the largest force and torque on any hand, how far nodes went, and the state
+/// at the end.
+class FigureObserver : public loop::Observer {
+ public:
+  explicit FigureObserver(bool energy) : energy_(energy) {}
+
+  void period(loop::World& world, double /*t*/) override {
+    const VecX now = world.state.q().head(world.state.layout().nodal_size);
+    if (start_.size() != now.size()) start_ = now;
+    for (Eigen::Index i = 0; i + 3 <= now.size(); i += 3) {
+      const double moved = (now.segment<3>(i) - start_.segment<3>(i)).norm();
+      if (!(moved <= largest_displacement_m)) largest_displacement_m = moved;  // NaN stays
+    }
+  }
+  void tick_of(std::size_t hand, const loop::TickRecord& tick) override {
+    ticks = true;
+    if (tick.device.force.norm() > peak_force_n)
+      peak_force_n = tick.device.force.norm(), peak_force_at_s = tick.time;
+    peak_torque_n_m = std::max(peak_torque_n_m, tick.device.moment.norm());
+    tools_[hand] = tick.tool;
+  }
+  bool wants_energy() const override { return energy_; }
+
+  /// Hash of bodies and tools at the end: equal where every bit is.
+  std::string end_state(const loop::World& world) const {
+    store::ContentHash hash;
+    add(hash, world.state.q());
+    add(hash, world.state.u());
+    for (const auto& [hand, pose] : tools_) {
+      add(hash, pose.translation);
+      add(hash, pose.rotation.coeffs());
+    }
+    return hash.hex();
+  }
+
+  bool ticks = false;
+  double largest_displacement_m = 0.0, peak_force_n = 0.0, peak_force_at_s = 0.0, peak_torque_n_m = 0.0;
+
+ private:
+  template <class Vector>
+  static void add(store::ContentHash& hash, const Vector& values) {
+    const VecX v = values;
+    hash.add({reinterpret_cast<const char*>(v.data()), static_cast<std::size_t>(v.size()) * sizeof(double)});
+  }
+  bool energy_;
+  VecX start_;
+  std::map<std::size_t, Pose> tools_;
+};
+
+Json figures_of(const loop::World& world, const loop::RunResult& result, const FigureObserver& seen) {
+  Json out = Json::object();
+  out["simulated_s"] = result.time;
+  long long nodes = 0, tets = 0;
+  for (const loop::Body& body : world.bodies) nodes += body.rest.nodes.cols(), tets += body.rest.tets.cols();
+  out["nodes"] = nodes;
+  out["tetrahedra"] = tets;
+  if (seen.ticks) {
+    out["peak_force_n"] = seen.peak_force_n;
+    out["peak_force_at_s"] = seen.peak_force_at_s;
+    out["peak_torque_n_m"] = seen.peak_torque_n_m;
+  }
+  if (!world.bodies.empty()) out["largest_displacement_m"] = seen.largest_displacement_m;
+  if (result.buzz_n) out["buzz_above_30_hz_rms_n"] = *result.buzz_n;
+  if (!result.tunnelled.empty()) {
+    long long through = 0;
+    for (const long n : result.tunnelled) through += n;
+    out["vertices_gone_through"] = through;
+  }
+  if (result.energy) loop::visit_energies([&](const char* name, double v) { out[name] = v; }, *result.energy);
+  const auto add = [&out]<class T>(const char* name, const T& value) {
+    if constexpr (std::is_integral_v<T>) out[name] = static_cast<long long>(value);
+  };
+  loop::visit_counters(add, result);
+  out["end_state"] = seen.end_state(world);
+  return out;
+}
+
+void add_times(Times& times, const loop::RunResult& result, double assemble_s) {
+  const auto put = [&times](const char* name, double value) {
+    const auto at = std::find_if(times.begin(), times.end(), [&](const auto& t) { return t.first == name; });
+    (at == times.end() ? times.emplace_back(name, std::vector<double>{}) : *at).second.push_back(value);
+  };
+  put("assemble_s", assemble_s);
+  const auto add = [&put]<class T>(const char* name, const T& value) {
+    if constexpr (std::is_floating_point_v<T>)
+      if (std::string_view(name) != "simulated_s") put(name, value);
+  };
+  loop::visit_counters(add, result);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+/// One run: its status and figures; its times are added to `times`.
+Json run_once(const scene::Description& d, const std::atomic<bool>& out_of_time, Times& times) {
+  const double start = wall_seconds();
+  const auto world = loop::assemble(d);
+  const double assemble_s = wall_seconds() - start;
+  FigureObserver seen(d.record && d.record->energy);
+  loop::RunOptions options;
+  options.observers = {&seen};
+  options.stop = &out_of_time;
+  const loop::RunResult result = loop::run(*world, options);
+  // where the time ran out is no property of the scene
+  if (result.stopped) return {{"status", "out of time"}, {"reason", ""}, {"figures", Json::object()}};
+  add_times(times, result, assemble_s);
+  Json out = {{"status", "ok"}, {"reason", ""}, {"figures", figures_of(*world, result, seen)}};
+  const dynamics::StepResult& last = result.status;
+  if (!last.ok()) {
+    out["status"] = last.status == dynamics::StepStatus::kBadSettings ? "refused" : "failed";
+    out["reason"] =
+        fmt::format("{} at t = {:g} s: {}", dynamics::to_string(last.status), last.t, last.message);
+  } else if (!world->state.q().allFinite() || !world->state.u().allFinite()) {
+    out["status"] = "failed";
+    out["reason"] = "not finite: the run reached its end without a usable state";
+  }
+  return out;
+}
+
+}  // namespace
+
+Json run_scene(const scene::Description& d, int repeats, const std::atomic<bool>& out_of_time) {
+  Json out;
+  Times times;
+  try {
+    for (int i = 0; i < repeats; ++i) {
+      Json one = run_once(d, out_of_time, times);
+      if (i > 0 && one["status"] == "ok" && one != out) {
+        one["status"] = "failed";
+        one["reason"] = "not the same again: two runs of this scene differ";
+      }
+      out = std::move(one);
+      if (out["status"] != "ok") break;
+    }
+  } catch (const Error& refusal) {
+    out = {{"status", "refused"}, {"reason", refusal.what()}, {"figures", Json::object()}};
+  }
+  out["times"] = Json::object();
+  for (const auto& [name, values] : times) out["times"][name] = median(values);
+  out["times"]["peak_memory_mib"] = peak_memory_mib();
+  return out;
+}
+
+}  // namespace palpate::study

@@ -1,0 +1,162 @@
+#include "palpate/study/run.h"
+
+#include <signal.h>
+
+#include <filesystem>
+#include <new>
+#include <thread>
+
+#include "figures.h"
+#include "palpate/core/bytes.h"
+#include "palpate/core/error.h"
+#include "palpate/core/process_pool.h"
+#include "palpate/loop/load.h"
+#include "palpate/store/atomic_file.h"
+#include "task_file.h"
+
+namespace palpate::study {
+namespace {
+
+namespace fs = std::filesystem;
+using Outcome = ProcessPool::Outcome;
+
+/// What the process of a task answers where it found no memory.
+constexpr const char* kNoMemory = "no memory";
+
+/// One task as bytes, for a process that knows nothing of the study.
+std::string order_of(const Plan& plan, const Task& task) {
+  const StudyScene& scene = plan.scenes[task.scene];
+  ByteWriter out;
+  out.put(scene.text).put(scene.path).put(plan.spec.repeats).put(task.overrides.size());
+  for (const std::string& one : task.overrides) out.put(one);
+  return out.take();
+}
+
+/// A ProcessPool::Work: runs what order_of() said.
+std::string do_order(const std::string& order, const std::atomic<bool>& out_of_time) {
+  ByteReader in(order);
+  const auto text = in.get<std::string>(), path = in.get<std::string>();
+  const int repeats = in.get<int>();
+  std::vector<std::string> overrides(in.get<std::size_t>());
+  for (std::string& one : overrides) one = in.get<std::string>();
+  try {
+    const Json result = run_scene(loop::parse(text, path, overrides), repeats, out_of_time);
+    return result.dump(-1, ' ', false, Json::error_handler_t::replace);
+  } catch (const std::bad_alloc&) { return kNoMemory; }
+}
+
+Json without_figures(const char* status, const std::string& reason) {
+  return {{"status", status}, {"reason", reason}, {"figures", Json::object()}, {"times", Json::object()}};
+}
+
+/// Signals by which a process is ended from outside: a node that goes down, an administrator, the kernel that
+/// needs its memory.  All others are its own crashes.
+bool is_from_outside(int signal) { return signal == SIGKILL || signal == SIGTERM || signal == SIGHUP; }
+
+class Runner {
+ public:
+  Runner(Plan& plan, const RunOptions& options, int jobs) : plan_(plan), options_(options), pool_(jobs) {}
+
+  RunOutcome run(const std::vector<std::size_t>& open, RunOutcome outcome) {
+    out_ = std::move(outcome);
+    most_ = open.size();
+    for (std::size_t next = 0; !stopped();) {
+      while (next < open.size() && pool_.has_room() && !stopped()) start(plan_.tasks[open[next++]]);
+      if (pool_.idle()) break;
+      pool_.wait(0.2);
+    }
+    out_.stopped = stopped();
+    return std::move(out_);
+  }
+
+ private:
+  bool stopped() const { return options_.stop && options_.stop->load(); }
+
+  void start(const Task& task) {
+    pool_.start(do_order, order_of(plan_, task), plan_.spec.limit_s,
+                [this, &task](const Outcome& outcome) { done(task, outcome); });
+  }
+
+  void done(const Task& task, const Outcome& outcome) {
+    if (stopped()) return;  // it may have been cut short
+    ++ended_;
+    if (options_.progress)
+      options_.progress(static_cast<double>(ended_) / static_cast<double>(most_),
+                        fmt::format("task {}", task.index));
+    const bool killed = outcome.end == Outcome::End::kCrash && is_from_outside(outcome.signal);
+    if (killed || (outcome.end == Outcome::End::kDone && outcome.bytes == kNoMemory)) {
+      out_.lost.push_back({task.index, killed ? outcome.bytes : "not enough memory"});
+      return;
+    }
+    const Json file = task_file(plan_, task, result_of(outcome));
+    store::write_atomically(result_path(options_.folder, task),
+                            file.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    ++out_.run;
+  }
+
+  Json result_of(const Outcome& outcome) const {
+    const std::string out_of_time = out_of_time_reason(plan_);
+    switch (outcome.end) {
+      case Outcome::End::kDone: {
+        Json result = Json::parse(outcome.bytes);
+        if (result["status"] == "out of time") result["reason"] = out_of_time;
+        return result;
+      }
+      case Outcome::End::kOutOfTime: return without_figures("out of time", out_of_time);
+      case Outcome::End::kError: return without_figures("crashed", "internal error: " + outcome.bytes);
+      case Outcome::End::kCrash: break;
+    }
+    return without_figures("crashed", outcome.bytes);
+  }
+
+  Plan& plan_;
+  const RunOptions& options_;
+  ProcessPool pool_;
+  RunOutcome out_;
+  std::size_t ended_ = 0, most_ = 0;
+};
+
+/// As many as there are cores for the threads that the tasks ask for.
+int jobs_for(const Plan& plan, const std::vector<std::size_t>& open, const RunOptions& options) {
+  if (options.jobs > 0) return options.jobs;
+  int threads = 1;
+  for (const std::size_t i : open) threads = std::max(threads, plan.tasks[i].threads);
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / threads);
+}
+
+}  // namespace
+
+bool is_done(const Plan& plan, const std::string& folder, const Task& task) {
+  PALPATE_CHECK(task.settled, "task {} is not settled", task.index);
+  if (!task.refused.empty()) return true;
+  const auto file = read_task_file(folder, task);
+  return file && is_final(plan, *file);
+}
+
+RunOutcome run_tasks(Plan& plan, const std::vector<std::size_t>& indices, const PlanHelp& help,
+                     const RunOptions& options) {
+  std::error_code error;
+  fs::create_directories(fs::path(options.folder) / "tasks", error);
+  if (error) fail("{}/tasks: cannot be made: {}", options.folder, error.message());
+  RunOutcome outcome;
+  std::vector<std::size_t> open;
+  for (const std::size_t i : indices) {
+    Task& task = plan.tasks[i];
+    settle(plan, task, help);
+    if (!task.refused.empty())
+      ++outcome.refused;
+    else if (is_done(plan, options.folder, task))
+      ++outcome.reused;
+    else
+      open.push_back(i);
+  }
+  return Runner(plan, options, jobs_for(plan, open, options)).run(open, std::move(outcome));
+}
+
+void forget_results(const std::string& folder) {
+  std::error_code error;
+  fs::remove_all(fs::path(folder) / "tasks", error);
+  if (error) fail("{}/tasks: cannot be removed: {}", folder, error.message());
+}
+
+}  // namespace palpate::study

@@ -1,0 +1,105 @@
+"""What the tests of studies share: a scene of milliseconds, one of seconds, and calls of the program."""
+import csv
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+BLOCK = """[scene]
+name = "block"
+duration_s = 0.02
+gravity_m_s2 = [0.0, 0.0, -9.81]
+[[body]]
+name = "block"
+youngs_modulus_pa = 1e4
+stiffness_damping_s = 2e-3
+[body.mesh]
+generator = "box"
+size_m = [0.04, 0.04, 0.02]
+element_size_m = 0.02
+[[body.attachment]]
+box_min_m = [-1.0, -1.0, -1.0]
+box_max_m = [1.0, 1.0, -0.0099]
+[integrator]
+name = "linearly-implicit-euler"
+step_s = 1e-3
+"""
+QUICK = """[study]
+scenes = ["block.toml"]
+integrators = ["cvode-bdf", "linearly-implicit-euler"]
+rtol = [1e-2, 1e-4]
+step_s = [2e-3, 1e-3]
+seeds = 2
+[[sweep]]
+key = "body.0.youngs_modulus_pa"
+values = [1e4, 4e4]
+[[random]]
+key = "body.0.density_kg_m3"
+min = 900
+max = 1100
+"""
+QUICK_TASKS = 16
+# Seconds a task, so that something can happen to it; in another order of magnitude than all else.
+LONG = """[study]
+scenes = ["block.toml"]
+step_s = [2e-7]
+duration_s = 0.1
+set = ["integrator.max_steps=1000000000"]
+limit_s = 300
+[[sweep]]
+key = "body.0.youngs_modulus_pa"
+values = [1e4, 2e4, 3e4, 4e4]
+"""
+LONG_TASKS = 4
+
+
+class Studies(unittest.TestCase):
+    program = None  # of the test file
+    environment = {}
+
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="palpate-study-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.put("block.toml", BLOCK)
+        self.put("quick.toml", QUICK)
+        self.put("long.toml", LONG)
+
+    def put(self, name, text):
+        (self.folder / name).write_text(text)
+
+    def words(self, *arguments):
+        return [str(self.program), "study", *arguments]
+
+    def call(self, *arguments):
+        return subprocess.run(self.words(*arguments), capture_output=True, text=True, cwd=self.folder,
+                              timeout=500, env={**os.environ, **self.environment}, stdin=subprocess.DEVNULL)
+
+    def good(self, *arguments):
+        done = self.call(*arguments)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+    def refused(self, *arguments):
+        done = self.call(*arguments)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertTrue(done.stderr.startswith("palpate: error: "), done.stderr)
+        return done.stderr
+
+    def begin(self, *arguments):
+        child = subprocess.Popen(self.words(*arguments), cwd=self.folder, text=True,
+                                 env={**os.environ, **self.environment}, stdin=subprocess.DEVNULL,
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(lambda: (child.kill(), child.wait(), child.stdout.close(), child.stderr.close()))
+        return child
+
+    def table(self, folder):
+        return (self.folder / folder / "study.csv").read_bytes()
+
+    def rows(self, folder, name="study.csv"):
+        with open(self.folder / folder / name, encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def results(self, folder):
+        return sorted(path.name for path in (self.folder / folder / "tasks").glob("*.json"))

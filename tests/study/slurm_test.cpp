@@ -1,0 +1,91 @@
+// Texts that go to Slurm; cli.slurm runs a cluster.
+#include "palpate/study/slurm.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#include "block.h"
+#include "messages.h"
+
+using namespace palpate;
+using namespace palpate::study_scenes;
+using study::elements_of;
+
+namespace {
+
+/// Programs of a folder in the place of Slurm's, for the life of this object.
+class FakeSlurm {
+ public:
+  explicit FakeSlurm(const TemporaryFolder& folder) : folder_(folder), path_(getenv("PATH")) {
+    setenv("PATH", (folder.string() + ":" + path_).c_str(), 1);
+  }
+  ~FakeSlurm() { setenv("PATH", path_.c_str(), 1); }
+  void answers(const std::string& name, const std::string& script) const {
+    chmod(folder_.write(name, "#!/bin/sh\n" + script).c_str(), 0755);
+  }
+
+ private:
+  const TemporaryFolder& folder_;
+  std::string path_;
+};
+
+}  // namespace
+
+TEST(StudySlurm, TasksAreSharedOutOverTheElements) {
+  EXPECT_EQ(elements_of({0, 1, 2}, 1, 1001), (std::vector<std::string>{"0", "1", "2"}));
+  EXPECT_EQ(elements_of({0, 1, 2, 7}, 3, 1001), (std::vector<std::string>{"0-2", "7"}));
+  EXPECT_EQ(elements_of({0, 2, 3, 5, 6}, 1, 2), (std::vector<std::string>{"0,2-3", "5-6"}))
+      << "more tasks than the site has elements";
+  EXPECT_EQ(elements_of({4}, 5, 1), (std::vector<std::string>{"4"}));
+}
+
+TEST(StudySlurm, TheScriptNamesWhatAnElementRuns) {
+  const TemporaryFolder folder;
+  const study::Plan plan = plan_of(folder, "name = \"soft & \\n hard\"\n");
+  study::ArrayJob job{"/opt/it's here/palpate", "/shared/out 100%", "--time=10\n--oops", 3, {"0-1", "5"}};
+  const std::string script = study::sbatch_script(plan, job);
+  for (const char* line :
+       {"#!/bin/bash\n", "#SBATCH --job-name=palpate-soft-----hard\n", "#SBATCH --array=0-1\n",
+        "#SBATCH --cpus-per-task=3\n", "#SBATCH --output=\"/shared/out 100%%/slurm/%A_%a.log\"\n",
+        "#SBATCH --time=10 --oops\n", "tasks=(\n  0-1\n  5\n)\n", "exec '/opt/it'\\''s here/palpate' study '",
+        " -o '/shared/out 100%' --jobs 1 --plan "})
+    expectations::expect_contains(script, line);
+  expectations::expect_contains(script, plan.key + " --task \"${tasks[$SLURM_ARRAY_TASK_ID]}\"\n");
+  job.options.clear();
+  EXPECT_EQ(study::sbatch_script(plan, job).find("oops"), std::string::npos);
+}
+
+TEST(StudySlurm, SaysAllThatSbatchSaid) {
+  const TemporaryFolder folder;
+  const FakeSlurm slurm(folder);
+  slurm.answers("sbatch", "echo 'sbatch: error: invalid partition' >&2; echo 'no such thing' >&2; exit 1");
+  const std::string said = expectations::message_of([] { study::submit("x.sbatch"); });
+  expectations::expect_contains(said, "exit status 1");
+  expectations::expect_contains(said, "sbatch: error: invalid partition\nno such thing");
+  slurm.answers("sbatch", "echo \"42;cluster $*\"");
+  EXPECT_EQ(study::submit("x.sbatch"), "42");
+}
+
+TEST(StudySlurm, ReadsWhatSlurmAnswers) {
+  const TemporaryFolder folder;
+  const FakeSlurm slurm(folder);
+  slurm.answers("scontrol", "echo 'Foo = 3'; echo 'MaxArraySize            = 25'");
+  EXPECT_EQ(study::max_array_size(), 25u);
+  slurm.answers("scontrol", "echo 'Unable to contact slurm controller' >&2; exit 1");
+  EXPECT_EQ(study::max_array_size(), 1001u);
+  slurm.answers("squeue", "echo PENDING");
+  EXPECT_EQ(study::job_state("7"), study::JobState::kWaiting);
+  slurm.answers("squeue", "exit 0");
+  EXPECT_EQ(study::job_state("7"), study::JobState::kOver);
+  slurm.answers("squeue", "echo 'slurm_load_jobs error: Invalid job id specified' >&2; exit 1");
+  EXPECT_EQ(study::job_state("7"), study::JobState::kOver);
+  slurm.answers("squeue", "echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2; exit 1");
+  EXPECT_EQ(study::job_state("7"), study::JobState::kUnknown);
+}
+
+TEST(StudySlurm, NamesThePackageWhereThereIsNoSlurm) {
+  const std::string said = expectations::message_of([] { study::ask({"no-such-sbatch", "x"}); });
+  expectations::expect_contains(said, "no-such-sbatch was not found");
+  expectations::expect_contains(said, "slurm-client");
+}
