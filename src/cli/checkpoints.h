@@ -39,7 +39,7 @@ struct Resumption {
   std::string folder;
   RunIdentity identity;
   store::Checkpoint checkpoint;
-  Archive from;  ///< what `checkpoint` holds
+  loop::Resumed from;  ///< what `checkpoint` holds
 };
 int resume_run(Resumption& resumption, const scene::Description& description, Undelivered& missing);
 

@@ -65,8 +65,8 @@ int resume(const ResumeArguments& arguments) {
         "run the scene anew",
         path);
   Resumption r{arguments.run, {}, store::read_checkpoint(path), {}};
-  r.from = Archive(r.checkpoint.values, path);
-  r.from("command", r.identity);
+  r.from.archive = Archive(r.checkpoint.values, path);
+  r.from.archive("command", r.identity);
   check_version(r);
   const scene::Description description = scene_of(r);
   fmt::print("{} goes on from t = {:g} s\n", arguments.run, r.checkpoint.time_s);

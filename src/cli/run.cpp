@@ -236,7 +236,7 @@ void print_files(const std::string& folder) {
 /// @param from  where it goes on, null at its start
 loop::RunResult run_watched(std::unique_ptr<loop::World>& world, const RunArguments& arguments,
                             std::vector<loop::Observer*> observers, const loop::CheckpointPlan* checkpoints,
-                            loop::CheckpointCost& cost, Archive* from) {
+                            loop::CheckpointCost& cost, loop::Resumed* from) {
   Progress progress(fmt::format("running {}", short_name(world->description)));
   loop::RunOptions options;
   options.duration_s = arguments.duration_s;
@@ -274,8 +274,11 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
           "{}: a file that the scene names (a mesh, a recording) has changed since the run began; bring the "
           "old one back, or run the scene anew",
           identity.scene_path);
-    loop::count_on(resumption->from, counters::snapshot());
+    resumption->from.counted = counters::snapshot();
   }
+  if (checkpoints)
+    if (const std::string why = loop::why_no_checkpoints(*world, {}); !why.empty())
+      fail("--checkpoint-every: {}", why);
 
   // A scene that records nothing writes nothing, unless something was asked for here.
   const bool keep = description.record || !arguments.folder.empty() || arguments.picture ||

@@ -39,6 +39,16 @@ void archive_process(Archive& a, Counts& counts) {
   }
 }
 
+void count_on(Resumed& from) {
+  Counts counts;
+  archive_process(from.archive, counts);
+  for (const auto& [name, count] : from.counted)
+    if (const bool of_process = name.starts_with("gl."); !of_process || !counts.contains(name))
+      counts[name] += count;
+  counters::reset();
+  for (const auto& [name, count] : counts) counters::counter(name) = count;
+}
+
 void archive_observers(Archive& a, const RunOptions& options) {
   a.each("observer", options.observers, [&](Observer* observer) { observer->archive(a); });
 }
@@ -72,16 +82,6 @@ std::string fingerprint(const World& world) {
   return hash.hex();
 }
 
-void count_on(Archive& from, const std::map<std::string, long>& of_assembly) {
-  Counts counts;
-  archive_process(from, counts);
-  for (const auto& [name, count] : of_assembly)
-    if (const bool of_process = name.starts_with("gl."); !of_process || !counts.contains(name))
-      counts[name] += count;
-  counters::reset();
-  for (const auto& [name, count] : counts) counters::counter(name) = count;
-}
-
 std::string why_no_checkpoints(const World& world, const RunOptions& options) {
   if (options.real_time)
     return "a run in real time follows the machine's clock and the hand, which cannot be had again";
@@ -108,14 +108,15 @@ void check_checkpoints(const scene::Description& description, double every_s, do
 }
 
 RunResult run_with_checkpoints(std::unique_ptr<World>& world, const RunOptions& options,
-                               const CheckpointPlan& plan, CheckpointCost& cost, Archive* from) {
+                               const CheckpointPlan& plan, CheckpointCost& cost, Resumed* from) {
   if (const std::string why = why_no_checkpoints(*world, options); !why.empty()) fail("checkpoints: {}", why);
   std::optional<SteppedRun> run;
   if (from) {
-    run.emplace(*world, options, *from);
-    archive_observers(*from, options);
-    (*from)("cost", cost);
-    from->check_all_given_back();
+    archive_observers(from->archive, options);
+    from->archive("cost", cost);
+    count_on(*from);
+    run.emplace(*world, options, from->archive);
+    from->archive.check_all_given_back();
   } else {
     run.emplace(*world, options);
   }

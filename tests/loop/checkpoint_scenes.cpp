@@ -22,7 +22,6 @@ Case sliding_block() {
   law.friction = 0.4;
   law.friction_tangent = "symmetric";
   small_scenes::add_floor(d, law);
-  c.idle = {"tunnelled", "fast", "warned", "grasp"};
   return c;
 }
 
@@ -60,7 +59,16 @@ Cases make_cases() {
 #ifdef PALPATE_HAS_TOOL
   out["Points"] = pressed("points");
   out["Condensed"] = pressed("condensed");
-  out["Frozen"] = pressed("frozen");
+  Case& frozen = out["Frozen"] = pressed("frozen");
+  frozen.scene.tool->integrator = "semi-implicit-euler";
+  frozen.scene.device->ramp_s = 0.07;
+  frozen.scene.device->max_force_n = 0.5;
+  frozen.scene.device->max_torque_n_m = 0.01;
+  frozen.scene.device->max_force_slew_n_s = 80.0;
+  frozen.scene.device->max_torque_slew_n_m_s = 1.6;
+  frozen.scene.device->keyframes[1].time_s =
+      0.0405;  // behind a checkpoint, so that the slew is bounded there
+  frozen.scene.device->keyframes[1].interpolation = "step";
   Case& late = out["Late"] = pressed("points");
   late.scene.exchange.latency_ticks = 13;
   Case& hand = out["SimulatedHand"] = pressed("points");
@@ -69,11 +77,25 @@ Cases make_cases() {
   hand.scene.device->delay_s = 0.0025;
   hand.scene.device->encoder_resolution_m = 1e-5;
   hand.scene.device->velocity_cutoff_per_s = 200.0;
+  hand.scene.device->device_damping_n_s_m = 0.5;
   hand.passivity = device::PassivityController::Mode::kControl;
+  Case& exact = out["ExactHand"] = pressed("points");
+  exact.scene.device->type = "hand";
   Case& one = out["Monolithic"] = pressed("points");
   one.scene.exchange.scheme = "monolithic";
   one.scene.exchange.exchange_period_s = one.scene.exchange.contact_refresh_s = 0.002;
   one.scene.integrator.step_s = 0.001;
+  Case& images = out["Images"] = pressed("points");
+  images.scene.contacts[0].method = "cpu";
+  Case& two = out["TwoHands"] = pressed("points");
+  scene::HandSpec& left = two.scene.hands.emplace_back();
+  left.name = "left";
+  left.tool = *two.scene.tool;
+  left.tool.position_m += Vec3(0.0, 0.01, 0.0);
+  left.device = *two.scene.device;
+  for (KeyframeSpec& key : left.device.keyframes) key.position_m += Vec3(0.0, 0.01, 0.0);
+  two.scene.contacts.push_back(two.scene.contacts[0]);
+  two.scene.contacts[1].second = "left";
   Case& grasp = out["Grasp"] = pressed("points");
   grasp.scene.tool->grasp_switch = 1;
   grasp.scene.device->presses = {{1, 0.031, 1.0}};

@@ -1,6 +1,5 @@
 #pragma once
 #include <functional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -17,13 +16,7 @@ struct Case {
   device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
   /// of what a run shows, relative, below `scale` absolute / scale
   double restart_error = 1e-9, scale = 1e-3;
-  std::size_t telling = 0;          ///< the checkpoint whose values all matter
-  std::set<std::string> idle = {};  ///< parts of names of values that this scene has no use for
-  bool may_be_idle(const std::string& name) const {
-    for (const std::string& part : idle)
-      if (name.find(part) != std::string::npos) return true;
-    return false;
-  }
+  std::size_t telling = 1;  ///< the checkpoint whose values are changed
 };
 
 /// A block under its own weight, which it was not made for.

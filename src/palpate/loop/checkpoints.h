@@ -38,19 +38,21 @@ std::string why_no_checkpoints(const World& world, const RunOptions& options);
 ///   than a period, or as long as the run
 void check_checkpoints(const scene::Description& description, double every_s, double duration_s);
 
-/// The process counts on from where the one that stopped was at its checkpoint (core/counters.h), so that a
-/// summary of the run says the same.
-/// @param of_assembly  what the assembly of this World counted; a GL context is opened once a process
-void count_on(Archive& from, const std::map<std::string, long>& of_assembly);
+/// Where a run goes on.
+struct Resumed {
+  Archive archive;
+  /// What the assembly of the World that goes on counted (core/counters.h).  The process then counts on from
+  /// where the one that stopped was, so that a summary says the same; what GL opens is opened once a process.
+  std::map<std::string, long> counted = {};
+};
 
 /// run() in virtual time with checkpoints.  At each one the World is given up and assembled anew, and goes on
 /// from what was kept alone: so does a run that is resumed from it, and both are the same to the last bit.
 /// Integrator, factors, initial guesses and contact begin anew there, and nothing of them can be forgotten.
 /// @param world   assembled; at the end the last one
 /// @param cost    of all checkpoints, those before `from` included
-/// @param from    where the run goes on, null at its start; observers get from it what they archived, and
-///   count_on() was called with it
+/// @param from    where the run goes on, null at its start; observers get from it what they archived
 RunResult run_with_checkpoints(std::unique_ptr<World>& world, const RunOptions& options,
-                               const CheckpointPlan& plan, CheckpointCost& cost, Archive* from = nullptr);
+                               const CheckpointPlan& plan, CheckpointCost& cost, Resumed* from = nullptr);
 
 }  // namespace palpate::loop
