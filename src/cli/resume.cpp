@@ -25,6 +25,9 @@ void check_version(const Resumption& r) {
         "that "
         "one, or run the scene anew",
         checkpoint_path(r.folder), r.checkpoint.version, ours);
+}
+
+void compare_processors(const Resumption& r) {
   if (const std::string cpu = store::provenance().cpu; r.identity.cpu != cpu)
     fmt::print(
         stderr,
@@ -66,8 +69,9 @@ int resume(const ResumeArguments& arguments) {
         path);
   Resumption r{arguments.run, {}, store::read_checkpoint(path), {}};
   r.from.archive = Archive(r.checkpoint.values, path);
-  r.from.archive("command", r.identity);
   check_version(r);
+  r.from.archive("command", r.identity);
+  compare_processors(r);
   const scene::Description description = scene_of(r);
   fmt::print("{} goes on from t = {:g} s\n", arguments.run, r.checkpoint.time_s);
   Undelivered missing;

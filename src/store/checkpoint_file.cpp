@@ -9,7 +9,8 @@
 
 // Group "state" holds one data set a value: doubles, 64-bit integers, or bytes, in their own order.  The
 // attribute "content" is a hash of all of them and of what stands beside them: what HDF5 itself does not see
-// (a byte that changed on the disk) is found by it before any value is used.
+// (a byte that changed on the disk) is found by it before any value is used.  The version stands outside:
+// another one is refused as such.
 namespace palpate::store {
 namespace {
 
@@ -22,7 +23,7 @@ std::string_view bytes_of(const std::vector<T>& list) {
 
 std::string hash_of(const Checkpoint& checkpoint) {
   ContentHash hash;
-  hash.add(checkpoint.version).add(checkpoint.scene_source);
+  hash.add(checkpoint.scene_source);
   hash.add(bytes_of(std::vector<double>{checkpoint.time_s}));
   for (const auto& [name, value] : checkpoint.values) {
     hash.add(name);

@@ -58,6 +58,7 @@ Cases make_cases() {
   stiffer.energy = true;
 #ifdef PALPATE_HAS_TOOL
   out["Points"] = pressed("points");
+  out["Points"].scene.bodies[0].velocity_m_s = Vec3(0.0, 0.0, -0.05);  // energy at the start
   out["Condensed"] = pressed("condensed");
   Case& frozen = out["Frozen"] = pressed("frozen");
   frozen.scene.tool->integrator = "semi-implicit-euler";
