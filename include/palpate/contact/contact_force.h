@@ -246,7 +246,7 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   double query_seconds() const;
   /// What a checkpoint keeps: what frames hold, what queries know of those before, what was counted.  The
   /// samples are none of it: where it is given back, they are made anew by a query at that state.
-  /// @param state  as it is now
+  /// @param a  which keeps, or gives back  @param state  as it is now
   void archive(Archive& a, const dynamics::StateView& state);
 
  private:

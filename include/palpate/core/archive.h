@@ -3,7 +3,6 @@
 #include <concepts>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,21 +23,24 @@ namespace palpate {
 /// there or has another size or kind.
 class Archive {
  public:
+  /// Numbers, whole numbers, or bytes.
   using Value = std::variant<std::vector<double>, std::vector<std::int64_t>, std::string>;
+  /// By full names: "bodies.state.q".
   using Values = std::map<std::string, Value, std::less<>>;
 
   /// Keeps.
   Archive() = default;
-  /// Gives back.  @param where  what messages begin with: the file
+  /// Gives back.  @param values  of one that kept  @param where  what messages begin with: the file
   Archive(Values values, std::string where);
-  bool gives_back() const { return gives_back_; }
-  const Values& values() const { return values_; }
+  bool gives_back() const { return gives_back_; }   ///< else it keeps
+  const Values& values() const { return values_; }  ///< all that was kept, or is there to be given back
   /// @throws Error where something was kept that nobody asked back
   void check_all_given_back() const;
 
   /// Names are of this group while the object lives: "limiter.last_time".
   class Group {
    public:
+    /// Begins it, within those that live already.
     Group(Archive& archive, std::string_view name) : archive_(archive), before_(archive.prefix_) {
       archive_.prefix_ += name;
       archive_.prefix_ += '.';
@@ -52,9 +54,13 @@ class Archive {
     std::string before_;
   };
 
+  /// One value under a name that is new in its group: a number, a truth value or enumeration, a text, a list
+  /// of numbers, a matrix, a rotation, a pose, a twist, a wrench, or an object that can archive itself.
+  /// @throws Error where it is to be given back and is not there or does not fit
   void operator()(std::string_view name, double& value) { numbers(name, {&value, 1}); }
-  void operator()(std::string_view name, std::string& text);
-  void operator()(std::string_view name, std::vector<double>& list);
+  void operator()(std::string_view name, std::string& text);          ///< see above
+  void operator()(std::string_view name, std::vector<double>& list);  ///< see above
+  /// See above.
   template <class Integer>
   requires(std::integral<Integer> || std::is_enum_v<Integer>) void operator()(std::string_view name,
                                                                               Integer& value) {
@@ -62,6 +68,7 @@ class Archive {
     integer(name, kept);
     value = static_cast<Integer>(kept);
   }
+  /// See above; one without a fixed size gets it.
   template <int Rows, int Columns>
   void operator()(std::string_view name, Eigen::Matrix<double, Rows, Columns>& matrix) {
     if constexpr (Rows == Eigen::Dynamic || Columns == Eigen::Dynamic) {
@@ -76,10 +83,10 @@ class Archive {
       numbers(name, {matrix.data(), static_cast<std::size_t>(matrix.size())});
     }
   }
-  void operator()(std::string_view name, Quat& q) { numbers(name, {q.coeffs().data(), 4}); }
-  void operator()(std::string_view name, Pose& pose);
-  void operator()(std::string_view name, Twist& twist);
-  void operator()(std::string_view name, Wrench& wrench);
+  void operator()(std::string_view name, Quat& q) { numbers(name, {q.coeffs().data(), 4}); }  ///< see above
+  void operator()(std::string_view name, Pose& pose);                                         ///< see above
+  void operator()(std::string_view name, Twist& twist);                                       ///< see above
+  void operator()(std::string_view name, Wrench& wrench);                                     ///< see above
   /// An object that can archive itself.
   template <class Object>
   requires requires(Object& object, Archive& archive) { object.archive(archive); }
@@ -122,14 +129,6 @@ class Archive {
     check_length(name, static_cast<std::int64_t>(size));
     sequence.resize(size);
     each(name, sequence, f);
-  }
-  template <class T, class F>
-  void optional(std::string_view name, std::optional<T>& value, F&& f) {
-    bool there = value.has_value();
-    (*this)(std::string(name) + ".there", there);
-    if (!there) return value.reset();
-    if (!value) value.emplace();
-    f(*value);
   }
   /// Numbers whose count both sides know.
   void numbers(std::string_view name, std::span<double> values);

@@ -20,6 +20,7 @@ struct HandleSample {
   Twist acceleration;          ///< [rad/s^2, m/s^2]
   bool valid = true;           ///< false: no pose arrived; forces must fall to zero
   std::uint32_t switches = 0;  ///< bit i: switch i is pressed
+  /// Keeps it, or gives it back.
   void archive(Archive& a) {
     a("pose", pose);
     a("twist", twist);
@@ -75,6 +76,7 @@ class Device {
   /// Whether it can go on later from where it is now: whether archive() knows all of it.  A hand on the other
   /// side of a network, or of a motor, does not wait.
   virtual bool can_be_archived() const { return false; }
+  /// Keeps where it is, or goes on from there.
   /// @pre can_be_archived(); where it is given back, nothing was sampled before
   void archive(Archive& a);
 

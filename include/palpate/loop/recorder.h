@@ -17,6 +17,7 @@ class Recorder : public Observer {
   /// Creates the folder and the files.  @throws Error when they cannot be written
   Recorder(const World& world, const std::string& folder);
   /// Of a run with checkpoints.
+  /// @param world, folder  as above
   /// @param goes_on     the files are there, and are cut back to the checkpoint when archive() gives back
   /// @param duration_s  of the run; 0: the scene's
   Recorder(const World& world, const std::string& folder, bool goes_on, double duration_s);
