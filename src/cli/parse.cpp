@@ -406,9 +406,9 @@ void add_resume(CLI::App& app, Invocation& invocation) {
   palpate resume out/heads                       after Ctrl-C, a kill, or a loss of power
 
 The run goes on from its last checkpoint with the options that it was started with, and ends as if it had
-never stopped: all that it records is the same to the last bit.  What was recorded after the checkpoint is cut
-off, and computed again.  Needs the same version of palpate, scene and meshes.  Exit status 0 where the run is
-complete already.)");
+never stopped: all that it records is the same to the last bit.  What was recorded after the checkpoint is
+cut off, and computed again.  Needs the same version of palpate, scene and meshes.  Exit status 0 where the
+run is complete already.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return resume(*arguments); };
     invocation.factorises = true;
