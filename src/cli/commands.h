@@ -30,10 +30,16 @@ struct RunArguments {
   std::string shade = "displacement";  ///< of picture, frames and movie; or "stress", "penetration"
   std::string passivity = "off";       ///< or "observe", "control"
   bool against_monolithic = false;     ///< repeat it as one system, and print the distance
+  double checkpoint_every_s = 0.0;     ///< simulated time between checkpoints; 0: none
 };
 int run(const RunArguments& arguments);
 /// Runs as a part of another command, which prints and closes what is missing.
 int run(const RunArguments& arguments, Undelivered& missing);
+
+struct ResumeArguments {
+  std::string run;  ///< folder of a run with checkpoints
+};
+int resume(const ResumeArguments& arguments);
 
 struct ReplayArguments {
   std::string run;                     ///< folder of a run

@@ -143,10 +143,18 @@ void add_run(CLI::App& app, Invocation& invocation) {
   command->add_flag("--against-monolithic", arguments->against_monolithic,
                     "then again with tool and bodies as one system, under the same hand, as [compare.haptic] "
                     "of the scene says; how far force and torque were from it is printed and kept");
+  command
+      ->add_option(
+          "--checkpoint-every", arguments->checkpoint_every_s,
+          "keep where the run is every so many simulated seconds (checkpoint.h5), for `palpate resume` "
+          "to go on from; the scene is assembled anew at each, and what that costs is printed [s]")
+      ->type_name("SECONDS")
+      ->check(duration);
   command->footer(R"(Examples:
   palpate run falling-ball
   palpate run press-ball --integrator linearly-implicit-euler --set integrator.step_s=0.002
   palpate run press-ball --set body.0.youngs_modulus_pa=2e4 --picture --report -o out/softer
+  palpate run two-heads --checkpoint-every 0.1 -o out/heads   a kill costs 0.1 s of it at most
   palpate run falling-ball --trace --report      which steps were rejected, why, and where
   palpate run touch-human --realtime             how late its ticks are on this machine
   palpate run press-ball --against-monolithic    how far its force is from the exact one
@@ -461,6 +469,26 @@ Exit status 0 when every cell is as theory expects; haptic: when passive lies wi
     };
     invocation.factorises = true;
     invocation.starts_processes = true;
+  });
+}
+
+void add_resume(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("resume", "go on with a run that was stopped or killed");
+  auto arguments = std::make_shared<ResumeArguments>();
+  command->add_option("run", arguments->run, "folder of a run, with checkpoint.h5 in it")
+      ->required()
+      ->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate run two-heads --checkpoint-every 0.1 -o out/heads
+  palpate resume out/heads                       after Ctrl-C, a kill, or a loss of power
+
+The run goes on from its last checkpoint with the options that it was started with, and ends as if it had
+never stopped: all that it records is the same to the last bit.  What was recorded after the checkpoint is
+cut off, and computed again.  Needs the same version of palpate, scene and meshes.  Exit status 0 where the
+run is complete already.)");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return resume(*arguments); };
+    invocation.factorises = true;
   });
 }
 
@@ -827,6 +855,7 @@ Invocation parse(int argc, char** argv) {
   add_modes(app, invocation);
   add_model(app, invocation);
   add_stability(app, invocation);
+  add_resume(app, invocation);
   add_replay(app, invocation);
   add_movie(app, invocation);
   add_export(app, invocation);

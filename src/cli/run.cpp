@@ -7,11 +7,13 @@
 #include <optional>
 
 #include "against_monolithic.h"
+#include "checkpoints.h"
 #include "clock_figures.h"
 #include "commands.h"
 #include "contact_picture.h"
 #include "frames.h"
 #include "palpate/core/clock.h"
+#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/haptic_memory.h"
 #include "palpate/loop/recorder.h"
@@ -21,6 +23,7 @@
 #include "palpate/loop/trace.h"
 #include "palpate/report/run_report.h"
 #include "palpate/store/atomic_file.h"
+#include "palpate/store/provenance.h"
 #include "paths.h"
 #include "picture.h"
 #include "progress.h"
@@ -40,6 +43,14 @@ class PeakWrench : public loop::Observer {
     if (tick.device.force.norm() > p.force_n) p.force_n = tick.device.force.norm(), p.force_s = tick.time;
     if (tick.device.moment.norm() > p.torque_n_m)
       p.torque_n_m = tick.device.moment.norm(), p.torque_s = tick.time;
+  }
+  void archive(Archive& a) override {
+    a.list("peak", of, [&](Peak& p) {
+      a("force_n", p.force_n);
+      a("force_s", p.force_s);
+      a("torque_n_m", p.torque_n_m);
+      a("torque_s", p.torque_s);
+    });
   }
   struct Peak {
     double force_n = 0.0, force_s = 0.0, torque_n_m = 0.0, torque_s = 0.0;
@@ -124,14 +135,18 @@ std::string command_of(const RunArguments& a) {
   if (a.real_time) out += " --realtime";
   if (a.trace) out += " --trace";
   if (a.against_monolithic) out += " --against-monolithic";
+  if (a.checkpoint_every_s > 0.0) out += fmt::format(" --checkpoint-every {}", a.checkpoint_every_s);
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
 }
 
 void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s,
-                  const std::optional<compare::AgainstMonolithic>& against, const RunArguments& arguments,
+                  const std::optional<compare::AgainstMonolithic>& against,
+                  const loop::CheckpointCost& checkpoints, const RunArguments& arguments,
                   const std::string& folder) {
   store::Summary summary = loop::summarise(world, result, assemble_s);
   if (against) add_against_monolithic(summary, world.description, *against);
+  if (const double every_s = arguments.checkpoint_every_s; every_s > 0.0)
+    add_checkpoints(summary, checkpoints, every_s);
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
   store::write_summary((std::filesystem::path(folder) / "summary.json").string(), summary);
@@ -218,9 +233,11 @@ void print_files(const std::string& folder) {
   fmt::print("in {}: {}\n", folder, fmt::join(names, ", "));
 }
 
-loop::RunResult run_watched(loop::World& world, const RunArguments& arguments,
-                            std::vector<loop::Observer*> observers) {
-  Progress progress(fmt::format("running {}", short_name(world.description)));
+/// @param from  where it goes on, null at its start
+loop::RunResult run_watched(std::unique_ptr<loop::World>& world, const RunArguments& arguments,
+                            std::vector<loop::Observer*> observers, const loop::CheckpointPlan* checkpoints,
+                            loop::CheckpointCost& cost, loop::Resumed* from) {
+  Progress progress(fmt::format("running {}", short_name(world->description)));
   loop::RunOptions options;
   options.duration_s = arguments.duration_s;
   options.real_time = arguments.real_time;
@@ -228,31 +245,50 @@ loop::RunResult run_watched(loop::World& world, const RunArguments& arguments,
   options.observers = std::move(observers);
   options.progress = [&progress](double fraction) { progress(fraction); };
   options.stop = &stop_flag();
-  return loop::run(world, options);
+  return checkpoints ? loop::run_with_checkpoints(world, options, *checkpoints, cost, from)
+                     : loop::run(*world, options);
 }
 
-}  // namespace
-
-int run(const RunArguments& arguments) {
-  Undelivered missing;
-  return missing.close(run(arguments, missing));
+/// Nothing that an earlier run left in the folder may pass for this one's.
+void begin_checkpoints(const std::string& folder) {
+  remove_checkpoint(folder);
+  std::error_code ignored;
+  std::filesystem::remove(std::filesystem::path(folder) / "summary.json", ignored);
 }
 
-int run(const RunArguments& arguments, Undelivered& missing) {
-  const scene::Description description = scene_of(arguments.scene);
+int run(const RunArguments& arguments, const scene::Description& description, Undelivered& missing,
+        Resumption* resumption) {
   const Look look = check_pictures(arguments, description);
+  const bool checkpoints = arguments.checkpoint_every_s > 0.0;
+  if (checkpoints) check_checkpoints(arguments, description);
   if (arguments.against_monolithic) compare::refuse_against_monolithic(description);
   const double start = wall_seconds();
-  const std::unique_ptr<loop::World> world = loop::assemble(description);
+  if (resumption) counters::reset();
+  std::unique_ptr<loop::World> world = loop::assemble(description);
   const double assemble_s = wall_seconds() - start;
+  RunIdentity identity{arguments, std::filesystem::absolute(description.path).lexically_normal().string(),
+                       checkpoints ? loop::fingerprint(*world) : "", store::provenance().cpu};
+  if (resumption) {
+    if (identity.bodies != resumption->identity.bodies)
+      fail(
+          "{}: a file that the scene names (a mesh, a recording) has changed since the run began; bring the "
+          "old one back, or run the scene anew",
+          identity.scene_path);
+    resumption->from.counted = counters::snapshot();
+  }
+  if (checkpoints)
+    if (const std::string why = loop::why_no_checkpoints(*world, {}); !why.empty())
+      fail("--checkpoint-every: {}", why);
 
   // A scene that records nothing writes nothing, unless something was asked for here.
   const bool keep = description.record || !arguments.folder.empty() || arguments.picture ||
                     arguments.contact_picture || arguments.frames || !arguments.movie.empty() ||
-                    arguments.report || arguments.trace;
-  const std::string folder =
-      arguments.folder.empty() ? default_folder(short_name(description)) : arguments.folder;
+                    arguments.report || arguments.trace || checkpoints;
+  const std::string folder = resumption                 ? resumption->folder
+                             : arguments.folder.empty() ? default_folder(short_name(description))
+                                                        : arguments.folder;
   if (keep) make_folder(folder);
+  if (keep && !resumption) checkpoints ? begin_checkpoints(folder) : remove_checkpoint(folder);
 
   PeakWrench peak;
   std::vector<loop::Observer*> observers = {&peak};
@@ -267,12 +303,22 @@ int run(const RunArguments& arguments, Undelivered& missing) {
         arguments.duration_s > 0.0 ? arguments.duration_s : description.duration_s, look.size));
   if (arguments.contact_picture || look.shade == Shade::kPenetration) world->contact->keep_views();
   std::optional<loop::Recorder> recorder;
-  if (description.record) observers.push_back(&recorder.emplace(*world, folder));
+  if (description.record) {
+    if (checkpoints)
+      recorder.emplace(*world, folder, resumption != nullptr, arguments.duration_s);
+    else
+      recorder.emplace(*world, folder);
+    observers.push_back(&*recorder);
+  }
   std::optional<loop::TraceRecorder> trace;
   if (arguments.trace) trace.emplace(*world, (std::filesystem::path(folder) / "trace.csv").string());
   loop::HapticMemory memory;
   if (arguments.against_monolithic) observers.push_back(&memory);
-  const loop::RunResult result = run_watched(*world, arguments, observers);
+  loop::CheckpointCost cost;
+  loop::CheckpointPlan plan;
+  if (checkpoints) plan = checkpoint_plan(identity, description, folder);
+  const loop::RunResult result = run_watched(world, arguments, observers, checkpoints ? &plan : nullptr, cost,
+                                             resumption ? &resumption->from : nullptr);
   if (recorder) close_records(*recorder, folder, missing);
   recorder.reset();
   if (trace) {
@@ -282,6 +328,7 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   }
 
   print_outcome(*world, result, peak, assemble_s);
+  if (checkpoints) print_checkpoints(cost, arguments.checkpoint_every_s);
   if (result.real_time) print_clock(*result.real_time, world->description.exchange.linearisation);
   std::optional<compare::AgainstMonolithic> against;
   if (arguments.against_monolithic && result.status.ok() && !result.stopped)
@@ -291,7 +338,8 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   if (against && !against->stopped && !against->trouble.empty())
     missing.add("distance from one system", against->trouble);
   if (keep) {
-    keep_summary(*world, result, assemble_s, against, arguments, folder);
+    keep_summary(*world, result, assemble_s, against, cost, arguments, folder);
+    if (result.status.ok() && !result.stopped) remove_checkpoint(folder);
     if (result.real_time)
       keep_clock(*result.real_time, folder);
     else
@@ -311,6 +359,8 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   if (result.stopped) {
     fmt::print(stderr, "palpate: stopped at t = {:g} s{}\n", result.time,
                keep ? "; what was recorded by then is whole" : "");
+    if (cost.written > 0)
+      fmt::print(stderr, "palpate: `palpate resume {}` goes on with it\n", quoted(folder));
     return kExitStopped;
   }
   if (frames_cut) fmt::print(stderr, "palpate: stopped while it drew frames; those written are whole\n");
@@ -318,6 +368,21 @@ int run(const RunArguments& arguments, Undelivered& missing) {
     fmt::print(stderr, "palpate: stopped before its distance from one system was known; the run is whole\n");
   if (frames_cut || against_cut) return kExitStopped;
   return 0;
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  Undelivered missing;
+  return missing.close(run(arguments, missing));
+}
+
+int run(const RunArguments& arguments, Undelivered& missing) {
+  return run(arguments, scene_of(arguments.scene), missing, nullptr);
+}
+
+int resume_run(Resumption& resumption, const scene::Description& description, Undelivered& missing) {
+  return run(resumption.identity.arguments, description, missing, &resumption);
 }
 
 }  // namespace palpate::cli

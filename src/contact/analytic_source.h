@@ -40,6 +40,11 @@ class AnalyticSource final : public SampleSource {
   long tunnelled() const override { return tunnelled_; }
   double safe_time() const override { return safe_time_; }
   long fast_regions() const override { return fast_; }
+  void archive(Archive& a) override {
+    a("tunnelled", tunnelled_);
+    a("fast", fast_);
+    a("warned", warned_);
+  }
   void add_pattern(dynamics::PatternBuilder& pattern) const override { surface_.add_vertex_pattern(pattern); }
   std::uint64_t pattern_version() const override { return surface_.vertex_pattern_version(); }
 

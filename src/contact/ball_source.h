@@ -59,6 +59,10 @@ class BallSource final : public SampleSource {
   long tunnelled() const override { return tunnelled_; }
   double safe_time() const override { return safe_time_; }
   long fast_regions() const override { return fast_; }
+  void archive(Archive& a) override {
+    a("tunnelled", tunnelled_);
+    a("fast", fast_);
+  }
   void add_pattern(dynamics::PatternBuilder&) const override {}
   bool has_events() const override { return false; }  // force and stiffness set in from zero
 

@@ -4,6 +4,7 @@
 #include "contact/pressure.h"
 #include "contact/tangent.h"
 #include "palpate/contact/touch_model.h"
+#include "palpate/core/archive.h"
 #include "palpate/dynamics/point_stiffness.h"
 
 namespace palpate::contact {
@@ -46,6 +47,7 @@ class Bonds {
   bool empty() const { return bonds_.empty(); }
   int count() const { return static_cast<int>(bonds_.size()); }
   int count_of(int frame) const;
+  void archive(Archive& a);
   double area() const;
   /// Holds what presses on a frame, each point as it is.
   /// @return how many

@@ -57,6 +57,39 @@ std::uint64_t ImageSource::sides_version() const {
   return context_.a->soft()->pattern_version() +
          (context_.b->soft() ? context_.b->soft()->pattern_version() : 0);
 }
+void ImageSource::archive(Archive& a) {
+  a("tunnelled", tunnelled_);
+  a("warned", warned_);
+  a("fast", context_.fast_regions);
+  a("near", context_.options.candidate_gap);  // of the skin as it was at the first query
+  std::string fallback = fallback_;
+  a("fallback", fallback);
+  if (a.gives_back() && !fallback.empty()) fall_back(fallback);
+  QueryStages& s = context_.stages;
+  for (auto& [name, seconds] : std::initializer_list<std::pair<const char*, double&>>{
+           {"positions_s", s.positions_s},
+           {"regions_s", s.regions_s},
+           {"patches_s", s.patches_s},
+           {"images_s", s.images_s},
+           {"upload_s", s.upload_s},
+           {"passes_s", s.passes_s},
+           {"gather_s", s.gather_s},
+           {"readback_s", s.readback_s},
+           {"gaps_s", s.gaps_s},
+           {"quadrature_error", s.quadrature_error},
+           {"largest_quadrature_error", s.largest_quadrature_error}})
+    a(name, seconds);
+  for (auto& [name, count] : std::initializer_list<std::pair<const char*, long&>>{{"images", s.images},
+                                                                                  {"pairs", s.pairs},
+                                                                                  {"pixels", s.pixels},
+                                                                                  {"vertices", s.vertices},
+                                                                                  {"faces", s.faces},
+                                                                                  {"hits", s.hits},
+                                                                                  {"unaligned", s.unaligned},
+                                                                                  {"lines", s.lines}})
+    a(name, count);
+}
+
 // each grows only
 std::uint64_t ImageSource::pattern_version() const { return sides_version() + coupled_.version(); }
 

@@ -34,6 +34,7 @@ class ImageSource : public SampleSource {
   bool asks_together() const { return context_.options.backend == DepthBackend::kGpu; }
 
   std::string fallback() const final { return fallback_; }
+  void archive(Archive& a) override;
 
   /// The phases of a query, for the sources whose requests are answered together.
   void open(const dynamics::StateView& state);               ///< collects the regions

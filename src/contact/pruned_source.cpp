@@ -40,6 +40,10 @@ class PrunedSource final : public ImageSource {
 
   long normals_kept() const override { return pruned_.pruner.counts().normals_kept; }
   const proxy::PruneCounts* pruning() const override { return &pruned_.pruner.counts(); }
+  void archive(Archive& a) override {
+    ImageSource::archive(a);
+    a("pruner", pruned_.pruner);
+  }
 
  protected:
   std::size_t find_regions(const dynamics::StateView& state) override {

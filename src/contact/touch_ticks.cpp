@@ -86,6 +86,15 @@ void TouchTicks::adopt(const TouchModel& model) {
     m.modes[i] = Eigen::Map<const Eigen::Matrix<double, 3, kModes>>(model.point[i].modes.data()).transpose();
 }
 
+void TouchTicks::archive(Archive& a) {
+  Impl& m = *impl_;
+  TouchModel model = m.model;
+  a.bytes("model", model);
+  if (a.gives_back()) adopt(model);
+  a("q", m.q);
+  a("z", m.z);
+}
+
 namespace {
 
 /// Where tool and bodies are carried on to, and what their points come to there.

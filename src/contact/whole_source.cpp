@@ -46,6 +46,8 @@ class WholeRegion final : public ImageRegion {
   }
   /// Whether something pressed at the last query that looked at it, once.
   bool take_presses() { return std::exchange(presses_, false); }
+  bool presses() const { return presses_; }
+  void set_presses(bool yes) { presses_ = yes; }
 
  private:
   static std::span<const int> all(std::vector<int>& faces, const Patch& patch) {
@@ -71,6 +73,21 @@ class WholeSource final : public ImageSource {
   using ImageSource::ImageSource;
 
   long normals_kept() const override { return normals_kept_; }
+  /// The side that the bodies came from is what the last query knew of it.
+  void archive(Archive& a) override {
+    ImageSource::archive(a);
+    a("finder", finder_);
+    a("normal", plane_.normal);
+    a("thickness", thickness_);
+    a("normals_kept", normals_kept_);
+    bool there = one_ != nullptr, presses = there && one_->presses();
+    a("was_near", there);
+    a("presses", presses);
+    if (a.gives_back() && there) {
+      region(0);  // made, and with it `one_`
+      one_->set_presses(presses);
+    }
+  }
 
  protected:
   std::size_t find_regions(const dynamics::StateView& state) override {

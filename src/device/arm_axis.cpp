@@ -26,6 +26,13 @@ Eigen::Matrix<double, 2, 4> arm_transition(const ArmAxis::Parameters& a, double 
   return rows;
 }
 
+void ArmAxis::archive(Archive& a) {
+  a("x", x_);
+  a("v", v_);
+  a("usual_step", kept_length_);
+  if (a.gives_back() && kept_length_ > 0.0) kept_ = arm_transition(a_, kept_length_);
+}
+
 ArmAxis::Point ArmAxis::at(double s, double p, double q) const {
   const Eigen::Vector2d y = arm_transition(a_, s) * Eigen::Vector4d(x_, v_, p, q);
   return {y[0], y[1], (p + q * s - a_.stiffness * y[0] - a_.damping * y[1]) / a_.mass};

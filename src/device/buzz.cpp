@@ -47,6 +47,22 @@ void Buzz::add(const Vec3& force) {
   ++count_;
 }
 
+void Buzz::Section::archive(Archive& a) {
+  a("x1", x1);
+  a("x2", x2);
+  a("y1", y1);
+  a("y2", y2);
+}
+
+void Buzz::archive(Archive& a) {
+  a("first", first_);
+  a("second", second_);
+  a("started", started_);
+  a("sum", sum_);
+  a("largest", largest_);
+  a("count", count_);
+}
+
 double Buzz::rms() const { return count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : 0.0; }
 
 }  // namespace palpate::device

@@ -28,6 +28,16 @@ HandleSample Device::sample(double t) {
   return last_;
 }
 
+void Device::archive(Archive& a) {
+  PALPATE_CHECK(can_be_archived(), "a device that cannot be archived");
+  bool was_open = open_;
+  a("open", was_open);
+  if (was_open) open();
+  a("last", last_);
+  a("time", time_);
+  do_archive(a);
+}
+
 void Device::feedback(double t, const Wrench& on_hand) {
   PALPATE_CHECK(open_, "a wrench for a device that is closed, at t = {}", t);
   do_feedback(t, on_hand);

@@ -61,6 +61,10 @@ class Encoder {
   }
   const Vec3& value() const { return value_; }
   const Vec3& rate() const { return rate_; }
+  void archive(Archive& a) {
+    a("value", value_);
+    a("rate", rate_);
+  }
 
  private:
   double step_, cutoff_;
@@ -82,6 +86,9 @@ class Axes {
   }
   Vec3 x() const { return {axes_[0].x(), axes_[1].x(), axes_[2].x()}; }
   Vec3 v() const { return {axes_[0].v(), axes_[1].v(), axes_[2].v()}; }
+  void archive(Archive& a) {
+    a.each("axis", axes_, [&](ArmAxis& axis) { axis.archive(a); });
+  }
 
  private:
   double k_, b_;
@@ -124,8 +131,31 @@ class HandDevice : public Device {
     sent_.reserve(2048);
   }
   DeviceSpecification specification() const override { return figures_.specification; }
+  bool can_be_archived() const override { return true; }
 
  protected:
+  void do_archive(Archive& a) override {
+    a("translation", translation_);
+    a("rotation", rotation_);
+    a("position", position_);
+    a("angle", angle_);
+    a("first", first_);
+    a("theta", theta_);
+    a("pull", pull_);
+    a("arm_torque", twist_);
+    a("motors", motors_);
+    std::size_t sent = sent_.size();
+    a("sent_count", sent);
+    sent_.resize(sent);
+    a.rows("sent", sent_, [](auto&& f, Sent& one) {
+      f(one.due);
+      f(one.wrench);
+    });
+    a("next", next_);
+    a("switches", switches_);
+    a("tick", time_);
+    a("started", started_);
+  }
   HandleSample do_sample(double t) override {
     if (!started_)
       start(t);

@@ -71,6 +71,21 @@ void WrenchLimiter::confine(const Workspace& workspace, const Device& device) {
   device_ = workspace.is_bounded() ? &device : nullptr;
 }
 
+void WrenchLimiter::archive(Archive& a) {
+  a("start", start_);
+  a("last_valid", last_valid_);
+  a("last_time", last_time_);
+  a("last_length", last_dt_);
+  a("stalled", stalled_);
+  a("started", started_);
+  a("live", live_);
+  a("last", last_);
+  a("held", held_);
+  a("limited", limited_);
+  a("rejected", rejected_);
+  a("outside", outside_);
+}
+
 Wrench WrenchLimiter::limit(double t, const Wrench& wanted, bool valid) {
   const bool good_time = std::isfinite(t) && (!started_ || t > last_time_);
   const bool good_wrench = wanted.force.allFinite() && wanted.moment.allFinite();

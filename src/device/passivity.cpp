@@ -33,6 +33,25 @@ double PassivityObserver::friction(const Vec6& change) const {
   return damping_ * (change.tail<3>().array().abs() - resolution_).cwiseMax(0.0).square().sum() / dt_;
 }
 
+void PassivityObserver::archive(Archive& a) {
+  a("energy", energy_);
+  a("least", least_);
+  a("work", work_);
+  a("time", time_);
+  a("tick", dt_);
+  a("started", started_);
+  a("last", last_);
+  a("change", change_);
+  a("held", held_);
+}
+
+void PassivityController::archive(Archive& a) {
+  a("dissipated", dissipated_);
+  a("active", active_);
+  a("observer", observer_);
+  a("damper", damper_);
+}
+
 PassivityController::Mode PassivityController::mode_of(const std::string& name) {
   if (name == "off") return Mode::kOff;
   if (name == "observe") return Mode::kObserve;

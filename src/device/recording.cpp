@@ -94,6 +94,7 @@ class RecordingDevice : public Device {
   std::function<HandleSample(double)> path() const override {
     return [poses = poses_](double t) { return sample_recording(poses, t); };
   }
+  bool can_be_archived() const override { return true; }
 
  protected:
   HandleSample do_sample(double t) override { return sample_recording(poses_, t); }

@@ -11,6 +11,7 @@ class ScriptDevice : public Device {
       : path_(path_of(spec)), specification_(figures_of(spec).specification) {}
   DeviceSpecification specification() const override { return specification_; }
   std::function<HandleSample(double)> path() const override { return path_; }
+  bool can_be_archived() const override { return true; }
 
  protected:
   HandleSample do_sample(double t) override { return path_(t); }

@@ -187,7 +187,7 @@ void BodySide::finish() {
 
 void BodySide::sum_up() {
   result_.more_hands.clear();
-  if (world_.stepper) result_.counters = world_.stepper->counters();
+  if (world_.stepper) result_.counters = counted_before_ + world_.stepper->counters();
   if (world_.contact) {
     result_.contact_queries = world_.contact->queries();
     result_.tunnelled = world_.contact->tunnelled();

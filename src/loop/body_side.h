@@ -52,18 +52,28 @@ class BodySide {
   void sum_up();
   void finish();
 
+  /// The last query of a World that a checkpoint gives up: what went through since the one before is counted,
+  /// and the balance of energy goes on from the samples that the next World begins with.
+  void look_once_more();
+  /// After a period.  What gives back takes the place of start(): World, ledger and counts are then as they
+  /// were, the integrator begins anew, and contact has been queried at that state.
+  void archive(Archive& a);
+
  private:
   void look();  ///< the query alone
   void advance_over_changes(double t);
   double next_change() const;
   void change_materials(double time);
+  void archive_counts(Archive& a);
+  void change_materials_so_far();
 
   World& world_;
   const RunOptions& options_;
   RunResult& result_;
   double duration_ = 0.0, period_ = 0.0;
   int periods_ = 0;
-  double changed_ = 0.0;  ///< time of the last material change [s]
+  double changed_ = 0.0;                      ///< time of the last material change [s]
+  dynamics::StepperCounters counted_before_;  ///< by the steppers of Worlds that checkpoints gave up
   /// Of a hand, as scene::hands_of() counts them.
   struct Felt {
     std::uint64_t version = 0;         ///< of the last linearisation

@@ -27,6 +27,17 @@ void PowerIntegral::add(double t, double power) {
   at_coarse_ = fine_;
 }
 
+void PowerIntegral::archive(Archive& a) {
+  a("t", t_);
+  a("power", power_);
+  a("t_coarse", t_coarse_);
+  a("power_coarse", power_coarse_);
+  a("fine", fine_);
+  a("coarse", coarse_);
+  a("at_coarse", at_coarse_);
+  a("odd", odd_);
+}
+
 double PowerIntegral::error() const { return std::abs(at_coarse_ - coarse_) / 3.0; }
 
 namespace {
@@ -82,12 +93,30 @@ void EnergyLedger::take_stored() {
   }
 }
 
+void EnergyLedger::make_tools() {
+  for (const auto& side : ToolSide::all(world_))
+    if (side->tool) side->as_known = side->another_tool(world_.description.gravity_m_s2);
+}
+
+void EnergyLedger::archive(Archive& a) {
+  if (a.gives_back()) {
+    make_tools();
+    hands_.resize(ToolSide::all(world_).size());
+  }
+  a("time", balance_.time);
+  visit_energies([&](const char* name, double& value) { a(name, value); }, balance_);
+  a("stored_at_start", stored_at_start_);
+  a("other_at_start", other_at_start_);
+  a.each("work_of_hand", hands_, [&](PowerIntegral& hand) { hand.archive(a); });
+  a("work_of_supports", supports_);
+  a("dissipation", dissipated_);
+}
+
 void EnergyLedger::start() {
   const double t = world_.state.time();
   balance_ = {};
   other_at_start_ = 0.0;
-  for (const auto& side : ToolSide::all(world_))
-    if (side->tool) side->as_known = side->another_tool(world_.description.gravity_m_s2);
+  make_tools();
   take_stored();
   other_at_start_ = balance_.other;
   balance_.other = 0.0;

@@ -181,13 +181,16 @@ std::vector<contact::TouchModel> read_models(const std::string& path, std::size_
 }  // namespace
 
 struct HapticRecorder::Impl {
-  Impl(const std::string& path, std::size_t whose)
-      : hand(whose),
-        file(path, {{"start", names_of(kVisitStart, StartRow{})},
-                    {"ticks", names_of(kVisitTick, TickRecord{})},
-                    {"exchanges", names_of(kVisitExchange, dynamics::LinearisedContact{})},
-                    {"models", names_of(kVisitModel, ModelRow{})},
-                    {"points", names_of(kVisitPoint, PointRow{})}}) {}
+  Impl(const std::string& path, std::size_t whose) : hand(whose), file(path, tables()) {}
+  Impl(const std::string& path, std::size_t whose, const store::TableFile::Journal& from)
+      : hand(whose), file(path, tables(), from) {}
+  static std::vector<store::TableSpec> tables() {
+    return {{"start", names_of(kVisitStart, StartRow{})},
+            {"ticks", names_of(kVisitTick, TickRecord{})},
+            {"exchanges", names_of(kVisitExchange, dynamics::LinearisedContact{})},
+            {"models", names_of(kVisitModel, ModelRow{})},
+            {"points", names_of(kVisitPoint, PointRow{})}};
+  }
   std::size_t hand;
   store::TableFile file;
   std::vector<double> row;
@@ -195,7 +198,12 @@ struct HapticRecorder::Impl {
 
 HapticRecorder::HapticRecorder(const std::string& path, std::size_t hand)
     : impl_(std::make_unique<Impl>(path, hand)) {}
+HapticRecorder::HapticRecorder(const std::string& path, std::size_t hand,
+                               const store::TableFile::Journal& from)
+    : impl_(std::make_unique<Impl>(path, hand, from)) {}
 HapticRecorder::~HapticRecorder() = default;
+
+store::TableFile::Journal HapticRecorder::place() { return impl_->file.place(); }
 
 void HapticRecorder::period(World& world, double t) {
   if (t == 0.0) {

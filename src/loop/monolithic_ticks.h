@@ -16,6 +16,7 @@ class MonolithicTicks : private dynamics::StepFollower {
   ~MonolithicTicks() override;
   /// Advances the World's stepper to t1 and emits the ticks on the way, the last one at t1 or before.
   dynamics::StepResult advance_to(double t1);
+  void archive(Archive& a) { a("count", count_); }
 
  private:
   void stepped(const dynamics::Stepper& stepper, double t0, double t1) override;

@@ -9,14 +9,24 @@ ObstacleTouch::ObstacleTouch(double look_ahead_s)
   frame_ = contact_.add_frame(motion_);
 }
 
+void ObstacleTouch::place(double t, const dynamics::RigidMotion& tool) {
+  motion_->clear();
+  motion_->append(t, tool.pose, tool.twist);
+  nothing_.set_time(t);
+}
+
+void ObstacleTouch::archive(Archive& a, double t, const dynamics::RigidMotion& tool) {
+  if (a.gives_back()) place(t, tool);
+  due_ = -HUGE_VAL;
+  contact_.archive(a, nothing_.view());
+}
+
 // The record R(t, x, v) is linear about (x0, v0); it goes on about (x, v) = now with the same F1, J and B:
 //     R(t + s, x + dx, v + dv) = R(t, x, v) + s F1 + J dx + B dv,
 // up to the second order in the rotation from x0.  To it come the obstacles' F, -K and -B, about (x, v).
 dynamics::LinearisedContact ObstacleTouch::with(const dynamics::LinearisedContact& record, double t,
                                                 const dynamics::RigidMotion& tool) {
-  motion_->clear();
-  motion_->append(t, tool.pose, tool.twist);
-  nothing_.set_time(t);
+  place(t, tool);
   // ticks add their lengths up: a query is due at the tick next to its time
   if (t >= due_ - 1e-6 * look_ahead_) {
     contact_.refresh(nothing_.view());

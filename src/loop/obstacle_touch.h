@@ -23,8 +23,12 @@ class ObstacleTouch {
   /// @param tool  then
   dynamics::LinearisedContact with(const dynamics::LinearisedContact& record, double t,
                                    const dynamics::RigidMotion& tool);
+  /// Between two ticks.  The next one queries, whether one is due or not.
+  void archive(Archive& a, double t, const dynamics::RigidMotion& tool);
 
  private:
+  void place(double t, const dynamics::RigidMotion& tool);
+
   double look_ahead_, due_ = -HUGE_VAL;
   contact::ContactForce contact_;
   std::shared_ptr<contact::TrajectoryFrame> motion_;

@@ -8,6 +8,7 @@
 #include "palpate/loop/contact_record.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/scene/hands.h"
+#include "palpate/store/atomic_file.h"
 #include "palpate/store/bone_file.h"
 #include "palpate/store/force_file.h"
 #include "palpate/store/provenance.h"
@@ -38,13 +39,27 @@ int periods_between(const scene::Description& d) {
 
 }  // namespace
 
+/// Where the files of a run were at a checkpoint.
+struct Places {
+  int states = 0;
+  std::vector<store::CsvWriter::Place> forces;
+  std::vector<store::TableFile::Journal> haptic;
+  store::CsvWriter::Place bones, energy;
+};
+
 struct Recorder::Impl {
+  std::string folder;
+  bool resumable = false, has_bones = false;
+  double duration_s = 0.0;
+  scene::Description description;
+  std::vector<store::RunPart> parts;  ///< of the file of states, until it is opened
+  store::RunInfo info;
   std::unique_ptr<store::RunFile> states;
   /// [N] and [N m]: a larger difference between the wrench wanted and the wrench sent means that it was
   /// limited
   struct Forces {
-    Forces(const std::string& path, const device::DeviceFigures& figures)
-        : file(path),
+    Forces(store::ForceFile opened, const device::DeviceFigures& figures)
+        : file(std::move(opened)),
           force_rounding(kUnlimited * figures.max_force),
           torque_rounding(kUnlimited * figures.max_torque) {}
     store::ForceFile file;
@@ -61,8 +76,8 @@ struct Recorder::Impl {
   Points points, velocity;
   VecX stress;
 
-  void open_states(const World& world, const std::string& path) {
-    std::vector<store::RunPart> parts;
+  /// What the file of states is of, as the World begins.
+  void take_parts(const World& world) {
     Eigen::Index count = 0;
     for (const Body& body : world.bodies) {
       parts.push_back({body.name, body.placed, body.file_tets(), {}});
@@ -82,13 +97,16 @@ struct Recorder::Impl {
       parts.push_back({hand.name, placed(tool, pose), {}, tool.faces});
       count += tool.vertices.cols();
     }
-    const int steps = static_cast<int>(d.duration_s / (every * period_of(d))) + 2;
-    states = std::make_unique<store::RunFile>(
-        path, parts, store::RunInfo{d.name, d.source, store::provenance().version, steps});
+    const int steps = static_cast<int>(duration_s / (every * period_of(d))) + 2;
+    info = {d.name, d.source, store::provenance().version, steps};
     points.resize(3, count);
     velocity.resize(3, count);
     stress.setZero(count);
   }
+
+  std::string path(const std::string& name) const { return (std::filesystem::path(folder) / name).string(); }
+  void open(const Places* from);
+  Places places();
 
   static Points placed(const TriMesh& surface, const Pose& pose) {
     Points out = pose.rotation.toRotationMatrix() * surface.vertices;
@@ -134,28 +152,94 @@ struct Recorder::Impl {
   }
 };
 
-Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::make_unique<Impl>()) {
-  const scene::Description& d = world.description;
+/// What was kept so far is on the disk then: no checkpoint is of more than the files hold.
+Places Recorder::Impl::places() {
+  Places at;
+  const auto safe = [&](const std::string& name) { store::bring_to_disk(path(name)); };
+  if (states) at.states = states->steps(), safe(kRunFile);
+  if (bones) at.bones = bones->place(), safe(kBoneFile);
+  if (energy) at.energy = energy->place(), safe(kEnergyFile);
+  const std::vector<std::string> names = haptic_files(description);
+  for (std::size_t i = 0; i < haptic.size(); ++i) {
+    at.haptic.push_back(haptic[i]->place());
+    safe(store::TableFile::journal_path(names[i]));
+  }
+  for (const auto& one : forces)
+    at.forces.push_back(one->file.place()), store::bring_to_disk(one->file.path());
+  return at;
+}
+
+/// @param from  where files go on; null: they begin
+void Recorder::Impl::open(const Places* from) {
+  const scene::Description& d = description;
+  if (!parts.empty())
+    states = std::make_unique<store::RunFile>(
+        from ? store::RunFile::continued(path(kRunFile), parts, info, from->states)
+             : store::RunFile(path(kRunFile), parts, info));
+  parts.clear();
+  const auto open_csv = [&]<class File>(const std::string& name, const store::CsvWriter::Place* place) {
+    return place ? File(path(name), *place) : File(path(name));
+  };
+  if (has_bones)
+    bones = std::make_unique<store::BoneFile>(
+        open_csv.operator()<store::BoneFile>(kBoneFile, from ? &from->bones : nullptr));
+  if (d.record->energy)
+    energy = from ? std::make_unique<store::CsvWriter>(path(kEnergyFile), energy_headers(), from->energy)
+                  : std::make_unique<store::CsvWriter>(path(kEnergyFile), energy_headers());
+  if (!d.record->forces || !d.tool) return;
+  for (const std::string& name : haptic_files(d)) {
+    const std::size_t i = haptic.size();
+    haptic.push_back(resumable ? std::make_unique<HapticRecorder>(
+                                     path(name), i, from ? from->haptic.at(i) : store::TableFile::Journal{})
+                               : std::make_unique<HapticRecorder>(path(name), i));
+  }
+  for (const scene::Hand& hand : scene::hands_of(d)) {
+    const std::size_t i = forces.size();
+    const std::string name = i == 0 ? kForceFile : fmt::format("force-{}.csv", hand.name);
+    forces.push_back(std::make_unique<Forces>(
+        open_csv.operator()<store::ForceFile>(name, from ? &from->forces.at(i) : nullptr),
+        device::figures_of(*hand.device)));
+  }
+}
+
+Recorder::Recorder(const World& world, const std::string& folder)
+    : Recorder(world, folder, false, 0.0, false) {}
+Recorder::Recorder(const World& world, const std::string& folder, bool goes_on, double duration_s)
+    : Recorder(world, folder, goes_on, duration_s, true) {}
+
+Recorder::Recorder(const World& world, const std::string& folder, bool goes_on, double duration_s,
+                   bool resumable)
+    : impl_(std::make_unique<Impl>()) {
+  Impl& m = *impl_;
+  m.folder = folder;
+  m.resumable = resumable;
+  m.description = world.description;
+  const scene::Description& d = m.description;
   if (!d.record) return;
-  impl_->every = periods_between(d);
+  m.duration_s = duration_s > 0.0 ? duration_s : d.duration_s;
+  m.every = periods_between(d);
+  m.has_bones = d.record->states && !world.bones.empty();
+  if (d.record->states && !world.bodies.empty()) m.take_parts(world);
+  if (goes_on) return;  // archive() opens them
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
-  const std::filesystem::path base(folder);
-  if (d.record->states && !world.bodies.empty()) impl_->open_states(world, (base / kRunFile).string());
-  if (d.record->states && !world.bones.empty())
-    impl_->bones = std::make_unique<store::BoneFile>((base / kBoneFile).string());
-  if (d.record->energy)
-    impl_->energy = std::make_unique<store::CsvWriter>((base / kEnergyFile).string(), energy_headers());
-  if (!d.record->forces || !d.tool) return;
-  for (const std::string& name : haptic_files(d))
-    impl_->haptic.push_back(std::make_unique<HapticRecorder>((base / name).string(), impl_->haptic.size()));
-  for (const scene::Hand& hand : scene::hands_of(d)) {
-    const bool first = impl_->forces.empty();
-    const std::string name = first ? kForceFile : fmt::format("force-{}.csv", hand.name);
-    impl_->forces.push_back(
-        std::make_unique<Impl::Forces>((base / name).string(), device::figures_of(*hand.device)));
-  }
+  m.open(nullptr);
+}
+
+void Recorder::archive(Archive& a) {
+  Impl& m = *impl_;
+  PALPATE_CHECK(m.resumable, "a recorder of a run without checkpoints");
+  a("seen", m.seen);
+  if (!m.description.record) return;
+  Places at;
+  if (!a.gives_back()) at = m.places();
+  a("states", at.states);
+  a.list("forces", at.forces, [&](store::CsvWriter::Place& place) { place.archive(a); });
+  a.list("haptic", at.haptic, [&](store::TableFile::Journal& journal) { a("bytes", journal.bytes); });
+  a("bones", at.bones);
+  a("energy", at.energy);
+  if (a.gives_back()) m.open(&at);
 }
 
 Recorder::~Recorder() = default;

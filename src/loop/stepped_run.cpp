@@ -1,6 +1,7 @@
 #include "palpate/loop/stepped_run.h"
 
 #include "palpate/core/clock.h"
+#include "palpate/core/error.h"
 #include "palpate/core/workers.h"
 #include "virtual_time.h"
 
@@ -12,6 +13,11 @@ struct SteppedRun::Impl {
         options(std::move(options_in)),
         bodies(world, options, result),
         clock(world, bodies, options, result) {}
+  Impl(World& world_in, RunOptions options_in, Archive& from)
+      : world(world_in),
+        options(std::move(options_in)),
+        bodies(world, options, result),
+        clock(world, bodies, options, result, from) {}
   World& world;
   RunOptions options;
   RunResult result;
@@ -22,6 +28,11 @@ struct SteppedRun::Impl {
 
 SteppedRun::SteppedRun(World& world, RunOptions options)
     : impl_(std::make_unique<Impl>(world, std::move(options))) {}
+
+SteppedRun::SteppedRun(World& world, RunOptions options, Archive& from) {
+  const workers::Count threads(world.description.integrator.threads);
+  impl_ = std::make_unique<Impl>(world, std::move(options), from);
+}
 
 SteppedRun::~SteppedRun() {
   impl_->clock.end();
@@ -43,5 +54,15 @@ bool SteppedRun::next() {
 
 const RunResult& SteppedRun::result() const { return impl_->result; }
 double SteppedRun::duration() const { return impl_->bodies.duration(); }
+double SteppedRun::period() const { return impl_->bodies.period(); }
+int SteppedRun::periods_done() const { return impl_->clock.periods(); }
+int SteppedRun::periods() const { return impl_->bodies.periods(); }
+
+void SteppedRun::archive(Archive& a) {
+  PALPATE_CHECK(!a.gives_back(), "a SteppedRun is given back by its constructor");
+  const workers::Count threads(impl_->world.description.integrator.threads);
+  impl_->bodies.look_once_more();
+  impl_->clock.archive(a);
+}
 
 }  // namespace palpate::loop

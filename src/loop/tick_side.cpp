@@ -23,6 +23,22 @@ TickSide::~TickSide() {
 
 void TickSide::start(double t) { side_.handle_now = handle_ = side_.handle->sample(t); }
 
+void TickSide::archive(Archive& a) {
+  a("handle", handle_);
+  a("time", time_);
+  a("live", live_);
+  if (!touch_) return;
+  a("touch", *touch_);
+  a("taken_up", taken_up_);
+  a("ticks", ticks_);
+  a.rows("past", past_, [](auto&& f, Past& past) {
+    f(past.time);
+    f(past.length);
+    f(past.tool.pose);
+    f(past.tool.twist);
+  });
+}
+
 // A late record is carried on in strides of several ticks, which Euler's implicit method takes as well: else
 // the tick that takes it up would cost as much as all that it was late by.  Where the tool was at a stride's
 // end is known: the contact is linearised there, as that of a tool that came by its last twist alone.

@@ -34,6 +34,9 @@ class TickSide {
   void feel(TickRecord& tick);
   /// No wrench on the hand any more.
   void end();
+  /// Between two ticks; the ToolSide stands in the archive by itself.  What gives back takes the place of
+  /// start().
+  void archive(Archive& a);
 
  private:
   dynamics::LinearisedContact contact_with_bodies(double t, double h, const ContactRecord& record);

@@ -6,23 +6,29 @@ namespace palpate::loop {
 
 VirtualTime::VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result)
     : world_(world), bodies_(bodies), options_(options), result_(result) {
-  const scene::Description& d = world.description;
-  if (d.tool) {
-    for (const auto& side : ToolSide::all(world)) {
-      hands_.emplace_back(d, *side);
-      hands_.back().ticks.start(0.0);
-    }
-    if (world.monolithic()) {
-      dense_.emplace(world, [this](std::size_t hand, TickRecord tick) {
-        hands_[hand].ticks.feel(tick);
-        bodies_.felt(hand, tick);
-      });
-      bodies.set_ticks(&*dense_);
-    } else {
-      bodies.restart_path();
-    }
-  }
+  make_hands();
+  for (Hand& hand : hands_) hand.ticks.start(0.0);
+  bodies.restart_path();
   bodies.start();
+}
+
+VirtualTime::VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result,
+                         Archive& from)
+    : world_(world), bodies_(bodies), options_(options), result_(result) {
+  make_hands();
+  archive(from);
+}
+
+void VirtualTime::make_hands() {
+  const scene::Description& d = world_.description;
+  if (!d.tool) return;
+  for (const auto& side : ToolSide::all(world_)) hands_.emplace_back(d, *side);
+  if (!world_.monolithic()) return;
+  dense_.emplace(world_, [this](std::size_t hand, TickRecord tick) {
+    hands_[hand].ticks.feel(tick);
+    bodies_.felt(hand, tick);
+  });
+  bodies_.set_ticks(&*dense_);
 }
 
 bool VirtualTime::next() {

@@ -14,8 +14,14 @@ class VirtualTime {
  public:
   /// Takes the hands at the start; observers see it.
   VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result);
+  /// Goes on from where another one was archived, with a World that nothing has gone through; observers are
+  /// told nothing.
+  VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result, Archive& from);
   /// Goes through one period.  False where there is none, and where it was not gone through to its end.
   bool next();
+  int periods() const { return periods_; }  ///< gone through
+  /// After a period.  Only the constructor gives back.
+  void archive(Archive& a);
   /// No wrench on the hands any more.
   void end();
 
@@ -33,6 +39,7 @@ class VirtualTime {
     long count = 0;  ///< of ticks
   };
 
+  void make_hands();
   void one_period(double t0, double t1);
   void tick_tools(double t0, double t1);
   void adopt(Hand& hand, const ContactRecord& record);

@@ -256,6 +256,33 @@ void Pruner::met_on_the_way(std::vector<int>& faces_a, std::vector<int>& faces_b
   s.counts = before;
 }
 
+// Directions that proved proxies apart are no part of it: each is proven anew, or found.
+void Pruner::archive(Archive& a) {
+  Impl& s = *impl_;
+  PruneCounts& c = s.counts;
+  for (auto& [name, count] :
+       std::initializer_list<std::pair<const char*, long&>>{{"queries", c.queries},
+                                                            {"boxes_tested", c.boxes_tested},
+                                                            {"after_boxes", c.after_boxes},
+                                                            {"apart_by_memory", c.apart_by_memory},
+                                                            {"apart_by_search", c.apart_by_search},
+                                                            {"after_hulls", c.after_hulls},
+                                                            {"patches_tested", c.patches_tested},
+                                                            {"patches_kept", c.patches_kept},
+                                                            {"regions", c.regions},
+                                                            {"regions_apart", c.regions_apart},
+                                                            {"regions_ahead", c.regions_ahead},
+                                                            {"normals_by_areas", c.normals_by_areas},
+                                                            {"normals_kept", c.normals_kept},
+                                                            {"normals_by_hulls", c.normals_by_hulls},
+                                                            {"faces_a", c.faces_a},
+                                                            {"faces_b", c.faces_b}})
+    a(name, count);
+  a("largest_rotation", c.largest_rotation);
+  a.rows("last_normal", s.last_normal, [](auto&& f, Vec3& normal) { f(normal); });
+  a.rows("last_query", s.last_query, [](auto&& f, long& query) { f(query); });
+}
+
 bool Pruner::is_pair(int p, int q) const { return impl_->allowed(p, q); }
 const PruneCounts& Pruner::counts() const { return impl_->counts; }
 const RegionCounts& Pruner::region_counts() const { return impl_->finder.counts(); }

@@ -1,7 +1,10 @@
 #include "palpate/store/atomic_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -9,8 +12,9 @@
 #include "palpate/core/error.h"
 
 namespace palpate::store {
+namespace {
 
-void write_atomically(const std::string& path, std::string_view content) {
+void write(const std::string& path, std::string_view content, bool durably) {
   const std::string temporary = fmt::format("{}.{}.part", path, getpid());
   {
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
@@ -22,12 +26,41 @@ void write_atomically(const std::string& path, std::string_view content) {
       fail("{}: cannot be written; is its folder there, writable, and not full?", path);
     }
   }
+  if (durably) bring_to_disk(temporary);
   std::error_code error;
   std::filesystem::rename(temporary, path, error);
-  if (!error) return;
+  if (!error) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    if (durably) bring_to_disk(folder.empty() ? "." : folder.string());  // its entry for the new name
+    return;
+  }
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);
   fail("{}: cannot be replaced: {}", path, error.message());
+}
+
+}  // namespace
+
+void write_atomically(const std::string& path, std::string_view content) { write(path, content, false); }
+void write_durably(const std::string& path, std::string_view content) { write(path, content, true); }
+
+void bring_to_disk(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool done = file >= 0 && (fsync(file) == 0 || errno == EINVAL);  // EINVAL: not that kind of file
+  const int reason = errno;
+  if (file >= 0) close(file);
+  if (!done) fail("{}: cannot be brought to the disk: {}", path, std::strerror(reason));
+}
+
+void cut_to(const std::string& path, std::int64_t bytes) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) fail("{}: the run cannot go on without this file: {}", path, error.message());
+  if (bytes < 0 || size < static_cast<std::uintmax_t>(bytes))
+    fail("{}: has {} bytes, and had {} at the checkpoint; it was changed since, run the scene anew", path,
+         size, bytes);
+  std::filesystem::resize_file(path, static_cast<std::uintmax_t>(bytes), error);
+  if (error) fail("{}: cannot be cut back to its checkpoint: {}", path, error.message());
 }
 
 std::string read_file(const std::string& path) {

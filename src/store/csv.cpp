@@ -1,6 +1,7 @@
 #include "palpate/store/csv.h"
 
 #include <charconv>
+#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -69,6 +70,24 @@ CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers)
   }
   end_row(headers.size());
   rows_ = 0;
+}
+
+CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers, const Place& place)
+    : path_(path), columns_(headers.size()), rows_(place.rows) {
+  cut_to(path, place.bytes);
+  out_.open(path, std::ios::binary | std::ios::app);
+  if (!out_) fail("{}: cannot be written; is its folder there, writable, and not full?", path);
+}
+
+CsvWriter::Place CsvWriter::place() {
+  out_.flush();
+  if (!out_) fail("{}: not all could be written; is the disk full?", path_);
+  return {static_cast<std::int64_t>(std::filesystem::file_size(path_)), rows_};
+}
+
+void CsvWriter::Place::archive(Archive& a) {
+  a("bytes", bytes);
+  a("rows", rows);
 }
 
 void CsvWriter::row(std::span<const double> values) {

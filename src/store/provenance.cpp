@@ -38,6 +38,7 @@ std::string system_name() {
 }  // namespace
 
 std::string version() { return PALPATE_VERSION; }
+std::string full_version() { return fmt::format("{} ({})", PALPATE_VERSION, PALPATE_COMMIT); }
 
 Provenance provenance() {
   Provenance out;

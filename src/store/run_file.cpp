@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -169,6 +170,33 @@ RunFile::RunFile(const std::string& path, const std::vector<RunPart>& parts, con
       h5::Id{h5::check(H5Aopen(d.steps_group, "NSteps", H5P_DEFAULT), path, "cannot open NSteps"), H5Aclose};
   d.make_series();
   h5::check(H5Fflush(d.file, H5F_SCOPE_LOCAL), path, "cannot be flushed; is the disk full?");
+}
+
+RunFile RunFile::continued(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info,
+                           int steps) {
+  const std::string temporary = path + ".part";
+  std::optional<RunFile> out;
+  {
+    const RunReader old(path);
+    if (old.steps() < steps)
+      fail("{}: has {} states, and had {} at the checkpoint; it was changed since, run the scene anew", path,
+           old.steps(), steps);
+    const auto is_same = [](const RunPart& a, const RunPart& b) {
+      return a.name == b.name && a.reference.cols() == b.reference.cols() && a.tets.cols() == b.tets.cols() &&
+             a.faces.cols() == b.faces.cols();
+    };
+    if (!std::equal(parts.begin(), parts.end(), old.parts().begin(), old.parts().end(), is_same))
+      fail("{}: its bodies are not those of the scene; run the scene anew", path);
+    out.emplace(temporary, parts, info);
+    for (int i = 0; i < steps; ++i)
+      out->append(old.times_s()[static_cast<std::size_t>(i)], old.points(i), old.velocity(i), old.stress(i));
+  }
+  std::error_code error;
+  std::filesystem::rename(temporary, path, error);
+  if (error) fail("{}: cannot be replaced: {}", path, error.message());
+  out->impl_->path = path;
+  std::filesystem::remove(xdmf_path(path), error);
+  return std::move(*out);
 }
 
 void RunFile::append(double time_s, const Points& points, const Points& velocity, const VecX& stress) {

@@ -1,9 +1,12 @@
 #include "palpate/store/table_file.h"
 
 #include <filesystem>
+#include <fstream>
 #include <numeric>
+#include <optional>
 
 #include "palpate/core/error.h"
+#include "palpate/store/atomic_file.h"
 #include "store/series.h"
 
 namespace palpate::store {
@@ -78,7 +81,41 @@ struct TableFile::Impl {
   std::string path;
   h5::Id file;
   std::vector<Growing> tables;
+  std::optional<std::ofstream> journal;
+
+  void append(std::size_t number, std::span<const double> row) {
+    Growing& table = tables.at(number);
+    PALPATE_CHECK(row.size() == table.width, "{} values for {} columns of {}", row.size(), table.width,
+                  table.name);
+    table.waiting.insert(table.waiting.end(), row.begin(), row.end());
+    if (table.waiting.size() < kBatch * table.width) return;
+    const h5::Quiet quiet;
+    write_waiting(table, path);
+  }
+  void write_journal(std::size_t number, std::span<const double> row) {
+    const auto which = static_cast<std::uint64_t>(number);
+    journal->write(reinterpret_cast<const char*>(&which), sizeof which);
+    journal->write(reinterpret_cast<const char*>(row.data()),
+                   static_cast<std::streamsize>(row.size() * sizeof(double)));
+  }
+  void take_journal(const std::string& from);
 };
+
+/// Rows of a journal, each behind the number of its table.
+void TableFile::Impl::take_journal(const std::string& from) {
+  std::ifstream in(from, std::ios::binary);
+  std::vector<double> row;
+  for (std::uint64_t number = 0; in.read(reinterpret_cast<char*>(&number), sizeof number);) {
+    if (number >= tables.size())
+      fail("{}: a row of table {}, of {} tables; the file is damaged", from, number, tables.size());
+    row.resize(tables[static_cast<std::size_t>(number)].width);
+    if (!in.read(reinterpret_cast<char*>(row.data()),
+                 static_cast<std::streamsize>(row.size() * sizeof(double))))
+      fail("{}: ends within a row; the file is damaged", from);
+    append(static_cast<std::size_t>(number), row);
+  }
+  if (in.gcount() != 0) fail("{}: ends within a row; the file is damaged", from);
+}
 
 TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tables)
     : impl_(std::make_unique<Impl>()) {
@@ -89,6 +126,24 @@ TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tabl
   flush();
 }
 
+TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tables, const Journal& from)
+    : TableFile(path, tables) {
+  const std::string journal = journal_path(path);
+  if (from.bytes > 0) {
+    cut_to(journal, from.bytes);
+    impl_->take_journal(journal);
+  }
+  impl_->journal.emplace(journal, std::ios::binary | (from.bytes > 0 ? std::ios::app : std::ios::trunc));
+  if (!*impl_->journal) fail("{}: cannot be written; is its folder there, writable, and not full?", journal);
+  flush();
+}
+
+TableFile::Journal TableFile::place() {
+  PALPATE_CHECK(impl_->journal, "{}: has no journal", impl_->path);
+  flush();
+  return {static_cast<std::int64_t>(std::filesystem::file_size(journal_path(impl_->path)))};
+}
+
 TableFile::~TableFile() {
   try {
     flush();
@@ -96,19 +151,16 @@ TableFile::~TableFile() {
 }
 
 void TableFile::append(std::size_t number, std::span<const double> row) {
-  Growing& table = impl_->tables.at(number);
-  PALPATE_CHECK(row.size() == table.width, "{} values for {} columns of {}", row.size(), table.width,
-                table.name);
-  table.waiting.insert(table.waiting.end(), row.begin(), row.end());
-  if (table.waiting.size() < kBatch * table.width) return;
-  const h5::Quiet quiet;
-  write_waiting(table, impl_->path);
+  impl_->append(number, row);
+  if (impl_->journal) impl_->write_journal(number, row);
 }
 
 void TableFile::flush() {
   const h5::Quiet quiet;
   for (Growing& table : impl_->tables) write_waiting(table, impl_->path);
   h5::check(H5Fflush(impl_->file, H5F_SCOPE_LOCAL), impl_->path, "cannot be flushed; is the disk full?");
+  if (impl_->journal && !impl_->journal->flush())
+    fail("{}: not all could be written; is the disk full?", journal_path(impl_->path));
 }
 
 Table read_table(const std::string& path, const std::string& name) {

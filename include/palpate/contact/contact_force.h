@@ -9,6 +9,7 @@
 #include "palpate/contact/query_view.h"
 #include "palpate/contact/sample.h"
 #include "palpate/contact/spec.h"
+#include "palpate/core/archive.h"
 #include "palpate/dynamics/force_term.h"
 #include "palpate/dynamics/step_assembly.h"
 #include "palpate/mesh/embedding.h"
@@ -97,6 +98,8 @@ class SampleSource {
   virtual void keep_view() {}
   /// Of the last query, of a source in image space that keeps it; else null.
   virtual const QueryView* view() const { return nullptr; }
+  /// What the next query takes from those before, and what was counted so far.
+  virtual void archive(Archive&) {}
 };
 
 /// Pressure p(gap, gap_rate) [Pa] and its derivatives; p >= 0 always (never adhesive), zero for gap >= 0.
@@ -241,6 +244,10 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   long queries() const;
   /// Wall time in them [s].
   double query_seconds() const;
+  /// What a checkpoint keeps: what frames hold, what queries know of those before, what was counted.  The
+  /// samples are none of it: where it is given back, they are made anew by a query at that state.
+  /// @param a  which keeps, or gives back  @param state  as it is now
+  void archive(Archive& a, const dynamics::StateView& state);
 
  private:
   friend class SecantTangents;

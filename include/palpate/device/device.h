@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/core/archive.h"
 #include "palpate/core/pose.h"
 #include "palpate/core/registry.h"
 #include "palpate/device/profile.h"
@@ -19,6 +20,14 @@ struct HandleSample {
   Twist acceleration;          ///< [rad/s^2, m/s^2]
   bool valid = true;           ///< false: no pose arrived; forces must fall to zero
   std::uint32_t switches = 0;  ///< bit i: switch i is pressed
+  /// Keeps it, or gives it back.
+  void archive(Archive& a) {
+    a("pose", pose);
+    a("twist", twist);
+    a("acceleration", acceleration);
+    a("valid", valid);
+    a("switches", switches);
+  }
 };
 
 /// A haptic device: something that a hand holds, whose pose is read and which gives a wrench back.
@@ -64,6 +73,13 @@ class Device {
   /// decides as it goes.  One integrator of tool and bodies needs it.
   virtual std::function<HandleSample(double t)> path() const { return {}; }
 
+  /// Whether it can go on later from where it is now: whether archive() knows all of it.  A hand on the other
+  /// side of a network, or of a motor, does not wait.
+  virtual bool can_be_archived() const { return false; }
+  /// Keeps where it is, or goes on from there.
+  /// @pre can_be_archived(); where it is given back, nothing was sampled before
+  void archive(Archive& a);
+
  protected:
   /// Takes hold of what the device works with; nothing for devices without.  @throws Error where it cannot
   virtual void do_open() {}
@@ -73,6 +89,8 @@ class Device {
   virtual HandleSample do_sample(double t) = 0;
   /// The wrench from t [s] on, about the handle's origin, scene's axes; nothing for devices without motors.
   virtual void do_feedback(double /*t*/, const Wrench& /*on_hand*/) {}
+  /// What it knows beside the last sample.
+  virtual void do_archive(Archive&) {}
 
  private:
   HandleSample last_;

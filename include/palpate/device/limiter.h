@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/core/archive.h"
 #include "palpate/core/pose.h"
 #include "palpate/device/workspace.h"
 
@@ -46,6 +47,7 @@ class WrenchLimiter {
   long rejected_ticks() const { return rejected_; }
   /// valid ticks outside the workspace
   long outside_ticks() const { return outside_; }
+  void archive(Archive& a);  ///< keeps where it is, or goes on from there
 
  private:
   Wrench fall(double age);

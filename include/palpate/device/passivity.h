@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 
+#include "palpate/core/archive.h"
 #include "palpate/core/pose.h"
 #include "palpate/device/spec.h"
 
@@ -30,6 +31,7 @@ class PassivityObserver {
   double last_tick() const { return dt_; }        ///< [s]; 0 before the second sample
   /// What the device's friction takes at least while its handle moves by that in a tick as long as the last.
   double friction(const Vec6& change) const;
+  void archive(Archive& a);  ///< keeps where it is, or goes on from there
 
  private:
   double damping_, resolution_, energy_ = 0.0, least_ = 0.0, work_ = 0.0, time_ = 0.0, dt_ = 0.0;
@@ -69,6 +71,7 @@ class PassivityController {
   long active_ticks() const { return active_; }
   /// What it does.
   Mode mode() const { return mode_; }
+  void archive(Archive& a);  ///< keeps where it is, or goes on from there
 
  private:
   double foreseen(const Wrench& wrench, const Vec6& D) const;

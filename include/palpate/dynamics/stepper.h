@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -112,6 +113,14 @@ static_assert(bytes_of_counters<StepperCounters>() - bytes_of_counters<SolverCou
 /// What was counted between two samples at one stepper's counters.
 inline StepperCounters operator-(StepperCounters later, const StepperCounters& earlier) {
   visit_counters([](const char*, auto& value, const auto& before) { value -= before; }, later, earlier);
+  return later;
+}
+
+/// What two steppers counted together, one after the other.
+inline StepperCounters operator+(const StepperCounters& earlier, StepperCounters later) {
+  visit_counters([](const char*, auto& value, const auto& before) { value += before; }, later, earlier);
+  later.most_halvings = std::max(later.most_halvings, earlier.most_halvings);
+  if (later.solver.ordering.empty()) later.solver.ordering = earlier.solver.ordering;
   return later;
 }
 

@@ -16,6 +16,11 @@ class Recorder : public Observer {
  public:
   /// Creates the folder and the files.  @throws Error when they cannot be written
   Recorder(const World& world, const std::string& folder);
+  /// Of a run with checkpoints.
+  /// @param world, folder  as above
+  /// @param goes_on     the files are there, and are cut back to the checkpoint when archive() gives back
+  /// @param duration_s  of the run; 0: the scene's
+  Recorder(const World& world, const std::string& folder, bool goes_on, double duration_s);
   ~Recorder() override;
   /// Ends the file of states.  The destructor does it too, without a word where the disk refuses.
   /// @throws Error
@@ -25,8 +30,11 @@ class Recorder : public Observer {
   void exchanged_of(std::size_t hand, const ContactRecord& record) override;
   bool wants_energy() const override;
   void energy(const EnergyBalance& balance) override;
+  /// Where its files are; what it kept so far is on the disk then.  @pre made for a run with checkpoints
+  void archive(Archive& a) override;
 
  private:
+  Recorder(const World& world, const std::string& folder, bool goes_on, double duration_s, bool resumable);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

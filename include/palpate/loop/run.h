@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "palpate/core/archive.h"
 #include "palpate/device/passivity.h"
 #include "palpate/loop/energy_balance.h"
 #include "palpate/loop/real_time.h"
@@ -52,6 +53,9 @@ class Observer {
   virtual void queried(World&, double /*t*/) {}
   /// After every period, in runs of which an observer wants it: a run that nobody asks keeps no balance.
   virtual bool wants_energy() const { return false; }
+  /// What it needs to go on in another process, or in another World, after a period.  What gives back takes
+  /// the place of period(0).
+  virtual void archive(Archive&) {}
   /// The balance at the period's end.
   virtual void energy(const EnergyBalance&) {}
 };

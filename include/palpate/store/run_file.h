@@ -36,6 +36,11 @@ class RunFile {
   /// @param path  of the file, which is replaced  @param info  kept with it
   /// @param parts  their points follow one another in this order  @throws Error when the file cannot be made
   RunFile(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info);
+  /// Goes on with a run's file behind its first `steps`: they are brought into a new file, which takes the
+  /// place of the old one.
+  /// @throws Error where the file cannot be read, has fewer steps or other parts
+  static RunFile continued(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info,
+                           int steps);
   ~RunFile();
   /// Moved from, it may only be destroyed.
   RunFile(RunFile&&) noexcept;

@@ -6,6 +6,7 @@
 
 #include "palpate/contact/sample.h"
 #include "palpate/contact/spec.h"
+#include "palpate/core/archive.h"
 #include "palpate/core/pose.h"
 #include "palpate/dynamics/exchange.h"
 #include "palpate/dynamics/rigid_body.h"
@@ -100,6 +101,8 @@ class TouchTicks {
   int pressing() const;
   /// q' of the modes now [kg^1/2 m/s]
   VecX rates() const;
+  /// Between two ticks.
+  void archive(Archive& a);
 
  private:
   struct Impl;

@@ -1,6 +1,8 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "palpate/core/archive.h"
+
 namespace palpate::device {
 
 /// One axis of an arm that holds a device: M x'' + d x' + k x = p(t) - f sgn(x'), integrated without error
@@ -20,6 +22,8 @@ class ArmAxis {
   void advance(double h, double p0, double p1);
   double x() const { return x_; }
   double v() const { return v_; }  ///< exactly 0 while it sticks
+  /// The usual step's length counts: steps that differ from it by rounding take its transition.
+  void archive(Archive& a);
 
  private:
   struct Point {

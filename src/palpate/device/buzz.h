@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/core/archive.h"
 #include "palpate/core/pose.h"
 
 namespace palpate::device {
@@ -17,6 +18,7 @@ class Buzz {
   void add(const Vec3& force);
   double rms() const;
   double largest() const { return largest_; }  ///< magnitude of the filtered force [N]
+  void archive(Archive& a);
 
  private:
   /// y = c (x - 2 x1 + x2) - a1 y1 - a2 y2
@@ -24,6 +26,7 @@ class Buzz {
     double c, a1, a2;
     Vec3 x1 = Vec3::Zero(), x2 = Vec3::Zero(), y1 = Vec3::Zero(), y2 = Vec3::Zero();
     Vec3 operator()(const Vec3& x);
+    void archive(Archive& a);
   };
   static Section section(double warped, double q);
   Section first_, second_;

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "palpate/core/archive.h"
 #include "palpate/loop/energy_balance.h"
 #include "palpate/loop/world.h"
 
@@ -14,6 +15,7 @@ class PowerIntegral {
   void add(double t, double power);
   double value() const { return fine_; }
   double error() const;
+  void archive(Archive& a);
 
  private:
   double t_ = 0.0, power_ = 0.0, t_coarse_ = 0.0, power_coarse_ = 0.0;
@@ -35,11 +37,14 @@ class EnergyLedger {
   void tick(std::size_t hand, double t, const Wrench& on_hand, const Twist& handle);
   const EnergyBalance& period(double t);
   const EnergyBalance& balance() const { return balance_; }
+  /// Between two periods.  What gives back takes the place of start().
+  void archive(Archive& a);
 
  private:
   double contact_energy() const;
   double elastic_energy() const;
   double dissipated_power() const;
+  void make_tools();
   void take_stored();
 
   World& world_;

@@ -5,6 +5,7 @@
 
 #include "palpate/loop/contact_record.h"
 #include "palpate/loop/run.h"
+#include "palpate/store/table_file.h"
 
 namespace palpate::loop {
 
@@ -24,6 +25,9 @@ class HapticRecorder : public Observer {
   /// @param hand  whose start it keeps; its ticks and exchanges are those that it is given
   /// @throws Error when the file cannot be made
   explicit HapticRecorder(const std::string& path, std::size_t hand = 0);
+  /// With a journal beside it (store/table_file.h), from where that is.
+  HapticRecorder(const std::string& path, std::size_t hand, const store::TableFile::Journal& from);
+  store::TableFile::Journal place();
   ~HapticRecorder() override;
   void period(World& world, double t) override;
   void tick(const TickRecord& tick) override;

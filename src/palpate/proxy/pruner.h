@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "palpate/core/archive.h"
 #include "palpate/proxy/proxy_set.h"
 #include "palpate/proxy/region.h"
 
@@ -86,6 +87,8 @@ class Pruner {
   /// Whether proxy p of a is tested against proxy q of b.
   bool is_pair(int p, int q) const;
   const PruneCounts& counts() const;
+  /// Normals and counts of the queries so far.
+  void archive(Archive& a);
   const RegionCounts& region_counts() const;
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 
+#include "palpate/core/archive.h"
 #include "palpate/core/types.h"
 
 namespace palpate::proxy {
@@ -58,6 +59,10 @@ class RegionFinder {
                double margin);
   const RegionCounts& counts() const { return counts_; }
   void forget() { has_last_ = false; }  ///< the last normal
+  void archive(Archive& a) {
+    a("has_last", has_last_);
+    a("last_normal", last_normal_);
+  }
   /// Puts a normal in the last one's place: one finder serves many pairs that keep theirs.
   void remember(const Vec3& normal) {
     has_last_ = true;

@@ -23,6 +23,9 @@ const std::vector<std::string>& bone_headers();
 class BoneFile {
  public:
   explicit BoneFile(const std::string& path) : csv_(path, bone_headers()) {}
+  /// Goes on with a file, as CsvWriter does.
+  BoneFile(const std::string& path, const CsvWriter::Place& place) : csv_(path, bone_headers(), place) {}
+  CsvWriter::Place place() { return csv_.place(); }
   void append(const BoneRow& row);
   void flush() { csv_.flush(); }
 

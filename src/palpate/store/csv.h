@@ -1,9 +1,12 @@
 #pragma once
+#include <cstdint>
 #include <fstream>
 #include <span>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "palpate/core/archive.h"
 
 namespace palpate::store {
 
@@ -14,6 +17,18 @@ using CsvCell = std::variant<double, std::string>;
 class CsvWriter {
  public:
   CsvWriter(const std::string& path, std::vector<std::string> headers);
+  /// Where a writer was, for another one to go on from.
+  struct Place {
+    std::int64_t bytes = 0;
+    int rows = 0;
+    void archive(Archive& a);
+  };
+  /// Goes on with a file that a writer with these headers began: what stands behind the place is cut off.
+  /// @throws Error where the file does not reach to there
+  CsvWriter(const std::string& path, std::vector<std::string> headers, const Place& place);
+  /// Flushes.  @throws Error when the disk refused anything
+  Place place();
+  const std::string& path() const { return path_; }
   void row(std::span<const double> values);
   void row(const std::vector<CsvCell>& cells);
   void flush();

@@ -24,6 +24,10 @@ const std::vector<std::string>& force_headers();
 class ForceFile {
  public:
   explicit ForceFile(const std::string& path) : csv_(path, force_headers()) {}
+  /// Goes on with a file, as CsvWriter does.
+  ForceFile(const std::string& path, const CsvWriter::Place& place) : csv_(path, force_headers(), place) {}
+  CsvWriter::Place place() { return csv_.place(); }
+  const std::string& path() const { return csv_.path(); }
   void append(const ForceRow& row);
   void flush() { csv_.flush(); }
   void close() { csv_.close(); }

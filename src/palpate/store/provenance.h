@@ -20,5 +20,7 @@ struct Provenance {
 Provenance provenance();
 /// That of palpate alone.
 std::string version();
+/// With its commit: "0.4.0 (1a2b3c4)".
+std::string full_version();
 
 }  // namespace palpate::store

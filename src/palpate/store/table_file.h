@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,6 +19,19 @@ class TableFile {
  public:
   /// @throws Error when the file cannot be made
   TableFile(const std::string& path, const std::vector<TableSpec>& tables);
+
+  /// With a journal, PATH.rows: every row stands there too, one behind the other.  A kill while HDF5 changes
+  /// its file can leave that unreadable; a journal that was cut off is whole up to there, and the file is
+  /// made anew from it.
+  struct Journal {
+    std::int64_t bytes = 0;  ///< of the journal so far; 0: from the start
+  };
+  /// @param from  where rows go on: those before are taken from the journal, what is behind is cut off
+  /// @throws Error where the journal does not reach to there
+  TableFile(const std::string& path, const std::vector<TableSpec>& tables, const Journal& from);
+  /// Flushes both.  @throws Error when the disk refuses
+  Journal place();
+  static std::string journal_path(const std::string& path) { return path + ".rows"; }
   ~TableFile();
   /// @param table  its number in the list  @throws Error when the disk refuses
   void append(std::size_t table, std::span<const double> row);

@@ -1,0 +1,86 @@
+#include "checkpoints.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "palpate/core/error.h"
+#include "palpate/loop/haptic_record.h"
+#include "palpate/store/provenance.h"
+#include "palpate/store/table_file.h"
+
+namespace palpate::cli {
+
+std::string checkpoint_path(const std::string& folder) {
+  return (std::filesystem::path(folder) / "checkpoint.h5").string();
+}
+
+void remove_checkpoint(const std::string& folder) {
+  std::error_code ignored;
+  std::filesystem::remove(checkpoint_path(folder), ignored);
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().filename().string().ends_with(store::TableFile::journal_path(".h5")))
+      std::filesystem::remove(entry.path(), ignored);
+}
+
+void check_checkpoints(const RunArguments& arguments, const scene::Description& description) {
+  const auto refuse = [](const char* option, const char* why) {
+    fail("--checkpoint-every does not go with {}: {}", option, why);
+  };
+  if (arguments.real_time)
+    refuse("--realtime", "it follows the machine's clock and the hand, which cannot be had again");
+  if (arguments.picture || arguments.contact_picture || arguments.frames || !arguments.movie.empty())
+    refuse("--picture, --contact-picture, --frames and --movie",
+           "what they have gathered by then is not kept; `palpate movie` draws a run that is over");
+  if (arguments.trace) refuse("--trace", "the steps that it has seen by then are not kept");
+  if (arguments.against_monolithic)
+    refuse("--against-monolithic", "the motion that it repeats is not kept; `palpate replay` does it later");
+  loop::check_checkpoints(description, arguments.checkpoint_every_s, arguments.duration_s);
+}
+
+void RunIdentity::archive(Archive& a) {
+  a("scene", arguments.scene.scene);
+  a.list("override", arguments.scene.overrides, [&](std::string& change) { a("is", change); });
+  a("integrator", arguments.scene.integrator);
+  a("folder", arguments.folder);
+  a("duration_s", arguments.duration_s);
+  a("report", arguments.report);
+  a("passivity", arguments.passivity);
+  a("checkpoint_every_s", arguments.checkpoint_every_s);
+  a("scene_path", scene_path);
+  a("bodies", bodies);
+  a("cpu", cpu);
+}
+
+loop::CheckpointPlan checkpoint_plan(RunIdentity identity, const scene::Description& description,
+                                     const std::string& folder) {
+  loop::CheckpointPlan plan;
+  plan.every_s = identity.arguments.checkpoint_every_s;
+  plan.assemble = [description] { return loop::assemble(description); };
+  plan.keep = [identity, source = description.source, path = checkpoint_path(folder)](
+                  double time_s, const Archive& state) mutable {
+    Archive all;
+    all("command", identity);
+    store::Checkpoint checkpoint{store::full_version(), time_s, source, all.values()};
+    checkpoint.values.insert(state.values().begin(), state.values().end());
+    store::write_checkpoint(path, checkpoint);
+  };
+  return plan;
+}
+
+void print_checkpoints(const loop::CheckpointCost& cost, double every_s) {
+  fmt::print(
+      "checkpoints: {}, one every {:g} s of simulated time; {:.3g} s to keep them and {:.3g} s to assemble "
+      "the "
+      "scene anew, with integrator, factors and initial guesses, at each\n",
+      cost.written, every_s, cost.keep_s, cost.assemble_s);
+}
+
+void add_checkpoints(store::Summary& summary, const loop::CheckpointCost& cost, double every_s) {
+  summary.section("checkpoints").values = {{"every_s", every_s},
+                                           {"written", static_cast<long long>(cost.written)},
+                                           {"keep_s", cost.keep_s},
+                                           {"assemble_anew_s", cost.assemble_s}};
+}
+
+}  // namespace palpate::cli

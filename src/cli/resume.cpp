@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "checkpoints.h"
+#include "palpate/core/error.h"
+#include "palpate/store/provenance.h"
+#include "palpate/store/summary.h"
+#include "scene_of.h"
+#include "undelivered.h"
+
+namespace palpate::cli {
+namespace {
+
+/// Whether the run in the folder has come to its end.
+bool is_complete(const std::filesystem::path& folder) {
+  const std::filesystem::path summary = folder / "summary.json";
+  return std::filesystem::exists(summary) && store::read_summary(summary.string()).outcome == "finished";
+}
+
+void check_version(const Resumption& r) {
+  if (const std::string ours = store::full_version(); r.checkpoint.version != ours)
+    fail(
+        "{}: was written by palpate {}, and this is {}; a run goes on under the same version alone: take "
+        "that "
+        "one, or run the scene anew",
+        checkpoint_path(r.folder), r.checkpoint.version, ours);
+}
+
+void compare_processors(const Resumption& r) {
+  if (const std::string cpu = store::provenance().cpu; r.identity.cpu != cpu)
+    fmt::print(
+        stderr,
+        "palpate: the run began on another processor ({}, this is {}): results go on as they would have, "
+        "but not to the last bit\n",
+        r.identity.cpu, cpu);
+}
+
+scene::Description scene_of(const Resumption& r) {
+  SceneArguments scene = r.identity.arguments.scene;
+  scene.scene = r.identity.scene_path;
+  if (!std::filesystem::exists(scene.scene))
+    fail("{}: the scene of this run is not there any more; put it back, or run another one anew",
+         scene.scene);
+  const scene::Description description = scene_of(scene);
+  if (description.source != r.checkpoint.scene_source)
+    fail(
+        "{}: the scene has changed since the run began, and what was recorded belongs to the old one; change "
+        "it "
+        "back, or run it anew",
+        scene.scene);
+  return description;
+}
+
+}  // namespace
+
+int resume(const ResumeArguments& arguments) {
+  const std::filesystem::path folder(arguments.run);
+  if (!std::filesystem::is_directory(folder)) fail("{}: no such folder; name that of a run", arguments.run);
+  if (is_complete(folder)) {
+    fmt::print("{}: the run is complete; there is nothing to go on with\n", arguments.run);
+    return 0;
+  }
+  const std::string path = checkpoint_path(arguments.run);
+  if (!std::filesystem::exists(path))
+    fail(
+        "{}: no checkpoint; the run was started without --checkpoint-every, or ended before its first one: "
+        "run the scene anew",
+        path);
+  Resumption r{arguments.run, {}, store::read_checkpoint(path), {}};
+  r.from.archive = Archive(r.checkpoint.values, path);
+  check_version(r);
+  r.from.archive("command", r.identity);
+  compare_processors(r);
+  const scene::Description description = scene_of(r);
+  fmt::print("{} goes on from t = {:g} s\n", arguments.run, r.checkpoint.time_s);
+  Undelivered missing;
+  return missing.close(resume_run(r, description, missing));
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,147 @@
+// What a checkpoint keeps of a run, and how a run goes on from it (checkpoints.cpp).
+//
+// Kept is what the future depends on and nothing else has: the State, hands and their devices, what a tool
+// holds, normals that contact took from earlier queries, records that are on their way to the ticks, sums and
+// counts.  Not kept is what is made of that: matrices and factors, histories of multistep methods, step
+// sizes, initial guesses, samples of contact.  They begin anew, in the run that goes on as in the one that
+// stopped.
+#include <algorithm>
+
+#include "body_side.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "virtual_time.h"
+
+namespace palpate::loop {
+namespace {
+
+void archive_state(Archive& a, dynamics::State& state) {
+  double time = state.time();
+  a("time", time);
+  state.set_time(time);
+  const auto part = [&](std::string_view name, Eigen::Map<VecX> values) {
+    a.numbers(name, {values.data(), static_cast<std::size_t>(values.size())});
+  };
+  part("q", state.q());
+  part("u", state.u());
+}
+
+void archive_tool(Archive& a, tool::Tool& tool) {
+  double time = tool.time();
+  Pose pose = tool.pose();
+  Twist twist = tool.twist();
+  a("time", time);
+  a("pose", pose);
+  a("twist", twist);
+  if (a.gives_back()) tool.set_state(time, pose, twist);
+}
+
+void archive_side(Archive& a, ToolSide& side) {
+  a("known_time", side.known.time);
+  a("known_pose", side.known.pose);
+  a("known_twist", side.known.twist);
+  a("handle_now", side.handle_now);
+  if (side.handle) {
+    const Archive::Group group(a, "device");
+    side.handle->archive(a);
+  }
+  if (side.limiter) a("limiter", *side.limiter);
+  if (side.passivity) a("passivity", *side.passivity);
+  if (side.tool) {
+    const Archive::Group group(a, "tool");
+    archive_tool(a, *side.tool);
+  }
+  if (side.obstacles) {
+    const Archive::Group group(a, "obstacles");
+    side.obstacles->archive(a, side.known.time, {side.known.pose, side.known.twist});
+  }
+}
+
+}  // namespace
+
+void BodySide::look_once_more() {
+  if (!world_.contact) return;
+  if (ledger_) ledger_->before_query();
+  {
+    const ScopedTimer timer(result_.query_s);
+    world_.contact->refresh(world_.state.view());
+  }
+  if (ledger_) ledger_->after_query();
+}
+
+/// As change_materials() did, one time after the other.
+void BodySide::change_materials_so_far() {
+  const double last = changed_;
+  for (changed_ = 0.0;;) {
+    const double next = next_change();
+    if (!(next <= last)) break;
+    changed_ = next;
+    for (std::size_t i = 0; i < world_.bodies.size(); ++i)
+      for (const MaterialChangeSpec& change : world_.description.bodies[i].changes)
+        if (change.time_s == next)
+          world_.set_youngs_modulus(world_.bodies[i], change.youngs_modulus_pa, change.region);
+  }
+  changed_ = last;
+}
+
+void BodySide::archive_counts(Archive& a) {
+  if (!a.gives_back()) sum_up();
+  visit_counters([&](const char* name, auto& value) { a(name, value); }, result_);
+  a("most_halvings", result_.counters.most_halvings);
+  a("ordering", result_.counters.solver.ordering);
+  if (a.gives_back()) counted_before_ = result_.counters;
+}
+
+void BodySide::archive(Archive& a) {
+  {
+    const Archive::Group group(a, "state");
+    archive_state(a, world_.state);
+  }
+  a("changed", changed_);
+  if (a.gives_back()) change_materials_so_far();
+  const auto& sides = ToolSide::all(world_);
+  a.each("hand", sides, [&](const auto& side) { archive_side(a, *side); });
+  a.each("felt", felt_, [&](Felt& felt) {
+    a("version", felt.version);
+    a("ticks", felt.ticks);
+    if (felt.buzz) a("buzz", *felt.buzz);
+  });
+  if (a.gives_back()) {
+    restart_path();
+    if (world_.stepper) {
+      world_.stepper->set_interrupt(options_.stop);
+      world_.stepper->reinit(dynamics::ReinitReason::kStateChanged);
+    }
+  }
+  if (world_.contact) {
+    const Archive::Group group(a, "contact");
+    world_.contact->archive(a, world_.state.view());
+  }
+  const auto& observers = options_.observers;
+  if (std::any_of(observers.begin(), observers.end(), [](const Observer* o) { return o->wants_energy(); })) {
+    if (a.gives_back()) ledger_.emplace(world_);
+    const Archive::Group group(a, "energy");
+    ledger_->archive(a);
+    if (a.gives_back()) result_.energy = ledger_->balance();
+  }
+  const Archive::Group group(a, "counts");
+  archive_counts(a);
+}
+
+void VirtualTime::archive(Archive& a) {
+  a("periods", periods_);
+  if (dense_) a("dense", *dense_);
+  a.each("hand", hands_, [&](Hand& hand) {
+    a("ticks", hand.ticks);
+    a("count", hand.count);
+    a.bytes("in_force", hand.in_force);
+    a.list("coming", hand.coming, [&](Coming& coming) {
+      a("tick", coming.tick);
+      a.bytes("record", coming.record);
+    });
+  });
+  const Archive::Group group(a, "bodies");
+  bodies_.archive(a);
+}
+
+}  // namespace palpate::loop

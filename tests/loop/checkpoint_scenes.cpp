@@ -1,0 +1,122 @@
+#include "checkpoint_scenes.h"
+
+#include <map>
+
+namespace palpate::checkpoint_scenes {
+namespace {
+
+/// A block that is thrown onto the floor and slides there.
+Case sliding_block() {
+  Case c{small_scenes::held_block(), 0.01};
+  scene::Description& d = c.scene;
+  d.bodies[0].attachments.clear();
+  d.bodies[0].velocity_m_s = Vec3(0.3, 0, 0);
+  d.bodies[0].mesh.element_size_m = 0.02;
+  d.gravity_m_s2 = Vec3(0, 0, -9.81);
+  d.integrator.step_s = 0.001;
+  d.integrator.linear_solver = "cholmod";
+  d.exchange.contact_refresh_s = 0.002;
+  ContactSpec law;
+  law.first = "block";
+  law.stiffness_pa_m = 1e7;
+  law.friction = 0.4;
+  law.friction_tangent = "symmetric";
+  small_scenes::add_floor(d, law);
+  return c;
+}
+
+#ifdef PALPATE_HAS_TOOL
+/// A hand that goes into the block and along it.
+Case pressed(const std::string& linearisation) {
+  Case c{small_scenes::pressed_block(0.0), 0.02};
+  scene::Description& d = c.scene;
+  d.bodies[0].mesh.element_size_m = 0.02;
+  d.duration_s = 0.08;
+  KeyframeSpec down = d.device->keyframes.front();
+  down.time_s = 0.05;
+  down.position_m += Vec3(0.002, 0.0, -0.006);
+  down.rotation_vector_rad = Vec3(0.1, -0.2, 0.3);
+  d.device->keyframes.push_back(down);
+  d.exchange.linearisation = linearisation;
+  d.exchange.linearisation_error = 0.0;
+  d.integrator.step_s = 0.005;
+  d.integrator.linear_solver = "cholmod";
+  d.contacts[0].friction = 0.3;
+  c.energy = true;
+  return c;
+}
+#endif
+
+using Cases = std::map<std::string, Case>;
+
+Cases make_cases() {
+  Cases out;
+  out["Sliding"] = sliding_block();
+  Case& stiffer = out["MaterialChange"] = falling_body("linearly-implicit-euler");
+  stiffer.scene.bodies[0].changes = {{0.005, 2e4, ""}, {0.025, 5e3, ""}};
+  stiffer.scene.integrator.linear_solver = "cholmod";
+  stiffer.energy = true;
+#ifdef PALPATE_HAS_TOOL
+  out["Points"] = pressed("points");
+  out["Points"].scene.bodies[0].velocity_m_s = Vec3(0.0, 0.0, -0.05);  // energy at the start
+  out["Condensed"] = pressed("condensed");
+  Case& frozen = out["Frozen"] = pressed("frozen");
+  frozen.scene.tool->integrator = "semi-implicit-euler";
+  frozen.scene.device->ramp_s = 0.07;
+  frozen.scene.device->max_force_n = 0.5;
+  frozen.scene.device->max_torque_n_m = 0.01;
+  frozen.scene.device->max_force_slew_n_s = 80.0;
+  frozen.scene.device->max_torque_slew_n_m_s = 1.6;
+  frozen.scene.device->keyframes[1].time_s =
+      0.0405;  // behind a checkpoint, so that the slew is bounded there
+  frozen.scene.device->keyframes[1].interpolation = "step";
+  Case& late = out["Late"] = pressed("points");
+  late.scene.exchange.latency_ticks = 13;
+  Case& hand = out["SimulatedHand"] = pressed("points");
+  hand.scene.device->type = "hand";
+  hand.scene.device->device_friction_n = 0.05;
+  hand.scene.device->delay_s = 0.0025;
+  hand.scene.device->encoder_resolution_m = 1e-5;
+  hand.scene.device->velocity_cutoff_per_s = 200.0;
+  hand.scene.device->device_damping_n_s_m = 0.5;
+  hand.passivity = device::PassivityController::Mode::kControl;
+  Case& exact = out["ExactHand"] = pressed("points");
+  exact.scene.device->type = "hand";
+  Case& one = out["Monolithic"] = pressed("points");
+  one.scene.exchange.scheme = "monolithic";
+  one.scene.exchange.exchange_period_s = one.scene.exchange.contact_refresh_s = 0.002;
+  one.scene.integrator.step_s = 0.001;
+  Case& images = out["Images"] = pressed("points");
+  images.scene.contacts[0].method = "cpu";
+  Case& two = out["TwoHands"] = pressed("points");
+  scene::HandSpec& left = two.scene.hands.emplace_back();
+  left.name = "left";
+  left.tool = *two.scene.tool;
+  left.tool.position_m += Vec3(0.0, 0.01, 0.0);
+  left.device = *two.scene.device;
+  for (KeyframeSpec& key : left.device.keyframes) key.position_m += Vec3(0.0, 0.01, 0.0);
+  two.scene.contacts.push_back(two.scene.contacts[0]);
+  two.scene.contacts[1].second = "left";
+  Case& grasp = out["Grasp"] = pressed("points");
+  grasp.scene.tool->grasp_switch = 1;
+  grasp.scene.device->presses = {{1, 0.031, 1.0}};
+#endif
+  return out;
+}
+
+const Cases& cases() {
+  static const Cases all = make_cases();
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> case_names() {
+  std::vector<std::string> out;
+  for (const auto& [name, one] : cases()) out.push_back(name);
+  return out;
+}
+
+Case find_case(const std::string& name) { return cases().at(name); }
+
+}  // namespace palpate::checkpoint_scenes
