@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "palpate/core/error.h"
+#include "palpate/core/rehearsal.h"
 #include "store/series.h"
 
 namespace palpate::store {
@@ -111,7 +112,8 @@ void TableFile::flush() {
   h5::check(H5Fflush(impl_->file, H5F_SCOPE_LOCAL), impl_->path, "cannot be flushed; is the disk full?");
 }
 
-Table read_table(const std::string& path, const std::string& name) {
+namespace {
+Table read_here(const std::string& path, const std::string& name) {
   const h5::Quiet quiet;
   if (!std::filesystem::exists(path)) fail("{}: no such file", path);
   const h5::Id file = h5::open_file(path);
@@ -123,6 +125,11 @@ Table read_table(const std::string& path, const std::string& name) {
   out.values.resize(static_cast<std::size_t>(set.shape[0] * set.shape[1]));
   if (!out.values.empty()) h5::read(set, name, H5T_NATIVE_DOUBLE, out.values.data(), path);
   return out;
+}
+}  // namespace
+
+Table read_table(const std::string& path, const std::string& name) {
+  return rehearsed(path, "HDF5", [&] { return read_here(path, name); });
 }
 
 }  // namespace palpate::store
