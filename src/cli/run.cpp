@@ -21,9 +21,11 @@
 #include "palpate/loop/trace.h"
 #include "palpate/report/run_report.h"
 #include "palpate/store/atomic_file.h"
+#include "palpate/store/result_folder.h"
 #include "paths.h"
 #include "picture.h"
 #include "progress.h"
+#include "run_files.h"
 #include "scene_of.h"
 #include "stop.h"
 #include "undelivered.h"
@@ -127,10 +129,18 @@ std::string command_of(const RunArguments& a) {
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
 }
 
+/// How a run ended, where its result does not say it.
+struct Outcome {
+  std::string word, message;
+};
+/// Written when the run begins, so that one that is killed is known for what it is.
+const Outcome kUnfinished{"unfinished", "it is going on, or was killed; what it recorded by then is whole"};
+
 void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s,
                   const std::optional<compare::AgainstMonolithic>& against, const RunArguments& arguments,
-                  const std::string& folder) {
+                  const std::string& folder, const std::optional<Outcome>& outcome = {}) {
   store::Summary summary = loop::summarise(world, result, assemble_s);
+  if (outcome) summary.outcome = outcome->word, summary.message = outcome->message;
   if (against) add_against_monolithic(summary, world.description, *against);
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
@@ -169,8 +179,6 @@ Look check_pictures(const RunArguments& arguments, const scene::Description& des
 void keep_picture(const loop::World& world, const Snapshot& snapshot, const std::string& folder,
                   Undelivered& missing) {
   const std::string path = (std::filesystem::path(folder) / "picture.png").string();
-  std::error_code none;
-  std::filesystem::remove(path, none);  // a file of an earlier run would pass for one of this run
   try {
     snapshot.save(world, path);
   } catch (const Error& e) { missing.add("picture " + path, e.what()); }
@@ -209,13 +217,9 @@ bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& a
   return !run_stopped && stop_flag().load() && least < frames.count();
 }
 
-/// Prints which files are now in the folder.
+/// Prints which files of this run are in the folder.
 void print_files(const std::string& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  fmt::print("in {}: {}\n", folder, fmt::join(names, ", "));
+  fmt::print("in {}: {}\n", folder, fmt::join(run_files(folder), ", "));
 }
 
 loop::RunResult run_watched(loop::World& world, const RunArguments& arguments,
@@ -229,6 +233,20 @@ loop::RunResult run_watched(loop::World& world, const RunArguments& arguments,
   options.progress = [&progress](double fraction) { progress(fraction); };
   options.stop = &stop_flag();
   return loop::run(world, options);
+}
+
+/// A run whose end is told in its folder, also where that end is an error: of a disk that is full, say.
+loop::RunResult run_kept(loop::World& world, const RunArguments& arguments,
+                         std::vector<loop::Observer*> observers, double assemble_s,
+                         const std::string& folder) {
+  try {
+    return run_watched(world, arguments, std::move(observers));
+  } catch (const Error& e) {
+    try {
+      keep_summary(world, {}, assemble_s, {}, arguments, folder, Outcome{"failed", e.what()});
+    } catch (const Error&) {}  // on the same disk; its summary says that the run is unfinished
+    fail("{} (what was recorded by then is whole, in {})", e.what(), folder);
+  }
 }
 
 }  // namespace
@@ -252,7 +270,13 @@ int run(const RunArguments& arguments, Undelivered& missing) {
                     arguments.report || arguments.trace;
   const std::string folder =
       arguments.folder.empty() ? default_folder(short_name(description)) : arguments.folder;
-  if (keep) make_folder(folder);
+  store::ResultFolder mine;
+  if (keep) {
+    refuse_own_input(description, folder);
+    mine = store::ResultFolder(folder);
+    remove_run_files(folder);
+    keep_summary(*world, {}, assemble_s, {}, arguments, folder, kUnfinished);
+  }
 
   PeakWrench peak;
   std::vector<loop::Observer*> observers = {&peak};
@@ -272,7 +296,8 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   if (arguments.trace) trace.emplace(*world, (std::filesystem::path(folder) / "trace.csv").string());
   loop::HapticMemory memory;
   if (arguments.against_monolithic) observers.push_back(&memory);
-  const loop::RunResult result = run_watched(*world, arguments, observers);
+  const loop::RunResult result = keep ? run_kept(*world, arguments, observers, assemble_s, folder)
+                                      : run_watched(*world, arguments, observers);
   if (recorder) close_records(*recorder, folder, missing);
   recorder.reset();
   if (trace) {
@@ -292,10 +317,7 @@ int run(const RunArguments& arguments, Undelivered& missing) {
     missing.add("distance from one system", against->trouble);
   if (keep) {
     keep_summary(*world, result, assemble_s, against, arguments, folder);
-    if (result.real_time)
-      keep_clock(*result.real_time, folder);
-    else
-      remove_clock(folder);
+    if (result.real_time) keep_clock(*result.real_time, folder);
     if (arguments.picture) keep_picture(*world, snapshot, folder, missing);
     if (arguments.contact_picture) contact.save(*world, folder, missing);
     if (arguments.report) missing.add(report::write_run_report(folder));

@@ -161,6 +161,9 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
 Recorder::~Recorder() = default;
 
 void Recorder::close() {
+  for (const auto& forces : impl_->forces) forces->file.flush();
+  if (impl_->bones) impl_->bones->flush();
+  if (impl_->energy) impl_->energy->flush();
   if (impl_->states) impl_->states->close();
 }
 

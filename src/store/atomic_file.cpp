@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -13,13 +15,15 @@ namespace palpate::store {
 void write_atomically(const std::string& path, std::string_view content) {
   const std::string temporary = fmt::format("{}.{}.part", path, getpid());
   {
+    errno = 0;
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     out.write(content.data(), static_cast<std::streamsize>(content.size()));
     out.close();
     if (!out) {
+      const std::string reason = errno != 0 ? std::strerror(errno) : "no reason given";
       std::error_code ignored;
       std::filesystem::remove(temporary, ignored);
-      fail("{}: cannot be written; is its folder there, writable, and not full?", path);
+      fail("{}: cannot be written ({}); is its folder there, writable, and not full?", path, reason);
     }
   }
   std::error_code error;
