@@ -45,11 +45,6 @@ void print_clock(const loop::RealTimeResult& clock, const std::string& linearisa
                clock.unrecorded_ticks);
 }
 
-void remove_clock(const std::string& folder) {
-  std::error_code none;
-  std::filesystem::remove(std::filesystem::path(folder) / kFile, none);
-}
-
 void keep_clock(const loop::RealTimeResult& clock, const std::string& folder) {
   store::CsvWriter file((std::filesystem::path(folder) / kFile).string(), {"time_s", "late_us", "work_us"});
   for (std::size_t i = 0; i < clock.lateness_s.size(); ++i)

@@ -10,7 +10,5 @@ namespace palpate::cli {
 void print_clock(const loop::RealTimeResult& clock, const std::string& linearisation);
 /// clock.csv: lateness and work of each tick [us].
 void keep_clock(const loop::RealTimeResult& clock, const std::string& folder);
-/// That of an earlier run, which would pass for this one's.
-void remove_clock(const std::string& folder);
 
 }  // namespace palpate::cli

@@ -11,6 +11,7 @@
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
 #include "palpate/report/work_precision.h"
+#include "palpate/store/result_folder.h"
 #include "paths.h"
 #include "progress.h"
 #include "scene_of.h"
@@ -92,7 +93,7 @@ int compare(const CompareArguments& arguments, Undelivered& missing) {
   const std::vector<scene::Description> scenes = scenes_of(arguments);
   const std::string folder =
       arguments.folder.empty() ? default_folder(default_name(scenes)) : arguments.folder;
-  make_folder(folder);
+  const store::ResultFolder mine(folder);
 
   const compare::Comparison comparison = compare_watched(scenes, arguments, folder);
   compare::write(comparison, folder);

@@ -9,6 +9,7 @@
 #include "palpate/core/error.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
+#include "palpate/store/result_folder.h"
 #include "palpate/store/summary.h"
 #include "paths.h"
 #include "progress.h"
@@ -163,7 +164,7 @@ int compare_haptic(const CompareArguments& arguments) {
   const scene::Description scene = scene_of(arguments);
   const std::string folder =
       arguments.folder.empty() ? default_folder("compare-haptic-" + short_name(scene)) : arguments.folder;
-  make_folder(folder);
+  const store::ResultFolder mine(folder);
   const HapticComparison comparison = compare_watched(scene, arguments, folder);
   compare::write(comparison, folder);
   keep_summary(arguments, scene, comparison, folder);

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "palpate/store/result_folder.h"
+
 namespace palpate::cli {
 
 /// Files of an export while they are written: in a folder of their own inside the one that they are for.
@@ -27,6 +29,7 @@ class ExportDraft {
   std::filesystem::path folder_, draft_;
   std::filesystem::path made_;  ///< the uppermost folder that was not there before; empty: all were
   std::vector<std::string> names_;
+  store::ResultFolder lock_;
 };
 
 }  // namespace palpate::cli

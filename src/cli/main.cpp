@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/core/memory.h"
 #include "palpate/core/process_pool.h"
 #include "stop.h"
 #include "tune.h"
@@ -21,9 +22,12 @@ int guarded(const std::function<int()>& action) {
     fmt::print(stderr, "palpate: error: {}\n", e.what());
     return kExitError;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr,
-               "palpate: error: not enough memory; a coarser mesh (element_size_m) or fewer recorded states "
-               "need less\n");
+    const palpate::AvailableMemory left = palpate::available_memory();
+    fmt::print(
+        stderr,
+        "palpate: error: not enough memory: {} are left ({}); a coarser mesh (element_size_m) or fewer "
+        "recorded states need less\n",
+        palpate::memory_text(left.bytes), left.limited_by);
     return kExitError;
   } catch (const std::exception& e) {
     fmt::print(stderr,

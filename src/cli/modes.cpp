@@ -10,6 +10,7 @@
 #include "palpate/render/scene.h"
 #include "palpate/report/table.h"
 #include "palpate/store/csv.h"
+#include "palpate/store/result_folder.h"
 #include "paths.h"
 #include "scene_of.h"
 #include "undelivered.h"
@@ -85,7 +86,7 @@ int modes(const ModesArguments& arguments) {
   print_modes(found);
   const std::string folder =
       arguments.folder.empty() ? default_folder("modes-" + short_name(description)) : arguments.folder;
-  make_folder(folder);
+  const store::ResultFolder mine(folder);
   const std::filesystem::path base(folder);
   Undelivered missing;
   write_table(found, (base / "modes.csv").string());

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 
 #include "commands.h"
@@ -55,6 +56,14 @@ const CLI::Validator positive(
     },
     "");
 
+/// What refuses a scene for its size asks for it (core/memory.h): here, and in processes that this one
+/// starts.
+void add_beyond_memory(CLI::App& command) {
+  command.add_flag_callback(
+      "--beyond-memory", [] { ::setenv("PALPATE_BEYOND_MEMORY", "1", 1); },
+      "go on where the scene is likely to need more memory than there is");
+}
+
 void add_scene(CLI::App& command, SceneArguments& scene, bool integrator) {
   command.add_option("SCENE", scene.scene, kSceneHelp)->required();
   command
@@ -68,6 +77,7 @@ void add_scene(CLI::App& command, SceneArguments& scene, bool integrator) {
         .add_option("--integrator", scene.integrator,
                     "instead of the scene's: see `palpate list integrators`")
         ->type_name("NAME");
+  add_beyond_memory(command);
 }
 
 void add_movie(CLI::App& command, RunArguments& arguments) {
@@ -192,6 +202,7 @@ void add_compare(CLI::App& app, Invocation& invocation) {
                    "change one value of every scene: KEY=VALUE, as for `palpate run`")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  add_beyond_memory(*command);
   command
       ->add_option("--integrator", arguments->integrators,
                    "only this one: a name of `palpate list integrators`, or the label of a "

@@ -51,12 +51,4 @@ std::string read_text(const std::string& path) {
   return text.str();
 }
 
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!fs::is_directory(folder))
-    fail("{}: this output folder cannot be made ({}); choose another with -o DIR", folder,
-         error ? error.message() : "a file has this name");
-}
-
 }  // namespace palpate::cli

@@ -20,7 +20,4 @@ std::string default_folder(const std::string& name);
 /// The whole of a text file.  @throws Error when it cannot be read
 std::string read_text(const std::string& path);
 
-/// Makes the folder with its parents.  @throws Error when a file has that name or it cannot be made
-void make_folder(const std::string& folder);
-
 }  // namespace palpate::cli

@@ -12,9 +12,11 @@
 #include "palpate/loop/summary.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/atomic_file.h"
+#include "palpate/store/result_folder.h"
 #include "paths.h"
 #include "progress.h"
 #include "recorded_scene.h"
+#include "run_files.h"
 #include "scene_of.h"
 #include "stop.h"
 
@@ -81,7 +83,14 @@ int replay(const ReplayArguments& arguments) {
   const double assemble_s = wall_seconds() - start;
   const std::string folder =
       arguments.folder.empty() ? default_folder("replay-" + short_name(description)) : arguments.folder;
-  make_folder(folder);
+  std::error_code none;
+  if (std::filesystem::equivalent(folder, arguments.run, none))
+    fail(
+        "{}: is the run that is to be replayed, and the replay would write over it; choose another folder "
+        "with -o DIR",
+        folder);
+  const store::ResultFolder mine(folder);
+  remove_run_files(folder);
   Ticks ticks(records.size());
   loop::RunResult result;
   {

@@ -4,7 +4,7 @@
 
 #include "commands.h"
 #include "palpate/report/run_report.h"
-#include "paths.h"
+#include "palpate/store/result_folder.h"
 #include "undelivered.h"
 
 namespace palpate::cli {
@@ -14,7 +14,8 @@ int report(const ReportArguments& arguments) {
   std::filesystem::path page = arguments.file;
   if (page.empty())
     page = folders.size() == 1 ? folders[0] / "report.html" : std::filesystem::path("report.html");
-  if (page.has_parent_path() && !arguments.file.empty()) make_folder(page.parent_path().string());
+  if (page.has_parent_path() && !arguments.file.empty())
+    store::ResultFolder::make(page.parent_path().string());
   const report::RunReport written = report::write_report(folders, page);
   fmt::print("written: {}\n", written.page.string());
   Undelivered missing;

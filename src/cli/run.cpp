@@ -24,9 +24,11 @@
 #include "palpate/report/run_report.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/provenance.h"
+#include "palpate/store/result_folder.h"
 #include "paths.h"
 #include "picture.h"
 #include "progress.h"
+#include "run_files.h"
 #include "scene_of.h"
 #include "stop.h"
 #include "undelivered.h"
@@ -139,11 +141,19 @@ std::string command_of(const RunArguments& a) {
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
 }
 
+/// How a run ended, where its result does not say it.
+struct Outcome {
+  std::string word, message;
+};
+/// Written when the run begins, so that one that is killed is known for what it is.
+const Outcome kUnfinished{"unfinished", "it is going on, or was killed; what it recorded by then is whole"};
+
 void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s,
                   const std::optional<compare::AgainstMonolithic>& against,
                   const loop::CheckpointCost& checkpoints, const RunArguments& arguments,
-                  const std::string& folder) {
+                  const std::string& folder, const std::optional<Outcome>& outcome = {}) {
   store::Summary summary = loop::summarise(world, result, assemble_s);
+  if (outcome) summary.outcome = outcome->word, summary.message = outcome->message;
   if (against) add_against_monolithic(summary, world.description, *against);
   if (const double every_s = arguments.checkpoint_every_s; every_s > 0.0)
     add_checkpoints(summary, checkpoints, every_s);
@@ -184,8 +194,6 @@ Look check_pictures(const RunArguments& arguments, const scene::Description& des
 void keep_picture(const loop::World& world, const Snapshot& snapshot, const std::string& folder,
                   Undelivered& missing) {
   const std::string path = (std::filesystem::path(folder) / "picture.png").string();
-  std::error_code none;
-  std::filesystem::remove(path, none);  // a file of an earlier run would pass for one of this run
   try {
     snapshot.save(world, path);
   } catch (const Error& e) { missing.add("picture " + path, e.what()); }
@@ -224,13 +232,9 @@ bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& a
   return !run_stopped && stop_flag().load() && least < frames.count();
 }
 
-/// Prints which files are now in the folder.
+/// Prints which files of this run are in the folder.
 void print_files(const std::string& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  fmt::print("in {}: {}\n", folder, fmt::join(names, ", "));
+  fmt::print("in {}: {}\n", folder, fmt::join(run_files(folder), ", "));
 }
 
 /// @param from  where it goes on, null at its start
@@ -249,11 +253,20 @@ loop::RunResult run_watched(std::unique_ptr<loop::World>& world, const RunArgume
                      : loop::run(*world, options);
 }
 
-/// Nothing that an earlier run left in the folder may pass for this one's.
-void begin_checkpoints(const std::string& folder) {
-  remove_checkpoint(folder);
-  std::error_code ignored;
-  std::filesystem::remove(std::filesystem::path(folder) / "summary.json", ignored);
+/// A run whose end is told in its folder, also where that end is an error: of a disk that is full, say.
+loop::RunResult run_kept(std::unique_ptr<loop::World>& world, const RunArguments& arguments,
+                         std::vector<loop::Observer*> observers, const loop::CheckpointPlan* checkpoints,
+                         loop::CheckpointCost& cost, loop::Resumed* from, double assemble_s,
+                         const std::string& folder) {
+  try {
+    return run_watched(world, arguments, std::move(observers), checkpoints, cost, from);
+  } catch (const Error& e) {
+    try {
+      if (world)
+        keep_summary(*world, {}, assemble_s, {}, cost, arguments, folder, Outcome{"failed", e.what()});
+    } catch (const Error&) {}  // on the same disk; its summary says that the run is unfinished
+    fail("{} (what was recorded by then is whole, in {})", e.what(), folder);
+  }
 }
 
 int run(const RunArguments& arguments, const scene::Description& description, Undelivered& missing,
@@ -287,8 +300,16 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   const std::string folder = resumption                 ? resumption->folder
                              : arguments.folder.empty() ? default_folder(short_name(description))
                                                         : arguments.folder;
-  if (keep) make_folder(folder);
-  if (keep && !resumption) checkpoints ? begin_checkpoints(folder) : remove_checkpoint(folder);
+  store::ResultFolder mine;
+  if (keep) {
+    refuse_own_input(description, folder);
+    mine = store::ResultFolder(folder);
+    if (!resumption) {
+      remove_run_files(folder);
+      remove_checkpoint(folder);
+    }
+    keep_summary(*world, {}, assemble_s, {}, {}, arguments, folder, kUnfinished);
+  }
 
   PeakWrench peak;
   std::vector<loop::Observer*> observers = {&peak};
@@ -317,8 +338,11 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   loop::CheckpointCost cost;
   loop::CheckpointPlan plan;
   if (checkpoints) plan = checkpoint_plan(identity, description, folder);
-  const loop::RunResult result = run_watched(world, arguments, observers, checkpoints ? &plan : nullptr, cost,
-                                             resumption ? &resumption->from : nullptr);
+  const loop::CheckpointPlan* const kept = checkpoints ? &plan : nullptr;
+  loop::Resumed* const from = resumption ? &resumption->from : nullptr;
+  const loop::RunResult result =
+      keep ? run_kept(world, arguments, observers, kept, cost, from, assemble_s, folder)
+           : run_watched(world, arguments, observers, kept, cost, from);
   if (recorder) close_records(*recorder, folder, missing);
   recorder.reset();
   if (trace) {
@@ -340,10 +364,7 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   if (keep) {
     keep_summary(*world, result, assemble_s, against, cost, arguments, folder);
     if (result.status.ok() && !result.stopped) remove_checkpoint(folder);
-    if (result.real_time)
-      keep_clock(*result.real_time, folder);
-    else
-      remove_clock(folder);
+    if (result.real_time) keep_clock(*result.real_time, folder);
     if (arguments.picture) keep_picture(*world, snapshot, folder, missing);
     if (arguments.contact_picture) contact.save(*world, folder, missing);
     if (arguments.report) missing.add(report::write_run_report(folder));

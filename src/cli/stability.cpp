@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
+#include "palpate/store/result_folder.h"
 #include "paths.h"
 #include "progress.h"
 #include "stop.h"
@@ -90,7 +91,7 @@ stability::StabilityMatrix watched(const StabilityArguments& arguments) {
 
 int stability(const StabilityArguments& arguments) {
   const std::string folder = arguments.folder.empty() ? default_folder("stability") : arguments.folder;
-  make_folder(folder);
+  const store::ResultFolder mine(folder);
   const stability::StabilityMatrix matrix = watched(arguments);
   stability::write(matrix, folder, command_of(arguments));
   print_matrix(matrix);

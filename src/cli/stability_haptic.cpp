@@ -10,6 +10,7 @@
 #include "palpate/stability/z_width.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/csv.h"
+#include "palpate/store/result_folder.h"
 #include "palpate/store/summary.h"
 #include "paths.h"
 #include "progress.h"
@@ -147,7 +148,7 @@ int stability_haptic(const StabilityArguments& a) {
 
   const std::string folder =
       a.folder.empty() ? default_folder("stability-haptic-" + short_name(description)) : a.folder;
-  make_folder(folder);
+  const store::ResultFolder mine(folder);
   ZWidth z;
   {
     Progress progress("haptic stability");

@@ -11,6 +11,7 @@
 #include "palpate/core/error.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
+#include "palpate/store/result_folder.h"
 #include "palpate/store/summary.h"
 #include "palpate/study/results.h"
 #include "paths.h"
@@ -203,7 +204,7 @@ int study(const StudyArguments& arguments) {
     print_plan(plan);
     return 0;
   }
-  make_folder(folder);
+  store::ResultFolder::make(folder);
   if (arguments.fresh) study::forget_results(folder);
   const StudyEnd end = run_all(plan, arguments, folder);
   if (end.submitted) return 0;

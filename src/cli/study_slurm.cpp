@@ -7,6 +7,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/store/atomic_file.h"
+#include "palpate/store/result_folder.h"
 #include "palpate/study/slurm.h"
 #include "paths.h"
 #include "progress.h"
@@ -64,8 +65,8 @@ std::string job_of(const Plan& plan, const std::vector<std::size_t>& open, const
   for (const std::size_t i : open) array.threads = std::max(array.threads, plan.tasks[i].threads);
   array.elements =
       study::elements_of(open, static_cast<std::size_t>(arguments.chunk), study::max_array_size());
-  make_folder((fs::path(folder) / "slurm").string());
-  make_folder((fs::path(folder) / "tasks").string());
+  store::ResultFolder::make((fs::path(folder) / "slurm").string());
+  store::ResultFolder::make((fs::path(folder) / "tasks").string());
   const std::string script = (fs::path(folder) / "study.sbatch").string();
   store::write_atomically(script, study::sbatch_script(plan, array));
   const std::string job = study::submit(script);

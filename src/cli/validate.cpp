@@ -10,6 +10,8 @@
 #include "palpate/core/error.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
+#include "palpate/store/atomic_file.h"
+#include "palpate/store/result_folder.h"
 #include "palpate/validation/validation.h"
 #include "paths.h"
 #include "progress.h"
@@ -131,9 +133,9 @@ void print_meanings(const std::vector<const ValidationCase*>& cases) {
 }
 
 void write_results(const Run& run, const std::string& folder, Undelivered& missing) {
-  make_folder(folder);
+  const store::ResultFolder mine(folder);
   const std::string path = (std::filesystem::path(folder) / "validation.json").string();
-  std::ofstream(path) << Json{{"cases", run.cases}}.dump(2) << "\n";
+  store::write_atomically(path, Json{{"cases", run.cases}}.dump(2) + "\n");
   const report::RunReport written = report::write_run_report(folder);
   fmt::print("written: {}, {}\n", path, written.page.string());
   missing.add(written);

@@ -1,10 +1,15 @@
 #include "palpate/core/instructions.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
 #include "palpate/core/error.h"
 
 namespace palpate {
+namespace {
+constexpr Instructions kAll[] = {Instructions::kBaseline, Instructions::kAvx2, Instructions::kAvx512};
+}
 
 std::string_view name_of(Instructions set) {
   switch (set) {
@@ -29,7 +34,7 @@ bool has_instructions(Instructions set) {
 }
 
 bool find_instructions(std::string_view name, Instructions& set) {
-  for (const Instructions known : {Instructions::kBaseline, Instructions::kAvx2, Instructions::kAvx512})
+  for (const Instructions known : kAll)
     if (name == name_of(known)) {
       set = known;
       return has_instructions(set);
@@ -37,19 +42,26 @@ bool find_instructions(std::string_view name, Instructions& set) {
   return false;
 }
 
-Instructions best_instructions() {
-  if (const char* wanted = std::getenv("PALPATE_INSTRUCTIONS"); wanted != nullptr && *wanted != '\0') {
-    Instructions set;
-    if (!find_instructions(wanted, set))
-      fail(
-          "PALPATE_INSTRUCTIONS = \"{}\": this build or this processor does not have it; baseline, avx2 and "
-          "avx512 exist",
-          wanted);
-    return set;
+Instructions choose_instructions(std::string_view wanted, Instructions widest) {
+  if (wanted.empty()) return widest;
+  std::string there;
+  for (const Instructions known : kAll) {
+    if (known > widest) break;
+    if (wanted == name_of(known)) return known;
+    there += fmt::format("{}{}", there.empty() ? "" : ", ", name_of(known));
   }
-  for (const Instructions set : {Instructions::kAvx512, Instructions::kAvx2})
-    if (has_instructions(set)) return set;
-  return Instructions::kBaseline;
+  const bool exists = std::any_of(std::begin(kAll), std::end(kAll),
+                                  [&](Instructions known) { return wanted == name_of(known); });
+  fail("PALPATE_INSTRUCTIONS = \"{}\": {}; there are {}: name one of these, or unset the variable", wanted,
+       exists ? "this processor does not have it" : "is no set of instructions that palpate knows", there);
+}
+
+Instructions best_instructions() {
+  Instructions widest = Instructions::kBaseline;
+  for (const Instructions set : kAll)
+    if (has_instructions(set)) widest = set;
+  const char* wanted = std::getenv("PALPATE_INSTRUCTIONS");
+  return choose_instructions(wanted ? wanted : "", widest);
 }
 
 }  // namespace palpate

@@ -4,11 +4,13 @@
 #include "assemble_parts.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/core/memory.h"
 #include "palpate/core/workers.h"
 #include "palpate/fem/laws.h"
 #include "palpate/fem/load.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
+#include "palpate/loop/memory.h"
 #include "palpate/mesh/checks.h"
 #include "palpate/mesh/spatial_order.h"
 #include "palpate/proxy/proxy_set.h"
@@ -182,6 +184,26 @@ void add_forces(World& world, Body& body, const SoftBodySpec& spec, const fem::M
                                          body.block_id));
 }
 
+/// The meshes are small: what is made of them takes the memory.
+void check_memory(const World& world) {
+  std::vector<MeshCounts> counts;
+  MeshCounts all;
+  for (const Body& body : world.bodies) {
+    counts.push_back({static_cast<int>(body.rest.nodes.cols()), static_cast<int>(body.rest.tets.cols())});
+    all.nodes += counts.back().nodes, all.tetrahedra += counts.back().tetrahedra;
+  }
+  const MemoryEstimate estimate = estimate_memory(world.description, counts);
+  const bool direct = estimate.factor > estimate.elements;
+  refuse_beyond_memory(fmt::format("scene \"{}\": {} nodes and {} tetrahedra", world.description.name,
+                                   all.nodes, all.tetrahedra),
+                       estimate.total(),
+                       fmt::format("{} for elements and matrix, {} for a direct solver's factor",
+                                   memory_text(estimate.elements), memory_text(estimate.factor)),
+                       direct
+                           ? "a larger element_size_m or integrator.linear_solver = \"pcg-single\" needs less"
+                           : "a larger element_size_m needs less");
+}
+
 }  // namespace
 
 void assemble_bodies(World& world) {
@@ -191,6 +213,7 @@ void assemble_bodies(World& world) {
     materials.emplace_back(fem::Material{});
     bodies.push_back(place_body(world, spec, materials.back()));
   }
+  check_memory(world);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const SoftBodySpec& spec = world.description.bodies[i];
     const VecX q = Eigen::Map<const VecX>(bodies[i].placed.data(), bodies[i].placed.size());

@@ -245,6 +245,9 @@ void Recorder::archive(Archive& a) {
 Recorder::~Recorder() = default;
 
 void Recorder::close() {
+  for (const auto& forces : impl_->forces) forces->file.flush();
+  if (impl_->bones) impl_->bones->flush();
+  if (impl_->energy) impl_->energy->flush();
   if (impl_->states) impl_->states->close();
 }
 

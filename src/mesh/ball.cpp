@@ -111,7 +111,7 @@ void add_octahedron(Builder& builder, const std::array<std::array<int, 2>, 3>& p
 void add_layer(Builder& builder, std::size_t s, const Shell& outer, const Shell& inner) {
   const auto P = [&](const Weights& w) { return outer.node(s, w); };
   const auto Q = [&](const Weights& w) { return inner.node(s, w); };
-  const auto& [x, y, z] = kUnit;
+  const Weights &x = kUnit[0], &y = kUnit[1], &z = kUnit[2];
   const int m = outer.frequency();
   for_each_place(m - 1, [&](const Weights& w) { builder.add_tet(Q(w), P(w + x), P(w + y), P(w + z)); });
   for_each_place(m - 2, [&](const Weights& w) {
@@ -133,7 +133,7 @@ void add_halving_layer(Builder& builder, std::size_t s, const Shell& outer, cons
     builder.add_tet(Q(c), P(2 * c), P(c + a), P(b + c));
     add_octahedron(builder, {{{Q(a), P(b + c)}, {Q(b), P(c + a)}, {Q(c), P(a + b)}}});
   };
-  const auto& [x, y, z] = kUnit;
+  const Weights &x = kUnit[0], &y = kUnit[1], &z = kUnit[2];
   const int m = inner.frequency();
   for_each_place(m - 1, [&](const Weights& w) { add_triangle(w + x, w + y, w + z); });
   for_each_place(m - 2, [&](const Weights& w) { add_triangle(w + x + y, w + y + z, w + z + x); });
@@ -163,7 +163,7 @@ TriMesh sphere(double radius, int subdivisions) {
   PALPATE_CHECK(subdivisions > 0 && radius > 0, "subdivisions = {}, radius = {}", subdivisions, radius);
   Builder builder;
   const Shell shell({subdivisions, radius}, builder);
-  const auto& [x, y, z] = kUnit;
+  const Weights &x = kUnit[0], &y = kUnit[1], &z = kUnit[2];
   for (std::size_t s = 0; s < 20; ++s) {
     const auto add = [&](const Weights& a, const Weights& b, const Weights& c) {
       builder.faces.emplace_back(shell.node(s, a), shell.node(s, b), shell.node(s, c));

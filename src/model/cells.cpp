@@ -25,6 +25,7 @@ Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(
   points.resize(3, std::count(place.begin(), place.end(), 0));
   for (std::size_t i = 0; i < place.size(); ++i)
     if (place[i] == 0) {
+      if (!cells.points[i].allFinite()) fail("{}: point {} is not finite; write the mesh again", path, i);
       points.col(used) = cells.points[i];
       from.node_number.push_back(cells.point_numbers.empty() ? static_cast<long>(i) : cells.point_numbers[i]);
       place[i] = used++;

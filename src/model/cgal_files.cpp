@@ -3,10 +3,12 @@
 
 #include "cells.h"
 #include "palpate/core/error.h"
+#include "palpate/core/rehearsal.h"
 
 namespace palpate::model {
+namespace {
 
-SourceFile read_by_cgal(const std::string& path, const std::string& format) {
+SourceFile read_here(const std::string& path, const std::string& format) {
   std::vector<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3> points;
   std::vector<std::vector<std::size_t>> faces;
   bool good = false;
@@ -23,6 +25,12 @@ SourceFile read_by_cgal(const std::string& path, const std::string& format) {
     cells.polygon(corners);
   }
   return cells.finish(format);
+}
+
+}  // namespace
+
+SourceFile read_by_cgal(const std::string& path, const std::string& format) {
+  return rehearsed(path, "CGAL", [&] { return read_here(path, format); });
 }
 
 }  // namespace palpate::model

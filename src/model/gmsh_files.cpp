@@ -8,6 +8,7 @@
 
 #include "cells.h"
 #include "palpate/core/error.h"
+#include "palpate/core/rehearsal.h"
 
 // libgmsh takes 0.12 s and 48 MB to load, so that it is opened by name at the first file that needs it, and
 // only its C interface is used.
@@ -121,9 +122,7 @@ std::map<std::size_t, double> labels_of_tetrahedra(const Gmsh& gmsh, Cells& cell
   return out;
 }
 
-}  // namespace
-
-SourceFile read_by_gmsh(const std::string& path, const std::string& format) {
+SourceFile read_here(const std::string& path, const std::string& format) {
   const Gmsh gmsh;
   int error = 0;
   gmsh.function<decltype(gmshOpen)>("gmshOpen")(path.c_str(), &error);
@@ -178,6 +177,12 @@ SourceFile read_by_gmsh(const std::string& path, const std::string& format) {
     }
   }
   return cells.finish(format);
+}
+
+}  // namespace
+
+SourceFile read_by_gmsh(const std::string& path, const std::string& format) {
+  return rehearsed(path, "Gmsh", [&] { return read_here(path, format); });
 }
 
 }  // namespace palpate::model

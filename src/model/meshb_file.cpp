@@ -80,7 +80,7 @@ class Meshb {
     std::vector<int> out;
     // Cells refuses what is out of range
     for (int k = 0; k < number_of_them; ++k)
-      out.push_back(static_cast<int>(std::clamp<std::int64_t>(index() - 1, -1, 2'000'000'000)));
+      out.push_back(static_cast<int>(std::clamp<std::int64_t>(index(), 0, 2'000'000'000)) - 1);
     reference_ = index();
     return out;
   }

@@ -91,6 +91,9 @@ std::string payload(const Document& document, const std::string& bytes, const st
     if (at > bytes.size() || packed > bytes.size() - at)
       fail("{}: {} ends before its time", document.path, what);
     uLongf size = b + 1 == blocks && last != 0 ? last : whole;
+    constexpr std::uint64_t kMostCompressed = 1100;  // deflate reaches 1032
+    if (size > kMostCompressed * (packed + 1))
+      fail("{}: {} has a damaged header: {} bytes in {} compressed ones", document.path, what, size, packed);
     std::string block(size, '\0');
     if (::uncompress(reinterpret_cast<Bytef*>(block.data()), &size,
                      reinterpret_cast<const Bytef*>(bytes.data() + at), packed) != Z_OK)

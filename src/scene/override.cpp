@@ -91,9 +91,20 @@ void assign(toml::node& node, const std::string& part, toml::node& value, const 
   });
 }
 
+/// Bytes that no terminal shows, and that would end a message early.
+void refuse_control_characters(const std::string& text) {
+  const auto is_control = [](unsigned char c) { return c < ' ' && c != '\t' && c != '\n'; };
+  if (std::none_of(text.begin(), text.end(), is_control)) return;
+  std::string shown = text.substr(0, 60);
+  for (char& c : shown)
+    if (is_control(static_cast<unsigned char>(c))) c = '?';
+  fail("--set {}: has control characters, which no key or value may have", shown);
+}
+
 }  // namespace
 
 void apply_override(toml::table& root, const std::string& text) {
+  refuse_control_characters(text);
   const std::string from = "--set " + text;
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || trimmed(text.substr(0, equals)).empty() ||

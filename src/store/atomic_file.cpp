@@ -17,13 +17,15 @@ namespace {
 void write(const std::string& path, std::string_view content, bool durably) {
   const std::string temporary = fmt::format("{}.{}.part", path, getpid());
   {
+    errno = 0;
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     out.write(content.data(), static_cast<std::streamsize>(content.size()));
     out.close();
     if (!out) {
+      const std::string reason = errno != 0 ? std::strerror(errno) : "no reason given";
       std::error_code ignored;
       std::filesystem::remove(temporary, ignored);
-      fail("{}: cannot be written; is its folder there, writable, and not full?", path);
+      fail("{}: cannot be written ({}); is its folder there, writable, and not full?", path, reason);
     }
   }
   if (durably) bring_to_disk(temporary);

@@ -1,6 +1,8 @@
 #include "palpate/store/csv.h"
 
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <utility>
@@ -62,8 +64,11 @@ std::vector<std::vector<std::string>> split(const std::string& text, const std::
 }  // namespace
 
 CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers)
-    : path_(path), columns_(headers.size()), out_(path, std::ios::binary | std::ios::trunc) {
-  if (!out_) fail("{}: cannot be written; is its folder there, writable, and not full?", path);
+    : path_(path), columns_(headers.size()) {
+  out_.rdbuf()->pubsetbuf(nullptr, 0);  // whole lines at once, gathered here
+  errno = 0;
+  out_.open(path, std::ios::binary | std::ios::trunc);
+  if (!out_) fail("{}: cannot be written ({}); is its folder there, writable, and not full?", path, reason());
   for (const std::string& header : headers) {
     append_text(line_, header);
     line_ += ',';
@@ -112,21 +117,43 @@ void CsvWriter::row(const std::vector<CsvCell>& cells) {
 void CsvWriter::end_row(std::size_t cells) {
   PALPATE_CHECK(cells == columns_ && cells > 0, "{}: {} cells, {} headers", path_, cells, columns_);
   line_.back() = '\n';
-  out_.write(line_.data(), static_cast<std::streamsize>(line_.size()));
+  lines_ += line_;
   line_.clear();
   ++rows_;
+  constexpr std::size_t kEnough = 64u << 10;
+  if (lines_.size() > kEnough) hand_over();
 }
 
-void CsvWriter::flush() { out_.flush(); }
+void CsvWriter::hand_over() {
+  errno = 0;
+  out_.write(lines_.data(), static_cast<std::streamsize>(lines_.size()));
+  out_.flush();
+  lines_.clear();
+  if (!out_) fail("{}: cannot be written any further ({}); is the disk full?", path_, reason());
+}
+
+std::string CsvWriter::reason() { return errno != 0 ? std::strerror(errno) : "no reason given"; }
+
+void CsvWriter::flush() { hand_over(); }
 
 void CsvWriter::close() {
+  hand_over();
   out_.close();
-  if (!out_) fail("{}: not all could be written; is the disk full?", path_);
+  if (!out_) fail("{}: not all could be written ({}); is the disk full?", path_, reason());
+}
+
+CsvWriter::~CsvWriter() {
+  try {
+    hand_over();
+  } catch (const Error&) {}  // said at the flush that was asked for, if at all
 }
 
 CsvTable read_csv(const std::string& path) {
   CsvTable table;
-  table.rows = split(read_file(path), path);
+  std::string text = read_file(path);
+  // a line without an end is one that its writer was killed in: what stands there may be half a number
+  if (const std::size_t end = text.find_last_of('\n'); end != std::string::npos) text.resize(end + 1);
+  table.rows = split(text, path);
   if (table.rows.empty()) fail("{}: is empty, must begin with a line of headers", path);
   table.headers = table.rows.front();
   table.rows.erase(table.rows.begin());

@@ -1,5 +1,6 @@
 #include "store/h5.h"
 
+#include <cerrno>
 #include <filesystem>
 
 #include "palpate/core/error.h"
@@ -89,8 +90,12 @@ Id create_file(const std::string& path) {
 Id open_file(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) fail("{}: no such file", path);
   const Id access = access_without_need_of_locks();
-  return {check(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), path, "is not an HDF5 file that can be read"),
-          H5Fclose};
+  errno = 0;
+  Id file{H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
+  if (file < 0 && errno == EWOULDBLOCK)
+    fail("{}: is being written by another process; wait until it has ended", path);
+  check(file, path, "is not an HDF5 file that can be read; is it whole?");
+  return file;
 }
 
 Id create_in_memory(const std::string& path) {
@@ -148,6 +153,27 @@ void write_attribute_text(hid_t object, const std::string& name, const std::stri
   write_attribute(object, name, type, {}, text.c_str(), path);
 }
 
+namespace {
+
+/// Sizes in a damaged file may be anything: before memory is taken for them, they are held against the bytes
+/// that are there.
+void check_room(const Opened& set, std::size_t size_of_one, H5T_class_t type_class, hid_t parent,
+                const std::string& name, const std::string& path) {
+  constexpr std::size_t kLargestNumber = 16;
+  constexpr double kMostCompressed = 1100;  // deflate reaches 1032
+  if (type_class != H5T_STRING && size_of_one > kLargestNumber)
+    fail("{}: \"{}\" has numbers of {} bytes; the file is damaged", path, name, size_of_one);
+  double bytes = static_cast<double>(size_of_one);
+  for (const hsize_t n : set.shape) bytes *= static_cast<double>(n);
+  hsize_t in_file = 0;
+  const Id file{H5Iget_file_id(parent), H5Fclose};
+  H5Fget_filesize(file, &in_file);
+  if (bytes > kMostCompressed * static_cast<double>(in_file))
+    fail("{}: \"{}\" announces {:.3g} bytes, the file has {}; it is damaged", path, name, bytes, in_file);
+}
+
+}  // namespace
+
 Opened open(hid_t parent, const std::string& name, H5T_class_t type_class, std::size_t rank,
             const std::string& path) {
   if (H5Lexists(parent, name.c_str(), H5P_DEFAULT) <= 0) fail("{}: has no data set \"{}\"", path, name);
@@ -165,6 +191,7 @@ Opened open(hid_t parent, const std::string& name, H5T_class_t type_class, std::
     fail("{}: \"{}\" has {} dimensions, must have {}", path, name, dimensions, rank);
   out.shape.resize(rank);
   if (rank > 0) H5Sget_simple_extent_dims(space, out.shape.data(), nullptr);
+  check_room(out, H5Tget_size(type), type_class, parent, name, path);
   return out;
 }
 

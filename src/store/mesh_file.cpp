@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "palpate/core/error.h"
+#include "palpate/core/rehearsal.h"
 #include "store/h5.h"
 #include "store/model_format.h"
 
@@ -18,20 +19,8 @@ Eigen::Index rows_of(const h5::Opened& set, const char* name, hsize_t width, con
          std::numeric_limits<int>::max());
   return static_cast<Eigen::Index>(set.shape[0]);
 }
-}  // namespace
 
-void write_mesh(const std::string& path, const TetMesh& mesh) {
-  const h5::Quiet quiet;
-  const h5::Id file = h5::create_file(path);
-  h5::write_attribute_text(file, "format", kMeshFormat, path);
-  h5::write(file, "nodes", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(mesh.nodes.cols()), 3}, mesh.nodes.data(),
-            path);
-  h5::write(file, "tets", H5T_NATIVE_INT, {static_cast<hsize_t>(mesh.tets.cols()), 4}, mesh.tets.data(),
-            path);
-  h5::check(H5Fflush(file, H5F_SCOPE_LOCAL), path, "cannot be flushed; is the disk full?");
-}
-
-TetMesh read_mesh(const std::string& path) {
+TetMesh read_here(const std::string& path) {
   const h5::Quiet quiet;
   const h5::Id file = h5::open_file(path);
   // a file made by other means may lack it; one that says something else is something else
@@ -58,6 +47,23 @@ TetMesh read_mesh(const std::string& path) {
              wide(corner, i), mesh.nodes.cols());
   mesh.tets = wide.cast<int>();
   return mesh;
+}
+
+}  // namespace
+
+void write_mesh(const std::string& path, const TetMesh& mesh) {
+  const h5::Quiet quiet;
+  const h5::Id file = h5::create_file(path);
+  h5::write_attribute_text(file, "format", kMeshFormat, path);
+  h5::write(file, "nodes", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(mesh.nodes.cols()), 3}, mesh.nodes.data(),
+            path);
+  h5::write(file, "tets", H5T_NATIVE_INT, {static_cast<hsize_t>(mesh.tets.cols()), 4}, mesh.tets.data(),
+            path);
+  h5::check(H5Fflush(file, H5F_SCOPE_LOCAL), path, "cannot be flushed; is the disk full?");
+}
+
+TetMesh read_mesh(const std::string& path) {
+  return rehearsed(path, "HDF5", [&] { return read_here(path); });
 }
 
 }  // namespace palpate::store

@@ -1,6 +1,7 @@
 #include "palpate/store/model_file.h"
 
 #include "palpate/core/error.h"
+#include "palpate/core/rehearsal.h"
 #include "palpate/store/atomic_file.h"
 #include "store/h5.h"
 #include "store/model_format.h"
@@ -149,9 +150,11 @@ void write_model(const std::string& path, const ModelFile& file) {
 }
 
 bool is_model(const std::string& path) {
-  const h5::Quiet quiet;
-  const h5::Id file = h5::open_file(path);
-  return H5Aexists(file, "format") > 0 && h5::read_attribute_text(file, "format", path) == kModelFormat;
+  return rehearsed(path, "HDF5", [&] {
+    const h5::Quiet quiet;
+    const h5::Id file = h5::open_file(path);
+    return H5Aexists(file, "format") > 0 && h5::read_attribute_text(file, "format", path) == kModelFormat;
+  });
 }
 
 }  // namespace palpate::store

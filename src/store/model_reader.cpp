@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/core/rehearsal.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
 #include "store/h5.h"
@@ -203,9 +204,7 @@ ModelRecord read_record(hid_t file, const std::string& path) {
   return record;
 }
 
-}  // namespace
-
-ModelFile read_model(const std::string& path) {
+ModelFile read_here(const std::string& path) {
   ModelFile out;
   out.model.tets = read_mesh(path);
   if (!is_model(path))
@@ -224,10 +223,18 @@ ModelFile read_model(const std::string& path) {
   return out;
 }
 
+}  // namespace
+
+ModelFile read_model(const std::string& path) {
+  return rehearsed(path, "HDF5", [&] { return read_here(path); });
+}
+
 std::vector<MaterialRegion> read_regions(const std::string& path, int tets) {
-  if (!is_model(path)) return {};
-  const h5::Quiet quiet;
-  return regions_in(h5::open_file(path), path, tets);
+  return rehearsed(path, "HDF5", [&]() -> std::vector<MaterialRegion> {
+    if (!is_model(path)) return {};
+    const h5::Quiet quiet;
+    return regions_in(h5::open_file(path), path, tets);
+  });
 }
 
 }  // namespace palpate::store

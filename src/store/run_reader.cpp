@@ -1,4 +1,7 @@
+#include <algorithm>
+
 #include "palpate/core/error.h"
+#include "palpate/core/rehearsal.h"
 #include "palpate/store/run_file.h"
 #include "store/h5.h"
 
@@ -36,6 +39,11 @@ struct RunReader::Impl {
   Eigen::Index n = 0;
 
   void read_parts(hid_t group);
+  void check_indices(const RunPart& part, const char* name, const auto& cells) const {
+    if (cells.size() > 0 && (cells.minCoeff() < 0 || cells.maxCoeff() >= part.reference.cols()))
+      fail("{}: \"{}\" of part \"{}\" name points that it does not have; the file is damaged", path, name,
+           part.name);
+  }
   void read_steps();
   void rows(const char* name, std::size_t rank, int step, double* out) const;
 };
@@ -50,6 +58,11 @@ void RunReader::Impl::read_parts(hid_t group) {
     part.reference = read_columns<Points>(one, "reference", H5T_FLOAT, H5T_NATIVE_DOUBLE, path);
     part.tets = read_columns<Tets>(one, "tets", H5T_INTEGER, H5T_NATIVE_INT, path);
     part.faces = read_columns<Faces>(one, "faces", H5T_INTEGER, H5T_NATIVE_INT, path);
+    check_indices(part, "tets", part.tets);
+    check_indices(part, "faces", part.faces);
+    if (!part.reference.allFinite())
+      fail("{}: the positions at the start of part \"{}\" are not finite; the file is damaged", path,
+           part.name);
     first.push_back(static_cast<int>(n));
     n += part.reference.cols();
     parts.push_back(std::move(part));
@@ -78,7 +91,20 @@ void RunReader::Impl::rows(const char* name, std::size_t rank, int step, double*
                 static_cast<hsize_t>(n), out, path);
 }
 
+/// The steps of a short run are all read, of a long one the first and the last.
+void RunReader::read_through() const {
+  constexpr double kMostNumbers = 1e7;
+  const bool all = 10.0 * static_cast<double>(impl_->n) * steps() < kMostNumbers;
+  for (int step = 0; step < steps(); step += all ? 1 : std::max(1, steps() - 1)) {
+    points(step);
+    displacement(step);
+    velocity(step);
+    stress(step);
+  }
+}
+
 RunReader::RunReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
+  rehearse(path, "HDF5", [&] { RunReader(path).read_through(); });
   const h5::Quiet quiet;
   Impl& d = *impl_;
   d.path = path;

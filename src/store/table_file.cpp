@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "palpate/core/error.h"
+#include "palpate/core/rehearsal.h"
 #include "palpate/store/atomic_file.h"
 #include "store/series.h"
 
@@ -163,7 +164,8 @@ void TableFile::flush() {
     fail("{}: not all could be written; is the disk full?", journal_path(impl_->path));
 }
 
-Table read_table(const std::string& path, const std::string& name) {
+namespace {
+Table read_here(const std::string& path, const std::string& name) {
   const h5::Quiet quiet;
   if (!std::filesystem::exists(path)) fail("{}: no such file", path);
   const h5::Id file = h5::open_file(path);
@@ -175,6 +177,11 @@ Table read_table(const std::string& path, const std::string& name) {
   out.values.resize(static_cast<std::size_t>(set.shape[0] * set.shape[1]));
   if (!out.values.empty()) h5::read(set, name, H5T_NATIVE_DOUBLE, out.values.data(), path);
   return out;
+}
+}  // namespace
+
+Table read_table(const std::string& path, const std::string& name) {
+  return rehearsed(path, "HDF5", [&] { return read_here(path, name); });
 }
 
 }  // namespace palpate::store

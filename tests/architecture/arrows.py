@@ -67,7 +67,7 @@ OUTSIDE = [
     ("CGAL", r"CGAL/", ["src/model"]),
     ("Gmsh", r"gmshc\.h", ["src/model", "tests/model"]),
     ("pugixml", r"pugixml\.hpp", ["src/model"]),
-    ("HDF5", r"(hdf5|H5\w+)\.h", ["src/store", "tests/store"]),
+    ("HDF5", r"(hdf5|H5\w+)\.h", ["src/store", "tests/store", "tests/fuzz"]),
 ]
 
 # Parts that only wrap a library for others: what stands in src/ there is for all that may include them.

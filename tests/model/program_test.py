@@ -5,6 +5,7 @@ again; and palpate itself links none of it.
 import os
 import pty
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -102,6 +103,23 @@ mesh = {{ file = "{model}" }}
 name = "linearly-implicit-euler"
 step_s = 0.001
 """
+
+
+class Memory(unittest.TestCase):
+    def test_what_does_not_fit_is_refused_with_figures(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+        with tempfile.TemporaryDirectory() as folder:
+            command = [PALPATE, "model", str(octahedron(folder)), "--tetrahedra", "9000000", "-o", "x.h5"]
+            done = subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=300,
+                                  preexec_fn=limit)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertRegex(done.stderr, r"body\.obj: 9e\+06 tetrahedra in a surface of 6 vertices need "
+                                          r"about 3\.4 GiB of memory, and \d+ MiB are available "
+                                          r"\(the limit of addresses, ulimit -v\); fewer "
+                                          r"--tetrahedra need less")
+            self.assertEqual(done.stdout, "")
+            self.assertEqual(os.listdir(folder), ["body.obj"])
 
 
 class Program(unittest.TestCase):

@@ -77,6 +77,18 @@ TEST(Fuzz, DamagedOverridesAreAppliedOrRefused) {
   EXPECT_GT(refused, 500);
 }
 
+/// What the fuzzer keeps, read here with all registries; it itself knows a few names of each (tests/fuzz).
+TEST(Fuzz, TheFuzzersInputsAreReadOrRefused) {
+  int inputs = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(PALPATE_SOURCE_DIR "/tests/fuzz/corpus/scene")) {
+    SCOPED_TRACE(entry.path().string());
+    EXPECT_NO_THROW(is_read(scene_texts::read(entry.path().string())));
+    ++inputs;
+  }
+  EXPECT_GT(inputs, 5);
+}
+
 TEST(Fuzz, DeepNestingIsRefused) {
   EXPECT_FALSE(is_read("a = " + std::string(100000, '[')));
   EXPECT_FALSE(is_read("[" + std::string(20000, 'a') + "]"));

@@ -51,6 +51,35 @@ std::string refusal(const auto& action) {
   return "accepted";
 }
 
+TEST(Csv, AFullDiskIsSaidAtTheFlush) {
+  store::CsvWriter csv("/dev/full", {"a"});
+  csv.row(std::array{1.0});
+  EXPECT_EQ(refusal([&] { csv.flush(); }),
+            "/dev/full: cannot be written any further (No space left on device); is the disk full?");
+  store::ForceFile forces("/dev/full");
+  forces.append({});
+  EXPECT_NE(refusal([&] { forces.close(); }), "accepted");
+}
+
+TEST(Csv, AKilledWritersLastLineDoesNotCount) {
+  const sample_run::Folder folder;
+  store::write_atomically(folder / "a.csv", "a,b\n1,2\n3,4.");
+  EXPECT_EQ(store::read_csv(folder / "a.csv").numbers("b"), std::vector<double>{2.0});
+  store::write_atomically(folder / "a.csv", "a,b\n1,2\n3");
+  EXPECT_EQ(store::read_csv(folder / "a.csv").numbers("a"), std::vector<double>{1.0});
+}
+
+TEST(Csv, LinesReachTheFileWhole) {
+  const sample_run::Folder folder;
+  store::CsvWriter csv(folder / "a.csv", {"a", "b"});
+  for (int i = 0; i < 30000; ++i) {
+    csv.row(std::array{0.1 * i, -0.1 * i});
+    if (i % 500 != 0) continue;
+    const std::string written = store::read_file(folder / "a.csv");
+    ASSERT_TRUE(written.empty() || written.back() == '\n') << "row " << i;
+  }
+}
+
 TEST(Csv, ErrorsSayWhere) {
   const sample_run::Folder folder;
   const std::string path = folder / "a.csv";
@@ -64,8 +93,10 @@ TEST(Csv, ErrorsSayWhere) {
   EXPECT_EQ(read("force_n\n1\n", "force_m"), "no column \"force_m\" (did you mean \"force_n\"?)");
   EXPECT_EQ(read("a\n1\n2x\n", "a"), "column \"a\", row 2: \"2x\" is no number");
   EXPECT_EQ(read("a\n1\n\"2\n", "a"), path + ":3: a quote is never closed");
-  EXPECT_EQ(refusal([] { store::CsvWriter csv("/no/such/a.csv", {"a"}); }),
-            "/no/such/a.csv: cannot be written; is its folder there, writable, and not full?");
+  EXPECT_EQ(
+      refusal([] { store::CsvWriter csv("/no/such/a.csv", {"a"}); }),
+      "/no/such/a.csv: cannot be written (No such file or directory); is its folder there, writable, and "
+      "not full?");
   EXPECT_EQ(refusal([] { store::read_csv("/no/such.csv"); }),
             "/no/such.csv: no such file, or it cannot be read");
   store::CsvWriter csv(path, {"a", "b"});
@@ -76,7 +107,8 @@ TEST(Csv, AFullDiskIsReported) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   store::CsvWriter csv("/dev/full", {"a"});
   csv.row(std::array{1.0});
-  EXPECT_EQ(refusal([&] { csv.close(); }), "/dev/full: not all could be written; is the disk full?");
+  EXPECT_EQ(refusal([&] { csv.close(); }),
+            "/dev/full: cannot be written any further (No space left on device); is the disk full?");
 }
 
 TEST(ForceFile, RoundTrip) {
@@ -119,8 +151,10 @@ TEST(AtomicFile, ReplacesWholeAndLeavesNothingBeside) {
   int files = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder / "")) ++files;
   EXPECT_EQ(files, 1);
-  EXPECT_EQ(refusal([] { store::write_atomically("/no/such/a.txt", "x"); }),
-            "/no/such/a.txt: cannot be written; is its folder there, writable, and not full?");
+  EXPECT_EQ(
+      refusal([] { store::write_atomically("/no/such/a.txt", "x"); }),
+      "/no/such/a.txt: cannot be written (No such file or directory); is its folder there, writable, and "
+      "not full?");
 }
 
 }  // namespace

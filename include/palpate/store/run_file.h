@@ -94,6 +94,7 @@ class RunReader {
   VecX stress(int step) const;
 
  private:
+  void read_through() const;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "guard.h"
+#include "memory_question.h"
 #include "options.h"
 #include "outcome.h"
 #include "palpate/core/error.h"
@@ -63,6 +64,7 @@ int model_command(int argc, char** argv) {
   if (std::error_code none; std::filesystem::equivalent(arguments.source, arguments.output, none))
     fail("-o {}: is the source itself; choose another name", arguments.output);
   ask_about_size(arguments, input);
+  refuse_beyond_memory(arguments, input);
   const model::Limits& limits = arguments.options.tetrahedra.limits;
   if (!arguments.quiet) {
     fmt::print("{}: at most {:g} s and {} points (--limit-s, --points)\n", input.name, limits.seconds,

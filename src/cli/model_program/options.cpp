@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "palpate/core/error.h"
@@ -170,6 +171,9 @@ ModelArguments parse_model(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--picture", out.picture, "draw the steps: surface, tetrahedra cut open, skin, proxies")
       ->type_name("FILE.png");
+  app.add_flag_callback(
+      "--beyond-memory", [] { ::setenv("PALPATE_BEYOND_MEMORY", "1", 1); },
+      "go on where the model is likely to need more memory than there is");
   app.add_flag("-q,--quiet", out.quiet, "only errors");
   app.add_flag("-v,--verbose", out.verbose, "details, too");
   if (argc == 1) {

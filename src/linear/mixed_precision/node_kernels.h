@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "palpate/core/instructions.h"
+
 namespace palpate::linear {
 
 /// The rows of a symmetric matrix of 3x3 blocks in single precision that belong to one part of the nodes,
@@ -136,8 +138,8 @@ struct NodeKernels {
                           int last);
 };
 
-/// The widest set that this machine has.  @param limit  for tests: 0 baseline, 1 at most AVX2, 2 at most
+/// The set that best_instructions() names.  @param limit  for tests: 0 baseline, 1 at most AVX2, 2 at most
 /// AVX-512
-const NodeKernels& node_kernels(int limit = 2);
+const NodeKernels& node_kernels(int limit = static_cast<int>(best_instructions()));
 
 }  // namespace palpate::linear

@@ -31,16 +31,22 @@ class CsvWriter {
   const std::string& path() const { return path_; }
   void row(std::span<const double> values);
   void row(const std::vector<CsvCell>& cells);
-  void flush();
+  void flush();  ///< whole lines reach the file; one that a killed process leaves behind is passed over by
+                 ///< read_csv()  @throws Error when the disk refuses
   void close();  ///< @throws Error when the disk refused anything
+  CsvWriter(CsvWriter&&) = default;
+  ~CsvWriter();  ///< as close(), without a word
   int rows() const { return rows_; }
 
  private:
   void end_row(std::size_t cells);
+  void hand_over();
+  static std::string reason();
   std::string path_;
   std::size_t columns_ = 0;
   int rows_ = 0;
-  std::string line_;
+  std::string line_;   ///< the row that is being made
+  std::string lines_;  ///< rows that wait to be written together
   std::ofstream out_;
 };
 
@@ -52,6 +58,7 @@ struct CsvTable {
   /// @throws Error for a cell that is no number
   std::vector<double> numbers(const std::string& header) const;
 };
+/// A last line without an end does not count: its writer was killed in it.
 CsvTable read_csv(const std::string& path);
 
 }  // namespace palpate::store

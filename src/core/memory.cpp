@@ -1,0 +1,102 @@
+#include "palpate/core/memory.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+
+#include "palpate/core/error.h"
+
+namespace palpate {
+namespace {
+namespace fs = std::filesystem;
+
+std::optional<double> number_in(const fs::path& file) {
+  std::ifstream in(file);
+  double out = 0.0;
+  if (!(in >> out)) return {};  // "max", or no such file
+  return out;
+}
+
+std::optional<double> of_meminfo(const fs::path& root) {
+  std::ifstream in(root / "proc/meminfo");
+  std::string key;
+  double kib = 0.0;
+  for (std::string rest; in >> key >> kib && std::getline(in, rest);)
+    if (key == "MemAvailable:") return 1024.0 * kib;
+  return {};
+}
+
+/// A figure of memory.stat: pages of files, which the kernel takes back when it must.
+double reclaimable(const fs::path& group, const char* name) {
+  std::ifstream in(group / "memory.stat");
+  std::string key;
+  for (double bytes = 0.0; in >> key >> bytes;)
+    if (key == name) return bytes;
+  return 0.0;
+}
+
+void take(AvailableMemory& least, std::optional<double> bytes, const std::string& limited_by) {
+  if (bytes && *bytes < least.bytes) least = {std::max(0.0, *bytes), limited_by};
+}
+
+/// Version 2, the group and all above it: memory.max, memory.current.  Version 1: memory.limit_in_bytes.
+void take_groups(AvailableMemory& least, const fs::path& root) {
+  std::ifstream in(root / "proc/self/cgroup");
+  for (std::string line; std::getline(in, line);) {  // "0::/user.slice/..." or "9:memory:/..."
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1);
+    const bool unified = controllers.empty();
+    if (!unified && controllers != "memory") continue;
+    const fs::path top = root / (unified ? "sys/fs/cgroup" : "sys/fs/cgroup/memory");
+    fs::path group = top / fs::path(line.substr(second + 1)).relative_path();
+    for (;; group = group.parent_path()) {
+      const auto most = number_in(group / (unified ? "memory.max" : "memory.limit_in_bytes")),
+                 used = number_in(group / (unified ? "memory.current" : "memory.usage_in_bytes"));
+      if (most && used)
+        take(least, *most - *used + reclaimable(group, unified ? "inactive_file" : "total_inactive_file"),
+             "the limit of the control group " + group.string());
+      if (group == top || group.native().size() <= top.native().size()) break;
+    }
+  }
+}
+
+void take_addresses(AvailableMemory& least, const fs::path& root) {
+  rlimit most{};
+  if (::getrlimit(RLIMIT_AS, &most) != 0 || most.rlim_cur == RLIM_INFINITY) return;
+  const double pages = number_in(root / "proc/self/statm").value_or(0.0);
+  take(least, static_cast<double>(most.rlim_cur) - pages * static_cast<double>(::sysconf(_SC_PAGESIZE)),
+       "the limit of addresses, ulimit -v");
+}
+
+}  // namespace
+
+AvailableMemory available_memory(const std::string& root) {
+  AvailableMemory least{std::numeric_limits<double>::infinity(), "nothing"};
+  take(least, of_meminfo(root), "MemAvailable of /proc/meminfo");
+  take_groups(least, root);
+  take_addresses(least, root);
+  return least;
+}
+
+std::string memory_text(double bytes) {
+  constexpr double kMiB = 1024.0 * 1024.0, kGiB = 1024.0 * kMiB;
+  return bytes < kGiB ? fmt::format("{:.0f} MiB", bytes / kMiB) : fmt::format("{:.1f} GiB", bytes / kGiB);
+}
+
+void refuse_beyond_memory(const std::string& what, double needed, const std::string& parts,
+                          const std::string& advice) {
+  if (const char* beyond = std::getenv("PALPATE_BEYOND_MEMORY"); beyond && *beyond != '\0') return;
+  const AvailableMemory available = available_memory();
+  if (needed <= available.bytes) return;
+  fail("{} need about {} of memory{}, and {} are available ({}); {}; --beyond-memory goes on all the same",
+       what, memory_text(needed), parts.empty() ? "" : " (" + parts + ")", memory_text(available.bytes),
+       available.limited_by, advice);
+}
+
+}  // namespace palpate

@@ -1,0 +1,131 @@
+#include "palpate/core/rehearsal.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "palpate/core/error.h"
+
+namespace palpate {
+namespace {
+
+/// Statuses of the child.  Others are none of ours: a sanitizer ends a process with 1, say.
+constexpr int kRead = 40, kRefused = 41, kNoMemory = 42;
+
+std::atomic<int> unwanted{0};
+
+/// A second for each MiB, which is a hundred times of what reading takes.
+rlim_t longest_s(const std::string& path) {
+  constexpr rlim_t kLeast = 20;
+  std::error_code none;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, none);
+  return kLeast + (none ? 0 : static_cast<rlim_t>(bytes >> 20));
+}
+
+/// Far more than a file of its size needs, so that a number in it that is wrong takes no memory from others.
+/// Sanitizers have terabytes of addresses of their own, and no such limit.
+void limit_memory([[maybe_unused]] const std::string& path) {
+#ifndef PALPATE_SANITIZED
+  constexpr rlim_t kSpare = rlim_t{1} << 30, kTimesTheFile = 64;
+  std::error_code none;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, none);
+  rlim_t pages = 0;
+  if (std::ifstream statm("/proc/self/statm"); none || !(statm >> pages)) return;
+  const rlim_t most = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + kTimesTheFile * bytes + kSpare;
+  const rlimit memory{most, most};
+  ::setrlimit(RLIMIT_AS, &memory);
+#endif
+}
+
+void write_all(int to, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t n = ::write(to, text.data() + at, text.size() - at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return;
+    at += static_cast<std::size_t>(n);
+  }
+}
+
+std::string read_all(int from) {
+  std::string out;
+  char block[4096];
+  for (;;) {
+    const ssize_t n = ::read(from, block, sizeof block);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return out;
+    out.append(block, static_cast<std::size_t>(n));
+  }
+}
+
+/// The child's life.  It never returns: what this process holds is not the child's to end.
+[[noreturn]] void live(int to, const std::string& path, const std::function<void()>& read) {
+  ++unwanted;  // nothing inside it is rehearsed again
+  if (const int null = ::open("/dev/null", O_WRONLY); null >= 0) ::dup2(null, 1), ::dup2(null, 2);
+  const rlimit no_core{0, 0}, time{longest_s(path), longest_s(path)};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  ::setrlimit(RLIMIT_CPU, &time);
+  limit_memory(path);
+  // also where it waits for a lock that a thread of the parent had
+  constexpr unsigned kLongestWait = 600;
+  // handlers of the parent, such as one that reports a crash, are for the parent's own
+  for (const int signal : {SIGALRM, SIGXCPU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
+    std::signal(signal, SIG_DFL);
+  ::alarm(kLongestWait);
+  int status = kRead;
+  try {
+    read();
+  } catch (const Error& e) {
+    write_all(to, e.what());
+    status = kRefused;
+  } catch (const std::bad_alloc&) { status = kNoMemory; } catch (...) {
+    status = 1;
+  }
+  ::_exit(status);
+}
+
+bool ends_endless_work(int signal) { return signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM; }
+
+std::string death(int status) {
+  if (WIFSIGNALED(status))
+    return ends_endless_work(WTERMSIG(status)) ? "it does not come to an end" : ::strsignal(WTERMSIG(status));
+  return fmt::format("status {}", WEXITSTATUS(status));
+}
+
+}  // namespace
+
+void rehearse(const std::string& path, const char* library, const std::function<void()>& read) {
+  if (unwanted > 0) return;
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) fail("{}: no pipe can be opened: {}", path, std::strerror(errno));
+  const pid_t child = ::fork();
+  if (child < 0) {
+    const std::string why = std::strerror(errno);
+    ::close(ends[0]), ::close(ends[1]);
+    fail("{}: no process can be started that reads it: {}", path, why);
+  }
+  if (child == 0) live(ends[1], path, read);
+  ::close(ends[1]);
+  const std::string message = read_all(ends[0]);
+  ::close(ends[0]);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (code == kRead) return;
+  if (code == kRefused && !message.empty()) throw Error(message);
+  if (code == kNoMemory) fail("{}: asks for more memory than there is; it is damaged, or too large", path);
+  fail("{}: is damaged: {} does not survive reading it ({}); copy it again, or make it anew", path, library,
+       death(status));
+}
+
+WithoutRehearsal::WithoutRehearsal() { ++unwanted; }
+WithoutRehearsal::~WithoutRehearsal() { --unwanted; }
+
+}  // namespace palpate

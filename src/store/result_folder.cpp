@@ -1,0 +1,89 @@
+#include "palpate/store/result_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "palpate/core/error.h"
+
+namespace palpate::store {
+namespace fs = std::filesystem;
+namespace {
+
+/// The process that has locked a folder, by the kernel's list (proc(5), /proc/locks):
+///   1: FLOCK  ADVISORY  WRITE 1234 fe:00:131074 0 EOF        device as major:minor in hexadecimal, inode
+/// 0: not to be found, as for a process of another container.
+long owner_of_lock(int folder) {
+  struct stat status {};
+  if (::fstat(folder, &status) != 0) return 0;
+  const std::string wanted =
+      fmt::format("{:02x}:{:02x}:{}", major(status.st_dev), minor(status.st_dev), status.st_ino);
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    std::string number, kind, mode, access, place;
+    long process = 0;
+    if (words >> number >> kind >> mode >> access >> process >> place && kind == "FLOCK" && place == wanted)
+      return process;
+  }
+  return 0;
+}
+
+/// The command line of a process, for people.
+std::string command_of(long process) {
+  std::ifstream in(fmt::format("/proc/{}/cmdline", process), std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  while (!text.empty() && text.back() == '\0') text.pop_back();
+  for (char& c : text)
+    if (c == '\0') c = ' ';
+  return text;
+}
+
+[[noreturn]] void fail_busy(const std::string& path, int folder) {
+  std::string who = "another process";
+  if (const long process = owner_of_lock(folder); process > 0)
+    who = fmt::format("process {} ({})", process, command_of(process));
+  fail("{}: {} is writing into this folder; wait until it has ended, or choose another with -o DIR", path,
+       who);
+}
+
+}  // namespace
+
+void ResultFolder::make(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (!fs::is_directory(path))
+    fail("{}: this output folder cannot be made ({}); choose another with -o DIR", path,
+         error ? error.message() : "a file has this name");
+  if (::access(path.c_str(), W_OK | X_OK) != 0)
+    fail("{}: this output folder cannot be written ({}); choose another with -o DIR", path,
+         std::strerror(errno));
+}
+
+ResultFolder::ResultFolder(const std::string& path) {
+  make(path);
+  lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  const int folder = std::exchange(lock_, -1);
+  try {
+    fail_busy(path, folder);
+  } catch (...) {
+    ::close(folder);
+    throw;
+  }
+}
+
+ResultFolder::~ResultFolder() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+}  // namespace palpate::store

@@ -1,0 +1,394 @@
+#!/usr/bin/env python3
+"""What can go wrong around a run: each case a clear message, and nothing lost.
+
+    bad_input_test.py PROGRAM [CORPORA]
+"""
+import csv
+import json
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM = Path(sys.argv[1]).resolve()
+CORPORA = Path(__file__).resolve().parents[1] / "fuzz/corpus"
+LONG = ["run", "one-tet", "--duration-s", "1e6"]  # ends only when it is stopped
+# Mounts of its own: of root, or of a user where the kernel lets users have them.
+NAMESPACE = ["unshare", "--mount", *([] if os.geteuid() == 0 else ["--user", "--map-root-user"])]
+
+
+def can_mount():
+    """Whether a small file system of its own can be had."""
+    if not shutil.which("unshare"):
+        return False
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([*NAMESPACE, "mount", "-t", "tmpfs", "-o", "size=64k", "none", folder],
+                              capture_output=True, check=False)
+    return done.returncode == 0
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="palpate-bad-input-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def call(self, *arguments, before=None, wrapped=(), **environment):
+        done = subprocess.run([*wrapped, str(PROGRAM), *map(str, arguments)], capture_output=True, text=True,
+                              cwd=self.folder, timeout=300, env=dict(os.environ, **environment),
+                              stdin=subprocess.DEVNULL, preexec_fn=before, check=False, errors="replace")
+        self.assertNotIn("HDF5-DIAG", done.stdout + done.stderr)
+        self.assertNotIn("internal error", done.stderr)
+        return done
+
+    def good(self, *arguments, **options):
+        done = self.call(*arguments, **options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def refused(self, *arguments, **options):
+        """One sentence on standard error, and exit status 1."""
+        done = self.call(*arguments, **options)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertTrue(done.stderr.startswith("palpate: error: "), done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        return done.stderr
+
+    def started(self, *arguments):
+        process = subprocess.Popen([str(PROGRAM), *arguments], cwd=self.folder, text=True,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_for(self, condition, process):
+        end = time.monotonic() + 120
+        while not condition():
+            self.assertIsNone(process.poll(), "it ended by itself")
+            self.assertLess(time.monotonic(), end, "nothing happened")
+            time.sleep(0.02)
+
+    def steps(self, run):
+        """Times of the recorded states, as export finds them."""
+        self.good("export", run, "--to", "csv", "-o", "steps")
+        with open(self.folder / "steps/nodes.csv", encoding="utf-8") as file:
+            times = sorted({float(row["time_s"]) for row in csv.DictReader(file)})
+        shutil.rmtree(self.folder / "steps")
+        return times
+
+    def summary(self, run):
+        return json.loads((self.folder / run / "summary.json").read_text())
+
+
+def on_full_disk(size, then):
+    """Runs the program in `full`, a disk of that size, and keeps what is on it afterwards in `then`."""
+    script = (f'mount -t tmpfs -o size={size} none full && "$@"; s=$?; '
+              f'cp -r --sparse=always full {then}; exit $s')
+    return [*NAMESPACE, "sh", "-c", script, "sh"]
+
+
+@unittest.skipUnless(can_mount(), "no mounts (root, or user namespaces)")
+class FullDisk(Case):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "full").mkdir()
+
+    def test_a_run_keeps_what_it_recorded(self):
+        self.good("run", "press-ball", "-o", "whole")
+        all_times = self.steps("whole")
+        counts = []
+        for size in ("600k", "1200k", "2400k"):
+            with self.subTest(size=size):
+                text = self.refused("run", "press-ball", "-o", "full/x", wrapped=on_full_disk(size, size))
+                self.assertIn("full/x/", text)
+                self.assertIn("No space left on device", text)
+                self.assertIn("what was recorded by then is whole", text)
+                times = self.steps(f"{size}/x")
+                self.assertEqual(times, all_times[:len(times)])
+                counts.append(len(times))
+                self.assertIn(self.summary(f"{size}/x")["outcome"], ("failed", "unfinished"))
+                self.good("report", f"{size}/x", "-o", "page.html")
+        self.assertEqual(counts, sorted(counts))
+        self.assertGreater(counts[-1], 1)
+        self.assertLess(counts[-1], len(all_times))
+
+    def test_no_room_at_all(self):
+        for command in (["run", "press-ball"], ["run", "one-tet"], ["modes", "one-tet"],
+                        ["validate", "patch-test"]):
+            with self.subTest(command=command):
+                text = self.refused(*command, "-o", "full/x", wrapped=on_full_disk("4k", "_".join(command)))
+                self.assertRegex(text, r"full/x/[\w.]+: ")
+                self.assertIn("No space left on device", text)
+
+    def test_an_export_and_a_report_leave_what_is_there(self):
+        self.good("run", "press-ball", "--duration-s", "0.05", "-o", "run")
+        for command in (["export", "../run", "--to", "vtu", "-o", "x"],
+                        ["report", "../run", "-o", "page.html"]):
+            with self.subTest(command=command):
+                script = ('mount -t tmpfs -o size=8k none full; cd full; echo mine > mine; "$@"; s=$?; '
+                          'ls -A . > ../left; cat mine >> ../left; exit $s')
+                text = self.refused(*command, wrapped=[*NAMESPACE, "sh", "-c", script, "sh"])
+                self.assertIn("No space left on device", text)
+                self.assertEqual((self.folder / "left").read_text(), "mine\nmine\n")
+
+
+class FullQuota(Case):
+    """Without root: files may not grow beyond a size, which fails as a full disk does."""
+
+    def test_each_size_ends_with_a_sentence(self):
+        self.good("run", "press-ball", "-o", "whole")
+        all_times = self.steps("whole")
+        largest = (self.folder / "whole/run.vtkhdf").stat().st_size
+
+        def limit(size):
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+        for size in (100, 5000, 60000, largest // 2, largest - 1):
+            with self.subTest(size=size):
+                text = self.refused("run", "press-ball", "-o", f"x{size}", before=lambda: limit(size))
+                self.assertIn(f"x{size}/", text)
+                self.assertIn("File too large", text)
+        self.assertEqual(self.steps("whole"), all_times)
+
+
+@unittest.skipUnless(can_mount(), "no mounts (root, or user namespaces)")
+class ReadOnly(Case):
+    def test_it_is_said_before_anything_is_computed(self):
+        (self.folder / "there").mkdir()
+        self.good("run", "one-tet", "--duration-s", "0.05", "-o", "there/run")
+        script = 'mount --bind there there && mount -o remount,bind,ro there && "$@"'
+        for command in (["run", "press-ball"], ["compare", "one-tet", "--integrator", "cvode-bdf"],
+                        ["replay", "there/run"], ["export", "there/run", "--to", "vtu"]):
+            for place in ("there/run", "there/new"):
+                if command[0] == "replay":
+                    continue  # a scene without a tool has nothing to replay
+                with self.subTest(command=command, place=place):
+                    done = self.call(*command, "-o", place, wrapped=[*NAMESPACE, "sh", "-c", script, "sh"])
+                    self.assertEqual(done.returncode, 1, done.stderr)
+                    self.assertIn(f"{place}: this output folder cannot be", done.stderr)
+                    self.assertIn("Read-only file system", done.stderr)
+                    self.assertIn("-o DIR", done.stderr)
+                    self.assertEqual(done.stdout, "")
+        self.assertEqual(len(self.steps("there/run")), 6)
+
+
+class DamagedModel(Case):
+    """A model file of which a part is missing, or a byte is another one."""
+
+    def setUp(self):
+        super().setUp()
+        self.whole = (CORPORA / "model_file/everything.h5").read_bytes()
+        self.model = self.folder / "m.h5"
+        (self.folder / "s.toml").write_text(
+            '[scene]\nname = "m"\nduration_s = 0.01\n[[body]]\nname = "m"\nyoungs_modulus_pa = 1e5\n'
+            'mesh = { file = "m.h5" }\nskin = true\n')
+
+    def test_truncated(self):
+        self.model.write_bytes(self.whole)
+        self.good("inspect", "s.toml")
+        end = len(self.whole)
+        for size in (0, 1, 7, 8, 100, 1000, end // 2, end - 3000, end - 1):
+            with self.subTest(size=size):
+                self.model.write_bytes(self.whole[:size])
+                text = self.refused("inspect", "s.toml")
+                self.assertIn("m.h5: ", text)
+                self.assertLess(len(text), 500)
+
+    def test_other_bytes(self):
+        rng, outcomes = random.Random(7), set()
+        for _ in range(60):
+            damaged = bytearray(self.whole)
+            for _ in range(rng.randint(1, 8)):
+                damaged[rng.randrange(len(damaged))] = rng.randrange(256)
+            self.model.write_bytes(damaged)
+            done = self.call("inspect", "s.toml")
+            self.assertIn(done.returncode, (0, 1), done.stderr)
+            outcomes.add(done.returncode)
+            if done.returncode == 1:
+                self.assertTrue(done.stderr.startswith("palpate: error: "), done.stderr)
+        self.assertEqual(outcomes, {0, 1})
+
+    def test_a_file_that_the_library_does_not_survive(self):
+        found = list((CORPORA / "model_file").glob("kills-hdf5-*"))
+        self.assertTrue(found)
+        for one in found:
+            shutil.copy(one, self.model)
+            self.assertIn("is damaged", self.refused("inspect", "s.toml"))
+
+
+class Killed(Case):
+    def test_the_last_complete_step_is_readable(self):
+        self.good("run", "press-ball", "-o", "whole")
+        all_times, rng, counts = self.steps("whole"), random.Random(4), set()
+        for i in range(6):
+            with self.subTest(kill=i):
+                process = self.started("run", "press-ball", "-o", f"cut{i}")
+                states = self.folder / f"cut{i}/run.vtkhdf"
+                self.wait_for(states.exists, process)
+                time.sleep(0.1 + 0.6 * rng.random())
+                process.kill()
+                process.communicate()
+                if process.returncode == 0:  # a fast machine
+                    continue
+                times = self.steps(f"cut{i}")
+                self.assertEqual(times, all_times[:len(times)])
+                counts.add(len(times))
+                self.assertEqual(self.summary(f"cut{i}")["outcome"], "unfinished")
+                page = self.good("report", f"cut{i}")
+                self.assertIn("report.html", page)
+                self.assertIn("unfinished", (self.folder / f"cut{i}/report.html").read_text())
+                # haptic.h5 may have been cut in the middle: read or refused
+                self.assertIn(self.call("replay", f"cut{i}").returncode, (0, 1))
+                # ticks that were written are whole lines
+                self.good("export", f"cut{i}", "--to", "csv")
+                # its folder is free again
+                self.good("run", "press-ball", "--duration-s", "0.01", "-o", f"cut{i}")
+                self.assertEqual(self.summary(f"cut{i}")["outcome"], "finished")
+        self.assertGreater(max(counts), 1)
+
+
+class TwoRuns(Case):
+    def test_the_second_is_refused_and_the_first_goes_on(self):
+        first = self.started(*LONG, "-o", "same")
+        states = self.folder / "same/run.vtkhdf"
+        self.wait_for(lambda: states.exists() and states.stat().st_size > 0, first)
+        for command in (["run", "press-ball"], ["compare", "one-tet", "--integrator", "cvode-bdf"],
+                        ["modes", "one-tet"]):
+            text = self.refused(*command, "-o", "same")
+            self.assertIn(f"same: process {first.pid} ({PROGRAM} run one-tet", text)
+            self.assertIn("-o DIR", text)
+        text = self.refused("export", "same", "--to", "csv", "-o", "steps")
+        self.assertIn("is being written by another process", text)
+        blocks = states.stat().st_blocks  # its size has room for all steps from the start
+        self.wait_for(lambda: states.stat().st_blocks > blocks, first)
+        first.send_signal(signal.SIGINT)
+        self.assertEqual(first.wait(timeout=60), 130)
+        self.assertEqual(self.summary("same")["outcome"], "interrupted")
+        self.assertGreater(len(self.steps("same")), 1)
+        self.good("run", "one-tet", "--duration-s", "0.01", "-o", "same")
+
+
+class EarlierRun(Case):
+    def test_its_files_do_not_pass_for_those_of_the_next(self):
+        self.good("run", "press-ball", "--duration-s", "0.02", "--trace", "--report", "-o", "here")
+        names = {path.name for path in (self.folder / "here").iterdir()}
+        self.assertLessEqual({"force.csv", "haptic.h5", "trace.csv", "report.html"}, names)
+        (self.folder / "here/notes.txt").write_text("mine")
+        (self.folder / "here/compare.csv").write_text("of a comparison\n")
+        text = self.good("run", "one-tet", "--duration-s", "0.02", "-o", "here")
+        listed = re.search(r"^in here: (.*)$", text, re.M).group(1).split(", ")
+        self.assertEqual(listed, ["run.vtkhdf", "run.xdmf", "scene.toml", "summary.json"])
+        self.assertEqual({path.name for path in (self.folder / "here").iterdir()},
+                         {*listed, "notes.txt", "compare.csv"})
+        self.assertEqual((self.folder / "here/notes.txt").read_text(), "mine")
+
+    def test_a_run_does_not_write_over_what_it_reads(self):
+        scene = self.folder / "scene.toml"
+        self.good("run", "one-tet", "--duration-s", "0.02", "-o", "one")
+        shutil.copy(self.folder / "one/scene.toml", scene)
+        before = scene.read_bytes()
+        self.assertIn("is the scene that is to run", self.refused("run", "scene.toml", "-o", "."))
+        self.assertEqual(scene.read_bytes(), before)
+        self.good("run", "press-ball", "--duration-s", "0.02", "-o", "press")
+        force = (self.folder / "press/force.csv").read_bytes()
+        again = (self.folder / "press/scene.toml").read_text().replace(
+            'type = "script"', 'type = "recording"\nfile = "force.csv"')
+        again = re.sub(r"^\[\[device\.[^\n]*\n(?:(?!\[)[^\n]*\n)*", "", again, flags=re.M)
+        (self.folder / "press/again.toml").write_text(again)
+        text = self.refused("run", "press/again.toml", "-o", "press")
+        self.assertIn("is the recording that the hand repeats", text)
+        self.assertEqual((self.folder / "press/force.csv").read_bytes(), force)
+        self.assertIn("would write over it", self.refused("replay", "press", "--integrator",
+                                                          "linearly-implicit-euler", "-o", "press"))
+
+
+class Memory(Case):
+    def test_the_estimate_is_within_a_factor_of_two(self):
+        scenes = (["press-ball", "--set", "body.0.mesh.element_size_m=0.003"],
+                  ["falling-ball", "--set", "body.0.mesh.element_size_m=0.004", "--integrator",
+                   "linearly-implicit-euler", "--set", "integrator.step_s=0.002"],
+                  ["falling-ball", "--set", "body.0.mesh.element_size_m=0.003", "--integrator",
+                   "linearly-implicit-euler", "--set", "integrator.step_s=0.002", "--set",
+                   "integrator.linear_solver=pcg-single"])
+        for scene in scenes:
+            with self.subTest(scene=scene):
+                text = self.good("inspect", *scene)
+                said = float(re.search(r"memory of its run, about \[MiB\] +(\d+)", text).group(1))
+                with open(os.devnull, "w", encoding="utf-8") as null:
+                    process = subprocess.Popen([PROGRAM, "run", *scene, "--duration-s", "0.01", "-o", "x"],
+                                               cwd=self.folder, stdout=null)
+                    _, status, usage = os.wait4(process.pid, 0)
+                    process.returncode = status
+                self.assertEqual(status, 0)
+                peak = usage.ru_maxrss / 1024
+                self.assertGreater(peak, 60, "small ones say nothing")
+                self.assertLess(max(said / peak, peak / said), 2, f"{said} MiB said, {peak:.0f} at the peak")
+
+    def test_what_does_not_fit_is_refused_with_figures(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (600 << 20, 600 << 20))
+        big = ["--set", "body.0.mesh.element_size_m=0.0015"]
+        text = self.refused("run", "press-ball", *big, "-o", "big", before=limit)
+        self.assertRegex(text, r"[\d.]+ (GiB|MiB) of memory .*[\d.]+ (GiB|MiB) are available \(the limit of "
+                               r"addresses, ulimit -v\)")
+        self.assertIn("tetrahedra", text)
+        self.assertIn("element_size_m", text)
+        self.assertIn("--beyond-memory", text)
+        self.assertFalse((self.folder / "big").exists(), "nothing was begun")
+        done = self.call("run", "press-ball", *big, "--beyond-memory", "-o", "big", before=limit)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no memory for the factor", done.stderr)
+        self.good("run", "press-ball", "--duration-s", "0.01", "-o", "small", before=limit)
+
+
+class Instructions(Case):
+    def test_a_set_that_is_not_there_is_refused(self):
+        text = self.refused("run", "press-ball", PALPATE_INSTRUCTIONS="sse9")
+        self.assertIn('PALPATE_INSTRUCTIONS = "sse9"', text)
+        self.assertIn("baseline", text)
+        self.good("run", "press-ball", "--duration-s", "0.01", PALPATE_INSTRUCTIONS="baseline")
+
+    def test_code_beyond_the_baseline_is_chosen_at_run_time(self):
+        """Vector instructions beyond x86-64's baseline stand in functions whose name says so alone."""
+        if os.uname().machine != "x86_64" or not shutil.which("objdump"):
+            self.skipTest("x86-64 and objdump (package binutils)")
+        linked = subprocess.run(["ldd", PROGRAM], capture_output=True, text=True, check=True).stdout
+        files = [PROGRAM, *(Path(path) for path in re.findall(r"=> (\S*libpalpate\S*)", linked))]
+        model = PROGRAM.parent / "palpate-model"
+        chosen, others = 0, []
+        for file in [*files, *([model] if model.exists() else [])]:
+            ours, not_ours = beyond_baseline(file)
+            chosen += ours
+            others += [f"{file.name}: {name}" for name in not_ours]
+        self.assertEqual(others, [])
+        self.assertGreater(chosen, 50, "the kernels themselves must be found")
+
+
+def beyond_baseline(file):
+    """Functions with instructions of AVX or later: how many are named after their set, and those that are
+    not."""
+    function = re.compile(r"^[0-9a-f]+ <(.*)>:$")
+    # VEX and EVEX: a leading v, but for VERR, VERW and virtual machines; and those of mask registers
+    vector = re.compile(r"^\s+[0-9a-f]+:\s+(v(?!err|erw|m)[a-z0-9]+|vm(?!call|run|load|save|x|func)[a-z0-9]+|"
+                        r"k(?:mov|and|or|xor|not|unpck|shift|test|add|xnor)[a-z]*)\s")
+    named = re.compile(r"avx2|avx512|arch_x86_64_v[34]")
+    name, ours, others = "", set(), set()
+    command = ["objdump", "--disassemble", "--demangle", "--no-show-raw-insn", file]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, errors="replace") as process:
+        for line in process.stdout:
+            if found := function.match(line):
+                name = found.group(1)
+            elif vector.match(line):
+                (ours if named.search(name) else others).add(name)
+    return len(ours), sorted(others)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -1,0 +1,40 @@
+// Instruction sets are named by people too, and a processor may lack them.
+#include "palpate/core/instructions.h"
+
+#include <gtest/gtest.h>
+
+#include "palpate/core/error.h"
+
+using palpate::choose_instructions;
+using palpate::Instructions;
+
+namespace {
+
+std::string refusal(const char* wanted, Instructions widest) {
+  try {
+    choose_instructions(wanted, widest);
+  } catch (const palpate::Error& e) { return e.what(); }
+  return "accepted";
+}
+
+TEST(Instructions, TheWidestUnlessAnotherIsNamed) {
+  EXPECT_EQ(choose_instructions("", Instructions::kAvx2), Instructions::kAvx2);
+  EXPECT_EQ(choose_instructions("baseline", Instructions::kAvx512), Instructions::kBaseline);
+  EXPECT_EQ(choose_instructions("avx2", Instructions::kAvx512), Instructions::kAvx2);
+  EXPECT_EQ(choose_instructions("avx512", Instructions::kAvx512), Instructions::kAvx512);
+}
+
+TEST(Instructions, WhatTheProcessorLacksIsRefusedWithWhatItHas) {
+  EXPECT_EQ(refusal("avx512", Instructions::kAvx2),
+            "PALPATE_INSTRUCTIONS = \"avx512\": this processor does not have it; there are baseline, avx2: "
+            "name one of these, or unset the variable");
+  EXPECT_EQ(
+      refusal("avx2", Instructions::kBaseline),
+      "PALPATE_INSTRUCTIONS = \"avx2\": this processor does not have it; there are baseline: name one of "
+      "these, or unset the variable");
+  EXPECT_EQ(refusal("sse9", Instructions::kAvx2),
+            "PALPATE_INSTRUCTIONS = \"sse9\": is no set of instructions that palpate knows; there are "
+            "baseline, avx2: name one of these, or unset the variable");
+}
+
+}  // namespace

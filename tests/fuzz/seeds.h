@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+
+/// The small HDF5 files that fuzzing begins with.
+namespace palpate::fuzz {
+
+void write_mesh_seed(const std::string& path);
+void write_model_seed(const std::string& path);       ///< one of everything that a model can hold
+void write_bare_model_seed(const std::string& path);  ///< a skin alone
+void write_run_seed(const std::string& path);         ///< two steps
+
+}  // namespace palpate::fuzz
