@@ -13,6 +13,7 @@
 #include "checkpoint_scenes.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/loop/contact_record.h"
 
 namespace {
 
