@@ -198,8 +198,9 @@ TEST_P(Checkpoints, ForgetNothing) {
   EXPECT_GT(largest, 0.0);
   EXPECT_LE(off, c.restart_error);
   for (const auto& [name, count] : without.counts)
-    if (name.starts_with("feel"))
+    if (name.starts_with("feel")) {
       EXPECT_NEAR(with.counts.at(name), count, 1e-6 * std::abs(count) + 1e-12) << name;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoints, testing::ValuesIn(case_names()),
