@@ -90,7 +90,7 @@ int replay(const ReplayArguments& arguments) {
         "with -o DIR",
         folder);
   const store::ResultFolder mine(folder);
-  remove_run_files(folder);
+  remove_run_files(description, folder);
   Ticks ticks(records.size());
   loop::RunResult result;
   {

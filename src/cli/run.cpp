@@ -233,8 +233,8 @@ bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& a
 }
 
 /// Prints which files of this run are in the folder.
-void print_files(const std::string& folder) {
-  fmt::print("in {}: {}\n", folder, fmt::join(run_files(folder), ", "));
+void print_files(const scene::Description& description, const std::string& folder) {
+  fmt::print("in {}: {}\n", folder, fmt::join(run_files(description, folder), ", "));
 }
 
 /// @param from  where it goes on, null at its start
@@ -305,7 +305,7 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
     refuse_own_input(description, folder);
     mine = store::ResultFolder(folder);
     if (!resumption) {
-      remove_run_files(folder);
+      remove_run_files(description, folder);
       remove_checkpoint(folder);
     }
     keep_summary(*world, {}, assemble_s, {}, {}, arguments, folder, kUnfinished);
@@ -368,7 +368,7 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
     if (arguments.picture) keep_picture(*world, snapshot, folder, missing);
     if (arguments.contact_picture) contact.save(*world, folder, missing);
     if (arguments.report) missing.add(report::write_run_report(folder));
-    print_files(folder);
+    print_files(description, folder);
     if (frames) frames_cut = keep_frames(*world, *frames, arguments, folder, result.stopped, missing);
   }
   if (!result.status.ok())

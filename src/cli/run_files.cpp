@@ -1,5 +1,7 @@
 #include "run_files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
@@ -16,31 +18,31 @@ constexpr std::string_view kNames[] = {"run.vtkhdf", "run.xdmf",    "force.csv",
                                        "bones.csv",  "energy.csv",  "trace.csv",     "clock.csv",
                                        "depth.png",  "contact.png", "checkpoint.h5", "picture.png",
                                        kScene,       kSummary,      "report.html"};
-/// Of further hands: force-NAME.csv, haptic-NAME.h5.
-constexpr std::pair<std::string_view, std::string_view> kPatterns[] = {{"force-", ".csv"},
-                                                                       {"haptic-", ".h5"}};
 
-bool is_of_a_run(const std::string& name) {
+/// @param hands  of the scene
+bool is_of_a_run(const std::string& name, const std::vector<scene::Hand>& hands) {
   return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames) ||
-         std::any_of(std::begin(kPatterns), std::end(kPatterns), [&](const auto& pattern) {
-           return name.starts_with(pattern.first) && name.ends_with(pattern.second);
+         std::any_of(hands.begin(), hands.end(), [&](const scene::Hand& hand) {
+           return hand.tool_key != "tool" && (name == fmt::format("force-{}.csv", hand.name) ||
+                                              name == fmt::format("haptic-{}.h5", hand.name));
          });
 }
 
 }  // namespace
 
-std::vector<std::string> run_files(const std::string& folder) {
+std::vector<std::string> run_files(const scene::Description& description, const std::string& folder) {
+  const std::vector<scene::Hand> hands = scene::hands_of(description);
   std::vector<std::string> out;
   for (const auto& entry : fs::directory_iterator(folder))
     if (const std::string name = entry.path().filename().string();
-        entry.is_regular_file() && is_of_a_run(name))
+        entry.is_regular_file() && is_of_a_run(name, hands))
       out.push_back(name);
   std::sort(out.begin(), out.end());
   return out;
 }
 
-void remove_run_files(const std::string& folder) {
-  for (const std::string& name : run_files(folder)) {
+void remove_run_files(const scene::Description& description, const std::string& folder) {
+  for (const std::string& name : run_files(description, folder)) {
     if (name == kScene || name == kSummary) continue;
     const fs::path path = fs::path(folder) / name;
     std::error_code error;
@@ -51,14 +53,16 @@ void remove_run_files(const std::string& folder) {
 
 void refuse_own_input(const scene::Description& description, const std::string& folder) {
   const fs::path scene(description.path);
+  const std::vector<scene::Hand> hands = scene::hands_of(description);
   const auto refuse = [&](const fs::path& input, const char* what) {
     std::error_code none;
-    if (is_of_a_run(input.filename().string()) && fs::equivalent(input.parent_path() / ".", folder, none))
+    if (is_of_a_run(input.filename().string(), hands) &&
+        fs::equivalent(input.parent_path() / ".", folder, none))
       fail("{}: is {}, and the run would write its own over it; choose another folder with -o DIR",
            input.string(), what);
   };
   refuse(fs::absolute(scene), "the scene that is to run");
-  for (const scene::Hand& hand : scene::hands_of(description))
+  for (const scene::Hand& hand : hands)
     if (!hand.device->file.empty())
       refuse(fs::absolute(scene.parent_path() / hand.device->file), "the recording that the hand repeats");
 }

@@ -102,7 +102,6 @@ void add_pictures(Page& page, const Json& summary, const fs::path& dir) {
 }
 
 void add_forces(Page& page, const Json& summary, const Table& force) {
-  if (force.rows.empty()) return;  // a run that was killed before its first tick
   const Json options = figures_of(summary, "options");
   page.add_heading("Force on the hand");
   const double max_force = number_at(options, "max_force_n"),

@@ -80,13 +80,14 @@ CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers)
 CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers, const Place& place)
     : path_(path), columns_(headers.size()), rows_(place.rows) {
   cut_to(path, place.bytes);
+  out_.rdbuf()->pubsetbuf(nullptr, 0);
+  errno = 0;
   out_.open(path, std::ios::binary | std::ios::app);
-  if (!out_) fail("{}: cannot be written; is its folder there, writable, and not full?", path);
+  if (!out_) fail("{}: cannot be written ({}); is its folder there, writable, and not full?", path, reason());
 }
 
 CsvWriter::Place CsvWriter::place() {
-  out_.flush();
-  if (!out_) fail("{}: not all could be written; is the disk full?", path_);
+  hand_over();
   return {static_cast<std::int64_t>(std::filesystem::file_size(path_)), rows_};
 }
 
