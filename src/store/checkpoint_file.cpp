@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/core/rehearsal.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/content_hash.h"
 #include "store/h5.h"
@@ -123,8 +124,8 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
   write_durably(path, h5::image(file, path));
 }
 
-Checkpoint read_checkpoint(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) fail("{}: no such file", path);
+namespace {
+Checkpoint read_here(const std::string& path) {
   const h5::Quiet quiet;
   Checkpoint out;
   std::string content;
@@ -143,6 +144,12 @@ Checkpoint read_checkpoint(const std::string& path) {
   }
   if (hash_of(out) != content) refuse(path, "its content is not what was written");
   return out;
+}
+}  // namespace
+
+Checkpoint read_checkpoint(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) fail("{}: no such file", path);
+  return rehearsed(path, "HDF5", [&] { return read_here(path); });
 }
 
 }  // namespace palpate::store
