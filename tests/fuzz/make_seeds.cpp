@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   fuzz::write_model_seed(corpus + "/model_file/everything.h5");
   fuzz::write_bare_model_seed(corpus + "/model_file/skin-alone.h5");
   fuzz::write_run_seed(corpus + "/run_file/two-steps.vtkhdf");
+  fuzz::write_checkpoint_seed(corpus + "/checkpoint_file/one-of-each.h5");
   const auto keep = [&](const char* name, const auto& bytes) {
     store::write_atomically(corpus + "/udp_packet/" + name, std::string(bytes.begin(), bytes.end()));
   };

@@ -22,7 +22,8 @@ ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=1:allocator_may_return_null=1",
 # HDF5 keeps what it could not read to the end, and asks for what a damaged file tells it to; both end with
 # the child process that reads first.  A small process is copied faster.
 OF_HDF5 = "detect_leaks=0:allocator_may_return_null=1:quarantine_size_mb=8"
-ALLOCATES_AS_TOLD = {"mesh_file", "model_file", "run_file", "mesh_content", "model_content", "run_content"}
+ALLOCATES_AS_TOLD = {"mesh_file", "model_file", "run_file", "mesh_content", "model_content", "run_content",
+                     "checkpoint_file", "checkpoint_content"}
 
 
 def targets_of(program):

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "palpate/store/checkpoint_file.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
 #include "palpate/store/run_file.h"
@@ -59,6 +60,14 @@ void write_run_seed(const std::string& path) {
       file.append(0.25 * step, mesh.nodes, Points::Zero(3, 5), VecX::Ones(5));
   }
   std::remove(store::xdmf_path(path).c_str());
+}
+
+void write_checkpoint_seed(const std::string& path) {
+  store::Checkpoint checkpoint{"0.1.0", 0.25, "[scene]\nname = \"one-tet\"\n", {}};
+  checkpoint.values["bodies.state.q"] = std::vector<double>{0.0, 0.5, -1.0};
+  checkpoint.values["bodies.counts.steps"] = std::vector<std::int64_t>{12};
+  checkpoint.values["command.integrator"] = std::string("bdf2");
+  store::write_checkpoint(path, checkpoint);
 }
 
 }  // namespace palpate::fuzz

@@ -8,5 +8,6 @@ void write_mesh_seed(const std::string& path);
 void write_model_seed(const std::string& path);       ///< one of everything that a model can hold
 void write_bare_model_seed(const std::string& path);  ///< a skin alone
 void write_run_seed(const std::string& path);         ///< two steps
+void write_checkpoint_seed(const std::string& path);  ///< one value of each kind
 
 }  // namespace palpate::fuzz

@@ -5,6 +5,7 @@
 #include "fuzz/targets.h"
 #include "palpate/core/rehearsal.h"
 #include "palpate/store/bone_file.h"
+#include "palpate/store/checkpoint_file.h"
 #include "palpate/store/force_file.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
@@ -55,12 +56,17 @@ void read_run(const std::string& path) {
   });
 }
 
+void read_checkpoint(const std::string& path) {
+  is_read([&] { store::read_checkpoint(path); });
+}
+
 }  // namespace
 
 // The bytes of the file itself.  HDF5 does not survive all of them, and must be kept in its child process.
 void mesh_file(std::string_view bytes) { read_mesh(InputFile("fuzz.h5", bytes).path()); }
 void model_file(std::string_view bytes) { read_model(InputFile("fuzz.h5", bytes).path()); }
 void run_file(std::string_view bytes) { read_run(InputFile("fuzz.vtkhdf", bytes).path()); }
+void checkpoint_file(std::string_view bytes) { read_checkpoint(InputFile("fuzz.h5", bytes).path()); }
 
 // A sound file with other content: our own readers alone are asked, in this process.
 void mesh_content(std::string_view bytes) {
@@ -74,6 +80,10 @@ void model_content(std::string_view bytes) {
 void run_content(std::string_view bytes) {
   const WithoutRehearsal here;
   read_run(edited("run.vtkhdf", write_run_seed, bytes));
+}
+void checkpoint_content(std::string_view bytes) {
+  const WithoutRehearsal here;
+  read_checkpoint(edited("checkpoint.h5", write_checkpoint_seed, bytes));
 }
 
 /// The kind by its first letter, as no two of them begin alike.
