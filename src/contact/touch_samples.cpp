@@ -11,7 +11,12 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
                 m.frames.size());
   m.place_frames(state);
   std::vector<TouchSample> out;
-  if (tangents) tangents->clear();
+  const std::size_t most = m.all().size();
+  out.reserve(most);
+  if (tangents) {
+    tangents->clear();
+    tangents->reserve(most);
+  }
   for (const ContactSample& s : m.all()) {
     const bool is_a = s.a.frame == frame, is_b = s.b.frame == frame;
     const SurfacePoint& mine = is_a ? s.a : s.b;

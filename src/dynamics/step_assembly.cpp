@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/core/counters.h"
+
 namespace palpate::dynamics {
 
 void StepAssembly::find_parts() {
@@ -76,18 +78,95 @@ bool StepAssembly::applies(const StateView& state) {
   return disjoint_;
 }
 
+/// False where a fused term does not say when it gives something else.
+bool StepAssembly::find_versions() {
+  step_versions_.clear();
+  for (const Part& part : parts_) {
+    if (!part.fused) continue;
+    step_versions_.push_back(part.fused->step_version());
+    if (step_versions_.back() == 0) step_versions_.clear();
+    if (step_versions_.empty()) return false;
+  }
+  return !step_versions_.empty();
+}
+
+namespace {
+
+/// Of numbers that differ by the rounding of a time in a step.
+constexpr double kSame = 1e-9;
+
+bool equal(const VecX& kept, const double* now, Eigen::Index size) {
+  return kept.size() == size && std::equal(now, now + size, kept.data());
+}
+
+bool alike(double kept, double now) { return std::abs(kept - now) <= kSame * std::abs(now); }
+
+bool alike(const VecX& kept, const VecX& now, Eigen::Index size) {
+  return kept.size() == size &&
+         ((kept.array() - now.head(size).array()).abs() <= kSame * now.head(size).array().abs()).all();
+}
+
+}  // namespace
+
+bool StepAssembly::is_kept(const StateView& state, const VecX& shift, double d_scale, double k_scale,
+                           const ZeroRowSumMatrix& A) const {
+  const KeptStep& kept = system_.kept_step();
+  const Eigen::Index nodal = state.layout->nodal_size;
+  return !kept.versions.empty() && kept.versions == step_versions_ && A.slot_map_key != 0 &&
+         kept.slot_map_key == A.slot_map_key && kept.values.size() == A.values.size() &&
+         kept.force.size() == state.layout->u_size && kept.scale == A.scale && alike(kept.d_scale, d_scale) &&
+         alike(kept.k_scale, k_scale) && equal(kept.q, state.q.data(), nodal) &&
+         equal(kept.u, state.u.data(), nodal) && alike(kept.shift, shift, nodal);
+}
+
+/// f and A hold no force and m_scale M.
+void StepAssembly::add_fused(const StateView& state, const VecX& shift, double d_scale, double k_scale,
+                             VecX& f, ZeroRowSumMatrix& A, bool keep) {
+  KeptStep& kept = system_.kept_step();
+  const bool knows = (keep || !kept.versions.empty()) && find_versions();
+  if (knows && is_kept(state, shift, d_scale, k_scale, A)) {
+    counters::count("dynamics.kept_step_taken");
+    f = kept.force;
+    A.diagonal += kept.diagonal;
+    std::copy(kept.values.begin(), kept.values.end(), A.values.begin());
+    return;
+  }
+  const auto add = [&] {
+    for (const Part& part : parts_)
+      if (part.fused) part.fused->add_step(state, shift, k_scale, d_scale, f, A);
+  };
+  if (!knows || !keep) return add();
+  kept.versions.clear();
+  kept.diagonal = A.diagonal;
+  A.diagonal.setZero();
+  add();
+  A.diagonal.swap(kept.diagonal);
+  A.diagonal += kept.diagonal;
+  const Eigen::Index nodal = state.layout->nodal_size;
+  kept.slot_map_key = A.slot_map_key;
+  kept.scale = A.scale;
+  kept.d_scale = d_scale;
+  kept.k_scale = k_scale;
+  kept.q = state.q.head(nodal);
+  kept.u = state.u.head(nodal);
+  kept.shift = shift.head(nodal);
+  kept.values = A.values;
+  kept.force = f;
+  kept.versions = step_versions_;
+}
+
 void StepAssembly::assemble(const StateView& state, const VecX& shift, double m_scale, double d_scale,
-                            double k_scale, VecX& f, ZeroRowSumMatrix& A) {
+                            double k_scale, VecX& f, ZeroRowSumMatrix& A, bool keep) {
   f.setZero(state.layout->u_size);
   A.scale = std::ldexp(1.0, -std::ilogb(system_.mean_nodal_mass()));
   A.diagonal = m_scale * system_.nodal_mass();
   A.positions = state.q.data();  // node blocks come first, with q' = u
   A.held = &system_.driven_nodes();
   A.points.clear();
+  add_fused(state, shift, d_scale, k_scale, f, A, keep);
   for (const Part& part : parts_) {
-    if (part.fused)
-      part.fused->add_step(state, shift, k_scale, d_scale, f, A);
-    else if (part.beside)
+    if (part.fused) continue;
+    if (part.beside)
       part.beside->add_step(state, shift, k_scale, d_scale, f, A.points);
     else
       part.term->add_force(state, f);

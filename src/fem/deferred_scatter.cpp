@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "nodal_reduction.h"
+#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "shared_blocks.h"
 
@@ -21,10 +22,18 @@ int DeferredScatter::buffers(const ElementChunks& chunks) {
   return static_cast<int>(chunks.chunks.size()) <= kFewChunks ? 1 : 2;
 }
 
-/// Ascending in the matrix, so that its memory is written in order.
 void DeferredScatter::prepare(const ElementChunks& chunks, int first_node,
                               const dynamics::ZeroRowSumMatrix& A) {
-  if (A.slot_map_version == version_ && first_node == first_node_) return;
+  const auto is_current = [&] { return map().key == A.slot_map_key && map().first_node == first_node; };
+  if (is_current()) return;
+  current_ = 1 - current_;
+  if (!is_current()) make(chunks, first_node, A, maps_[current_]);
+}
+
+/// Ascending in the matrix, so that its memory is written in order.
+void DeferredScatter::make(const ElementChunks& chunks, int first_node, const dynamics::ZeroRowSumMatrix& A,
+                           Map& map) {
+  counters::count("fem.scatter_map");
   const auto slot = [&](int i, int j) {
     const int found = A.pattern->slot(first_node + i, first_node + j);
     PALPATE_CHECK(found >= 0, "nodes {} and {} are not in the pattern", first_node + i, first_node + j);
@@ -35,32 +44,32 @@ void DeferredScatter::prepare(const ElementChunks& chunks, int first_node,
     return slot(chunks.nodes[static_cast<std::size_t>(chunk.first_node + ends[0])],
                 chunks.nodes[static_cast<std::size_t>(chunk.first_node + ends[1])]);
   };
-  slots_.assign(chunks.ends.size() / 2, -1);
-  edges_.assign(slots_.size(), 0);
+  map.slots.assign(chunks.ends.size() / 2, -1);
+  map.edges.assign(map.slots.size(), 0);
   std::vector<std::pair<std::int32_t, std::uint16_t>> owned;
   for (const Chunk& chunk : chunks.chunks) {
     owned.clear();
     for (int k = 0; k < chunk.owned_edges; ++k) owned.emplace_back(slot_of(chunk, k), k);
     std::sort(owned.begin(), owned.end());
     for (std::size_t k = 0; k < owned.size(); ++k) {
-      slots_[static_cast<std::size_t>(chunk.first_edge) + k] = owned[k].first;
-      edges_[static_cast<std::size_t>(chunk.first_edge) + k] = owned[k].second;
+      map.slots[static_cast<std::size_t>(chunk.first_edge) + k] = owned[k].first;
+      map.edges[static_cast<std::size_t>(chunk.first_edge) + k] = owned[k].second;
     }
     for (int k = chunk.owned_edges; k < chunk.edges; ++k) {
-      slots_[static_cast<std::size_t>(chunk.first_edge + k)] = slot_of(chunk, k);
-      edges_[static_cast<std::size_t>(chunk.first_edge + k)] = static_cast<std::uint16_t>(k);
+      map.slots[static_cast<std::size_t>(chunk.first_edge + k)] = slot_of(chunk, k);
+      map.edges[static_cast<std::size_t>(chunk.first_edge + k)] = static_cast<std::uint16_t>(k);
     }
   }
-  shared_slots_.clear();
+  map.shared_slots.clear();
   for (int k = 0; k < chunks.shared_edges.count(); ++k)
-    shared_slots_.push_back({slot(chunks.shared_edges.first[static_cast<std::size_t>(k)],
-                                  chunks.shared_edges.second[static_cast<std::size_t>(k)]),
-                             k});
-  std::sort(shared_slots_.begin(), shared_slots_.end(),
+    map.shared_slots.push_back({slot(chunks.shared_edges.first[static_cast<std::size_t>(k)],
+                                     chunks.shared_edges.second[static_cast<std::size_t>(k)]),
+                                k});
+  std::sort(map.shared_slots.begin(), map.shared_slots.end(),
             [](const SharedSlot& a, const SharedSlot& b) { return a.slot < b.slot; });
-  prefer_huge_pages(slots_);
-  version_ = A.slot_map_version;
-  first_node_ = first_node;
+  prefer_huge_pages(map.slots);
+  map.key = A.slot_map_key;
+  map.first_node = first_node;
 }
 
 void DeferredScatter::fit(const ElementChunks& chunks, int threads) {
@@ -83,8 +92,8 @@ void DeferredScatter::end(const ElementChunks& chunks, int c, int thread, bool l
   Buffers& b = buffers_[static_cast<std::size_t>(thread)];
   kernels.scatter(b.before, b.before.count);
   b.before = {b.blocks[b.current].blocks(),
-              edges_.data() + chunk.first_edge,
-              slots_.data() + chunk.first_edge,
+              map().edges.data() + chunk.first_edge,
+              map().slots.data() + chunk.first_edge,
               A.values.data(),
               in_order() ? nullptr : shared_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_edge),
               chunk.owned_edges,
@@ -106,17 +115,19 @@ void DeferredScatter::finish(const ElementChunks& chunks, const SharedKernels& k
   const int edges = shared.count();
   for_each_sum(edges, [&](int k) {
     if (k + kSumsAhead < edges) {
-      const SharedSlot& next = shared_slots_[static_cast<std::size_t>(k + kSumsAhead)];
+      const SharedSlot& next = map().shared_slots[static_cast<std::size_t>(k + kSumsAhead)];
       prefetch_contributions(shared, next.edge, shared_.data());
       prefetch_block(A.values.data() + 9 * static_cast<std::size_t>(next.slot));
     }
-    const auto [slot, edge] = shared_slots_[static_cast<std::size_t>(k)];
+    const auto [slot, edge] = map().shared_slots[static_cast<std::size_t>(k)];
     add_contributions(shared, edge, shared_, A.values.data() + 9 * static_cast<std::size_t>(slot));
   });
 }
 
 std::size_t DeferredScatter::map_bytes() const {
-  return bytes_of(slots_) + bytes_of(edges_) + bytes_of(shared_slots_);
+  std::size_t sum = 0;
+  for (const Map& map : maps_) sum += bytes_of(map.slots) + bytes_of(map.edges) + bytes_of(map.shared_slots);
+  return sum;
 }
 
 std::size_t DeferredScatter::scratch_bytes() const {

@@ -12,7 +12,8 @@ namespace palpate::fem {
 /// stores are then on their way while there is arithmetic to do.
 class DeferredScatter {
  public:
-  /// Makes the map into A's slots, unless it is the one at hand.
+  /// Takes the map into A's slots: one of the last two, or a new one.  Two matrices of different orders that
+  /// take turns (a step's, and one that a tool's touch is reduced with) so have one each.
   void prepare(const ElementChunks& chunks, int first_node, const dynamics::ZeroRowSumMatrix& A);
   void fit(const ElementChunks& chunks, int threads);
   /// Where a thread sums the blocks of its next chunk, and those of its last one, of which the kernel
@@ -47,13 +48,19 @@ class DeferredScatter {
 
   std::vector<Buffers> buffers_;  ///< one a thread
   std::vector<float> shared_;     ///< nine a contribution; the matrix is no finer itself
-  // the map
-  /// of each chunk's owned edges, ascending, then of its shared ones
-  std::vector<std::int32_t> slots_;
-  std::vector<std::uint16_t> edges_;      ///< the edge of each of slots_
-  std::vector<SharedSlot> shared_slots_;  ///< ascending
-  std::uint64_t version_ = 0;
-  int first_node_ = -1;
+  struct Map {
+    /// of each chunk's owned edges, ascending, then of its shared ones
+    std::vector<std::int32_t> slots;
+    std::vector<std::uint16_t> edges;      ///< the edge of each of slots
+    std::vector<SharedSlot> shared_slots;  ///< ascending
+    std::uint64_t key = 0;                 ///< ZeroRowSumMatrix::slot_map_key
+    int first_node = -1;
+  };
+  static void make(const ElementChunks& chunks, int first_node, const dynamics::ZeroRowSumMatrix& A,
+                   Map& map);
+  const Map& map() const { return maps_[current_]; }
+  Map maps_[2];
+  int current_ = 0;
 };
 
 }  // namespace palpate::fem

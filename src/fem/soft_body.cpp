@@ -1,6 +1,8 @@
 #include "palpate/fem/soft_body.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <utility>
 
 #include <Eigen/LU>
@@ -46,8 +48,9 @@ struct SoftBody::Impl {
   std::size_t law;  ///< place in law_registry()
   ElementEvaluation elements;
   std::vector<Material> materials;
-  ElementModels models;  ///< of the materials, for the evaluation at hand
-  VecX drag;             ///< mass-proportional damping of each node [kg/s]; empty: none
+  std::uint64_t materials_version = 0;  ///< of all bodies no two have the same
+  ElementModels models;                 ///< of the materials, for the evaluation at hand
+  VecX drag;                            ///< mass-proportional damping of each node [kg/s]; empty: none
   ElementCounts counts;
   bool definite = false;  ///< the projected tangent in place of the named one
 
@@ -117,6 +120,8 @@ struct SoftBody::Impl {
   }
 
   void set(const std::vector<Material>& list) {
+    static std::atomic<std::uint64_t> sets{0};
+    materials_version = ++sets;
     materials = list;
     models.resize(list.size());
     drag.resize(0);
@@ -170,6 +175,7 @@ dynamics::TermTraits SoftBody::traits() const {
 
 void SoftBody::project_to_psd(bool on) { impl_->definite = on; }
 bool SoftBody::fuses_step() const { return !impl_->by_position(); }
+std::uint64_t SoftBody::step_version() const { return 2 * impl_->materials_version + impl_->definite; }
 
 dynamics::Diagnostic SoftBody::inspect(const StateView& state) const {
   const NodeBlock at = impl_->block(state);

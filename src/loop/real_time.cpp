@@ -86,6 +86,7 @@ class RealTime {
     bodies_.start();
     bodies_.query();
     publish();
+    if (world_.stepper) world_.stepper->prepare(bodies_.period());
     std::thread thread([this] { tick_to_the_end(); });
     ready_.wait();
     try {

@@ -39,6 +39,9 @@ namespace palpate::loop {
 // its own, and a random one (the felt force knew by which method the body had come to rest, to 4e-5).  It is
 // left out.
 //
+// A step of linearly implicit Euler over H has the same elements at the same state: what they give is kept
+// for it (dynamics::KeptStep), and for other tools.
+//
 // Modes: y = S q, S^T X^T M X S = 1, S^T X^T K X S = diag(k).  Directions that are combinations of the others
 // to kAlike are left out; k < 0 (an inverted element) and what D has of negative is taken for zero.
 using contact::TouchModel;
@@ -155,7 +158,7 @@ bool TouchReduction::iterate(World& world, double H, Answers& out) {
   if (!response_ || !assembly_.applies(view)) return false;
   dynamics::ZeroRowSumMatrix& A = response_->step_matrix(assembly_.pattern());
   VecX r;
-  assembly_.assemble(view, out.s, 1.0, H, H * H, r, A);
+  assembly_.assemble(view, out.s, 1.0, H, H * H, r, A, true);
   if (response_->take_step_matrix() != SolveStatus::kOk) return false;
   out.stiff = out.f - r;
   MatX& rhs = out.loads;
@@ -323,7 +326,19 @@ Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, con
 
 }  // namespace
 
+/// Orders, maps and memory, before anything is touched: at the first touch a hand would wait for them.
+void TouchReduction::prepare(World& world, double H) {
+  prepared_ = true;
+  const dynamics::StateView view = world.state.view();
+  if (!response_ || !assembly_.applies(view)) return;
+  dynamics::ZeroRowSumMatrix& A = response_->step_matrix(assembly_.pattern());
+  VecX r;
+  assembly_.assemble(view, VecX::Zero(world.state.layout().u_size), 1.0, H, H * H, r, A, true);
+  response_->take_step_matrix();
+}
+
 bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& out) {
+  if (!prepared_) prepare(world, H);
   const contact::SecantTangents as_ticks_have_it(*world.contact);
   const dynamics::StateView view = world.state.view();
   out = {};

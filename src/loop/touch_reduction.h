@@ -23,10 +23,12 @@ class TouchReduction {
  private:
   struct Answers;
   static Eigen::Index spread_patterns(Answers& x, Eigen::Index size);
+  void prepare(World& world, double H);
   bool iterate(World& world, double H, Answers& out);
   bool factor(World& world, ToolSide& side, double H, Answers& out);
 
   double error_;
+  bool prepared_ = false;
   dynamics::StepAssembly assembly_;
   std::unique_ptr<linear::StepResponse> response_;
   std::unique_ptr<Answers> answers_;  ///< its room is kept from exchange to exchange

@@ -18,12 +18,18 @@ namespace palpate::dynamics {
 class ChainSprings : public ForceTerm, public FusedStepTerm {
  public:
   ChainSprings(int nodes, double k, bool fuses = true) : nodes_(nodes), k_(k), fuses_(fuses) {}
+  std::uint64_t version = 0;  ///< step_version()
+  int assembled = 0;          ///< calls of add_step()
+  double drag = 0.0;          ///< mass-proportional damping, in add_step() alone [kg/s]
   std::string_view name() const override { return "springs"; }
   TermTraits traits() const override { return {}; }
   bool fuses_step() const override { return fuses_; }
-  void add_step(const StateView& s, const VecX& shift, double k_scale, double, VecX& f,
+  std::uint64_t step_version() const override { return version; }
+  void add_step(const StateView& s, const VecX& shift, double k_scale, double d_scale, VecX& f,
                 ZeroRowSumMatrix& A) override {
+    ++assembled;
     add_step_force(s, shift, shift, f);
+    A.diagonal.array() += d_scale * drag;
     for (int i = 0; i + 1 < nodes_; ++i)
       Eigen::Map<Eigen::Matrix3f>(A.values.data() +
                                   9 * A.slot_map[static_cast<std::size_t>(A.pattern->slot(i, i + 1))]) =

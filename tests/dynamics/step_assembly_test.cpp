@@ -24,7 +24,7 @@ ZeroRowSumMatrix room_for(const BlockSparse& pattern) {
             pairs++;
     }
   A.values.assign(9 * static_cast<std::size_t>(pairs), 0.0f);
-  A.slot_map_version = 1;
+  A.slot_map_key = 1;
   return A;
 }
 
@@ -149,4 +149,91 @@ TEST(StepAssembly, FindsTheCapabilityOfATermThatIsAddedLater) {
     c.system.force(c.state.view(), want);
     EXPECT_EQ(f, want);
   }
+}
+
+namespace {
+
+/// A chain of which a step was kept, and one that never keeps any.
+struct KeptChain {
+  Chain c{5}, fresh{5};
+  VecX shift = VecX::LinSpaced(15, -1.0, 2.0);
+  double d = 0.1, k = 0.01;
+  ZeroRowSumMatrix A, B;
+  VecX f, g;
+
+  explicit KeptChain(std::uint64_t version = 7) {
+    for (Chain* one : {&c, &fresh}) {
+      one->system.add(std::make_shared<ChainMass>(one->block, 5, 2.0));
+      one->system.prepare(one->state.view());
+      springs_of(*one).drag = 3.0;
+    }
+    springs().version = version;
+    A = room_for(c.system.updated_pattern(c.state.view()));
+    B = room_for(fresh.system.updated_pattern(fresh.state.view()));
+    assemble(true);
+  }
+  static ChainSprings& springs_of(Chain& c) { return dynamic_cast<ChainSprings&>(*c.system.terms()[0]); }
+  ChainSprings& springs() { return springs_of(c); }
+  void assemble(bool keep) {
+    StepAssembly assembly(c.system);
+    ASSERT_TRUE(assembly.applies(c.state.view()));
+    assembly.assemble(c.state.view(), shift, 1.0, d, k, f, A, keep);
+  }
+  /// Whether the terms were asked again, by an assembly of another's, into a matrix with other numbers in it.
+  /// What comes of it is in any case that of a system that keeps nothing.
+  bool asks_again() {
+    const int before = springs().assembled;
+    std::fill(A.values.begin(), A.values.end(), 77.0f);
+    assemble(false);
+    fresh.state.q() = c.state.q();
+    fresh.state.u() = c.state.u();
+    StepAssembly whole(fresh.system);
+    EXPECT_TRUE(whole.applies(fresh.state.view()));
+    whole.assemble(fresh.state.view(), shift, 1.0, d, k, g, B);
+    EXPECT_LE((f - g).norm(), 1e-10 * g.norm());
+    EXPECT_LE((A.diagonal - B.diagonal).norm(), 1e-10 * B.diagonal.norm());
+    for (std::size_t i = 0; i < B.values.size(); ++i) EXPECT_NEAR(A.values[i], B.values[i], 1e-6f);
+    return springs().assembled > before;
+  }
+};
+
+}  // namespace
+
+// Who asks for the step that was kept gets it without the terms; whoever asks for any other gets that.
+TEST(StepAssembly, TakesWhatWasKeptOfTheSameStepAlone) {
+  const auto changed = [](auto&& change) {
+    KeptChain chain;
+    change(chain);
+    return chain.asks_again();
+  };
+  EXPECT_FALSE(changed([](KeptChain&) {}));
+  EXPECT_FALSE(changed([](KeptChain& k) { k.shift *= 1.0 + 1e-12; })) << "by the rounding of a time";
+  EXPECT_FALSE(changed([](KeptChain& k) { k.d *= 1.0 - 1e-12; })) << "likewise";
+  EXPECT_TRUE(changed([](KeptChain& k) { k.shift[4] += 1e-7; }));
+  EXPECT_TRUE(changed([](KeptChain& k) { k.k *= 2.0; }));
+  EXPECT_TRUE(changed([](KeptChain& k) { k.d *= 2.0; }));
+  EXPECT_TRUE(changed([](KeptChain& k) { k.c.state.q()[7] += 1e-13; })) << "a state that has moved";
+  EXPECT_TRUE(changed([](KeptChain& k) { k.c.state.u()[7] += 1e-13; }));
+  EXPECT_TRUE(changed([](KeptChain& k) { ++k.springs().version; })) << "another material";
+  EXPECT_TRUE(changed([](KeptChain& k) { ++k.A.slot_map_key; })) << "a matrix of another order";
+  EXPECT_TRUE(changed([](KeptChain& k) { k.A.slot_map_key = 0; })) << "of an order without a name";
+}
+
+TEST(StepAssembly, KeepsNothingOfTermsWithoutAVersion) {
+  KeptChain chain(0);
+  EXPECT_TRUE(chain.asks_again());
+}
+
+// A step that is not kept leaves what is.
+TEST(StepAssembly, KeepsWhatItIsAskedToKeep) {
+  KeptChain chain;
+  const VecX shift = chain.shift;
+  chain.shift *= 2.0;
+  EXPECT_TRUE(chain.asks_again());
+  EXPECT_TRUE(chain.asks_again());
+  chain.shift = shift;
+  EXPECT_FALSE(chain.asks_again());
+  chain.shift *= 2.0;
+  chain.assemble(true);
+  EXPECT_FALSE(chain.asks_again());
 }

@@ -52,7 +52,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
     for (int s = 0; s < A.body.slot_count(); ++s) matrix.slot_map.push_back(s);  // more room than it needs
     matrix.values.resize(9 * matrix.slot_map.size());
     matrix.diagonal = f;
-    matrix.slot_map_version = 1;
+    matrix.slot_map_key = 1;
     const auto evaluate = [&] {
       for (dynamics::ForceTerm* term : std::initializer_list<dynamics::ForceTerm*>{&body, &dilatation}) {
         term->add_force(at.state.view(), f);

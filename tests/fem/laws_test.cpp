@@ -267,7 +267,7 @@ TEST_P(Laws, FusedStepIsForceProductAndTangent) {
       });
       A.values.assign(9 * static_cast<std::size_t>(pairs), 0.0f);
       A.diagonal = VecX::Zero(m.x.size());
-      A.slot_map_version = 1;
+      A.slot_map_key = 1;
       VecX f = VecX::Zero(m.x.size()), want = f, product = f, split = f;
       body.add_step(at.state.view(), m.w, 0.7, 1.3, f, A);
       body.add_step_force(at.state.view(), m.w, VecX::Zero(m.x.size()), split);

@@ -1,4 +1,5 @@
 #include "fem_fixture.h"
+#include "palpate/core/counters.h"
 #include "palpate/core/workers.h"
 #include "palpate/dynamics/zero_row_sum_matrix.h"
 
@@ -29,7 +30,7 @@ struct Room {
     });
     A.scale = kScale;
     A.diagonal = VecX::Ones(state.layout().u_size);
-    A.slot_map_version = 1;
+    A.slot_map_key = 1;
   }
   template <class Work>
   void each_pair(Work&& work) const {
@@ -186,4 +187,47 @@ TEST(Step, AnUnsymmetricTangentIsNotBalanced) {
   OneBody at(c.x, c.v);
   const SoftBody body("b", c.rest, material_with(0.4, 0.0), {.full_damping_tangent = true}, at.id);
   EXPECT_FALSE(body.fuses_step());
+}
+
+// Two matrices of different orders take turns (a step's, and one that a touch is reduced with): each is what
+// it is alone, and the map into each is made once.
+TEST(Step, MatricesOfTwoOrdersTakeTurns) {
+  const Case c(0.01);
+  OneBody at(c.x, c.v);
+  SoftBody body("b", c.rest, material_with(0.4, 0.3), {.tangent = Tangent::kWarped}, at.id);
+  Room forth(body, at.state), back(body, at.state);
+  const int pairs = (back.pattern.slot_count() - back.pattern.block_rows()) / 2;
+  for (int& slot : back.A.slot_map) slot = slot < 0 ? slot : pairs - 1 - slot;
+  back.A.slot_map_key = 2;
+  VecX f = VecX::Zero(c.x.size());
+  const long before = counters::counter("fem.scatter_map");
+  for (int turn = 0; turn < 3; ++turn) {
+    for (Room* room : {&forth, &back}) {
+      std::fill(room->A.values.begin(), room->A.values.end(), 77.0f);
+      body.add_step(at.state.view(), c.w, kK, kD, f, room->A);
+    }
+    int compared = 0;
+    forth.each_pair([&](int i, int j, int s) {
+      EXPECT_EQ(forth.block(i, j, s), back.block(i, j, s)) << "turn " << turn << ", block " << s;
+      ++compared;
+    });
+    EXPECT_GT(compared, 10000);
+  }
+  EXPECT_EQ(counters::counter("fem.scatter_map") - before, 2);
+}
+
+// What a step is kept by (dynamics::KeptStep) changes with materials and tangents, and back with these.
+TEST(Step, VersionsTellWhenItWouldBeAnother) {
+  const Case c(0.01);
+  OneBody at(c.x, c.v);
+  SoftBody body("b", c.rest, soft_material(), {}, at.id), other("c", c.rest, soft_material(), {}, at.id);
+  const std::uint64_t first = body.step_version();
+  EXPECT_NE(first, 0u);
+  EXPECT_NE(first, other.step_version());
+  body.project_to_psd(true);
+  EXPECT_NE(body.step_version(), first);
+  body.project_to_psd(false);
+  EXPECT_EQ(body.step_version(), first);
+  body.set_materials({soft_material()});
+  EXPECT_NE(body.step_version(), first);
 }

@@ -39,6 +39,32 @@ TEST(LinearlyImplicitEuler, StepsTheSameInOnePass) {
   }
 }
 
+// What is done beforehand need not be done by the first step, and changes neither the state nor, but for what
+// a linear solver learned, the steps.
+TEST(LinearlyImplicitEuler, PreparesItsFirstStep) {
+  for (const std::string name : {"pcg-single", "pcg-two-level", "auto", "cholmod"}) {
+    BentBeam prepared(16, 1e5), other(16, 1e5);
+    const IntegratorSpec spec{
+        .name = "linearly-implicit-euler", .step_s = 2e-3, .linear_solver = name, .linear_rtol = 1e-6};
+    const auto ready = integrate::make_stepper(prepared.system, prepared.state, spec);
+    const auto cold = integrate::make_stepper(other.system, other.state, spec);
+    const VecX q = prepared.state.q(), u = prepared.state.u();
+    ready->prepare(2e-3);
+    EXPECT_EQ(prepared.state.q(), q);
+    EXPECT_EQ(prepared.state.u(), u);
+    EXPECT_EQ(prepared.state.time(), 0.0);
+    EXPECT_EQ(ready->counters().steps, 0);
+    const long analysed = ready->counters().solver.symbolic;
+    EXPECT_EQ(analysed, name == "auto" ? 2 : 1) << name;  // one for each of the two that it tries
+    for (const auto& stepper : {ready.get(), cold.get()})
+      for (int k = 1; k <= 2; ++k) ASSERT_TRUE(stepper->advance_to(2e-3 * k).ok());
+    EXPECT_EQ(ready->counters().solver.symbolic, analysed) << name;
+    EXPECT_EQ(ready->counters().steps, 2);
+    const VecX moved = other.state.q() - other.rest;
+    EXPECT_LT((prepared.state.q() - other.state.q()).norm(), 1e-5 * moved.norm()) << name;
+  }
+}
+
 TEST(LinearlyImplicitEuler, AllocatesNothingOnceWarm) {
 #if PALPATE_CAN_COUNT
   for (const std::string name : {"pcg-single", "pcg-two-level", "auto"}) {

@@ -74,7 +74,7 @@ struct Preconditioner {
   Preconditioner(const SpringBlock& block, int count, int parts, int pieces, int threads = 1,
                  bool with_positions = true)
       : team(threads) {
-    matrix.analyse(block.A.body, count, parts, pieces);
+    matrix.analyse(block.A.body, {count, parts, pieces});
     clusters.prepare(matrix.order());
     iteration.prepare();
     EXPECT_EQ(matrix.take(block.A, 0, nullptr, nullptr), dynamics::SolveStatus::kOk);

@@ -260,4 +260,26 @@ TEST(StepResponse, SaysThatAMatrixIsIndefinite) {
   EXPECT_EQ(status, SolveStatus::kIndefinite);
 }
 
+// What is assembled for a touch can be taken for the step, and the other way round, whichever solver has it.
+TEST(StepResponse, HasTheOrderOfTheSolvers) {
+  for (const int cells : {8, 16, 32}) {
+    BentBeam beam(cells, 1e5);
+    const BlockSparse& pattern = beam.pattern();
+    StepResponse response(1);
+    const ZeroRowSumMatrix& mine = response.step_matrix(pattern);
+    EXPECT_NE(mine.slot_map_key, 0u);
+    for (const char* name : {"pcg-single", "pcg-two-level"}) {
+      const auto solver = linear::make_linear_solver(name);
+      const ZeroRowSumMatrix* theirs = dynamic_cast<MixedPrecisionSolver&>(*solver).step_matrix(pattern);
+      ASSERT_TRUE(theirs);
+      EXPECT_EQ(theirs->slot_map, mine.slot_map) << name;
+      EXPECT_EQ(theirs->slot_map_key, mine.slot_map_key) << name;
+    }
+  }
+  BentBeam one(8, 1e5), other(12, 1e5);
+  StepResponse response(1), second(1);
+  EXPECT_NE(response.step_matrix(one.pattern()).slot_map_key,
+            second.step_matrix(other.pattern()).slot_map_key);
+}
+
 }  // namespace palpate

@@ -15,6 +15,9 @@ class FusedStepTerm {
   virtual ~FusedStepTerm() = default;
   /// Whether the tangent that the term has at present is symmetric with zero row sums.
   virtual bool fuses_step() const { return true; }
+  /// Differs where add_step() would give something else at the same state and scales: materials, tangents.
+  /// 0: not known, and what it gives is never kept.
+  virtual std::uint64_t step_version() const { return 0; }
   /// f += force - K shift and A += k_scale K + d_scale D.  Off-diagonal blocks are stored, not added:
   /// StepAssembly is used only where no two terms write the same block.
   virtual void add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
@@ -52,8 +55,11 @@ class StepAssembly {
   /// these.
   const BlockSparse& pattern() const { return any_beside_ ? pattern_ : system_.pattern(); }
   /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held.
+  /// What the fused terms give is taken from System::kept_step() where that is of these scales, this state
+  /// and shift, to a relative 1e-9 of shift and scales.
+  /// @param keep  keeps it there for the next who asks
   void assemble(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale,
-                VecX& f, ZeroRowSumMatrix& A);
+                VecX& f, ZeroRowSumMatrix& A, bool keep = false);
   /// r = h (sum of force - K shift - D change) - M change, zero along driven directions; without a matrix.
   void residual(const StateView& state, const VecX& shift, const VecX& change, double h, VecX& r);
 
@@ -64,13 +70,19 @@ class StepAssembly {
     PointStiffnessTerm* beside;
   };
   void find_parts();
+  bool find_versions();
+  bool is_kept(const StateView& state, const VecX& shift, double d_scale, double k_scale,
+               const ZeroRowSumMatrix& A) const;
+  void add_fused(const StateView& state, const VecX& shift, double d_scale, double k_scale, VecX& f,
+                 ZeroRowSumMatrix& A, bool keep);
   void update_own_pattern(const Layout& layout);
 
   System& system_;
   std::vector<Part> parts_;
   bool all_can_ = false, any_beside_ = false, disjoint_ = false;
-  std::uint64_t pattern_version_ = 0;  ///< that disjoint_ was found for
-  BlockSparse pattern_;                ///< without the terms beside it
+  std::uint64_t pattern_version_ = 0;         ///< that disjoint_ was found for
+  BlockSparse pattern_;                       ///< without the terms beside it
+  std::vector<std::uint64_t> step_versions_;  ///< of the fused terms; empty: one of them has none
   /// versions of the layout and of the terms that it was made of; scratch
   std::vector<std::uint64_t> made_of_, versions_;
 };

@@ -175,6 +175,11 @@ class Stepper {
   /// Steps until exactly t_end (> state time); on success the State's time is t_end.  On failure the State
   /// holds the last good step.
   virtual StepResult advance_to(double t_end) = 0;
+  /// Does what the first step would do for all others, analyses and memory, where somebody waits for that
+  /// step. The State stays as it is, and so do later results, to within the tolerance of a linear solver that
+  /// learns from its solutions.
+  /// @param interval  that advance_to() will be asked for [s]
+  virtual void prepare(double /*interval*/) {}
   /// q and u at a time within the last step (or between the last two outputs), by the method's own
   /// interpolant.  False where t is outside.
   virtual bool dense_output(double t, VecX& q, VecX& u) const = 0;

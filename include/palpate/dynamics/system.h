@@ -7,6 +7,7 @@
 #include "palpate/dynamics/driven_motion.h"
 #include "palpate/dynamics/force_term.h"
 #include "palpate/dynamics/inertia_term.h"
+#include "palpate/dynamics/kept_step.h"
 #include "palpate/dynamics/linear_solver.h"
 #include "palpate/dynamics/psd_projection.h"
 #include "palpate/dynamics/stored_tangent.h"
@@ -107,6 +108,10 @@ class System {
   /// Power [W] of the drives that follow given paths: their forces on the directions that no master carries.
   double support_power(const StateView& state);
 
+  /// What StepAssembly::assemble() was asked to keep of the fused terms.
+  KeptStep& kept_step() { return kept_step_; }
+  const KeptStep& kept_step() const { return kept_step_; }  ///< likewise
+
   double kinetic_energy(const StateView& state) const;  ///< 1/2 u M u [J]
   double potential_energy(const StateView& state);      ///< sum over terms [J]
 
@@ -162,6 +167,7 @@ class System {
   std::vector<TermPairs> term_pairs_;  ///< of each term, at its version
   NodePairs mass_pairs_;
   std::uint64_t pairs_layout_ = 0;  ///< layout version that they were found for
+  KeptStep kept_step_;
   mutable VecX scratch_, known_;
   VecX force_scratch_, held_scratch_, acceleration_scratch_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -68,6 +69,7 @@ class SoftBody : public dynamics::ForceTerm,
   void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x,
                      VecX& y) override;
   bool fuses_step() const override;
+  std::uint64_t step_version() const override;
   void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,
                       VecX& f) override;
   void add_step(const dynamics::StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,

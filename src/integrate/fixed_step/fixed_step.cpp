@@ -42,6 +42,22 @@ FixedStep::FixedStep(std::string name, int order, Between between, dynamics::Sys
   counters::count("integrate." + name_);
 }
 
+double FixedStep::steps_in(double interval) const {
+  return std::max(1.0, std::ceil(interval / spec_.step_s * (1.0 - tuning::kRoundingOfStep)));
+}
+
+/// Attempts that are forgotten, whatever became of them; two, for solver "auto" chooses by its first matrix.
+void FixedStep::prepare(double interval) {
+  if (layout().u_size == 0) return;
+  const double h = interval / steps_in(interval);
+  q1_.resize(layout().q_size);
+  u1_.resize(layout().u_size);
+  for (int k = 0; k < 2; ++k) {
+    attempt(h, state_.time() + h);
+    forget(dynamics::ReinitReason::kStateChanged);
+  }
+}
+
 StepResult FixedStep::advance_to(double t_end) {
   const double start = state_.time();
   PALPATE_CHECK(t_end > start, "t_end = {} is not after t = {}", t_end, start);
@@ -52,9 +68,7 @@ StepResult FixedStep::advance_to(double t_end) {
     return result;
   }
   taken_ = 0;
-  const double count =
-                   std::max(1.0, std::ceil((t_end - start) / spec_.step_s * (1.0 - tuning::kRoundingOfStep))),
-               h = (t_end - start) / count;
+  const double count = steps_in(t_end - start), h = (t_end - start) / count;
   for (double k = 1.0; state_.time() < t_end; ++k) {
     result = cover(k < count ? start + k * h : t_end, h, t_end);
     if (!result.ok()) return result;

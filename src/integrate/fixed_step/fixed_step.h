@@ -27,6 +27,7 @@ class FixedStep : public dynamics::Stepper {
  public:
   std::string name() const final { return name_; }
   dynamics::StepResult advance_to(double t_end) final;
+  void prepare(double interval) final;
   bool dense_output(double t, VecX& q, VecX& u) const final;
   void reinit(dynamics::ReinitReason reason) final;
   bool follow(dynamics::StepFollower* follower) final {
@@ -72,6 +73,7 @@ class FixedStep : public dynamics::Stepper {
   VecX a0_, a1_;  ///< u' at both ends of the last step, for kCubicWithAcceleration
 
  private:
+  double steps_in(double interval) const;
   dynamics::StepResult cover(double t1, double h, double t_end);
   void accept(double h, double t1);
   void tell(const Attempt& attempt, double h, double t1, int halvings) const;

@@ -5,6 +5,19 @@
 namespace palpate::linear {
 namespace {
 
+/// Nodes of a cluster, and most clusters: E^-1 is dense, (6 clusters)^2 numbers read in each iteration and (6
+/// clusters)^3 operations a refresh.
+constexpr int kNodesOfCluster = 150, kMostClusters = 48;
+/// Nodes of its pieces.  The count of iterations hardly changes from 16 to 64, and with pieces it is with 48
+/// clusters what it is with 96 (beams of 32,400 and 99,238 nodes).
+constexpr int kNodesOfPiece = 32;
+/// Nodes of a part, at most: its share of vectors and of the matrix fits a second-level cache, and few pairs
+/// of nodes are cut.  Parts come in fours, for threads to share; very small matrices have one.
+constexpr int kNodesOfPart = 3072, kNodesOfOnePart = 512;
+int parts_of(int nodes) {
+  return nodes <= kNodesOfOnePart ? 1 : 4 * ((nodes + 4 * kNodesOfPart - 1) / (4 * kNodesOfPart));
+}
+
 class Bisection {
  public:
   Bisection(const dynamics::BlockSparse& A, NodeOrder& order)
@@ -65,6 +78,19 @@ class Bisection {
 };
 
 }  // namespace
+
+NodeOrderSizes two_level_sizes(int nodes) {
+  const int clusters = std::min((nodes + kNodesOfCluster - 1) / kNodesOfCluster, kMostClusters);
+  int parts = std::min(parts_of(nodes), clusters);
+  // one or two in a part would differ in size by two
+  if (clusters == kMostClusters && parts < clusters && 2 * parts > clusters) parts = clusters / 2;
+  return {clusters, parts, nodes / kNodesOfPiece};
+}
+
+NodeOrderSizes one_level_sizes(int nodes) {
+  const NodeOrderSizes sizes = two_level_sizes(nodes);
+  return sizes.parts == parts_of(nodes) ? sizes : NodeOrderSizes{parts_of(nodes), parts_of(nodes), 0};
+}
 
 NodeOrder cluster_nodes(const dynamics::BlockSparse& A, int clusters, int parts, int pieces) {
   const int n = A.block_rows();

@@ -21,6 +21,16 @@ struct NodeOrder {
   int first_node(std::size_t p) const { return start[static_cast<std::size_t>(part[p])]; }
 };
 
+/// How many of each.
+struct NodeOrderSizes {
+  int clusters, parts, pieces;
+};
+/// For a coarse space on rigid clusters (rigid_mode_coarse_space.h).
+NodeOrderSizes two_level_sizes(int nodes);
+/// For parts alone; of all but large bodies the same, so that what one solver was given another can take
+/// (dynamics::KeptStep).
+NodeOrderSizes one_level_sizes(int nodes);
+
 /// Recursive bisection by breadth-first levels (George 1973): from a node far from all others, the half that
 /// is reached first is cut off.  The cut is about as small as a level of the graph.  O(nodes log clusters);
 /// needs no positions.  First into parts, then each part into its share of the clusters, then each cluster

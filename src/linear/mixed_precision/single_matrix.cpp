@@ -1,7 +1,6 @@
 #include "linear/mixed_precision/single_matrix.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -28,11 +27,21 @@ struct Columns {
   }
 };
 
+/// FNV-1a, word by word, of where the block of each pair of nodes stands; never zero.
+std::uint64_t key_of(const dynamics::BlockSparse& pattern, const std::vector<int>& slot_map) {
+  std::uint64_t key = 0xcbf29ce484222325u;
+  const auto add = [&](int word) { key = (key ^ static_cast<std::uint32_t>(word)) * 0x100000001b3u; };
+  for (const int row : pattern.row_start()) add(row);
+  for (const int column : pattern.columns()) add(column);
+  for (const int slot : slot_map) add(slot);
+  return key | 1u;
+}
+
 }  // namespace
 
-void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, int part_count, int pieces) {
+void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, const NodeOrderSizes& sizes) {
   pattern_version_ = pattern.pattern_version();
-  order_ = cluster_nodes(pattern, clusters, part_count, pieces);
+  order_ = cluster_nodes(pattern, sizes.clusters, sizes.parts, sizes.pieces);
   const std::size_t n = order_.node.size();
   place_of_node_.resize(n);
   for (std::size_t k = 0; k < n; ++k)
@@ -112,7 +121,6 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Sin
 /// Elements that lie together then write what lies together, and packing meets the blocks of sixteen rows one
 /// after the other in each.
 dynamics::ZeroRowSumMatrix& SingleMatrix::room(const dynamics::BlockSparse& pattern) {
-  static std::atomic<std::uint64_t> version{0};
   written_.pattern = &pattern;
   if (!mass_single_.empty()) return written_;
   const std::size_t n = order_.node.size();
@@ -146,7 +154,7 @@ dynamics::ZeroRowSumMatrix& SingleMatrix::room(const dynamics::BlockSparse& patt
       if (i < j)
         transposed_[step] = static_cast<std::uint16_t>(transposed_[step] | (1u << at % kLanesOfGroup));
     }
-  written_.slot_map_version = ++version;
+  written_.slot_map_key = key_of(pattern, written_.slot_map);
   prefer_huge_pages(written_.values);
   prefer_huge_pages(written_offset_);
   return written_;

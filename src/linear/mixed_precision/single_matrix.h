@@ -22,7 +22,7 @@ class SingleMatrix {
   SingleMatrix(const NodeKernels& kernels, ClusterTeam& team) : kernels_(kernels), team_(team) {}
 
   /// Order, rows and memory for a pattern.
-  void analyse(const dynamics::BlockSparse& pattern, int clusters, int parts, int pieces);
+  void analyse(const dynamics::BlockSparse& pattern, const NodeOrderSizes& sizes);
   bool analysed(const dynamics::BlockSparse& pattern) const {
     return pattern_version_ != 0 && pattern_version_ == pattern.pattern_version();
   }

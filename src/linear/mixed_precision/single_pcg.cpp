@@ -23,24 +23,12 @@ using dynamics::ZeroRowSumMatrix;
 
 /// Tighter than rounding of the residual in double is not asked for.
 constexpr double kTightest = 1e-13;
-/// Nodes of a cluster, and most clusters: E^-1 is dense, (6 clusters)^2 numbers read in each iteration and (6
-/// clusters)^3 operations a refresh.
-constexpr int kNodesOfCluster = 150, kMostClusters = 48;
-/// Nodes of its pieces.  The count of iterations hardly changes from 16 to 64, and with pieces it is with 48
-/// clusters what it is with 96 (beams of 32,400 and 99,238 nodes).
-constexpr int kNodesOfPiece = 32;
 /// Rounding of a number in single precision, relative; and how many tolerances the bound below may come to
 /// for a body one element thick.
 constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
 /// Matrices of a pattern, after one that was too coarse, that are asked for in double: what is beside the
 /// pattern may have been the reason, and may be gone.
 constexpr int kRefusedFor = 64;
-/// Nodes of a part, at most: its share of vectors and of the matrix fits a second-level cache, and few pairs
-/// of nodes are cut.  Parts come in fours, for threads to share; very small matrices have one.
-constexpr int kNodesOfPart = 3072, kNodesOfOnePart = 512;
-int parts_of(int nodes) {
-  return nodes <= kNodesOfOnePart ? 1 : 4 * ((nodes + 4 * kNodesOfPart - 1) / (4 * kNodesOfPart));
-}
 
 /// Conjugate gradients in single precision on a copy of the matrix (36 bytes a block where double takes 72:
 /// an iteration is one reading of it), right in double:
@@ -199,13 +187,8 @@ class SinglePcg final : public dynamics::LinearSolver,
     if (copy_.analysed(pattern)) return;
     const ScopedTimer timer(counters_.symbolic_s);
     ++counters_.symbolic;
-    const int n = pattern.block_rows(),
-              clusters = std::min((n + kNodesOfCluster - 1) / kNodesOfCluster, kMostClusters);
-    int parts = two_level_ ? std::min(parts_of(n), clusters) : parts_of(n);
-    // one or two in a part would differ in size by two
-    if (two_level_ && clusters == kMostClusters && parts < clusters && 2 * parts > clusters)
-      parts = clusters / 2;
-    copy_.analyse(pattern, two_level_ ? clusters : parts, parts, two_level_ ? n / kNodesOfPiece : 0);
+    const int n = pattern.block_rows();
+    copy_.analyse(pattern, two_level_ ? two_level_sizes(n) : one_level_sizes(n));
     if (two_level_) coarse_space_.prepare(copy_.order());
     state_.prepare();
     solve_.prepare();

@@ -29,7 +29,6 @@ using dynamics::SolveStatus;
 
 namespace {
 
-constexpr int kNodesOfCluster = 150, kMostClusters = 48, kNodesOfPiece = 32, kParts = 4;
 /// Matrices that a coarse space serves.
 constexpr int kMatricesOfCoarse = 50;
 /// Stiffness of a node over its mass (SingleMatrix::stiffness) from which on a coarse space is worth its
@@ -100,9 +99,7 @@ void StepResponse::Impl::prepare() {
 dynamics::ZeroRowSumMatrix& StepResponse::step_matrix(const dynamics::BlockSparse& pattern) {
   Impl& m = *impl_;
   if (!m.copy.analysed(pattern)) {
-    const int n = pattern.block_rows(),
-              clusters = std::min((n + kNodesOfCluster - 1) / kNodesOfCluster, kMostClusters);
-    m.copy.analyse(pattern, clusters, std::min(kParts, clusters), n / kNodesOfPiece);
+    m.copy.analyse(pattern, two_level_sizes(pattern.block_rows()));
     m.prepare();
   }
   dynamics::ZeroRowSumMatrix& room = m.copy.room(pattern);
