@@ -1,4 +1,6 @@
 // What a checkpoint keeps of contact.
+#include <algorithm>
+
 #include "contact/contact_force_impl.h"
 
 namespace palpate::contact {
@@ -21,8 +23,12 @@ void archive(Archive& a, std::string_view name, ResultantSize& size) {
 
 }  // namespace
 
+/// Ties are the scene's: they stand in front, and stay.
 void Bonds::archive(Archive& a) {
-  a.list("bond", bonds_, [&](Bond& bond) {
+  const auto first =
+      std::find_if(bonds_.begin(), bonds_.end(), [](const Bond& bond) { return bond.pair != Bond::kTied; });
+  std::vector<Bond> grasped(first, bonds_.end());
+  a.list("bond", grasped, [&](Bond& bond) {
     {
       const Archive::Group group(a, "held");
       contact::archive(a, bond.held);
@@ -36,6 +42,8 @@ void Bonds::archive(Archive& a) {
     a("pair", bond.pair);
     a("frame_is_a", bond.frame_is_a);
   });
+  bonds_.erase(first, bonds_.end());
+  bonds_.insert(bonds_.end(), grasped.begin(), grasped.end());
 }
 
 // The query is the last thing: it takes from those before what was given back.

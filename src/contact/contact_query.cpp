@@ -114,6 +114,12 @@ void ContactForce::set_grasp(int frame, bool closed) {
     m.grasps.push_back({.frame = frame, .wanted = true});
 }
 
+void ContactForce::tie(int frame, const std::vector<Tie>& ties) {
+  PALPATE_CHECK(frame >= 0 && frame < static_cast<int>(impl_->frames.size()), "frame {} of {}", frame,
+                impl_->frames.size());
+  impl_->bonds.tie(frame, ties);
+}
+
 GraspCounts ContactForce::grasp_counts() const { return impl_->grasp_counts; }
 
 double ContactForce::sample_bytes() const {

@@ -19,6 +19,8 @@ namespace palpate::contact {
 // takes w^T (1 - s n n^T) w d >= 0.  At the start y is such that F = 0 with u's normal part as it is: nothing
 // jumps.
 //
+// A node that a frame carries (ContactForce::tie) is held with n = 0: E = k/2 |u|^2, and F = -(k u + d w).
+//
 // Derivatives.  With the relative displacement at x, de = dp + dtheta x r - dx, the elastic force turns with
 // the frame (move all rigidly: de = 0, dF = dtheta x F), so
 //     dF = -K de + dtheta x F,                     K = k (1 - s n n^T),
@@ -54,16 +56,34 @@ BondForce Bonds::force(const Bond& bond, const dynamics::StateView& state,
                     bond.stiffness, bond.damping);
 }
 
+int Bonds::count() const {
+  int count = 0;
+  for (const Bond& bond : bonds_) count += bond.pair != Bond::kTied;
+  return count;
+}
+
 int Bonds::count_of(int frame) const {
   int count = 0;
-  for (const Bond& bond : bonds_) count += bond.frame == frame;
+  for (const Bond& bond : bonds_) count += bond.pair != Bond::kTied && bond.frame == frame;
   return count;
 }
 
 double Bonds::area() const {
   double area = 0.0;
-  for (const Bond& bond : bonds_) area += bond.area;
+  for (const Bond& bond : bonds_) area += bond.pair != Bond::kTied ? bond.area : 0.0;
   return area;
+}
+
+void Bonds::tie(int frame, const std::vector<Tie>& ties) {
+  PALPATE_CHECK(count() == 0, "ties come before grasps: {} points are held", count());
+  for (const Tie& tie : ties) {
+    SurfacePoint held;
+    held.count = 1;
+    held.node[0] = tie.node;
+    held.weight[0] = 1.0;
+    bonds_.push_back(
+        {held, frame, tie.anchor, Vec3::Zero(), tie.stiffness, tie.damping, 1.0, Bond::kTied, true});
+  }
 }
 
 // F = 0 where (1 - n n^T) (k u + d w) = 0: u = g n - d/k w across n.
@@ -92,7 +112,8 @@ int Bonds::take(const std::vector<ContactSample>& samples, int frame, const std:
 }
 
 void Bonds::let_go(int frame) {
-  std::erase_if(bonds_, [frame](const Bond& bond) { return bond.frame == frame; });
+  std::erase_if(bonds_,
+                [frame](const Bond& bond) { return bond.pair != Bond::kTied && bond.frame == frame; });
 }
 
 void Bonds::add_force(const dynamics::StateView& state, const std::vector<FrameState>& frames,
@@ -110,6 +131,7 @@ void Bonds::add_force(const dynamics::StateView& state, const std::vector<FrameS
 void Bonds::add_resultants(const dynamics::StateView& state, const std::vector<FrameState>& frames,
                            std::vector<Wrench>& on_a) const {
   for (const Bond& bond : bonds_) {
+    if (bond.pair == Bond::kTied) continue;
     const BondForce b = force(bond, state, frames);
     const Vec3 x = frames[static_cast<std::size_t>(bond.frame)].pose.translation + b.arm;
     const Vec3 on = bond.frame_is_a ? b.force : Vec3(-b.force);

@@ -11,11 +11,13 @@ namespace palpate::contact {
 
 /// A point of a body that a frame holds (grasp.cpp).
 struct Bond {
-  SurfacePoint held;          ///< on nodes
-  int frame = 0;              ///< that holds it
-  Vec3 anchor, normal;        ///< in the frame's axes: where it is held, and outward from the body, unit
+  static constexpr int kTied = -1;  ///< `pair` of a Tie: nothing presses there, and it is not let go
+  SurfacePoint held;                ///< on nodes
+  int frame = 0;                    ///< that holds it
+  /// in the frame's axes: where it is held, and outward from the body, unit; of a Tie zero
+  Vec3 anchor, normal;
   double stiffness, damping;  ///< [N/m, N s/m]
-  double area;                ///< [m^2]
+  double area;                ///< [m^2]; of a Tie 1
   int pair;
   bool frame_is_a;  ///< of the pair's sides
 };
@@ -45,8 +47,9 @@ inline Mat6 turning_part(const Vec3& elastic, const Vec3& arm) {
 class Bonds {
  public:
   bool empty() const { return bonds_.empty(); }
-  int count() const { return static_cast<int>(bonds_.size()); }
-  int count_of(int frame) const;
+  /// Of grasps, without ties, as area() is.
+  int count() const;
+  int count_of(int frame) const;  ///< likewise
   void archive(Archive& a);
   double area() const;
   /// Holds what presses on a frame, each point as it is.
@@ -54,6 +57,7 @@ class Bonds {
   int take(const std::vector<ContactSample>& samples, int frame, const std::vector<PressureLaw>& laws,
            const dynamics::StateView& state, const std::vector<FrameState>& frames);
   void let_go(int frame);
+  void tie(int frame, const std::vector<Tie>& ties);  ///< before anything is held
 
   /// @param rows  of each frame's six velocities in f, -1: none
   void add_force(const dynamics::StateView& state, const std::vector<FrameState>& frames,

@@ -250,7 +250,10 @@ std::unique_ptr<World> assemble(const scene::Description& description,
     if (side.spec) assemble_tool(*world, i);
   }
   assemble_attachments(*world);
-  if (!description.contacts.empty()) assemble_contact(*world);
+  const auto& sides = ToolSide::all(*world);
+  const bool carries =
+      std::any_of(sides.begin(), sides.end(), [](const auto& side) { return !side->ties.empty(); });
+  if (carries || !description.contacts.empty()) assemble_contact(*world);
   if (world->state.layout().blocks.empty()) return world;  // a tool with its own ticks, alone
   world->system.prepare(world->state.view());
   world->system.impose(world->state.layout(), 0.0, world->state.q().data(), world->state.u().data());

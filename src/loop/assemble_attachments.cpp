@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "assemble_parts.h"
 #include "palpate/bones/shape.h"
@@ -19,9 +20,10 @@ std::vector<int> nodes_inside(const World& world, const Body& body, const Attach
   if (spec.region == "box") return fem::nodes_in_box(body.placed, spec.box_min_m, spec.box_max_m);
   if (spec.region == "sphere") return fem::nodes_in_sphere(body.placed, spec.centre_m, spec.radius_m);
   const BoneSpec* bone = spec_of(world, spec.to);
-  if (!bone)
-    return fem::nodes_in_sphere(body.placed, world.description.tool->position_m,
-                                world.description.tool->radius_m);
+  if (!bone) {
+    const ToolSpec& tool = *scene::tool_named(world.description, spec.to);
+    return fem::nodes_in_sphere(body.placed, tool.position_m, tool.radius_m);
+  }
   const Pose from_world = Pose{quaternion_of(bone->rotation_vector_rad), bone->position_m}.inverse();
   std::vector<int> out;
   for (int i = 0; i < body.placed.cols(); ++i)
@@ -66,6 +68,15 @@ Carrier along_keyframes(const AttachmentSpec& spec) {
       nullptr};
 }
 
+Pose start_of(const ToolSpec& tool) { return {quaternion_of(tool.rotation_vector_rad), tool.position_m}; }
+
+/// Null where no tool is called so.
+ToolSide* tool_called(World& world, const std::string& name) {
+  for (const auto& side : ToolSide::all(world))
+    if (side->spec && side->name == name) return side.get();
+  return nullptr;
+}
+
 Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
   if (spec.to.empty()) return spec.keyframes.empty() ? Carrier{} : along_keyframes(spec);
   for (Bone& bone : world.bones)
@@ -76,17 +87,37 @@ Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
               {quaternion_of(placed.rotation_vector_rad), placed.position_m},
               &bone.dofs};
     }
-  if (spec.to != "tool" || !world.monolithic())
-    fail("body \"{}\": attachment to = \"{}\" is neither a bone nor the tool of a monolithic scheme",
-         body.name, spec.to);
-  return {ToolSide::of(world).block_id, {}, world.tool_pose(), nullptr};
+  const ToolSide* const tool = tool_called(world, spec.to);
+  if (!tool) fail("body \"{}\": attachment to = \"{}\" is neither a bone nor a tool", body.name, spec.to);
+  return {tool->block_id, {}, start_of(*tool->spec), nullptr};
 }
 
-void attach(World& world, const Body& body, const AttachmentSpec& spec) {
+/// By how much the spring of a node that a tool of ticks carries is stiffer than the tissue about the node.
+constexpr double kStiffer = 100.0;
+
+// A tool with ticks of its own is no part of the bodies' State: what it carries is tied to it, node by node.
+// A node of the volume V is held by its neighbours with a stiffness of about E a, a = V^(1/3); a spring k =
+// kStiffer E a, and a damper that is to it what the tissue's is to the tissue.  Seen from the body, a region
+// of the size R, which has (R/a)^2 nodes at least on a cut through it, is as stiff as E R, its springs as
+// kStiffer E a (R/a)^2: they give by a/(kStiffer R) of what the body does.
+void tie(const Body& body, const SoftBodySpec& tissue, const std::vector<int>& nodes, int first,
+         ToolSide& tool) {
+  const Pose from_world = start_of(*tool.spec).inverse();
+  for (const int node : nodes) {
+    const double length = std::cbrt(body.masses[node] / tissue.density_kg_m3),
+                 stiffness = kStiffer * tissue.youngs_modulus_pa * length;
+    tool.ties.push_back({first + node, from_world * Vec3(body.placed.col(node)), stiffness,
+                         stiffness * tissue.stiffness_damping_s});
+  }
+}
+
+void attach(World& world, const Body& body, const SoftBodySpec& tissue, const AttachmentSpec& spec) {
   const std::vector<int> nodes = nodes_inside(world, body, spec);
   check_nodes(body, spec, nodes);
-  const Carrier carrier = carrier_of(world, body, spec);
   const int first = world.state.layout().find(body.block_id)->u_offset / 3;
+  ToolSide* const tool = spec_of(world, spec.to) ? nullptr : tool_called(world, spec.to);
+  if (tool && !world.monolithic()) return tie(body, tissue, nodes, first, *tool);
+  const Carrier carrier = carrier_of(world, body, spec);
   const std::vector<int> dofs = fem::dofs_of_nodes(nodes, first, spec.axes);
   const Pose from_world = carrier.start.inverse();
   VecX x0(static_cast<Eigen::Index>(dofs.size()));
@@ -110,9 +141,11 @@ void attach(World& world, const Body& body, const AttachmentSpec& spec) {
 }  // namespace
 
 void assemble_attachments(World& world) {
-  for (std::size_t i = 0; i < world.bodies.size(); ++i)
-    for (const AttachmentSpec& attachment : world.description.bodies[i].attachments)
-      attach(world, world.bodies[i], attachment);
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const SoftBodySpec& spec = world.description.bodies[i];
+    for (const AttachmentSpec& attachment : spec.attachments)
+      attach(world, world.bodies[i], spec, attachment);
+  }
 }
 
 }  // namespace palpate::loop

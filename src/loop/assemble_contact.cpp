@@ -224,6 +224,12 @@ ToolSide* side_named(World& world, const std::string& name) {
   return nullptr;
 }
 
+/// Makes what hands a tool of ticks the bodies as it touches or carries them, unless it is there.
+void make_touch(World& world, ToolSide& side) {
+  if (side.trajectory && !side.touch && world.description.exchange.linearisation == "points")
+    side.touch = std::make_unique<TouchReduction>(world, world.description.exchange.linearisation_error);
+}
+
 /// @pre the names are in their order (scene::order_sides)
 std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec& spec) {
   contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
@@ -257,9 +263,13 @@ void assemble_contact(World& world) {
     // of a tool with ticks of its own on an obstacle no step matrix has a part
     if (side_named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "symmetric";
     world.contact->add_pair(source_of(world, spec), spec);
-    ToolSide* const side = side_named(world, spec.second);  // of a soft body's tool
-    if (side && side->trajectory && !side->touch && world.description.exchange.linearisation == "points")
-      side->touch = std::make_unique<TouchReduction>(world, world.description.exchange.linearisation_error);
+    if (ToolSide* const side = side_named(world, spec.second)) make_touch(world, *side);  // of a soft body
+  }
+  for (const auto& side : ToolSide::all(world)) {
+    if (side->ties.empty()) continue;
+    tool_motion(world, *side);
+    world.contact->tie(side->frame_index, side->ties);
+    make_touch(world, *side);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
 }

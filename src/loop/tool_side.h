@@ -52,6 +52,7 @@ struct ToolSide {
   std::shared_ptr<contact::TrajectoryFrame> trajectory;
   std::shared_ptr<proxy::ProxySet> proxies;  ///< null where it meets no body with proxies
   int frame_index = -1;                      ///< of that frame in the contact, -1 where no contact names it
+  std::vector<contact::Tie> ties;            ///< of the nodes that a tool of ticks carries
   /// of a tool of ticks that a contact names together with an obstacle; else null
   std::unique_ptr<ObstacleTouch> obstacles;
   /// of linearisation = "points"; else null

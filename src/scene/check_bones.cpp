@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "palpate/scene/hands.h"
 #include "scene/check.h"
 #include "scene/reader.h"
 
@@ -80,17 +81,17 @@ void check_target(const Document& doc, const std::string& key, const std::string
   const std::string at = location(doc, key + ".to");
   if (a.to == "tool") {
     if (!d.tool) refuse(at, where, "to = \"tool\", but the scene has no [tool]");
-    if (d.exchange.scheme != "monolithic")
-      refuse(at, where,
-             "to = \"tool\" needs [exchange] scheme = \"monolithic\": a tool with ticks of its own cannot "
-             "carry nodes of a body that steps later");
-  } else {
+  } else if (!tool_named(d, a.to)) {
     Names names;
     for (const BoneSpec& bone : d.bones) names.push_back(bone.name);
     const bool known = std::find(names.begin(), names.end(), a.to) != names.end();
+    for (const HandSpec& hand : d.hands) names.push_back(hand.name);
     if (!known && names.empty())
       refuse(at, where, fmt::format("to = \"{}\", but the scene has no [[bone]]", a.to));
-    if (!known) refuse(at, where, fmt::format("no bone is called \"{}\"{}", a.to, suggestion(a.to, names)));
+    if (!known)
+      refuse(at, where,
+             fmt::format("no bone{} is called \"{}\"{}", d.hands.empty() ? "" : " and no hand", a.to,
+                         suggestion(a.to, names)));
   }
   if (given(doc, key + ".axes"))
     refuse(location(doc, key + ".axes"), where,
@@ -109,7 +110,7 @@ std::string region_of(const Document& doc, const std::string& key, const std::st
            "box_min_m is missing: say which nodes, by box_min_m and box_max_m, or by centre_m and radius_m");
   const auto bone =
       std::find_if(d.bones.begin(), d.bones.end(), [&](const BoneSpec& b) { return b.name == a.to; });
-  if (bone != d.bones.end() ? bone->shape.empty() : d.tool->shape != "sphere")
+  if (bone != d.bones.end() ? bone->shape.empty() : tool_named(d, a.to)->shape != "sphere")
     refuse(location(doc, key), where,
            fmt::format("say which nodes, by box_min_m and box_max_m, or by centre_m and radius_m: \"{}\" has "
                        "no shape to take those inside of",

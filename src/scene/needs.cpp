@@ -49,7 +49,7 @@ void add_body_needs(const Description& d, const std::string& linear_solver, std:
   const int prescribed = count_if(d.bones, [](const auto&b) { return b.fixed || !b.keyframes.empty(); }),
             free = static_cast<int>(d.bones.size()) - prescribed;
   out.push_back({"carried nodes", carried > 0,
-                 carried > 0 ? fmt::format("{} [[body.attachment]] to a bone or the tool", carried)
+                 carried > 0 ? fmt::format("{} [[body.attachment]] to a bone or a tool", carried)
                              : "no [[body.attachment]] with to"});
   out.push_back({"rigid bones", free > 0,
                  free > 0         ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free)
@@ -80,6 +80,13 @@ void add_body_needs(const Description& d, const std::string& linear_solver, std:
   out.push_back({"linear solver", implicit, implicit ? fmt::format("{}; \"{}\"", why, linear_solver) : why});
 }
 
+/// Whether a tool with ticks of its own carries nodes.
+bool tools_carry(const Description& d) {
+  const auto by_tool = [&](const AttachmentSpec& a) { return tool_named(d, a.to) != nullptr; };
+  return d.exchange.scheme != "monolithic" &&
+         count_if(d.bodies, [&](const auto& body) { return count_if(body.attachments, by_tool) > 0; }) > 0;
+}
+
 void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const bool any = !d.contacts.empty();
   const int image = count_if(d.contacts, [](const auto&c) { return c.method != "analytic"; }),
@@ -88,7 +95,11 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const int rubbing = count_if(d.contacts, [](const auto& c) { return c.friction > 0.0; });
   const int own = count_if(d.contacts, [](const auto& c) { return c.first == c.second; });
   const std::string no_image = any ? "every contact has an analytic gap" : "no [[contact]]";
-  out.push_back({"contact", any, any ? fmt::format("{} [[contact]]", d.contacts.size()) : "no [[contact]]"});
+  const bool tied = tools_carry(d);
+  out.push_back({"contact", any || tied,
+                 any    ? fmt::format("{} [[contact]]", d.contacts.size())
+                 : tied ? "no [[contact]], but springs to what a tool carries"
+                        : "no [[contact]]"});
   out.push_back({"friction", rubbing > 0,
                  rubbing > 0 ? fmt::format("{} [[contact]] with friction > 0", rubbing)
                              : "no contact with friction > 0"});
@@ -126,8 +137,9 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                                             d.exchange.exchange_period_s)
                  : monolithic ? one_system
                               : "one rate only"});
-  const bool touched =
-      count_if(d.contacts, [&](const auto& c) { return tool_named(d, c.second) != nullptr; }) > 0;
+  const bool touched = tools_carry(d) || count_if(d.contacts, [&](const auto& c) {
+                                           return tool_named(d, c.second) != nullptr;
+                                         }) > 0;
   const bool points = two_rates && touched && d.exchange.linearisation == "points";
   out.push_back({"contact points", points,
                  points       ? "linearisation \"points\": bodies are reduced to what the tool touches"

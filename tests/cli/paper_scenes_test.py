@@ -185,6 +185,23 @@ class Slow(Scenes):
     def test_scrape_pumpkin(self):
         self.check("scrape-pumpkin")
 
+    def test_pumpkin_in_hand(self):
+        # held from the second keyframe on: the others are left out
+        self.check("pumpkin-in-hand", more=("device.keyframe=[{time_s=0.0, position_m=[0,0,0.092]}, "
+                                            "{time_s=0.4, position_m=[0,0,0.072]}]",))
+
+    def test_head_in_hand(self):
+        # held cheek to cheek
+        self.check("head-in-hand", more=("device.keyframe=[{time_s=0.0, position_m=[0.07,-0.008,-0.04]}, "
+                                         "{time_s=0.4, position_m=[0.055,-0.008,-0.04]}]",))
+
+    def test_gear_in_hand(self):
+        # held against the teeth
+        at = "position_m=[-0.094,0,0]"
+        self.check("gear-in-hand", more=(
+            "device.keyframe=[{time_s=0.0, position_m=[-0.098,0,0]}, {time_s=0.2, " + at + "}, "
+            "{time_s=0.6, " + at + ", rotation_vector_rad=[0,0,-0.12]}]",))
+
     def test_press_stack(self):
         # held from the second keyframe on: the others are left out
         self.check("press-stack", more=("device.keyframe=[{time_s=0.0, position_m=[0,0,0.081]}, "

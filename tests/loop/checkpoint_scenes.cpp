@@ -97,6 +97,14 @@ Cases make_cases() {
   for (KeyframeSpec& key : left.device.keyframes) key.position_m += Vec3(0.0, 0.01, 0.0);
   two.scene.contacts.push_back(two.scene.contacts[0]);
   two.scene.contacts[1].second = "left";
+  Case& soft = out["SoftTool"] = pressed("points");
+  soft.scene.contacts.clear();
+  AttachmentSpec carried;
+  carried.to = "tool";
+  carried.region = "box";
+  carried.box_min_m = Vec3(-1, -1, 0.019);
+  carried.box_max_m = Vec3(1, 1, 0.021);
+  soft.scene.bodies[0].attachments.push_back(carried);
   Case& grasp = out["Grasp"] = pressed("points");
   grasp.scene.tool->grasp_switch = 1;
   grasp.scene.device->presses = {{1, 0.031, 1.0}};

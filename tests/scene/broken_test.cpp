@@ -19,11 +19,10 @@ const Broken kCases[] = {
     {"attachment-nowhere", "8:1",
      "body \"ball\": attachment[0]: box_min_m is missing: say which nodes, by box_min_m and box_max_m, or by "
      "centre_m and radius_m"},
-    {"attachment-to-partitioned-tool", "9:6",
-     "body \"ball\": attachment[0]: to = \"tool\" needs [exchange] scheme = \"monolithic\": a tool with "
-     "ticks of its own cannot carry nodes of a body that steps later"},
     {"attachment-to-unknown", "9:6",
      "body \"ball\": attachment[0]: no bone is called \"fermur\" (did you mean \"femur\"?)"},
+    {"attachment-to-unknown-hand", "9:6",
+     "body \"ball\": attachment[0]: no bone and no hand is called \"rigth\" (did you mean \"right\"?)"},
     {"attachment-two-regions", "11:12",
      "body \"ball\": attachment[0]: a box and a sphere exclude each other; remove box_min_m and box_max_m, "
      "or centre_m and radius_m"},

@@ -144,6 +144,13 @@ struct GraspCounts {
   double largest_area = 0.0;  ///< held at once so far [m^2]
 };
 
+/// A node that a frame carries: a spring of zero length and a damper tie it to its place in the frame.
+struct Tie {
+  int node = 0;                           ///< counted over all node blocks
+  Vec3 anchor = Vec3::Zero();             ///< where it is tied, in the frame's axes [m]
+  double stiffness = 0.0, damping = 0.0;  ///< [N/m, N s/m]
+};
+
 struct TouchSample;  // touch_model.h
 struct TouchTangent;
 
@@ -191,6 +198,8 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   void set_grasp(int frame, bool closed);
   /// Since the start.
   GraspCounts grasp_counts() const;
+  /// Ties nodes to a frame, for good (src/contact/grasp.cpp).
+  void tie(int frame, const std::vector<Tie>& ties);
   /// Of the last query, one by one: made when they are asked for, at the price of a copy.
   const std::vector<ContactSample>& samples() const;
   /// Of the last query, candidates included.

@@ -115,7 +115,7 @@ struct World {
   dynamics::System system;                         ///< what moves them
   std::vector<Body> bodies;                        ///< in the scene's order
   std::vector<Bone> bones;                         ///< free, jointed and scripted ones
-  std::shared_ptr<contact::ContactForce> contact;  ///< null without [[contact]]
+  std::shared_ptr<contact::ContactForce> contact;  ///< null where nothing may touch
   std::unique_ptr<dynamics::Stepper> stepper;      ///< null without bodies
 
   /// Null where there is none of that name.

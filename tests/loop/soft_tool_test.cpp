@@ -1,0 +1,171 @@
+// A soft tool: the hand's tool carries nodes of a soft body, and ticks a thousand times a second all the
+// same.
+#include <gtest/gtest.h>
+
+#include "loop/small_scenes.h"
+#include "loop/tool_side.h"
+#include "palpate/contact/contact_force.h"
+#include "palpate/core/error.h"
+#include "palpate/loop/run.h"
+
+namespace {
+
+using namespace palpate;
+
+struct Ticks : loop::Observer {
+  void tick(const loop::TickRecord& tick) override { all.push_back(tick); }
+  std::vector<loop::TickRecord> all;
+};
+
+std::vector<loop::TickRecord> ticks_of(loop::World& world) {
+  Ticks ticks;
+  loop::RunOptions options;
+  options.observers = {&ticks};
+  const loop::RunResult result = loop::run(world, options);
+  EXPECT_TRUE(result.status.ok()) << result.status.message;
+  return ticks.all;
+}
+
+/// A block whose upper face a tool carries, its handle at rest.
+scene::Description carried_block() {
+  scene::Description d = small_scenes::pressed_block(0.0);
+  d.contacts.clear();
+  d.bodies[0].mesh.element_size_m = 0.005;
+  d.bodies[0].attachments[0].to = "tool";
+  d.bodies[0].attachments[0].region = "box";
+  d.bodies[0].attachments[0].box_min_m = Vec3(-1, -1, 0.019);
+  d.bodies[0].attachments[0].box_max_m = Vec3(1, 1, 0.021);
+  d.tool->coupling.rotational_stiffness_n_m_rad = 1.0;
+  d.tool->coupling.rotational_damping_n_m_s_rad = 5e-3;
+  d.device->max_force_n = 50.0;
+  d.device->max_torque_n_m = 5.0;
+  return d;
+}
+
+double mass_of(const scene::Description& d) { return d.bodies[0].density_kg_m3 * 0.04 * 0.04 * 0.02; }
+
+// What hangs on the tool weighs m g on the hand, and turns it by m g times the way to its centre.
+TEST(SoftTool, WeighsWhatItWeighs) {
+  for (const char* linearisation : {"points", "condensed", "monolithic"}) {
+    scene::Description d = carried_block();
+    d.duration_s = 1.0;
+    d.gravity_m_s2 = Vec3(0, 0, -9.81);
+    d.bodies[0].mass_damping_per_s = 20.0;  // it comes to rest
+    if (linearisation == std::string("monolithic"))
+      d.exchange.scheme = linearisation;
+    else
+      d.exchange.linearisation = linearisation;
+    const auto world = loop::assemble(d);
+    const auto ticks = ticks_of(*world);
+    const double weight = 9.81 * mass_of(d);
+    const loop::TickRecord& still = ticks.back();
+    EXPECT_NEAR(still.device.force.z(), -weight, 2e-3 * weight) << linearisation;
+    EXPECT_LE(still.device.force.head<2>().norm(), 2e-3 * weight) << linearisation;
+    // the tool stands 1 mm and 2 mm beside the block's middle, which hangs by the softness of the tissue
+    // aside
+    EXPECT_NEAR(still.device.moment.x(), 0.002 * weight, 5e-5 * weight) << linearisation;
+    EXPECT_NEAR(still.device.moment.y(), -0.001 * weight, 5e-5 * weight) << linearisation;
+  }
+}
+
+/// The block is swung aside and down, and on its way is pressed onto the floor.
+scene::Description swung_block() {
+  scene::Description d = carried_block();
+  d.duration_s = 0.3;
+  d.bodies[0].youngs_modulus_pa = 2e4;
+  d.bodies[0].mesh.element_size_m = 0.01;
+  ContactSpec law;
+  law.first = "block";
+  law.stiffness_pa_m = 1e7;
+  law.damping_pa_s_m = 1e4;
+  law.onset_width_m = 1e-4;
+  d.bodies[0].position_m.z() += 0.002;
+  d.bodies[0].attachments[0].box_min_m.z() += 0.002;
+  d.bodies[0].attachments[0].box_max_m.z() += 0.002;
+  d.tool->position_m.z() += 0.002;
+  small_scenes::add_floor(d, law);
+  d.device->keyframes[0].position_m = d.tool->position_m;
+  for (const auto& [t, x, z] : {std::tuple{0.1, 0.01, 0.0}, {0.2, 0.02, -0.004}, {0.3, 0.02, -0.004}}) {
+    KeyframeSpec next;
+    next.time_s = t;
+    next.position_m = d.tool->position_m + Vec3(x, 0.0, z);
+    d.device->keyframes.push_back(next);
+  }
+  return d;
+}
+
+std::vector<loop::TickRecord> swung(double period) {
+  scene::Description d = swung_block();
+  d.integrator.step_s = d.exchange.exchange_period_s = d.exchange.contact_refresh_s = period;
+  d.tool->tick_s = 5e-4;
+  return ticks_of(*loop::assemble(d));
+}
+
+// The hand feels what it would of one system in which the tool carries the nodes rigidly: the block's inertia
+// as it is swung, and the floor through the block.  The shorter a period the less they are apart.
+TEST(SoftTool, FeelsAsOneSystem) {
+  scene::Description d = swung_block();
+  d.exchange.scheme = "monolithic";
+  d.integrator.name = "implicit-midpoint";
+  d.integrator.step_s = d.exchange.contact_refresh_s = 2.5e-4;
+  d.exchange.exchange_period_s = d.tool->tick_s = 5e-4;
+  const auto truth = ticks_of(*loop::assemble(d));
+  double peak = 0.0, before = 0.15;
+  for (const loop::TickRecord& tick : truth) peak = std::max(peak, tick.device.force.norm());
+  EXPECT_GT(peak, 0.3);
+  for (const double period : {0.01, 0.005, 0.0025}) {
+    const auto ticks = swung(period);
+    ASSERT_EQ(ticks.size(), truth.size());
+    double square = 0.0;
+    for (std::size_t i = 0; i < ticks.size(); ++i)
+      square += (ticks[i].device.force - truth[i].device.force).squaredNorm();
+    const double rms = std::sqrt(square / static_cast<double>(ticks.size()));
+    EXPECT_LE(rms / peak, 0.75 * before) << period;
+    before = rms / peak;
+  }
+  EXPECT_LE(before, 0.05);
+}
+
+// A switch that grasps lets go of nothing that the tool carries.
+TEST(SoftTool, AGraspDoesNotLetItGo) {
+  scene::Description d = carried_block();
+  d.duration_s = 0.3;
+  d.gravity_m_s2 = Vec3(0, 0, -9.81);
+  d.tool->grasp_switch = 2;
+  d.device->presses = {{2, 0.05, 0.1}};
+  const auto world = loop::assemble(d);
+  const auto ticks = ticks_of(*world);
+  EXPECT_EQ(world->contact->grasp_counts().points, 0);
+  EXPECT_EQ(world->contact->grasp_counts().area, 0.0);
+  EXPECT_NEAR(world->positions(world->bodies[0]).row(2).mean(), 0.01, 5e-3) << "it hangs where it did";
+}
+
+// Each hand carries its own.
+TEST(SoftTool, ASecondHandCarriesToo) {
+  for (const char* scheme : {"partitioned", "monolithic"}) {
+    scene::Description d = carried_block();
+    d.duration_s = 0.5;
+    d.gravity_m_s2 = Vec3(0, 0, -9.81);
+    d.bodies[0].mass_damping_per_s = 20.0;
+    d.exchange.scheme = scheme;
+    scene::HandSpec left;
+    left.name = "left";
+    left.tool = *d.tool;
+    left.device = *d.device;
+    d.tool->position_m.x() += 1.0;  // far from it
+    d.device->keyframes[0].position_m = d.tool->position_m;
+    d.hands.push_back(left);
+    d.bodies[0].attachments[0].to = "left";
+    struct Both : loop::Observer {
+      void tick_of(std::size_t hand, const loop::TickRecord& tick) override { last[hand] = tick; }
+      loop::TickRecord last[2];
+    } both;
+    loop::RunOptions options;
+    options.observers = {&both};
+    ASSERT_TRUE(loop::run(*loop::assemble(d), options).status.ok());
+    EXPECT_NEAR(both.last[1].device.force.z(), -9.81 * mass_of(d), 0.01 * 9.81 * mass_of(d)) << scheme;
+    EXPECT_LE(both.last[0].device.force.norm(), 1e-9) << scheme;
+  }
+}
+
+}  // namespace
