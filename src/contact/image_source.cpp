@@ -150,6 +150,14 @@ void ImageSource::look_back(double t) {
   a.keep();
   if (!context_.of_one_body()) b.keep();
   kept_ = true;
+  if (passed_.given_up() > 0 && !gave_up_) {
+    gave_up_ = true;
+    log::warn(
+        "contact at t = {:.6g} s: the surfaces moved so far between two queries that what went through "
+        "unseen "
+        "is not counted whole; refresh contact more often (exchange.contact_refresh_s)",
+        t);
+  }
   if (tunnelled_ == 0 || warned_) return;
   warned_ = true;
   log::warn(

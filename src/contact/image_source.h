@@ -83,7 +83,7 @@ class ImageSource : public SampleSource {
   PassedVertices passed_;
   std::vector<int> met_a_, met_b_;  ///< scratch: faces
   long tunnelled_ = 0;
-  bool kept_ = false, warned_ = false, prepared_ = false;
+  bool kept_ = false, warned_ = false, gave_up_ = false, prepared_ = false;
   std::unique_ptr<DepthImage> image_;
   std::string fallback_;
   SampleCells cells_;  ///< scratch

@@ -30,10 +30,16 @@ struct SurfaceWays {
 /// it only grazed an edge.
 class PassedVertices {
  public:
+  /// Where ways are so long that all would have to be looked at against all, it gives up, and what it has not
+  /// looked at by then is not counted: a query's price stays within a bound, and a scene that has blown up
+  /// goes on.
   /// @param least_way  inside, seen from where it entered [m]
   /// @param may_meet   of a vertex' and a face's number; null: all do
   long count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way,
              const std::function<bool(int vertex, int face)>& may_meet = {});
+
+  /// How often count() gave up.
+  long given_up() const { return given_up_; }
 
  private:
   struct FaceBox {
@@ -41,6 +47,7 @@ class PassedVertices {
     int face;
   };
   std::vector<FaceBox> boxes_;
+  long given_up_ = 0;
 };
 
 }  // namespace palpate::contact

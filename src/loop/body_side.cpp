@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carried_bodies.h"
 #include "linearise.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
@@ -139,6 +140,10 @@ void BodySide::advance_over_changes(double t) {
 
 void BodySide::stand_still(double t1) {
   for (double stop = next_change(); stop <= t1; stop = next_change()) change_materials(stop);
+  const dynamics::StateView then = world_.state.view();
+  for (const auto& side : ToolSide::all(world_))
+    if (!side->ties.empty())
+      carry_along(world_, *side, side->trajectory->pose(then), side->trajectory->twist(then));
   world_.state.set_time(t1);
   if (world_.stepper) world_.stepper->reinit(dynamics::ReinitReason::kStateChanged);
 }

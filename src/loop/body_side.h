@@ -40,7 +40,8 @@ class BodySide {
   double next_query(double t0, double t1);
   /// Bodies go on to t1; contact is refreshed on the way at whole fractions, `refresh_s` apart, not at t0.
   void advance(double t0, double t1, double refresh_s);
-  /// Stands still to t1.
+  /// Stands still to t1; what a tool carries goes with it.  @pre each tool's path reaches from the State's
+  /// time to its known pose
   void stand_still(double t1);
   /// The period that ends at t1 is over.
   void close_period(double t1);

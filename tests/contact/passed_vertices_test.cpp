@@ -182,3 +182,25 @@ TEST(PassedVertices, AsksWhoMayMeet) {
   EXPECT_GT(asked, 1);
   EXPECT_EQ(passed.count(points(Points(3, 0), Points(3, 0)), box, 0.0), 0);
 }
+
+// Three thousand points all through nine thousand faces at once: what it has not looked at it does not
+// count, and it says so.  The same points on short ways are all counted.
+TEST(PassedVertices, GivesUpWhereAllWouldBeLookedAtAgainstAll) {
+  const auto box = still(mesh::box_surface(Vec3(2, 2, 0.1), {60, 60, 4}));
+  const int n = 3000;
+  Points before(3, n), near(3, n), far(3, n);
+  for (int i = 0; i < n; ++i) {
+    const double x = std::sin(1.0 + 3.0 * i), y = std::sin(2.0 + 7.0 * i);
+    before.col(i) << 0.9 * x, 0.9 * y, 0.06;
+    near.col(i) << 0.9 * x, 0.9 * y, -0.06;
+    far.col(i) << 0.9 * x + 50.0, 0.9 * y + 50.0, -50.0;
+  }
+  contact::PassedVertices all;
+  EXPECT_EQ(all.count(points(before, near), box, 0.0), n);
+  EXPECT_EQ(all.given_up(), 0);
+  contact::SurfaceWays blown_up = box;
+  blown_up.now.colwise() += Vec3(50.0, -50.0, 50.0);
+  for (Eigen::Index v = 0; v < blown_up.now.cols(); v += 2) blown_up.now.col(v) *= -1.0;
+  EXPECT_LT(all.count(points(before, far), blown_up, 0.0), n);
+  EXPECT_EQ(all.given_up(), 1);
+}

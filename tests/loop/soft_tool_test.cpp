@@ -2,6 +2,7 @@
 // same.
 #include <gtest/gtest.h>
 
+#include "loop/carried_bodies.h"
 #include "loop/small_scenes.h"
 #include "loop/tool_side.h"
 #include "palpate/contact/contact_force.h"
@@ -166,6 +167,40 @@ TEST(SoftTool, ASecondHandCarriesToo) {
     EXPECT_NEAR(both.last[1].device.force.z(), -9.81 * mass_of(d), 0.01 * 9.81 * mass_of(d)) << scheme;
     EXPECT_LE(both.last[0].device.force.norm(), 1e-9) << scheme;
   }
+}
+
+// Over a time that the bodies stand still in, what the tool carries goes with it: nothing is torn.
+TEST(SoftTool, TakesItsBodyAlong) {
+  scene::Description d = carried_block();
+  SoftBodySpec other = d.bodies[0];
+  other.name = "other";
+  other.position_m.x() += 1.0;
+  other.attachments.clear();
+  d.bodies.push_back(other);
+  const auto world = loop::assemble(d);
+  loop::ToolSide& side = loop::ToolSide::of(*world);
+  const Pose before = side.known.pose;
+  const Twist twist{Vec3(0.1, 0.2, -0.3), Vec3(0.4, 0.0, 0.1)};
+  VecX u = world->state.u();
+  for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = 0.01 * std::sin(1.0 + 7.0 * static_cast<double>(i));
+  world->state.u() = u;
+  const Points x = world->positions(world->bodies[0]), y = world->positions(world->bodies[1]);
+  const Pose moved{Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())) * before.rotation,
+                   before.translation + Vec3(0.05, -0.03, 0.02)};
+  side.known = {0.5, moved, {Vec3(-1, 2, 0.5), Vec3(0.1, -0.2, 0.3)}};
+  loop::carry_along(*world, side, before, twist);
+  const Points now = world->positions(world->bodies[0]);
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const Vec3 place = before.inverse() * Vec3(x.col(i));
+    EXPECT_LT((moved.inverse() * Vec3(now.col(i)) - place).norm(), 1e-15);
+    const Vec3 against = before.rotation.conjugate() *
+                         (u.segment<3>(3 * i) - twist.at(Vec3(x.col(i)) - before.translation)),
+               still =
+                   moved.rotation.conjugate() * (Vec3(world->state.u().segment<3>(3 * i)) -
+                                                 side.known.twist.at(Vec3(now.col(i)) - moved.translation));
+    EXPECT_LT((still - against).norm(), 1e-14);
+  }
+  EXPECT_EQ(world->positions(world->bodies[1]), y) << "it carries that one alone";
 }
 
 }  // namespace
