@@ -57,7 +57,7 @@ class StepAssembly {
   /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held.
   /// What the fused terms give is taken from System::kept_step() where that is of these scales, this state
   /// and shift, to a relative 1e-9 of shift and scales.
-  /// @param keep  keeps it there for the next who asks
+  /// With `keep`, what they give is kept there for the next who asks.
   void assemble(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale,
                 VecX& f, ZeroRowSumMatrix& A, bool keep = false);
   /// r = h (sum of force - K shift - D change) - M change, zero along driven directions; without a matrix.

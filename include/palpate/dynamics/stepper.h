@@ -178,7 +178,7 @@ class Stepper {
   /// Does what the first step would do for all others, analyses and memory, where somebody waits for that
   /// step. The State stays as it is, and so do later results, to within the tolerance of a linear solver that
   /// learns from its solutions.
-  /// @param interval  that advance_to() will be asked for [s]
+  /// It is given the interval that advance_to() will be asked for [s].
   virtual void prepare(double /*interval*/) {}
   /// q and u at a time within the last step (or between the last two outputs), by the method's own
   /// interpolant.  False where t is outside.
