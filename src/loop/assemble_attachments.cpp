@@ -70,13 +70,6 @@ Carrier along_keyframes(const AttachmentSpec& spec) {
 
 Pose start_of(const ToolSpec& tool) { return {quaternion_of(tool.rotation_vector_rad), tool.position_m}; }
 
-/// Null where no tool is called so.
-ToolSide* tool_called(World& world, const std::string& name) {
-  for (const auto& side : ToolSide::all(world))
-    if (side->spec && side->name == name) return side.get();
-  return nullptr;
-}
-
 Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
   if (spec.to.empty()) return spec.keyframes.empty() ? Carrier{} : along_keyframes(spec);
   for (Bone& bone : world.bones)
@@ -87,7 +80,7 @@ Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
               {quaternion_of(placed.rotation_vector_rad), placed.position_m},
               &bone.dofs};
     }
-  const ToolSide* const tool = tool_called(world, spec.to);
+  const ToolSide* const tool = ToolSide::named(world, spec.to);
   if (!tool) fail("body \"{}\": attachment to = \"{}\" is neither a bone nor a tool", body.name, spec.to);
   return {tool->block_id, {}, start_of(*tool->spec), nullptr};
 }
@@ -115,7 +108,7 @@ void attach(World& world, const Body& body, const SoftBodySpec& tissue, const At
   const std::vector<int> nodes = nodes_inside(world, body, spec);
   check_nodes(body, spec, nodes);
   const int first = world.state.layout().find(body.block_id)->u_offset / 3;
-  ToolSide* const tool = spec_of(world, spec.to) ? nullptr : tool_called(world, spec.to);
+  ToolSide* const tool = spec_of(world, spec.to) ? nullptr : ToolSide::named(world, spec.to);
   if (tool && !world.monolithic()) return tie(body, tissue, nodes, first, *tool);
   const Carrier carrier = carrier_of(world, body, spec);
   const std::vector<int> dofs = fem::dofs_of_nodes(nodes, first, spec.axes);

@@ -149,9 +149,8 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side,
                                      tool.radius_m, pair.candidate_gap, pair.look_ahead);
 }
 
-/// Where a step is one linear solve.  What is left out of a tool's rows besides buys no symmetric matrix; the
-/// secant is needed all the same, else friction that slides turns nodes round in each step and holds nothing.
-bool leaves_out_friction(const World& world) {
+/// Whether a step of the bodies is one linear solve.
+bool steps_are_linearised(const World& world) {
   const auto& registry = integrate::stepper_registry();
   const auto entry = std::find_if(registry.begin(), registry.end(),
                                   [&](const auto& e) { return e.name == world.description.integrator.name; });
@@ -217,17 +216,12 @@ std::unique_ptr<contact::SampleSource> tool_on_obstacle(World& world, ToolSide& 
                           {*world.contact, side.frame_index, motion, look_ahead});
 }
 
-/// The tool that [[contact]] calls so; null where there is none.
-ToolSide* side_named(World& world, const std::string& name) {
-  for (const auto& side : ToolSide::all(world))
-    if (side->spec && side->name == name) return side.get();
-  return nullptr;
-}
-
 /// Makes what hands a tool of ticks the bodies as it touches or carries them, unless it is there.
 void make_touch(World& world, ToolSide& side) {
-  if (side.trajectory && !side.touch && world.description.exchange.linearisation == "points")
-    side.touch = std::make_unique<TouchReduction>(world, world.description.exchange.linearisation_error);
+  if (!side.trajectory || side.touch || world.description.exchange.linearisation != "points") return;
+  const bool others_ask = steps_are_linearised(world) || ToolSide::all(world).size() > 1;
+  side.touch =
+      std::make_unique<TouchReduction>(world, world.description.exchange.linearisation_error, others_ask);
 }
 
 /// @pre the names are in their order (scene::order_sides)
@@ -236,13 +230,13 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
   const auto& obstacles = world.description.obstacles;
   const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(),
                                      [&](const ObstacleSpec& o) { return o.name == spec.second; });
-  ToolSide* const first_tool = side_named(world, spec.first);
+  ToolSide* const first_tool = ToolSide::named(world, spec.first);
   if (first_tool && obstacle != obstacles.end()) return tool_on_obstacle(world, *first_tool, spec, *obstacle);
   if (!world.find_body(spec.first))
     fail("contact {} - {}: one must be a soft body, or a tool where the other is an obstacle", spec.first,
          spec.second);
   Pair pair = pair_of(world, spec, spec.first);
-  if (ToolSide* const side = side_named(world, spec.second))
+  if (ToolSide* const side = ToolSide::named(world, spec.second))
     return tool_source(world, *side, std::move(pair));
   if (obstacle != obstacles.end()) return obstacle_source(world, std::move(pair), *obstacle);
   if (spec.second == spec.first) return own_source(world, std::move(pair));
@@ -258,12 +252,15 @@ void assemble_contact(World& world) {
   for (ContactSpec& given : world.description.contacts) {
     scene::order_sides(world.description, given);
     ContactSpec spec = given;
+    // In a step of one linear solve the secant is needed, though what is left out of a tool's rows besides
+    // buys no symmetric matrix: else friction that slides turns nodes round in each step and holds nothing.
     if (spec.friction_tangent == "auto")
-      spec.friction_tangent = leaves_out_friction(world) ? "secant" : "full";
+      spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
     // of a tool with ticks of its own on an obstacle no step matrix has a part
-    if (side_named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "symmetric";
+    if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "symmetric";
     world.contact->add_pair(source_of(world, spec), spec);
-    if (ToolSide* const side = side_named(world, spec.second)) make_touch(world, *side);  // of a soft body
+    if (ToolSide* const side = ToolSide::named(world, spec.second))
+      make_touch(world, *side);  // of a soft body
   }
   for (const auto& side : ToolSide::all(world)) {
     if (side->ties.empty()) continue;

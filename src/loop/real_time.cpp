@@ -87,6 +87,8 @@ class RealTime {
     bodies_.query();
     publish();
     if (world_.stepper) world_.stepper->prepare(bodies_.period());
+    for (const auto& side : ToolSide::all(world_))
+      if (side->touch) side->touch->prepare(world_, bodies_.period());
     std::thread thread([this] { tick_to_the_end(); });
     ready_.wait();
     try {

@@ -82,6 +82,12 @@ struct ToolSide {
   /// The first is there even where the scene has no tool.
   static ToolSide& of(World& world, std::size_t hand = 0) { return *world.tool_sides_.at(hand); }
   static const ToolSide& of(const World& world, std::size_t hand = 0) { return *world.tool_sides_.at(hand); }
+  /// The tool that scenes call so; null where there is none.
+  static ToolSide* named(World& world, const std::string& name) {
+    for (const auto& side : world.tool_sides_)
+      if (side->spec && side->name == name) return side.get();
+    return nullptr;
+  }
   static const std::vector<std::unique_ptr<ToolSide>>& all(const World& world) { return world.tool_sides_; }
 };
 

@@ -135,8 +135,8 @@ std::pair<double, double> damping_of(const World& world, int node) {
 
 }  // namespace
 
-TouchReduction::TouchReduction(World& world, double error)
-    : error_(error), assembly_(world.system), answers_(std::make_unique<Answers>()) {
+TouchReduction::TouchReduction(World& world, double error, bool keep)
+    : error_(error), keep_(keep), assembly_(world.system), answers_(std::make_unique<Answers>()) {
   if (error > 0.0) response_ = std::make_unique<linear::StepResponse>(world.description.integrator.threads);
 }
 TouchReduction::~TouchReduction() = default;
@@ -158,7 +158,7 @@ bool TouchReduction::iterate(World& world, double H, Answers& out) {
   if (!response_ || !assembly_.applies(view)) return false;
   dynamics::ZeroRowSumMatrix& A = response_->step_matrix(assembly_.pattern());
   VecX r;
-  assembly_.assemble(view, out.s, 1.0, H, H * H, r, A, true);
+  assembly_.assemble(view, out.s, 1.0, H, H * H, r, A, keep_);
   if (response_->take_step_matrix() != SolveStatus::kOk) return false;
   out.stiff = out.f - r;
   MatX& rhs = out.loads;
@@ -326,19 +326,16 @@ Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, con
 
 }  // namespace
 
-/// Orders, maps and memory, before anything is touched: at the first touch a hand would wait for them.
 void TouchReduction::prepare(World& world, double H) {
-  prepared_ = true;
   const dynamics::StateView view = world.state.view();
   if (!response_ || !assembly_.applies(view)) return;
   dynamics::ZeroRowSumMatrix& A = response_->step_matrix(assembly_.pattern());
   VecX r;
-  assembly_.assemble(view, VecX::Zero(world.state.layout().u_size), 1.0, H, H * H, r, A, true);
+  assembly_.assemble(view, VecX::Zero(world.state.layout().u_size), 1.0, H, H * H, r, A, keep_);
   response_->take_step_matrix();
 }
 
 bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& out) {
-  if (!prepared_) prepare(world, H);
   const contact::SecantTangents as_ticks_have_it(*world.contact);
   const dynamics::StateView view = world.state.view();
   out = {};

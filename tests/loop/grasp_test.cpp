@@ -6,6 +6,7 @@
 
 #include "loop/linearise.h"
 #include "loop/small_scenes.h"
+#include "loop/ticks_of.h"
 #include "loop/tool_side.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/loop/haptic_record.h"
@@ -16,22 +17,6 @@
 namespace {
 
 using namespace palpate;
-
-struct Ticks : loop::Observer {
-  void tick(const loop::TickRecord& tick) override { all.push_back(tick); }
-  std::vector<loop::TickRecord> all;
-};
-
-std::vector<loop::TickRecord> ticks_of(loop::World& world) {
-  Ticks ticks;
-  loop::RunOptions options;
-  options.observers = {&ticks};
-  const loop::RunResult result = loop::run(world, options);
-  EXPECT_TRUE(result.status.ok()) << result.status.message;
-  return ticks.all;
-}
-
-std::vector<loop::TickRecord> ticks_of(const scene::Description& d) { return ticks_of(*loop::assemble(d)); }
 
 const loop::TickRecord& at(const std::vector<loop::TickRecord>& ticks, double t) {
   for (const loop::TickRecord& tick : ticks)

@@ -1,6 +1,7 @@
 // A simulated hand, its tool and the bodies as one system: what the loop of ticks tends to.
 #include <gtest/gtest.h>
 
+#include "loop/ticks_of.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/replay.h"
 #include "palpate/loop/run.h"
@@ -9,21 +10,6 @@
 namespace {
 
 using namespace palpate;
-
-struct Ticks : loop::Observer {
-  void tick(const loop::TickRecord& tick) override { all.push_back(tick); }
-  std::vector<loop::TickRecord> all;
-};
-
-std::vector<loop::TickRecord> ticks_of(const scene::Description& d) {
-  const auto world = loop::assemble(d);
-  Ticks ticks;
-  loop::RunOptions options;
-  options.observers = {&ticks};
-  const loop::RunResult result = loop::run(*world, options);
-  EXPECT_TRUE(result.status.ok()) << result.status.message;
-  return ticks.all;
-}
 
 /// An arm that wants to be in the block, and turned.
 scene::Description yielding() {

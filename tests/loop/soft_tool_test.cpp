@@ -4,6 +4,7 @@
 
 #include "loop/carried_bodies.h"
 #include "loop/small_scenes.h"
+#include "loop/ticks_of.h"
 #include "loop/tool_side.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/error.h"
@@ -12,20 +13,6 @@
 namespace {
 
 using namespace palpate;
-
-struct Ticks : loop::Observer {
-  void tick(const loop::TickRecord& tick) override { all.push_back(tick); }
-  std::vector<loop::TickRecord> all;
-};
-
-std::vector<loop::TickRecord> ticks_of(loop::World& world) {
-  Ticks ticks;
-  loop::RunOptions options;
-  options.observers = {&ticks};
-  const loop::RunResult result = loop::run(world, options);
-  EXPECT_TRUE(result.status.ok()) << result.status.message;
-  return ticks.all;
-}
 
 /// A block whose upper face a tool carries, its handle at rest.
 scene::Description carried_block() {

@@ -34,7 +34,7 @@ struct ZeroRowSumMatrix {
   /// of the nodes [m], as in BorderedMatrix; valid until MixedPrecisionSolver::factor_step_matrix() returns
   const double* positions = nullptr;
   const std::vector<HeldNode>* held = nullptr;  ///< nodes whose rows are the identity's; null: none
-  std::uint64_t slot_map_key = 0;               ///< a hash of `slot_map`: equal where that is; 0: none
+  std::uint64_t slot_map_key = 0;               ///< a hash of `slot_map` and pattern; 0: none
 };
 
 }  // namespace palpate::dynamics
