@@ -2,6 +2,7 @@
 // same.
 #include <gtest/gtest.h>
 
+#include "loop/body_side.h"
 #include "loop/carried_bodies.h"
 #include "loop/small_scenes.h"
 #include "loop/ticks_of.h"
@@ -188,6 +189,22 @@ TEST(SoftTool, TakesItsBodyAlong) {
     EXPECT_LT((still - against).norm(), 1e-14);
   }
   EXPECT_EQ(world->positions(world->bodies[1]), y) << "it carries that one alone";
+}
+
+// As the loop in real time does it with bodies that are late.
+TEST(SoftTool, TakesItsBodyAlongWhereItIsLate) {
+  const auto world = loop::assemble(carried_block());
+  loop::RunOptions options;
+  loop::RunResult result;
+  loop::BodySide bodies(*world, options, result);
+  bodies.restart_path();
+  const Pose before = loop::ToolSide::of(*world).known.pose;
+  const Points x = world->positions(world->bodies[0]);
+  const Vec3 way(0.03, -0.01, 0.02);
+  bodies.follow(0, 0.5, {before.rotation, before.translation + way}, {});
+  bodies.stand_still(0.5);
+  EXPECT_EQ(world->state.time(), 0.5);
+  EXPECT_LT((world->positions(world->bodies[0]) - (x.colwise() + way)).norm(), 1e-14);
 }
 
 }  // namespace

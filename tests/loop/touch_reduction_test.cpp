@@ -328,5 +328,21 @@ TEST(TouchReduction, NothingNearIsNoPoint) {
   EXPECT_EQ(record_of(*world).touch.points, 0);
 }
 
+// What the elements give to an exchange serves the step over the period that it begins, where there is such a
+// step; who steps otherwise asks for nothing, and nothing is kept.
+TEST(TouchReduction, TheStepTakesTheElementsOfItsExchange) {
+  for (const bool linearised : {true, false}) {
+    scene::Description d = pressed_block(1e-3);
+    d.integrator.name = linearised ? "linearly-implicit-euler" : "backward-euler";
+    d.integrator.linear_solver = "pcg-two-level";
+    const auto world = loop::assemble(d);
+    const long before = counters::counter("dynamics.kept_step_taken");
+    const loop::RunResult result = loop::run(*world, {});
+    ASSERT_TRUE(result.status.ok()) << result.status.message;
+    EXPECT_EQ(counters::counter("dynamics.kept_step_taken") - before, linearised ? result.periods : 0);
+    EXPECT_EQ(world->system.kept_step().versions.empty(), !linearised);
+  }
+}
+
 }  // namespace
 #endif
