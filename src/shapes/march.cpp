@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <unordered_map>
 
 #include "contour.h"
@@ -11,7 +12,10 @@
 // orders.  The cut is the same in every cube, so faces match, and a plane of the lattice is a union
 // of faces: a symmetric body may be cut there.  The surface crosses an edge where the function
 // changes sign; a tetrahedron holds one triangle or two. A block of cubes is skipped where
-// |inside(centre)| exceeds the Lipschitz bound times its half diagonal.
+// |inside(centre)| exceeds the Lipschitz bound times its half diagonal.  The bound is the author's word: fine
+// relief may be steeper than it in places, and a block skipped there would be a hole.  So a block is marched
+// after all where the surface leaves a marched one through the side between them; what the sweep finds of a
+// piece is then the whole piece, closed.
 namespace palpate::shapes {
 namespace {
 
@@ -25,7 +29,8 @@ class March {
       : blueprint_(blueprint), low_(blueprint.low), h_(blueprint.lattice) {
     if (blueprint.symmetric) low_.x() = 0.0;
     for (int a = 0; a < 3; ++a)
-      blocks_[a] = static_cast<int>(std::ceil((blueprint.high[a] - low_[a]) / (h_ * kBlock)));
+      blocks_[static_cast<std::size_t>(a)] =
+          static_cast<int>(std::ceil((blueprint.high[a] - low_[a]) / (h_ * kBlock)));
   }
 
   TriMesh run() {
@@ -33,10 +38,10 @@ class March {
     for (int i = 0; i < blocks_[0]; ++i)
       for (int j = 0; j < blocks_[1]; ++j)
         for (int k = 0; k < blocks_[2]; ++k) {
-          const Place first = {i * kBlock, j * kBlock, k * kBlock};
-          const Vec3 centre = at(first) + Vec3::Constant(0.5 * kBlock * h_);
-          if (std::abs(blueprint_.inside(centre)) <= reach) block(first);
+          const Vec3 centre = at(first_of({i, j, k})) + Vec3::Constant(0.5 * kBlock * h_);
+          if (std::abs(blueprint_.inside(centre)) <= reach) block({i, j, k});
         }
+    for (std::size_t next = 0; next < crossed_.size(); ++next) block(crossed_[next]);
     TriMesh mesh;
     mesh.vertices.resize(3, static_cast<Eigen::Index>(points_.size()));
     for (std::size_t p = 0; p < points_.size(); ++p)
@@ -52,7 +57,29 @@ class March {
   Vec3 at(const Place& p) const { return low_ + h_ * Vec3(p[0], p[1], p[2]); }
   static int local(int a, int b, int c) { return (a * (kBlock + 1) + b) * (kBlock + 1) + c; }
 
-  void block(const Place& first) {
+  static Place first_of(const Place& block) {
+    return {block[0] * kBlock, block[1] * kBlock, block[2] * kBlock};
+  }
+  bool in_lattice(const Place& block) const {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (block[a] < 0 || block[a] >= blocks_[a]) return false;
+    return true;
+  }
+
+  /// Whether the function changes its sign on the side of the block where coordinate `axis` is `at`.
+  bool crosses_side(int axis, int at) const {
+    bool some_in = false, some_out = false;
+    for (int u = 0; u <= kBlock; ++u)
+      for (int v = 0; v <= kBlock; ++v) {
+        const int n = axis == 0 ? local(at, u, v) : axis == 1 ? local(u, at, v) : local(u, v, at);
+        (values_[static_cast<std::size_t>(n)] < 0 ? some_in : some_out) = true;
+      }
+    return some_in && some_out;
+  }
+
+  void block(Place where) {
+    if (!marched_.insert(where).second) return;
+    const Place first = first_of(where);
     bool some_in = false, some_out = false;
     for (int a = 0; a <= kBlock; ++a)
       for (int b = 0; b <= kBlock; ++b)
@@ -62,6 +89,12 @@ class March {
           (f < 0 ? some_in : some_out) = true;
         }
     if (!some_in || !some_out) return;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {-1, 1}) {
+        Place neighbour = where;
+        neighbour[static_cast<std::size_t>(axis)] += side;
+        if (in_lattice(neighbour) && crosses_side(axis, side < 0 ? 0 : kBlock)) crossed_.push_back(neighbour);
+      }
     for (int a = 0; a < kBlock; ++a)
       for (int b = 0; b < kBlock; ++b)
         for (int c = 0; c < kBlock; ++c)
@@ -134,7 +167,9 @@ class March {
   const Blueprint& blueprint_;
   Vec3 low_;
   double h_;
-  int blocks_[3];
+  std::array<int, 3> blocks_{};
+  std::set<Place> marched_;
+  std::vector<Place> crossed_;  ///< blocks behind a side that the surface goes through
   std::array<double, (kBlock + 1) * (kBlock + 1) * (kBlock + 1)> values_{};
   std::unordered_map<std::uint64_t, int> vertex_;
   std::vector<Vec3> points_;

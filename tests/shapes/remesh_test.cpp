@@ -47,6 +47,19 @@ TEST(March, BallIsClosedOutwardsAndNearItsVolume) {
   EXPECT_NEAR(mesh::enclosed_volume(mesh), std::numbers::pi / 6.0, 0.005);
 }
 
+// A ball whose function is eight times as steep on its upper half as its plan says: blocks of the lattice are
+// skipped that hold its surface, which is no reason for holes.
+TEST(March, IsClosedWhereTheFunctionIsSteeperThanItsBound) {
+  Blueprint plan = ball_plan(0.5, false);
+  const auto ball = plan.inside;
+  plan.inside = [ball](const Vec3& p) { return ball(p) * (1.0 + 7.0 * shapes::ramp(p.z(), -0.1, 0.1)); };
+  plan.lipschitz = 1.0;
+  TriMesh mesh = shapes::march(plan);
+  EXPECT_NO_THROW(mesh::check_surface(mesh, mesh::surface_provenance("steep ball")));
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+  EXPECT_NEAR(mesh::enclosed_volume(mesh), std::numbers::pi / 6.0, 0.005);
+}
+
 // Half a ball is open along x = 0 and nowhere else.
 TEST(March, SymmetricBodyIsCutInItsPlane) {
   const TriMesh mesh = shapes::march(ball_plan(0.5, true));
