@@ -63,6 +63,9 @@ TriMesh mended(Input& input, const Options& options, std::vector<std::string>& n
                const Progress& progress, Watcher& watcher) {
   if (input.sound) {
     mesh::check_surface(input.surface, input.from);
+    mesh::Provenance skin;
+    skin.source = "skin of " + input.source;
+    if (input.skin.vertices.cols() > 0) mesh::check_surface(input.skin, skin);
     return input.surface;
   }
   RepairOptions wanted = options.repair;

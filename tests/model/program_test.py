@@ -166,6 +166,9 @@ class Program(unittest.TestCase):
             ((open_body, "--creases", "some"), "--creases some: must be auto, none, or an angle in degrees"),
             ((open_body, "--tetrahedra", "500", "--element-size-m", "1"), "excludes"),
             ((open_body, "--picture", "a.jpg"), "pictures are PNG files"),
+            ((open_body, "--skin-vertices", "5000"), "open.obj is a file, whose skin is its own surface"),
+            (("ball", "--skin-vertices", "50"), "skin_vertices = 50 must lie in [1000, 4000000]"),
+            (("ball", "--skin-vertices", "-1"), "--skin-vertices"),
             ((open_body, "--scale", "-1"), "-1 must be a positive, finite number"),
         ]:
             done = run("model", *words, "-o", self.path / "out.h5")
@@ -311,6 +314,17 @@ class Program(unittest.TestCase):
         made = dict(line.rsplit(maxsplit=1) for line in done.stdout.splitlines() if len(line.split()) == 2)
         self.assertEqual((tetrahedra.replace(",", ""), nodes.replace(",", "")),
                          (made["tetrahedra"], made["nodes"]))
+
+    def test_a_shape_takes_another_skin(self):
+        made = {}
+        for skin in ("0", "20000"):
+            path = self.path / f"ball{skin}.h5"
+            done = run("model", "ball", "--skin-vertices", skin, "-o", path, "--proxies", "0")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            made[skin] = dict(line.rsplit(maxsplit=1) for line in done.stdout.splitlines() if "  " in line)
+        self.assertAlmostEqual(int(made["0"]["skin vertices"]), 6000, delta=60)
+        self.assertAlmostEqual(int(made["20000"]["skin vertices"]), 20000, delta=200)
+        self.assertEqual(made["0"]["tetrahedra"], made["20000"]["tetrahedra"])
 
     def test_help(self):
         self.assertIn("--tetrahedra", run("model", "--help").stdout)

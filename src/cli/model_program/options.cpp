@@ -31,6 +31,8 @@ constexpr const char* kExamples = R"(Examples:
   palpate model liver.obj --picture liver.png                 surface, tetrahedra cut open, skin and proxies
   palpate model leg.obj --region bone=femur.obj -o leg.h5     tetrahedra inside of femur.obj become the region
                                                               "bone"
+  palpate model head --tetrahedra 1000000 --skin-vertices 1000000
+                                                              a shape of the paper at another resolution
   palpate model human --region bone=skeleton -o human.h5      those inside of the bones
 
 A scene gives a region its own material: [[body.region]] with name = "bone" and youngs_modulus_pa, ...
@@ -93,8 +95,8 @@ model::RegionSource region_of(const std::string& text) {
 std::string canonical(const CLI::App& app) {
   std::string out;
   for (const char* name :
-       {"--tetrahedra", "--element-size-m", "--scale", "--creases", "--proxies", "--bone-margin-m",
-        "--region", "--remesh", "--accept-angles", "--largest-shell", "--no-wrap"})
+       {"--tetrahedra", "--element-size-m", "--skin-vertices", "--scale", "--creases", "--proxies",
+        "--bone-margin-m", "--region", "--remesh", "--accept-angles", "--largest-shell", "--no-wrap"})
     if (const CLI::Option* option = app.get_option(name); option->count() > 0) {
       if (std::string_view(name) == "--region") {
         for (const std::string& given : option->results())
@@ -130,6 +132,10 @@ ModelArguments parse_model(int argc, char** argv) {
       ->type_name("M")
       ->check(positive)
       ->excludes(count);
+  app.add_option("--skin-vertices", out.skin_vertices,
+                 "of a shape: vertices of its skin, met within 1 %; 0: its own number")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
   CLI::Option* scale =
       app.add_option("--scale", options.scale, "multiplies every coordinate: 0.001 for a file in millimetres")
           ->type_name("S")

@@ -12,8 +12,9 @@ struct ModelArguments {
   std::string output;   ///< empty: NAME.h5
   std::string picture;  ///< PNG file; empty: none
   bool quiet = false, verbose = false;
-  bool counted = false;  ///< --tetrahedra was given
-  bool scaled = false;   ///< --scale was given
+  bool counted = false;   ///< --tetrahedra was given
+  bool scaled = false;    ///< --scale was given
+  int skin_vertices = 0;  ///< of a shape; 0: its own number
   model::Options options;
   std::string as_given;  ///< the options that shape the model, for its record
 };

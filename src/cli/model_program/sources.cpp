@@ -16,7 +16,7 @@ std::string_view bytes_of(const Points& points) {
 }
 
 model::Input input_of_shape(ModelArguments& arguments) {
-  shapes::Shape shape = shapes::make(arguments.source);
+  shapes::Shape shape = shapes::make(arguments.source, {.skin_vertices = arguments.skin_vertices});
   model::Input out;
   out.name = shape.name;
   out.source = "shape " + shape.name;
@@ -49,8 +49,14 @@ std::string shape_names() {
 
 model::Input input_of(ModelArguments& arguments) {
   const std::string& source = arguments.source;
-  if (std::filesystem::exists(source) || source.find_first_of("./") != std::string::npos)
+  if (std::filesystem::exists(source) || source.find_first_of("./") != std::string::npos) {
+    if (arguments.skin_vertices > 0)
+      fail(
+          "--skin-vertices {}: {} is a file, whose skin is its own surface; the option is for the shapes "
+          "({})",
+          arguments.skin_vertices, source, shape_names());
     return model::input_of_file(source);
+  }
   return input_of_shape(arguments);
 }
 
