@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
+#include "palpate/render/seen.h"
 #include "progress.h"
 #include "stop.h"
 #include "undelivered.h"
@@ -52,15 +53,21 @@ struct Common {
   render::ColourScale scale;
   Points frame;
   contact::View view;
+  render::View from;
 };
 
 Common common_of(const loop::World& world, InstantSpool& instants, Shade shade) {
   Common out;
   double least = INFINITY, greatest = -INFINITY;
   Extremes extremes;
+  render::ViewChoice choice;
+  constexpr int kLooked = 8;  // instants, evenly spread
+  const int between = std::max(1, instants.count() / kLooked);
   instants.rewind();
-  for (Instant instant; instants.next(instant);) {
+  int number = 0;
+  for (Instant instant; instants.next(instant); ++number) {
     const render::Scene scene = scene_of(world, instant, shade);
+    if (number % between == between / 2) choice.add(scene);
     out.scale = scene.scale;
     for (const render::Surface& surface : scene.surfaces) {
       extremes.add(surface.points);
@@ -75,6 +82,7 @@ Common common_of(const loop::World& world, InstantSpool& instants, Shade shade) 
   add_obstacles(all, world, out.view);
   for (const render::Surface& surface : all.surfaces) extremes.add(surface.points);
   out.frame = extremes.points();
+  out.from = choice.best(!all.ground);
   return out;
 }
 
@@ -229,6 +237,7 @@ void Frames::save(const loop::World& world, const std::vector<FrameSink*>& sinks
     options.width = width_;
     options.height = height_;
     options.frame = common.frame;
+    options.view = common.from;
     Progress progress("drawing frames");
     render::Picture picture;
     int frame = 0;

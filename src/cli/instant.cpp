@@ -136,6 +136,7 @@ render::Scene scene_of(const loop::World& world, const Instant& instant, Shade s
     render::Surface surface{hands[hand].name, tool.vertices, tool.faces};
     surface.colour = hand == 0 ? render::Rgb{0.80f, 0.42f, 0.20f} : render::Rgb{0.25f, 0.50f, 0.72f};
     surface.opacity = 0.45;  // the dent lies under it
+    surface.subject = true;
     scene.surfaces.push_back(surface);
   }
   scene.scale = scale_of(world, scene, shade);

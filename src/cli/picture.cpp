@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/render/seen.h"
 
 namespace palpate::cli {
 
@@ -31,7 +32,11 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
   add_obstacles(scene, world, view_of(scene));
   scene.title = fmt::format("{}, t = {:g} s", world.description.name, instant_.time);
   if (world.description.tool) scene.subtitle = fmt::format("the hand feels {:.3g} N", force_n_);
-  render::save_png(render::draw(scene), path);
+  render::ViewChoice choice;
+  choice.add(scene);
+  render::Options options;
+  options.view = choice.best(!scene.ground);
+  render::save_png(render::draw(scene, options), path);
 }
 
 }  // namespace palpate::cli

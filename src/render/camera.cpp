@@ -4,12 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "camera_axes.h"
 #include "palpate/core/error.h"
 
 namespace palpate::render {
-namespace {
-
-/// Columns: right, up, backwards (from the scene to the eye).
 Mat3 camera_axes(const Vec3& backwards, const Vec3& up) {
   Mat3 axes;
   axes.col(2) = backwards.normalized();
@@ -21,7 +19,12 @@ Mat3 camera_axes(const Vec3& backwards, const Vec3& up) {
   return axes;
 }
 
-}  // namespace
+Vec3 backwards_of(const View& view) {
+  const double degree = std::numbers::pi / 180.0;
+  const double azimuth = view.azimuth_deg * degree, elevation = view.elevation_deg * degree;
+  return {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
+          std::sin(elevation)};
+}
 
 // In the axes of the camera about the middle of the points, with its target at (cx, cy, 0) and the eye a
 // distance d behind, a point p appears at x = (px - cx) / ((d - pz) t), t the tangent of half the image's
@@ -31,10 +34,7 @@ Mat3 camera_axes(const Vec3& backwards, const Vec3& up) {
 Camera framed(const Points& points, const View& view, double aspect, const Margins& margins) {
   PALPATE_CHECK(points.cols() > 0 && points.allFinite(), "{} points to frame", points.cols());
   const double degree = std::numbers::pi / 180.0;
-  const double azimuth = view.azimuth_deg * degree, elevation = view.elevation_deg * degree;
-  const Mat3 axes = camera_axes(
-      {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation), std::sin(elevation)},
-      Vec3::UnitZ());
+  const Mat3 axes = camera_axes(backwards_of(view), Vec3::UnitZ());
   const Vec3 middle = 0.5 * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
   const Points p = axes.transpose() * (points.colwise() - middle);
   const double front = p.row(2).maxCoeff(), behind = p.row(2).minCoeff();

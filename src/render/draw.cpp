@@ -81,9 +81,11 @@ Picture draw(const Scene& scene, const Options& options) {
   const bool with_scale = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
                                       [](const Surface& s) { return s.values.size() > 0; });
   const double aspect = static_cast<double>(options.width) / options.height;
-  staging.camera = options.camera ? *options.camera
-                                  : framed(options.frame.cols() > 0 ? options.frame : points, options.view,
-                                           aspect, margins_of(scene, options, with_scale));
+  staging.camera =
+      options.camera
+          ? *options.camera
+          : framed(options.frame.cols() > 0 ? options.frame : points, options.view, aspect,
+                   margins_of(scene, options, with_scale ? std::optional(staging.scale) : std::nullopt));
 
   const Picture shaded = shade(scene, staging, options);
   return options.annotated ? annotated(shaded, scene, staging.scale, with_scale, staging.grid_spacing)

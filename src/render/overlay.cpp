@@ -13,16 +13,24 @@ namespace {
 constexpr Rgb kInk = {0.13f, 0.16f, 0.19f}, kQuiet = {0.38f, 0.42f, 0.46f}, kPlate = {0.968f, 0.973f, 0.980f};
 constexpr double kDesignHeight = 900.0;  // lengths below are pixels of a picture this high
 
+constexpr double kScaleEdge = 32.0, kPlateEdge = 8.0;  ///< between the scale and the image's edge; of a plate
+
 /// "displacement [mm]"
-std::string label_of(const ColourScale& scale, const ScaledUnit& unit) {
+std::string label_of(const ColourScale& scale) {
+  const ScaledUnit unit = scaled_unit(scale.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
   return unit.name.empty() ? scale.label : fmt::format("{} [{}]", scale.label, unit.name);
+}
+
+/// Of the colour scale with its label and its ticks [pixels].
+double width_of_scale(Canvas& canvas, const ColourScale& scale, double u) {
+  return std::max(canvas.text_width(label_of(scale), 18 * u), 110 * u);
 }
 
 /// Where a part of a scene is framed the rest may reach under a text: a pale plate keeps that legible.  On
 /// the background of a whole scene it is not seen.
 void draw_plate(Canvas& canvas, double x, double y, double width, double height, double u) {
   canvas.set_colour(kPlate, 0.8);
-  canvas.fill_rectangle(x - 8 * u, y - 4 * u, width + 16 * u, height + 8 * u);
+  canvas.fill_rectangle(x - kPlateEdge * u, y - 4 * u, width + 2 * kPlateEdge * u, height + 8 * u);
 }
 
 void draw_names(Canvas& canvas, const Scene& scene, double grid_spacing, double u, double height) {
@@ -46,12 +54,17 @@ void draw_names(Canvas& canvas, const Scene& scene, double grid_spacing, double 
 
 }  // namespace
 
-Margins margins_of(const Scene& scene, const Options& options, bool with_scale) {
+Margins margins_of(const Scene& scene, const Options& options, const std::optional<ColourScale>& scale) {
   Margins margins;
   if (!options.annotated) return margins;
   if (!scene.title.empty()) margins.top = 0.125;
   margins.bottom = 0.10;
-  if (with_scale) margins.right = std::min(0.35, 190.0 * options.height / kDesignHeight / options.width);
+  if (scale) {
+    Canvas canvas(Picture(16, 16, kPlate));
+    const double u = options.height / kDesignHeight,
+                 needed = width_of_scale(canvas, *scale, u) + (kScaleEdge + 2.0 * kPlateEdge) * u;
+    margins.right = std::min(0.35, needed / options.width);
+  }
   return margins;
 }
 
@@ -89,12 +102,10 @@ Picture annotated(const Picture& picture, const Scene& scene, const ColourScale&
   canvas.text(scene.subtitle, 36 * u, subtitle_y, 18 * u);
   if (with_scale) {
     const double bar_height = 0.46 * height, bar_x = width - 108 * u, bar_y = 0.5 * (height - bar_height);
-    const ScaledUnit unit = scaled_unit(scale.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
-    const std::string label = label_of(scale, unit);
-    const double label_width = std::max(canvas.text_width(label, 18 * u), 110 * u);
-    draw_plate(canvas, width - 32 * u - label_width, bar_y - 38 * u, label_width, bar_height + 52 * u, u);
+    const double right = width - kScaleEdge * u, own = width_of_scale(canvas, scale, u);
+    draw_plate(canvas, right - own, bar_y - 38 * u, own, bar_height + 52 * u, u);
     canvas.set_colour(kInk);
-    canvas.text(label, width - 32 * u, bar_y - 20 * u, 18 * u, 1.0);
+    canvas.text(label_of(scale), right, bar_y - 20 * u, 18 * u, 1.0);
     draw_scale(canvas, scale, bar_x, bar_y, 20 * u, bar_height, 17 * u);
   }
   draw_names(canvas, scene, grid_spacing, u, height);

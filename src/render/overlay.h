@@ -5,7 +5,8 @@
 namespace palpate::render {
 
 /// Room that the texts need, so that they never cover the scene.
-Margins margins_of(const Scene& scene, const Options& options, bool with_scale);
+/// @param scale  as it is drawn; none: there is none
+Margins margins_of(const Scene& scene, const Options& options, const std::optional<ColourScale>& scale);
 
 /// A vertical colour bar with ticks to its right; of a flat scale one colour and its number.
 void draw_scale(Canvas& canvas, const ColourScale& scale, double x, double y, double width, double height,

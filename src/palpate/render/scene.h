@@ -20,6 +20,7 @@ struct Surface {
   Rgb colour = {0.62f, 0.66f, 0.71f};  ///< where it is plain
   double opacity = 1.0;                ///< below 1: what is behind shows through
   double crease_deg = 40.0;            ///< edges sharper than this stay sharp
+  bool subject = false;                ///< what a picture is about, and should show (seen.h)
 };
 
 /// A horizontal plane with a grid; it takes the shadows.
