@@ -22,6 +22,7 @@
 #include "palpate/loop/summary.h"
 #include "palpate/loop/trace.h"
 #include "palpate/report/run_report.h"
+#include "palpate/scene/hands.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/provenance.h"
 #include "palpate/store/result_folder.h"
@@ -74,10 +75,34 @@ void print_tolerance(const IntegratorSpec& spec) {
     fmt::print("{}: rtol {:g}, error test at {:.3g}\n", spec.name, spec.rtol, method.error_test_rtol(spec));
 }
 
-void print_outcome(const loop::World& world, const loop::RunResult& result, const PeakWrench& peak,
-                   double assemble_s) {
-  fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s\n", short_name(world.description),
-             result.time, result.wall_s, assemble_s);
+/// What a run came to.
+struct Ran {
+  loop::RunResult result;
+  double assemble_s = 0.0;
+  PeakWrench peak;
+  loop::CheckpointCost checkpoints;
+};
+
+/// The largest force and torque on each hand, as summary.json keeps them.
+void add_peaks(store::Summary& summary, const scene::Description& description, const Ran& ran) {
+  if (ran.result.ticks == 0) return;
+  const std::vector<scene::Hand> hands = scene::hands_of(description);
+  for (std::size_t i = 0; i < std::min(hands.size(), ran.peak.of.size()); ++i) {
+    auto& values =
+        summary.section(i == 0 ? "on the hand" : fmt::format("on the hand {}", hands[i].name)).values;
+    const PeakWrench::Peak& peak = ran.peak.of[i];
+    values.emplace_back("peak_force_n", peak.force_n);
+    values.emplace_back("peak_force_at_s", peak.force_s);
+    values.emplace_back("peak_torque_n_m", peak.torque_n_m);
+    values.emplace_back("peak_torque_at_s", peak.torque_s);
+  }
+}
+
+void print_outcome(const loop::World& world, const Ran& ran) {
+  const loop::RunResult& result = ran.result;
+  const PeakWrench& peak = ran.peak;
+  fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s, peak memory {:.0f} MiB\n",
+             short_name(world.description), result.time, result.wall_s, ran.assemble_s, peak_memory_mib());
   if (world.stepper) {
     const dynamics::StepperCounters& c = result.counters;
     fmt::print("{}: {} steps, {} force and {} tangent evaluations, {} factorisations, {} contact queries\n",
@@ -148,15 +173,15 @@ struct Outcome {
 /// Written when the run begins, so that one that is killed is known for what it is.
 const Outcome kUnfinished{"unfinished", "it is going on, or was killed; what it recorded by then is whole"};
 
-void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s,
-                  const std::optional<compare::AgainstMonolithic>& against,
-                  const loop::CheckpointCost& checkpoints, const RunArguments& arguments,
+void keep_summary(const loop::World& world, const Ran& ran,
+                  const std::optional<compare::AgainstMonolithic>& against, const RunArguments& arguments,
                   const std::string& folder, const std::optional<Outcome>& outcome = {}) {
-  store::Summary summary = loop::summarise(world, result, assemble_s);
+  store::Summary summary = loop::summarise(world, ran.result, ran.assemble_s);
+  add_peaks(summary, world.description, ran);
   if (outcome) summary.outcome = outcome->word, summary.message = outcome->message;
   if (against) add_against_monolithic(summary, world.description, *against);
   if (const double every_s = arguments.checkpoint_every_s; every_s > 0.0)
-    add_checkpoints(summary, checkpoints, every_s);
+    add_checkpoints(summary, ran.checkpoints, every_s);
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
   store::write_summary((std::filesystem::path(folder) / "summary.json").string(), summary);
@@ -235,6 +260,9 @@ bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& a
 /// Prints which files of this run are in the folder.
 void print_files(const scene::Description& description, const std::string& folder) {
   fmt::print("in {}: {}\n", folder, fmt::join(run_files(description, folder), ", "));
+  if (!description.record)
+    fmt::print("states{} were not kept: the scene has no [record]\n",
+               description.tool ? " and the force over time" : "");
 }
 
 /// @param from  where it goes on, null at its start
@@ -254,16 +282,15 @@ loop::RunResult run_watched(std::unique_ptr<loop::World>& world, const RunArgume
 }
 
 /// A run whose end is told in its folder, also where that end is an error: of a disk that is full, say.
+/// @param ran  with all but its result
 loop::RunResult run_kept(std::unique_ptr<loop::World>& world, const RunArguments& arguments,
                          std::vector<loop::Observer*> observers, const loop::CheckpointPlan* checkpoints,
-                         loop::CheckpointCost& cost, loop::Resumed* from, double assemble_s,
-                         const std::string& folder) {
+                         Ran& ran, loop::Resumed* from, const std::string& folder) {
   try {
-    return run_watched(world, arguments, std::move(observers), checkpoints, cost, from);
+    return run_watched(world, arguments, std::move(observers), checkpoints, ran.checkpoints, from);
   } catch (const Error& e) {
     try {
-      if (world)
-        keep_summary(*world, {}, assemble_s, {}, cost, arguments, folder, Outcome{"failed", e.what()});
+      if (world) keep_summary(*world, ran, {}, arguments, folder, Outcome{"failed", e.what()});
     } catch (const Error&) {}  // on the same disk; its summary says that the run is unfinished
     fail("{} (what was recorded by then is whole, in {})", e.what(), folder);
   }
@@ -278,7 +305,8 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   const double start = wall_seconds();
   if (resumption) counters::reset();
   std::unique_ptr<loop::World> world = loop::assemble(description);
-  const double assemble_s = wall_seconds() - start;
+  Ran ran;
+  ran.assemble_s = wall_seconds() - start;
   RunIdentity identity{arguments, std::filesystem::absolute(description.path).lexically_normal().string(),
                        checkpoints ? loop::fingerprint(*world) : "", store::provenance().cpu};
   if (resumption) {
@@ -308,11 +336,10 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
       remove_run_files(description, folder);
       remove_checkpoint(folder);
     }
-    keep_summary(*world, {}, assemble_s, {}, {}, arguments, folder, kUnfinished);
+    keep_summary(*world, ran, {}, arguments, folder, kUnfinished);
   }
 
-  PeakWrench peak;
-  std::vector<loop::Observer*> observers = {&peak};
+  std::vector<loop::Observer*> observers = {&ran.peak};
   Snapshot snapshot(look.shade);
   if (arguments.picture) observers.push_back(&snapshot);
   ContactSnapshot contact;
@@ -335,14 +362,13 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   if (arguments.trace) trace.emplace(*world, (std::filesystem::path(folder) / "trace.csv").string());
   loop::HapticMemory memory;
   if (arguments.against_monolithic) observers.push_back(&memory);
-  loop::CheckpointCost cost;
   loop::CheckpointPlan plan;
   if (checkpoints) plan = checkpoint_plan(identity, description, folder);
   const loop::CheckpointPlan* const kept = checkpoints ? &plan : nullptr;
   loop::Resumed* const from = resumption ? &resumption->from : nullptr;
-  const loop::RunResult result =
-      keep ? run_kept(world, arguments, observers, kept, cost, from, assemble_s, folder)
-           : run_watched(world, arguments, observers, kept, cost, from);
+  ran.result = keep ? run_kept(world, arguments, observers, kept, ran, from, folder)
+                    : run_watched(world, arguments, observers, kept, ran.checkpoints, from);
+  const loop::RunResult& result = ran.result;
   if (recorder) close_records(*recorder, folder, missing);
   recorder.reset();
   if (trace) {
@@ -351,8 +377,8 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
                trace->attempts(), trace->rejected());
   }
 
-  print_outcome(*world, result, peak, assemble_s);
-  if (checkpoints) print_checkpoints(cost, arguments.checkpoint_every_s);
+  print_outcome(*world, ran);
+  if (checkpoints) print_checkpoints(ran.checkpoints, arguments.checkpoint_every_s);
   if (result.real_time) print_clock(*result.real_time, world->description.exchange.linearisation);
   std::optional<compare::AgainstMonolithic> against;
   if (arguments.against_monolithic && result.status.ok() && !result.stopped)
@@ -362,7 +388,7 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   if (against && !against->stopped && !against->trouble.empty())
     missing.add("distance from one system", against->trouble);
   if (keep) {
-    keep_summary(*world, result, assemble_s, against, cost, arguments, folder);
+    keep_summary(*world, ran, against, arguments, folder);
     if (result.status.ok() && !result.stopped) remove_checkpoint(folder);
     if (result.real_time) keep_clock(*result.real_time, folder);
     if (arguments.picture) keep_picture(*world, snapshot, folder, missing);
@@ -370,6 +396,8 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
     if (arguments.report) missing.add(report::write_run_report(folder));
     print_files(description, folder);
     if (frames) frames_cut = keep_frames(*world, *frames, arguments, folder, result.stopped, missing);
+  } else {
+    fmt::print("no file was written: the scene has no [record]\n");
   }
   if (!result.status.ok())
     fail(
@@ -380,7 +408,7 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   if (result.stopped) {
     fmt::print(stderr, "palpate: stopped at t = {:g} s{}\n", result.time,
                keep ? "; what was recorded by then is whole" : "");
-    if (cost.written > 0)
+    if (ran.checkpoints.written > 0)
       fmt::print(stderr, "palpate: `palpate resume {}` goes on with it\n", quoted(folder));
     return kExitStopped;
   }

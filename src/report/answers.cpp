@@ -85,14 +85,23 @@ Answer run_answer(const Json& summary, const std::optional<Table>& force) {
   if (!out.lead.empty()) out.lead += ".";
   if (const std::string message = text_at(summary, "message"); !message.empty())
     out.points.push_back(message);
-  if (!force || force->rows.empty()) return out;
-  if (const Peak f = peak_of(*force, "force", "n"); f.value > kNothing)
+  Peak f, t;
+  if (force && !force->rows.empty()) {
+    f = peak_of(*force, "force", "n");
+    t = peak_of(*force, "torque", "n_m");
+  } else if (const Json hand = group_of(summary, "on the hand"); !hand.empty()) {
+    f = {number_at(hand, "peak_force_n"), number_at(hand, "peak_force_at_s")};
+    t = {number_at(hand, "peak_torque_n_m"), number_at(hand, "peak_torque_at_s")};
+  } else {
+    return out;
+  }
+  if (f.value > kNothing)
     out.points.push_back(fmt::format("The hand feels at most {} N, at {} s{}.", short_number(f.value),
                                      short_number(f.time_s),
                                      of_limit(number_at(options, "max_force_n"), "N")));
   else
     out.points.push_back("The hand feels no force.");
-  if (const Peak t = peak_of(*force, "torque", "n_m"); t.value > kNothing)
+  if (t.value > kNothing)
     out.points.push_back(fmt::format("The torque on it is at most {} N m, at {} s{}.", short_number(t.value),
                                      short_number(t.time_s),
                                      of_limit(number_at(options, "max_torque_n_m"), "N m")));

@@ -7,6 +7,7 @@ import contextlib
 import csv
 import fcntl
 import json
+import math
 import os
 import pty
 import re
@@ -182,10 +183,12 @@ class Results(Cli):
         text = self.good("run", "one-tet", "-o", "here", "--duration-s", "0.1",
                          "--set", "body.0.youngs_modulus_pa=2e5", "--report")
         self.assertIn("0.1 s simulated", text)
+        peak = int(re.search(r"peak memory (\d+) MiB", text)[1])
         self.assertIn("in here: report.html, run.vtkhdf, run.xdmf, scene.toml, summary.json", text)
         names = {path.name for path in (self.folder / "here").iterdir()}
         self.assertEqual(names, {"run.vtkhdf", "run.xdmf", "summary.json", "scene.toml", "report.html"})
         summary = json.loads((self.folder / "here/summary.json").read_text())
+        self.assertAlmostEqual(summary["figures"]["sizes"]["peak_memory_mib"], peak, delta=2.0)
         self.assertEqual(summary["outcome"], "finished")
         self.assertEqual(summary["command"], "palpate run one-tet --set body.0.youngs_modulus_pa=2e5 "
                                              "--duration-s 0.1 --report -o here")
@@ -257,8 +260,23 @@ class Results(Cli):
     def test_nothing_recorded_no_file(self):
         scene = Path(self.shipped("one-tet")).read_text()
         (self.folder / "bare.toml").write_text(scene[:scene.index("[record]")])
-        self.good("run", "bare.toml", "--duration-s", "0.02")
+        text = self.good("run", "bare.toml", "--duration-s", "0.02")
+        self.assertEqual(text.splitlines()[-1], "no file was written: the scene has no [record]")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["bare.toml"])
+        text = self.good("run", "bare.toml", "--duration-s", "0.02", "-o", "asked")
+        self.assertEqual(text.splitlines()[-2:], ["in asked: scene.toml, summary.json",
+                                                  "states were not kept: the scene has no [record]"])
+
+    def test_the_peak_on_each_hand_is_kept(self):
+        self.good("run", "two-hands", "--duration-s", "0.06", "-o", "out")
+        figures = json.loads((self.folder / "out/summary.json").read_text())["figures"]
+        for section, file in (("on the hand", "force.csv"), ("on the hand left", "force-left.csv")):
+            rows = [[float(row[f"force_{axis}_n"]) for axis in "xyz"] + [float(row["time_s"])]
+                    for row in csv.DictReader((self.folder / "out" / file).read_text().splitlines())]
+            *peak, time_s = max(rows, key=lambda row: math.hypot(*row[:3]))
+            self.assertGreater(math.hypot(*peak), 0.01)
+            self.assertAlmostEqual(figures[section]["peak_force_n"], math.hypot(*peak), delta=1e-5)
+            self.assertAlmostEqual(figures[section]["peak_force_at_s"], time_s, delta=1e-9)
 
     def shipped(self, name):
         return PROGRAM.parent.parent / "share/palpate/scenes" / f"{name}.toml"

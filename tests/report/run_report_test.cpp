@@ -279,6 +279,21 @@ TEST(RunReport, LeavesOutSectionsWithoutAFile) {
     EXPECT_EQ(html.find(text), std::string::npos) << text;
 }
 
+TEST(RunReport, SaysThePeakOfAForceThatWasNotRecorded) {
+  const TemporaryFolder dir;
+  const std::string before = R"({"scene": "x", "outcome": "finished", "figures": {
+    "options": {"max_force_n": 3.3}, "on the hand": {"peak_force_n": 1.25, "peak_force_at_s": 0.13,
+      "peak_torque_n_m": )";
+  put(dir / "summary.json", before + R"(0.002, "peak_torque_at_s": 0.2}}})");
+  std::string html = read(report::write_run_report(dir.path()).page);
+  for (const char* text : {"The hand feels at most 1.25 N, at 0.13 s, of the 3.3 N that the device can do.",
+                           "The torque on it is at most 0.002 N m, at 0.2 s."})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n0,0,0,0\n0.001,0,0,1\n0.002,0,0,2\n");
+  html = read(report::write_run_report(dir.path()).page);
+  EXPECT_NE(html.find("The hand feels at most 2 N"), std::string::npos) << "what was recorded goes first";
+}
+
 TEST(RunReport, GivesTheReasonInPlaceOfAFigureThatCannotBeDrawn) {
   const TemporaryFolder dir;
   put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n");
