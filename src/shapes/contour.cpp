@@ -63,6 +63,10 @@ TriMesh largest_piece(const TriMesh& mesh) {
 
 }  // namespace
 
+// Halving the edges of a first contour more than twice leaves needles where its triangles had any shape: a
+// lattice beyond that is made finer first.
+constexpr double kCoarsest = 3.0;  ///< spacing of the lattice in wanted edges
+
 TriMesh contour(const Blueprint& blueprint, int vertices) {
   RemeshRules rules;
   rules.inside = blueprint.inside;
@@ -71,6 +75,11 @@ TriMesh contour(const Blueprint& blueprint, int vertices) {
   rules.probe = 1e-3 * blueprint.lattice;
   Remesher remesher(largest_piece(march(blueprint)), rules);
   double edge = remesher.edge_for(vertices);
+  if (blueprint.lattice > kCoarsest * edge) {
+    Blueprint finer = blueprint;
+    finer.lattice = kCoarsest * edge;
+    return contour(finer, vertices);
+  }
   for (int i = 0; i < 3; ++i) remesher.round(edge);
   edge *= std::sqrt(static_cast<double>(remesher.count()) / vertices);  // the number goes like edge^-2
   for (int i = 0; i < 3; ++i) remesher.round(edge);
