@@ -103,7 +103,7 @@ void print_system(loop::World& world, double assemble_s, double memory_mib) {
   add("time to assemble [s]", fmt::format("{:.3f}", assemble_s));
   add("memory of the assembled scene [MiB]", fmt::format("{:.1f}", memory_mib));
   std::vector<loop::MeshCounts> counts;
-  for (const loop::Body& body : world.bodies) counts.push_back({body.report.nodes, body.report.elements});
+  for (const loop::Body& body : world.bodies) counts.push_back(loop::counts_of(body));
   add("memory of its run, about [MiB]",
       fmt::format("{:.0f}", loop::estimate_memory(world.description, counts).total() / 1048576.0));
   fmt::print("{}", report::format_table({"system", ""}, rows));

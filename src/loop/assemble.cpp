@@ -189,16 +189,19 @@ void check_memory(const World& world) {
   std::vector<MeshCounts> counts;
   MeshCounts all;
   for (const Body& body : world.bodies) {
-    counts.push_back({static_cast<int>(body.rest.nodes.cols()), static_cast<int>(body.rest.tets.cols())});
+    counts.push_back(counts_of(body));
     all.nodes += counts.back().nodes, all.tetrahedra += counts.back().tetrahedra;
+    all.skin_vertices += counts.back().skin_vertices;
   }
   const MemoryEstimate estimate = estimate_memory(world.description, counts);
   const bool direct = estimate.factor > estimate.elements;
+  const std::string skins =
+      all.skin_vertices > 0 ? fmt::format(", {} for skins", memory_text(estimate.skins)) : "";
   refuse_beyond_memory(fmt::format("scene \"{}\": {} nodes and {} tetrahedra", world.description.name,
                                    all.nodes, all.tetrahedra),
                        estimate.total(),
-                       fmt::format("{} for elements and matrix, {} for a direct solver's factor",
-                                   memory_text(estimate.elements), memory_text(estimate.factor)),
+                       fmt::format("{} for elements and matrix{}, {} for a direct solver's factor",
+                                   memory_text(estimate.elements), skins, memory_text(estimate.factor)),
                        direct
                            ? "a larger element_size_m or integrator.linear_solver = \"pcg-single\" needs less"
                            : "a larger element_size_m needs less");

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "palpate/integrate/integrators.h"
+#include "palpate/loop/world.h"
 
 namespace palpate::loop {
 namespace {
@@ -28,13 +29,19 @@ int factors_of(const scene::Description& d) {
 
 }  // namespace
 
+MeshCounts counts_of(const Body& body) {
+  return {static_cast<int>(body.rest.nodes.cols()), static_cast<int>(body.rest.tets.cols()),
+          body.skin ? static_cast<int>(body.skin->rest.vertices.cols()) : 0};
+}
+
 MemoryEstimate estimate_memory(const scene::Description& description, const std::vector<MeshCounts>& bodies) {
-  constexpr double kProgram = 40.0 * kMiB, kTetrahedron = 820.0;
+  constexpr double kProgram = 40.0 * kMiB, kTetrahedron = 820.0, kSkinVertex = 850.0;
   MemoryEstimate out{.program = kProgram};
   const double constant =
       factors_of(description) * factor_constant(integrate::linear_solver_of(description.integrator));
   for (const MeshCounts& body : bodies) {
     out.elements += kTetrahedron * body.tetrahedra;
+    out.skins += kSkinVertex * body.skin_vertices;
     out.factor += constant * std::pow(body.nodes, 4.0 / 3.0);
   }
   return out;

@@ -309,7 +309,52 @@ class EarlierRun(Case):
                                                           "linearly-implicit-euler", "-o", "press"))
 
 
+SKINNED = """
+[scene]
+name = "a fine skin"
+duration_s = 0.02
+[[body]]
+name = "ball"
+mesh = { file = "fine.h5" }
+skin = true
+proxies = true
+youngs_modulus_pa = 2e4
+poissons_ratio = 0.4
+[[obstacle]]
+name = "floor"
+type = "plane"
+point_m = [0, 0, -0.029]
+[[contact]]
+between = ["ball", "floor"]
+stiffness_pa_m = 1e6
+[integrator]
+name = "linearly-implicit-euler"
+step_s = 0.01
+"""
+
+
 class Memory(Case):
+    def compare(self, *scene):
+        text = self.good("inspect", *scene)
+        said = float(re.search(r"memory of its run, about \[MiB\] +(\d+)", text).group(1))
+        with open(os.devnull, "w", encoding="utf-8") as null:
+            process = subprocess.Popen([PROGRAM, "run", *scene, "--duration-s", "0.01", "-o", "x"],
+                                       cwd=self.folder, stdout=null)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = status
+        self.assertEqual(status, 0)
+        peak = usage.ru_maxrss / 1024
+        self.assertGreater(peak, 60, "small ones say nothing")
+        self.assertLess(max(said / peak, peak / said), 2, f"{said} MiB said, {peak:.0f} at the peak")
+        return said
+
+    def test_the_estimate_counts_skins(self):
+        if not (Path(PROGRAM).parent / "palpate-model").exists():
+            self.skipTest("this build makes no models")
+        self.good("model", "ball", "--skin-vertices", "200000", "-o", "fine.h5", "-q")
+        (self.folder / "fine.toml").write_text(SKINNED)
+        self.assertGreater(self.compare("fine.toml"), 150)
+
     def test_the_estimate_is_within_a_factor_of_two(self):
         scenes = (["press-ball", "--set", "body.0.mesh.element_size_m=0.003"],
                   ["falling-ball", "--set", "body.0.mesh.element_size_m=0.004", "--integrator",
@@ -319,17 +364,7 @@ class Memory(Case):
                    "integrator.linear_solver=pcg-single"])
         for scene in scenes:
             with self.subTest(scene=scene):
-                text = self.good("inspect", *scene)
-                said = float(re.search(r"memory of its run, about \[MiB\] +(\d+)", text).group(1))
-                with open(os.devnull, "w", encoding="utf-8") as null:
-                    process = subprocess.Popen([PROGRAM, "run", *scene, "--duration-s", "0.01", "-o", "x"],
-                                               cwd=self.folder, stdout=null)
-                    _, status, usage = os.wait4(process.pid, 0)
-                    process.returncode = status
-                self.assertEqual(status, 0)
-                peak = usage.ru_maxrss / 1024
-                self.assertGreater(peak, 60, "small ones say nothing")
-                self.assertLess(max(said / peak, peak / said), 2, f"{said} MiB said, {peak:.0f} at the peak")
+                self.compare(*scene)
 
     def test_what_does_not_fit_is_refused_with_figures(self):
         def limit():
