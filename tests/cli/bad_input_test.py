@@ -323,7 +323,7 @@ poissons_ratio = 0.4
 [[obstacle]]
 name = "floor"
 type = "plane"
-point_m = [0, 0, -0.029]
+position_m = [0, 0, -0.029]
 [[contact]]
 between = ["ball", "floor"]
 stiffness_pa_m = 1e6
