@@ -197,14 +197,14 @@ void check_memory(const World& world) {
   const bool direct = estimate.factor > estimate.elements;
   const std::string skins =
       all.skin_vertices > 0 ? fmt::format(", {} for skins", memory_text(estimate.skins)) : "";
-  refuse_beyond_memory(fmt::format("scene \"{}\": {} nodes and {} tetrahedra", world.description.name,
-                                   all.nodes, all.tetrahedra),
-                       estimate.total(),
-                       fmt::format("{} for elements and matrix{}, {} for a direct solver's factor",
-                                   memory_text(estimate.elements), skins, memory_text(estimate.factor)),
-                       direct
-                           ? "a larger element_size_m or integrator.linear_solver = \"pcg-single\" needs less"
-                           : "a larger element_size_m needs less");
+  refuse_beyond_memory(
+      fmt::format("scene \"{}\": {} nodes and {} tetrahedra", world.description.name, all.nodes,
+                  all.tetrahedra),
+      estimate.total(),
+      fmt::format("{} for elements and matrix{}, {} for a direct solver's factor",
+                  memory_text(estimate.elements + estimate.touch), skins, memory_text(estimate.factor)),
+      direct ? "a larger element_size_m or integrator.linear_solver = \"pcg-single\" needs less"
+             : "a larger element_size_m needs less");
 }
 
 }  // namespace

@@ -21,10 +21,10 @@ double factor_constant(const std::string& solver) {
   return 0.0;  // conjugate gradients keep none
 }
 
-/// A tool that is exchanged with bodies linearised at points has a factor of its own beside the integrator's.
-int factors_of(const scene::Description& d) {
-  const bool at_points = d.tool && d.exchange.scheme == "partitioned" && d.exchange.linearisation == "points";
-  return at_points ? 2 : 1;
+/// A tool that is exchanged with bodies linearised at points has a matrix and a solver of its own beside the
+/// integrator's.
+bool touches_at_points(const scene::Description& d) {
+  return d.tool && d.exchange.scheme == "partitioned" && d.exchange.linearisation == "points";
 }
 
 }  // namespace
@@ -35,12 +35,14 @@ MeshCounts counts_of(const Body& body) {
 }
 
 MemoryEstimate estimate_memory(const scene::Description& description, const std::vector<MeshCounts>& bodies) {
-  constexpr double kProgram = 40.0 * kMiB, kTetrahedron = 820.0, kSkinVertex = 850.0;
+  constexpr double kProgram = 40.0 * kMiB, kTetrahedron = 820.0, kTouched = 640.0, kSkinVertex = 200.0;
+  const bool at_points = touches_at_points(description);
   MemoryEstimate out{.program = kProgram};
   const double constant =
-      factors_of(description) * factor_constant(integrate::linear_solver_of(description.integrator));
+      (at_points ? 2.0 : 1.0) * factor_constant(integrate::linear_solver_of(description.integrator));
   for (const MeshCounts& body : bodies) {
     out.elements += kTetrahedron * body.tetrahedra;
+    if (at_points) out.touch += kTouched * body.tetrahedra;
     out.skins += kSkinVertex * body.skin_vertices;
     out.factor += constant * std::pow(body.nodes, 4.0 / 3.0);
   }

@@ -16,9 +16,10 @@ MeshCounts counts_of(const Body& body);
 struct MemoryEstimate {
   double program = 0.0;   ///< code, libraries, tables
   double elements = 0.0;  ///< meshes, elements, the step's matrix, vectors
-  double skins = 0.0;     ///< with their embedding, proxies, and what contact in image space keeps of them
+  double touch = 0.0;     ///< what a tool that is exchanged at points asks for: matrix and solver of its own
+  double skins = 0.0;     ///< with their embedding and proxies
   double factor = 0.0;    ///< of a direct solver
-  double total() const { return program + elements + skins + factor; }
+  double total() const { return program + elements + touch + skins + factor; }
 };
 /// Measured peaks were 0.8 to 1.4 of it, from 5,000 to 185,000 tetrahedra (tests/cli/bad_input_test.py holds
 /// it to a factor of 2), with skins 0.8 to 1.3 up to a million vertices.
