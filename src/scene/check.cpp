@@ -167,18 +167,21 @@ void check_periods(const Document& doc, const Description& d) {
   }
 }
 
-/// One exchange is under way at a time.
+/// Exchanges may be on their way one behind the other; later than this the hand is a second away from what it
+/// feels, and each that waits is kept.
+constexpr double kLongestLatency = 10.0;  // periods
+
 void check_latency(const Document& doc, const Description& d) {
   const CosimulationSpec& c = d.exchange;
   const std::string key = location(doc, "exchange.latency_ticks");
   if (!d.tool || c.scheme == "monolithic")
     refuse(key, "exchange",
            "latency_ticks belongs to a tool with ticks of its own: scheme = \"partitioned\" and [tool]");
-  if (const double longest = c.exchange_period_s / d.tool->tick_s;
+  if (const double longest = kLongestLatency * c.exchange_period_s / d.tool->tick_s;
       static_cast<double>(c.latency_ticks) > longest * (1.0 + 1e-9))
     refuse(key, "exchange",
-           fmt::format("latency_ticks = {} is longer than the exchange period of {:.9g} ticks",
-                       c.latency_ticks, longest));
+           fmt::format("latency_ticks = {} is longer than {:g} exchange periods, {:.9g} ticks",
+                       c.latency_ticks, kLongestLatency, longest));
 }
 
 void check_exchange(const Document& doc, Description& d) {

@@ -158,7 +158,7 @@ const KeyTable<CosimulationSpec>& exchange_keys() {
       number("shortest_refresh_s", &CosimulationSpec::shortest_refresh_s, positive(),
              "\"substep\" refreshes no sooner than this"),
       integer("latency_ticks", &CosimulationSpec::latency_ticks, at_least(0),
-              "ticks from an exchange to the first that uses its result, in virtual time"),
+              "ticks from an exchange to the first that uses its result, in virtual time; up to ten periods"),
   };
   return keys;
 }

@@ -94,8 +94,17 @@ TEST(Replay, RetracesAToolOnAnObstacle) {
 
 TEST(Replay, RetracesVirtualTimeWithLatency) {
   scene::Description d = pressed();
+  d.exchange.latency_ticks = 25;  // two exchanges on their way behind it
+  const int period = static_cast<int>(std::lround(d.exchange.exchange_period_s / d.tool->tick_s));
+  ASSERT_EQ(period, 10);
+  loop::HapticRecord record = recorded(d, false, "later.h5");
+  expect_equal(loop::retrace(d, record), record.ticks);
+  for (std::size_t i = 0; i < record.ticks.size(); ++i) {
+    const int exchanges = std::max(0, (static_cast<int>(i) - 25) / period);  // that have come since the first
+    EXPECT_EQ(record.ticks[i].record_version, i < 25 ? 1 : 1 + exchanges) << i;
+  }
   d.exchange.latency_ticks = 4;
-  const loop::HapticRecord record = recorded(d, false, "late.h5");
+  record = recorded(d, false, "late.h5");
   expect_equal(loop::retrace(d, record), record.ticks);
   // another exchange is another force
   loop::HapticRecord other = record;

@@ -84,7 +84,7 @@ const Broken kCases[] = {
     {"ladder-order", "11:8",
      "compare: ladder[0]: rtol must fall from the coarsest to the finest, but 0.01 comes after 0.001"},
     {"missing-stiffness", "5:1", "body \"ball\": youngs_modulus_pa is missing and has no default"},
-    {"latency", "10:17", "exchange: latency_ticks = 11 is longer than the exchange period of 10 ticks"},
+    {"latency", "10:17", "exchange: latency_ticks = 101 is longer than 10 exchange periods, 100 ticks"},
     {"latency-without-ticks", "10:17",
      "exchange: latency_ticks belongs to a tool with ticks of its own: scheme = \"partitioned\" and [tool]"},
     {"misspelt-key", "6:1",
