@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -48,15 +50,38 @@ void print_rows(const ZWidth& z) {
                                         rows));
 }
 
-void print_points(const std::vector<OperatingPoint>& points, double tick_s) {
+/// @param scale  from [N/m] to `unit`
+void print_points(const std::vector<OperatingPoint>& points, double tick_s, double scale,
+                  const std::string& unit) {
   std::vector<std::vector<std::string>> rows;
   for (const OperatingPoint& p : points)
-    rows.push_back({p.name, fmt::format("{:.4g}", p.contact.stiffness), fmt::format("{:.4g}", p.series),
-                    fmt::format("{:.6f}", p.radius), p.simulated_stable ? "stable" : "unstable",
-                    p.words(tick_s)});
-  fmt::print("{}", report::format_table({"", "contact [N/m]", "with coupling [N/m]", "spectral radius",
-                                         "simulated", "verdict"},
-                                        rows));
+    rows.push_back({p.name, fmt::format("{:.4g}", scale * p.contact.stiffness),
+                    fmt::format("{:.4g}", scale * p.series), fmt::format("{:.6f}", p.radius),
+                    p.simulated_stable ? "stable" : "unstable", p.words(tick_s, scale, unit)});
+  fmt::print("{}", report::format_table(
+                       {"", fmt::format("contact [{}]", unit), fmt::format("with coupling [{}]", unit),
+                        "spectral radius", "simulated", "verdict"},
+                       rows));
+}
+
+void print_rotation(const RotationalLoop& r, const std::vector<OperatingPoint>& points) {
+  const double a2 = r.lever_m * r.lever_m;
+  fmt::print(
+      "about the tool's axis of least inertia, {:.3g} kg m^2; coupling {:.4g} N m/rad, {:.3g} N m s/rad; ",
+      r.inertia_kg_m2, a2 * r.loop.coupling_stiffness_n_m, a2 * r.loop.coupling_damping_n_s_m);
+  if (r.driven)
+    fmt::print("device and arm of {:.3g} kg m^2\n\n", a2 * r.loop.device.total_mass());
+  else
+    fmt::print("the device drives no torque: its handle is held\n\n");
+  print_points(points, r.loop.tick_s, a2, "N m/rad");
+}
+
+/// The operating points, of translation and rotation, that are unstable by theory or by simulation.
+std::vector<std::string> unstable_points(const std::vector<OperatingPoint>& points, const std::string& how) {
+  std::vector<std::string> out;
+  for (const OperatingPoint& p : points)
+    if (!p.simulated_stable || p.radius > 1.0 + 1e-9) out.push_back(fmt::format("{} ({})", p.name, how));
+  return out;
 }
 
 void write_csv(const ZWidth& z, const std::string& path) {
@@ -114,7 +139,8 @@ ToolContactRange range_of(const StabilityArguments& a, const scene::Description&
 }
 
 void keep_summary(const StabilityArguments& a, const scene::Description& d, const ZWidth& z,
-                  const std::vector<OperatingPoint>& points, const std::string& folder) {
+                  const std::vector<OperatingPoint>& points, const RotationalLoop& rotation,
+                  const std::vector<OperatingPoint>& turning, const std::string& folder) {
   store::Summary summary;
   summary.command = "palpate stability --haptic " + a.scene.scene;
   summary.scene = d.name;
@@ -124,6 +150,13 @@ void keep_summary(const StabilityArguments& a, const scene::Description& d, cons
   summary.provenance = store::provenance();
   summary.section("verdicts").values = {{"passive_within_stable", z.passive_within_stable()},
                                         {"largest_difference_simulated_spectral", z.largest_difference()}};
+  const double a2 = rotation.lever_m * rotation.lever_m;
+  for (const OperatingPoint& p : turning)
+    summary.section("rotation: " + p.name).values = {{"contact_n_m_rad", a2 * p.contact.stiffness},
+                                                     {"with_coupling_n_m_rad", a2 * p.series},
+                                                     {"spectral_radius", p.radius},
+                                                     {"simulated_stable", p.simulated_stable},
+                                                     {"passive", p.passive}};
   for (const OperatingPoint& p : points)
     summary.section(p.name).values = {{"contact_n_m", p.contact.stiffness},
                                       {"with_coupling_n_m", p.series},
@@ -143,6 +176,9 @@ int stability_haptic(const StabilityArguments& a) {
   loop.delay_ticks = a.delay_ticks.value_or(loop.delay_ticks);
   const ToolContactRange range = range_of(a, description);
   const std::vector<OperatingPoint> points = operating_points(loop, range, kHapticDuration);
+  const RotationalLoop rotation = rotational_loop_of(description, loop, range);
+  const std::vector<OperatingPoint> turning =
+      operating_points(rotation.loop, rotation.range, kHapticDuration);
   loop.contact_stiffness_n_m = range.greatest.stiffness;
   loop.contact_damping_n_s_m = range.greatest.damping;
 
@@ -164,11 +200,13 @@ int stability_haptic(const StabilityArguments& a) {
       loop.delay_ticks, loop.coupling_stiffness_n_m, loop.coupling_damping_n_s_m);
   print_rows(z);
   fmt::print("\n");
-  print_points(points, loop.tick_s);
+  print_points(points, loop.tick_s, 1.0, "N/m");
+  fmt::print("\n");
+  print_rotation(rotation, turning);
 
   Undelivered missing;
   write_csv(z, (fs::path(folder) / "z_width.csv").string());
-  keep_summary(a, description, z, points, folder);
+  keep_summary(a, description, z, points, rotation, turning, folder);
   const std::string svg = (fs::path(folder) / "z_width.svg").string();
   std::error_code none;
   fs::remove(svg, none);  // a plot of an earlier run would pass for this one's
@@ -179,9 +217,15 @@ int stability_haptic(const StabilityArguments& a) {
   if (z.stopped) return kExitStopped;
 
   const bool within = z.passive_within_stable(), agree = z.largest_difference() <= kAgreement;
+  if (std::all_of(z.rows.begin(), z.rows.end(), [](const ZWidthRow& r) { return r.passive <= 0.0; }))
+    fmt::print(
+        "no wall is passive: the device has no viscous friction of its own, which alone can make one so\n");
   fmt::print("passive lies {} stable; simulation and theory differ by at most {:.2g} %\n",
              within ? "within" : "NOT within", 100.0 * z.largest_difference());
-  return missing.close(within && agree ? 0 : kExitError);
+  std::vector<std::string> unstable = unstable_points(points, "translation");
+  for (const std::string& one : unstable_points(turning, "rotation")) unstable.push_back(one);
+  if (!unstable.empty()) fmt::print("the loop of this scene is UNSTABLE: {}\n", fmt::join(unstable, ", "));
+  return missing.close(within && agree && unstable.empty() ? 0 : kExitError);
 }
 
 }  // namespace palpate::cli

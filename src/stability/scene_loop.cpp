@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include "palpate/device/profile.h"
 #include "palpate/loop/world.h"
 #include "palpate/stability/z_width.h"
+#include "palpate/tool/tool.h"
 
 // What a contact is worth at the tool.  Of a patch of radius a, with k the pressure per depth [Pa/m]:
 //     penalty    k pi a^2            the springs side by side
@@ -70,6 +72,43 @@ HapticLoop loop_of(const scene::Description& d) {
   loop.tool_integrator = d.tool->integrator;
   if (d.device) add_device(*d.device, loop);
   return loop;
+}
+
+// A contact turns the tool back by the lever of its force.  At the least a patch of radius a lies under the
+// middle, and its springs resist a tilt: integral of k x^2 over the disc = K a^2/4.  At the most the contact
+// lies at the tool's full extent R from its middle: K R^2.
+RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoop& loop,
+                                  const ToolContactRange& range) {
+  constexpr double kStylus = 0.05;  // lever of a device's mass about its handle [m]
+  constexpr double kHeld = 1e6;     // times the tool
+  const Mat3 inertia = tool::Tool(*d.tool, Vec3::Zero()).mass_matrix().topLeftCorner<3, 3>();
+  RotationalLoop out{.loop = loop, .range = range};
+  out.inertia_kg_m2 = Eigen::SelfAdjointEigenSolver<Mat3>(inertia).eigenvalues().minCoeff();
+  const double a2 = out.inertia_kg_m2 / loop.tool_mass_kg, radius = radius_of(d);
+  out.lever_m = std::sqrt(a2);
+  out.loop.coupling_stiffness_n_m = d.tool->coupling.rotational_stiffness_n_m_rad / a2;
+  out.loop.coupling_damping_n_s_m = d.tool->coupling.rotational_damping_n_m_s_rad / a2;
+  HapticLoop::Axis& device = out.loop.device;
+  if (d.device && d.device->type == "hand") {
+    device = {};
+    device.mass_kg = d.device->rotational_inertia_kg_m2 / a2;
+    device.damping_n_s_m = 0.0;
+    device.arm_damping_n_s_m = d.device->arm_rotational_damping_n_m_s_rad / a2;
+    device.arm_stiffness_n_m = d.device->arm_rotational_stiffness_n_m_rad / a2;
+  } else {
+    device.mass_kg *= kStylus * kStylus / a2;
+    device.damping_n_s_m *= kStylus * kStylus / a2;
+  }
+  out.driven = !d.device || device::figures_of(*d.device).max_torque > 0.0;
+  if (!out.driven) {  // a mass that stays where it is, and is not free to drift
+    device = {};
+    device.mass_kg = kHeld * loop.tool_mass_kg;
+    device.damping_n_s_m = 10.0 * device.mass_kg;
+  }
+  const double least = 0.25 * std::pow(0.1 * radius, 2) / a2, most = radius * radius / a2;
+  out.range.least = {range.least.stiffness * least, range.least.damping * least};
+  out.range.greatest = {range.greatest.stiffness * most, range.greatest.damping * most};
+  return out;
 }
 
 ToolContactRange contact_range(const scene::Description& d) {

@@ -67,15 +67,16 @@ ZWidth z_width(const HapticLoop& loop, const ZWidthOptions& options) {
   return out;
 }
 
-std::string OperatingPoint::words(double tick_s) const {
+std::string OperatingPoint::words(double tick_s, double scale, const std::string& unit) const {
   if (radius > 1.0 + 1e-9) {
     const double doubling = tick_s * std::log(2.0) / std::log(radius);
-    return fmt::format("unstable: {} is above {:.4g} N/m; a vibration doubles every {:.3g} s",
-                       "the coupling's stiffness", largest_coupling, doubling);
+    return fmt::format("unstable: {} is above {:.4g} {}; a vibration doubles every {:.3g} s",
+                       "the coupling's stiffness", scale * largest_coupling, unit, doubling);
   }
-  const std::string limit = std::isinf(largest_coupling)
-                                ? "the coupling has no upper limit here"
-                                : fmt::format("the coupling may have up to {:.4g} N/m", largest_coupling);
+  const std::string limit =
+      std::isinf(largest_coupling)
+          ? "the coupling has no upper limit here"
+          : fmt::format("the coupling may have up to {:.4g} {}", scale * largest_coupling, unit);
   if (passive) return fmt::format("passive: stable in any passive hand; {}", limit);
   return fmt::format("stable with the device {}, but not passive: {} hand can make it vibrate; {}",
                      held ? "held so" : "let go", held ? "another" : "some", limit);

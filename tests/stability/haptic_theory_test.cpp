@@ -212,6 +212,59 @@ TEST(ZWidth, takes_the_scene_s_device) {
 }
 
 #ifdef PALPATE_HAS_TOOL
+// A ball of 100 g and 10 mm has 2/5 m r^2 = 4e-6 kg m^2 about any axis.  Under a held handle semi-implicit
+// Euler is stable below k = 4 I/h^2 - 2 b/h, by theory and in the simulation of its ticks.
+TEST(RotationalLoop, has_the_limit_of_the_tools_scheme_in_its_own_units) {
+  scene::Description d;
+  d.tool.emplace();
+  d.tool->integrator = "semi-implicit-euler";
+  d.device.emplace();
+  d.device->profile = "omni";  // which drives no torque
+  const ToolContactRange range{{100.0, 1.0}, {1000.0, 2.0}};
+  const RotationalLoop rotation = rotational_loop_of(d, loop_of(d), range);
+  EXPECT_NEAR(rotation.inertia_kg_m2, 4e-6, 1e-12);
+  EXPECT_FALSE(rotation.driven);
+  const double a2 = rotation.lever_m * rotation.lever_m;
+  EXPECT_NEAR(a2 * rotation.loop.tool_mass_kg, 4e-6, 1e-12);
+  EXPECT_NEAR(a2 * rotation.loop.coupling_stiffness_n_m, 0.3, 1e-12);
+  EXPECT_NEAR(a2 * rotation.loop.coupling_damping_n_s_m, 1e-3, 1e-15);
+  EXPECT_NEAR(a2 * rotation.range.greatest.stiffness, 1000.0 * 1e-4, 1e-12) << "at the tool's radius";
+  EXPECT_NEAR(a2 * rotation.range.least.stiffness, 100.0 * 1e-6 / 4.0, 1e-12) << "a disc of a tenth of it";
+  const double limit = 4.0 * 4e-6 / 1e-6 - 2.0 * 1e-3 / 1e-3;
+  EXPECT_NEAR(a2 * spectral_stiffness(rotation.loop, rotation.loop.coupling_damping_n_s_m) / limit, 1.0,
+              1e-3);
+  for (const double share : {0.97, 1.03}) {
+    d.tool->coupling.rotational_stiffness_n_m_rad = share * limit;
+    const RotationalLoop near = rotational_loop_of(d, loop_of(d), range);
+    const OperatingPoint air = operating_points(near.loop, near.range, 4.0).front();
+    EXPECT_EQ(air.simulated_stable, share < 1.0) << share;
+    EXPECT_EQ(air.radius <= 1.0 + 1e-9, share < 1.0) << share;
+    if (share > 1.0) {
+      EXPECT_NE(air.words(1e-3, a2, "N m/rad").find("is above 14 N m/rad"), std::string::npos)
+          << air.words(1e-3, a2, "N m/rad");
+    }
+  }
+}
+
+TEST(RotationalLoop, takes_the_hand_s_own_figures) {
+  scene::Description d;
+  d.tool.emplace();
+  d.tool->inertia_kg_m2 = Vec3(3e-5, 1e-5, 2e-5);
+  d.device.emplace();
+  d.device->type = "hand";
+  d.device->rotational_inertia_kg_m2 = 2e-3;
+  d.device->arm_rotational_damping_n_m_s_rad = 0.05;
+  d.device->arm_rotational_stiffness_n_m_rad = 3.0;
+  const RotationalLoop rotation = rotational_loop_of(d, loop_of(d), {{1.0, 0.0}, {1.0, 0.0}});
+  const double a2 = rotation.lever_m * rotation.lever_m;
+  EXPECT_TRUE(rotation.driven);
+  EXPECT_NEAR(rotation.inertia_kg_m2, 1e-5, 1e-11) << "the least: the first to vibrate";
+  EXPECT_NEAR(a2 * rotation.loop.device.total_mass(), 2e-3, 1e-12);
+  EXPECT_NEAR(a2 * rotation.loop.device.total_damping(), 0.05, 1e-12);
+  EXPECT_NEAR(a2 * rotation.loop.device.arm_stiffness_n_m, 3.0, 1e-12);
+  EXPECT_EQ(rotation.loop.device.damping_n_s_m, 0.0);
+}
+
 TEST(ZWidth, simulated_and_exact_walls_are_the_same) {
   ZWidthOptions options;
   options.rows = 5;

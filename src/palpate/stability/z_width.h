@@ -53,6 +53,22 @@ HapticLoop loop_of(const scene::Description& description);
 /// @throws Error for a scene whose tool touches nothing, or by springs at points
 ToolContactRange contact_range(const scene::Description& description);
 
+/// The loop about one axis, as the translation of a point at the lever a: with I/a^2, k/a^2 and b/a^2 for
+/// inertia, stiffness and damping it is the same loop, and a is the tool's radius of gyration about that
+/// axis, the one of its least moment of inertia.  Of a simulated hand the scene knows all figures; another
+/// device has its mass and damping at a lever of 50 mm, the order of a stylus.  One that drives no torque is
+/// held.
+struct RotationalLoop {
+  HapticLoop loop;         ///< masses of I/a^2 [kg], and so on
+  ToolContactRange range;  ///< at the lever
+  double lever_m = 0.0;    ///< a
+  double inertia_kg_m2 = 0.0;
+  bool driven = true;  ///< the device has torque
+};
+/// @param loop, range  of the translation
+RotationalLoop rotational_loop_of(const scene::Description& description, const HapticLoop& loop,
+                                  const ToolContactRange& range);
+
 /// The scene's own loop at one contact.
 struct OperatingPoint {
   std::string name;
@@ -63,7 +79,8 @@ struct OperatingPoint {
   bool simulated_stable = false;
   bool passive = false;  ///< the coupling as a wall is
   bool held = false;     ///< the device is, by the loop's arm
-  std::string words(double tick_s) const;
+  /// @param scale  from [N/m] to `unit`
+  std::string words(double tick_s, double scale = 1.0, const std::string& unit = "N/m") const;
 };
 /// Tool in the air, in the softest and in the stiffest contact.
 std::vector<OperatingPoint> operating_points(HapticLoop loop, const ToolContactRange& range,
