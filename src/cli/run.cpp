@@ -68,6 +68,17 @@ void print_hand(const std::string& who, const PeakWrench::Peak& peak, long ticks
       who, peak.force_n, peak.force_s, peak.torque_n_m, peak.torque_s, ticks, limited);
 }
 
+/// What its device counted, as "packets_stale" says it.
+void print_tallies(const std::string& who, const std::vector<std::pair<std::string, long long>>& tallies) {
+  std::string text;
+  for (const auto& [name, count] : tallies) {
+    std::string words = name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
+  }
+  if (!text.empty()) fmt::print("device of {}: {}\n", who, text);
+}
+
 /// What was asked for, and what the method makes of it.
 void print_tolerance(const IntegratorSpec& spec) {
   const auto& method = find(loop::steppers(), spec.name, "integrator");
@@ -116,6 +127,12 @@ void print_outcome(const loop::World& world, const Ran& ran) {
   for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peak.of.size(); ++i)
     print_hand(fmt::format("hand \"{}\"", world.description.hands[i].name), peak.of[i + 1],
                result.more_hands[i].ticks, result.more_hands[i].limited_ticks);
+  for (std::size_t i = 0; result.ticks > 0 && i < peak.of.size(); ++i)
+    print_tallies(i == 0 ? "the hand" : fmt::format("hand \"{}\"", world.description.hands[i - 1].name),
+                  loop::tallies_of(world, i));
+  if (result.rejected_ticks > 0)
+    fmt::print("in {} ticks the wrench was not finite, or time did not go on: forces fall to nothing then\n",
+               result.rejected_ticks);
   if (result.outside_ticks > 0)
     fmt::print(
         "in {} ticks the handle was outside the device's workspace, where forces fade to nothing; move it by "
@@ -427,7 +444,11 @@ int run(const RunArguments& arguments) {
 }
 
 int run(const RunArguments& arguments, Undelivered& missing) {
-  return run(arguments, scene_of(arguments.scene), missing, nullptr);
+  scene::Description description = scene_of(arguments.scene);
+  // what the hand did in real time is not to be had again: it is kept, so that it can be replayed
+  if (arguments.real_time && description.tool && !description.record)
+    description.record = RecordSpec{.states = false};
+  return run(arguments, description, missing, nullptr);
 }
 
 int resume_run(Resumption& resumption, const scene::Description& description, Undelivered& missing) {

@@ -23,6 +23,7 @@ double smoothstep(double x) {
 // With x = |v|/max, |v| becomes max x / (1 + x^6)^(1/6): smooth everywhere (even power), monotone, below max,
 // and off by 1 - (1 + 2^-6)^(-1/6) = 0.26 % at half the maximum (tanh itself would be off by 7.6 % there).
 Vec3 saturate(const Vec3& v, double max) {
+  if (max == 0.0) return Vec3::Zero();
   const double norm = v.stableNorm();
   const double x = norm / max;
   const double x6 = x <= 1.0 ? std::pow(x, 6) : std::pow(x, -6);
@@ -105,7 +106,9 @@ Wrench WrenchLimiter::follow(double t, double dt, const Wrench& wanted) {
   if (!live_ || t - last_valid_ >= kFallTime) start_ = t;
   live_ = true;
   last_valid_ = t;
-  if (wanted.force.stableNorm() > max_force_ || wanted.moment.stableNorm() > max_torque_) ++limited_;
+  if (wanted.force.stableNorm() > max_force_ ||
+      (max_torque_ > 0.0 && wanted.moment.stableNorm() > max_torque_))
+    ++limited_;
   const double inside_workspace = device_ ? workspace_.share(device_->position()) : 1.0;
   outside_ += inside_workspace < 1.0;
   const double ramp = (ramp_ > 0.0 ? smoothstep((t - start_) / ramp_) : 1.0) * inside_workspace;

@@ -8,6 +8,8 @@
 
 namespace palpate::device {
 
+// None of them drives torque: their motors are three, which move the tip.
+//
 // Figures as the makers' data sheets are commonly quoted; they have not been checked against a sheet.
 // Stiffness is that of the weakest direction where three are given.  None of these devices is said to have a
 // slew: that follows from kAmplifierBandwidth below.
@@ -20,7 +22,7 @@ const std::vector<DeviceProfile>& device_profiles() {
        .figures = {.name = "PHANTOM Premium 1.5",
                    .max_force = 8.5,
                    .max_continuous_force = 1.4,
-                   .max_torque = {},
+                   .max_torque = 0.0,
                    .max_stiffness = 3500.0,
                    .max_damping = {},
                    .workspace = Vec3(0.381, 0.267, 0.191),
@@ -35,7 +37,7 @@ const std::vector<DeviceProfile>& device_profiles() {
        .figures = {.name = "PHANTOM Omni",
                    .max_force = 3.3,
                    .max_continuous_force = 0.88,
-                   .max_torque = {},
+                   .max_torque = 0.0,
                    .max_stiffness = 1020.0,
                    .max_damping = {},
                    .workspace = Vec3(0.160, 0.120, 0.070),
@@ -50,7 +52,7 @@ const std::vector<DeviceProfile>& device_profiles() {
        .figures = {.name = "omega.3",
                    .max_force = 12.0,
                    .max_continuous_force = 12.0,
-                   .max_torque = {},
+                   .max_torque = 0.0,
                    .max_stiffness = 14500.0,
                    .max_damping = {},
                    .workspace = Vec3(0.110, 0.160, 0.160),
@@ -61,7 +63,7 @@ const std::vector<DeviceProfile>& device_profiles() {
        .figures = {.name = "omega.6",
                    .max_force = 12.0,
                    .max_continuous_force = 12.0,
-                   .max_torque = {},
+                   .max_torque = 0.0,
                    .max_stiffness = 14500.0,
                    .max_damping = {},
                    .workspace = Vec3(0.110, 0.160, 0.160),

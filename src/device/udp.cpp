@@ -60,6 +60,15 @@ void UdpDevice::do_close() {
   socket_ = -1;
 }
 
+std::vector<std::pair<std::string, long long>> UdpDevice::tallies() const {
+  return {{"packets_accepted", counts_.accepted},
+          {"packets_malformed", counts_.malformed},
+          {"packets_of_another_version", counts_.wrong_version},
+          {"packets_stale", counts_.stale},
+          {"packets_from_another_peer", counts_.foreign},
+          {"wrenches_unsent", counts_.unsent}};
+}
+
 bool UdpDevice::take(std::span<const unsigned char> bytes, const Address& from) {
   PosePacket packet;
   switch (decode(bytes, packet)) {

@@ -1,8 +1,12 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <filesystem>
 
 #include "assemble_parts.h"
 #include "palpate/core/error.h"
+#include "palpate/core/log.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/loop/replay.h"
 #include "palpate/store/model_file.h"
 #include "palpate/tool/simbody_block.h"
 #include "palpate/tool/tool.h"
@@ -77,13 +81,43 @@ void assemble_block(World& world, ToolSide& side, bool own_device) {
   world.system.add(tool::make_coupling_term(block_id, spec, path_of(*side.handle, *side.device_spec)));
 }
 
+/// A recording of the file's kind: HDF5 is the record of another run's hand, which `device` does not know.
+std::unique_ptr<device::Device> own_device_of(const DeviceSpec& spec, const std::string& folder) {
+  const std::filesystem::path file(spec.file);
+  if (spec.type != "recording" || file.extension() != ".h5") return device::make_device(spec, folder);
+  return recorded_hand(read_haptic_record((std::filesystem::path(folder) / file).string()));
+}
+
+/// Semi-implicit Euler diverges in the coupling alone beyond k = 4 m/h^2 - 2 b/h (tool/fixed_tick.cpp), and
+/// likewise about the axis of the least moment of inertia.
+void warn_of_limit(const ToolSide& side) {
+  const ToolSpec& spec = *side.spec;
+  if (spec.integrator != "semi-implicit-euler") return;
+  const Mat6 M = side.tool->mass_matrix();
+  const double h = spec.tick_s,
+               inertia =
+                   Eigen::SelfAdjointEigenSolver<Mat3>(M.topLeftCorner<3, 3>()).eigenvalues().minCoeff();
+  const auto warn = [&](const char* what, const char* unit, double stiffness, double damping, double mass) {
+    const double most = 4.0 * mass / (h * h) - 2.0 * damping / h;
+    if (stiffness < most) return;
+    log::warn(
+        "{}: semi-implicit-euler diverges with ticks of {:g} s: its {} of {:g} {} is not below {:g} {}; take "
+        "tool.integrator = \"linearly-implicit-euler\", which has no such limit",
+        side.name, h, what, stiffness, unit, std::max(0.0, most), unit);
+  };
+  const auto& c = spec.coupling;
+  warn("coupling.stiffness_n_m", "N/m", c.stiffness_n_m, c.damping_n_s_m, spec.mass_kg);
+  warn("coupling.rotational_stiffness_n_m_rad", "N m/rad", c.rotational_stiffness_n_m_rad,
+       c.rotational_damping_n_m_s_rad, inertia);
+}
+
 }  // namespace
 
 void assemble_tool(World& world, std::size_t hand) {
   const scene::Description& d = world.description;
   ToolSide& side = ToolSide::of(world, hand);
   const bool own_device = !side.handle;
-  if (own_device) side.handle = device::make_device(*side.device_spec, world.folder);
+  if (own_device) side.handle = own_device_of(*side.device_spec, world.folder);
   const device::DeviceFigures figures = device::figures_of(*side.device_spec);
   side.limiter =
       std::make_unique<device::WrenchLimiter>(figures.max_force, figures.max_torque, side.device_spec->ramp_s,
@@ -94,6 +128,7 @@ void assemble_tool(World& world, std::size_t hand) {
   else if (d.exchange.scheme == "partitioned") {
     side.tool = side.another_tool(d.gravity_m_s2);
     side.known = {side.tool->time(), side.tool->pose(), side.tool->twist()};
+    warn_of_limit(side);
   } else
     fail("exchange: unknown scheme \"{}\"{}", d.exchange.scheme,
          suggestion(d.exchange.scheme, {"partitioned", "monolithic"}));

@@ -204,6 +204,7 @@ void BodySide::sum_up() {
     if (side.limiter) {
       hand.limited_ticks = side.limiter->limited_ticks();
       hand.outside_ticks = side.limiter->outside_ticks();
+      hand.rejected_ticks = side.limiter->rejected_ticks();
     }
     if (felt_[i].buzz) hand.buzz_n = felt_[i].buzz->rms();
     if (side.passivity) {
@@ -218,6 +219,7 @@ void BodySide::sum_up() {
     result_.ticks = hand.ticks;
     result_.limited_ticks = hand.limited_ticks;
     result_.outside_ticks = hand.outside_ticks;
+    result_.rejected_ticks = hand.rejected_ticks;
     result_.buzz_n = hand.buzz_n;
     result_.port = hand.port;
   }

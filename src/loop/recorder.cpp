@@ -56,12 +56,12 @@ struct Recorder::Impl {
   store::RunInfo info;
   std::unique_ptr<store::RunFile> states;
   /// [N] and [N m]: a larger difference between the wrench wanted and the wrench sent means that it was
-  /// limited
+  /// limited; what a device does not drive is no limit
   struct Forces {
     Forces(store::ForceFile opened, const device::DeviceFigures& figures)
         : file(std::move(opened)),
           force_rounding(kUnlimited * figures.max_force),
-          torque_rounding(kUnlimited * figures.max_torque) {}
+          torque_rounding(figures.max_torque > 0.0 ? kUnlimited * figures.max_torque : INFINITY) {}
     store::ForceFile file;
     double force_rounding, torque_rounding;
   };

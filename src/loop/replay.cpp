@@ -21,6 +21,7 @@ class RecordedHand : public device::Device {
     if (record_->ticks.empty()) fail("replay: the record has no ticks");
   }
   device::DeviceSpecification specification() const override { return {}; }
+  bool can_be_archived() const override { return true; }
   std::function<device::HandleSample(double)> path() const override {
     return [record = record_](double t) { return at(*record, t); };
   }

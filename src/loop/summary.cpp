@@ -14,6 +14,7 @@
 #include "palpate/scene/hands.h"
 #include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"
+#include "tool_side.h"
 
 namespace palpate::loop {
 namespace {
@@ -192,10 +193,20 @@ void add_more_hands(store::Summary& summary, const scene::Description& d, const 
     s.values = {{"ticks", static_cast<long long>(hand.ticks)},
                 {"limited_ticks", static_cast<long long>(hand.limited_ticks)},
                 {"ticks_outside_workspace", static_cast<long long>(hand.outside_ticks)},
+                {"rejected_ticks", static_cast<long long>(hand.rejected_ticks)},
                 {"max_force_n", device::figures_of(spec).max_force},
                 {"max_torque_n_m", device::figures_of(spec).max_torque}};
     add_feel(s, hand.buzz_n, hand.port);
   }
+}
+
+/// What devices counted themselves.
+void add_tallies(store::Summary& summary, const World& world) {
+  if (!world.description.tool) return;
+  for (std::size_t i = 0; i < scene::hands_of(world.description).size(); ++i)
+    for (const auto& [name, count] : tallies_of(world, i))
+      summary.section(i == 0 ? "device" : "hand " + world.description.hands[i - 1].name)
+          .values.emplace_back(name, count);
 }
 
 /// What a run in real time kept of its clock.
@@ -245,6 +256,11 @@ void add_pruning(store::Summary& summary, const World& world) {
 
 }  // namespace
 
+std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand) {
+  const ToolSide& side = ToolSide::of(world, hand);
+  return side.handle ? side.handle->tallies() : std::vector<std::pair<std::string, long long>>{};
+}
+
 std::vector<scene::Need> needs(const scene::Description& description) {
   return scene::needs(description, integrate::linear_solver_of(description.integrator));
 }
@@ -278,6 +294,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   add_real_time(summary, result);
   if (result.buzz_n || result.port) add_feel(summary.section("device"), result.buzz_n, result.port);
   add_more_hands(summary, world.description, result);
+  add_tallies(summary, world);
   add_grasps(summary, world);
   add_jumps(summary, world);
   add_images(summary, world);

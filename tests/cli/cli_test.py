@@ -15,6 +15,7 @@ import resource
 import select
 import shutil
 import signal
+import socket
 import sqlite3
 import struct
 import subprocess
@@ -520,6 +521,54 @@ class Results(Cli):
         self.assertEqual(done.returncode, 1)
         self.assertIn("nowhere/haptic.h5: no such file", done.stderr)
 
+    def test_a_hand_is_held_again_by_its_record(self):
+        self.good("run", "press-ball", "--duration-s", "0.2", "-o", "first")
+        self.good("run", "press-ball", "--duration-s", "0.2", "-o", "again", "--set",
+                  f'device={{type="recording",file="{self.folder}/first/haptic.h5"}}')
+        self.assertIn("200 ticks compared, 0.001 to 0.2 s: identical to the last bit",
+                      self.good("diff", "first", "again"))
+        error = self.refused("run", "press-ball", "--set",
+                             f'device={{type="recording",file="{self.folder}/first/run.h5"}}')
+        self.assertIn("run.h5", error)
+
+    def test_real_time_is_always_kept(self):
+        scene = Path(self.shipped("press-ball")).read_text()
+        (self.folder / "bare.toml").write_text(re.sub(r"\[record\]\n([^\[\n]*\n)*", "", scene))
+        text = self.good("run", "bare.toml", "--duration-s", "0.05", "--realtime", "-o", "kept")
+        self.assertRegex(text, r"in kept: clock\.csv, force\.csv, haptic\.h5, scene\.toml, summary\.json")
+        self.assertIn("50 ticks compared", self.good("replay", "kept"))
+        text = self.good("run", "bare.toml", "--duration-s", "0.05", "-o", "virtual")
+        self.assertIn("in virtual: scene.toml, summary.json\n", text)
+
+    def test_a_peer_that_sends_nothing_is_told_of(self):
+        with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as one:
+            one.bind(("127.0.0.1", 0))
+            port = one.getsockname()[1]
+        with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as peer:
+            done = subprocess.Popen([PROGRAM, "run", "press-ball", "--duration-s", "0.4", "--realtime", "-o",
+                                     "out", "--set", f'device={{type="udp",port={port}}}'], cwd=self.folder,
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            while done.poll() is None:
+                peer.sendto(b"no packet of ours", ("127.0.0.1", port))
+                time.sleep(0.01)
+            text, error = done.communicate()
+        self.assertEqual(done.returncode, 0, error)
+        malformed = int(re.search(r"device of the hand: 0 packets accepted, (\d+) packets malformed", text)[1])
+        self.assertGreater(malformed, 3)
+        device = json.loads((self.folder / "out/summary.json").read_text())["figures"]["device"]
+        self.assertEqual((device["packets_malformed"], device["packets_accepted"]), (malformed, 0))
+
+    def test_semi_implicit_beyond_its_limit_is_warned_of(self):
+        run = ["run", "press-ball", "--duration-s", "0.02", "-o", "out", "--set",
+               "tool.integrator=semi-implicit-euler", "--set"]
+        # 4 m/h^2 - 2 b/h with 0.08 kg, 5 N s/m and ticks of 1 ms
+        done = self.call(*run, "tool.coupling.stiffness_n_m=3.2e5")
+        self.assertRegex(done.stderr, r"stiffness_n_m of 320000 N/m is not below 310000 N/m")
+        done = self.call(*run, "tool.coupling.stiffness_n_m=3e5")
+        self.assertNotIn("diverges", done.stderr)
+        done = self.call(*run, "tool.coupling.rotational_stiffness_n_m_rad=1e4")
+        self.assertRegex(done.stderr, r"rotational_stiffness_n_m_rad of 10000 N m/rad is not below")
+
     def test_each_of_two_hands_is_replayed_and_compared(self):
         text = self.good("run", "two-hands", "--duration-s", "0.2", "--against-monolithic", "-o", "first",
                          "--set", "compare.haptic.reference_rtol=1e-4",
@@ -586,6 +635,15 @@ class Results(Cli):
         text = self.good("stability", "--haptic", "press-ball", "-o", "wall")
         self.assertRegex(text, r"passive lies within stable; simulation and theory differ by at most \S+ %")
         self.assertIn("z_width.csv", os.listdir(self.folder / "wall"))
+        self.assertIn("about the tool's axis of least inertia", text)
+        self.assertNotIn("UNSTABLE", text)
+        # 4 I/h^2 of the ball of 80 g and 20 mm is 51 N m/rad
+        done = self.call("stability", "--haptic", "press-ball", "-o", "turned", "--set",
+                         "tool.integrator=semi-implicit-euler", "--set",
+                         "tool.coupling.rotational_stiffness_n_m_rad=1e3")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertRegex(done.stdout, r"the loop of this scene is UNSTABLE: tool in the air \(rotation\)")
+        self.assertNotRegex(done.stdout, r"UNSTABLE.*\(translation\)")
         self.assertIn("SCENE requires --haptic", self.refused("stability", "press-ball"))
         self.assertIn("--rows", self.refused("stability", "--rows", "slivers"))
 

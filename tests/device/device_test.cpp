@@ -117,6 +117,8 @@ TEST(Device, a_profile_fills_what_the_scene_leaves_out) {
   spec.profile = "premium-1.5";
   const DeviceFigures premium = figures_of(spec);
   EXPECT_EQ(premium.max_force, 8.5);
+  EXPECT_EQ(premium.max_torque, 0.0) << "three motors";
+  EXPECT_EQ(premium.specification.max_torque.value(), 0.0);
   EXPECT_EQ(premium.mass, 0.075);
   EXPECT_EQ(premium.friction, 0.04);
   EXPECT_EQ(premium.encoder_resolution, 3e-5);
@@ -124,6 +126,7 @@ TEST(Device, a_profile_fills_what_the_scene_leaves_out) {
   EXPECT_NEAR(premium.max_force_slew, 8.5 * 600.0 * M_PI, 1e-9);
   EXPECT_EQ(premium.specification.max_continuous_force.value(), 1.4);
   spec.max_force_n = 2.0;
+  spec.max_torque_n_m = 0.1;
   spec.max_force_slew_n_s = 700.0;
   spec.device_mass_kg = 0.1;
   spec.device_friction_n = 0.0;
@@ -132,6 +135,7 @@ TEST(Device, a_profile_fills_what_the_scene_leaves_out) {
   const DeviceFigures own = figures_of(spec);
   EXPECT_EQ(own.max_force, 2.0);
   EXPECT_EQ(own.max_force_slew, 700.0);
+  EXPECT_EQ(own.max_torque, 0.1);
   EXPECT_EQ(own.mass, 0.1);
   EXPECT_EQ(own.friction, 0.0) << "a zero that is given wins as well";
   EXPECT_EQ(own.encoder_resolution, 0.0);

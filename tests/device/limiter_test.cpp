@@ -185,9 +185,21 @@ TEST(WrenchLimiter, property_over_random_inputs) {
   EXPECT_GT(slewing, 1000);
 }
 
+// Three motors that move a tip: what they cannot give is no limit that the hand runs into.
+TEST(WrenchLimiter, a_device_without_torque_gives_none) {
+  WrenchLimiter limiter(3.3, 0.0, 0.0);
+  for (int tick = 0; tick < 10; ++tick) {
+    const Wrench out = limiter.limit(1e-3 * tick, wrench(Vec3(0.5, 0, 1), Vec3(0.1, -2, 1e6)), true);
+    EXPECT_EQ(out.moment, Vec3(Vec3::Zero()));
+    if (tick > 1) { EXPECT_NEAR(out.force.norm(), std::hypot(0.5, 1.0), 0.01); }
+  }
+  EXPECT_EQ(limiter.limited_ticks(), 0);
+}
+
 TEST(WrenchLimiter, bad_settings_are_refused) {
   EXPECT_NE(message(0.0, 0.2, 0.0, 1e5).find("max_force_n = 0 must be positive"), std::string::npos);
-  EXPECT_NE(message(3.3, kNaN, 0.0, 1e5).find("max_torque_n_m = nan must be positive"), std::string::npos);
+  EXPECT_NE(message(3.3, kNaN, 0.0, 1e5).find("max_torque_n_m = nan must not be negative"),
+            std::string::npos);
   EXPECT_NE(message(3.3, 0.2, -1.0, 1e5).find("ramp_s = -1 must not be negative"), std::string::npos);
   EXPECT_NE(message(3.3, 0.2, 0.0, 490.0).find("max_force_slew_n_s = 490 is too small"), std::string::npos);
   EXPECT_EQ(message(3.3, 0.2, 0.0, 496.0), "");

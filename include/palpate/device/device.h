@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "palpate/core/archive.h"
@@ -72,6 +73,9 @@ class Device {
   /// Its motion as a function of time, valid at any time, where that is known beforehand; empty where a hand
   /// decides as it goes.  One integrator of tool and bodies needs it.
   virtual std::function<HandleSample(double t)> path() const { return {}; }
+
+  /// What it has counted, by name: packets that it dropped, for one.  Read when its loop is over.
+  virtual std::vector<std::pair<std::string, long long>> tallies() const { return {}; }
 
   /// Whether it can go on later from where it is now: whether archive() knows all of it.  A hand on the other
   /// side of a network, or of a motor, does not wait.

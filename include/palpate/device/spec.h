@@ -84,7 +84,7 @@ struct DeviceRanges {
   /// [N]
   static constexpr Range max_force_n = Range::positive("a desktop device gives 3.3");
   /// [N m]
-  static constexpr Range max_torque_n_m = Range::positive("a desktop device gives 0.2");
+  static constexpr Range max_torque_n_m = Range::at_least(0.0, "0 drives no torque; others give 0.2");
   /// [N/s, N m/s]
   static constexpr Range slew = Range::positive("a fall to zero within 10 ms needs 150 times the maximum");
   static constexpr Range ramp_s = Range::at_least(0.0, "0 is no ramp");  ///< [s]

@@ -82,6 +82,7 @@ class UdpDevice : public Device {
   DeviceSpecification specification() const override { return specification_; }
   /// Since it was made.
   const UdpCounts& counts() const { return counts_; }
+  std::vector<std::pair<std::string, long long>> tallies() const override;
   int port() const { return port_; }  ///< that it is bound to, once it is open
 
  protected:

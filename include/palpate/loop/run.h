@@ -84,6 +84,7 @@ struct HandResult {
   long ticks = 0;                  ///< of its tool
   long limited_ticks = 0;          ///< in which the device's limit held the wrench
   long outside_ticks = 0;          ///< with the handle outside the device's workspace
+  long rejected_ticks = 0;         ///< whose wrench or time was not finite: forces fall to zero
   std::optional<PortEnergy> port;  ///< where passivity is observed or controlled
   std::optional<double> buzz_n;    ///< force on the hand above 30 Hz, RMS [N]
 };
@@ -102,6 +103,7 @@ struct RunResult {
   long contact_queries = 0;             ///< refreshes of all pairs together
   long limited_ticks = 0;               ///< in which the device's limit held the wrench
   long outside_ticks = 0;               ///< with the handle outside the device's workspace, where forces fade
+  long rejected_ticks = 0;              ///< whose wrench or time was not finite: forces fall to zero
   std::vector<long> tunnelled;          ///< vertices that went through unseen, for each [[contact]]
   std::optional<EnergyBalance> energy;  ///< at the end, where an observer wanted it
   long sub_steps = 0;                   ///< contact queries that tunnelling = "substep" made besides
@@ -129,6 +131,7 @@ requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr vo
   f("contact_queries", r.contact_queries...);
   f("limited_ticks", r.limited_ticks...);
   f("ticks_outside_workspace", r.outside_ticks...);
+  f("rejected_ticks", r.rejected_ticks...);
   f("frozen_fallbacks", r.frozen_fallbacks...);
   f("sub_steps", r.sub_steps...);
   f("shortest_refreshes", r.shortest_refreshes...);
