@@ -553,7 +553,7 @@ class Results(Cli):
                 time.sleep(0.01)
             text, error = done.communicate()
         self.assertEqual(done.returncode, 0, error)
-        malformed = int(re.search(r"device of the hand: 0 packets accepted, (\d+) packets malformed", text)[1])
+        malformed = int(re.search(r"hand: 0 packets accepted, (\d+) packets malformed", text)[1])
         self.assertGreater(malformed, 3)
         device = json.loads((self.folder / "out/summary.json").read_text())["figures"]["device"]
         self.assertEqual((device["packets_malformed"], device["packets_accepted"]), (malformed, 0))

@@ -93,6 +93,7 @@ TEST(Codec, VisitsEveryMember) {
                            run.result.contact_queries,
                            run.result.limited_ticks,
                            run.result.outside_ticks,
+                           run.result.rejected_ticks,
                            run.result.frozen_fallbacks,
                            run.result.sub_steps,
                            run.result.shortest_refreshes})
