@@ -15,7 +15,7 @@ namespace palpate::render {
 namespace {
 
 constexpr int kPixels = 64;
-constexpr double kUsuallyEnough = 1.0 / 3.0, kWorthTurning = 1.5;
+constexpr double kEnough = 1.0 / 3.0, kWorthTurning = 1.5;
 constexpr double kFar = -std::numeric_limits<double>::infinity();
 
 /// A rectangle across the line of sight, and for each of its pixels the depth of what is nearest to the eye.
@@ -122,7 +122,8 @@ View ViewChoice::best(bool from_below) const {
   std::size_t best = 0;
   for (std::size_t i = 1; i < views_.size(); ++i)
     if (seen_[i] > seen_[best] && (from_below || views_[i].elevation_deg >= 0.0)) best = i;
-  const bool keep = seen_[0] > kUsuallyEnough * instants_ || seen_[best] < kWorthTurning * seen_[0];
+  const bool keep = seen_[0] > kEnough * instants_ || seen_[best] < kEnough * instants_ ||
+                    seen_[best] < kWorthTurning * seen_[0];
   return views_[keep ? 0 : best];
 }
 

@@ -93,6 +93,8 @@ TEST(ViewChoice, StaysWhereEnoughIsSeenOrTurningDoesNotHelp) {
   const Surface body = block(Vec3::Constant(-1.5), Vec3::Constant(3.0));
   EXPECT_TRUE(is_usual(chosen({{subject(Vec3(0.0, -1.7, 0.0), 0.3), body}})));
   EXPECT_TRUE(is_usual(chosen({{subject(Vec3::Zero(), 0.3), body}}))) << "swallowed";
+  // within a body, and seen through a slit in its far side alone
+  EXPECT_TRUE(is_usual(chosen({{subject(Vec3(0.0, 1.25, 0.0), 0.3), body}}))) << "little is seen anywhere";
   EXPECT_TRUE(is_usual(chosen({{body}}))) << "no subject";
   EXPECT_TRUE(is_usual(render::ViewChoice().best(true))) << "no instant";
 }

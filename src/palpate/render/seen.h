@@ -12,8 +12,8 @@ namespace palpate::render {
 double seen_share(const Scene& scene, const View& view);
 
 /// The view from which most of the subjects is seen, over one or more instants of a scene.  The first
-/// candidate is the usual view, View{}; it stays unless a third or less is seen from it and another shows at
-/// least half as much again: pictures of different scenes are easier to read from one side.
+/// candidate is the usual view, View{}; it stays unless a third or less is seen from it, and another shows a
+/// third and half as much again: pictures of different scenes are easier to read from one side.
 class ViewChoice {
  public:
   ViewChoice();
