@@ -517,9 +517,9 @@ void add_replay(CLI::App& app, Invocation& invocation) {
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/replay-SCENE")
       ->type_name("DIR");
   command->footer(R"(Examples:
-  palpate replay out/touch-head                  each tick from its recorded input and exchange, bit for bit
-  palpate replay out/touch-head --integrator cvode-bdf --set exchange.scheme=monolithic
-  palpate replay out/touch-head --set exchange.exchange_period_s=0.02
+  palpate replay out/press-ball                  each tick from its recorded input and exchange, bit for bit
+  palpate replay out/press-ball --integrator cvode-bdf --set exchange.scheme=monolithic
+  palpate replay out/press-ball --set exchange.exchange_period_s=0.02
 
 Without a change nothing but the ticks is computed again: what comes out must be what was recorded, of a
 run in real time as well; else the exit status is 1.  With a change the whole scene runs again in virtual
@@ -549,7 +549,7 @@ void add_movie(CLI::App& app, Invocation& invocation) {
       ->check(CLI::IsMember({"displacement", "stress", "penetration"}));
   command->footer(R"(Examples:
   palpate movie out/press-ball
-  palpate movie out/touch-head --slow 4 --shade stress -o touch.webm
+  palpate movie out/press-ball --slow 4 --shade stress -o touch.webm
 
 It shows the states that the run kept (record.state_period_s), also of one that was cut off, with the force on
 the hand beneath, and computes nothing anew.)");
@@ -582,7 +582,7 @@ void add_export(CLI::App& app, Invocation& invocation) {
                     "obj, ply, gltf: the surfaces of the tetrahedra instead of skins; the run file suffices");
   command->footer(R"(Examples:
   palpate export out/press-ball --to vtu                     run_0000.vtu ..., and run.pvd for ParaView
-  palpate export out/touch-head --to ply --at 0.12           the skin, coloured by displacement
+  palpate export out/press-ball --to ply --at 0.12           the surface, coloured by displacement
   palpate export out/press-ball --to obj --body ball --every 10 -o shapes
   palpate export out/press-ball --to csv                     nodes.csv, and the run's own tables
   palpate export out/two-heads --to gltf                     run.glb, an animation for browsers
@@ -606,7 +606,7 @@ void add_diff(CLI::App& app, Invocation& invocation) {
       ->type_name("DIR");
   command->add_option("other", arguments->other, "folder of another")->required()->type_name("DIR");
   command->footer(R"(Examples:
-  palpate diff out/touch-head out/replay-touch-head
+  palpate diff out/press-ball out/replay-press-ball
 
 Forces and torques on the hand at the reference's ticks: root mean square and largest difference, its
 spectrum in bands, and in how many ticks it is more than fingers notice (7 % of a force, 12.7 % of a
@@ -655,9 +655,9 @@ void add_list(CLI::App& app, Invocation& invocation) {
   command->add_option(
       "WHAT", arguments->what,
       "integrators, linear-solvers, materials, tool-integrators, obstacles, contact-methods, "
-      "contact-springs, "
-      "contact-laws, generators, devices, parts, cases, scenes; all of these without it; or keys: every key "
-      "of a scene with its unit, range, default and meaning; or study-keys: likewise of a study");
+      "contact-springs, contact-laws, generators, devices, device-profiles, motions, parts, cases, scenes; "
+      "all of these without it; or keys: every key of a scene with its unit, range, default and meaning; or "
+      "study-keys: likewise of a study");
   command->add_flag(
       "--markdown", arguments->markdown,
       "as a page of the documentation: docs/keys.md with keys, docs/study-keys.md with study-keys, "

@@ -1,6 +1,7 @@
 #include "recorded_scene.h"
 
 #include "model_cache.h"
+#include "palpate/core/error.h"
 #include "palpate/loop/load.h"
 #include "palpate/store/summary.h"
 
@@ -21,7 +22,16 @@ std::string path_of_scene(const std::filesystem::path& folder) {
 
 scene::Description recorded_scene(const std::string& text, const std::filesystem::path& folder,
                                   const std::vector<std::string>& overrides) {
-  scene::Description d = loop::parse(text, path_of_scene(folder), overrides);
+  const std::string path = path_of_scene(folder);
+  scene::Description d;
+  try {
+    d = loop::parse(text, path, overrides);
+  } catch (const Error& e) {
+    // lines are those of the text that the run kept; the scene's own file may have changed since
+    if (std::string_view(e.what()).starts_with(path))
+      fail("{}{}", (folder / "scene.toml").string(), e.what() + path.size());
+    throw;
+  }
   make_missing_models(d);
   return d;
 }

@@ -240,7 +240,7 @@ void HapticRecorder::exchanged(const ContactRecord& record) {
 
 HapticRecord read_haptic_record(const std::string& path) {
   if (!std::filesystem::exists(path))
-    fail("{}: no such file; runs of scenes with a tool keep it where the scene has record.forces = true",
+    fail("{}: no such file; a run with a tool keeps it with --realtime, and where the scene has [record]",
          path);
   HapticRecord out;
   const std::vector<StartRow> start = read(kVisitStart, StartRow{}, path, "start");

@@ -75,6 +75,13 @@ class Help(Cli):
     def test_no_argument_is_a_question_for_help(self):
         self.assertEqual(self.good(), self.good("--help"))
 
+    def test_help_names_every_list(self):
+        known = re.search(r"\(known: (.*)\)", self.refused("list", "nothing"))[1].split(", ")
+        self.assertGreater(len(known), 10)
+        text = self.good("list", "--help")
+        for name in known:
+            self.assertRegex(text, rf"[ ,]{name}[,;:]", name)
+
     def test_every_example_of_the_help_is_understood(self):
         seen = 0
         for command in [[]] + [[name] for name in COMMANDS]:
@@ -520,6 +527,8 @@ class Results(Cli):
         done = self.call("diff", "first", "nowhere")
         self.assertEqual(done.returncode, 1)
         self.assertIn("nowhere/haptic.h5: no such file", done.stderr)
+        error = self.refused("replay", "first", "--set", "scene.duration_s=0.001")
+        self.assertRegex(error, r"^palpate: error: \S*first/scene\.toml:\d+:\d+: ")
 
     def test_a_hand_is_held_again_by_its_record(self):
         self.good("run", "press-ball", "--duration-s", "0.2", "-o", "first")
