@@ -10,9 +10,17 @@ namespace palpate::device {
 
 // None of them drives torque: their motors are three, which move the tip.
 //
-// Figures as the makers' data sheets are commonly quoted; they have not been checked against a sheet.
-// Stiffness is that of the weakest direction where three are given.  None of these devices is said to have a
-// slew: that follows from kAmplifierBandwidth below.
+// Figures as the makers' data sheets are commonly quoted; no sheet was at hand.  The drivers of CHAI3D 3.2
+// have the same largest forces, and no torque: src/devices/CPhantomDevices.cpp (Omni 3.3 N; Premium 1.5 8.5
+// N) and src/devices/CDeltaDevices.cpp, of which Force Dimension is an author (omega.3 and omega.6 12 N).
+// Damping is what these drivers recommend at most.  They recommend less stiffness, too: 700, 800 and 5000
+// N/m; here stands the makers', which is that of the weakest direction where three are given.
+//
+// Haply's own are of its driver for CHAI3D (github.com/HaplyHaptics/chai3d, 2019,
+// src/devices/CHaplyDevices.cpp) for the pantograph; those of the Inverse3 of a user's
+// (github.com/jashenlow/chai3d_haply, 2024, likewise).  The former calls them estimates.
+//
+// None of these devices is said to have a slew: that follows from kAmplifierBandwidth below.
 const std::vector<DeviceProfile>& device_profiles() {
   static const std::vector<DeviceProfile> profiles = {
       // SensAble (later Geomagic) PHANTOM Premium 1.5: 381 x 267 x 191 mm, 0.03 mm, backdrive friction
@@ -24,7 +32,7 @@ const std::vector<DeviceProfile>& device_profiles() {
                    .max_continuous_force = 1.4,
                    .max_torque = 0.0,
                    .max_stiffness = 3500.0,
-                   .max_damping = {},
+                   .max_damping = 5.0,
                    .workspace = Vec3(0.381, 0.267, 0.191),
                    .rate = {}},
        .mass = 0.075,
@@ -39,7 +47,7 @@ const std::vector<DeviceProfile>& device_profiles() {
                    .max_continuous_force = 0.88,
                    .max_torque = 0.0,
                    .max_stiffness = 1020.0,
-                   .max_damping = {},
+                   .max_damping = 5.0,
                    .workspace = Vec3(0.160, 0.120, 0.070),
                    .rate = {}},
        .mass = 0.045,
@@ -54,7 +62,7 @@ const std::vector<DeviceProfile>& device_profiles() {
                    .max_continuous_force = 12.0,
                    .max_torque = 0.0,
                    .max_stiffness = 14500.0,
-                   .max_damping = {},
+                   .max_damping = 30.0,
                    .workspace = Vec3(0.110, 0.160, 0.160),
                    .rate = 4000.0},
        .encoder_resolution = 1e-5},
@@ -65,10 +73,30 @@ const std::vector<DeviceProfile>& device_profiles() {
                    .max_continuous_force = 12.0,
                    .max_torque = 0.0,
                    .max_stiffness = 14500.0,
-                   .max_damping = {},
+                   .max_damping = 30.0,
                    .workspace = Vec3(0.110, 0.160, 0.160),
                    .rate = 4000.0},
        .encoder_resolution = 1e-5},
+      {.name = "haply-pantograph",
+       .summary = "Haply Pantograph: 5 N, 0.3 N/mm, moves in a plane; its maker's estimates",
+       .figures = {.name = "Haply Pantograph",
+                   .max_force = 5.0,
+                   .max_continuous_force = {},
+                   .max_torque = 0.0,
+                   .max_stiffness = 300.0,
+                   .max_damping = 2.0,
+                   .workspace = {},
+                   .rate = {}}},
+      {.name = "haply-inverse3",
+       .summary = "Haply Inverse3: 10 N, 1 N/mm; by a user's driver",
+       .figures = {.name = "Haply Inverse3",
+                   .max_force = 10.0,
+                   .max_continuous_force = {},
+                   .max_torque = 0.0,
+                   .max_stiffness = 1000.0,
+                   .max_damping = 6.0,
+                   .workspace = Vec3::Constant(0.3),  // a ball of radius 0.15 m
+                   .rate = {}}},
   };
   return profiles;
 }

@@ -116,15 +116,16 @@ TEST(DeviceKeys, EveryProfileIsTakenByEveryType) {
       EXPECT_EQ(device::figures_of(*d.device).max_force, one.figures.max_force.value()) << one.name;
       ++taken;
     }
-  EXPECT_EQ(taken, 16);
+  EXPECT_EQ(taken, 24);
 }
 
 TEST(DeviceKeys, UnknownNamesAreRefusedWithSuggestions) {
   EXPECT_EQ(refusal(held_by("script", "profile = \"omnni\"\n")),
             "s.toml:9:11: device: profile = \"omnni\" is not known (did you mean \"omni\"?)");
-  EXPECT_EQ(
-      refusal(held_by("script", "profile = \"none\"\n")),
-      "s.toml:9:11: device: profile = \"none\" is not known (known: premium-1.5, omni, omega.3, omega.6)");
+  EXPECT_EQ(refusal(held_by("script", "profile = \"none\"\n")),
+            "s.toml:9:11: device: profile = \"none\" is not known (known: premium-1.5, omni, omega.3, "
+            "omega.6, haply-pantograph, "
+            "haply-inverse3)");
   EXPECT_EQ(refusal(held_by("hadn", "")),
             "s.toml:7:8: device: type = \"hadn\" is not known (did you mean \"hand\"?)");
   EXPECT_EQ(refusal(held_by("hand", "arm_mass = 1.0\n")),
