@@ -20,7 +20,8 @@ void print_series(const char* what, const std::vector<float>& values, double uni
 
 }  // namespace
 
-void print_clock(const loop::RealTimeResult& clock, const std::string& linearisation) {
+void print_clock(const loop::RunResult& result, const std::string& linearisation) {
+  const loop::RealTimeResult& clock = *result.real_time;
   fmt::print("ticks in real time: {}, {}, memory {}\n", clock.scheduling,
              clock.cpu < 0 ? std::string("on any processor") : fmt::format("on processor {}", clock.cpu),
              clock.memory);
@@ -30,6 +31,16 @@ void print_clock(const loop::RealTimeResult& clock, const std::string& linearisa
   print_series("exchange's latency", clock.latency_s, 1e-3, "ms");
   fmt::print("  {} of {} ticks late by a tick or more; bodies and contact at {:.1f} Hz (wanted {:g})\n",
              clock.missed_ticks, clock.lateness_s.size(), clock.exchanges_per_s(), 1.0 / clock.period_s);
+  if (const double exchanges = static_cast<double>(clock.latency_s.size()); exchanges > 0.0) {
+    const dynamics::StepperCounters& c = result.counters;
+    const double step = c.force_s + c.tangent_s + c.solver.symbolic_s + c.solver.factor_s + c.solver.solve_s,
+                 query = result.query_s, linearise = result.linearise_s;
+    fmt::print(
+        "  an exchange took the bodies {:.1f} ms in the mean: query {:.1f}, linearisation {:.1f}, step "
+        "{:.1f}\n",
+        1e3 * (query + linearise + step) / exchanges, 1e3 * query / exchanges, 1e3 * linearise / exchanges,
+        1e3 * step / exchanges);
+  }
   if (clock.stretched_periods > 0)
     fmt::print("  bodies fell behind: {} periods shared the contact query of the one before\n",
                clock.stretched_periods);

@@ -396,7 +396,7 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
 
   print_outcome(*world, ran);
   if (checkpoints) print_checkpoints(ran.checkpoints, arguments.checkpoint_every_s);
-  if (result.real_time) print_clock(*result.real_time, world->description.exchange.linearisation);
+  if (result.real_time) print_clock(result, world->description.exchange.linearisation);
   std::optional<compare::AgainstMonolithic> against;
   if (arguments.against_monolithic && result.status.ok() && !result.stopped)
     against = against_monolithic(*world, memory.records(), arguments.real_time);

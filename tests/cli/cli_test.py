@@ -515,9 +515,14 @@ class Results(Cli):
         self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_a_run_is_replayed_and_compared(self):
-        self.good("run", "press-ball", "--duration-s", "0.2", "--realtime", "--passivity", "observe",
-                  "-o", "first")
+        text = self.good("run", "press-ball", "--duration-s", "0.2", "--realtime", "--passivity", "observe",
+                         "-o", "first")
         self.assertIn("clock.csv", os.listdir(self.folder / "first"))
+        parts = re.search(r"bodies (\S+) ms in the mean: query (\S+), linearisation (\S+), step (\S+)\n",
+                          text)
+        whole, *shares = map(float, parts.groups())
+        self.assertGreater(whole, 0.0)
+        self.assertAlmostEqual(whole, sum(shares), delta=0.25)
         text = self.good("replay", "first")
         self.assertEqual(text, "200 ticks compared, 0.001 to 0.2 s: identical to the last bit\n")
         text = self.good("replay", "first", "--set", "exchange.latency_ticks=10", "-o", "late")
