@@ -97,6 +97,7 @@ struct ValidateArguments {
   std::vector<std::string> cases;  ///< empty: all
   bool slow = false;               ///< also the slow cases, where no case is named
   bool quick = false;              ///< the quick cases alone, where no case is named
+  int jobs = 0;                    ///< cases side by side; 0: as many as there are cores
   bool inject_faults = false;      ///< break the physics of each case on purpose: every one must then fail
   std::string folder;              ///< validation.json and report.html go here; empty: nowhere
 };

@@ -361,6 +361,11 @@ void add_validate(CLI::App& app, Invocation& invocation) {
   CLI::Option* slow = command->add_flag("--slow", arguments->slow, "also the cases that take minutes");
   command->add_flag("--quick", arguments->quick, "only the cases that take seconds: a minute for all of them")
       ->excludes(slow);
+  command
+      ->add_option("--jobs", arguments->jobs,
+                   "cases side by side, each in a process of its own; default: as many as there are cores. "
+                   "With 1 nothing disturbs their run times")
+      ->check(CLI::Range(1, 1024));
   command->add_flag("--inject-faults", arguments->inject_faults,
                     "break the library on purpose: what each fault is measured by must then fail");
   command->add_flag("--sabotage", arguments->inject_faults)->group("");  // its name before 0.1, not shown
@@ -375,6 +380,7 @@ Exit status 0 when every measurement keeps its bar, else 1.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return validate(*arguments); };
     invocation.factorises = true;
+    invocation.starts_processes = true;
   });
 }
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "commands.h"
-#include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
@@ -17,6 +17,7 @@
 #include "progress.h"
 #include "stop.h"
 #include "undelivered.h"
+#include "validation_pool.h"
 
 namespace palpate::cli {
 namespace {
@@ -75,9 +76,9 @@ Json to_json(const validation::Refinement& r) {
   return out;
 }
 
-Json to_json(const ValidationCase& one, const std::vector<Measurement>& measurements, double seconds) {
+Json to_json(const ValidationCase& one, const CaseEnd& end) {
   Json list = Json::array();
-  for (const Measurement& m : measurements)
+  for (const Measurement& m : end.measurements)
     list.push_back({{"quantity", m.quantity},
                     {"computed", number(m.computed)},
                     {"exact", number(m.exact)},
@@ -90,7 +91,7 @@ Json to_json(const ValidationCase& one, const std::vector<Measurement>& measurem
                     {"refinement", to_json(m.refinement)},
                     {"passed", m.passed()}});
   return {{"name", one.name}, {"section", one.section}, {"summary", one.summary},
-          {"why", one.why},   {"wall_s", seconds},      {"measurements", list}};
+          {"why", one.why},   {"wall_s", end.wall_s},   {"measurements", list}};
 }
 
 bool all_pass(const std::vector<Measurement>& measurements) {
@@ -104,25 +105,39 @@ struct Run {
   int failed = 0;
 };
 
-void run_one(const ValidationCase& one, Run& out) {
-  const double start = wall_seconds();
-  const std::vector<Measurement> measurements = one.run("");
-  for (const Measurement& m : measurements) out.rows.push_back(row(one, m));
-  if (measurements.empty())
-    out.rows.push_back({one.name, "nothing was measured", "-", "-", "-", "-", "-", "FAIL"});
-  out.cases.push_back(to_json(one, measurements, wall_seconds() - start));
-  if (!all_pass(measurements)) ++out.failed;
+/// A row of words alone, as long as those of figures.
+std::vector<std::string> row_of_words(const ValidationCase& one, const std::string& words) {
+  return {one.name, words, "-", "-", "-", "-", "-", "FAIL"};
 }
 
-/// Runs a case with each of its faults: a measurement that still passes with its physics broken is worthless.
-void run_with_faults(const ValidationCase& one, Run& out) {
-  bool all_found = true;
-  for (const validation::Fault& fault : one.faults) {
-    const bool found = fault.is_found(one.run(fault.name));
-    out.rows.push_back({one.name, fault.name, fault.fails, found ? "fails, as it must" : "STILL PASSES"});
-    all_found = all_found && found;
+void take(const ValidationCase& one, const CaseEnd& end, Run& out) {
+  for (const Measurement& m : end.measurements) out.rows.push_back(row(one, m));
+  if (end.measurements.empty())
+    out.rows.push_back(row_of_words(one, end.broken.empty() ? "nothing was measured" : end.broken));
+  out.cases.push_back(to_json(one, end));
+  if (!all_pass(end.measurements)) ++out.failed;
+}
+
+/// A measurement that still passes with its physics broken is worthless, and a case that breaks measures
+/// nothing.
+void take_fault(const CaseRun& run, const CaseEnd& end, Run& out) {
+  const bool found = end.broken.empty() && run.fault->is_found(end.measurements);
+  out.rows.push_back({run.one->name, run.fault->name, run.fault->fails,
+                      found                ? "fails, as it must"
+                      : end.broken.empty() ? "STILL PASSES"
+                                           : end.broken});
+  if (!found) ++out.failed;
+}
+
+/// Each case once, or once with each of its faults.
+std::vector<CaseRun> runs_of(const std::vector<const ValidationCase*>& cases, bool with_faults) {
+  std::vector<CaseRun> out;
+  for (const ValidationCase* one : cases) {
+    if (!with_faults) out.push_back({one});
+    for (const validation::Fault& fault : one->faults)
+      if (with_faults) out.push_back({one, &fault});
   }
-  if (!all_found) ++out.failed;
+  return out;
 }
 
 /// A line a case: its section, and what its figures mean.
@@ -144,19 +159,28 @@ void write_results(const Run& run, const std::string& folder, Undelivered& missi
 }  // namespace
 
 int validate(const ValidateArguments& arguments) {
-  const std::vector<const ValidationCase*> cases = chosen(arguments);
-  Run out;
-  std::size_t done = 0;
+  const std::vector<CaseRun> runs = runs_of(chosen(arguments), arguments.inject_faults);
+  std::vector<std::optional<CaseEnd>> ends;
   {
     Progress progress("validating");
-    for (const ValidationCase* one : cases) {
-      if (stop_flag()) break;
-      progress(static_cast<double>(done) / static_cast<double>(cases.size()), one->name);
-      arguments.inject_faults ? run_with_faults(*one, out) : run_one(*one, out);
-      ++done;
-    }
+    progress(0.0);
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    ends = run_cases(runs, arguments.jobs > 0 ? arguments.jobs : cores,
+                     [&](double share, const std::string& ended) { progress(share, ended); });
   }
-  print_meanings({cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(done)});
+  Run out;
+  std::vector<const ValidationCase*> ended;
+  std::size_t done = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!ends[i]) continue;
+    ++done;
+    if (ended.empty() || ended.back() != runs[i].one) ended.push_back(runs[i].one);
+    if (runs[i].fault)
+      take_fault(runs[i], *ends[i], out);
+    else
+      take(*runs[i].one, *ends[i], out);
+  }
+  print_meanings(ended);
   using Headers = std::vector<std::string>;
   fmt::print("{}",
              report::format_table(arguments.inject_faults ? Headers{"case", "fault", "measured by", "outcome"}
@@ -165,9 +189,9 @@ int validate(const ValidateArguments& arguments) {
                                   out.rows));
   Undelivered missing;
   if (!arguments.folder.empty() && !arguments.inject_faults) write_results(out, arguments.folder, missing);
-  fmt::print("{} of {} cases {}{}\n", done - static_cast<std::size_t>(out.failed), done,
-             arguments.inject_faults ? "fail when broken on purpose" : "keep their bars",
-             done < cases.size() ? fmt::format("; stopped before the other {}", cases.size() - done) : "");
+  fmt::print("{} of {} {}{}\n", done - static_cast<std::size_t>(out.failed), done,
+             arguments.inject_faults ? "faults make their cases fail" : "cases keep their bars",
+             done < runs.size() ? fmt::format("; stopped before the other {}", runs.size() - done) : "");
   return missing.close(out.failed > 0 ? kExitError : 0);
 }
 

@@ -1,0 +1,93 @@
+#include "validation_pool.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "palpate/core/bytes.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/process_pool.h"
+#include "stop.h"
+
+namespace palpate::cli {
+namespace {
+
+using validation::Measurement;
+using validation::ValidationCase;
+
+constexpr double kLimitS = 7200.0;  // of CPU: what takes longer hangs
+
+std::string order_of(const CaseRun& run) {
+  ByteWriter out;
+  out.put(run.one - validation::validation_cases().data());
+  out.put(run.fault ? run.fault->name : std::string());
+  return out.take();
+}
+
+/// A ProcessPool::Work: runs the case that order_of() said.
+std::string do_order(const std::string& order, const std::atomic<bool>&) {
+  ByteReader in(order);
+  const ValidationCase& one =
+      validation::validation_cases().at(static_cast<std::size_t>(in.get<std::ptrdiff_t>()));
+  const auto fault = in.get<std::string>();
+  const double start = wall_seconds();
+  CaseEnd out{one.run(fault), 0.0, {}};
+  out.wall_s = wall_seconds() - start;
+  return bytes_of(out);
+}
+
+}  // namespace
+
+std::string bytes_of(const CaseEnd& end) {
+  ByteWriter out;
+  out.put(end.wall_s).put(end.broken).put(end.measurements.size());
+  for (const Measurement& m : end.measurements) {
+    out.put(m.quantity).put(m.computed).put(m.exact).put(m.error).put(m.bar);
+    out.put(m.order).put(m.order_low).put(m.order_high).put(m.note);
+    out.put(m.refinement.size_label).put(m.refinement.size).put(m.refinement.error).put(m.refinement.wall_s);
+  }
+  return out.take();
+}
+
+CaseEnd case_end_of(const std::string& bytes) {
+  ByteReader in(bytes);
+  CaseEnd out;
+  out.wall_s = in.get<double>();
+  out.broken = in.get<std::string>();
+  out.measurements.resize(in.get<std::size_t>());
+  for (Measurement& m : out.measurements) {
+    m.quantity = in.get<std::string>();
+    for (double* value : {&m.computed, &m.exact, &m.error, &m.bar, &m.order, &m.order_low, &m.order_high})
+      *value = in.get<double>();
+    m.note = in.get<std::string>();
+    m.refinement.size_label = in.get<std::string>();
+    for (std::vector<double>* list : {&m.refinement.size, &m.refinement.error, &m.refinement.wall_s})
+      *list = in.get<std::vector<double>>();
+  }
+  return out;
+}
+
+std::vector<std::optional<CaseEnd>> run_cases(
+    const std::vector<CaseRun>& runs, int jobs,
+    const std::function<void(double, const std::string&)>& progress) {
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return runs[i].one->slow; });
+  std::vector<std::optional<CaseEnd>> out(runs.size());
+  std::size_t next = 0, done = 0;
+  ProcessPool pool(jobs);
+  const auto start = [&](std::size_t index) {
+    pool.start(do_order, order_of(runs[index]), kLimitS, [&, index](const ProcessPool::Outcome& outcome) {
+      out[index] = outcome.end == ProcessPool::Outcome::End::kDone ? case_end_of(outcome.bytes)
+                                                                   : CaseEnd{{}, 0.0, outcome.bytes};
+      progress(static_cast<double>(++done) / static_cast<double>(runs.size()), runs[index].one->name);
+    });
+  };
+  while (!stop_flag()) {
+    while (next < runs.size() && pool.has_room()) start(order[next++]);
+    if (pool.idle()) break;
+    pool.wait(0.2);
+  }
+  return out;
+}
+
+}  // namespace palpate::cli
