@@ -136,7 +136,8 @@ void add_stability(Page& page, const Json& stability) {
   page.add_paragraph(
       "Stiff and extreme cases against every integrator. What each must show was written down beforehand, "
       "from theory, as a set of verdicts; a cell that does not is outlined. A cell tells its figure, its "
-      "expectation and its reason where the pointer rests on it.");
+      "expectation and its reason where the pointer rests on it, and beneath the map when it is clicked, or "
+      "the arrow keys come to it.");
   add_unexpected(page, cells);
   std::vector<HeatCell> key;
   for (std::size_t v = 0; v < kVerdicts.size(); ++v)

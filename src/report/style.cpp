@@ -83,6 +83,9 @@ table.heat tr.group th span { display: block; width: 0; white-space: nowrap; pos
 table.heat tr.group b { color: var(--ink); font-weight: 600; }
 table.heat td { width: 1.3rem; min-width: 1.3rem; height: 1.3rem; padding: 0; text-align: center;
   cursor: default; }
+table.heat td:focus { outline: 2px solid var(--accent); outline-offset: 1px; }
+.heatread { white-space: pre-line; min-height: 7rem; font-size: .8125rem; }
+@media print { .heatread { display: none; } }
 .heatkey { list-style: none; margin: .5rem 0 1rem; padding: 0; font-size: .8125rem; columns: 2;
   max-width: 60rem; }
 .heatkey li { break-inside: avoid; padding: .12rem 0 .12rem 1.85rem; text-indent: -1.85rem; }

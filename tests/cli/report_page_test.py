@@ -36,8 +36,11 @@ class ReportPage(unittest.TestCase):
         palpate("run", "press-ball", "--duration-s", "0.05", "-o", run)
         palpate("compare", "one-tet", "--integrator", "cvode-bdf", "--integrator", "linearly-implicit-euler",
                 "--limit-s", "0.5", "--repeats", "1", "-o", compare)
+        stability = cls.folder / "stability"
+        palpate("stability", "--row", "youngs-modulus", "--integrator", "cvode-bdf", "--integrator",
+                "linearly-implicit-euler", "-o", stability)
         cls.page = cls.folder / "page.html"
-        palpate("report", run, compare, "-o", cls.page)
+        palpate("report", run, compare, stability, "-o", cls.page)
         cls.tab = browser.Browser()
 
     @classmethod
@@ -109,6 +112,28 @@ class ReportPage(unittest.TestCase):
         self.tab.wait_for(f"!{reset}")
         self.tab.key("0", text="0")
         self.tab.wait_for(reset)
+
+    def test_a_heat_map_is_read_by_keyboard_and_click(self):
+        self.seen("table.heat")
+        stops = "document.querySelectorAll('table.heat td[tabindex=\"0\"]').length"
+        self.assertEqual(self.tab.value(stops), 1, "one stop of the Tab key")
+        read = "document.querySelector('.heatread').textContent"
+        self.assertIn("arrow keys", self.tab.value(read))
+        self.tab.value("document.querySelector('table.heat td[tabindex]').focus()")
+        first = self.tab.value(read)
+        self.assertRegex(first, r"(?s)cvode-bdf: .* \(expected: .*s of CPU")
+        self.tab.key("ArrowRight")
+        right = self.tab.value(read)
+        self.assertIn("linearly-implicit-euler: ", right)
+        self.tab.key("ArrowRight")
+        self.assertEqual(self.tab.value(read), right, "there is nothing beyond the last")
+        self.tab.key("ArrowDown")
+        below = self.tab.value(read)
+        self.assertIn("linearly-implicit-euler: ", below)
+        self.assertNotEqual(below, right, "another case")
+        self.assertEqual(self.tab.value(stops), 1)
+        self.tab.value("document.querySelector('table.heat td:not(.none)').click()")
+        self.assertEqual(self.tab.value(read), first)
 
     def test_charts_of_counts_are_folded_away_and_drawn_when_opened(self):
         self.assertEqual(self.tab.value("document.querySelectorAll('details[open]').length"), 0)

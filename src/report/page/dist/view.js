@@ -1,4 +1,4 @@
-/* made by src/report/page/build.mjs, sources sha256 4f96204e5f734d661d1fa0afdb021588c0bf4839035227ecdf91084cbaa04f4a
+/* made by src/report/page/build.mjs, sources sha256 a0c5fcf6009769c5d1be135cff712df2f3c68060be4325d68500ae40c08b381a
 
 This part of the page holds three 0.170.0
 
