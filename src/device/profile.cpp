@@ -110,6 +110,8 @@ namespace {
 constexpr double kAmplifierBandwidth = 300.0;
 constexpr double kAmplifierSlew = 2.0 * std::numbers::pi * kAmplifierBandwidth;
 
+constexpr double kRampWhereHeld = 0.2;  // [s]
+
 constexpr double kMaxForce = 3.3, kMaxTorque = 0.2;
 constexpr double kMass = 0.045;  ///< of the lightest device above
 
@@ -126,6 +128,12 @@ Workspace workspace_of(const DeviceSpec& spec, const DeviceSpecification& figure
     out.size = *figures.workspace;
   }
   return out;
+}
+
+/// Somebody holds it, who should not be pulled at once: script, recording and simulated hand are the
+/// computer's.
+bool is_held(const DeviceSpec& spec) {
+  return spec.type != "script" && spec.type != "recording" && spec.type != "hand";
 }
 
 }  // namespace
@@ -145,6 +153,7 @@ DeviceFigures figures_of(const DeviceSpec& spec) {
   check_range("max_torque_n_m", out.max_torque, DeviceRanges::max_torque_n_m);
   out.max_force_slew = spec.max_force_slew_n_s.value_or(slew * out.max_force);
   out.max_torque_slew = spec.max_torque_slew_n_m_s.value_or(slew * out.max_torque);
+  out.ramp = spec.ramp_s.value_or(is_held(spec) ? kRampWhereHeld : 0.0);
   out.workspace = workspace_of(spec, figures);
   out.mass = spec.device_mass_kg.value_or(profile.mass.value_or(kMass));
   out.damping = spec.device_damping_n_s_m.value_or(0.0);

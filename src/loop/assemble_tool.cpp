@@ -119,9 +119,8 @@ void assemble_tool(World& world, std::size_t hand) {
   const bool own_device = !side.handle;
   if (own_device) side.handle = own_device_of(*side.device_spec, world.folder);
   const device::DeviceFigures figures = device::figures_of(*side.device_spec);
-  side.limiter =
-      std::make_unique<device::WrenchLimiter>(figures.max_force, figures.max_torque, side.device_spec->ramp_s,
-                                              figures.max_force_slew, figures.max_torque_slew);
+  side.limiter = std::make_unique<device::WrenchLimiter>(figures.max_force, figures.max_torque, figures.ramp,
+                                                         figures.max_force_slew, figures.max_torque_slew);
   side.limiter->confine(figures.workspace, *side.handle);
   if (d.exchange.scheme == "monolithic")
     assemble_block(world, side, own_device);

@@ -54,7 +54,9 @@ const KeyTable<DeviceSpec>& device_keys() {
       unless("30000 max_torque_n_m, with a profile 1885",
              in_unit("N m/s", number("max_torque_slew_n_m_s", &Spec::max_torque_slew_n_m_s, Ranges::slew,
                                      "fastest change of the torque"))),
-      number("ramp_s", &Spec::ramp_s, Ranges::ramp_s, "time over which the force sets in at the start"),
+      unless("0.2 where somebody holds the device, else 0",
+             number("ramp_s", &Spec::ramp_s, Ranges::ramp_s,
+                    "time over which the force sets in at the start, and again after the device has failed")),
       vec3("workspace_center_m", &Spec::workspace_center_m, any(), "middle of the workspace"),
       unless("none, or the profile's",
              own_key<Spec>(

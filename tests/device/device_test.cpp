@@ -145,6 +145,21 @@ TEST(Device, a_profile_fills_what_the_scene_leaves_out) {
                   "unknown device profile \"premium\" (did you mean \"premium-1.5\"?)");
 }
 
+TEST(Device, pulls_nobody_at_once) {
+  for (const auto& entry : device_registry()) {
+    DeviceSpec spec;
+    spec.type = entry.name;
+    EXPECT_EQ(figures_of(spec).ramp, entry.name == "udp" ? 0.2 : 0.0) << entry.name;
+    spec.ramp_s = 0.05;
+    EXPECT_EQ(figures_of(spec).ramp, 0.05) << entry.name << ": what is given wins";
+    spec.ramp_s = 0.0;
+    EXPECT_EQ(figures_of(spec).ramp, 0.0) << entry.name;
+  }
+  DeviceSpec driver;
+  driver.type = "a driver of one's own";
+  EXPECT_EQ(figures_of(driver).ramp, 0.2);
+}
+
 TEST(Device, every_profile_is_a_plausible_desktop_device) {
   int profiles = 0;
   for (const DeviceProfile& one : device_profiles()) {

@@ -35,6 +35,7 @@ const std::vector<DeviceProfile>& device_profiles();
 struct DeviceFigures {
   double max_force, max_torque;            ///< [N, N m]
   double max_force_slew, max_torque_slew;  ///< [N/s, N m/s]
+  double ramp;                             ///< over which the force sets in [s]
   Workspace workspace;                     ///< where it can be
   double mass, damping, friction;          ///< apparent, at the tip [kg, N s/m, N]
   double encoder_resolution;               ///< [m]; 0: none

@@ -47,11 +47,13 @@ struct DeviceSpec {
   std::optional<double> max_torque_n_m;         ///< 0.2
   std::optional<double> max_force_slew_n_s;     ///< empty: the profile's, else 3e4 maxima a second
   std::optional<double> max_torque_slew_n_m_s;  ///< empty: the profile's, else 3e4 maxima a second
-  double ramp_s = 0.0;                          ///< force ramps in from zero over this time at the start
-  Vec3 workspace_center_m = Vec3::Zero();       ///< middle of box and ball
-  std::optional<Vec3> workspace_size_m;         ///< of a box
-  double workspace_radius_m = 0.0;              ///< of a ball; 0: none
-  double workspace_margin_m = 0.01;             ///< outside of it forces fade over this distance
+  /// force ramps in from zero over this time at the start and after each failure of the device; empty: 0.2 s
+  /// of a device that somebody holds, 0 of those that the computer moves
+  std::optional<double> ramp_s;
+  Vec3 workspace_center_m = Vec3::Zero();  ///< middle of box and ball
+  std::optional<Vec3> workspace_size_m;    ///< of a box
+  double workspace_radius_m = 0.0;         ///< of a ball; 0: none
+  double workspace_margin_m = 0.01;        ///< outside of it forces fade over this distance
 
   // of a simulated hand: the arm ...
   double arm_mass_kg = 0.8;                        ///< mass that moves with the hand
