@@ -62,19 +62,29 @@ double EnergyLedger::elastic_energy() const {
   return sum;
 }
 
-// A tool with ticks of its own is no part of the System: its coupling dissipates b |v_h - v_t|^2 + b_r |w_h -
-// w_t|^2.
-double EnergyLedger::dissipated_power() const {
-  const dynamics::StateView view = world_.state.view();
+double EnergyLedger::power_in_contact() const {
+  return world_.contact ? world_.contact->dissipated_power(world_.state.view()) : 0.0;
+}
+
+// b |v_h - v_t|^2 + b_r |w_h - w_t|^2.
+double EnergyLedger::power_in_coupling() const {
   double sum = 0.0;
-  for (const auto& term : world_.system.terms()) sum += term->dissipated_power(view);
-  for (const auto& side : ToolSide::all(world_)) {
-    if (!side->tool) continue;
-    const VirtualCouplingSpec& c = side->spec->coupling;
-    const Twist &tool = side->known.twist, &hand = side->handle_now.twist;
+  const auto& sides = ToolSide::all(world_);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (!sides[i]->spec) continue;
+    const VirtualCouplingSpec& c = sides[i]->spec->coupling;
+    const Twist tool = world_.tool_twist(i);
+    const Twist& hand = sides[i]->handle_now.twist;
     sum += c.damping_n_s_m * (hand.linear - tool.linear).squaredNorm() +
            c.rotational_damping_n_m_s_rad * (hand.angular - tool.angular).squaredNorm();
   }
+  return sum;
+}
+
+// A tool with ticks of its own is no part of the System.
+double EnergyLedger::dissipated_power() const {
+  double sum = world_.has_tool_of_ticks() ? power_in_coupling() : 0.0;
+  for (const auto& term : world_.system.terms()) sum += term->dissipated_power(world_.state.view());
   return sum;
 }
 
@@ -85,17 +95,24 @@ void EnergyLedger::take_stored() {
   balance_.contact = contact_energy();
   balance_.other =
       world_.system.potential_energy(view) - balance_.elastic - balance_.contact - other_at_start_;
-  for (const auto& side : ToolSide::all(world_)) {
-    if (!side->as_known) continue;
-    side->as_known->set_state(side->known.time, side->known.pose, side->known.twist);
-    balance_.kinetic += side->as_known->kinetic_energy();
-    balance_.other += side->as_known->potential_energy(side->handle_now.pose);
+  balance_.kinetic_of_tools = balance_.coupling = 0.0;
+  const auto& sides = ToolSide::all(world_);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (!sides[i]->as_known) continue;
+    tool::Tool& known = *sides[i]->as_known;
+    known.set_state(world_.state.time(), world_.tool_pose(i), world_.tool_twist(i));
+    const Pose& handle = sides[i]->handle_now.pose;
+    balance_.kinetic_of_tools += known.kinetic_energy();
+    balance_.coupling += known.coupling_energy(handle);
+    if (!sides[i]->tool) continue;  // the System has them
+    balance_.kinetic += known.kinetic_energy();
+    balance_.other += known.potential_energy(handle);
   }
 }
 
 void EnergyLedger::make_tools() {
   for (const auto& side : ToolSide::all(world_))
-    if (side->tool) side->as_known = side->another_tool(world_.description.gravity_m_s2);
+    if (side->spec) side->as_known = side->another_tool(world_.description.gravity_m_s2);
 }
 
 void EnergyLedger::archive(Archive& a) {
@@ -110,6 +127,8 @@ void EnergyLedger::archive(Archive& a) {
   a.each("work_of_hand", hands_, [&](PowerIntegral& hand) { hand.archive(a); });
   a("work_of_supports", supports_);
   a("dissipation", dissipated_);
+  a("dissipation_in_contact", in_contact_);
+  a("dissipation_in_coupling", in_coupling_);
 }
 
 void EnergyLedger::start() {
@@ -134,6 +153,8 @@ void EnergyLedger::start() {
   }
   supports_.start(t, world_.system.support_power(world_.state.view()));
   dissipated_.start(t, dissipated_power());
+  in_contact_.start(t, power_in_contact());
+  in_coupling_.start(t, power_in_coupling());
 }
 
 void EnergyLedger::before_query() { contact_before_ = contact_energy(); }
@@ -150,6 +171,8 @@ const EnergyBalance& EnergyLedger::period(double t) {
   take_stored();
   supports_.add(t, world_.system.support_power(world_.state.view()));
   dissipated_.add(t, dissipated_power());
+  in_contact_.add(t, power_in_contact());
+  in_coupling_.add(t, power_in_coupling());
   balance_.hand = balance_.quadrature_error = 0.0;
   for (const PowerIntegral& hand : hands_) {
     balance_.hand += hand.value();
@@ -157,6 +180,8 @@ const EnergyBalance& EnergyLedger::period(double t) {
   }
   balance_.supports = supports_.value();
   balance_.dissipated = dissipated_.value();
+  balance_.dissipated_by_contact = in_contact_.value();
+  balance_.dissipated_by_coupling = in_coupling_.value();
   balance_.quadrature_error += supports_.error() + dissipated_.error();
   balance_.unaccounted = balance_.stored() - stored_at_start_ - balance_.hand - balance_.supports -
                          balance_.queries - balance_.materials + balance_.dissipated;

@@ -29,7 +29,7 @@ struct ToolSide {
   const DeviceSpec* device_spec = nullptr;  ///< the same
   /// the tool with ticks of its own; null where the scheme is monolithic
   std::unique_ptr<tool::Tool> tool;
-  /// one more, at `known`, for the energy of the first; null where nobody asked
+  /// one more, where the tool is, for energies; null where nobody asked
   std::unique_ptr<tool::Tool> as_known;
   /// all that bodies and observers may read of it: in real time the tool belongs to another thread
   KnownTool known;

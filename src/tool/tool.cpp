@@ -106,8 +106,11 @@ double Tool::kinetic_energy() const {
 
 double Tool::potential_energy(const Pose& handle) const {
   const RigidParameters& p = impl_->body.parameters();
-  return coupling_energy(impl_->input.gains, impl_->motion.pose, handle) -
-         p.mass * p.gravity.dot(impl_->motion.pose.translation);
+  return coupling_energy(handle) - p.mass * p.gravity.dot(impl_->motion.pose.translation);
+}
+
+double Tool::coupling_energy(const Pose& handle) const {
+  return tool::coupling_energy(impl_->input.gains, impl_->motion.pose, handle);
 }
 
 std::string simbody_version() { return PALPATE_SIMBODY_VERSION; }

@@ -39,6 +39,7 @@ void Tool::coupling_tangent(const Pose&, const Twist&, Mat6&, Mat6&) const { no_
 Mat6 Tool::mass_matrix() const { no_tool(); }
 double Tool::kinetic_energy() const { no_tool(); }
 double Tool::potential_energy(const Pose&) const { no_tool(); }
+double Tool::coupling_energy(const Pose&) const { no_tool(); }
 
 SimbodyTerms make_simbody_terms(int, const ToolSpec&, const Vec3&) { no_tool(); }
 dynamics::BlockSpec tool_block(const ToolSpec&) { no_tool(); }

@@ -78,8 +78,21 @@ TEST(EnergyLedger, ADroppedBlock) {
   EXPECT_GT(elastic, 0.1 * scale);
   EXPECT_GT(contact, 0.01 * scale);
   EXPECT_GT(rows.back().dissipated, 0.1 * scale);
+  EXPECT_EQ(rows.back().dissipated_by_contact, 0.0) << "its law has no damper: all is the block's";
+  EXPECT_EQ(rows.back().kinetic_of_tools, 0.0);
   EXPECT_LT(rows.back().other, 0.0) << "it lies lower";
   EXPECT_LT(rows.back().quadrature_error, 0.02 * scale);
+}
+
+// The same block with hardly a damper of its own: what is lost, contact's damper has.
+TEST(EnergyLedger, NamesWhatContactDissipates) {
+  scene::Description d = dropped("cvode-bdf", 1e-7);
+  d.bodies[0].stiffness_damping_s = 1e-7;
+  d.contacts[0].damping_pa_s_m = 1e4;
+  const loop::EnergyBalance last = balance_of(d).back();
+  EXPECT_GT(last.dissipated_by_contact, 1e-4);
+  EXPECT_NEAR(last.dissipated_by_contact, last.dissipated, 0.02 * last.dissipated);
+  EXPECT_EQ(last.dissipated_by_coupling, 0.0);
 }
 
 namespace {
@@ -170,6 +183,39 @@ TEST(EnergyLedger, TheHandsWork) {
   EXPECT_LT(worst.unaccounted, 5e-3 * worst.hand + 2.0 * worst.quadrature);
   EXPECT_LT(worst.quadrature, 0.02 * worst.hand);
   EXPECT_NEAR(rows.back().hand, rows.back().dissipated, 0.05 * worst.hand) << "nothing is left in the block";
+}
+
+// A tool that nothing touches swings about a handle that has jumped aside: m x'' = -k x - b x'.  The spring's
+// energy k x_0^2 / 2 goes to and fro, and into the coupling's damper alone.
+TEST(EnergyLedger, NamesTheToolsParts) {
+  for (const char* scheme : {"monolithic", "partitioned"}) {
+    scene::Description d = small_scenes::pressed_block(-0.01);
+    const double aside = 0.002, mass = d.tool->mass_kg, k = d.tool->coupling.stiffness_n_m,
+                 b = d.tool->coupling.damping_n_s_m;
+    d.device->keyframes[0].position_m.x() += aside;
+    d.exchange.scheme = scheme;
+    d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 1e-3;
+    d.tool->tick_s = 1e-4;
+    d.integrator.name = "cvode-bdf";
+    d.integrator.rtol = 1e-8;
+    d.duration_s = 0.05;
+    const double start = 0.5 * k * aside * aside, decay = b / (2.0 * mass),
+                 w = std::sqrt(k / mass - decay * decay);
+    const auto rows = balance_of(d);
+    ASSERT_GT(rows.size(), 40u) << scheme;
+    for (const auto& row : rows) {
+      const double t = row.time,
+                   x = aside * std::exp(-decay * t) * (std::cos(w * t) + decay / w * std::sin(w * t)),
+                   v = -aside * std::exp(-decay * t) * (k / mass) / w * std::sin(w * t);
+      EXPECT_NEAR(row.coupling, 0.5 * k * x * x, 0.02 * start) << scheme << ", t = " << t;
+      EXPECT_NEAR(row.kinetic_of_tools, 0.5 * mass * v * v, 0.02 * start) << scheme << ", t = " << t;
+      EXPECT_NEAR(row.dissipated_by_coupling, start - 0.5 * k * x * x - 0.5 * mass * v * v, 0.04 * start)
+          << scheme << ", t = " << t;
+      EXPECT_EQ(row.dissipated_by_contact, 0.0);
+      EXPECT_LE(row.kinetic_of_tools, row.kinetic + 1e-12 * start);
+    }
+    EXPECT_GT(rows.back().dissipated_by_coupling, 0.5 * start) << scheme;
+  }
 }
 
 // A tool of ticks is no part of the system, and all of its energies are accounted for beside it.  What is

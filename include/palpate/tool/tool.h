@@ -52,6 +52,7 @@ class Tool {
   /// Of its motion now [J].
   double kinetic_energy() const;
   double potential_energy(const Pose& handle) const;  ///< of the coupling to a handle, and of the weight [J]
+  double coupling_energy(const Pose& handle) const;   ///< of the coupling's springs to a handle [J]
 
  private:
   struct Impl;
