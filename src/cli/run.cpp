@@ -15,6 +15,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/core/log.h"
 #include "palpate/loop/haptic_memory.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/registries.h"
@@ -109,6 +110,36 @@ void add_peaks(store::Summary& summary, const scene::Description& description, c
   }
 }
 
+void print_overlaps(const loop::World& world) {
+  const std::vector<loop::Overlap> overlaps = loop::overlaps_of(world);
+  std::string text;
+  for (const loop::Overlap& o : overlaps)
+    if (o.deepest_m > 0.0)
+      text += fmt::format("{}{} {:.3g} mm", text.empty() ? "" : ", ", o.pair, 1e3 * o.deepest_m);
+  if (!text.empty()) fmt::print("deepest overlap: {}\n", text);
+  for (const loop::Overlap& o : overlaps)
+    if (o.too_deep())
+      log::warn(
+          "contact {}: they lay {:.3g} mm in each other, more than half of the thinner one's width ({:.3g} "
+          "mm): "
+          "contact may push it out at the far side, or not at all; make the contact stiffer "
+          "(contact.stiffness_pa_m) or the body softer (body.youngs_modulus_pa), or press less",
+          o.pair, 1e3 * o.deepest_m, 1e3 * o.half_width_m);
+}
+
+/// What exchange.linearisation_error came to.
+void print_answers(const loop::World& world) {
+  for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
+    std::string text = fmt::format(
+        "{}: in {} exchanges bodies answered less than they would by at most {:.2g} % (a bound; in the mean "
+        "{:.2g} %; wanted {:g} %)",
+        e.tool, e.exchanges, 100.0 * e.largest, 100.0 * e.mean, 100.0 * e.wanted);
+    if (e.beyond > 0) text += fmt::format("; {} ended beyond what was wanted", e.beyond);
+    if (e.factored > 0) text += fmt::format("; {} were factored, and exact", e.factored);
+    fmt::print("{}\n", text);
+  }
+}
+
 void print_outcome(const loop::World& world, const Ran& ran) {
   const loop::RunResult& result = ran.result;
   const PeakWrench& peak = ran.peak;
@@ -123,6 +154,8 @@ void print_outcome(const loop::World& world, const Ran& ran) {
     if (const std::string silent = loop::silent_doings(c); !silent.empty())
       fmt::print("on the way: {}\n", silent);
   }
+  print_overlaps(world);
+  print_answers(world);
   if (result.ticks > 0) print_hand("the hand", peak.of[0], result.ticks, result.limited_ticks);
   for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peak.of.size(); ++i)
     print_hand(fmt::format("hand \"{}\"", world.description.hands[i].name), peak.of[i + 1],
@@ -278,7 +311,7 @@ bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& a
 void print_files(const scene::Description& description, const std::string& folder) {
   fmt::print("in {}: {}\n", folder, fmt::join(run_files(description, folder), ", "));
   if (!description.record)
-    fmt::print("states{} were not kept: the scene has no [record]\n",
+    fmt::print("states{} were not kept: the scene has no [record]; --set record.states=true keeps them\n",
                description.tool ? " and the force over time" : "");
 }
 

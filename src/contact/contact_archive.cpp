@@ -49,7 +49,10 @@ void Bonds::archive(Archive& a) {
 // The query is the last thing: it takes from those before what was given back.
 void ContactForce::archive(Archive& a, const dynamics::StateView& state) {
   Impl& m = *impl_;
-  a.each("pair", m.pairs, [&](Impl::Pair& pair) { pair.source->archive(a); });
+  a.each("pair", m.pairs, [&](Impl::Pair& pair) {
+    pair.source->archive(a);
+    a("deepest", pair.deepest);
+  });
   a("bonds", m.bonds);
   a.list("grasp", m.grasps, [&](Impl::Grasp& grasp) {
     a("frame", grasp.frame);

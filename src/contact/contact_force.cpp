@@ -324,6 +324,12 @@ std::vector<long> ContactForce::normals_kept() const {
   return out;
 }
 
+std::vector<double> ContactForce::deepest() const {
+  std::vector<double> out;
+  for (const auto& pair : impl_->pairs) out.push_back(pair.deepest);
+  return out;
+}
+
 std::vector<const proxy::PruneCounts*> ContactForce::pruning() const {
   std::vector<const proxy::PruneCounts*> out;
   for (const auto& pair : impl_->pairs) out.push_back(pair.source->pruning());

@@ -19,6 +19,7 @@ struct ContactForce::Impl {
     std::size_t first_cell = 0, last_cell = 0;  ///< or its cells
     bool grouped = false;                       ///< they are in `groups`
     bool follows = false;                       ///< they are exact at every evaluation
+    double deepest = 0.0;                       ///< largest overlap that a query saw [m]
     bool given = false;  ///< frames given from outside on both sides: nothing in the State feels them
   };
 
@@ -79,6 +80,7 @@ struct ContactForce::Impl {
     std::vector<Pose> poses;
   } followed;
   void query(const dynamics::StateView& state);
+  void measure_depth(Pair& pair) const;  ///< of its next samples and cells
   void check_samples(const dynamics::StateView& state) const;
   const std::vector<int>& rows_of_frames();  ///< in the State
   /// Of samples that are not in `groups`.  @pre frames are placed

@@ -30,6 +30,18 @@ void count_as_points(SampleCells& cells, ContactCell& cell) {
 
 }  // namespace
 
+void ContactForce::Impl::measure_depth(Pair& pair) const {
+  double least = 0.0;
+  for (std::size_t s = pair.begin; s < pair.end; ++s)
+    if (next_samples[s].area > 0.0) least = std::min(least, next_samples[s].gap);
+  for (std::size_t c = pair.first_cell; c < pair.last_cell; ++c)
+    for (int i = next_cells.cells[c].first; i < next_cells.cells[c].last; ++i) {
+      const SamplePlace& place = next_cells.places[static_cast<std::size_t>(i)];
+      least = std::min(least, place.w_a - place.w_b);
+    }
+  pair.deepest = std::max(pair.deepest, -least);
+}
+
 // Samples of an image without friction stay in cells; with friction each is looked at by itself.
 void ContactForce::Impl::query(const dynamics::StateView& state) {
   const ScopedTimer timer(query_seconds);
@@ -59,6 +71,7 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
     }
     pair.end = next_samples.size();
     pair.last_cell = next_cells.cells.size();
+    measure_depth(pair);
     for (std::size_t s = pair.begin; s < pair.end; ++s) {
       next_samples[s].source = static_cast<int>(i);
       if (pair.law.per_point) count_as_point(next_samples[s]);

@@ -9,6 +9,12 @@
 // the resultant of a pressure d normal to the skin.  So n = P / |P|: depth counts, as in the force.  A skin
 // that only just begins to touch turns no normal, were it ever so large.
 //
+// What it leaves of a moment.  A ball of radius R without friction feels none about its centre c.  Here it
+// feels, with x - c = R n_a and its own normal n_a = (n_a . n) (-grad w_a, 1),
+//     M = k int d (x - c) x n dA = -k R (int d (n_a . n) grad w_a dA) x n,
+// which is zero but for the factor n_a . n = (1 + |grad w_a|^2)^(-1/2): a term of third order in the slopes,
+// where the depth is skew about the axis of the patch.  On touch-head that is an arm of 0.1 mm (R = 12 mm).
+//
 // Several.  A part of a's skin, its proxy i, has P_i and V_i of its own.  All parts along one normal give the
 // volume of the overlap exactly (a height field), each along its own the forces of surfaces that push
 // different ways (two walls of a corner).  Either is right where the other is wrong, and a force that changes

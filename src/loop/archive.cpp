@@ -47,6 +47,10 @@ void archive_side(Archive& a, ToolSide& side) {
   }
   if (side.limiter) a("limiter", *side.limiter);
   if (side.passivity) a("passivity", *side.passivity);
+  if (side.touch) {
+    const Archive::Group group(a, "answers");
+    side.touch->archive(a);
+  }
   if (side.tool) {
     const Archive::Group group(a, "tool");
     archive_tool(a, *side.tool);

@@ -15,6 +15,7 @@
 #include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"
 #include "tool_side.h"
+#include "touch_reduction.h"
 
 namespace palpate::loop {
 namespace {
@@ -102,10 +103,12 @@ void add_jumps(store::Summary& summary, const World& world) {
   const auto& d = world.description.contacts;
   const std::vector<long> fast = world.contact->fast_regions();
   const std::vector<long> kept = world.contact->normals_kept();
+  const std::vector<double> deepest = world.contact->deepest();
   for (std::size_t i = 0; i < fast.size(); ++i) {
     const std::string pair = d[i].first + " - " + d[i].second;
     s.values.emplace_back(pair + ": regions fast enough to go through", static_cast<long long>(fast[i]));
     s.values.emplace_back(pair + ": deep poses that kept the last normal", static_cast<long long>(kept[i]));
+    s.values.emplace_back(pair + ": deepest_overlap_m", deepest[i]);
   }
   double quadrature_error = 0.0;
   long lines = 0, pairs = 0, unaligned = 0;
@@ -128,6 +131,17 @@ void add_jumps(store::Summary& summary, const World& world) {
     s.values.emplace_back("largest_friction_n", friction);
     s.values.emplace_back("largest_friction_left_out_of_a_step_n", world.contact->largest_friction_lag());
   }
+}
+
+void add_answers(store::Summary& summary, const World& world) {
+  for (const AnswerError& e : answer_errors_of(world))
+    summary.section("answers to " + e.tool).values = {
+        {"wanted_error", e.wanted},
+        {"largest_error_bound", e.largest},
+        {"mean_error_bound", e.mean},
+        {"exchanges", static_cast<long long>(e.exchanges)},
+        {"exchanges_beyond_wanted_error", static_cast<long long>(e.beyond)},
+        {"exchanges_factored", static_cast<long long>(e.factored)}};
 }
 
 /// What the tool has grasped.
@@ -254,11 +268,47 @@ void add_pruning(store::Summary& summary, const World& world) {
   }
 }
 
+/// Of a side of a contact, along the axes that it was made in [m].
+double half_width(const World& world, const std::string& side) {
+  const auto of_points = [](const Points& points) {
+    return 0.5 * (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).minCoeff();
+  };
+  if (const Body* body = world.find_body(side)) return of_points(body->rest.nodes);
+  if (const ToolSpec* tool = scene::tool_named(world.description, side))
+    return tool->shape == "sphere" ? tool->radius_m : of_points(tool_surface(*tool, world.folder).vertices);
+  return HUGE_VAL;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand) {
   const ToolSide& side = ToolSide::of(world, hand);
   return side.handle ? side.handle->tallies() : std::vector<std::pair<std::string, long long>>{};
+}
+
+std::vector<AnswerError> answer_errors_of(const World& world) {
+  std::vector<AnswerError> out;
+  for (const auto& side : ToolSide::all(world)) {
+    if (!side->touch || side->touch->missing().exchanges == 0) continue;
+    const AnswersMissing& m = side->touch->missing();
+    out.push_back({side->name, world.description.exchange.linearisation_error, m.largest,
+                   m.sum / static_cast<double>(m.exchanges), m.exchanges, m.beyond_wanted, m.factored});
+  }
+  return out;
+}
+
+std::vector<Overlap> overlaps_of(const World& world) {
+  std::vector<Overlap> out;
+  if (!world.contact) return out;
+  const std::vector<double> deepest = world.contact->deepest();
+  for (std::size_t i = 0; i < deepest.size(); ++i) {
+    const ContactSpec& contact = world.description.contacts[i];
+    const bool itself = contact.first == contact.second;
+    out.push_back(
+        {fmt::format("{} - {}", contact.first, contact.second), deepest[i],
+         itself ? HUGE_VAL : std::min(half_width(world, contact.first), half_width(world, contact.second))});
+  }
+  return out;
 }
 
 std::vector<scene::Need> needs(const scene::Description& description) {
@@ -295,6 +345,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   if (result.buzz_n || result.port) add_feel(summary.section("device"), result.buzz_n, result.port);
   add_more_hands(summary, world.description, result);
   add_tallies(summary, world);
+  add_answers(summary, world);
   add_grasps(summary, world);
   add_jumps(summary, world);
   add_images(summary, world);

@@ -58,6 +58,7 @@ struct TouchReduction::Answers {
   VecX stiff;              ///< K s + D w
   VecX rate;               ///< of f, by other tools; empty: none
   double still;            ///< what moves by less within the period rests [m]
+  double missing;          ///< of the answers to the loads, relative, at most
 };
 
 namespace {
@@ -135,6 +136,26 @@ std::pair<double, double> damping_of(const World& world, int node) {
 
 }  // namespace
 
+void AnswersMissing::take(double missing, double wanted) {
+  ++exchanges;
+  beyond_wanted += !(missing <= wanted);
+  largest = std::max(largest, missing);
+  sum += missing;
+}
+
+void AnswersMissing::take_factored() {
+  ++exchanges;
+  ++factored;
+}
+
+void AnswersMissing::archive(Archive& a) {
+  a("exchanges", exchanges);
+  a("factored", factored);
+  a("beyond_wanted", beyond_wanted);
+  a("largest", largest);
+  a("sum", sum);
+}
+
 TouchReduction::TouchReduction(World& world, double error, bool keep)
     : error_(error), keep_(keep), assembly_(world.system), answers_(std::make_unique<Answers>()) {
   if (error > 0.0) response_ = std::make_unique<linear::StepResponse>(world.description.integrator.threads);
@@ -186,6 +207,11 @@ bool TouchReduction::iterate(World& world, double H, Answers& out) {
     counters::count("loop.touch_iterations");
   }
   if (status != SolveStatus::kOk) return false;
+  double missing = 0.0;
+  for (Eigen::Index k = 0; k < loads; ++k)
+    if (const double answer = response_->response()(k, k); answer > 0.0)
+      missing = std::max(missing, response_->missing()[k] / answer);
+  out.missing = missing;
   out.X.resize(rhs.rows(), rhs.cols());
   VecX column;
   for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
@@ -354,7 +380,12 @@ bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& 
   world.system.force(view, x.f);
   x.rate = rate_by_other_tools(world, side);
   x.patterns = load_patterns(world, side, samples, tangents, x.nodes.size(), H, kModes - 1);
-  const bool known = iterate(world, H, x) || factor(world, side, H, x);
+  x.missing = 0.0;
+  const bool iterated = iterate(world, H, x), known = iterated || factor(world, side, H, x);
+  if (iterated)
+    missing_.take(x.missing, error_);
+  else
+    missing_.take_factored();
   Rows modes = Rows::Zero(kModes, velocity.size());
   MatX near;
   if (known) near = rows_of(x.X, x.nodes);

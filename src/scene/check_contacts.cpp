@@ -85,10 +85,12 @@ void check_method(const Document& doc, const std::string& key, const std::string
     c.method = "analytic";
   }
   if (c.gaps == "exact" && c.method != "analytic")
-    refuse(
-        location(doc, key + ".gaps"), where,
-        "gaps = \"exact\" is for obstacles and sphere tools, whose gaps have a formula; an image is made at "
-        "a query alone: remove it, or refresh the contact more often (contact_refresh_s)");
+    refuse(location(doc, key + ".gaps"), where,
+           sphere_tool
+               ? "gaps = \"exact\" needs the formula of the sphere, and an image is made at a query alone: "
+                 "write method = \"analytic\" and leave out the body's proxies, or remove it"
+               : "gaps = \"exact\" is for obstacles and sphere tools, whose gaps have a formula; an image is "
+                 "made at a query alone: remove it, or refresh the contact more often (contact_refresh_s)");
   if (c.depths == "interpolated" && c.samples != "vertex")
     refuse(location(doc, key + ".depths"), where,
            "depths = \"interpolated\" is for vertices: a pixel has a depth of its own; write samples = "

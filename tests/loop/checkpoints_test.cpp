@@ -255,9 +255,9 @@ const std::vector<std::string> kShownNowhere = {
     // sums and samples that the next period or tick makes anew before it shows them
     "bodies.energy.contact_j",
     "bodies.energy.coupling",
-    "bodies.energy.dissipated_j",
+    "bodies.energy.dissipated_",
     "bodies.energy.elastic_j",
-    "bodies.energy.kinetic_j",
+    "bodies.energy.kinetic",
     "bodies.energy.quadrature",
     "bodies.energy.time",
     "bodies.energy.unaccounted",

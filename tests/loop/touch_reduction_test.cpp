@@ -10,6 +10,7 @@
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/counters.h"
 #include "palpate/loop/run.h"
+#include "palpate/loop/summary.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
 
@@ -232,6 +233,35 @@ TEST(TouchReduction, ACrudeBasisIsTooStiffNeverTooSoft) {
   d.bodies[0].mesh.element_size_m = 0.004;
   const Linear factored = whole_tick(*touching(d, "points")), crude = whole_tick(*touching(d, "points", 0.9));
   EXPECT_LT(crude.J(5, 5), factored.J(5, 5) * (1.0 + 1e-6));
+}
+
+// What a run says of it afterwards: the bound is what was asked for, or less, and nothing where all was
+// factored.
+TEST(TouchReduction, ARunSaysHowExactlyBodiesAnswered) {
+  scene::Description d = pressed_block(0.002);
+  d.bodies[0].mesh.element_size_m = 0.004;
+  double largest = 0.0;
+  for (const double wanted : {0.3, 0.01, 0.0}) {
+    d.exchange.linearisation_error = wanted;
+    const auto world = loop::assemble(d);
+    ASSERT_TRUE(loop::run(*world, {}).status.ok());
+    const std::vector<loop::AnswerError> all = loop::answer_errors_of(*world);
+    ASSERT_EQ(all.size(), 1u);
+    const loop::AnswerError& e = all[0];
+    EXPECT_EQ(e.tool, "tool");
+    EXPECT_EQ(e.wanted, wanted);
+    EXPECT_GE(e.exchanges, 4);
+    EXPECT_EQ(e.factored, wanted > 0.0 ? 0 : e.exchanges);
+    EXPECT_EQ(e.beyond, 0);
+    EXPECT_LE(e.largest, wanted);
+    EXPECT_LE(e.mean, e.largest);
+    if (wanted == 0.01) { EXPECT_LT(e.largest, 0.2 * largest); }
+    EXPECT_EQ(e.largest > 0.0, wanted > 0.0);
+    largest = e.largest;
+  }
+  const auto apart = loop::assemble(pressed_block(-0.05));
+  ASSERT_TRUE(loop::run(*apart, {}).status.ok());
+  EXPECT_TRUE(loop::answer_errors_of(*apart).empty());
 }
 
 /// The contact forces, tick by tick, of a tool that a stiff coupling presses down on the block over two long

@@ -235,6 +235,8 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   double safe_time() const;                ///< the least of the pairs' [s]
   std::vector<long> fast_regions() const;  ///< of each pair
   std::vector<long> normals_kept() const;  ///< of each pair
+  /// The largest overlap that a query saw, along its normal, of each pair; 0: they never touched [m].
+  std::vector<double> deepest() const;
   /// What the proxies of each pair left out, in the pairs' order; null for a pair without proxies.
   std::vector<const proxy::PruneCounts*> pruning() const;
   /// Where the time of each pair's queries went; null for a pair without an image.

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "loop/small_scenes.h"
+#include "palpate/loop/run.h"
+#include "palpate/loop/summary.h"
+
+/// How deep a round tool of 15 mm lay in a block 20 mm high, as a run says it afterwards.
+namespace {
+
+using namespace palpate;
+
+/// @param depth  of the tool at the first query, when nothing has given way yet
+loop::Overlap overlap_of(double depth, const std::string& method = "cpu") {
+  scene::Description d = small_scenes::pressed_block(depth);
+  d.contacts[0].method = method;
+  const auto world = loop::assemble(d);
+  EXPECT_TRUE(loop::run(*world, {}).status.ok());
+  const std::vector<loop::Overlap> all = loop::overlaps_of(*world);
+  EXPECT_EQ(all.size(), 1u);
+  return all.at(0);
+}
+
+// The block gives way from then on, and the overlap gets smaller.
+TEST(Overlap, IsThatOfTheDeepestQuery) {
+  const loop::Overlap of_image = overlap_of(0.003);
+  EXPECT_EQ(of_image.pair, "block - tool");
+  EXPECT_NEAR(of_image.deepest_m, 0.003, 0.02 * 0.003);
+  EXPECT_NEAR(of_image.half_width_m, 0.01, 1e-12);
+  EXPECT_FALSE(of_image.too_deep());
+  // of vertices, the one nearest to the axis is 1 mm and 2 mm beside it
+  EXPECT_NEAR(overlap_of(0.003, "analytic").deepest_m, 0.015 - std::hypot(0.001, 0.002, 0.012), 1e-9);
+}
+
+TEST(Overlap, IsNothingWithoutTouch) {
+  EXPECT_EQ(overlap_of(-0.001).deepest_m, 0.0);
+  EXPECT_FALSE(overlap_of(-0.001).too_deep());
+}
+
+TEST(Overlap, IsTooDeepBeyondHalfOfTheThinnerSide) {
+  EXPECT_TRUE(overlap_of(0.0105).too_deep());
+  EXPECT_FALSE(overlap_of(0.0095).too_deep());
+}
+
+TEST(Overlap, StandsInTheSummary) {
+  const auto world = loop::assemble(small_scenes::pressed_block(0.003));
+  const loop::RunResult result = loop::run(*world, {});
+  for (const store::SummarySection& s : loop::summarise(*world, result, 0.0).sections)
+    for (const auto& [name, value] : s.values)
+      if (name == "block - tool: deepest_overlap_m") {
+        EXPECT_EQ(std::get<double>(value), loop::overlaps_of(*world).at(0).deepest_m);
+        return;
+      }
+  ADD_FAILURE() << "no deepest_overlap_m";
+}
+
+}  // namespace
