@@ -238,7 +238,9 @@ ValidationCase true_sphere() {
           "beside each other with their orders and times (volume of a spherical cap)",
       .slow = true,
       .run = run,
-      .faults = {{"skin-area", ": force, finest facets"}, {"shallow-lost", ": force, 81 pixels"}}};
+      .faults = {{"skin-area", ": force, finest facets"}, {"shallow-lost", ": force, 81 pixels"}},
+      .about_s = 30,
+  };
 }
 
 }  // namespace palpate::validation

@@ -261,7 +261,9 @@ ValidationCase flat_punch() {
           "the rim's singular pressure limits, and of the springs in series (Sneddon 1965)",
       .slow = true,
       .run = run,
-      .faults = {{"rim-not-seen", "force at k a/E*"}, {"half-area", "k a/E* = 1 [N]"}}};
+      .faults = {{"rim-not-seen", "force at k a/E*"}, {"half-area", "k a/E* = 1 [N]"}},
+      .about_s = 250,
+  };
 }
 
 }  // namespace palpate::validation

@@ -141,7 +141,9 @@ ValidationCase hertz_sphere() {
           "must be found, not given (Hertz 1882)",
       .slow = true,
       .run = run,
-      .faults = {{"rim-not-seen", "force of the half-space"}, {"gaps-too-small", "force of the half-space"}}};
+      .faults = {{"rim-not-seen", "force of the half-space"}, {"gaps-too-small", "force of the half-space"}},
+      .about_s = 190,
+  };
 }
 
 }  // namespace palpate::validation

@@ -154,8 +154,6 @@ void print_outcome(const loop::World& world, const Ran& ran) {
     if (const std::string silent = loop::silent_doings(c); !silent.empty())
       fmt::print("on the way: {}\n", silent);
   }
-  print_overlaps(world);
-  print_answers(world);
   if (result.ticks > 0) print_hand("the hand", peak.of[0], result.ticks, result.limited_ticks);
   for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peak.of.size(); ++i)
     print_hand(fmt::format("hand \"{}\"", world.description.hands[i].name), peak.of[i + 1],
@@ -172,6 +170,8 @@ void print_outcome(const loop::World& world, const Ran& ran) {
         "device.workspace_center_m\n",
         result.outside_ticks);
   if (result.buzz_n) fmt::print("buzz: {:.3g} N RMS of the force on the hand above 30 Hz\n", *result.buzz_n);
+  print_overlaps(world);
+  print_answers(world);
   if (!result.port) return;
   const loop::PortEnergy& port = *result.port;
   fmt::print(

@@ -71,7 +71,8 @@ std::vector<std::optional<CaseEnd>> run_cases(
     const std::function<void(double, const std::string&)>& progress) {
   std::vector<std::size_t> order(runs.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return runs[i].one->slow; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return runs[i].one->about_s > runs[j].one->about_s; });
   std::vector<std::optional<CaseEnd>> out(runs.size());
   std::size_t next = 0, done = 0;
   ProcessPool pool(jobs);

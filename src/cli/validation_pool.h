@@ -21,8 +21,8 @@ struct CaseEnd {
   std::string broken;  ///< why nothing was measured: an exception's message, "killed by signal 11"
 };
 
-/// Runs cases side by side, each in a process of its own (core's ProcessPool), slow ones first: the last to
-/// end should not be a long one.  Ends early where the user wants to stop, and kills what still runs.
+/// Runs cases side by side, each in a process of its own (core's ProcessPool), the longest first.  Ends early
+/// where the user wants to stop, and kills what still runs.
 /// @param progress  told the share that is done, and what ended last
 /// @return one each, in the order of `runs`; empty where it had not ended
 std::vector<std::optional<CaseEnd>> run_cases(

@@ -81,9 +81,10 @@ double EnergyLedger::power_in_coupling() const {
   return sum;
 }
 
-// A tool with ticks of its own is no part of the System.
-double EnergyLedger::dissipated_power() const {
-  double sum = world_.has_tool_of_ticks() ? power_in_coupling() : 0.0;
+// Of the System's terms, what is neither contact's nor that of couplings that it has: a tool with ticks of
+// its own is no part of it.
+double EnergyLedger::power_in_bodies() const {
+  double sum = -power_in_contact() - (world_.has_tool_of_ticks() ? 0.0 : power_in_coupling());
   for (const auto& term : world_.system.terms()) sum += term->dissipated_power(world_.state.view());
   return sum;
 }
@@ -126,7 +127,7 @@ void EnergyLedger::archive(Archive& a) {
   a("other_at_start", other_at_start_);
   a.each("work_of_hand", hands_, [&](PowerIntegral& hand) { hand.archive(a); });
   a("work_of_supports", supports_);
-  a("dissipation", dissipated_);
+  a("dissipation_in_bodies", in_bodies_);
   a("dissipation_in_contact", in_contact_);
   a("dissipation_in_coupling", in_coupling_);
 }
@@ -152,7 +153,7 @@ void EnergyLedger::start() {
     hands_.emplace_back().start(t, power);
   }
   supports_.start(t, world_.system.support_power(world_.state.view()));
-  dissipated_.start(t, dissipated_power());
+  in_bodies_.start(t, power_in_bodies());
   in_contact_.start(t, power_in_contact());
   in_coupling_.start(t, power_in_coupling());
 }
@@ -170,7 +171,7 @@ const EnergyBalance& EnergyLedger::period(double t) {
   balance_.time = t;
   take_stored();
   supports_.add(t, world_.system.support_power(world_.state.view()));
-  dissipated_.add(t, dissipated_power());
+  in_bodies_.add(t, power_in_bodies());
   in_contact_.add(t, power_in_contact());
   in_coupling_.add(t, power_in_coupling());
   balance_.hand = balance_.quadrature_error = 0.0;
@@ -179,10 +180,11 @@ const EnergyBalance& EnergyLedger::period(double t) {
     balance_.quadrature_error += hand.error();
   }
   balance_.supports = supports_.value();
-  balance_.dissipated = dissipated_.value();
   balance_.dissipated_by_contact = in_contact_.value();
   balance_.dissipated_by_coupling = in_coupling_.value();
-  balance_.quadrature_error += supports_.error() + dissipated_.error();
+  balance_.dissipated = in_bodies_.value() + in_contact_.value() + in_coupling_.value();
+  balance_.quadrature_error +=
+      supports_.error() + in_bodies_.error() + in_contact_.error() + in_coupling_.error();
   balance_.unaccounted = balance_.stored() - stored_at_start_ - balance_.hand - balance_.supports -
                          balance_.queries - balance_.materials + balance_.dissipated;
   return balance_;

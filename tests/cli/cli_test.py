@@ -273,7 +273,8 @@ class Results(Cli):
         self.assertEqual([path.name for path in self.folder.iterdir()], ["bare.toml"])
         text = self.good("run", "bare.toml", "--duration-s", "0.02", "-o", "asked")
         self.assertEqual(text.splitlines()[-2:], ["in asked: scene.toml, summary.json",
-                                                  "states were not kept: the scene has no [record]"])
+                                                  "states were not kept: the scene has no [record]; "
+                                                  "--set record.states=true keeps them"])
 
     def test_the_peak_on_each_hand_is_kept(self):
         self.good("run", "two-hands", "--duration-s", "0.06", "-o", "out")

@@ -14,6 +14,7 @@
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/loop/contact_record.h"
+#include "palpate/loop/summary.h"
 
 namespace {
 
@@ -107,6 +108,7 @@ Outcome outcome_of(const loop::World& world, const loop::RunResult& result, cons
     for (const long count : c.tunnelled()) out.counts["tunnelled"] += static_cast<double>(count);
     for (const long count : c.fast_regions()) out.counts["fast"] += static_cast<double>(count);
     for (const long count : c.normals_kept()) out.counts["kept"] += static_cast<double>(count);
+    for (const double depth : c.deepest()) out.counts["deepest"] += depth;
     for (const contact::QueryStages* s : c.stages())
       if (s) {
         out.counts["images"] += static_cast<double>(s->images);
@@ -114,6 +116,13 @@ Outcome outcome_of(const loop::World& world, const loop::RunResult& result, cons
         out.counts["lines"] += static_cast<double>(s->lines);
         out.counts["quadrature"] += s->largest_quadrature_error;
       }
+  }
+  for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
+    out.counts["answers"] += static_cast<double>(e.exchanges);
+    out.counts["factored answers"] += static_cast<double>(e.factored);
+    out.counts["answers beyond"] += static_cast<double>(e.beyond);
+    out.counts["largest answer error"] += e.largest;
+    out.counts["mean answer error"] += e.mean;
   }
   return out;
 }

@@ -43,9 +43,10 @@ class EnergyLedger {
  private:
   double contact_energy() const;
   double elastic_energy() const;
-  double dissipated_power() const;
-  double power_in_contact() const;   ///< the part of it that contact dissipates
-  double power_in_coupling() const;  ///< the part of it that couplings dissipate
+  // what is dissipated now, and by which [W]
+  double power_in_bodies() const;
+  double power_in_contact() const;
+  double power_in_coupling() const;
   void make_tools();
   void take_stored();
 
@@ -53,7 +54,7 @@ class EnergyLedger {
   EnergyBalance balance_;
   double stored_at_start_ = 0.0, other_at_start_ = 0.0, contact_before_ = 0.0, elastic_before_ = 0.0;
   std::vector<PowerIntegral> hands_;
-  PowerIntegral supports_, dissipated_, in_contact_, in_coupling_;
+  PowerIntegral supports_, in_bodies_, in_contact_, in_coupling_;
 };
 
 }  // namespace palpate::loop

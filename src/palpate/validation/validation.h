@@ -48,6 +48,7 @@ struct ValidationCase {
   /// Runs it.  `fault` is empty, or the name of one of `faults`.
   std::vector<Measurement> (*run)(const std::string& fault) = nullptr;
   std::vector<Fault> faults;  ///< at least one
+  double about_s = 0.0;       ///< of a slow one, on one core: side by side the longest begins first
 };
 
 /// Observed order: least-squares slope of log(error) against log(h).
