@@ -358,8 +358,11 @@ void add_validate(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("validate", "run the cases with a known answer");
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("CASE", arguments->cases, "only these; see `palpate list cases`");
-  CLI::Option* slow = command->add_flag("--slow", arguments->slow, "also the cases that take minutes");
-  command->add_flag("--quick", arguments->quick, "only the cases that take seconds: a minute for all of them")
+  CLI::Option* slow = command->add_flag("--slow", arguments->slow,
+                                        "also the cases that take minutes: a quarter of an hour on one core");
+  command
+      ->add_flag("--quick", arguments->quick,
+                 "only the cases that take seconds: a minute for all of them on one core")
       ->excludes(slow);
   command
       ->add_option("--jobs", arguments->jobs,

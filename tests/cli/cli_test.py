@@ -706,6 +706,14 @@ class Results(Cli):
             self.assertIn("fails, as it must", self.good("validate", "rigid-motion", option))
         self.assertNotIn("sabotage", self.good("validate", "--help"))
 
+    def test_validate_side_by_side(self):
+        cases = ["patch-test", "rigid-motion", "vertex-list"]
+        rows = [self.good("validate", *cases, "--jobs", jobs) for jobs in ("1", "3")]
+        self.assertEqual(rows[0], rows[1])
+        self.assertIn("3 of 3 cases keep their bars", rows[0])
+        passed = re.findall(r"(?m)^([a-z-]+) .* pass$", rows[0])  # as they were named, whichever ended first
+        self.assertEqual(list(dict.fromkeys(passed)), cases)
+
 
 NO_EGL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nowhere.json"}  # libglvnd then finds no driver
 NO_GNUPLOT = {"PATH": "/nowhere"}
@@ -875,6 +883,17 @@ class Interrupt(Cli):
         self.assertEqual(process.returncode, 130, err)
         self.assertLess(time.monotonic() - start, 60)  # its points would take minutes
         self.assertIn("goes on from cut", err)
+
+    def test_validate_ends_cases_that_take_minutes(self):
+        process = subprocess.Popen([str(PROGRAM), "validate", "vibration-tolerance", "rigid-motion"],
+                                   cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(3)
+        process.send_signal(signal.SIGINT)
+        start = time.monotonic()
+        out, err = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 130, err)
+        self.assertLess(time.monotonic() - start, 60)
+        self.assertRegex(out, r"(0 of 0|1 of 1) cases keep their bars; stopped before the other [12]\n$")
 
     def test_progress_bar_on_a_terminal_with_time_left(self):
         terminal, end = pty.openpty()
