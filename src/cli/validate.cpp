@@ -90,8 +90,8 @@ Json to_json(const ValidationCase& one, const CaseEnd& end) {
                     {"note", m.note},
                     {"refinement", to_json(m.refinement)},
                     {"passed", m.passed()}});
-  return {{"name", one.name}, {"section", one.section}, {"summary", one.summary},
-          {"why", one.why},   {"wall_s", end.wall_s},   {"measurements", list}};
+  return {{"name", one.name},     {"section", one.section}, {"summary", one.summary}, {"why", one.why},
+          {"broken", end.broken}, {"wall_s", end.wall_s},   {"measurements", list}};
 }
 
 bool all_pass(const std::vector<Measurement>& measurements) {

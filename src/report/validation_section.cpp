@@ -95,35 +95,84 @@ void add_convergence(Page& page, const Json& cases) {
   if (any) page.end_details();
 }
 
+/// A table with a mark a row.
+struct Marked {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<RowMark> marks;
+  void add(std::vector<std::string> row, bool good) {
+    rows.push_back(std::move(row));
+    marks.push_back(good ? RowMark::kGood : RowMark::kBad);
+  }
+};
+
+const char* verdict(bool passed) { return passed ? "pass" : "FAIL"; }
+
+/// The largest share of its bar that an error of the case takes; NaN: no error has a bar of its own.
+double closest(const Json& measurements) {
+  double out = std::numeric_limits<double>::quiet_NaN();
+  for (const Json& m : measurements)
+    if (const double share = number_at(m, "error") / number_at(m, "bar"); std::isfinite(share))
+      out = std::isnan(out) ? share : std::max(out, share);
+  return out;
+}
+
+void add_measurements(const Json& one, Marked& out) {
+  for (const Json& m : one["measurements"]) {
+    const bool passed = m.value("passed", false);
+    std::string order = short_number(number_at(m, "order"));
+    if (std::isfinite(number_at(m, "order_low")))
+      order += fmt::format(" in [{:g}, {:g}]", number_at(m, "order_low"), number_at(m, "order_high"));
+    out.add({text_at(one, "name"), text_at(m, "quantity"), short_number(number_at(m, "error")),
+             short_number(number_at(m, "bar")), fmt::format("{:.6g}", number_at(m, "computed")),
+             fmt::format("{:.6g}", number_at(m, "exact")), order, verdict(passed)},
+            passed);
+  }
+}
+
+void add_case(const Json& one, Marked& out) {
+  const Json& measurements = one["measurements"];
+  const auto passed = static_cast<std::size_t>(std::count_if(
+      measurements.begin(), measurements.end(), [](const Json& m) { return m.value("passed", false); }));
+  const bool good = passed == measurements.size() && !measurements.empty();
+  std::string meaning = text_at(one, "summary");
+  if (measurements.empty()) {
+    const std::string broken = text_at(one, "broken");
+    meaning += fmt::format(": {}", broken.empty() ? "nothing was measured" : broken);
+  }
+  const double share = closest(measurements);
+  out.add({text_at(one, "name"), meaning, fmt::format("{} of {}", passed, measurements.size()),
+           std::isfinite(share) ? fmt::format("{:.2g}", 100.0 * share) : "-",
+           short_number(number_at(one, "wall_s")), verdict(good)},
+          good);
+}
+
 }  // namespace
 
 void add_validation(Page& page, const Json& validation) {
   const Json& cases =
       validation.is_object() && validation.contains("cases") ? validation["cases"] : validation;
   if (!cases.is_array()) return;
-  std::vector<std::vector<std::string>> rows;
-  std::vector<RowMark> marks;
+  Marked by_case, all;
   for (const Json& one : cases) {
     if (!one.is_object() || !one.contains("measurements")) continue;
-    if (one["measurements"].empty()) {
-      rows.push_back({text_at(one, "name"), "nothing was measured", "-", "-", "-", "-", "-", "FAIL"});
-      marks.push_back(RowMark::kBad);
-    }
-    for (const Json& m : one["measurements"]) {
-      const bool passed = m.value("passed", false);
-      std::string order = short_number(number_at(m, "order"));
-      if (std::isfinite(number_at(m, "order_low")))
-        order += fmt::format(" in [{:g}, {:g}]", number_at(m, "order_low"), number_at(m, "order_high"));
-      rows.push_back({text_at(one, "name"), text_at(m, "quantity"),
-                      fmt::format("{:.6g}", number_at(m, "computed")),
-                      fmt::format("{:.6g}", number_at(m, "exact")), short_number(number_at(m, "error")),
-                      short_number(number_at(m, "bar")), order, passed ? "pass" : "FAIL"});
-      marks.push_back(passed ? RowMark::kGood : RowMark::kBad);
-    }
+    add_case(one, by_case);
+    add_measurements(one, all);
   }
   page.add_heading("Validation against exact answers");
-  page.add_table({"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"}, rows,
-                 "Errors are relative unless the quantity says otherwise.", marks);
+  page.add_table({"case", "what it measures", "measurements", "% of bar", "time [s]", "verdict"},
+                 by_case.rows, "% of bar: the largest error of the case over what it may be.", by_case.marks);
+  Marked missed;
+  for (std::size_t i = 0; i < all.rows.size(); ++i)
+    if (all.marks[i] == RowMark::kBad) missed.add(all.rows[i], false);
+  const std::vector<std::string> headers = {"case",     "quantity", "error", "bar",
+                                            "computed", "exact",    "order", "verdict"};
+  if (!missed.rows.empty()) {
+    page.add_heading("Measurements that miss their bar", 3);
+    page.add_table(headers, missed.rows, "", missed.marks);
+  }
+  page.begin_details("Every measurement");
+  page.add_table(headers, all.rows, "Errors are relative unless the quantity says otherwise.", all.marks);
+  page.end_details();
   add_convergence(page, cases);
 }
 
