@@ -130,6 +130,10 @@ void print_overlaps(const loop::World& world) {
 /// What exchange.linearisation_error came to.
 void print_answers(const loop::World& world) {
   for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
+    if (e.factored == e.exchanges) {
+      fmt::print("{}: bodies' answers in {} exchanges were factored, and exact\n", e.tool, e.exchanges);
+      continue;
+    }
     std::string text = fmt::format(
         "{}: in {} exchanges bodies answered less than they would by at most {:.2g} % (a bound; in the mean "
         "{:.2g} %; wanted {:g} %)",
