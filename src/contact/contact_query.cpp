@@ -36,6 +36,7 @@ void ContactForce::Impl::measure_depth(Pair& pair) const {
     if (next_samples[s].area > 0.0) least = std::min(least, next_samples[s].gap);
   for (std::size_t c = pair.first_cell; c < pair.last_cell; ++c)
     for (int i = next_cells.cells[c].first; i < next_cells.cells[c].last; ++i) {
+      if (!(next_cells.area(next_cells.cells[c], i) > 0.0)) continue;
       const SamplePlace& place = next_cells.places[static_cast<std::size_t>(i)];
       least = std::min(least, place.w_a - place.w_b);
     }

@@ -62,31 +62,24 @@ double EnergyLedger::elastic_energy() const {
   return sum;
 }
 
-double EnergyLedger::power_in_contact() const {
-  return world_.contact ? world_.contact->dissipated_power(world_.state.view()) : 0.0;
-}
-
-// b |v_h - v_t|^2 + b_r |w_h - w_t|^2.
-double EnergyLedger::power_in_coupling() const {
-  double sum = 0.0;
+// A coupling takes b |v_h - v_t|^2 + b_r |w_h - w_t|^2.  Those of tools in the State are among the System's
+// terms; a tool with ticks of its own is no part of it.
+EnergyLedger::Dissipation EnergyLedger::dissipation() const {
+  Dissipation out;
+  const dynamics::StateView view = world_.state.view();
+  for (const auto& term : world_.system.terms())
+    (term == world_.contact ? out.contact : out.bodies) += term->dissipated_power(view);
   const auto& sides = ToolSide::all(world_);
   for (std::size_t i = 0; i < sides.size(); ++i) {
     if (!sides[i]->spec) continue;
     const VirtualCouplingSpec& c = sides[i]->spec->coupling;
     const Twist tool = world_.tool_twist(i);
     const Twist& hand = sides[i]->handle_now.twist;
-    sum += c.damping_n_s_m * (hand.linear - tool.linear).squaredNorm() +
-           c.rotational_damping_n_m_s_rad * (hand.angular - tool.angular).squaredNorm();
+    out.coupling += c.damping_n_s_m * (hand.linear - tool.linear).squaredNorm() +
+                    c.rotational_damping_n_m_s_rad * (hand.angular - tool.angular).squaredNorm();
   }
-  return sum;
-}
-
-// Of the System's terms, what is neither contact's nor that of couplings that it has: a tool with ticks of
-// its own is no part of it.
-double EnergyLedger::power_in_bodies() const {
-  double sum = -power_in_contact() - (world_.has_tool_of_ticks() ? 0.0 : power_in_coupling());
-  for (const auto& term : world_.system.terms()) sum += term->dissipated_power(world_.state.view());
-  return sum;
+  if (!world_.has_tool_of_ticks()) out.bodies -= out.coupling;
+  return out;
 }
 
 void EnergyLedger::take_stored() {
@@ -153,9 +146,10 @@ void EnergyLedger::start() {
     hands_.emplace_back().start(t, power);
   }
   supports_.start(t, world_.system.support_power(world_.state.view()));
-  in_bodies_.start(t, power_in_bodies());
-  in_contact_.start(t, power_in_contact());
-  in_coupling_.start(t, power_in_coupling());
+  const Dissipation now = dissipation();
+  in_bodies_.start(t, now.bodies);
+  in_contact_.start(t, now.contact);
+  in_coupling_.start(t, now.coupling);
 }
 
 void EnergyLedger::before_query() { contact_before_ = contact_energy(); }
@@ -171,9 +165,10 @@ const EnergyBalance& EnergyLedger::period(double t) {
   balance_.time = t;
   take_stored();
   supports_.add(t, world_.system.support_power(world_.state.view()));
-  in_bodies_.add(t, power_in_bodies());
-  in_contact_.add(t, power_in_contact());
-  in_coupling_.add(t, power_in_coupling());
+  const Dissipation now = dissipation();
+  in_bodies_.add(t, now.bodies);
+  in_contact_.add(t, now.contact);
+  in_coupling_.add(t, now.coupling);
   balance_.hand = balance_.quadrature_error = 0.0;
   for (const PowerIntegral& hand : hands_) {
     balance_.hand += hand.value();

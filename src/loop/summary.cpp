@@ -303,10 +303,10 @@ std::vector<Overlap> overlaps_of(const World& world) {
   const std::vector<double> deepest = world.contact->deepest();
   for (std::size_t i = 0; i < deepest.size(); ++i) {
     const ContactSpec& contact = world.description.contacts[i];
-    const bool itself = contact.first == contact.second;
-    out.push_back(
-        {fmt::format("{} - {}", contact.first, contact.second), deepest[i],
-         itself ? HUGE_VAL : std::min(half_width(world, contact.first), half_width(world, contact.second))});
+    Overlap one{fmt::format("{} - {}", contact.first, contact.second), deepest[i], HUGE_VAL};
+    if (one.deepest_m > 0.0 && contact.first != contact.second)
+      one.half_width_m = std::min(half_width(world, contact.first), half_width(world, contact.second));
+    out.push_back(one);
   }
   return out;
 }

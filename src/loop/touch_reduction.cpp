@@ -384,7 +384,7 @@ bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& 
   const bool iterated = iterate(world, H, x), known = iterated || factor(world, side, H, x);
   if (iterated)
     missing_.take(x.missing, error_);
-  else
+  else if (known)
     missing_.take_factored();
   Rows modes = Rows::Zero(kModes, velocity.size());
   MatX near;

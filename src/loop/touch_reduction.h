@@ -12,7 +12,7 @@ struct ToolSide;
 /// By how much bodies answered the tool less than they would, relative: bounds, one an exchange
 /// (linear::StepResponse::missing).  Bodies whose step matrix was factored answer exactly.
 struct AnswersMissing {
-  long exchanges = 0;      ///< in which they were touched
+  long exchanges = 0;      ///< in which they were touched, and answered
   long factored = 0;       ///< of these
   long beyond_wanted = 0;  ///< in which the iteration ended beyond exchange.linearisation_error
   double largest = 0.0, sum = 0.0;

@@ -43,10 +43,11 @@ class EnergyLedger {
  private:
   double contact_energy() const;
   double elastic_energy() const;
-  // what is dissipated now, and by which [W]
-  double power_in_bodies() const;
-  double power_in_contact() const;
-  double power_in_coupling() const;
+  /// What is dissipated now, and by which [W].
+  struct Dissipation {
+    double bodies = 0.0, contact = 0.0, coupling = 0.0;
+  };
+  Dissipation dissipation() const;
   void make_tools();
   void take_stored();
 

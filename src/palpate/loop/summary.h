@@ -16,7 +16,8 @@ struct Overlap {
   std::string pair;        ///< "head - tool"
   double deepest_m = 0.0;  ///< the largest overlap that a query saw; 0: they never touched
   /// half of the smaller extent of the boxes around either side: what lies deeper is pushed out at the far
-  /// side, or nowhere; infinite of a body against itself, as obstacles are to themselves
+  /// side, or nowhere; infinite where they never touched, of obstacles, and of a body
+  /// against itself
   double half_width_m = 0.0;
   bool too_deep() const { return deepest_m > half_width_m; }
 };
