@@ -138,10 +138,10 @@ void add_run(CLI::App& app, Invocation& invocation) {
       ->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
   command
-      ->add_option(
-          "--passivity", arguments->passivity,
-          "observe: the energy at the device's port, by its samples; control: also a damper where the "
-          "loop would give back more than the hand has put in; off")
+      ->add_option("--passivity", arguments->passivity,
+                   "observe: the energy at the device's port, by the force that its motors hold; control: "
+                   "also reduces "
+                   "forces that would give back more than the hand has put in; off")
       ->type_name("MODE")
       ->check(CLI::IsMember({"observe", "control", "off"}))
       ->capture_default_str();

@@ -7,6 +7,7 @@
 #include "palpate/core/error.h"
 #include "palpate/core/so3.h"
 #include "palpate/device/hand_model.h"
+#include "palpate/device/motors.h"
 
 // A simulated device in the hand of a simulated arm.  The scene's path is where the arm wants to be, x_d(t)
 // (the equilibrium point of Hogan 1985); a spring k and a damper b pull arm and device there.  The grip is
@@ -15,11 +16,11 @@
 // with c and f the device's viscous and Coulomb friction and F the force of its motors.  Between two ticks F
 // is held (zero-order hold), k x_d + b x_d' is taken as linear, and the rest is exact (ArmAxis).
 //
-// The motors get what the loop sends, delayed by delay_s, rounded to force_resolution_n, and cut to the
-// maximum.  The loop gets the pose rounded to the encoders' resolution, and a velocity from it: the backward
-// difference through a first-order low pass, v_f += (1 - exp(-2 pi f_c h)) (difference - v_f); with f_c = 0
-// the exact velocity.  A hand without friction that pushes a wall K at a tick T gains energy from the hold
-// where K T/2 > c + b (Colgate and Schenkel 1994): a loop that is stable here has passed that test.
+// The motors hold what the loop sends, delayed, rounded and cut (Motors).  The loop gets the pose rounded to
+// the encoders' resolution, and a velocity from it: the backward difference through a first-order low pass,
+// v_f += (1 - exp(-2 pi f_c h)) (difference - v_f); with f_c = 0 the exact velocity.  A hand without friction
+// that pushes a wall K at a tick T gains energy from the hold where K T/2 > c + b (Colgate and Schenkel
+// 1994): a loop that is stable here has passed that test.
 //
 // Rotations follow the same law on the rotation vector theta from the first orientation, with the torque
 // J(theta)^T tau: exact about one axis, and good to O(theta^2) about several.  It ends at one whole turn,
@@ -33,10 +34,6 @@ namespace {
 double to_step(double value, double step) { return step > 0.0 ? std::round(value / step) * step : value; }
 Vec3 to_step(const Vec3& value, double step) {
   return value.unaryExpr([step](double one) { return to_step(one, step); });
-}
-Vec3 cut(const Vec3& value, double max) {
-  const double norm = value.norm();
-  return norm > max ? Vec3(value * (max / norm)) : value;
 }
 
 /// The rotation vector of q that is nearest to `near`: the same rotation is also a turn more or less.
@@ -118,17 +115,13 @@ class HandDevice : public Device {
   HandDevice(const DeviceSpec& spec, const HandModel& model)
       : wanted_(model.wanted),
         figures_(figures_of(spec)),
-        force_step_(spec.force_resolution_n),
-        delay_(spec.delay_s),
+        motors_(motor_figures(spec)),
         translation_(model.translation, model.arm_damping),
         rotation_(model.rotation, model.arm_rotational_damping),
         position_(figures_.encoder_resolution, spec.velocity_cutoff_per_s),
         angle_(spec.encoder_resolution_rad, spec.velocity_cutoff_per_s) {
     check_range("encoder_resolution_rad", spec.encoder_resolution_rad, DeviceRanges::resolution);
     check_range("velocity_cutoff_per_s", spec.velocity_cutoff_per_s, DeviceRanges::resolution);
-    check_range("force_resolution_n", force_step_, DeviceRanges::resolution);
-    check_range("delay_s", delay_, DeviceRanges::delay_s);
-    sent_.reserve(2048);
   }
   DeviceSpecification specification() const override { return figures_.specification; }
   bool can_be_archived() const override { return true; }
@@ -144,14 +137,6 @@ class HandDevice : public Device {
     a("pull", pull_);
     a("arm_torque", twist_);
     a("motors", motors_);
-    std::size_t sent = sent_.size();
-    a("sent_count", sent);
-    sent_.resize(sent);
-    a.rows("sent", sent_, [](auto&& f, Sent& one) {
-      f(one.due);
-      f(one.wrench);
-    });
-    a("next", next_);
     a("switches", switches_);
     a("tick", time_);
     a("started", started_);
@@ -167,25 +152,13 @@ class HandDevice : public Device {
     out.switches = switches_;
     return out;
   }
-  void do_feedback(double t, const Wrench& on_hand) override {
-    if (sent_.size() == sent_.capacity()) {  // what has been applied goes, without a new allocation
-      sent_.erase(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(next_));
-      next_ = 0;
-    }
-    sent_.push_back({t + delay_,
-                     {cut(on_hand.moment, figures_.max_torque),
-                      cut(to_step(on_hand.force, force_step_), figures_.max_force)}});
-  }
+  void do_feedback(double t, const Wrench& on_hand) override { motors_.send(t, on_hand); }
 
  private:
-  struct Sent {
-    double due;
-    Wrench wrench;
-  };
-
   void start(double t) {
     started_ = true;
     time_ = t;
+    motors_.advance(t);
     const HandleSample wanted = wanted_(t);
     switches_ = wanted.switches;
     first_ = wanted.pose.rotation;
@@ -203,20 +176,14 @@ class HandDevice : public Device {
     const Vec3 theta = unwrapped(wanted.pose.rotation * first_.conjugate(), theta_),
                pull = translation_.pull(wanted.pose.translation, wanted.twist.linear),
                twist = rotation_.pull(theta, (theta - theta_) / h);
-    // pieces between the instants at which the motors change
-    const double rounding = 1e-9 * h;
-    for (double from = time_; from < t;) {
-      for (; next_ < sent_.size() && sent_[next_].due <= from + rounding; ++next_)
-        motors_ = sent_[next_].wrench;
-      const bool more = next_ < sent_.size() && sent_[next_].due < t - rounding;
-      const double to = more ? sent_[next_].due : t, s0 = (from - time_) / h, s1 = (to - time_) / h;
-      const Vec3 torque = left_jacobian(rotation_.x()).transpose() * motors_.moment;
-      translation_.advance(to - from, pull_ + s0 * (pull - pull_) + motors_.force,
-                           pull_ + s1 * (pull - pull_) + motors_.force);
-      rotation_.advance(to - from, twist_ + s0 * (twist - twist_) + torque,
+    motors_.advance(t, [&](const Motors::Span& span) {
+      const double length = span.to - span.from, s0 = (span.from - time_) / h, s1 = (span.to - time_) / h;
+      const Vec3 torque = left_jacobian(rotation_.x()).transpose() * span.wrench.moment;
+      translation_.advance(length, pull_ + s0 * (pull - pull_) + span.wrench.force,
+                           pull_ + s1 * (pull - pull_) + span.wrench.force);
+      rotation_.advance(length, twist_ + s0 * (twist - twist_) + torque,
                         twist_ + s1 * (twist - twist_) + torque);
-      from = to;
-    }
+    });
     pull_ = pull, twist_ = twist, theta_ = theta;
     time_ = t;
     position_.read(translation_.x(), translation_.v(), h);
@@ -225,16 +192,13 @@ class HandDevice : public Device {
 
   DevicePath wanted_;
   DeviceFigures figures_;
-  double force_step_, delay_;
+  Motors motors_;
   Axes translation_, rotation_;
   Encoder position_, angle_;
   Quat first_ = Quat::Identity();                    ///< orientation at the start, from which theta counts
   Vec3 theta_ = Vec3::Zero();                        ///< where the arm wanted it to be at the last tick
   Vec3 pull_ = Vec3::Zero(), twist_ = Vec3::Zero();  ///< force and torque of the arm at the last tick
-  Wrench motors_;
-  std::vector<Sent> sent_;  ///< by time; those from next_ on have not reached the motors
-  std::size_t next_ = 0;
-  std::uint32_t switches_ = 0;  ///< at time_: fingers do not yield
+  std::uint32_t switches_ = 0;                       ///< at time_: fingers do not yield
   double time_ = 0.0;
   bool started_ = false;
 };

@@ -8,10 +8,34 @@
 #include "palpate/device/profile.h"
 
 // Why the observer's sum is a test of passivity.  Let the loop be a wall, F = -K x - B (x_k - x_{k-1})/T,
-// with D_k = x_k - x_{k-1}.  Then (src/stability/haptic_theory.cpp)
-//     sum -F_{k-1} D_k + b D_k^2/T  >=  K/2 (x_N^2 - x_0^2) + (b/T - K/2 - |B|/T) sum D_k^2,
-// which is not negative for x_0 = 0 and b > K T/2 + |B|.  A triangle wave of period 2T and amplitude A
-// attains the bound: a cycle changes the sum by (8 A^2/T)(b - K T/2 - B).
+// with D_k = x_k - x_{k-1} and n ticks of delay.  Then (src/stability/haptic_theory.cpp), with B = 0 or n =
+// 0,
+//     sum -F_{k-1-n} D_k + b D_k^2/T  >=  K/2 (x_N^2 - x_0^2) + (b/T - (2n + 1) K/2 - |B|/T) sum D_k^2,
+// which is not negative for x_0 = 0 and b > (2n + 1) K T/2 + |B|.  Without delay a triangle wave of period 2T
+// and amplitude A attains the bound: a cycle changes the sum by (8 A^2/T)(b - K T/2 - B).
+//
+// What a controller can guarantee under a delay of n ticks.  At tick k the energy E_k is known, the wrenches
+// f_1 ... f_n of the next n ticks are on their way, and c is sent for the tick after them.  For displacements
+// d_1 ... d_{n+1} of these ticks
+//     E_{k+n+1} = E_k + sum_i (-f_i d_i + b d_i^2/T) - c d_{n+1} + b d_{n+1}^2/T.
+// Let W be the least of it over all d_i in boxes B_i, and W_0 the least of E_{k+n}, without c.  c is the
+// largest share of the wanted wrench with W >= min(0, W_0).  c = 0 always fulfils that, friction takes no
+// energy.  So E >= 0 follows by induction for every motion within the boxes; after a motion beyond them the
+// energy may be below zero, and then only wrenches pass that take energy from all motions within the boxes.
+// A damper instead would have to push against a motion that has ended by the time it acts: from a quarter of
+// a vibration's period on, delayed by n ticks, it drives.  A loop that is passive by the bound above keeps
+// E >= 0 for every motion, so W >= 0 for any boxes, and is left alone.
+//
+// The boxes.  A tick changes the displacement by T^2 times the acceleration.  Of this, a change of the
+// motors' wrench since the last tick makes at most T^2 |f_i - f_0|/m, m the device alone: a hand that holds
+// it makes it less.  The rest is the hand's, bounded by a_k:
+//     B_i:  d_i = D_k +- sum_{j<=i} (a_k + T^2 |f_j - f_0|/m).
+// a_k comes from how the handle moved in the last 4 H ticks at least, H = n + 1.  For x = sin(wt) and a
+// window w W <= pi the largest |x''| of the window is sin(wW/2) at least, and that of the H ticks after it
+// sin(w(W/2 + H)) at most: larger by the factor 1 + 2 H/W.  So 3/2 times the largest of W = 4 H covers every
+// sinusoid, of any frequency.  x'' is taken from neighbouring ticks and from positions H ticks apart: of
+// positions in steps r rounding can make 2 r of the one and 2 r/H^2 of the other, which is taken off.  Steps
+// that rounding adds to a motion within the boxes take |f| r at most: their sum is within r.
 
 namespace palpate::device {
 
@@ -20,7 +44,7 @@ void PassivityObserver::sample(double t, const Pose& handle) {
   change_ = started_ ? pose_difference(last_, handle) : Vec6(Vec6::Zero());
   const double in = -held_.force.dot(change_.tail<3>()) - held_.moment.dot(change_.head<3>());
   energy_ += in;
-  if (dt_ > 0.0) energy_ += friction(change_);
+  if (dt_ > 0.0) energy_ += friction(change_, dt_);
   work_ += std::abs(in);
   least_ = std::min(least_, energy_);
   last_ = handle;
@@ -29,8 +53,24 @@ void PassivityObserver::sample(double t, const Pose& handle) {
 }
 
 // Positions that are read in steps r are off by r/2 at most, their difference over a tick by r.
-double PassivityObserver::friction(const Vec6& change) const {
-  return damping_ * (change.tail<3>().array().abs() - resolution_).cwiseMax(0.0).square().sum() / dt_;
+double PassivityObserver::friction(const Vec6& change, double dt) const {
+  return damping_ * (change.tail<3>().array().abs() - resolution_).cwiseMax(0.0).square().sum() / dt;
+}
+
+// Convex along each axis: the least is where -f + 2 b (|d| - r) sgn(d)/dt = 0, or at the nearer end.
+double PassivityObserver::least_change(const Wrench& wrench, const Vec6& low, const Vec6& high,
+                                       double dt) const {
+  Vec6 f;
+  f << wrench.moment, wrench.force;
+  Vec6 d;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const bool turns = i < 3;
+    const double free = f[i] == 0.0                ? 0.0
+                        : turns || damping_ == 0.0 ? HUGE_VAL
+                                                   : resolution_ + std::abs(f[i]) * dt / (2.0 * damping_);
+    d[i] = std::clamp(std::copysign(free, f[i]), low[i], high[i]);
+  }
+  return -f.dot(d) + friction(d, dt);
 }
 
 void PassivityObserver::archive(Archive& a) {
@@ -42,14 +82,60 @@ void PassivityObserver::archive(Archive& a) {
   a("started", started_);
   a("last", last_);
   a("change", change_);
-  a("held", held_);
+}
+
+AccelerationBound::AccelerationBound(int horizon, const Vec6& rounding)
+    : horizon_(horizon),
+      rounding_(rounding),
+      positions_(2 * static_cast<std::size_t>(horizon) + 1, Vec6::Zero()) {
+  largest_.fill(Vec6::Zero());
+}
+
+void AccelerationBound::add(const Vec6& change) {
+  if (count_ > 0 && count_ % horizon_ == 0) {
+    std::shift_right(largest_.begin(), largest_.end(), 1);
+    largest_.front().setZero();
+  }
+  const auto at = [&](long tick) -> Vec6& {  // before the first tick the handle stood still
+    return positions_[static_cast<std::size_t>(tick + 2 * horizon_) % positions_.size()];
+  };
+  position_ += change;
+  at(count_) = position_;
+  const auto beyond_rounding = [&](const Vec6& difference) {
+    return Vec6((difference.cwiseAbs() - 2.0 * rounding_).cwiseMax(0.0));
+  };
+  const Vec6 near = beyond_rounding(change - last_),
+             far = beyond_rounding(position_ - 2.0 * at(count_ - horizon_) + at(count_ - 2 * horizon_));
+  largest_.front() =
+      largest_.front().cwiseMax(near).cwiseMax(far / (static_cast<double>(horizon_) * horizon_));
+  last_ = change;
+  ++count_;
+}
+
+Vec6 AccelerationBound::value() const {
+  Vec6 out = Vec6::Zero();
+  for (const Vec6& one : largest_) out = out.cwiseMax(one);
+  return 1.5 * out;
+}
+
+void AccelerationBound::archive(Archive& a) {
+  a("count", count_);
+  a("position", position_);
+  a("last", last_);
+  a.rows("positions", positions_, [](auto&& f, Vec6& one) {
+    for (double& value : one) f(value);
+  });
+  a.rows("largest", largest_, [](auto&& f, Vec6& one) {
+    for (double& value : one) f(value);
+  });
 }
 
 void PassivityController::archive(Archive& a) {
   a("dissipated", dissipated_);
   a("active", active_);
   a("observer", observer_);
-  a("damper", damper_);
+  a("bound", bound_);
+  a("reductions", reductions_);
 }
 
 PassivityController::Mode PassivityController::mode_of(const std::string& name) {
@@ -59,57 +145,91 @@ PassivityController::Mode PassivityController::mode_of(const std::string& name) 
   fail("passivity: unknown mode \"{}\"{}", name, suggestion(name, {"off", "observe", "control"}));
 }
 
-PassivityController::PassivityController(Mode mode, double max_force_n, double max_torque_n_m,
-                                         PassivityObserver observer)
-    : mode_(mode), max_force_(max_force_n), max_torque_(max_torque_n_m), observer_(std::move(observer)) {}
+namespace {
 
-Wrench PassivityController::apply(double t, const Pose& handle, const Wrench& limited, bool valid) {
-  if (mode_ == Mode::kOff) return limited;
-  const Vec6 before = observer_.last_change();
-  observer_.sample(t, handle);
-  const Vec6 D = observer_.last_change();
-  dissipated_ -= damper_.force.dot(D.tail<3>()) + damper_.moment.dot(D.head<3>());
-  damper_ = {};
-  Wrench out = limited;
-  if (mode_ == Mode::kControl && valid && observer_.last_tick() > 0.0) {
-    double least = foreseen(limited, D);
-    for (const double sign : {-1.0, 1.0}) least = std::min(least, foreseen(limited, D + sign * (D - before)));
-    if (least < 0.0) damp(limited, D, -least);
-    out += damper_;
-  }
-  observer_.hold(out);
+Vec6 of_axes(double turning, double moving) {
+  Vec6 out;
+  out << Vec3::Constant(turning), Vec3::Constant(moving);
   return out;
 }
 
-double PassivityController::foreseen(const Wrench& wrench, const Vec6& D) const {
-  return observer_.energy() - wrench.force.dot(D.tail<3>()) - wrench.moment.dot(D.head<3>()) +
-         observer_.friction(D);
+Vec6 stacked(const Wrench& wrench) {
+  Vec6 out;
+  out << wrench.moment, wrench.force;
+  return out;
 }
 
-void PassivityController::damp(const Wrench& limited, const Vec6& D, double missing) {
-  // translation and rotation share it as they share the work that the wrench would do
-  const double along = std::max(0.0, limited.force.dot(D.tail<3>())),
-               about = std::max(0.0, limited.moment.dot(D.head<3>()));
-  const double share = along + about > 0.0 ? along / (along + about) : 1.0;
-  const auto against = [](const Vec3& d, double energy) {
-    return d.squaredNorm() > 0.0 ? Vec3(-d * (energy / d.squaredNorm())) : Vec3(Vec3::Zero());
+Wrench times(double share, const Wrench& wrench) { return {share * wrench.moment, share * wrench.force}; }
+
+}  // namespace
+
+PassivityController::PassivityController(Mode mode, const Figures& figures)
+    : mode_(mode),
+      figures_(figures),
+      observer_(figures.damping, figures.resolution),
+      bound_(1 + static_cast<int>(std::ceil(figures.delay / figures.tick - 1e-9)),
+             of_axes(figures.angular_resolution, figures.resolution)),
+      reductions_({.delay = figures.delay}) {}
+
+Wrench PassivityController::apply(double t, const Pose& handle, const Motors& motors, const Wrench& limited,
+                                  bool valid) {
+  if (mode_ == Mode::kOff) return limited;
+  observer_.hold(motors.mean());
+  observer_.sample(t, handle);
+  bound_.add(observer_.last_change());
+  reductions_.advance(t);
+  dissipated_ -= stacked(reductions_.mean()).dot(observer_.last_change());
+  double share = 1.0;
+  if (mode_ == Mode::kControl && valid && observer_.last_tick() > 0.0) share = largest_share(motors, limited);
+  active_ += share < 1.0;
+  const Wrench out = share < 1.0 ? times(share, limited) : limited;
+  reductions_.send(t, times(share - 1.0, limited));
+  return out;
+}
+
+double PassivityController::largest_share(const Motors& motors, const Wrench& limited) const {
+  const double T = observer_.last_tick();
+  const Vec6 change = observer_.last_change(), bound = bound_.value(), held = stacked(motors.mean()),
+             by_motors = of_axes(T * T / figures_.rotational_inertia, T * T / figures_.mass);
+  // what a span of `ticks` adds to the half width of the boxes, and the least change of the energy over it
+  const auto widened = [&](const Wrench& wrench, double ticks) {
+    return Vec6(ticks * (bound + by_motors.cwiseProduct((stacked(wrench) - held).cwiseAbs())));
   };
-  const auto cut = [](const Vec3& damper, const Vec3& wrench, double max) {
-    const Vec3 sum = wrench + damper;
-    return sum.norm() > max ? Vec3(sum * (max / sum.norm()) - wrench) : damper;
+  const auto least = [&](const Wrench& wrench, const Vec6& half, double ticks) {
+    return observer_.least_change(wrench, ticks * (change - half), ticks * (change + half), ticks * T);
   };
-  damper_.force = cut(against(D.tail<3>(), missing * share), limited.force, max_force_);
-  damper_.moment = cut(against(D.head<3>(), missing * (1.0 - share)), limited.moment, max_torque_);
-  ++active_;
+  double energy = observer_.energy();
+  Vec6 half = Vec6::Zero();
+  motors.coming([&](const Motors::Span& span) {
+    const double ticks = (span.to - span.from) / T;
+    half += widened(span.wrench, ticks);
+    energy += least(span.wrench, half, ticks);
+  });
+  const auto passes = [&](double share) {
+    const Wrench sent = motors.shaped(times(share, limited));
+    return std::max(energy, 0.0) + least(sent, half + widened(sent, 1.0), 1.0) >= 0.0;
+  };
+  if (passes(1.0)) return 1.0;
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (low + high);
+    (passes(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 std::unique_ptr<PassivityController> make_passivity_controller(PassivityController::Mode mode,
-                                                               const DeviceSpec& device) {
+                                                               const DeviceSpec& device, double tick_s) {
   if (mode == PassivityController::Mode::kOff) return nullptr;
   const DeviceFigures figures = figures_of(device);
   return std::make_unique<PassivityController>(
-      mode, figures.max_force, figures.max_torque,
-      PassivityObserver(figures.damping, figures.encoder_resolution));
+      mode, PassivityController::Figures{.damping = figures.damping,
+                                         .resolution = figures.encoder_resolution,
+                                         .angular_resolution = device.encoder_resolution_rad,
+                                         .mass = figures.mass,
+                                         .rotational_inertia = device.rotational_inertia_kg_m2,
+                                         .delay = device.delay_s,
+                                         .tick = tick_s});
 }
 
 }  // namespace palpate::device

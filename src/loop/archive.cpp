@@ -46,6 +46,7 @@ void archive_side(Archive& a, ToolSide& side) {
     side.handle->archive(a);
   }
   if (side.limiter) a("limiter", *side.limiter);
+  a("motors", side.motors);
   if (side.passivity) a("passivity", *side.passivity);
   if (side.touch) {
     const Archive::Group group(a, "answers");

@@ -122,6 +122,8 @@ void assemble_tool(World& world, std::size_t hand) {
   side.limiter = std::make_unique<device::WrenchLimiter>(figures.max_force, figures.max_torque, figures.ramp,
                                                          figures.max_force_slew, figures.max_torque_slew);
   side.limiter->confine(figures.workspace, *side.handle);
+  if (d.exchange.scheme == "partitioned")
+    side.motors = device::Motors(device::motor_figures(*side.device_spec));
   if (d.exchange.scheme == "monolithic")
     assemble_block(world, side, own_device);
   else if (d.exchange.scheme == "partitioned") {

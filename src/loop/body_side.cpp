@@ -17,9 +17,9 @@ BodySide::BodySide(World& world, const RunOptions& options, RunResult& result)
   const scene::Description& d = world.description;
   for (const auto& side : ToolSide::all(world)) {
     Felt& felt = felt_.emplace_back();
-    side->passivity = side->device_spec
-                          ? device::make_passivity_controller(options.passivity, *side->device_spec)
-                          : nullptr;
+    side->passivity = side->device_spec ? device::make_passivity_controller(
+                                              options.passivity, *side->device_spec, side->spec->tick_s)
+                                        : nullptr;
     if (side->spec && side->spec->tick_s * device::kBuzzFrequency < 0.25)
       felt.buzz.emplace(side->spec->tick_s);
   }

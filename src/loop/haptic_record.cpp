@@ -43,6 +43,7 @@ void visit_tick(F&& f, Tick& t) {
   visit_pair(f, "contact_torque", t.contact.moment, "_n_m", "contact_force", t.contact.force, "_n");
   visit_pair(f, "wanted_torque", t.wanted.moment, "_n_m", "wanted_force", t.wanted.force, "_n");
   visit_pair(f, "device_torque", t.device.moment, "_n_m", "device_force", t.device.force, "_n");
+  visit_pair(f, "motors_torque", t.motors.moment, "_n_m", "motors_force", t.motors.force, "_n");
 }
 
 /// The handle before the first tick, of a TickRecord, and what holds for the whole run.

@@ -105,7 +105,8 @@ std::vector<TickRecord> retrace(const scene::Description& description, const Hap
   refuse_what_cannot_be_retraced(description, record);
   const scene::Description alone = tool_alone(description, scene::hands_of(description).at(hand));
   const auto world = assemble(alone, recorded_hand(record));
-  ToolSide::of(*world).passivity = device::make_passivity_controller(record.passivity, *alone.device);
+  ToolSide::of(*world).passivity =
+      device::make_passivity_controller(record.passivity, *alone.device, alone.tool->tick_s);
   TickSide side(*alone.tool, ToolSide::of(*world), record.models.empty() ? nullptr : &description.contacts);
   side.start(0.0);
   std::vector<TickRecord> out;

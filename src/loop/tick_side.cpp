@@ -115,9 +115,12 @@ void TickSide::feel_at(TickRecord& tick) {
   tick.handle_valid = handle_.valid;
   tick.switches = handle_.switches;
   tick.wanted = tool::coupling_on_hand(spec_, {tick.tool, tick.tool_twist}, {handle_.pose, handle_.twist});
+  side_.motors.advance(tick.time);
+  tick.motors = side_.motors.mean();
   tick.device = side_.limiter->limit(tick.time, tick.wanted, handle_.valid);
   if (side_.passivity)
-    tick.device = side_.passivity->apply(tick.time, tick.handle, tick.device, handle_.valid);
+    tick.device = side_.passivity->apply(tick.time, tick.handle, side_.motors, tick.device, handle_.valid);
+  side_.motors.send(tick.time, tick.device);
   live_ = true;
   time_ = tick.time;
   if (!side_.hand_in_state) side_.handle->feedback(tick.time, tick.device);

@@ -4,6 +4,7 @@
 #include "obstacle_touch.h"
 #include "palpate/device/hand_model.h"
 #include "palpate/device/limiter.h"
+#include "palpate/device/motors.h"
 #include "palpate/device/passivity.h"
 #include "palpate/loop/world.h"
 #include "palpate/proxy/proxy_set.h"
@@ -45,6 +46,7 @@ struct ToolSide {
   std::optional<HandInState> hand_in_state;
   device::HandleSample handle_now;  ///< at the last tick
   std::unique_ptr<device::WrenchLimiter> limiter;
+  device::Motors motors;  ///< of the device; of a hand in the State, which has no ticks, without delay
   std::unique_ptr<device::PassivityController> passivity;  ///< null where it is off
   /// the tool's frame in contact; null where no contact names the tool
   std::shared_ptr<contact::MovingFrame> motion;

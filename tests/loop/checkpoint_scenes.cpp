@@ -80,6 +80,18 @@ Cases make_cases() {
   hand.scene.device->velocity_cutoff_per_s = 200.0;
   hand.scene.device->device_damping_n_s_m = 0.5;
   hand.passivity = device::PassivityController::Mode::kControl;
+  // a delayed spring gives back more than it got, where the hand goes back
+  Case& controlled = out["ControlledHand"] = hand;
+  controlled.scene.device->device_damping_n_s_m = 0.0;
+  controlled.scene.device->encoder_resolution_m = 0.0;
+  controlled.scene.device->delay_s = 0.0065;
+  controlled.telling = 0;  // the controller acts there
+  controlled.scene.device->arm_mass_kg = 0.1;
+  controlled.scene.device->arm_stiffness_n_m = 3000.0;
+  controlled.scene.device->arm_damping_n_s_m = 20.0;
+  controlled.scene.device->keyframes[1].time_s = 0.03;
+  controlled.scene.device->keyframes.push_back(controlled.scene.device->keyframes[0]);
+  controlled.scene.device->keyframes[2].time_s = 0.06;
   Case& exact = out["ExactHand"] = pressed("points");
   exact.scene.device->type = "hand";
   Case& one = out["Monolithic"] = pressed("points");

@@ -314,7 +314,9 @@ const std::vector<std::string> kShownNowhere = {
     "bodies.contact.largest_grasped_area",
     "bodies.hand..passivity.observer.change",
     // counts from the wrench that acts already
-    "bodies.hand..device.next",
+    "bodies.hand..device.motors.next",
+    "bodies.hand..motors.next",
+    "bodies.hand..passivity.reductions.next",
     // these scenes move no support
     "bodies.energy.work_of_supports.",
 };

@@ -26,6 +26,8 @@ struct TickRecord {
   Wrench wanted;  ///< on the hand, before the limit
   /// on the hand, as sent to the motors: behind the limit and the passivity controller
   Wrench device;
+  /// on the hand, as its motors held it over the tick that ends here (device/motors.h): its mean
+  Wrench motors;
   bool handle_valid = true;          ///< whether the handle's pose was
   std::uint32_t switches = 0;        ///< of the handle: bit i is 1 where switch i is pressed
   std::uint64_t record_version = 0;  ///< of the contact record that this tick used; 0: none
