@@ -10,23 +10,38 @@
 #include "palpate/loop/world.h"
 #include "palpate/stability/z_width.h"
 #include "palpate/tool/tool.h"
+#include "tool_section.h"
 
-// What a contact is worth at the tool.  Of a patch of radius a, with k the pressure per depth [Pa/m]:
-//     penalty    k pi a^2            the springs side by side
-//     body       2 E a/(1 - nu^2)    a flat punch on an elastic half-space (Sneddon 1965)
-// in series where the other side is a soft body.  The patch lies between a tenth of the tool's radius and all
-// of it; the radius of a mesh is half of its largest extent.  Where E has regions, the stiffest counts for
-// the greatest value.  Damping: d pi a^2.  What yields by its mass (a free body) is taken as held: stiffer.
+// Stiffness of a contact at the tool.  A foundation of pressure k per depth [Pa/m] gives the force k V for an
+// overlap of volume V, so that the stiffness is k dV/dz = k A, A the cut of the tool with the wall's plane:
+//     penalty    k A                 the springs side by side
+//     body       2 E a/(1 - nu^2)    a flat punch of radius a on an elastic half-space (Sneddon 1965)
+// in series where the other side is a soft body, with pi a^2 = A: a square punch is 1.2 % stiffer than the
+// disc of its area.  At the most the tool lies on its largest side, or is pressed in up to its largest cut: A
+// is pi R^2 of a sphere, the largest section parallel to one of its faces of a mesh.  At the least it
+// touches with a disc of a tenth of its radius, of a mesh of half its largest extent.  Where E has regions,
+// the stiffest counts for the greatest value.  Damping: d A.  What yields by its mass (a free body) is taken
+// as held: stiffer.
 
 namespace palpate::stability {
 namespace {
 
-double radius_of(const scene::Description& d) {
-  if (d.tool->shape != "mesh") return d.tool->radius_m;
+/// Of the tool: what its contacts depend on.
+struct Shape {
+  double radius;        ///< half of its largest extent [m]
+  double reach;         ///< of its farthest point from its origin [m]
+  double largest_area;  ///< that it can lay on a wall [m^2]
+};
+
+double disc(double radius) { return std::numbers::pi * radius * radius; }
+
+Shape shape_of(const scene::Description& d) {
+  const double r = d.tool->radius_m;
+  if (d.tool->shape != "mesh") return {r, r, disc(r)};
   const auto folder = std::filesystem::path(d.path).parent_path();
   const TriMesh surface = loop::tool_surface(*d.tool, folder.string());
   const Vec3 size = surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff();
-  return 0.5 * size.maxCoeff();
+  return {0.5 * size.maxCoeff(), surface.vertices.colwise().norm().maxCoeff(), largest_section(surface)};
 }
 
 /// Plane-strain modulus of what the tool touches there; infinite for what is rigid.
@@ -36,8 +51,8 @@ double modulus_of(const scene::Description& d, const std::string& other) {
   return std::numeric_limits<double>::infinity();
 }
 
-ToolContact patch(const ContactSpec& contact, double modulus, double a) {
-  const double area = std::numbers::pi * a * a, penalty = contact.stiffness_pa_m * area;
+ToolContact patch(const ContactSpec& contact, double modulus, double area) {
+  const double a = std::sqrt(area / std::numbers::pi), penalty = contact.stiffness_pa_m * area;
   return {1.0 / (1.0 / penalty + 1.0 / (2.0 * modulus * a)), contact.damping_pa_s_m * area};
 }
 
@@ -76,7 +91,7 @@ HapticLoop loop_of(const scene::Description& d) {
 
 // A contact turns the tool back by the lever of its force.  At the least a patch of radius a lies under the
 // middle, and its springs resist a tilt: integral of k x^2 over the disc = K a^2/4.  At the most the contact
-// lies at the tool's full extent R from its middle: K R^2.
+// lies at the tool's farthest point, R from its origin: K R^2.
 RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoop& loop,
                                   const ToolContactRange& range) {
   constexpr double kStylus = 0.05;  // lever of a device's mass about its handle [m]
@@ -84,7 +99,8 @@ RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoop&
   const Mat3 inertia = tool::Tool(*d.tool, Vec3::Zero()).mass_matrix().topLeftCorner<3, 3>();
   RotationalLoop out{.loop = loop, .range = range};
   out.inertia_kg_m2 = Eigen::SelfAdjointEigenSolver<Mat3>(inertia).eigenvalues().minCoeff();
-  const double a2 = out.inertia_kg_m2 / loop.tool_mass_kg, radius = radius_of(d);
+  const double a2 = out.inertia_kg_m2 / loop.tool_mass_kg;
+  const Shape shape = shape_of(d);
   out.lever_m = std::sqrt(a2);
   out.loop.coupling_stiffness_n_m = d.tool->coupling.rotational_stiffness_n_m_rad / a2;
   out.loop.coupling_damping_n_s_m = d.tool->coupling.rotational_damping_n_m_s_rad / a2;
@@ -105,14 +121,14 @@ RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoop&
     device.mass_kg = kHeld * loop.tool_mass_kg;
     device.damping_n_s_m = 10.0 * device.mass_kg;
   }
-  const double least = 0.25 * std::pow(0.1 * radius, 2) / a2, most = radius * radius / a2;
+  const double least = 0.25 * std::pow(0.1 * shape.radius, 2) / a2, most = shape.reach * shape.reach / a2;
   out.range.least = {range.least.stiffness * least, range.least.damping * least};
   out.range.greatest = {range.greatest.stiffness * most, range.greatest.damping * most};
   return out;
 }
 
 ToolContactRange contact_range(const scene::Description& d) {
-  const double radius = radius_of(d);
+  const Shape shape = shape_of(d);
   ToolContactRange out;
   out.least.stiffness = std::numeric_limits<double>::infinity();
   for (const ContactSpec& contact : d.contacts) {
@@ -123,7 +139,8 @@ ToolContactRange contact_range(const scene::Description& d) {
           "stiff it is; say --contact-stiffness-n-m LEAST GREATEST",
           d.name, contact.first, contact.second);
     const double modulus = modulus_of(d, contact.first == "tool" ? contact.second : contact.first);
-    const ToolContact least = patch(contact, modulus, 0.1 * radius), most = patch(contact, modulus, radius);
+    const ToolContact least = patch(contact, modulus, disc(0.1 * shape.radius)),
+                      most = patch(contact, modulus, shape.largest_area);
     if (least.stiffness < out.least.stiffness) out.least = least;
     if (most.stiffness > out.greatest.stiffness) out.greatest = most;
   }
