@@ -1,5 +1,7 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "palpate/contact/touch_model.h"
 
@@ -8,10 +10,15 @@ namespace palpate::contact {
 // A bunch of samples j with areas a_j, normals n_j, arms r_j and gaps g_j becomes one point.  Where they
 // press it has their force and moment by the law's linear part, k g a n:
 //     gap g = sum a_j g_j / sum a_j,    F = sum a_j g_j n_j = g a n  gives area a and normal n,
-//     arm r = mean of r_j by area + d,  r x F = sum a_j g_j r_j x n_j  gives d, across F.
-// (A moment along F no arm gives.)  Where they do not press, n is their mean normal.  Places and modes are
-// means by area: what is lost is of second order in the bunch's size over the contact's, and bunches are
-// split where that is largest.  Samples that press are not bunched with such that do not.
+//     arm r = mean of r_j by area + d,  r x F = sum a_j g_j r_j x n_j  gives d, across F,
+//     modes P = mean of P_j by area + p n^T,  P F = sum a_j g_j P_j n_j  gives p.
+// So tool and modes get the loads of the samples, and bodies that are at rest under these are at rest under
+// the points.  (With modes by area alone they moved within each period until their stiffness balanced the
+// difference, a force of 0.1 to 0.6 % too much, and back at its end.)  A moment along F no arm gives: what
+// all bunches lack of it is spread over their arms (complete_moment).  Where they do not press, n is their
+// mean normal.  Else places, velocities and modes are means by area: what is lost is of second order in the
+// bunch's size over the contact's, and bunches are split where that is largest.  Samples that press are not
+// bunched with such that do not.
 namespace {
 
 using Six = Eigen::Matrix<double, 6, 1>;
@@ -106,7 +113,12 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes&
   Vec3 along = Vec3::Zero(), moment = along, offset = along, slide = along, place = along, velocity = along;
   double area = 0.0, gap = 0.0;
   // samples of a bunch share nodes: weights are summed before modes are
-  std::vector<std::pair<int, double>> weights;
+  struct OfNode {
+    int node;
+    double area;  ///< times weight
+    Vec3 push;    ///< times weight
+  };
+  std::vector<OfNode> of_nodes;
   for (int i = bunch.first; i < bunch.last; ++i) {
     const TouchSample& s = samples[static_cast<std::size_t>(bunches.member(i))];
     const Vec3 push = (presses ? -s.area * s.gap : s.area) * s.normal;
@@ -119,16 +131,20 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes&
     place += s.area * s.place;
     velocity += s.area * s.velocity;
     for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
-      const auto same = std::find_if(weights.begin(), weights.end(),
-                                     [&](const auto& one) { return one.first == s.node[k]; });
-      if (same != weights.end())
-        same->second += s.area * s.weight[k];
-      else
-        weights.emplace_back(s.node[k], s.area * s.weight[k]);
+      auto of_node = std::find_if(of_nodes.begin(), of_nodes.end(),
+                                  [&](const OfNode& one) { return one.node == s.node[k]; });
+      if (of_node == of_nodes.end())
+        of_node = of_nodes.insert(of_nodes.end(), {s.node[k], 0.0, Vec3::Zero()});
+      of_node->area += s.area * s.weight[k];
+      of_node->push += push * s.weight[k];
     }
   }
   MovedBy moved = MovedBy::Zero();
-  for (const auto& [node, weight] : weights) moved += weight * modes.middleCols<3>(3 * node);
+  Eigen::Matrix<double, TouchModel::kMostModes, 1> load = MovedBy::Zero().col(0);
+  for (const OfNode& one : of_nodes) {
+    moved += one.area * modes.middleCols<3>(3 * one.node);
+    load += modes.middleCols<3>(3 * one.node) * one.push;
+  }
   TouchModel::Point out;
   out.pair = samples[static_cast<std::size_t>(bunches.member(bunch.first))].pair;
   const double size = along.norm();
@@ -137,8 +153,10 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes&
   offset /= area;
   slide /= area;
   place /= area;
+  moved /= area;
   out.area = presses ? size / -gap : size;
   if (presses) {
+    moved += (load / size - moved * normal) * normal.transpose();
     const Vec3 missing = moment - (R * offset + slide).cross(along);
     offset += R.transpose() * along.cross(missing) / (size * size);
   }
@@ -149,8 +167,41 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes&
   write(slide, out.slide);
   write(place, out.place);
   write(velocity / area, out.velocity);
-  Eigen::Map<Eigen::Matrix<double, 3, TouchModel::kMostModes>>(out.modes.data()) = moved.transpose() / area;
+  Eigen::Map<Eigen::Matrix<double, 3, TouchModel::kMostModes>>(out.modes.data()) = moved.transpose();
   return out;
+}
+
+Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+// Arms that change by d_i = F_i x l change the moment by sum (F_i x l) x F_i = sum (|F_i|^2 - F_i F_i^T) l.
+// Where all forces have one direction nothing is missing along it, and the sum is singular there.
+/// Gives the points of samples that press the moment of the samples.  Their forces stay as they are.
+void complete_moment(const std::vector<TouchSample>& samples, const std::vector<int>& members, const Mat3& R,
+                     const Vec3& origin, std::span<TouchModel::Point> points) {
+  constexpr double kSameDirection = 1e-9;
+  Vec3 missing = Vec3::Zero();
+  Mat3 sum = Mat3::Zero();
+  for (int j : members) {
+    const TouchSample& s = samples[static_cast<std::size_t>(j)];
+    missing += (R * s.offset + s.slide).cross(-s.area * s.gap * s.normal);
+  }
+  const auto arm = [&](const TouchModel::Point& p) { return Vec3(R * vec(p.offset) + vec(p.slide)); };
+  const auto force = [&](const TouchModel::Point& p) -> Vec3 {
+    const Vec3 n = vec(p.normal);
+    return p.area * n.dot(vec(p.place) - origin - arm(p)) * n;
+  };
+  for (const TouchModel::Point& p : points) {
+    const Vec3 F = force(p);
+    missing -= arm(p).cross(F);
+    sum += F.squaredNorm() * Mat3::Identity() - F * F.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(sum);
+  const Vec3& sizes = eigen.eigenvalues();
+  Vec3 part = eigen.eigenvectors().transpose() * missing;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    part[i] = sizes[i] > kSameDirection * sizes[2] ? part[i] / sizes[i] : 0.0;
+  const Vec3 l = eigen.eigenvectors() * part;
+  for (TouchModel::Point& p : points) write(vec(p.offset) + R.transpose() * force(p).cross(l), p.offset);
 }
 
 /// Held ones as one: the same stiffness between the means of where they are and where they are held.
@@ -211,7 +262,8 @@ void gather_points(const std::vector<TouchSample>& samples, const Pose& pose, co
   for (std::size_t k = 0; k < orders.size() && room > 0; ++k) {
     const int own = std::max(1, room * kinds[k].share() / shares);
     shares -= kinds[k].share();
-    Bunches bunches(samples, pose.translation, std::move(orders[k]));
+    const int first = out.points;
+    Bunches bunches(samples, pose.translation, orders[k]);
     bunches.split_to(std::min(own, room));
     for (const Bunch& bunch : bunches.all()) {
       TouchModel::Point point = kinds[k].held ? held_point_of(samples, modes, bunches, bunch)
@@ -220,6 +272,10 @@ void gather_points(const std::vector<TouchSample>& samples, const Pose& pose, co
       out.point[static_cast<std::size_t>(out.points++)] = point;
       --room;
     }
+    if (!kinds[k].apart && !kinds[k].held)
+      complete_moment(samples, orders[k], R, pose.translation,
+                      std::span(out.point).subspan(static_cast<std::size_t>(first),
+                                                   static_cast<std::size_t>(out.points - first)));
   }
 }
 
