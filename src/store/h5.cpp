@@ -1,6 +1,5 @@
 #include "store/h5.h"
 
-#include <cerrno>
 #include <filesystem>
 
 #include "palpate/core/error.h"
@@ -28,6 +27,19 @@ std::string reason() {
     text.resize(std::min(text.size(), text.find('\'')));
   }
   return text.empty() ? "" : ": " + text;
+}
+
+herr_t look_for_lock(unsigned, const H5E_error2_t* error, void* found) {
+  if (error->min_num == H5E_CANTLOCKFILE) *static_cast<bool*>(found) = true;
+  return 0;
+}
+
+/// Whether the last call failed at the lock of another process.  errno does not tell: HDF5 1.14 (Debian 13)
+/// looks for the file elsewhere afterwards, and leaves ENOENT.
+bool failed_at_lock() {
+  bool found = false;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, look_for_lock, &found);
+  return found;
 }
 
 Id space_of(const std::vector<hsize_t>& shape) {
@@ -90,9 +102,8 @@ Id create_file(const std::string& path) {
 Id open_file(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) fail("{}: no such file", path);
   const Id access = access_without_need_of_locks();
-  errno = 0;
   Id file{H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
-  if (file < 0 && errno == EWOULDBLOCK)
+  if (file < 0 && failed_at_lock())
     fail("{}: is being written by another process; wait until it has ended", path);
   check(file, path, "is not an HDF5 file that can be read; is it whole?");
   return file;
