@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The tree keeps the allowed dependencies between parts; the check is shown to fail on planted breaches."""
+import re
 import sys
 import tempfile
 import unittest
@@ -53,6 +54,14 @@ class Tree(unittest.TestCase):
         self.assertEqual(parts - set(arrows.ALLOWED), set())
         table = {part: list(below) for part, below in arrows.ALLOWED.items() if part != "validation"}
         self.assertIsNone(arrows.find_cycle(table))
+
+    def test_one_header_knows_the_releases_of_sundials(self):
+        words = re.compile("SUNDIALS_VERSION_M|SUNContext_Create|SUN_COMM_NULL|ErrHandlerFn|PushErrHandler")
+        files = [path for folder in ("src", "include") for path in (TREE / folder).rglob("*.[ch]*")]
+        self.assertGreater(len(files), 500)
+        self.assertEqual([path.relative_to(TREE).as_posix() for path in files
+                          if words.search(path.read_text(encoding="utf-8"))],
+                         ["src/integrate/sundials/release.h"])
 
 
 class Planted(unittest.TestCase):

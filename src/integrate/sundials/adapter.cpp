@@ -41,8 +41,8 @@ Adapter::~Adapter() { release(); }
 // --- memory
 
 void Adapter::allocate() {
-  check(SUNContext_Create(nullptr, &context_), "SUNContext_Create", problem_->time(), 0.0);
-  y_ = N_VNew_Serial(problem_->size(), context_);
+  context_.emplace(on_error, this);
+  y_ = N_VNew_Serial(problem_->size(), context());
   check(y_, "N_VNew_Serial");
   use_fast_operations(y_);
   scratch_ = N_VClone(y_);
@@ -57,8 +57,7 @@ void Adapter::release() {
   if (newton_) SUNNonlinSolFree(newton_);
   newton_ = nullptr;
   fixed_step_newton_.release();
-  if (context_) SUNContext_Free(&context_);
-  context_ = nullptr;
+  context_.reset();
 }
 
 void Adapter::start() {
@@ -117,6 +116,8 @@ StepResult Adapter::advance_to(double t_end) {
     double reached = t;
     flag = one_step(t_end, reached);
     if (flag >= 0) t = reached;  // after a failure the time may be that of a stage
+    // On the end of a step a library may return either flag: it depends on the release.
+    if (flag == 0 && t >= t_end) flag = kReachedStop;
     if (trace() && flag >= 0) accept_attempt(before, t, flag == kReachedRoot);
     if (trace() && flag < 0 && attempt_open_)
       close_attempt(attempt_finite_ ? StepAttempt::Outcome::kNewton : StepAttempt::Outcome::kNotFinite);
@@ -140,6 +141,7 @@ StepResult Adapter::advance_to(double t_end) {
   const bool landed = flag == kReachedStop;
   problem_->store(landed ? t_end : t, NV_DATA_S(y_));
   collect();
+  context_->log_warnings();
   if (landed) return result(StepStatus::kOk);
   running_ = false;                            // the next call starts from the State
   if (interrupted() && n < spec_.max_steps) {  // between two steps, or within one that noticed
@@ -250,16 +252,16 @@ int Adapter::test_convergence(int iteration, double correction, double tolerance
   previous_correction_ = correction;
   const double rate = std::min(1.0, std::max({rate_, stale, tuning::kOldTangent}));
   if (!std::isfinite(correction)) return SUN_NLS_CONV_RECVR;
-  return correction == 0.0 || rate * correction <= tolerance ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
+  return correction == 0.0 || rate * correction <= tolerance ? kSuccess : SUN_NLS_CONTINUE;
 }
 
 SUNNonlinearSolver Adapter::make_newton() {
-  newton_ = SUNNonlinSol_Newton(y_, context_);
+  newton_ = SUNNonlinSol_Newton(y_, context());
   check(newton_, "SUNNonlinSol_Newton");
   by_library_newton_ = true;
   // the tolerance comes with the call; our test's data say whose solver it is
   newton_->ops->solve = [](SUNNonlinearSolver solver, N_Vector y0, N_Vector correction, N_Vector w,
-                           realtype tolerance, booleantype set_up, void* memory) {
+                           sunrealtype tolerance, sunbooleantype set_up, void* memory) {
     auto* content = static_cast<SUNNonlinearSolverContent_Newton>(solver->content);
     static_cast<Adapter*>(content->ctest_data)->newton_tolerance_ = tolerance;
     return SUNNonlinSolSolve_Newton(solver, y0, correction, w, tolerance, set_up, memory);
@@ -267,11 +269,11 @@ SUNNonlinearSolver Adapter::make_newton() {
   return newton_;
 }
 
-SUNNonlinearSolver Adapter::make_fixed_step_newton() { return newton_ = fixed_step_newton_.make(context_); }
+SUNNonlinearSolver Adapter::make_fixed_step_newton() { return newton_ = fixed_step_newton_.make(context()); }
 
 void Adapter::use_own_test(SUNNonlinearSolver fixed_point) {
   fixed_point_ = fixed_point != nullptr;
-  const auto test = [](SUNNonlinearSolver solver, N_Vector, N_Vector correction, realtype tolerance,
+  const auto test = [](SUNNonlinearSolver solver, N_Vector, N_Vector correction, sunrealtype tolerance,
                        N_Vector w, void* data) {
     int iteration = 0;
     SUNNonlinSolGetCurIter(solver, &iteration);
@@ -329,7 +331,7 @@ namespace {
 Adapter& self(void* data) { return *static_cast<Adapter*>(data); }
 }  // namespace
 
-void Adapter::on_error(int, const char*, const char* function, char* text, void* data) {
+void Adapter::on_error(const char* function, const char* text, void* data) {
   self(data).message_ = fmt::format("{}: {}", function, text);
 }
 
@@ -338,12 +340,12 @@ int Adapter::weights(N_Vector y, N_Vector w, void* data) {
   return 0;
 }
 
-int Adapter::project_step(realtype, N_Vector y, void* data) {
+int Adapter::project_step(sunrealtype, N_Vector y, void* data) {
   self(data).problem_->project(NV_DATA_S(y));
   return 0;
 }
 
-int Adapter::roots(realtype t, N_Vector y, realtype* g, void* data) {
+int Adapter::roots(sunrealtype t, N_Vector y, sunrealtype* g, void* data) {
   self(data).problem_->events(t, NV_DATA_S(y), g);
   return 0;
 }

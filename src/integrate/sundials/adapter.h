@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "integrate/ode_problem.h"
 #include "integrate/sundials/fixed_step_newton.h"
 #include "integrate/sundials/hidden.h"
 #include "integrate/sundials/hooks.h"
+#include "integrate/sundials/release.h"
 #include "integrate/tuning.h"
 #include "palpate/dynamics/spec.h"
 
@@ -72,7 +74,9 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   // --- what it works with
   OdeProblem& problem() const { return *problem_; }
   const IntegratorSpec& spec() const { return spec_; }
-  SUNContext context() const { return context_; }
+  SUNContext context() const { return *context_; }
+  /// To be called first, so that nothing is ever printed.
+  void report_errors(Solver solver, void* memory) { context_->attach(solver, memory); }
   N_Vector y() const { return y_; }
   /// Takes `rtol` in the place of the spec's (error_test.h).
   void use_tolerance(double rtol) { weight_scale_ = spec_.rtol / rtol; }
@@ -100,10 +104,10 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   /// Re-evaluates the tangent unless the factor can be kept; to be called by the library's matrix callback.
   bool prepare_matrix(double t, N_Vector y, bool reuse, double gamma, OdeProblem::Side side);
 
-  static void on_error(int, const char*, const char* function, char* text, void* data);
+  static void on_error(const char* function, const char* text, void* data);
   static int weights(N_Vector y, N_Vector w, void* data);
-  static int project_step(realtype t, N_Vector y, void* data);  ///< ARKODE's post-process function
-  static int roots(realtype t, N_Vector y, realtype* g, void* data);
+  static int project_step(sunrealtype t, N_Vector y, void* data);  ///< ARKODE's post-process function
+  static int roots(sunrealtype t, N_Vector y, sunrealtype* g, void* data);
 
  private:
   void start();
@@ -120,7 +124,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
 
   std::unique_ptr<OdeProblem> problem_;
   IntegratorSpec spec_;
-  SUNContext context_ = nullptr;
+  std::optional<Context> context_;
   N_Vector y_ = nullptr, scratch_ = nullptr, weights_ = nullptr;
   SUNNonlinearSolver newton_ = nullptr;
   double newton_tolerance_ = 0.0;  ///< of the nonlinear solve under way

@@ -69,8 +69,7 @@ class Ark final : public Adapter {
     const double t = problem().time();
     memory_ = ARKStepCreate(explicit_function(), implicit_function(), t, y(), context());
     check(memory_, "ARKStepCreate");
-    // first: nothing is ever printed
-    check(ARKStepSetErrHandlerFn(memory_, on_error, this), "ARKStepSetErrHandlerFn", t, 0.0);
+    report_errors(Solver::kArkStep, memory_);
     check(ARKStepSetUserData(memory_, static_cast<Adapter*>(this)), "ARKStepSetUserData", t, 0.0);
     check(ARKStepWFtolerances(memory_, weights), "ARKStepWFtolerances", t, 0.0);
     check(ARKStepSetTableNum(memory_, static_cast<ARKODE_DIRKTableID>(method_.implicit_table),
@@ -212,23 +211,24 @@ class Ark final : public Adapter {
 
   static Ark& self(void* data) { return static_cast<Ark&>(*static_cast<Adapter*>(data)); }
   template <Side side>
-  static int evaluate(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+  static int evaluate(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     Ark& me = self(data);
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), side);
     me.see_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
-  static int whole(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+  static int whole(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     return evaluate<Side::kAll>(t, y, y_dot, data);
   }
-  static int implicit_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+  static int implicit_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     return evaluate<Side::kImplicit>(t, y, y_dot, data);
   }
-  static int explicit_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+  static int explicit_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     return evaluate<Side::kExplicit>(t, y, y_dot, data);
   }
-  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, booleantype reuse,
-                           booleantype* fresh, realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
+  static int linear_system(sunrealtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, sunbooleantype reuse,
+                           sunbooleantype* fresh, sunrealtype gamma, void* data, N_Vector, N_Vector,
+                           N_Vector) {
     Ark& me = self(data);
     *fresh = me.prepare_matrix(t, y, reuse, gamma, me.implicit_side_);
     return 0;

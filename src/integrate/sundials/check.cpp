@@ -11,6 +11,7 @@
 
 #include <cstdlib>
 
+#include "integrate/sundials/release.h"
 #include "palpate/core/error.h"
 
 namespace palpate::integrate::sun {

@@ -45,8 +45,7 @@ class Cvode final : public Adapter {
     const double t = problem().time();
     memory_ = CVodeCreate(method_, context());
     check(memory_, "CVodeCreate");
-    // first: nothing is ever printed
-    check(CVodeSetErrHandlerFn(memory_, on_error, this), "CVodeSetErrHandlerFn", t, 0.0);
+    report_errors(Solver::kCvode, memory_);
     check(CVodeInit(memory_, right_hand_side, t, y()), "CVodeInit", t, 0.0);
     check(CVodeSetUserData(memory_, static_cast<Adapter*>(this)), "CVodeSetUserData", t, 0.0);
     check(CVodeWFtolerances(memory_, weights), "CVodeWFtolerances", t, 0.0);
@@ -156,18 +155,20 @@ class Cvode final : public Adapter {
   }
 
   static Cvode& self(void* data) { return static_cast<Cvode&>(*static_cast<Adapter*>(data)); }
-  static int right_hand_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+  static int right_hand_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     Cvode& me = self(data);
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kAll);
     me.see_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
-  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, booleantype reuse, booleantype* fresh,
-                           realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
+  static int linear_system(sunrealtype t, N_Vector y, N_Vector, SUNMatrix, sunbooleantype reuse,
+                           sunbooleantype* fresh, sunrealtype gamma, void* data, N_Vector, N_Vector,
+                           N_Vector) {
     *fresh = self(data).prepare_matrix(t, y, reuse, gamma, Side::kAll);
     return 0;
   }
-  static int project_on_manifold(realtype, N_Vector y, N_Vector correction, realtype, N_Vector, void* data) {
+  static int project_on_manifold(sunrealtype, N_Vector y, N_Vector correction, sunrealtype, N_Vector,
+                                 void* data) {
     N_VScale(1.0, y, correction);
     self(data).problem().project(NV_DATA_S(correction));
     N_VLinearSum(1.0, correction, -1.0, y, correction);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "integrate/sundials/check.h"
+#include "integrate/sundials/release.h"
 #include "integrate/tuning.h"
 #include "palpate/core/finite.h"
 
@@ -25,40 +26,40 @@ struct Operations {
     return *static_cast<FixedStepNewton*>(solver->content);
   }
   static SUNNonlinearSolver_Type type(SUNNonlinearSolver) { return SUNNONLINEARSOLVER_ROOTFIND; }
-  static int ready(SUNNonlinearSolver) { return SUN_NLS_SUCCESS; }
-  static int solve(SUNNonlinearSolver s, N_Vector, N_Vector correction, N_Vector weights, realtype tolerance,
-                   booleantype set_up, void* memory) {
+  static int ready(SUNNonlinearSolver) { return kSuccess; }
+  static int solve(SUNNonlinearSolver s, N_Vector, N_Vector correction, N_Vector weights,
+                   sunrealtype tolerance, sunbooleantype set_up, void* memory) {
     return of(s).solve(correction, weights, tolerance, set_up, memory);
   }
   static int set_system(SUNNonlinearSolver s, SUNNonlinSolSysFn f) {
     of(s).system_ = f;
-    return SUN_NLS_SUCCESS;
+    return kSuccess;
   }
   static int set_set_up(SUNNonlinearSolver s, SUNNonlinSolLSetupFn f) {
     of(s).set_up_ = f;
-    return SUN_NLS_SUCCESS;
+    return kSuccess;
   }
   static int set_solve(SUNNonlinearSolver s, SUNNonlinSolLSolveFn f) {
     of(s).solve_ = f;
-    return SUN_NLS_SUCCESS;
+    return kSuccess;
   }
   // the test is Deuflhard's
-  static int no_test(SUNNonlinearSolver, SUNNonlinSolConvTestFn, void*) { return SUN_NLS_SUCCESS; }
-  static int no_limit(SUNNonlinearSolver, int) { return SUN_NLS_SUCCESS; }
+  static int no_test(SUNNonlinearSolver, SUNNonlinSolConvTestFn, void*) { return kSuccess; }
+  static int no_limit(SUNNonlinearSolver, int) { return kSuccess; }
   // Iterations of the last solve: the library sums them.
   template <class Count>
   static int iterations(SUNNonlinearSolver s, Count* n) {
     *n = of(s).iterations_;
-    return SUN_NLS_SUCCESS;
+    return kSuccess;
   }
   static int failures(SUNNonlinearSolver s, long* n) {
     *n = of(s).failed_;
-    return SUN_NLS_SUCCESS;
+    return kSuccess;
   }
   static int free(SUNNonlinearSolver s) {
     s->content = nullptr;  // not ours to free
     SUNNonlinSolFreeEmpty(s);
-    return SUN_NLS_SUCCESS;
+    return kSuccess;
   }
 };
 
@@ -125,7 +126,7 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
   entries(correction) = x;
   hook_.count_solve(kept, definite, leapt);
   failed_ = result.status != StepStatus::kOk;
-  if (!failed_) return SUN_NLS_SUCCESS;
+  if (!failed_) return kSuccess;
   return flag_ < 0 ? flag_ : SUN_NLS_CONV_RECVR;
 }
 
@@ -145,7 +146,7 @@ double FixedStepNewton::rounding(const VecX&) {
 }
 
 SolveStatus FixedStepNewton::refresh() {
-  booleantype current = SUNFALSE;
+  sunbooleantype current = SUNFALSE;
   const int flag = set_up_(SUNTRUE, &current, memory_);  // at the state that the library evaluated last
   flag_ = std::min(flag_, flag);
   usable_ = flag == 0;

@@ -1,6 +1,7 @@
 #include "integrate/sundials/hooks.h"
 
 #include "integrate/sundials/check.h"
+#include "integrate/sundials/release.h"
 
 namespace palpate::integrate::sun {
 namespace {
@@ -10,7 +11,7 @@ NewtonHook& hook_of(SUNLinearSolver solver) { return *static_cast<NewtonHook*>(s
 int free_solver(SUNLinearSolver solver) {
   solver->content = nullptr;  // not ours to free
   SUNLinSolFreeEmpty(solver);
-  return SUNLS_SUCCESS;
+  return kSuccess;
 }
 
 void free_matrix(SUNMatrix matrix) { SUNMatFreeEmpty(matrix); }
@@ -24,7 +25,7 @@ SUNLinearSolver make_linear_solver(NewtonHook& hook, SUNContext context) {
   solver->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; };
   solver->ops->getid = [](SUNLinearSolver) { return SUNLINEARSOLVER_CUSTOM; };
   solver->ops->setup = [](SUNLinearSolver s, SUNMatrix) { return hook_of(s).setup(); };
-  solver->ops->solve = [](SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+  solver->ops->solve = [](SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, sunrealtype) {
     return hook_of(s).solve(x, b);
   };
   solver->ops->free = free_solver;
@@ -35,7 +36,7 @@ SUNMatrix make_matrix(SUNContext context) {
   SUNMatrix matrix = SUNMatNewEmpty(context);
   check(matrix, "SUNMatNewEmpty");
   matrix->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
-  matrix->ops->zero = [](SUNMatrix) { return SUNMAT_SUCCESS; };  // IDA clears what it hands out
+  matrix->ops->zero = [](SUNMatrix) { return kSuccess; };  // IDA clears what it hands out
   matrix->ops->destroy = free_matrix;
   return matrix;
 }

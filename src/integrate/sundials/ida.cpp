@@ -40,8 +40,7 @@ class Ida final : public Adapter {
     start_rate_of_change();
     memory_ = IDACreate(context());
     check(memory_, "IDACreate");
-    // first: nothing is ever printed
-    check(IDASetErrHandlerFn(memory_, on_error, this), "IDASetErrHandlerFn", t, 0.0);
+    report_errors(Solver::kIda, memory_);
     check(IDAInit(memory_, residual, t, y(), y_dot_), "IDAInit", t, 0.0);
     check(IDASetUserData(memory_, static_cast<Adapter*>(this)), "IDASetUserData", t, 0.0);
     check(IDAWFtolerances(memory_, weights), "IDAWFtolerances", t, 0.0);
@@ -142,18 +141,18 @@ class Ida final : public Adapter {
   }
 
   static Ida& self(void* data) { return static_cast<Ida&>(*static_cast<Adapter*>(data)); }
-  static int residual(realtype t, N_Vector y, N_Vector y_dot, N_Vector r, void* data) {
+  static int residual(sunrealtype t, N_Vector y, N_Vector y_dot, N_Vector r, void* data) {
     Ida& me = self(data);
     const bool finite = me.problem().residual(t, NV_DATA_S(y), NV_DATA_S(y_dot), NV_DATA_S(r));
     me.see_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
-  static int jacobian(realtype t, realtype c_j, N_Vector y, N_Vector, N_Vector, SUNMatrix, void* data,
+  static int jacobian(sunrealtype t, sunrealtype c_j, N_Vector y, N_Vector, N_Vector, SUNMatrix, void* data,
                       N_Vector, N_Vector, N_Vector) {
     self(data).prepare_matrix(t, y, false, 1.0 / c_j, Side::kAll);
     return 0;
   }
-  static int event_functions(realtype t, N_Vector y, N_Vector, realtype* g, void* data) {
+  static int event_functions(sunrealtype t, N_Vector y, N_Vector, sunrealtype* g, void* data) {
     return roots(t, y, g, data);
   }
 

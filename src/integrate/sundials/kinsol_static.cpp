@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "integrate/make.h"
 #include "integrate/settings.h"
 #include "integrate/step_solver.h"
 #include "integrate/sundials/check.h"
 #include "integrate/sundials/hooks.h"
+#include "integrate/sundials/release.h"
 #include "integrate/sundials/vector_ops.h"
 #include "integrate/tuning.h"
 #include "palpate/core/clock.h"
@@ -187,6 +189,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     check(KINSetScaledStepTol(kinsol_, sigma_ == 0.0 ? std::numeric_limits<double>::epsilon() : kSmallest),
           "KINSetScaledStepTol", state_.time(), 0.0);
     int flag = KINSol(kinsol_, x_, KIN_NONE, displacement_scale_, force_scale_);
+    context_->log_warnings();
     long now = 0;
     check(KINGetNumNonlinSolvIters(kinsol_, &now), "KINGetNumNonlinSolvIters", state_.time(), 0.0);
     iterations += now;
@@ -426,20 +429,19 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     if (kinsol_ && layout_version_ == state_.layout().version) return;
     release();
     const double t = state_.time();
-    check(SUNContext_Create(nullptr, &context_), "SUNContext_Create", t, 0.0);
-    x_ = N_VNew_Serial(state_.layout().u_size, context_);
+    context_.emplace(on_error, this);
+    x_ = N_VNew_Serial(state_.layout().u_size, *context_);
     check(x_, "N_VNew_Serial");
     use_fast_operations(x_);
     displacement_scale_ = N_VClone(x_);
     force_scale_ = N_VClone(x_);
-    kinsol_ = KINCreate(context_);
+    kinsol_ = KINCreate(*context_);
     check(kinsol_, "KINCreate");
-    // first: nothing is ever printed
-    check(KINSetErrHandlerFn(kinsol_, on_error, this), "KINSetErrHandlerFn", t, 0.0);
+    context_->attach(Solver::kKinsol, kinsol_);  // first, so that nothing is ever printed
     check(KINInit(kinsol_, equations, x_), "KINInit", t, 0.0);
     check(KINSetUserData(kinsol_, this), "KINSetUserData", t, 0.0);
-    linear_solver_ = make_linear_solver(*this, context_);
-    matrix_ = make_matrix(context_);
+    linear_solver_ = make_linear_solver(*this, *context_);
+    matrix_ = make_matrix(*context_);
     check(KINSetLinearSolver(kinsol_, linear_solver_, matrix_), "KINSetLinearSolver", t, 0.0);
     check(KINSetJacFn(kinsol_, jacobian), "KINSetJacFn", t, 0.0);
     // a tangent an iteration: with an old one Newton leaves soft bodies
@@ -457,13 +459,12 @@ class KinsolStatic final : public Stepper, private NewtonHook {
       if (*v) N_VDestroy(*v);
       *v = nullptr;
     }
-    if (context_) SUNContext_Free(&context_);
+    context_.reset();
     linear_solver_ = nullptr;
     matrix_ = nullptr;
-    context_ = nullptr;
   }
 
-  static void on_error(int, const char*, const char* function, char* text, void* data) {
+  static void on_error(const char* function, const char* text, void* data) {
     self(data).message_ = fmt::format("{}: {}", function, text);
   }
 
@@ -511,7 +512,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   bool finite_ = true;
   std::string message_;
   std::uint64_t layout_version_ = 0;
-  SUNContext context_ = nullptr;
+  std::optional<Context> context_;
   N_Vector x_ = nullptr, displacement_scale_ = nullptr, force_scale_ = nullptr;
   SUNLinearSolver linear_solver_ = nullptr;
   SUNMatrix matrix_ = nullptr;

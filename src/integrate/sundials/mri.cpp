@@ -3,6 +3,7 @@
 #include <nvector/nvector_serial.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "integrate/error_test.h"
 #include "integrate/make.h"
@@ -51,8 +52,7 @@ class Mri final : public Adapter {
     create_fast(t);
     slow_ = MRIStepCreate(nullptr, slow_side, t, y(), inner_, context());
     check(slow_, "MRIStepCreate");
-    // first: nothing is ever printed
-    check(MRIStepSetErrHandlerFn(slow_, on_error, this), "MRIStepSetErrHandlerFn", t, 0.0);
+    report_errors(Solver::kMriStep, slow_);
     check(MRIStepSetUserData(slow_, static_cast<Adapter*>(this)), "MRIStepSetUserData", t, 0.0);
     check(MRIStepWFtolerances(slow_, weights), "MRIStepWFtolerances", t, 0.0);
     MRIStepCoupling coupling = MRIStepCoupling_LoadTable(method_.table);
@@ -71,9 +71,10 @@ class Mri final : public Adapter {
   }
 
   void create_fast(double t) {
-    fast_ = ARKStepCreate(fast_side, nullptr, t, y(), context());
+    fast_context_.emplace(on_fast_error, static_cast<Adapter*>(this));
+    fast_ = ARKStepCreate(fast_side, nullptr, t, y(), *fast_context_);
     check(fast_, "ARKStepCreate");
-    check(ARKStepSetErrHandlerFn(fast_, on_fast_error, this), "ARKStepSetErrHandlerFn", t, 0.0);
+    fast_context_->attach(Solver::kArkStep, fast_);
     check(ARKStepSetUserData(fast_, static_cast<Adapter*>(this)), "ARKStepSetUserData", t, 0.0);
     check(ARKStepWFtolerances(fast_, fast_weights), "ARKStepWFtolerances", t, 0.0);
     check(ARKStepSetTableNum(fast_, ARKODE_DIRK_NONE, ARKODE_BOGACKI_SHAMPINE_4_2_3), "ARKStepSetTableNum", t,
@@ -89,6 +90,7 @@ class Mri final : public Adapter {
     if (slow_) MRIStepFree(&slow_);
     if (inner_) MRIStepInnerStepper_Free(&inner_);
     if (fast_) ARKStepFree(&fast_);
+    fast_context_.reset();
     if (linear_solver_) SUNLinSolFree(linear_solver_);
     if (matrix_) SUNMatDestroy(matrix_);
     inner_ = nullptr;
@@ -118,6 +120,7 @@ class Mri final : public Adapter {
       allow_leaps(parts_.halved());
       begin_part(parts_.halvings());
       const int flag = MRIStepEvolve(slow_, t_end, y(), &t, ARK_ONE_STEP);
+      fast_context_->log_warnings();
       if (flag >= 0) now_ = t;
       end_part(flag >= 0);
       if (flag != ARK_CONV_FAILURE) return flag;
@@ -169,17 +172,17 @@ class Mri final : public Adapter {
     return gamma;
   }
 
-  static void on_fast_error(int, const char*, const char*, char* text, void* data) {
+  static void on_fast_error(const char*, const char* text, void* data) {
     self(data).fast_message_ = fmt::format("Fast side: {}", text);
   }
   static Mri& self(void* data) { return static_cast<Mri&>(*static_cast<Adapter*>(data)); }
-  static int slow_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+  static int slow_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     Mri& me = self(data);
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kSlow);
     me.see_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
-  static int fast_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+  static int fast_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     Mri& me = self(data);
     if (me.interrupted()) return kUnrecoverable;  // a slow step may hold a hundred thousand fast ones
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kFast);
@@ -191,8 +194,9 @@ class Mri final : public Adapter {
     N_VScale(1.0 / tuning::kFastShare, w, w);
     return 0;
   }
-  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, booleantype reuse,
-                           booleantype* fresh, realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
+  static int linear_system(sunrealtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, sunbooleantype reuse,
+                           sunbooleantype* fresh, sunrealtype gamma, void* data, N_Vector, N_Vector,
+                           N_Vector) {
     *fresh = self(data).prepare_matrix(t, y, reuse, gamma, Side::kSlow);
     return 0;
   }
@@ -200,6 +204,7 @@ class Mri final : public Adapter {
   const MultirateMethod& method_;
   double now_ = 0.0;
   StepInParts parts_{spec().step_s};
+  std::optional<Context> fast_context_;  ///< its errors are told apart from those of the slow side
   std::string fast_message_;
   long failures_ = 0;  ///< of a stage's solve: the library counts none
   void *slow_ = nullptr, *fast_ = nullptr;

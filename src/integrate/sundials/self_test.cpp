@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "integrate/sundials/check.h"
+#include "integrate/sundials/release.h"
 
 namespace palpate::integrate::self_test {
 namespace {
@@ -17,14 +18,15 @@ namespace {
 constexpr double kRtol = 1e-10, kAtol = 1e-12;
 constexpr double kFailed = std::numeric_limits<double>::quiet_NaN();
 
+void silent(const char*, const char*, void*) {}
+
 /// One equation's worth of SUNDIALS objects.
 struct Scalar {
-  SUNContext context = nullptr;
+  sun::Context context{silent, nullptr};
   N_Vector y = nullptr;
   SUNMatrix matrix = nullptr;
   SUNLinearSolver solver = nullptr;
   Scalar() {
-    if (SUNContext_Create(nullptr, &context) != 0) return;
     y = N_VNew_Serial(1, context);
     matrix = SUNDenseMatrix(1, 1, context);
     if (y && matrix) solver = SUNLinSol_Dense(y, matrix, context);
@@ -34,21 +36,18 @@ struct Scalar {
     if (solver) SUNLinSolFree(solver);
     if (matrix) SUNMatDestroy(matrix);
     if (y) N_VDestroy(y);
-    if (context) SUNContext_Free(&context);
   }
   Scalar(const Scalar&) = delete;
   Scalar& operator=(const Scalar&) = delete;
   double value() const { return NV_Ith_S(y, 0); }
 };
 
-void silent(int, const char*, const char*, char*, void*) {}
-
-int decay(realtype, N_Vector y, N_Vector y_dot, void*) {
+int decay(sunrealtype, N_Vector y, N_Vector y_dot, void*) {
   NV_Ith_S(y_dot, 0) = -NV_Ith_S(y, 0);
   return 0;
 }
 
-int decay_residual(realtype, N_Vector y, N_Vector y_dot, N_Vector r, void*) {
+int decay_residual(sunrealtype, N_Vector y, N_Vector y_dot, N_Vector r, void*) {
   NV_Ith_S(r, 0) = NV_Ith_S(y_dot, 0) + NV_Ith_S(y, 0);
   return 0;
 }
@@ -59,7 +58,7 @@ double cvode(double t) {
   Scalar s;
   void* memory = s.solver ? CVodeCreate(CV_BDF, s.context) : nullptr;
   if (!memory) return kFailed;
-  CVodeSetErrHandlerFn(memory, silent, nullptr);
+  s.context.attach(sun::Solver::kCvode, memory);
   double reached = 0.0;
   const bool ok = CVodeInit(memory, decay, 0.0, s.y) == 0 && CVodeSStolerances(memory, kRtol, kAtol) == 0 &&
                   CVodeSetLinearSolver(memory, s.solver, s.matrix) == 0 && CVodeSetStopTime(memory, t) == 0 &&
@@ -72,7 +71,7 @@ double arkode(double t) {
   Scalar s;
   void* memory = s.solver ? ARKStepCreate(nullptr, decay, 0.0, s.y, s.context) : nullptr;
   if (!memory) return kFailed;
-  ARKStepSetErrHandlerFn(memory, silent, nullptr);
+  s.context.attach(sun::Solver::kArkStep, memory);
   double reached = 0.0;
   const bool ok = ARKStepSStolerances(memory, kRtol, kAtol) == 0 &&
                   ARKStepSetLinearSolver(memory, s.solver, s.matrix) == 0 &&
@@ -88,7 +87,7 @@ double ida(double t) {
   if (!y_dot) return kFailed;
   NV_Ith_S(y_dot, 0) = -1.0;
   void* memory = IDACreate(s.context);
-  if (memory) IDASetErrHandlerFn(memory, silent, nullptr);
+  if (memory) s.context.attach(sun::Solver::kIda, memory);
   double reached = 0.0;
   const bool ok = memory && IDAInit(memory, decay_residual, 0.0, s.y, y_dot) == 0 &&
                   IDASStolerances(memory, kRtol, kAtol) == 0 &&

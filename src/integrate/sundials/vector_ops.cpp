@@ -13,20 +13,20 @@ using Array = Eigen::Map<Eigen::ArrayXd>;
 
 Array array(N_Vector v) { return {NV_DATA_S(v), static_cast<Eigen::Index>(NV_LENGTH_S(v))}; }
 
-realtype weighted_rms_norm(N_Vector x, N_Vector w) {
+sunrealtype weighted_rms_norm(N_Vector x, N_Vector w) {
   return std::sqrt((array(x) * array(w)).square().sum() / static_cast<double>(NV_LENGTH_S(x)));
 }
 
 // Every operation is entry by entry, so z may be x or y.
-void linear_sum(realtype a, N_Vector x, realtype b, N_Vector y, N_Vector z) {
+void linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z) {
   array(z) = a * array(x) + b * array(y);
 }
 
-void scale(realtype c, N_Vector x, N_Vector z) { array(z) = c * array(x); }
+void scale(sunrealtype c, N_Vector x, N_Vector z) { array(z) = c * array(x); }
 
-void set_constant(realtype c, N_Vector z) { array(z) = c; }
+void set_constant(sunrealtype c, N_Vector z) { array(z) = c; }
 
-int linear_combination(int count, realtype* c, N_Vector* x, N_Vector z) {
+int linear_combination(int count, sunrealtype* c, N_Vector* x, N_Vector z) {
   if (count == 1) scale(c[0], x[0], z);
   if (count < 2) return 0;
   // z may be the first vector only: the pair that holds it goes first.
