@@ -113,9 +113,10 @@ class CleanRoot(unittest.TestCase):
 
     def test_fields(self):
         depends = {word.split()[0] for word in self.field(self.runtime, "Depends").split(", ")}
-        for package in ("libc6", "libcholmod3", "libsimbody3.7", "libhdf5-103-1", "libsqlite3-0", "libcairo2",
-                        "libepoxy0", "libegl1", "libgl1-mesa-dri", "libopenblas0-pthread"):
-            self.assertIn(package, depends)
+        # names with a version of the library's interface differ between releases of Debian
+        for package in ("libc6", r"libcholmod\d", r"libsimbody3\.7", r"libhdf5-\d[\d-]*", "libsqlite3-0",
+                        "libcairo2", "libepoxy0", "libegl1", "libgl1-mesa-dri", "libopenblas0-pthread"):
+            self.assertTrue(any(re.fullmatch(package + "(t64)?", name) for name in depends), package)
         # SUNDIALS, Qhull's archive and CGAL are inside; nobody runs a compiler
         self.assertFalse([name for name in depends if name.endswith("-dev") or "sundials" in name])
         version = self.field(self.runtime, "Version")
