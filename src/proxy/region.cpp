@@ -2,6 +2,7 @@
 
 #include <ccd/ccd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -13,18 +14,49 @@
 namespace palpate::proxy {
 namespace {
 
+// libccd's tolerances, for shapes of unit size: the depth shall err by no more than kDepthError.
+//
+// MPR's tolerance is a length, EPA's a squared length.  EPA's polytope has the nearest point w; a support
+// point v in direction w lies e = v.w/|w| - |w| above that face, which is the error of the depth |w|.  It
+// ends where v.w - |w|^2 = e |w| is below the tolerance, or the squared distance of v to the face, which is
+// at least e^2.  With kDepthError^2 both mean e < kDepthError, of depths above kDepthError.
+constexpr double kDepthError = 1e-6;
+// max_iterations bounds libccd's GJK and the last loop of MPR, but neither EPA nor the refinement of MPR's
+// portal.  On round shapes EPA finds a new vertex in each iteration, at a cost that grows with those before.
+// Each iteration of either evaluates a support point of both shapes, so the support points are bounded: after
+// `most` of them the shapes answer with one point, the origin.  Then v.w = 0, no face has anything above it,
+// and every loop ends with the face that it has; its direction is verified like any other.
+constexpr int kMaxIterations = 200;
+
+/// Support points that both hulls of a pair have given, and may give.
+struct Budget {
+  int given = 0, most = 0;
+  bool spent = false;
+};
+/// A hull as libccd sees it.
+struct Shape {
+  const Hull* hull;
+  Budget* budget;
+};
+
 void ccd_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
-  const Vec3 p = static_cast<const Hull*>(object)->support(
-      Vec3(ccdVec3X(direction), ccdVec3Y(direction), ccdVec3Z(direction)));
+  const auto& shape = *static_cast<const Shape*>(object);
+  Vec3 p = Vec3::Zero();
+  if (shape.budget->given < shape.budget->most) {
+    ++shape.budget->given;
+    p = shape.hull->support(Vec3(ccdVec3X(direction), ccdVec3Y(direction), ccdVec3Z(direction)));
+  } else {
+    shape.budget->spent = true;
+  }
   ccdVec3Set(out, p.x(), p.y(), p.z());
 }
 
 void ccd_centre(const void* object, ccd_vec3_t* out) {
-  const Vec3& c = static_cast<const Hull*>(object)->centre();
+  const Vec3& c = static_cast<const Shape*>(object)->hull->centre();
   ccdVec3Set(out, c.x(), c.y(), c.z());
 }
 
-/// What libccd says, turned to our normal (from b to a: its direction moves b away).
+/// libccd's result, turned to our normal (from b to a: its direction moves b away).
 struct Answer {
   Vec3 normal;
   double depth;
@@ -32,16 +64,23 @@ struct Answer {
 
 using Penetration = int (*)(const void*, const void*, const ccd_t*, ccd_real_t*, ccd_vec3_t*, ccd_vec3_t*);
 
-std::optional<Answer> ask(Penetration algorithm, const Hull& a, const Hull& b) {
+std::optional<Answer> ask(Penetration algorithm, const Hull& a, const Hull& b, int most_supports,
+                          RegionCounts& counts) {
   ccd_t ccd;
   CCD_INIT(&ccd);
   ccd.support1 = ccd.support2 = ccd_support;
   ccd.center1 = ccd.center2 = ccd_centre;
-  ccd.max_iterations = 200;
-  ccd.epa_tolerance = ccd.mpr_tolerance = 1e-6;  // of unit-sized shapes
+  ccd.max_iterations = kMaxIterations;
+  ccd.mpr_tolerance = kDepthError;
+  ccd.epa_tolerance = kDepthError * kDepthError;
   ccd_real_t depth = 0;
   ccd_vec3_t direction, position;
-  if (algorithm(&a, &b, &ccd, &depth, &direction, &position) != 0) return std::nullopt;
+  Budget budget{0, most_supports};
+  const Shape shape_a{&a, &budget}, shape_b{&b, &budget};
+  const int status = algorithm(&shape_a, &shape_b, &ccd, &depth, &direction, &position);
+  counts.most_supports = std::max<long>(counts.most_supports, budget.given);
+  counts.bounded += budget.spent;
+  if (status != 0) return std::nullopt;
   return Answer{-Vec3(ccdVec3X(&direction), ccdVec3Y(&direction), ccdVec3Z(&direction)), depth};
 }
 
@@ -61,10 +100,10 @@ struct Best {
 };
 
 /// Asks one algorithm; true when its answer stands up to the two support calls.
-bool offer_answer(Penetration algorithm, RegionMethod by, const Hull& a, const Hull& b, Best& best,
-                  RegionCounts& counts) {
+bool offer_answer(Penetration algorithm, RegionMethod by, const Hull& a, const Hull& b, int most_supports,
+                  Best& best, RegionCounts& counts) {
   constexpr double kMismatch = 1e-3;  // of unit-sized shapes
-  const auto answer = ask(algorithm, a, b);
+  const auto answer = ask(algorithm, a, b, most_supports, counts);
   if (!answer) return false;
   const double length = answer->normal.norm();
   if (!std::isfinite(length) || !std::isfinite(answer->depth) || length < 0.5) {
@@ -88,7 +127,10 @@ struct RegionFinder::Scaled {
   Hull a, b;
 };
 
-RegionFinder::RegionFinder() : scaled_(std::make_unique<Scaled>()) { counters::count("proxy.region_finder"); }
+RegionFinder::RegionFinder(int most_supports)
+    : most_supports_(most_supports), scaled_(std::make_unique<Scaled>()) {
+  counters::count("proxy.region_finder");
+}
 RegionFinder::~RegionFinder() = default;
 RegionFinder::RegionFinder(RegionFinder&&) noexcept = default;
 
@@ -123,9 +165,9 @@ Region RegionFinder::find(const Eigen::Ref<const Points>& a, const Eigen::Ref<co
 
   Best best;
   ++counts_.mpr;
-  if (!offer_answer(ccdMPRPenetration, RegionMethod::kMpr, hull_a, hull_b, best, counts_)) {
+  if (!offer_answer(ccdMPRPenetration, RegionMethod::kMpr, hull_a, hull_b, most_supports_, best, counts_)) {
     ++counts_.epa;
-    offer_answer(ccdGJKPenetration, RegionMethod::kEpa, hull_a, hull_b, best, counts_);
+    offer_answer(ccdGJKPenetration, RegionMethod::kEpa, hull_a, hull_b, most_supports_, best, counts_);
   }
   best.offer(hull_a, hull_b, hull_a.centre() - hull_b.centre(), RegionMethod::kCentroids);
   if (has_last_) best.offer(hull_a, hull_b, last_normal_, RegionMethod::kLastNormal);

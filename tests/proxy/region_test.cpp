@@ -99,6 +99,75 @@ TEST(Region, ApartWhereCentroidsMislead) {
   EXPECT_NEAR(region.normal.z(), 1.0, 1e-5);
 }
 
+/// Depth of two boxes by their separating axes: their face normals and the products of their edges
+/// (Gottschalk, Lin and Manocha 1996).
+double depth_of_boxes(const Vec3& d, const Vec3& ha, const Quat& ra, const Vec3& hb, const Quat& rb) {
+  const Mat3 A = ra.toRotationMatrix(), B = rb.toRotationMatrix();
+  double least = std::numeric_limits<double>::infinity();
+  const auto offer = [&](const Vec3& axis) {
+    if (axis.norm() < 1e-9) return;
+    const Vec3 n = axis.normalized();
+    const double reach = (A.transpose() * n).cwiseAbs().dot(ha) + (B.transpose() * n).cwiseAbs().dot(hb);
+    least = std::min(least, reach - std::abs(n.dot(d)));
+  };
+  for (int i = 0; i < 3; ++i) {
+    offer(A.col(i)), offer(B.col(i));
+    for (int j = 0; j < 3; ++j) offer(A.col(i).cross(B.col(j)));
+  }
+  return least;
+}
+
+// EPA's tolerance is a squared length: 1e-6 of it would let EPA end a thousandth of the size too early.
+TEST(Region, EpaIsAsExactAsItsToleranceSays) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> size(0.3, 1.0), shift(-0.6, 0.6);
+  const auto any = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  int by_epa = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 ha(size(random), size(random), size(random)), hb(size(random), size(random), size(random)),
+        d(shift(random), shift(random), shift(random));
+    const Quat ra = quaternion_of(any()), rb = quaternion_of(any());
+    proxy::RegionFinder finder;
+    const auto region = finder.find(box(d, ha, ra), box(Vec3::Zero(), hb, rb), 0.0);
+    const double depth = depth_of_boxes(d, ha, ra, hb, rb);
+    if (depth <= 0.0) continue;
+    EXPECT_GE(region.depth, depth - 1e-9) << i << ": less than any way out";
+    if (region.method != proxy::RegionMethod::kEpa) continue;
+    ++by_epa;
+    EXPECT_LE(region.depth, depth + 1e-5) << i;
+  }
+  EXPECT_GT(by_epa, 200);
+}
+
+/// Points evenly on an ellipsoid.
+Points ellipsoid(const Vec3& centre, const Vec3& half, const Quat& rotation, int count) {
+  const Points p = rotation.toRotationMatrix() * half.asDiagonal() * sphere(Vec3::Zero(), 1.0, count);
+  return p.colwise() + centre;
+}
+
+// libccd bounds no iteration of EPA.  Ended early, its direction is verified like any other: the depth is
+// that along the normal found, and never less than the true one.
+TEST(Region, WorkOnRoundShapesIsBounded) {
+  const Points a = ellipsoid(Vec3(0.1, 0.05, -0.1), Vec3(0.9, 0.4, 0.6), quaternion_of({0.3, 1.0, -0.4}),
+                             2000),
+               b = ellipsoid(Vec3::Zero(), Vec3(0.5, 1.0, 0.7), Quat::Identity(), 2000);
+  proxy::RegionFinder usual;
+  const auto found = usual.find(a, b, 0.0);
+  EXPECT_EQ(usual.counts().epa, 1) << "MPR alone does not find it";
+  EXPECT_EQ(usual.counts().bounded, 0);
+  EXPECT_GT(usual.counts().most_supports, 60);
+  for (const int most : {0, 10, 40, 60}) {
+    proxy::RegionFinder bounded(most);
+    const auto region = bounded.find(a, b, 0.0);
+    EXPECT_LE(bounded.counts().most_supports, most);
+    EXPECT_GE(bounded.counts().bounded, 1) << most;
+    EXPECT_NEAR(region.normal.norm(), 1.0, 1e-12) << most;
+    EXPECT_NEAR(region.depth, brute_depth(a, b, region.normal), 1e-12) << most;
+    EXPECT_GE(region.depth, found.depth - 1e-6) << most;
+  }
+}
+
 // Touching, flat and degenerate shapes, where libccd alone answers with NaN or zero.
 TEST(Region, TouchingFlatAndDegenerateStayFinite) {
   const Points cube = box(Vec3::Zero(), Vec3::Constant(0.5));

@@ -29,9 +29,11 @@ double least_width(const Eigen::Ref<const Points>& points);
 /// How often each safeguard acted.
 struct RegionCounts {
   long queries = 0, overlapping = 0, apart = 0;
-  long mpr = 0, epa = 0;  ///< calls of libccd's algorithms
-  long not_finite = 0;    ///< answers with a NaN or zero direction
-  long mismatch = 0;      ///< answers whose own depth is not the depth along their direction
+  long mpr = 0, epa = 0;   ///< calls of libccd's algorithms
+  long bounded = 0;        ///< of these: ended by the bound on their support points
+  long most_supports = 0;  ///< support points of one call, at most
+  long not_finite = 0;     ///< answers with a NaN or zero direction
+  long mismatch = 0;       ///< answers whose own depth is not the depth along their direction
   long last_normal = 0, distance = 0, centroids = 0;  ///< queries that ended with that normal
 };
 
@@ -47,7 +49,10 @@ struct RegionCounts {
 /// (1988) gives the direction then.
 class RegionFinder {
  public:
-  RegionFinder();
+  /// GJK's 200 iterations and as many of EPA's, of two shapes each.
+  static constexpr int kMostSupports = 800;
+  /// @param most_supports  support points that one call of libccd may evaluate
+  explicit RegionFinder(int most_supports = kMostSupports);
   ~RegionFinder();
   RegionFinder(RegionFinder&&) noexcept;
   /// @param a, b    3 x n, at least one finite point each [m]
@@ -71,6 +76,7 @@ class RegionFinder {
 
  private:
   RegionCounts counts_;
+  int most_supports_;
   bool has_last_ = false;
   Vec3 last_normal_ = Vec3::Zero();
   struct Scaled;
