@@ -127,7 +127,8 @@ TEST(SundialsRelease, MethodsKeepTheirOrderWhereStepsAreProjected) {
     const int order = mode_traits(mode).order;
     std::vector<double> steps, errors;
     std::string text;
-    for (int n = order < 4 ? 20 : 10; steps.size() < 3; n *= 2) {
+    // Steps at which the leading term of the error decides, and rounding does not.
+    for (int n = order < 4 ? 20 : order == 4 ? 80 : 10; steps.size() < 3; n *= 2) {
       Top top;
       IntegratorSpec spec = mode_spec(mode);
       spec.step_s = 0.3 / n;
