@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "palpate/loop/haptic_record.h"
 #include "palpate/loop/run.h"
+#include "temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -62,7 +62,8 @@ struct KeptRun {
 };
 
 KeptRun run(const scene::Description& d, Mode mode) {
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / "port.h5").string();
+  const TemporaryFolder folder;
+  const std::string path = folder / "port.h5";
   const auto world = loop::assemble(d);
   loop::RunResult result;
   {
