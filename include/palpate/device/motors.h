@@ -13,7 +13,7 @@ namespace palpate::device {
 /// its force rounded to steps and cut to the maximum, and is held until the next one arrives.
 class Motors {
  public:
-  /// What lies between a loop and the hand.
+  /// Delay, resolution and limits between a loop and the hand.
   struct Figures {
     double delay = 0.0;                                           ///< [s]
     double force_step = 0.0;                                      ///< of each axis; 0: exact [N]
@@ -23,31 +23,39 @@ class Motors {
   /// A wrench that the motors hold for a while.
   struct Span {
     double from, to;  ///< [s]
-    Wrench wrench;
+    Wrench wrench;    ///< on the hand
   };
 
   Motors() : Motors(Figures{}) {}
+  /// @param figures  of the device
   explicit Motors(const Figures& figures);
-  /// What the motors make of a wrench: rounded and cut.
+  /// Rounds and cuts a wrench as the motors do.
+  /// @param wrench  that a loop sends
   Wrench shaped(const Wrench& wrench) const;
+  /// Sends a wrench on its way to the motors.
   /// @param t  of the sample that led to it [s], not before that of the last one
+  /// @param wrench  as the loop computed it
   void send(double t, const Wrench& wrench);
   /// Advances to t and visits what was held on the way, span by span.  The first call only sets the time.
+  /// @param t  [s], not before that of the last call
   /// @param f  f(const Span&)
   template <class F>
   void advance(double t, F&& f);
-  /// Advances to t.
+  /// Advances to a time.
+  /// @param t  [s], not before that of the last call
   void advance(double t) {
     advance(t, [](const Span&) {});
   }
-  /// Mean over the last advance of the wrench that was held.
+  /// Returns the mean over the last advance of the wrench that was held.
   const Wrench& mean() const { return mean_; }
   /// Visits the wrenches that are held from now on until one that is sent now arrives.
   /// @param f  f(const Span&)
   template <class F>
   void coming(F&& f) const;
   double delay() const { return figures_.delay; }  ///< [s]
-  void archive(Archive& a);                        ///< keeps where it is, or resumes from there
+  /// Keeps where it is, or resumes from there.
+  /// @param a  either direction
+  void archive(Archive& a);
 
  private:
   struct Sent {
@@ -63,7 +71,8 @@ class Motors {
   std::size_t next_ = 0;
 };
 
-/// The motors of a scene's device.  @throws Error for a figure out of range, naming its key
+/// Returns the figures of the motors of a scene's device.
+/// @param spec  of the device  @throws Error for a figure out of range, naming its key
 Motors::Figures motor_figures(const DeviceSpec& spec);
 
 template <class F>

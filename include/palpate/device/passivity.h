@@ -34,10 +34,12 @@ class PassivityObserver {
   double work() const { return work_; }           ///< sum of the magnitudes of the motors' work [J]
   Vec6 last_change() const { return change_; }    ///< of the last tick: rotation vector, translation
   double last_tick() const { return dt_; }        ///< [s]; 0 before the second sample
-  /// What the device's friction takes at least while its handle moves by that in `dt` [J].
+  /// Returns what the device's friction takes at least [J].
+  /// @param change  of the handle's pose, as last_change()  @param dt  that it takes [s]
   double friction(const Vec6& change, double dt) const;
-  /// Least change of the energy while the handle moves within a box in `dt` under a wrench [J].
-  /// @param low, high  of the displacement, as last_change()
+  /// Returns the least change of the energy while the handle moves within a box under a wrench [J].
+  /// @param wrench  that the motors hold  @param low, high  of the displacement, as last_change()
+  /// @param dt  that the motion takes [s]
   double least_change(const Wrench& wrench, const Vec6& low, const Vec6& high, double dt) const;
   void archive(Archive& a);  ///< keeps where it is, or resumes from there
 
@@ -56,9 +58,10 @@ class AccelerationBound {
   /// @param horizon  ticks that the bound is for
   /// @param rounding  of a sampled position, of each axis: rotation vector, translation
   explicit AccelerationBound(int horizon = 1, const Vec6& rounding = Vec6::Zero());
-  /// The handle's displacement over one more tick.
+  /// Takes the handle's motion over one more tick.
+  /// @param change  of its pose, as PassivityObserver::last_change()
   void add(const Vec6& change);
-  /// Bound of the change of the displacement from tick to tick.
+  /// Returns the bound of the change of the displacement from tick to tick.
   Vec6 value() const;
   void archive(Archive& a);  ///< keeps where it is, or resumes from there
 
@@ -87,7 +90,7 @@ class PassivityController {
   /// @throws Error for a name that is not "off", "observe" or "control"
   static Mode mode_of(const std::string& name);
 
-  /// What it knows of a device.
+  /// Figures of a device and its loop.
   struct Figures {
     double damping = 0.0;              ///< viscous, of its translations [N s/m]
     double resolution = 0.0;           ///< of its positions [m]
@@ -97,6 +100,7 @@ class PassivityController {
     double delay = 0.0;                ///< of its motors [s]
     double tick = 1e-3;                ///< length of a tick [s]
   };
+  /// @param mode  observe or control  @param figures  of the device
   PassivityController(Mode mode, const Figures& figures);
   /// @param t  of the sample [s]  @param handle  its pose
   /// @param motors   of the device, advanced to t
@@ -124,8 +128,10 @@ class PassivityController {
   Motors reductions_;  ///< what was taken off the wrenches, under the same delay
 };
 
-/// Of a scene's device, with its friction, delay and the steps of its positions; null where the mode is kOff.
-/// @param tick_s  length of a tick [s]  @throws Error as figures_of() does
+/// Makes the controller of a scene's device, with its friction, delay and the steps of its positions; null
+/// where the mode is kOff.
+/// @param mode  observe or control  @param device  of the scene  @param tick_s  length of a tick [s]
+/// @throws Error as figures_of() does
 std::unique_ptr<PassivityController> make_passivity_controller(PassivityController::Mode mode,
                                                                const DeviceSpec& device, double tick_s);
 
