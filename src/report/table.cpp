@@ -1,10 +1,10 @@
 #include "palpate/report/table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "palpate/core/csv.h"
 #include "palpate/core/error.h"
 
 namespace palpate::report {
@@ -30,10 +30,8 @@ std::vector<double> Table::numbers(std::string_view header) const {
 }
 
 double to_number(std::string_view cell) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc{} || end != cell.data() + cell.size())
-    return std::numeric_limits<double>::quiet_NaN();
+  double value = std::numeric_limits<double>::quiet_NaN();
+  read_csv_number(cell, value);
   return value;
 }
 

@@ -1,21 +1,26 @@
 #include "palpate/store/csv.h"
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
+#include "palpate/core/csv.h"
 #include "palpate/core/error.h"
 #include "palpate/store/atomic_file.h"
 
 namespace palpate::store {
 namespace {
 
-/// RFC 4180: quotes around a cell that holds a comma, a quote or a line end; quotes inside doubled.
+/// RFC 4180: quotes around a cell that read_csv_text() would else take for something else; quotes inside
+/// doubled.
 void append_text(std::string& line, const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
+  constexpr std::string_view kBlanks = " \t";
+  const bool blank_at_an_end = !text.empty() && (kBlanks.find(text.front()) != std::string_view::npos ||
+                                                 kBlanks.find(text.back()) != std::string_view::npos);
+  if (text.find_first_of(",;\t\"\r\n") == std::string::npos && !blank_at_an_end) {
     line += text;
     return;
   }
@@ -25,41 +30,6 @@ void append_text(std::string& line, const std::string& text) {
 }
 
 void append_number(std::string& line, double value) { fmt::format_to(std::back_inserter(line), "{}", value); }
-
-/// Splits a whole file into cells; the line number of a quote that never closes goes into the message.
-std::vector<std::vector<std::string>> split(const std::string& text, const std::string& path) {
-  std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> row(1);
-  bool quoted = false, any = false;
-  int line = 1, opened = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '\n') ++line;
-    if (quoted) {
-      if (c != '"')
-        row.back() += c;
-      else if (i + 1 < text.size() && text[i + 1] == '"')
-        row.back() += text[i++];
-      else
-        quoted = false;
-    } else if (c == '"') {
-      quoted = any = true;
-      opened = line;
-    } else if (c == ',') {
-      row.emplace_back();
-      any = true;
-    } else if (c == '\n') {
-      if (any) rows.push_back(std::exchange(row, std::vector<std::string>(1)));
-      any = false;
-    } else if (c != '\r') {
-      row.back() += c;
-      any = true;
-    }
-  }
-  if (quoted) fail("{}:{}: a quote is never closed", path, opened);
-  if (any) rows.push_back(row);
-  return rows;
-}
 
 }  // namespace
 
@@ -154,7 +124,7 @@ CsvTable read_csv(const std::string& path) {
   std::string text = read_file(path);
   // a line without an end is one that its writer was killed in: what stands there may be half a number
   if (const std::size_t end = text.find_last_of('\n'); end != std::string::npos) text.resize(end + 1);
-  table.rows = split(text, path);
+  for (CsvRow& row : read_csv_text(text, path)) table.rows.push_back(std::move(row.cells));
   if (table.rows.empty()) fail("{}: is empty, must begin with a line of headers", path);
   table.headers = table.rows.front();
   table.rows.erase(table.rows.begin());
@@ -178,8 +148,7 @@ std::vector<double> CsvTable::numbers(const std::string& header) const {
   std::vector<double> out;
   for (const std::string& cell : column(header)) {
     double value = 0.0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc{} || end != cell.data() + cell.size())
+    if (!read_csv_number(cell, value))
       fail("column \"{}\", row {}: \"{}\" is no number", header, out.size() + 1, cell);
     out.push_back(value);
   }
