@@ -59,6 +59,49 @@ TEST(FeltDifference, AToneStandsInItsBand) {
   }
 }
 
+/// Of the squares of all bands.
+double whole(const compare::FeltSeries& s, double compare::FeltSeries::Band::*part) {
+  double out = 0.0;
+  for (const compare::FeltSeries::Band& band : s.bands) out += band.*part * band.*part;
+  return std::sqrt(out);
+}
+
+// Bands share the mean square of the run: also of a difference that is there for a moment, at the run's
+// beginning, middle or end, where a window weighs it in different ways.
+TEST(FeltDifference, BandsAddUpToTheWhole) {
+  const auto still = ticks([](double) { return 0.5; }, none);
+  for (const double at : {0.05, 0.4, 1.0, 1.95}) {
+    const auto pulse = ticks([at](double t) { return 0.5 + 0.2 * std::exp(-std::pow((t - at) / 0.02, 2)); },
+                             [at](double t) { return std::exp(-std::pow((t - at) / 0.01, 2)); });
+    const compare::FeltDifference d = compare::felt_difference(still, pulse);
+    EXPECT_NEAR(whole(d.force, &compare::FeltSeries::Band::difference) / d.force.rms, 1.0, 1e-12) << at;
+    EXPECT_NEAR(whole(d.torque, &compare::FeltSeries::Band::difference) / d.torque.rms, 1.0, 1e-12) << at;
+    EXPECT_NEAR(whole(d.force, &compare::FeltSeries::Band::reference), 0.5, 1e-12) << at;
+    const compare::FeltDifference back = compare::felt_difference(pulse, still);
+    EXPECT_NEAR(whole(back.force, &compare::FeltSeries::Band::difference), d.force.rms, 1e-12) << at;
+  }
+}
+
+// A ball without friction has a torque of rounding: a share of it means nothing.
+TEST(FeltDifference, OfRoundingThereAreNoPercents) {
+  const auto force = [](double) { return 1.0; };
+  const auto a = ticks(force, [](double t) { return 1e-17 * tone(t, 7.0); }),
+             b = ticks(force, [](double t) { return 3e-17 * tone(t, 9.0); }),
+             c = ticks(force, [](double) { return 0.02; });
+  const auto torque_of = [](const auto& reference, const auto& other) {
+    const std::string text = compare::text_of(compare::felt_difference(reference, other));
+    return text.substr(text.find("torque"));
+  };
+  EXPECT_EQ(torque_of(a, b).find("torque: none in either run beyond rounding (at most "), 0u)
+      << torque_of(a, b);
+  EXPECT_EQ(torque_of(a, b).find('%'), std::string::npos);
+  EXPECT_EQ(torque_of(a, c).find("torque: differs by 0.02 N m RMS (the reference has none), at most 0.02; "),
+            0u)
+      << torque_of(a, c);
+  EXPECT_EQ(torque_of(a, c).find(" of "), torque_of(a, c).find(" of the ticks"));
+  EXPECT_NE(torque_of(c, a).find("(100 % of the peak of 0.02)"), std::string::npos);
+}
+
 // 2 N: 0.14 N is the threshold, so 0.139 is below it and 0.141 above, at each tick; below 0.5 N it stays at
 // 0.035 N.
 TEST(FeltDifference, NoticeableIsBeyondWebersLaw) {

@@ -25,7 +25,7 @@ struct FeltSeries {
   double noticeable = 0.0;
   struct Band {
     double low_hz, high_hz;
-    double difference, reference;  ///< root mean square in it
+    double difference, reference;  ///< root mean square in it; the squares of all bands add up to the whole's
   };
   std::vector<Band> bands;  ///< up to half of the ticks' rate
 };
