@@ -28,6 +28,22 @@ HandleSample Device::sample(double t) {
   return last_;
 }
 
+void Device::await(double t, const std::atomic<bool>* stop) {
+  open();
+  do_await(t, stop);
+}
+
+bool PoseBounds::hold(const Pose& pose, const Twist& twist) const {
+  return (pose.translation - center).stableNorm() <= radius && twist.linear.stableNorm() <= speed &&
+         twist.angular.stableNorm() <= rotation;
+}
+
+RecordingClock RecordingClock::of(const DeviceSpec& spec) {
+  if (spec.time_scale) check_range("time_scale", *spec.time_scale, DeviceRanges::time_scale);
+  if (!std::isfinite(spec.time_offset_s)) fail("device: time_offset_s must be a finite number");
+  return {spec.time_scale.value_or(1.0), spec.time_offset_s};
+}
+
 void Device::archive(Archive& a) {
   PALPATE_CHECK(can_be_archived(), "a device that cannot be archived");
   bool was_open = open_;

@@ -12,8 +12,6 @@
 namespace palpate::device {
 namespace {
 
-constexpr double kSteepest = 1.5;  // of smoothstep, at its middle
-
 /// 0 at x <= 0, 1 at x >= 1, C1.
 double smoothstep(double x) {
   x = std::clamp(x, 0.0, 1.0);
@@ -45,7 +43,7 @@ Vec3 towards(const Vec3& from, const Vec3& to, double reach) {
 }
 
 void check_slew(double slew, double max, const char* what) {
-  const double least = kSteepest * max / (kFallTime - kHoldTime);
+  const double least = kLeastSlew * max;
   if (!(slew >= least))
     fail("device: {} = {} is too small to fall from {} to zero within 10 ms; use at least {}", what, slew,
          max, least);
@@ -85,6 +83,12 @@ void WrenchLimiter::archive(Archive& a) {
   a("limited", limited_);
   a("rejected", rejected_);
   a("outside", outside_);
+}
+
+void WrenchLimiter::restart() {
+  if (!(ramp_ > 0.0)) return;
+  live_ = false;
+  last_ = {};
 }
 
 Wrench WrenchLimiter::limit(double t, const Wrench& wanted, bool valid) {

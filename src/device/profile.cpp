@@ -1,5 +1,6 @@
 #include "palpate/device/profile.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "device/make.h"
@@ -110,6 +111,13 @@ namespace {
 constexpr double kAmplifierBandwidth = 300.0;
 constexpr double kAmplifierSlew = 2.0 * std::numbers::pi * kAmplifierBandwidth;
 
+// In a hand a force must not change faster than touch can make it: a hand meets a surface at about half a
+// metre a second where it taps, so at up to kFastestHand, and the stiffest wall that a device can render
+// raises the force by its stiffness times that speed.  Faster is no contact but a fault: a pose that jumped,
+// say.  Relative to the maximum, so that it serves other maxima; a device without figures is taken for the
+// Omni, whose maximum is the default.
+constexpr double kFastestHand = 1.0;  // [m/s]
+constexpr double kStiffness = 1020.0;
 constexpr double kRampWhereHeld = 0.2;  // [s]
 
 constexpr double kMaxForce = 3.3, kMaxTorque = 0.2;
@@ -130,6 +138,14 @@ Workspace workspace_of(const DeviceSpec& spec, const DeviceSpecification& figure
   return out;
 }
 
+/// Maxima a second [1/s] of a device that somebody holds; no less than the watchdog's fall needs.
+double slew_where_held(const DeviceSpecification& figures) {
+  const bool stated = figures.max_stiffness && figures.max_force;
+  return std::max(
+      kFastestHand * (stated ? *figures.max_stiffness / *figures.max_force : kStiffness / kMaxForce),
+      kLeastSlew);
+}
+
 /// Somebody holds it, who should not be pulled at once: script, recording and simulated hand are the
 /// computer's.
 bool is_held(const DeviceSpec& spec) {
@@ -146,6 +162,7 @@ DeviceFigures figures_of(const DeviceSpec& spec) {
     slew = kAmplifierSlew;
   }
   const auto& figures = profile.figures;
+  if (is_held(spec)) slew = slew_where_held(figures);
   DeviceFigures out{};
   out.max_force = spec.max_force_n.value_or(figures.max_force.value_or(kMaxForce));
   out.max_torque = spec.max_torque_n_m.value_or(figures.max_torque.value_or(kMaxTorque));

@@ -1,26 +1,32 @@
 #include <algorithm>
-#include <charconv>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include "device/make.h"
 #include "device/recorded_path.h"
+#include "palpate/core/csv.h"
 #include "palpate/core/error.h"
+#include "palpate/device/monotone_slope.h"
 
 namespace palpate::device {
 namespace {
 
-/// Cells of a CSV line; none of ours is quoted.
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> out;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) {
-    const auto first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
-    out.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
-  }
+/// Names of the columns: without capitals, and without the # that numpy writes before them.
+std::vector<std::string> headers_of(const CsvRow& row) {
+  std::vector<std::string> out = row.cells;
+  std::string& first = out.front();
+  first.erase(0, std::min(first.find_first_not_of("# "), first.size()));
+  for (std::string& name : out)
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return out;
+}
+
+bool is_blank(const CsvRow& row) {
+  return std::all_of(row.cells.begin(), row.cells.end(),
+                     [](const std::string& cell) { return cell.empty(); });
 }
 
 /// Where the numbers of a pose stand: a file of poses, or force.csv of an earlier run.
@@ -38,18 +44,22 @@ const std::vector<std::string> kForces = {"time_s",
                                           "handle_rotation_y_rad",
                                           "handle_rotation_z_rad"};
 
+constexpr const char* kColumns =
+    "a recording has time_s, px_m, py_m, pz_m, qw, qx, qy, qz, or is force.csv of a run";
+
 Layout layout_of(const std::vector<std::string>& headers, const std::string& path) {
+  double number = 0.0;
+  if (read_csv_number(headers.front(), number))
+    fail("{}:1: its first line has numbers, where the columns' names must stand; {}", path, kColumns);
+  if (headers.size() == 1 && headers.front().find_first_of(" |:") != std::string::npos)
+    fail("{}:1: its columns are separated by neither commas, semicolons nor tabs; use one of them", path);
   const auto has = [&](const std::string& name) {
     return std::find(headers.begin(), headers.end(), name) != headers.end();
   };
   Layout out{has("handle_x_m") ? kForces : kPoses, {}, has("switches")};
   if (out.switches) out.names.emplace_back("switches");
   for (const std::string& name : out.names) {
-    if (!has(name))
-      fail(
-          "{}:1: no column \"{}\"{}; a recording has time_s, px_m, py_m, pz_m, qw, qx, qy, qz, or is "
-          "force.csv of a run",
-          path, name, suggestion(name, headers));
+    if (!has(name)) fail("{}:1: no column \"{}\"{}; {}", path, name, suggestion(name, headers), kColumns);
     out.column.push_back(
         static_cast<std::size_t>(std::find(headers.begin(), headers.end(), name) - headers.begin()));
   }
@@ -64,13 +74,27 @@ std::uint32_t switches_of(double value, const std::string& where) {
   return out;
 }
 
-double number_of(const std::string& cell, const std::string& where) {
-  double value = 0.0;
-  const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (code != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-    fail("{}: \"{}\" is not a finite number", where, cell);
-  return value;
-}
+/// The numbers of one file, which has decimal points or decimal commas.
+class Numbers {
+ public:
+  double of(const std::string& cell, const std::string& where) {
+    double value = 0.0;
+    if (!read_csv_number(cell, value) || !std::isfinite(value))
+      fail("{}: \"{}\" is not a finite number", where, cell);
+    const std::size_t at = cell.find_first_of(".,");
+    if (at == std::string::npos) return value;
+    if (mark_ == '\0') mark_ = cell[at], seen_ = cell;
+    if (mark_ != cell[at])
+      fail("{}: \"{}\" has a decimal {}, \"{}\" before it a {}; write all numbers alike", where, cell,
+           name(cell[at]), seen_, name(mark_));
+    return value;
+  }
+
+ private:
+  static const char* name(char mark) { return mark == ',' ? "comma" : "point"; }
+  char mark_ = '\0';  ///< none yet
+  std::string seen_;  ///< the first number that has it
+};
 
 RecordedPose pose_of(const std::vector<double>& v, const Layout& layout, const std::string& where) {
   RecordedPose out{v[0], {Quat::Identity(), Vec3(v[1], v[2], v[3])}};
@@ -89,10 +113,14 @@ RecordedPose pose_of(const std::vector<double>& v, const Layout& layout, const s
 class RecordingDevice : public Device {
  public:
   RecordingDevice(const DeviceSpec& spec, const std::string& file)
-      : poses_(read_recording(file)), specification_(figures_of(spec).specification) {}
+      : poses_(read_recording(file, RecordingClock::of(spec))),
+        specification_(figures_of(spec).specification) {}
   DeviceSpecification specification() const override { return specification_; }
   std::function<HandleSample(double)> path() const override {
     return [poses = poses_](double t) { return sample_recording(poses, t); };
+  }
+  std::optional<TimeSpan> recorded() const override {
+    return TimeSpan{poses_.front().time, poses_.back().time};
   }
   bool can_be_archived() const override { return true; }
 
@@ -106,25 +134,28 @@ class RecordingDevice : public Device {
 
 }  // namespace
 
-std::vector<RecordedPose> read_recording(const std::string& path) {
-  std::ifstream in(path);
+std::vector<RecordedPose> read_recording(const std::string& path, const RecordingClock& clock) {
+  std::ifstream in(path, std::ios::binary);
   if (!in || std::filesystem::is_directory(path))
     fail("{}: no recording can be read; check the path (relative to the scene file)", path);
-  std::string line;
-  if (!std::getline(in, line)) fail("{}:1: the file is empty; its first line names the columns", path);
-  const std::vector<std::string> headers = cells_of(line);
+  std::vector<CsvRow> rows = read_csv_text(std::string(std::istreambuf_iterator<char>(in), {}), path);
+  std::erase_if(rows, is_blank);
+  if (rows.empty()) fail("{}:1: the file is empty; its first line names the columns", path);
+  const std::vector<std::string> headers = headers_of(rows.front());
   const Layout layout = layout_of(headers, path);
+  rows.erase(rows.begin());
+  Numbers numbers;
   std::vector<RecordedPose> out;
   std::vector<double> values(layout.names.size());
-  for (long number = 2; std::getline(in, line); ++number) {
-    const std::vector<std::string> cells = cells_of(line);
-    if (cells.empty()) continue;
-    const std::string where = fmt::format("{}:{}", path, number);
-    if (cells.size() != headers.size())
-      fail("{}: {} cells, but {} columns have a name", where, cells.size(), headers.size());
+  for (CsvRow& row : rows) {
+    const std::string where = fmt::format("{}:{}", path, row.line);
+    while (row.cells.size() > headers.size() && row.cells.back().empty()) row.cells.pop_back();
+    if (row.cells.size() != headers.size())
+      fail("{}: {} cells, but {} columns have a name", where, row.cells.size(), headers.size());
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] =
-          number_of(cells[layout.column[i]], fmt::format("{}: column \"{}\"", where, layout.names[i]));
+          numbers.of(row.cells[layout.column[i]], fmt::format("{}: column \"{}\"", where, layout.names[i]));
+    values[0] = clock(values[0]);
     if (!out.empty() && !(values[0] > out.back().time))
       fail("{}: column \"time_s\": {} does not come after {}, the line before", where, values[0],
            out.back().time);
@@ -137,8 +168,10 @@ std::vector<RecordedPose> read_recording(const std::string& path) {
 // Position: the cubic of Hermite between neighbours, x = s/T in [0, 1],
 //     p = (2x^3 - 3x^2 + 1) p0 + (x^3 - 2x^2 + x) T v0 + (3x^2 - 2x^3) p1 + (x^3 - x^2) T v1,
 // with the velocities of the parabola through a line and its two neighbours, v1 = (h0 d1 + h1 d0)/(h0 + h1)
-// of the slopes d0, d1 over h0, h1; at the ends the slope of the only segment.  Rotation: about one fixed
-// axis from line to line, R = exp(x d) R0, so its rate d/T is exact and jumps at the lines.
+// of the slopes d0, d1 over h0, h1; at the ends the slope of the only segment.  Where such a velocity would
+// carry a component beyond the two lines, as next to a pause, the nearest one that does not takes its place
+// (monotone_slope).  Rotation: about one fixed axis from line to line, R = exp(x d) R0, so its rate d/T is
+// exact and jumps at the lines.
 HandleSample sample_recording(const std::vector<RecordedPose>& poses, double t) {
   if (poses.empty()) fail("recording: no poses; give at least one");
   HandleSample out;
@@ -160,12 +193,15 @@ HandleSample sample_recording(const std::vector<RecordedPose>& poses, double t) 
     if (k == 0) return slope(0);
     if (k + 1 == poses.size()) return slope(k - 1);
     const double h0 = poses[k].time - poses[k - 1].time, h1 = poses[k + 1].time - poses[k].time;
-    return Vec3((h0 * slope(k) + h1 * slope(k - 1)) / (h0 + h1));
+    const Vec3 before = slope(k - 1), after = slope(k);
+    return monotone_slope(monotone_slope((h0 * after + h1 * before) / (h0 + h1), before), after);
   };
   const double T = poses[i + 1].time - poses[i].time, x = (t - poses[i].time) / T;
   const Vec3 p0 = poses[i].pose.translation, p1 = poses[i + 1].pose.translation, m0 = T * velocity(i),
              m1 = T * velocity(i + 1);
-  out.pose.translation = p0 + x * (m0 + x * ((3.0 - 2.0 * x) * (p1 - p0) + (x - 2.0) * m0 + (x - 1.0) * m1));
+  out.pose.translation = (p0 + x * (m0 + x * ((3.0 - 2.0 * x) * (p1 - p0) + (x - 2.0) * m0 + (x - 1.0) * m1)))
+                             .cwiseMax(p0.cwiseMin(p1))  // rounding
+                             .cwiseMin(p0.cwiseMax(p1));
   out.twist.linear =
       (6.0 * x * (1.0 - x) * (p1 - p0) + (1.0 - x) * (1.0 - 3.0 * x) * m0 + x * (3.0 * x - 2.0) * m1) / T;
   out.acceleration.linear =

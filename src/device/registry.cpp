@@ -23,12 +23,16 @@ const Registry<MakeDevice>& device_registry() {
        make_script,
        {{.name = "keyframe", .required = true}, {.name = "motion"}, {.name = "press"}}},
       {"hand", "a simulated device in a simulated arm that yields to the force", 0, make_hand, hand_keys()},
-      {"recording", "repeats recorded poses", 0, make_recording, {{.name = "file", .required = true}}},
+      {"recording",
+       "repeats recorded poses",
+       0,
+       make_recording,
+       {{.name = "file", .required = true}, {.name = "time_offset_s"}, {.name = "time_scale"}}},
       {"udp",
        "a peer on the network sends poses and gets wrenches",
        0,
        make_udp,
-       {{.name = "port", .required = true}, {.name = "address"}, {.name = "time_out_s"}}},
+       {{.name = "port", .required = true}, {.name = "address"}, {.name = "time_out_s"}, {.name = "wait_s"}}},
   };
   return registry;
 }

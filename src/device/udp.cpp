@@ -2,14 +2,18 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 
 #include "device/make.h"
 #include "palpate/core/error.h"
+#include "palpate/device/limiter.h"
 
 namespace palpate::device {
 namespace {
@@ -31,9 +35,11 @@ UdpDevice::UdpDevice(const DeviceSpec& spec)
     : address_(spec.address),
       port_(spec.port),
       time_out_(spec.time_out_s),
+      wait_(spec.wait_s),
       specification_(figures_of(spec).specification) {
   if (port_ != 0) check_range("port", port_, DeviceRanges::port);
   check_range("time_out_s", time_out_, DeviceRanges::time_out_s);
+  check_range("wait_s", wait_, DeviceRanges::wait_s);
   in_addr host{};
   if (::inet_pton(AF_INET, address_.c_str(), &host) != 1)
     fail("device: address = \"{}\" is no IPv4 address; \"127.0.0.1\" is this machine alone", address_);
@@ -65,11 +71,13 @@ std::vector<std::pair<std::string, long long>> UdpDevice::tallies() const {
           {"packets_malformed", counts_.malformed},
           {"packets_of_another_version", counts_.wrong_version},
           {"packets_stale", counts_.stale},
+          {"packets_far_ahead", counts_.ahead},
+          {"packets_out_of_bounds", counts_.out_of_bounds},
           {"packets_from_another_peer", counts_.foreign},
           {"wrenches_unsent", counts_.unsent}};
 }
 
-bool UdpDevice::take(std::span<const unsigned char> bytes, const Address& from) {
+bool UdpDevice::take(std::span<const unsigned char> bytes, const Address& from, double t) {
   PosePacket packet;
   switch (decode(bytes, packet)) {
     case PacketFault::kMalformed: ++counts_.malformed; return false;
@@ -77,14 +85,19 @@ bool UdpDevice::take(std::span<const unsigned char> bytes, const Address& from) 
     case PacketFault::kNone: break;
   }
   if (peer_ && !(*peer_ == from)) return ++counts_.foreign, false;
-  if (peer_ && packet.sequence <= last_.sequence) return ++counts_.stale, false;
+  if (peer_ && t - arrived_ <= kFallTime) {
+    if (packet.sequence <= last_.sequence) return ++counts_.stale, false;
+    if (packet.sequence - last_.sequence > kMostAhead) return ++counts_.ahead, false;
+  }
+  if (!bounds_.hold(packet.pose, packet.twist)) return ++counts_.out_of_bounds, false;
   peer_ = from;
   last_ = packet;
+  arrived_ = t;
   ++counts_.accepted;
   return true;
 }
 
-HandleSample UdpDevice::do_sample(double t) {
+void UdpDevice::receive(double t) {
   // A peer that floods the port delays no tick: the rest waits for the next one.
   constexpr int kMostPackets = 256;
   std::array<unsigned char, 512> buffer;
@@ -94,9 +107,37 @@ HandleSample UdpDevice::do_sample(double t) {
     const ssize_t n = ::recvfrom(socket_, buffer.data(), buffer.size(), 0, generic(from), &size);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) break;
-    if (take(std::span(buffer).first(static_cast<std::size_t>(n)), {from.sin_addr.s_addr, from.sin_port}))
-      arrived_ = t;
+    take(std::span(buffer).first(static_cast<std::size_t>(n)), {from.sin_addr.s_addr, from.sin_port}, t);
   }
+}
+
+std::string UdpDevice::awaited() const {
+  return fmt::format("the first pose at {}, UDP port {}, for up to {:g} s", address_, port_, wait_);
+}
+
+void UdpDevice::do_await(double t, const std::atomic<bool>* stop) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(wait_);
+  for (receive(t); !peer_ && !(stop && *stop); receive(t)) {
+    const double left_ms = std::chrono::duration<double, std::milli>(end - Clock::now()).count();
+    if (left_ms <= 0.0) {
+      const long others = counts_.malformed + counts_.wrong_version + counts_.out_of_bounds;
+      fail(
+          "device: no pose came to {}, UDP port {}, within {:g} s{}; start the peer, check its address and "
+          "port, or wait longer (device.wait_s)",
+          address_, port_, wait_,
+          others > 0 ? fmt::format(" ({} packets came that are no poses of this scene: {} malformed, {} of "
+                                   "another version, {} out of bounds)",
+                                   others, counts_.malformed, counts_.wrong_version, counts_.out_of_bounds)
+                     : "");
+    }
+    pollfd readable{socket_, POLLIN, 0};
+    ::poll(&readable, 1, 1 + static_cast<int>(std::min(left_ms, 50.0)));  // so that `stop` is seen soon
+  }
+}
+
+HandleSample UdpDevice::do_sample(double t) {
+  receive(t);
   HandleSample out;
   out.pose = last_.pose;
   out.twist = last_.twist;

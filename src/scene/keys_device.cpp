@@ -48,10 +48,10 @@ const KeyTable<DeviceSpec>& device_keys() {
       unless("0.2, or the profile's",
              in_unit("N m", number("max_torque_n_m", &Spec::max_torque_n_m, Ranges::max_torque_n_m,
                                    "largest torque that the device lets through"))),
-      unless("30000 max_force_n, with a profile 1885",
+      unless("30000 max_force_n, with a profile 1885; in a hand 309, or the profile's stiffness times 1 m/s",
              in_unit("N/s", number("max_force_slew_n_s", &Spec::max_force_slew_n_s, Ranges::slew,
                                    "fastest change of the force"))),
-      unless("30000 max_torque_n_m, with a profile 1885",
+      unless("30000 max_torque_n_m, with a profile 1885; in a hand as the force",
              in_unit("N m/s", number("max_torque_slew_n_m_s", &Spec::max_torque_slew_n_m_s, Ranges::slew,
                                      "fastest change of the torque"))),
       unless("0.2 where somebody holds the device, else 0",
@@ -100,10 +100,17 @@ const KeyTable<DeviceSpec>& device_keys() {
       number("delay_s", &Spec::delay_s, Ranges::delay_s,
              "from a force that is sent to the motors' giving it"),
       unless("none", text("file", &Spec::file, {}, "recorded poses (CSV), from the scene's folder")),
+      number("time_offset_s", &Spec::time_offset_s, any(),
+             "added to the recording's times once they are scaled"),
+      unless("1", in_unit("", number("time_scale", &Spec::time_scale, Ranges::time_scale,
+                                     "seconds per unit of the recording's times: 0.001 for milliseconds; a "
+                                     "given one is taken at its word"))),
       text("address", &Spec::address, {}, "IPv4 address that the peer's packets come to"),
       unless("none", integer("port", &Spec::port, Ranges::port, "UDP port that the peer's packets come to")),
       number("time_out_s", &Spec::time_out_s, Ranges::time_out_s,
              "how old the peer's last pose may be; then the watchdog acts"),
+      number("wait_s", &Spec::wait_s, Ranges::wait_s,
+             "longest wait for the peer's first pose, before the clock starts"),
   };
   return keys;
 }

@@ -2,11 +2,13 @@
 // path that is its samples where it has one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "messages.h"
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
+#include "palpate/device/limiter.h"
 #include "temporary_folder.h"
 
 using namespace palpate;
@@ -158,6 +160,37 @@ TEST(Device, pulls_nobody_at_once) {
   DeviceSpec driver;
   driver.type = "a driver of one's own";
   EXPECT_EQ(figures_of(driver).ramp, 0.2);
+}
+
+// A hand that teleports, through a device in a hand: the wanted force jumps from one maximum to the other.
+TEST(Device, a_jump_of_the_pose_is_no_jump_of_the_force_in_a_hand) {
+  int checked = 0;
+  for (const char* profile : {"", "omni", "premium-1.5", "omega.3", "haply-pantograph", "haply-inverse3"}) {
+    DeviceSpec spec;
+    spec.type = "udp";
+    spec.profile = profile;
+    spec.ramp_s = 0.0;
+    const DeviceFigures figures = figures_of(spec);
+    const double stiffness = figures.specification.max_stiffness.value_or(1020.0);  // [N/m], 1020: the Omni's
+    WrenchLimiter limiter(figures.max_force, figures.max_torque, figures.ramp, figures.max_force_slew,
+                          figures.max_torque_slew);
+    const double most = std::max(stiffness * 1.0, 150.0 * figures.max_force) * 1e-3;  // a wall at 1 m/s
+    double before = 0.0;
+    for (int i = 0; i <= 100; ++i) {
+      const double wanted = i < 50 ? -1e6 : 1e6;
+      const double force = limiter.limit(1e-3 * i, {Vec3::Zero(), Vec3(0, 0, wanted)}, true).force.z();
+      EXPECT_LE(std::abs(force - before), most * (1.0 + 1e-9)) << profile << ", tick " << i;
+      before = force;
+      ++checked;
+    }
+    EXPECT_NEAR(before, figures.max_force, 1e-3 * figures.max_force) << profile << ": it gets there";
+    spec.type = "script";
+    EXPECT_GT(figures_of(spec).max_force_slew, figures.max_force_slew) << "nobody's hand";
+  }
+  EXPECT_EQ(checked, 606);
+  DeviceSpec plain;
+  plain.type = "udp";
+  EXPECT_NEAR(figures_of(plain).max_force_slew, 1020.0, 1e-9);
 }
 
 TEST(Device, every_profile_is_a_plausible_desktop_device) {

@@ -79,6 +79,25 @@ TEST(WrenchLimiter, ramps_in_and_keeps_the_direction) {
   EXPECT_EQ(limiter.limited_ticks(), 0);
 }
 
+TEST(WrenchLimiter, a_restart_ramps_in_from_zero) {
+  WrenchLimiter limiter(3.3, 0.2, 0.1), none(3.3, 0.2, 0.0);
+  for (int i = 0; i <= 200; ++i)
+    for (WrenchLimiter* one : {&limiter, &none})
+      one->limit(1e-3 * i, wrench(Vec3(0.5, 0, 0), Vec3(0, 0.02, 0)), true);
+  limiter.restart();
+  none.restart();
+  double last = 0.0;
+  for (int i = 201; i <= 301; ++i) {
+    const Wrench out = limiter.limit(1e-3 * i, wrench(Vec3(0.5, 0, 0), Vec3(0, 0.02, 0)), true);
+    if (i == 201) { EXPECT_EQ(out.force.norm() + out.moment.norm(), 0.0); }
+    if (i == 251) { EXPECT_NEAR(out.force.norm(), 0.25, 1e-6); }
+    EXPECT_GE(out.force.norm(), last);
+    last = out.force.norm();
+  }
+  EXPECT_NEAR(last, 0.5, 1e-5);
+  EXPECT_NEAR(none.limit(0.201, wrench(Vec3(0.5, 0, 0)), true).force.x(), 0.5, 1e-5) << "nobody holds it";
+}
+
 TEST(WrenchLimiter, holds_for_10_ms_after_the_last_valid_pose_and_is_zero_at_20) {
   WrenchLimiter limiter(3.3, 0.2, 0.0);
   Wrench live;

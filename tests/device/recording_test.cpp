@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "messages.h"
 #include "palpate/core/error.h"
@@ -55,33 +57,83 @@ TEST(Recording, goes_through_its_lines_and_rests_outside) {
   EXPECT_NEAR(device->path()(1.5).twist.angular.norm(), std::numbers::pi, 1e-14);
 }
 
-// Velocities of a parabola through three lines are exact for a parabola, and so is the cubic between them.
+// Velocities of a parabola through three lines are exact for a parabola, and so is the cubic between them;
+// its vertex, beyond two lines of the file, is not among these times.
 TEST(Recording, a_parabola_comes_back_exactly) {
   const TemporaryFolder folder;
-  const auto device = replay(folder, sampled([](double t) { return 0.3 - 0.5 * t + 0.8 * t * t; }, 10));
+  const auto device = replay(folder, sampled([](double t) { return 0.3 + 0.5 * t + 0.8 * t * t; }, 10));
   int checked = 0;
   for (double t = 0.2; t < 0.85; t += 0.013, ++checked) {
     const HandleSample s = device->sample(t);
-    EXPECT_NEAR(s.pose.translation.x(), 0.3 - 0.5 * t + 0.8 * t * t, 1e-14);
-    EXPECT_NEAR(s.twist.linear.x(), -0.5 + 1.6 * t, 1e-12);
+    EXPECT_NEAR(s.pose.translation.x(), 0.3 + 0.5 * t + 0.8 * t * t, 1e-14);
+    EXPECT_NEAR(s.twist.linear.x(), 0.5 + 1.6 * t, 1e-12);
     EXPECT_NEAR(s.acceleration.linear.x(), 1.6, 1e-10);
   }
   EXPECT_GT(checked, 40);
 }
 
+// Of third order between turning points.  About one the motion leaves the interval of its two lines, and the
+// handle does not: there it is of second order.
 TEST(Recording, converges_with_third_order) {
   const TemporaryFolder folder;
   std::vector<double> errors;
   for (const int n : {20, 40, 80, 160}) {
     const auto device = replay(folder, sampled([](double t) { return std::sin(7.0 * t); }, n));
     double largest = 0.0;
-    for (double t = 0.2; t < 0.8; t += 1e-3)
+    for (double t = 0.35; t < 0.55; t += 1e-3)  // well between its turning points, at 0.22 and 0.67
       largest = std::max(largest, std::abs(device->sample(t).pose.translation.x() - std::sin(7.0 * t)));
     errors.push_back(largest);
   }
   for (std::size_t i = 1; i < errors.size(); ++i) {
     EXPECT_GT(std::log2(errors[i - 1] / errors[i]), 2.7);
     EXPECT_LT(std::log2(errors[i - 1] / errors[i]), 4.2);
+  }
+}
+
+// Between two lines each component stays between theirs, however uneven the lines are: after a pause, in a
+// jump, at a turning point; and the path goes through every line without a jump of its velocity.
+TEST(Recording, between_two_lines_the_handle_stays_between_them) {
+  const TemporaryFolder folder;
+  std::mt19937 rng(20261128);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::string text = kHeader;
+  std::vector<double> times = {0.0};
+  std::vector<Vec3> lines;
+  for (int i = 0; i < 60; ++i) {
+    const double x = lines.empty() || i % 5 ? 0.1 * uniform(rng) : lines.back().x();  // some at rest
+    lines.emplace_back(x, 0.01 * i, 0.1 * std::pow(uniform(rng), 5));
+    text += fmt::format("{},{},{},{},1,0,0,0\n", times.back(), x, lines.back().y(), lines.back().z());
+    times.push_back(times.back() + std::pow(10.0, 1.5 * uniform(rng) - 1.5));
+  }
+  const auto path = replay(folder, text)->path();
+  long checked = 0;
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i)
+    for (int k = 1; k < 50; ++k, ++checked) {
+      const Vec3 p = path(times[i] + 0.02 * k * (times[i + 1] - times[i])).pose.translation;
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(p[axis], std::min(lines[i][axis], lines[i + 1][axis])) << i;
+        EXPECT_LE(p[axis], std::max(lines[i][axis], lines[i + 1][axis])) << i;
+      }
+    }
+  EXPECT_EQ(checked, 59 * 49);
+  for (std::size_t i = 1; i + 1 < lines.size(); ++i) {
+    const double e = 1e-9 * std::min(times[i] - times[i - 1], times[i + 1] - times[i]);
+    const Vec3 before = path(times[i] - e).twist.linear, after = path(times[i] + e).twist.linear;
+    EXPECT_LT((before - after).norm(), 1e-6 * (1.0 + after.norm())) << i;
+  }
+}
+
+// A pause that the recorder left out: 10 ms lines, then nothing for a second, then on from nearby.
+TEST(Recording, a_pause_is_no_swing) {
+  const TemporaryFolder folder;
+  const auto path =
+      replay(folder, kHeader +
+                         "0,0,0,0.085,1,0,0,0\n0.01,0,0,0.0845,1,0,0,0\n0.02,0,0,0.084,1,0,0,0\n"
+                         "1.02,0,0,0.0839,1,0,0,0\n1.03,0,0,0.0834,1,0,0,0\n")
+          ->path();
+  for (double t = 0.02; t < 1.02; t += 1e-3) {
+    EXPECT_LE(path(t).pose.translation.z(), 0.084) << t;
+    EXPECT_GE(path(t).pose.translation.z(), 0.0839) << t;
   }
 }
 
@@ -134,6 +186,47 @@ TEST(Recording, switches_are_those_of_the_line_before) {
   EXPECT_EQ(replay(folder, kHeader + "0,0,0,0,1,0,0,0\n")->sample(1.0).switches, 0u);
 }
 
+// What programs of this field write: each is the same two lines.
+TEST(Recording, dialects_read_alike) {
+  const TemporaryFolder folder;
+  const std::string rows = "0,0.1,0.2,0.3,1,0,0,0\n1,0.1,0.2,0.4,1,0,0,0\n";
+  int checked = 0;
+  for (const std::string& text :
+       {kHeader + rows, "\xef\xbb\xbf" + kHeader + rows, kHeader + rows + "\r\n  \n\n,,,,,,,\n",
+        std::string("time_s,px_m,py_m,pz_m,qw,qx,qy,qz\r\n+0.0e+00,+1.0e-01,+2.0E-01,+3e-1,+1,0,0,0\r\n"
+                    "1,.1,.2,.4,1.,0,0,0\r\n\r\n"),
+        std::string("time_s;px_m;py_m;pz_m;qw;qx;qy;qz\n0;0,1;0,2;0,3;1;0;0;0\n1,0;0,1;0,2;0,4;1,0;0;0;0\n"),
+        std::string("time_s\tpx_m\tpy_m\tpz_m\tqw\tqx\tqy\tqz\n0\t0.1\t0.2\t0.3\t1\t0\t0\t0\n"
+                    "1\t0.1\t0.2\t0.4\t1\t0\t0\t0"),
+        std::string("# Time_S, PX_m ,\"py_m\", pz_m,QW,qx,qy,qz\n0, 0.1, 0.2, 0.3, 1, 0, 0, 0,\n"
+                    "1,\"0.1\",0.2,0.4,1,0,0,0\n"),
+        std::string("sep=;\r\ntime_s;px_m;py_m;pz_m;qw;qx;qy;qz\r\n0;0.1;0.2;0.3;1;0;0;0\r\n"
+                    "1;0.1;0.2;0.4;1;0;0;0\r\n")}) {
+    const auto path = replay(folder, text)->path();
+    EXPECT_EQ(path(0.0).pose.translation, Vec3(0.1, 0.2, 0.3)) << text;
+    EXPECT_EQ(path(1.0).pose.translation, Vec3(0.1, 0.2, 0.4)) << text;
+    ++checked;
+  }
+  EXPECT_EQ(checked, 8);
+}
+
+TEST(Recording, times_are_scaled_then_shifted) {
+  const TemporaryFolder folder;
+  folder.write("r.csv", kHeader + "1700000000000,0,0,0,1,0,0,0\n1700000000500,1,0,0,1,0,0,0\n");
+  DeviceSpec spec;
+  spec.type = "recording";
+  spec.file = "r.csv";
+  spec.time_scale = 1e-3;
+  spec.time_offset_s = -1.7e9;
+  const auto device = make_device(spec, folder.string());
+  EXPECT_NEAR(device->path()(0.25).pose.translation.x(), 0.5, 1e-6);
+  EXPECT_NEAR(device->path()(0.25).twist.linear.x(), 2.0, 1e-6);
+  ASSERT_TRUE(device->recorded());
+  EXPECT_NEAR(device->recorded()->last, 0.5, 1e-6);
+  spec.time_scale = 0.0;
+  expect_contains(message_of([&] { make_device(spec, folder.string()); }), "time_scale = 0 must be positive");
+}
+
 TEST(Recording, malformed_files_are_refused_with_line_and_column) {
   const TemporaryFolder folder;
   int checked = 0;
@@ -153,7 +246,13 @@ TEST(Recording, malformed_files_are_refused_with_line_and_column) {
   refused(kHeader + "0,0,0,0,0.5,0,0,0\n", ":2: column \"qw\": the quaternion's length is 0.5, not 1");
   refused("switches," + kHeader + "-1,0,0,0,0,1,0,0,0\n", ":2: switches = -1 is no set of bits");
   refused("switches," + kHeader + "1.5,0,0,0,0,1,0,0,0\n", ":2: switches = 1.5 is no set of bits");
-  EXPECT_EQ(checked, 11);
+  refused("0,0,0,0,1,0,0,0\n", ":1: its first line has numbers, where the columns' names must stand");
+  refused("time_s px_m py_m pz_m qw qx qy qz\n0 0 0 0 1 0 0 0\n",
+          ":1: its columns are separated by neither commas");
+  refused(kHeader + "0,0,\"0,5\",0.5,1,0,0,0\n",
+          ":2: column \"pz_m\": \"0.5\" has a decimal point, \"0,5\" before it a comma");
+  refused(std::string("\xff\xfet\0i\0", 6), ":1: the file is in UTF-16");
+  EXPECT_EQ(checked, 15);
   DeviceSpec spec;
   spec.type = "recording";
   expect_contains(message_of([&] { make_device(spec); }), "device: file is missing");

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -179,13 +180,114 @@ TEST(Udp, what_is_no_new_pose_of_the_peer_is_counted_and_dropped) {
   EXPECT_EQ(device.counts().foreign, 1);
   EXPECT_EQ(device.counts().accepted, 1);
   const std::vector<std::pair<std::string, long long>> tallies = {
-      {"packets_accepted", 1}, {"packets_malformed", 9},         {"packets_of_another_version", 1},
-      {"packets_stale", 2},    {"packets_from_another_peer", 1}, {"wrenches_unsent", 0}};
+      {"packets_accepted", 1},           {"packets_malformed", 9},
+      {"packets_of_another_version", 1}, {"packets_stale", 2},
+      {"packets_far_ahead", 0},          {"packets_out_of_bounds", 0},
+      {"packets_from_another_peer", 1},  {"wrenches_unsent", 0}};
   EXPECT_EQ(device.tallies(), tallies);
   EXPECT_FALSE(device.sample(0.01).valid) << "none of them kept it alive";
   peer.send(encode(pose(12, 0.3)));
   EXPECT_TRUE(device.sample(0.011).valid);
   EXPECT_EQ(device.position(), Vec3(0.3, 2, 3));
+}
+
+// Finite, and still none of a hand: each would have moved the tool out of the scene, or the integrator out of
+// what it can follow.
+TEST(Udp, poses_beyond_the_bounds_are_counted_and_dropped) {
+  UdpDevice device(any_port());
+  device.bound({Vec3(0, 2, 3), 1.5, 20.0, 30.0});
+  device.sample(0.0);
+  Peer peer(device.port());
+  peer.send(encode(pose(1, 1e300)));
+  EXPECT_FALSE(device.sample(0.001).valid) << "such a one does not make its sender the peer, either";
+  peer.send(encode(pose(2, 0.1)));
+  ASSERT_TRUE(device.sample(0.002).valid);
+  std::uint64_t sequence = 3;
+  const auto dropped = [&](const PosePacket& packet) {
+    const long before = device.counts().out_of_bounds;
+    peer.send(encode(packet));
+    device.sample(0.003);
+    EXPECT_EQ(device.position(), Vec3(0.1, 2, 3)) << packet.sequence;
+    return device.counts().out_of_bounds - before;
+  };
+  for (const double x : {1.51, -1.51, 1e8, -1.7e308}) EXPECT_EQ(dropped(pose(sequence++, x)), 1) << x;
+  PosePacket fast = pose(sequence++, 0.2);
+  fast.twist.linear = Vec3(0, 1e200, -1e200);
+  EXPECT_EQ(dropped(fast), 1);
+  fast = pose(sequence++, 0.2);
+  fast.twist.angular.y() = 31.0;
+  EXPECT_EQ(dropped(fast), 1);
+  peer.send(encode(pose(sequence, 1.49)));
+  EXPECT_EQ(device.sample(0.004).pose.translation, Vec3(1.49, 2, 3));
+  EXPECT_EQ(device.counts().out_of_bounds, 7);
+}
+
+// One damaged number does not make all that follow old: it is dropped, and nothing of the hand is lost.
+TEST(Udp, a_number_far_ahead_is_dropped) {
+  UdpDevice device(any_port());
+  device.sample(0.0);
+  Peer peer(device.port());
+  const auto valid = [&](std::uint64_t sequence, double t) {
+    peer.send(encode(pose(sequence, 0.1 * t)));
+    device.sample(t);
+    return device.position().x() == 0.1 * t;
+  };
+  EXPECT_TRUE(valid(10, 0.001));
+  for (const std::uint64_t far :
+       {std::uint64_t{11} << 40, ~std::uint64_t{0}, std::uint64_t{10} + kMostAhead + 1})
+    EXPECT_FALSE(valid(far, 0.002)) << far;
+  EXPECT_TRUE(valid(11, 0.003));
+  EXPECT_TRUE(valid(11 + 1'000'000, 0.004)) << "a clock of nanoseconds";
+  EXPECT_EQ(device.counts().ahead, 3);
+  EXPECT_EQ(device.counts().stale, 0);
+}
+
+// A first number that is damaged, or a peer that starts anew, costs what the watchdog takes: 20 ms.
+TEST(Udp, numbers_begin_anew_once_the_force_has_fallen) {
+  for (const std::uint64_t first : {~std::uint64_t{0}, std::uint64_t{5000}}) {
+    UdpDevice device(any_port());
+    device.sample(0.0);
+    Peer peer(device.port());
+    peer.send(encode(pose(first, 0.1)));
+    ASSERT_TRUE(device.sample(0.001).valid);
+    std::uint64_t sequence = 0;
+    int ticks = 0;
+    for (double t = 0.002; device.position().x() != 0.5 && ticks < 1000; t += 0.001, ++ticks) {
+      peer.send(encode(pose(++sequence, 0.5)));
+      device.sample(t);
+    }
+    EXPECT_NEAR(ticks, 20, 1) << first;
+    peer.send(encode(pose(sequence + 1, 0.6)));
+    EXPECT_TRUE(device.sample(0.03).valid);
+    EXPECT_EQ(device.counts().accepted, 3);
+  }
+}
+
+TEST(Udp, waits_for_the_first_pose_with_a_limit) {
+  DeviceSpec spec = any_port();
+  spec.wait_s = 0.05;
+  UdpDevice alone(spec);
+  alone.open();
+  EXPECT_EQ(alone.awaited(),
+            fmt::format("the first pose at 127.0.0.1, UDP port {}, for up to 0.05 s", alone.port()));
+  Peer stranger(alone.port());
+  stranger.send(std::vector<unsigned char>(7, 0));
+  expect_contains(
+      message_of([&] { alone.await(0.0, nullptr); }),
+      fmt::format("device: no pose came to 127.0.0.1, UDP port {}, within 0.05 s (1 packets came that are no "
+                  "poses of this scene: 1 malformed",
+                  alone.port()));
+  spec.wait_s = 600.0;  // the test ends long before
+  UdpDevice met(spec);
+  met.open();
+  Peer peer(met.port());
+  peer.send(encode(pose(1, 0.1)));
+  met.await(0.0, nullptr);
+  EXPECT_TRUE(met.sample(0.0).valid) << "it is there from the first tick on";
+  UdpDevice stopped(spec);
+  const std::atomic<bool> stop{true};
+  stopped.await(0.0, &stop);
+  EXPECT_TRUE(stopped.is_live());
 }
 
 TEST(Udp, of_several_poses_in_a_tick_the_last_counts) {
@@ -222,6 +324,9 @@ TEST(Udp, bad_settings_are_refused) {
   spec.time_out_s = 0.0;
   expect_contains(message_of([&] { UdpDevice{spec}; }), "time_out_s = 0 must be positive");
   spec.time_out_s = 0.01;
+  spec.wait_s = 0.0;
+  expect_contains(message_of([&] { UdpDevice{spec}; }), "wait_s = 0 must be positive");
+  spec.wait_s = 1.0;
   spec.address = "localhost";
   expect_contains(message_of([&] { UdpDevice{spec}; }), "address = \"localhost\" is no IPv4 address");
 }

@@ -60,10 +60,10 @@ TEST(DeviceKeys, AKeyOfAnotherTypeIsRefusedAtItsLocation) {
             "motion, press; remove it (used by hand)");
   EXPECT_EQ(refusal(held_by("udp", "file = \"poses.csv\"\n")),
             "s.toml:9:8: device: file means nothing to device type \"udp\", which takes port, address, "
-            "time_out_s; remove it (used by recording)");
+            "time_out_s, wait_s; remove it (used by recording)");
   EXPECT_EQ(refusal(held_by("recording", "keyframe = [{ time_s = 0.0 }]\n")),
-            "s.toml:9:12: device: keyframe means nothing to device type \"recording\", which takes file; "
-            "remove it (used by script, hand)");
+            "s.toml:9:12: device: keyframe means nothing to device type \"recording\", which takes file, "
+            "time_offset_s, time_scale; remove it (used by script, hand)");
 }
 
 TEST(DeviceKeys, EveryTypeTakesItsOwnAndRefusesTheOthers) {
@@ -87,9 +87,9 @@ TEST(DeviceKeys, EveryTypeTakesItsOwnAndRefusesTheOthers) {
       ++refused;
     }
   }
-  EXPECT_EQ(taken, 2 + 17 + 0 + 2) << "motion, press; these and a hand's 15; none; address and time-out";
+  EXPECT_EQ(taken, 2 + 17 + 2 + 3) << "motion, press; these and a hand's 15; clock; address, time-out, wait";
   EXPECT_EQ(common, 4 * 10) << "profile, four limits, ramp, and four keys of the workspace";
-  EXPECT_EQ(refused, 19 + 4 + 21 + 19) << "of 3 for scripts, 15 for hands, 1 for recordings, 3 for peers";
+  EXPECT_EQ(refused, 22 + 7 + 22 + 21) << "of 3 for scripts, 15 for hands, 3 for recordings, 4 for peers";
 }
 
 TEST(DeviceKeys, WhatATypeNeedsIsAskedFor) {

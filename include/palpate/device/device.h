@@ -1,7 +1,10 @@
 #pragma once
+#include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +32,28 @@ struct HandleSample {
     a("valid", valid);
     a("switches", switches);
   }
+};
+
+/// From the times of a recording to the scene's: t = scale * t_file + offset.
+struct RecordingClock {
+  double scale = 1.0;   ///< seconds per unit of the file's times
+  double offset = 0.0;  ///< [s]
+  /// As the scene says.  @throws Error for a scale that is not positive or an offset that is not finite
+  static RecordingClock of(const DeviceSpec& spec);
+  double operator()(double t_file) const { return scale * t_file + offset; }
+};
+
+/// A span of time [s].
+struct TimeSpan {
+  double first = 0.0, last = 0.0;
+};
+
+/// Which poses and speeds a handle may have: others are a fault of whoever sent them.
+struct PoseBounds {
+  Vec3 center = Vec3::Zero();                    ///< [m]
+  double radius = HUGE_VAL;                      ///< of the ball about it that holds each handle [m]
+  double speed = HUGE_VAL, rotation = HUGE_VAL;  ///< largest [m/s, rad/s]
+  bool hold(const Pose& pose, const Twist& twist) const;
 };
 
 /// A haptic device: something that a hand holds, whose pose is read and which gives a wrench back.
@@ -74,6 +99,20 @@ class Device {
   /// decides as it goes.  One integrator of tool and bodies needs it.
   virtual std::function<HandleSample(double t)> path() const { return {}; }
 
+  /// When its motion was recorded, by the scene's clock; empty where it is none of a recording.
+  virtual std::optional<TimeSpan> recorded() const { return {}; }
+
+  /// Whether somebody outside of this program moves it, by the wall's clock: it needs a run in real time.
+  virtual bool is_live() const { return false; }
+  /// What it has to wait for before a run, in words: "the first pose at ..."; empty: for nothing.
+  virtual std::string awaited() const { return {}; }
+  /// Opens the device and waits for that, before the clock starts.  Returns early where `stop` is set.
+  /// @param t  time of the run's start [s]
+  /// @throws Error where it did not come in time
+  void await(double t, const std::atomic<bool>* stop);
+  /// From now on a pose outside of the bounds is dropped, by devices that cannot vouch for theirs.
+  virtual void bound(const PoseBounds&) {}
+
   /// What it has counted, by name: packets that it dropped, for one.  Read when its loop is over.
   virtual std::vector<std::pair<std::string, long long>> tallies() const { return {}; }
 
@@ -89,6 +128,8 @@ class Device {
   virtual void do_open() {}
   /// Lets go; called at most once for each do_open().  Must not throw.
   virtual void do_close() {}
+  /// As await(), of a device that is open; nothing for those that wait for nobody.
+  virtual void do_await(double /*t*/, const std::atomic<bool>* /*stop*/) {}
   /// The handle at time t [s], without waiting; `valid` is false while nothing new has come.
   virtual HandleSample do_sample(double t) = 0;
   /// The wrench from t [s] on, about the handle's origin, scene's axes; nothing for devices without motors.

@@ -11,10 +11,13 @@ class Device;
 /// not felt), then it falls smoothly, and from kFallTime on it is zero [s].
 inline constexpr double kHoldTime = 0.010, kFallTime = 0.020;
 
-/// Maxima a second [1/s] where neither scene nor profile says: thirty of them in a tick of 1 ms, which it
-/// never slows.  Relative to the device's maxima, so that it suits any device and any units.  A profile's
-/// slew is that of an amplifier, 1885 maxima a second (profile.cpp).
+/// Maxima a second [1/s] of a device that the computer moves, where neither scene nor profile says: thirty of
+/// them in a tick of 1 ms, which it never slows.  Relative to the device's maxima, so that it suits any
+/// device and any units.  A profile's slew is that of an amplifier, 1885 maxima a second; that of a device in
+/// a hand follows from its stiffness, 309 maxima a second by default (profile.cpp).
 inline constexpr double kDefaultSlew = 3e4;
+/// The least slew, in maxima a second: the steepest part of the watchdog's fall, a smoothstep.
+inline constexpr double kLeastSlew = 1.5 / (kFallTime - kHoldTime);
 
 /// The last thing before the motors: never lets a wrench above the device's maximum out (smoothly: |f| ->
 /// fmax tanh-like, C1, identity to within 1 % below half the maximum), ramps in, bounds the slew, fades
@@ -41,6 +44,9 @@ class WrenchLimiter {
   /// @param wanted  force and moment on the hand before the limit
   /// @param t [s], increasing  @param valid  whether the handle's pose of this tick is valid
   Wrench limit(double t, const Wrench& wanted, bool valid);
+  /// The hand was without a wrench since the last tick, for longer than its time says: the next valid one
+  /// ramps in from zero.  Nothing where there is no ramp: nobody holds the device then.
+  void restart();
   /// valid ticks whose wanted force or torque was above its maximum
   long limited_ticks() const { return limited_; }
   /// ticks with a wrench that was not finite or a time that did not increase

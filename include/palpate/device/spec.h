@@ -45,8 +45,8 @@ struct DeviceSpec {
 
   std::optional<double> max_force_n;            ///< 3.3, of a common desktop device
   std::optional<double> max_torque_n_m;         ///< 0.2
-  std::optional<double> max_force_slew_n_s;     ///< empty: the profile's, else 3e4 maxima a second
-  std::optional<double> max_torque_slew_n_m_s;  ///< empty: the profile's, else 3e4 maxima a second
+  std::optional<double> max_force_slew_n_s;     ///< empty: by type and profile (profile.cpp)
+  std::optional<double> max_torque_slew_n_m_s;  ///< likewise
   /// force ramps in from zero over this time at the start and after each failure of the device; empty: 0.2 s
   /// of a device that somebody holds, 0 of those that the computer moves
   std::optional<double> ramp_s;
@@ -73,12 +73,15 @@ struct DeviceSpec {
   double force_resolution_n = 0.0;             ///< steps of the motors' force; 0: exact
   double delay_s = 0.0;                        ///< from a sample to the wrench that it leads to
 
-  std::string file{};  ///< of a recording, from the scene's folder
+  std::string file{};                ///< of a recording, from the scene's folder
+  double time_offset_s = 0.0;        ///< added to the recording's times once they are scaled
+  std::optional<double> time_scale;  ///< seconds per unit of the recording's times; empty: 1, if plausible
 
   // of a peer on the network
   std::string address = "127.0.0.1";  ///< this machine's address that it listens on
   int port = 0;                       ///< UDP port that poses come to
   double time_out_s = 0.002;          ///< after the last pose samples are invalid
+  double wait_s = 30.0;               ///< longest wait for the first pose, before the clock starts
 };
 
 /// What they may be: checked by the loader of scenes and by the device.
@@ -111,6 +114,10 @@ struct DeviceRanges {
   static constexpr Range port = Range::closed(1, 65535, "above 1023 no rights are needed");
   /// [s]
   static constexpr Range time_out_s = Range::positive("two ticks, 0.002, are usual");
+  /// [s]
+  static constexpr Range wait_s = Range::positive("30 leaves time to start the peer");
+  /// seconds per unit of a recording's times
+  static constexpr Range time_scale = Range::positive("0.001 is for milliseconds, 1e-6 for microseconds");
 };
 
 }  // namespace palpate

@@ -22,14 +22,19 @@
 ///   104     angular velocity 3 f64 [rad/s]
 ///   128     switches u32
 ///
-/// A sequence that does not rise is an old packet, or one that is sent again, and does not count: a peer that
-/// starts anew goes on from a larger number, such as its clock.  There is no encryption: whoever can send to
-/// the port first moves the handle.
+/// A sequence counts packets, or is the peer's clock, in nanoseconds at the finest.  One that does not rise
+/// is an old packet, or one that is sent again; one that is more than kMostAhead ahead is damaged: neither
+/// counts. Once no pose has counted for kFallTime (limiter.h) the force has fallen to zero, and the peer's
+/// next number counts whatever it is: a peer may start anew, and none locks itself out.  There is no
+/// encryption: whoever can send to the port first moves the handle.
 namespace palpate::device {
 
 /// the bytes P L P T
 inline constexpr std::uint32_t kUdpMagic = 0x54504c50;  // the bytes P L P T
 inline constexpr std::uint16_t kUdpVersion = 1;         ///< of both packets
+
+/// Largest rise of a sequence from one pose to the next: a second of nanoseconds, far beyond kFallTime.
+inline constexpr std::uint64_t kMostAhead = 1'000'000'000;
 
 /// What a peer sends.
 struct PosePacket {
@@ -67,13 +72,15 @@ PacketFault decode(std::span<const unsigned char> bytes, WrenchPacket& out);
 struct UdpCounts {
   long accepted = 0, malformed = 0, wrong_version = 0;  ///< packets by what they were
   long stale = 0;                                       ///< a sequence that did not rise
+  long ahead = 0;                                       ///< a sequence that rose by more than kMostAhead
+  long out_of_bounds = 0;                               ///< a pose or speed beyond PoseBounds
   long foreign = 0;  ///< from another address than the first that was accepted
   long unsent = 0;   ///< wrenches that the network did not take
 };
 
 /// The device.  A sample takes what has come, never waits, and repeats the last pose between packets; it is
 /// valid while the last one came at most time_out_s ago, by the loop's clock.  Before the first it is not,
-/// and stands at the workspace's center.
+/// and stands at the workspace's center; await() waits for it for up to wait_s.
 class UdpDevice : public Device {
  public:
   /// @param spec  its port may be 0: any that is free
@@ -84,10 +91,14 @@ class UdpDevice : public Device {
   const UdpCounts& counts() const { return counts_; }
   std::vector<std::pair<std::string, long long>> tallies() const override;
   int port() const { return port_; }  ///< that it is bound to, once it is open
+  bool is_live() const override { return true; }
+  std::string awaited() const override;
+  void bound(const PoseBounds& bounds) override { bounds_ = bounds; }
 
  protected:
   void do_open() override;
   void do_close() override;
+  void do_await(double t, const std::atomic<bool>* stop) override;
   HandleSample do_sample(double t) override;
   void do_feedback(double t, const Wrench& on_hand) override;
 
@@ -97,16 +108,18 @@ class UdpDevice : public Device {
     std::uint16_t port = 0;
     bool operator==(const Address&) const = default;
   };
-  bool take(std::span<const unsigned char> bytes, const Address& from);
+  bool take(std::span<const unsigned char> bytes, const Address& from, double t);
+  void receive(double t);  ///< what has come by now
 
   std::string address_;
   int port_;
-  double time_out_;
+  double time_out_, wait_;
   DeviceSpecification specification_;
   int socket_ = -1;
   PosePacket last_;
   std::optional<Address> peer_;  ///< empty until a packet is accepted
   double arrived_ = 0.0;         ///< loop's time of the last accepted one [s]
+  PoseBounds bounds_;
   UdpCounts counts_;
 };
 
