@@ -31,6 +31,13 @@ void print_clock(const loop::RunResult& result, const std::string& linearisation
   print_series("exchange's latency", clock.latency_s, 1e-3, "ms");
   fmt::print("  {} of {} ticks late by a tick or more; bodies and contact at {:.1f} Hz (wanted {:g})\n",
              clock.missed_ticks, clock.lateness_s.size(), clock.exchanges_per_s(), 1.0 / clock.period_s);
+  if (clock.left_out_ticks > 0)
+    fmt::print(
+        "  the clock started anew after ticks that were more than {:g} ms late: {} ticks were left out\n",
+        1e3 * clock.stall_s, clock.left_out_ticks);
+  if (clock.stalls > 0)
+    fmt::print("  no wrench went out for more than {:g} ms, {} times: the force set in anew\n",
+               1e3 * clock.stall_s, clock.stalls);
   if (const double exchanges = static_cast<double>(clock.latency_s.size()); exchanges > 0.0) {
     const dynamics::StepperCounters& c = result.counters;
     const double step = c.force_s + c.tangent_s + c.solver.symbolic_s + c.solver.factor_s + c.solver.solve_s,

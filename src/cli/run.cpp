@@ -331,6 +331,10 @@ loop::RunResult run_watched(std::unique_ptr<loop::World>& world, const RunArgume
   options.observers = std::move(observers);
   options.progress = [&progress](double fraction) { progress(fraction); };
   options.stop = &stop_flag();
+  options.waiting = [](const std::string& awaited) {
+    fmt::print("waiting for {}\n", awaited);
+    std::fflush(stdout);
+  };
   return checkpoints ? loop::run_with_checkpoints(world, options, *checkpoints, cost, from)
                      : loop::run(*world, options);
 }
@@ -374,6 +378,8 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   if (checkpoints)
     if (const std::string why = loop::why_no_checkpoints(*world, {}); !why.empty())
       fail("--checkpoint-every: {}", why);
+
+  loop::check_clock(*world, arguments.real_time);
 
   // A scene that records nothing writes nothing, unless something was asked for here.
   const bool keep = description.record || !arguments.folder.empty() || arguments.picture ||

@@ -21,6 +21,9 @@ void catch_stop_signals() {
       SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second signal finds the default action again
   sigemptyset(&action.sa_mask);
   for (int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+  struct sigaction hang_up = {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // else nohup wants it ignored
 }
 
 }  // namespace palpate::cli

@@ -3,8 +3,8 @@
 
 namespace palpate::cli {
 
-/// Set by the first Ctrl-C (or SIGTERM): loops poll it and end cleanly.  A second Ctrl-C ends the program at
-/// once.
+/// Set by the first Ctrl-C, SIGTERM or SIGHUP: loops poll it and end cleanly, without a wrench on a hand.  A
+/// second Ctrl-C ends the program at once.
 const std::atomic<bool>& stop_flag();
 void catch_stop_signals();
 

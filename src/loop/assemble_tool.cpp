@@ -10,6 +10,8 @@
 #include "palpate/store/model_file.h"
 #include "palpate/tool/simbody_block.h"
 #include "palpate/tool/tool.h"
+#include "pose_bounds.h"
+#include "recorded_times.h"
 #include "tool_side.h"
 
 namespace palpate::loop {
@@ -85,7 +87,9 @@ void assemble_block(World& world, ToolSide& side, bool own_device) {
 std::unique_ptr<device::Device> own_device_of(const DeviceSpec& spec, const std::string& folder) {
   const std::filesystem::path file(spec.file);
   if (spec.type != "recording" || file.extension() != ".h5") return device::make_device(spec, folder);
-  return recorded_hand(read_haptic_record((std::filesystem::path(folder) / file).string()));
+  HapticRecord record = read_haptic_record((std::filesystem::path(folder) / file).string());
+  set_clock(record, device::RecordingClock::of(spec));
+  return recorded_hand(std::move(record));
 }
 
 /// Semi-implicit Euler diverges in the coupling alone beyond k = 4 m/h^2 - 2 b/h (tool/fixed_tick.cpp), and
@@ -117,13 +121,17 @@ void assemble_tool(World& world, std::size_t hand) {
   const scene::Description& d = world.description;
   ToolSide& side = ToolSide::of(world, hand);
   const bool own_device = !side.handle;
-  if (own_device) side.handle = own_device_of(*side.device_spec, world.folder);
+  if (own_device) {
+    side.handle = own_device_of(*side.device_spec, world.folder);
+    check_recorded_times(*side.handle, *side.device_spec, d.duration_s);
+  }
   const device::DeviceFigures figures = device::figures_of(*side.device_spec);
   side.limiter = std::make_unique<device::WrenchLimiter>(figures.max_force, figures.max_torque, figures.ramp,
                                                          figures.max_force_slew, figures.max_torque_slew);
   side.limiter->confine(figures.workspace, *side.handle);
   if (d.exchange.scheme == "partitioned")
     side.motors = device::Motors(device::motor_figures(*side.device_spec));
+  side.handle->bound(pose_bounds(world, figures.workspace));
   if (d.exchange.scheme == "monolithic")
     assemble_block(world, side, own_device);
   else if (d.exchange.scheme == "partitioned") {

@@ -35,6 +35,9 @@ void visit_tick(F&& f, Tick& t) {
   f("record_version", t.record_version);
   f("handle_valid", t.handle_valid);
   f("switches", t.switches);
+  f("limited", t.limited);
+  f("ramps_in", t.ramps_in);
+  f("left_out_ticks", t.left_out);
   visit_pose(f, "handle", t.handle);
   visit_pair(f, "handle_angular", t.handle_twist.angular, "_rad_s", "handle_linear", t.handle_twist.linear,
              "_m_s");

@@ -7,11 +7,13 @@
 #include <exception>
 #include <latch>
 #include <thread>
+#include <utility>
 
 #include "body_side.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/spsc_ring.h"
+#include "palpate/device/limiter.h"
 #include "palpate/dynamics/exchange.h"
 #include "palpate/loop/contact_record.h"
 #include "real_time_thread.h"
@@ -32,8 +34,14 @@ namespace {
 // compute; F1 and J carry it on to their own instant.  Virtual time does the same with latency_ticks.
 //
 // Bodies that fall behind take two to kStretched periods after one query (a query costs more than a step);
-// what is beyond that they stand still in, so that the hand never feels a contact older than that.
+// what is beyond that they stand still in, so that the hand never feels a contact older than that.  A step
+// that is not over by then, counted from the last tick, is given up: a run lasts as long as it was to.
 constexpr int kStretched = 4;
+
+// A tick that is late follows the one before at once, and so on until the clock is caught up with.  Beyond
+// kFallTime (limiter.h) a device without a pose has lost its force, and a hand that waited for a wrench for
+// so long is where the tool is not: the ticks up to then are left out, and the clock starts anew.
+constexpr std::int64_t kStall = std::int64_t(1e9 * device::kFallTime);  // [ns]
 
 /// Ticks that the bodies' thread may leave unread: 16 s at 1 kHz.
 constexpr std::size_t kQueue = 1 << 14;
@@ -48,17 +56,6 @@ struct TimedTick {
 };
 
 float seconds(std::int64_t ns) { return static_cast<float>(1e-9 * static_cast<double>(ns)); }
-
-void refuse_what_is_not_served(const World& world) {
-  const scene::Description& d = world.description;
-  if (!d.tool) fail("real time: the scene has no [tool], so nothing that a hand would feel");
-  if (!world.has_tool_of_ticks())
-    fail("real time: exchange.scheme = \"monolithic\" has no ticks of its own; take \"partitioned\"");
-  for (const scene::HandSpec& hand : d.hands)
-    if (hand.tool.tick_s != d.tool->tick_s)
-      fail("real time: hand \"{}\" ticks every {} s, the first every {} s; one clock serves one tick_s",
-           hand.name, hand.tool.tick_s, d.tool->tick_s);
-}
 
 class RealTime {
  public:
@@ -76,14 +73,24 @@ class RealTime {
     for (const auto& side : ToolSide::all(world)) hands_.emplace_back(world.description, *side);
     out_.tick_s = tick_s_;
     out_.period_s = bodies.period();
+    out_.stall_s = device::kFallTime;
     out_.lateness_s.reserve(static_cast<std::size_t>(count_));
     out_.work_s.reserve(static_cast<std::size_t>(count_));
   }
 
+  /// The stepper lives on.
+  ~RealTime() {
+    if (world_.stepper) world_.stepper->set_interrupt(options_.stop);
+  }
+  RealTime(const RealTime&) = delete;
+  RealTime& operator=(const RealTime&) = delete;
+
   void run() {
+    if (!await_devices()) return;
     for (Hand& hand : hands_) hand.ticks.start(0.0);
     bodies_.restart_path();
     bodies_.start();
+    if (world_.stepper) world_.stepper->set_interrupt(&interrupt_);
     bodies_.query();
     publish();
     if (world_.stepper) world_.stepper->prepare(bodies_.period());
@@ -100,6 +107,7 @@ class RealTime {
     }
     quit_.store(true);
     thread.join();
+    told_to_stop();
     drain(ticked_.load());
     if (failure_) std::rethrow_exception(failure_);
     if (result_.status.ok()) result_.status = tick_status_;
@@ -109,6 +117,19 @@ class RealTime {
   }
 
  private:
+  /// False where the run is over before it begins.
+  bool await_devices() {
+    for (const auto& side : ToolSide::all(world_)) {
+      side->handle->open();
+      const std::string awaited = side->handle->awaited();
+      if (awaited.empty()) continue;
+      if (options_.waiting) options_.waiting(awaited);
+      side->handle->await(0.0, options_.stop);
+      if (told_to_stop()) return false;
+    }
+    return true;
+  }
+
   // --- the ticks' thread: no memory is taken, nothing waited for but the clock
 
   void tick_to_the_end() {
@@ -124,23 +145,34 @@ class RealTime {
       } catch (...) {
         if (!failure_) failure_ = std::current_exception();
       }
+    const bool to_the_end = ticked_.load() == count_;
     over_.store(true, std::memory_order_release);
+    const std::int64_t patience = to_the_end ? kStretched * per_period_ * tick_ns_ : 0;
+    for (const std::int64_t end = now_ns() + patience; !quit_.load() && now_ns() < end;)
+      sleep_until_ns(std::min(end, now_ns() + 1'000'000));
+    interrupt_.store(true);
   }
 
   void tick_by_the_clock() {
     TimedTick timed;
+    std::int64_t woke_before = start_ns_;
     for (long i = 1; i <= count_ && !quit_.load(std::memory_order_relaxed); ++i) {
-      const std::int64_t due = start_ns_ + i * tick_ns_;
-      sleep_until_ns(due);
-      const std::int64_t woke = now_ns();
+      sleep_until_ns(start_ns_ + i * tick_ns_);
+      if (options_.stop && options_.stop->load(std::memory_order_relaxed)) return;
+      const std::int64_t woke = now_ns(), late = woke - start_ns_ - i * tick_ns_;
+      const long left_out = late > kStall ? late / tick_ns_ : 0;
+      start_ns_ += left_out * tick_ns_;
+      const bool ramps_in = woke - std::exchange(woke_before, woke) > tick_ns_ + kStall;
       const double t = static_cast<double>(i) * tick_s_;
       timed.number = i;
-      timed.lateness_s = seconds(woke - due);
+      timed.lateness_s = seconds(late);
       for (timed.hand = 0; timed.hand < hands_.size(); ++timed.hand) {
         Hand& hand = hands_[timed.hand];
+        if (ramps_in) hand.ticks.ramp_in();
         tick_status_ =
             hand.ticks.tick(t, tick_s_, hand.ticks.contact(t, tick_s_, hand.records.latest()), timed.record);
         if (!tick_status_.ok()) return;
+        timed.record.left_out = static_cast<std::uint32_t>(left_out);
         timed.work_s = seconds(now_ns() - woke);  // of the last: that of all
         if (!queue_.push(timed)) unrecorded_.fetch_add(1, std::memory_order_relaxed);
       }
@@ -162,10 +194,20 @@ class RealTime {
       if (told_to_stop()) return false;
       sleep_until_ns(now_ns() + 20'000);
     }
+    if (interrupt_.load()) {
+      if (!told_to_stop()) give_up_steps(done_);
+      return false;
+    }
     const long behind = (ticked - done_) / per_period_;
     const long dropped = std::max(0L, behind - kStretched), taken = behind - dropped;
     if (dropped > 0) stand_still(dropped);
+    const long from = done_;
     advance(taken);
+    if (result_.status.status == dynamics::StepStatus::kInterrupted && !told_to_stop()) {
+      result_.status = {};
+      give_up_steps(from);
+      return false;
+    }
     if (bodies_.ended()) return false;
     bodies_.query();
     publish();
@@ -185,6 +227,16 @@ class RealTime {
   }
 
   double time_of(long tick) const { return static_cast<double>(tick) * tick_s_; }
+
+  /// The run's time is over, and the bodies' is not: from tick `from` on they stand still.
+  void give_up_steps(long from) {
+    done_ = ticked_.load() / per_period_ * per_period_;
+    if (done_ <= from) return;
+    out_.dropped_periods += (done_ - from) / per_period_;
+    drain(done_);
+    bodies_.stand_still(time_of(done_));
+    bodies_.close_period(time_of(done_));
+  }
 
   void stand_still(long periods) {
     out_.dropped_periods += periods;
@@ -216,6 +268,8 @@ class RealTime {
       out_.lateness_s.push_back(timed.lateness_s);
       out_.work_s.push_back(timed.work_s);
       out_.missed_ticks += timed.lateness_s >= static_cast<float>(tick_s_);
+      out_.left_out_ticks += timed.record.left_out;
+      out_.stalls += timed.record.ramps_in;
     }
   }
 
@@ -233,21 +287,23 @@ class RealTime {
   std::deque<Hand> hands_;
   int per_period_;
   double tick_s_;
-  std::int64_t tick_ns_, start_ns_ = 0;
+  std::int64_t tick_ns_;
+  std::atomic<std::int64_t> start_ns_{0};  ///< of the clock: changed by the ticks' thread
   long count_, done_ = 0, drained_ = 0;
 
   SpscRing<TimedTick> queue_;
   dynamics::StepResult tick_status_;  ///< of the ticks' thread; read when it is over
   std::atomic<long> ticked_{0}, unrecorded_{0};
   std::atomic<bool> quit_{false}, over_{false};
-  std::latch ready_{1};         ///< `start_ns_` is set
-  std::exception_ptr failure_;  ///< of the ticks' thread
+  std::atomic<bool> interrupt_{false};  ///< of the bodies' step: nobody waits for it any more
+  std::latch ready_{1};                 ///< `start_ns_` is set
+  std::exception_ptr failure_;          ///< of the ticks' thread
 };
 
 }  // namespace
 
 void run_in_real_time(World& world, BodySide& bodies, const RunOptions& options, RunResult& result) {
-  refuse_what_is_not_served(world);
+  check_clock(world, true);
   RealTime(world, bodies, options, result).run();
 }
 

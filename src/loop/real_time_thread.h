@@ -5,9 +5,9 @@
 
 namespace palpate::loop {
 
-/// Nanoseconds of the monotonic clock.
+/// Nanoseconds since the machine started, those included in which it was suspended.
 std::int64_t now_ns();
-/// Sleeps until the monotonic clock shows that [ns]; returns at once where it does already.
+/// Sleeps until that clock shows that [ns]; returns at once where it does already.
 void sleep_until_ns(std::int64_t due);
 
 /// Makes the calling thread what a servo loop wants, as far as the system permits: SCHED_FIFO, pinned to the

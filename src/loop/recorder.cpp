@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
-#include "palpate/device/profile.h"
 #include "palpate/loop/contact_record.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/scene/hands.h"
@@ -21,9 +20,6 @@ constexpr const char* kRunFile = "run.vtkhdf";
 constexpr const char* kForceFile = "force.csv";
 constexpr const char* kBoneFile = "bones.csv";
 constexpr const char* kEnergyFile = "energy.csv";
-
-/// Below this share of the device's maximum a difference is the limiter's smoothness, not a limit.
-constexpr double kUnlimited = 3e-13;
 
 std::vector<std::string> energy_headers() {
   std::vector<std::string> headers = {"time_s"};
@@ -55,18 +51,8 @@ struct Recorder::Impl {
   std::vector<store::RunPart> parts;  ///< of the file of states, until it is opened
   store::RunInfo info;
   std::unique_ptr<store::RunFile> states;
-  /// [N] and [N m]: a larger difference between the wrench wanted and the wrench sent means that it was
-  /// limited; what a device does not drive is no limit
-  struct Forces {
-    Forces(store::ForceFile opened, const device::DeviceFigures& figures)
-        : file(std::move(opened)),
-          force_rounding(kUnlimited * figures.max_force),
-          torque_rounding(figures.max_torque > 0.0 ? kUnlimited * figures.max_torque : INFINITY) {}
-    store::ForceFile file;
-    double force_rounding, torque_rounding;
-  };
-  std::vector<std::unique_ptr<Forces>> forces;          ///< of each hand
-  std::vector<std::unique_ptr<HapticRecorder>> haptic;  ///< likewise
+  std::vector<std::unique_ptr<store::ForceFile>> forces;  ///< of each hand
+  std::vector<std::unique_ptr<HapticRecorder>> haptic;    ///< likewise
   std::unique_ptr<store::BoneFile> bones;
   std::unique_ptr<store::CsvWriter> energy;
   std::vector<TriMesh> tools;  ///< of each hand, in its own axes
@@ -164,8 +150,7 @@ Places Recorder::Impl::places() {
     at.haptic.push_back(haptic[i]->place());
     safe(store::TableFile::journal_path(names[i]));
   }
-  for (const auto& one : forces)
-    at.forces.push_back(one->file.place()), store::bring_to_disk(one->file.path());
+  for (const auto& one : forces) at.forces.push_back(one->place()), store::bring_to_disk(one->path());
   return at;
 }
 
@@ -196,9 +181,8 @@ void Recorder::Impl::open(const Places* from) {
   for (const scene::Hand& hand : scene::hands_of(d)) {
     const std::size_t i = forces.size();
     const std::string name = i == 0 ? kForceFile : fmt::format("force-{}.csv", hand.name);
-    forces.push_back(std::make_unique<Forces>(
-        open_csv.operator()<store::ForceFile>(name, from ? &from->forces.at(i) : nullptr),
-        device::figures_of(*hand.device)));
+    forces.push_back(std::make_unique<store::ForceFile>(
+        open_csv.operator()<store::ForceFile>(name, from ? &from->forces.at(i) : nullptr)));
   }
 }
 
@@ -245,7 +229,7 @@ void Recorder::archive(Archive& a) {
 Recorder::~Recorder() = default;
 
 void Recorder::close() {
-  for (const auto& forces : impl_->forces) forces->file.flush();
+  for (const auto& forces : impl_->forces) forces->flush();
   if (impl_->bones) impl_->bones->flush();
   if (impl_->energy) impl_->energy->flush();
   if (impl_->states) impl_->states->close();
@@ -256,7 +240,7 @@ void Recorder::period(World& world, double t) {
     impl_->tool_motions[i] = {world.tool_pose(i), world.tool_twist(i)};
   if (impl_->states && impl_->seen % impl_->every == 0) impl_->append(world, t);
   if (impl_->bones && impl_->seen % impl_->every == 0) impl_->append_bones(world, t);
-  for (const auto& forces : impl_->forces) forces->file.flush();
+  for (const auto& forces : impl_->forces) forces->flush();
   for (const auto& haptic : impl_->haptic) haptic->period(world, t);
   ++impl_->seen;
 }
@@ -278,11 +262,7 @@ void Recorder::exchanged_of(std::size_t hand, const ContactRecord& record) {
 void Recorder::tick_of(std::size_t hand, const TickRecord& tick) {
   if (hand >= impl_->forces.size()) return;
   impl_->haptic[hand]->tick(tick);
-  Impl::Forces& forces = *impl_->forces[hand];
-  const Wrench &sent = tick.device, &wanted = tick.wanted;
-  const bool limited = (sent.force - wanted.force).norm() > forces.force_rounding ||
-                       (sent.moment - wanted.moment).norm() > forces.torque_rounding;
-  forces.file.append({tick.time, tick.handle, tick.tool, tick.device, limited, tick.switches});
+  impl_->forces[hand]->append({tick.time, tick.handle, tick.tool, tick.device, tick.limited, tick.switches});
 }
 
 }  // namespace palpate::loop

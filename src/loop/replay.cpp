@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
+#include "palpate/core/so3.h"
+#include "palpate/device/monotone_slope.h"
 #include "palpate/dynamics/path.h"
 #include "palpate/loop/contact_record.h"
 #include "palpate/scene/hands.h"
@@ -11,6 +13,19 @@
 
 namespace palpate::loop {
 namespace {
+
+/// The twists at the ends of a segment of length h [s], or the nearest with which motion_between() stays
+/// between the two poses: in each component of the position, and of the rotation vector that carries one
+/// orientation to the other.  A peer's twists need not be the rates of its poses.
+void keep_between(dynamics::RigidMotion& from, dynamics::RigidMotion& to, double h) {
+  const Vec6 secant = pose_difference(from.pose, to.pose) / h;
+  const Vec3 turn = h * secant.head<3>();
+  for (dynamics::RigidMotion* end : {&from, &to})
+    end->twist.linear = device::monotone_slope(end->twist.linear, secant.tail<3>());
+  from.twist.angular = device::monotone_slope(from.twist.angular, secant.head<3>());
+  to.twist.angular = left_jacobian(turn) *
+                     device::monotone_slope(left_jacobian_inverse(turn) * to.twist.angular, secant.head<3>());
+}
 
 /// Times of ticks that were counted in another way differ by rounding.
 constexpr double kSameTime = 1e-10;
@@ -21,6 +36,9 @@ class RecordedHand : public device::Device {
     if (record_->ticks.empty()) fail("replay: the record has no ticks");
   }
   device::DeviceSpecification specification() const override { return {}; }
+  std::optional<device::TimeSpan> recorded() const override {
+    return device::TimeSpan{record_->start.time, record_->ticks.back().time};
+  }
   bool can_be_archived() const override { return true; }
   std::function<device::HandleSample(double)> path() const override {
     return [record = record_](double t) { return at(*record, t); };
@@ -43,8 +61,9 @@ class RecordedHand : public device::Device {
     const TickRecord& before = after == ticks.begin() ? record.start : *(after - 1);
     if (t <= before.time + kSameTime) return sample_of(before);
     const double h = after->time - before.time;
-    const dynamics::RigidMotion motion = dynamics::motion_between(
-        {before.handle, before.handle_twist}, {after->handle, after->handle_twist}, h, (t - before.time) / h);
+    dynamics::RigidMotion from{before.handle, before.handle_twist}, to{after->handle, after->handle_twist};
+    keep_between(from, to, h);
+    const dynamics::RigidMotion motion = dynamics::motion_between(from, to, h, (t - before.time) / h);
     return {motion.pose, motion.twist, {}, after->handle_valid, before.switches};
   }
 
@@ -90,6 +109,16 @@ void refuse_what_cannot_be_retraced(const scene::Description& d, const HapticRec
 
 }  // namespace
 
+void set_clock(HapticRecord& record, const device::RecordingClock& clock) {
+  const auto set = [&clock](TickRecord& tick) {
+    tick.time = clock(tick.time);
+    tick.handle_twist.linear /= clock.scale;
+    tick.handle_twist.angular /= clock.scale;
+  };
+  set(record.start);
+  for (TickRecord& tick : record.ticks) set(tick);
+}
+
 std::unique_ptr<device::Device> recorded_hand(HapticRecord record) {
   return std::make_unique<RecordedHand>(std::move(record));
 }
@@ -120,9 +149,11 @@ std::vector<TickRecord> retrace(const scene::Description& description, const Hap
     if (version != 0) contact.linear = record.exchanges[version - 1];
     if (version != 0 && !record.models.empty()) contact.touch = record.models[version - 1];
     TickRecord again;
+    if (tick.ramps_in) side.ramp_in();
     const dynamics::StepResult status =
         side.tick(tick.time, tick.length, side.contact(tick.time, tick.length, contact), again);
     if (!status.ok()) fail("replay: {}", status.message);
+    again.left_out = tick.left_out;
     out.push_back(again);
   }
   return out;

@@ -2,6 +2,7 @@
 
 #include "body_side.h"
 #include "palpate/core/clock.h"
+#include "palpate/core/error.h"
 #include "palpate/core/workers.h"
 
 namespace palpate::loop {
@@ -10,6 +11,27 @@ double period_of(const scene::Description& d) {
   if (d.tool && d.exchange.scheme != "monolithic") return d.exchange.exchange_period_s;
   if (!d.contacts.empty()) return d.exchange.contact_refresh_s;
   return d.record ? d.record->state_period_s : d.duration_s;
+}
+
+void check_clock(const World& world, bool real_time) {
+  const scene::Description& d = world.description;
+  if (!real_time) {
+    for (const auto& side : ToolSide::all(world))
+      if (side->handle && side->handle->is_live())
+        fail(
+            "device: type = \"{}\": somebody moves it while the run goes on, by the wall's clock; run in "
+            "real "
+            "time (palpate run --realtime)",
+            side->device_spec ? side->device_spec->type : "");
+    return;
+  }
+  if (!d.tool) fail("real time: the scene has no [tool], so nothing that a hand would feel");
+  if (!world.has_tool_of_ticks())
+    fail("real time: exchange.scheme = \"monolithic\" has no ticks of its own; take \"partitioned\"");
+  for (const scene::HandSpec& hand : d.hands)
+    if (hand.tool.tick_s != d.tool->tick_s)
+      fail("real time: hand \"{}\" ticks every {} s, the first every {} s; one clock serves one tick_s",
+           hand.name, hand.tool.tick_s, d.tool->tick_s);
 }
 
 RunResult run(World& world, const RunOptions& options) {

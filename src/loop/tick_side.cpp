@@ -1,6 +1,7 @@
 #include "tick_side.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "palpate/tool/rigid_block.h"
 
@@ -117,7 +118,11 @@ void TickSide::feel_at(TickRecord& tick) {
   tick.wanted = tool::coupling_on_hand(spec_, {tick.tool, tick.tool_twist}, {handle_.pose, handle_.twist});
   side_.motors.advance(tick.time);
   tick.motors = side_.motors.mean();
+  tick.ramps_in = std::exchange(ramps_in_, false);
+  if (tick.ramps_in) side_.limiter->restart();
+  const long limited_before = side_.limiter->limited_ticks();
   tick.device = side_.limiter->limit(tick.time, tick.wanted, handle_.valid);
+  tick.limited = side_.limiter->limited_ticks() > limited_before;
   if (side_.passivity)
     tick.device = side_.passivity->apply(tick.time, tick.handle, side_.motors, tick.device, handle_.valid);
   side_.motors.send(tick.time, tick.device);

@@ -27,6 +27,8 @@ class TickSide {
   /// The contact of the tick of length h to t: the record's own, or what its points come to then, and that
   /// with obstacles.
   dynamics::LinearisedContact contact(double t, double h, const ContactRecord& record);
+  /// No wrench went out for too long: that of the next tick ramps in from zero.
+  void ramp_in() { ramps_in_ = true; }
   /// The tool goes on by h to t under coupling and that contact; the wrench goes to the device.
   dynamics::StepResult tick(double t, double h, const dynamics::LinearisedContact& contact, TickRecord& out);
   /// The wrench on the hand for `tick`'s time and tool, to the device; a hand that is a part of the State
@@ -56,6 +58,7 @@ class TickSide {
   device::HandleSample handle_;
   double time_ = 0.0;                         ///< of the last tick [s]
   bool live_ = false;                         ///< the hand may feel a wrench
+  bool ramps_in_ = false;                     ///< from the next tick on
   std::optional<contact::TouchTicks> touch_;  ///< where records have points
   std::uint64_t taken_up_ = 0;                ///< version of the record in `touch_`
   std::array<Past, 256> past_{};              ///< a ring: ticks that a record may be late by

@@ -22,6 +22,7 @@ VirtualTime::VirtualTime(World& world, BodySide& bodies, const RunOptions& optio
 void VirtualTime::make_hands() {
   const scene::Description& d = world_.description;
   if (!d.tool) return;
+  check_clock(world_, false);
   for (const auto& side : ToolSide::all(world_)) hands_.emplace_back(d, *side);
   if (!world_.monolithic()) return;
   dense_.emplace(world_, [this](std::size_t hand, TickRecord tick) {

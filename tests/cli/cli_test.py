@@ -569,17 +569,17 @@ class Results(Cli):
             port = one.getsockname()[1]
         with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as peer:
             done = subprocess.Popen([PROGRAM, "run", "press-ball", "--duration-s", "0.4", "--realtime", "-o",
-                                     "out", "--set", f'device={{type="udp",port={port}}}'], cwd=self.folder,
+                                     "out", "--set", f'device={{type="udp",port={port},wait_s=0.3}}'], cwd=self.folder,
                                     stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             while done.poll() is None:
                 peer.sendto(b"no packet of ours", ("127.0.0.1", port))
                 time.sleep(0.01)
             text, error = done.communicate()
-        self.assertEqual(done.returncode, 0, error)
-        malformed = int(re.search(r"hand: 0 packets accepted, (\d+) packets malformed", text)[1])
-        self.assertGreater(malformed, 3)
-        device = json.loads((self.folder / "out/summary.json").read_text())["figures"]["device"]
-        self.assertEqual((device["packets_malformed"], device["packets_accepted"]), (malformed, 0))
+        self.assertEqual(done.returncode, 1, text)
+        packets = re.search(r"within 0\.3 s \((\d+) packets came that are no poses of this scene: (\d+) malformed",
+                            error)
+        self.assertGreater(int(packets[1]), 3)
+        self.assertEqual(packets[1], packets[2])
 
     def test_semi_implicit_beyond_its_limit_is_warned_of(self):
         run = ["run", "press-ball", "--duration-s", "0.02", "-o", "out", "--set",

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <thread>
 
 #include "loop/tick_side.h"
@@ -370,6 +371,118 @@ TEST(TickSide, EndsWithoutAForce) {
       EXPECT_GT(feels.largest, 0.1);
       EXPECT_EQ(feels.force.norm(), 0.0) << real_time << " " << fails_at;
     }
+}
+
+/// Bodies whose step ends only when it is interrupted.
+struct Stuck : dynamics::Stepper {
+  std::string name() const override { return "stuck"; }
+  dynamics::StepResult advance_to(double t_end) override {
+    dynamics::StepResult out;
+    out.t = t_end;
+    for (int i = 0; i < 60'000 && !interrupted(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    was_interrupted = interrupted();
+    if (was_interrupted) out.status = dynamics::StepStatus::kInterrupted;
+    return out;
+  }
+  bool dense_output(double, VecX&, VecX&) const override { return false; }
+  void reinit(dynamics::ReinitReason) override {}
+  const dynamics::StepperCounters& counters() const override { return counted; }
+  dynamics::StepperCounters counted;
+  bool was_interrupted = false;
+};
+
+// A step of the bodies that would take a minute is given up once the run's time is over; the hand has had
+// every tick, and what the bodies did not reach is counted.
+TEST(RealTime, EndsWhenItsTimeIsOver) {
+  scene::Description d = scene_of();
+  d.exchange.linearisation = "frozen";
+  const auto world = loop::assemble(d);
+  auto stepper = std::make_unique<Stuck>();
+  const Stuck& stuck = *stepper;
+  world->stepper = std::move(stepper);
+  Kept kept;
+  loop::RunOptions options;
+  options.real_time = true;
+  options.observers = {&kept};
+  const loop::RunResult result = loop::run(*world, options);
+  EXPECT_TRUE(stuck.was_interrupted);
+  EXPECT_TRUE(result.status.ok()) << result.status.message;
+  EXPECT_FALSE(result.stopped);
+  EXPECT_EQ(kept.ticks.size(), 300u);
+  EXPECT_NEAR(result.time, 0.3, 1e-12);
+  EXPECT_EQ(result.real_time->dropped_periods, 30);
+}
+
+/// Keeps still below the surface; at one tick it is away for 0.1 s, as a process that was stopped.
+struct Pauses : device::Device {
+  device::DeviceSpecification specification() const override { return {}; }
+  device::HandleSample do_sample(double t) override {
+    if (t > 0.1495 && t < 0.1505) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    device::HandleSample s;
+    s.pose.translation = Vec3(0.001, 0.002, 0.02);
+    return s;
+  }
+};
+
+// After a pause of 100 ticks the clock starts anew, and the force sets in anew: no tick is made up for.  The
+// machine may pause more often than the test does; for each of its pauses the same holds.
+TEST(RealTime, ALongPauseIsNotMadeUpForInABurst) {
+  scene::Description d = scene_of();
+  d.device->ramp_s = 0.05;
+  const auto world = loop::assemble(d, std::make_unique<Pauses>());
+  Kept kept;
+  loop::RunOptions options;
+  options.real_time = true;
+  options.observers = {&kept};
+  const loop::RunResult result = loop::run(*world, options);
+  ASSERT_TRUE(result.status.ok()) << result.status.message;
+  ASSERT_EQ(kept.ticks.size(), 300u);
+  const loop::RealTimeResult& clock = *result.real_time;
+  long left_out = 0, stalls = 0;
+  for (std::size_t i = 0; i < kept.ticks.size(); ++i) {
+    const loop::TickRecord& tick = kept.ticks[i];
+    EXPECT_NEAR(tick.time, 1e-3 * static_cast<double>(i + 1), 1e-12) << "the scene's time has no hole";
+    EXPECT_EQ(tick.left_out > 0, static_cast<double>(clock.lateness_s[i]) > clock.stall_s) << i;
+    if (tick.ramps_in) { EXPECT_EQ(tick.device.force.norm(), 0.0) << i; }
+    left_out += tick.left_out;
+    stalls += tick.ramps_in;
+  }
+  EXPECT_TRUE(kept.ticks[150].ramps_in) << "the one behind the pause";
+  EXPECT_GE(kept.ticks[150].left_out, 90u);
+  EXPECT_GT(kept.ticks[149].wanted.force.norm(), 0.1);
+  EXPECT_EQ(clock.left_out_ticks, left_out);
+  EXPECT_EQ(clock.stalls, stalls);
+}
+
+/// Waits for somebody, and moves by the wall's clock.
+struct Awaits : Pauses {
+  bool is_live() const override { return true; }
+  std::string awaited() const override { return "somebody"; }
+  void do_await(double, const std::atomic<bool>*) override { ++waited; }
+  int waited = 0;
+};
+
+TEST(RealTime, WaitsForADeviceThatIsToComeAndVirtualTimeRefusesIt) {
+  for (const bool real_time : {true, false}) {
+    auto hand = std::make_unique<Awaits>();
+    const Awaits& awaits = *hand;
+    const auto world = loop::assemble(scene_of(), std::move(hand));
+    std::string said, refused;
+    loop::RunOptions options;
+    options.real_time = real_time;
+    options.duration_s = 0.05;
+    options.waiting = [&](const std::string& what) { said += what; };
+    try {
+      loop::run(*world, options);
+    } catch (const Error& e) { refused = e.what(); }
+    EXPECT_EQ(awaits.waited, real_time ? 1 : 0);
+    EXPECT_EQ(said, real_time ? "somebody" : "");
+    EXPECT_EQ(refused.empty(), real_time);
+    if (!real_time) {
+      EXPECT_NE(refused.find("by the wall's clock; run in real time"), std::string::npos) << refused;
+    }
+  }
 }
 
 // A handle outside the workspace feels nothing, and the run counts its ticks.

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <random>
 
 #include "palpate/core/error.h"
 #include "palpate/loop/haptic_record.h"
@@ -161,6 +163,56 @@ TEST(Replay, TheRecordedHandIsSmoothBetweenTicks) {
   }
   EXPECT_LT(off, 1.6e-11);
   EXPECT_GT(off, 1e-14);
+}
+
+// Twists of a peer need not be the rates of its poses: whatever they are, the hand stays between two ticks.
+TEST(Replay, TheRecordedHandStaysBetweenTicks) {
+  std::mt19937 rng(49);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto vec = [&](double scale) {
+    return Vec3(scale * uniform(rng), scale * uniform(rng), scale * uniform(rng));
+  };
+  loop::HapticRecord record;
+  for (int i = 1; i <= 40; ++i) {
+    loop::TickRecord tick;
+    tick.length = i % 10 ? 1e-3 : 0.5;  // with pauses
+    tick.time = (record.ticks.empty() ? 0.0 : record.ticks.back().time) + tick.length;
+    tick.handle = {quaternion_of(vec(0.3)), vec(0.01)};
+    tick.handle_twist = {vec(100.0), vec(10.0)};
+    record.ticks.push_back(tick);
+  }
+  const auto path = loop::recorded_hand(record)->path();
+  for (std::size_t i = 1; i < record.ticks.size(); ++i) {
+    const loop::TickRecord &a = record.ticks[i - 1], &b = record.ticks[i];
+    const Vec3 turn = pose_difference(a.handle, b.handle).head<3>();
+    for (int k = 0; k <= 20; ++k) {
+      const Pose pose = path(a.time + 0.05 * k * b.length).pose;
+      const Vec3 turned = pose_difference(a.handle, pose).head<3>();
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto [low, high] = std::minmax(a.handle.translation[axis], b.handle.translation[axis]);
+        EXPECT_GE(pose.translation[axis], low - 1e-15) << i;
+        EXPECT_LE(pose.translation[axis], high + 1e-15) << i;
+        EXPECT_GE(turned[axis], std::min(0.0, turn[axis]) - 1e-14) << i;
+        EXPECT_LE(turned[axis], std::max(0.0, turn[axis]) + 1e-14) << i;
+      }
+    }
+  }
+}
+
+// The force that sets in anew after a pause is a part of what was felt.
+TEST(Replay, RetracesAForceThatSetsInAnew) {
+  scene::Description d = pressed();
+  d.device->ramp_s = 0.02;
+  loop::HapticRecord record = recorded(d, false, "ramped.h5");
+  for (loop::TickRecord& tick : record.ticks)
+    if (&tick - record.ticks.data() == 120) tick.ramps_in = true, tick.left_out = 77;
+  const auto again = loop::retrace(d, record);
+  EXPECT_EQ(again[119].device.force, record.ticks[119].device.force);
+  EXPECT_TRUE(again[120].ramps_in);
+  EXPECT_EQ(again[120].left_out, 77u);
+  EXPECT_EQ(again[120].device.force.norm(), 0.0);
+  EXPECT_LT(again[125].device.force.norm(), 0.5 * record.ticks[125].device.force.norm());
+  EXPECT_NEAR(again[145].device.force.norm(), record.ticks[145].device.force.norm(), 1e-12);
 }
 
 // Monolithic: one integrator follows the recorded hand at times of its own.

@@ -13,12 +13,16 @@ struct RealTimeResult {
   double tick_s = 0.0;    ///< [s]
   double period_s = 0.0;  ///< wanted time between two exchanges [s]
 
+  double stall_s = 0.0;  ///< beyond it a tick that is late starts the clock anew [s]
+
   std::vector<float> lateness_s;  ///< of each tick: from when it was due to when its thread woke [s]
   std::vector<float> work_s;      ///< of each tick: from there to the wrench on the device [s]
   /// of each exchange: from the instant that it describes to its publication [s]
   std::vector<float> latency_s;
 
   long missed_ticks = 0;       ///< late by a tick or more: they follow each other without a pause
+  long left_out_ticks = 0;     ///< of the clock, where they were too late: it started anew behind them
+  long stalls = 0;             ///< longer than the watchdog's, without a wrench: the force set in anew
   long stretched_periods = 0;  ///< in which the bodies advanced by several periods after one query
   long dropped_periods = 0;    ///< that the bodies did not simulate: they stand still in them
   long unrecorded_ticks = 0;   ///< that did not fit the queue to the recorder
@@ -46,6 +50,8 @@ void visit_real_time(F&& f, const RealTimeResult& r) {
   };
   f("ticks_timed", static_cast<long long>(r.lateness_s.size()));
   f("missed_ticks", static_cast<long long>(r.missed_ticks));
+  f("stalls", static_cast<long long>(r.stalls));
+  f("left_out_ticks", static_cast<long long>(r.left_out_ticks));
   for (const Series& s :
        {Series{"tick_late_p50_s", "tick_late_p99_s", "tick_late_p99.9_s", "tick_late_max_s", r.lateness_s},
         Series{"tick_work_p50_s", "tick_work_p99_s", "tick_work_p99.9_s", "tick_work_max_s", r.work_s},

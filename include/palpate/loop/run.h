@@ -29,6 +29,9 @@ struct TickRecord {
   /// on the hand, as its motors held it over the tick that ends here (device/motors.h): its mean
   Wrench motors;
   bool handle_valid = true;          ///< whether the handle's pose was
+  bool limited = false;              ///< the wrench wanted was above the device's maximum
+  bool ramps_in = false;             ///< the force sets in anew: no wrench was sent for too long before
+  std::uint32_t left_out = 0;        ///< ticks of the machine's clock that were left out before this one
   std::uint32_t switches = 0;        ///< of the handle: bit i is 1 where switch i is pressed
   std::uint64_t record_version = 0;  ///< of the contact record that this tick used; 0: none
 };
@@ -72,6 +75,8 @@ struct RunOptions {
   std::vector<Observer*> observers;               ///< called in their order; they outlive the run
   std::function<void(double fraction)> progress;  ///< called after every period
   const std::atomic<bool>* stop = nullptr;        ///< set from outside: the run ends after the current step
+  /// called where the run has to wait for a device, with what for
+  std::function<void(const std::string& awaited)> waiting;
 };
 
 /// The energy at the device's port over a run (device/passivity.h) [J].
@@ -144,8 +149,13 @@ requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr vo
 /// monolithic, one refresh after the other, ticks from dense output.  A scene without a tool has periods but
 /// no ticks.  Or in real time: ticks by the machine's clock in a thread of their own, bodies behind them.
 /// It works on the World's own number of threads (integrator.threads), whatever other Worlds have.
-/// @throws Error in real time for a scene without a tool of ticks, or with hands of different tick_s
+/// @throws Error as check_clock(), and in real time for a device that does not come
 RunResult run(World& world, const RunOptions& options);
+
+/// Refuses what a run cannot serve by that clock, before anything is written.
+/// @throws Error in real time for a scene without a tool of ticks, or with hands of different tick_s; in
+///   virtual time for a device that somebody moves by the wall's clock
+void check_clock(const World& world, bool real_time);
 
 /// The length of the loop's period for a scene [s]: the exchange period where there is an exchange, else the
 /// contact refresh, else the record's.

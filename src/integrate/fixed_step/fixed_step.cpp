@@ -81,6 +81,7 @@ StepResult FixedStep::advance_to(double t_end) {
 StepResult FixedStep::cover(double t1, double h, double t_end) {
   int halvings = 0;
   for (double part = h;;) {
+    if (halvings > 0 && interrupted()) return failure(StepStatus::kInterrupted, part, 0, "interrupted");
     if (taken_ == spec_.max_steps)
       return failure(StepStatus::kTooManySteps, part, 0,
                      fmt::format("{} steps before t_end = {}", taken_, t_end));

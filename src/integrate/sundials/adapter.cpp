@@ -226,6 +226,7 @@ bool Adapter::prepare_matrix(double t, N_Vector y, bool reuse, double gamma, Ode
 }
 
 int Adapter::setup() {
+  if (interrupted()) return kUnrecoverable;  // a step may take many matrices
   rate_ = 1.0;
   return problem_->factor(wanted_gamma_) == SolveStatus::kOk ? 0 : kRecoverable;
 }
@@ -314,6 +315,7 @@ void Adapter::begin_part(int halvings) {
 void Adapter::end_part(bool done) { problem_->counters().step_parts += done && halvings_ > 0; }
 
 int Adapter::solve(N_Vector x, N_Vector b) {
+  if (interrupted()) return kUnrecoverable;
   if (by_library_newton_) count_iteration();
   fill_weights(newton_state(), weights_);
   if (by_library_newton_ && problem_->takes_error_limit())

@@ -7,8 +7,11 @@
 
 namespace palpate::loop {
 
+/// Sets the record's hand on another clock: its times, and its twists by them.
+void set_clock(HapticRecord& record, const device::RecordingClock& clock);
 /// The hand of a record, moving as it did: at the times of its ticks to the last bit, between them on the
-/// cubic through poses and twists; before the first and after the last it rests.
+/// cubic through poses and twists, or on the nearest that stays between the two ticks; before the first and
+/// after the last it rests.
 /// @throws Error for a record without ticks
 std::unique_ptr<device::Device> recorded_hand(HapticRecord record);
 /// Of each hand.

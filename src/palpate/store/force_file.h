@@ -13,7 +13,7 @@ struct ForceRow {
   double time_s = 0.0;
   Pose handle, tool;
   Wrench on_hand;              ///< after the device's limits, moment about the handle's origin
-  bool limited = false;        ///< the device's limit changed it
+  bool limited = false;        ///< the wrench wanted was above the device's maximum
   std::uint32_t switches = 0;  ///< of the handle: bit i is 1 where switch i is pressed
 };
 
