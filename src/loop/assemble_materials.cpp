@@ -4,6 +4,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/fem/attachments.h"
 #include "palpate/mesh/quality.h"
 
 namespace palpate::loop {
@@ -23,15 +24,11 @@ std::vector<std::string> names_of(const std::vector<Region>& regions) {
 
 /// Elements whose centroid lies in the box or the sphere.
 std::vector<int> elements_in(const RegionSpec& spec, const Points& placed, const Tets& tets) {
-  std::vector<int> out;
-  for (Eigen::Index t = 0; t < tets.cols(); ++t) {
-    const Vec3 centroid = placed(Eigen::all, tets.col(t)).rowwise().mean();
-    const bool inside = spec.region == "box" ? (centroid.array() >= spec.box_min_m.array()).all() &&
-                                                   (centroid.array() <= spec.box_max_m.array()).all()
-                                             : (centroid - spec.centre_m).norm() <= spec.radius_m;
-    if (inside) out.push_back(static_cast<int>(t));
-  }
-  return out;
+  Points centroids(3, tets.cols());
+  for (Eigen::Index t = 0; t < tets.cols(); ++t)
+    centroids.col(t) = placed(Eigen::all, tets.col(t)).rowwise().mean();
+  return spec.region == "box" ? fem::nodes_in_box(centroids, spec.box_min_m, spec.box_max_m)
+                              : fem::nodes_in_sphere(centroids, spec.centre_m, spec.radius_m);
 }
 
 /// The region that a table of the scene names: one of the file, or a new one.
@@ -68,14 +65,17 @@ fem::Material material_of(const RegionSpec& wanted, const fem::Material& base) {
   return out;
 }
 
-/// Assigns each element to the last of its regions that has a material, else to the region of the file.
+/// Assigns each element to the last of its regions that has a material, else to the smallest region of the
+/// file.
 void settle(Body& body) {
   std::vector<int> owner(static_cast<std::size_t>(body.rest.tets.cols()), -1);
   std::vector<std::size_t> order(body.regions.size());
   for (std::size_t r = 0; r < order.size(); ++r) order[r] = r;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return body.regions[a].material < body.regions[b].material;
-  });
+  const auto rank = [&](std::size_t r) {
+    return std::pair(body.regions[r].material, -static_cast<long>(body.regions[r].tets.size()));
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
   for (const std::size_t r : order)
     for (const int tet : body.regions[r].tets) owner[static_cast<std::size_t>(tet)] = static_cast<int>(r);
   for (std::size_t r = 0; r < body.regions.size(); ++r)
@@ -90,7 +90,6 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
   const std::string where = fmt::format("body \"{}\"", spec.name);
   fem::check(out.list[0], where.c_str());
   std::vector<fem::Material> bases;  // of the regions of the file
-  std::vector<std::string> unnamed;
   for (MaterialRegion& region : in_file) {
     const bool named = std::any_of(spec.regions.begin(), spec.regions.end(),
                                    [&](const RegionSpec& r) { return r.name == region.name; });
@@ -102,8 +101,6 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
     if (region.youngs_modulus_factor != 1.0 || region.density_factor != 1.0) {
       body.regions.back().material = static_cast<int>(out.list.size());
       out.list.push_back(base);
-    } else if (static_cast<Eigen::Index>(body.regions.back().tets.size()) < body.rest.tets.cols()) {
-      unnamed.push_back(region.name);
     }
   }
   for (const RegionSpec& wanted : spec.regions) {
@@ -114,12 +111,16 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
     out.list.push_back(material_of(wanted, number < bases.size() ? bases[number] : out.list[0]));
     fem::check(out.list.back(), fmt::format("{}: region \"{}\"", where, region.name).c_str());
   }
-  if (!unnamed.empty())
-    log::info("body \"{}\": of the body's own material, as the scene does not name {}: {} of {}", spec.name,
-              unnamed.size() == 1 ? "it" : "them", fmt::join(unnamed, ", "), spec.mesh.file);
   if (body.regions.empty()) return out;
   settle(body);
   std::erase_if(body.regions, [](const Region& r) { return r.tets.empty() && r.material == 0; });
+  std::vector<std::string> unnamed;
+  for (const Region& region : body.regions)
+    if (region.material == 0 && static_cast<Eigen::Index>(region.tets.size()) < body.rest.tets.cols())
+      unnamed.push_back(region.name);
+  if (!unnamed.empty())
+    log::info("body \"{}\": of the body's own material, as the scene does not name {}: {} of {}", spec.name,
+              unnamed.size() == 1 ? "it" : "them", fmt::join(unnamed, ", "), spec.mesh.file);
   for (Region& region : body.regions)
     for (const int tet : region.tets) region.volume += mesh::tet_volume(body.rest, tet);
   for (const Region& region : body.regions)

@@ -1,5 +1,6 @@
 #include "gmsh.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <unordered_map>
 
@@ -16,17 +17,36 @@ void add_node(TextFile& file, Content& content, long tag) {
   content.node_lines.push_back(file.line());
 }
 
-void add_tet(TextFile& file, Content& content, long tag, long physical, long entity) {
+void add_tet(TextFile& file, Content& content, long tag, const std::vector<long>& groups, long entity) {
   file.about("element", tag);
   std::array<long, 4> nodes{};
   for (long& node : nodes) node = file.integer("node number");
   file.require_end_of_line();
+  std::array<long, 4> corners = nodes;
+  std::sort(corners.begin(), corners.end());
+  const auto join = [&](int tet) {
+    bool joined = false;
+    for (const long group : groups) {
+      if (group == 0) continue;
+      // negative where the volume is flipped
+      std::vector<int>& members = content.tets_of_group[static_cast<double>(std::abs(group))];
+      const auto at = std::lower_bound(members.begin(), members.end(), tet);
+      if (at != members.end() && *at == tet) continue;
+      members.insert(at, tet);
+      joined = true;
+    }
+    return joined;
+  };
+  const auto tet = static_cast<int>(content.tets.size());
+  if (content.repeats) {
+    const auto [known, is_new] = content.tet_of_nodes.emplace(corners, tet);
+    if (!is_new && join(known->second)) return;
+  }
   content.tets.push_back(nodes);
   content.tet_tags.push_back(tag);
   content.tet_lines.push_back(file.line());
-  // negative where the volume is flipped
-  content.tet_physical.push_back(static_cast<double>(std::abs(physical)));
   content.tet_entity.push_back(static_cast<double>(entity));
+  join(tet);
 }
 
 void physical_names(TextFile& file, Content& content) {
@@ -88,8 +108,11 @@ Content read(TextFile& file) {
       file.fail("a section ($...) is expected, found \"{}\"; a count before it may be too small",
                 printable(name));
     const std::string end = fmt::format("$End{}", name.substr(1));
-    if (name == "$PhysicalNames" || (name == "$Entities" && !is_2)) {
-      name == "$Entities" ? entities_41(file, content) : physical_names(file, content);
+    const bool entities = name == "$Entities" && !is_2, parts = name == "$PartitionedEntities" && !is_2;
+    if (name == "$PhysicalNames" || entities || parts) {
+      entities ? entities_41(file, content)
+      : parts  ? partitioned_entities_41(file, content)
+               : physical_names(file, content);
       skip_section(file, end);
       continue;
     }
@@ -108,10 +131,9 @@ Content read(TextFile& file) {
 }
 
 /// Physical volumes; where there are none, the volumes of the model.
-std::vector<MaterialRegion> regions(const Content& content) {
-  for (const double physical : content.tet_physical)
-    if (physical != 0) return regions_of_labels(content.tet_physical, content.volume_names, 0);
-  return regions_of_labels(content.tet_entity);
+std::vector<MaterialRegion> regions(Content& content) {
+  if (content.tets_of_group.empty()) return regions_of_labels(content.tet_entity);
+  return regions_of_groups(std::move(content.tets_of_group), content.volume_names, content.tets.size());
 }
 
 /// Index in the list of nodes by tag; tags may be sparse and in any order.

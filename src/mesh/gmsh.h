@@ -9,6 +9,12 @@
 
 namespace palpate::mesh::gmsh {
 
+/// A volume of the model, or a part of one that belongs to a partition.
+struct Volume {
+  long whole = 0;            ///< tag of the volume, or of the one that it is a part of
+  std::vector<long> groups;  ///< physical volumes
+};
+
 /// Content of the sections of a .msh file, in the file's own numbering.
 struct Content {
   std::vector<Vec3> nodes;
@@ -17,9 +23,12 @@ struct Content {
   std::vector<std::array<long, 4>> tets;
   std::vector<long> tet_tags;
   std::vector<int> tet_lines;
-  std::vector<double> tet_physical, tet_entity;  ///< numbers, of each tetrahedron; physical 0: none
-  std::map<double, std::string> volume_names;    ///< of physical volumes
-  std::map<long, long> physical_of_volume;       ///< 4.1: the first one of each volume of the model
+  std::vector<double> tet_entity;                    ///< volume of the model, of each tetrahedron
+  std::map<double, std::vector<int>> tets_of_group;  ///< ascending, of each physical volume
+  std::map<double, std::string> volume_names;        ///< of physical volumes
+  bool repeats = false;  ///< an element stands in the file once for each of its groups (2.2)
+  std::map<std::array<long, 4>, int> tet_of_nodes;  ///< then: by corners in rising order
+  std::map<long, Volume> volumes;                   ///< 4.1: by the tags that $Elements uses
   long second_order_tets = 0;
 };
 
@@ -28,8 +37,9 @@ constexpr long kTet4 = 4, kTet10 = 11;  // Gmsh's element types
 /// The three coordinates of node `tag`, which stands before them on the line (2.2) or on a line of its own
 /// (4.1).
 void add_node(TextFile& file, Content& content, long tag);
-/// The four nodes of tetrahedron `tag`, up to the end of the line.
-void add_tet(TextFile& file, Content& content, long tag, long physical, long entity);
+/// The four nodes of tetrahedron `tag`, up to the end of the line.  One that is there already, in other
+/// groups, joins these.
+void add_tet(TextFile& file, Content& content, long tag, const std::vector<long>& groups, long entity);
 
 /// Section $PhysicalNames, alike in both versions: dimension, number and "name" a line.
 void physical_names(TextFile& file, Content& content);
@@ -39,6 +49,7 @@ void nodes_22(TextFile& file, Content& content);
 void elements_22(TextFile& file, Content& content);
 void nodes_41(TextFile& file, Content& content);
 void entities_41(TextFile& file, Content& content);
+void partitioned_entities_41(TextFile& file, Content& content);  ///< after $Entities
 void elements_41(TextFile& file, Content& content);
 
 }  // namespace palpate::mesh::gmsh

@@ -3,7 +3,8 @@
 // Gmsh 2.x, ASCII (reference manual, "MSH file format version 2"):
 //   $Nodes: number-of-nodes, then  tag x y z  a line ($ParametricNodes: more entries follow on the line)
 //   $Elements: number-of-elements, then  tag type number-of-tags tag... node...  a line;
-//              the first two tags are the physical group (0: none) and the entity of the model
+//              the first two tags are the physical group (0: none) and the entity of the model; an element in
+//              several groups stands there once for each
 namespace palpate::mesh::gmsh {
 
 void nodes_22(TextFile& file, Content& content) {
@@ -16,6 +17,7 @@ void nodes_22(TextFile& file, Content& content) {
 }
 
 void elements_22(TextFile& file, Content& content) {
+  content.repeats = true;
   file.require_line("the number of elements");
   const int n = file.count("number of elements");
   for (int i = 0; i < n; ++i) {
@@ -30,7 +32,7 @@ void elements_22(TextFile& file, Content& content) {
       const long label = file.integer("tag");
       if (k < 2) first[k] = label;
     }
-    add_tet(file, content, tag, first[0], first[1]);
+    add_tet(file, content, tag, {first[0]}, first[1]);
   }
 }
 

@@ -3,6 +3,9 @@
 // Gmsh 4.1, ASCII (reference manual, "MSH file format"):
 //   $Entities: points curves surfaces volumes, then a line each, in this order;
 //              a volume: tag, 6 numbers of its box, number of physical tags, the tags, ...
+//   $PartitionedEntities: partitions; ghosts, then a line each; counts as in $Entities, then a line each;
+//              a volume: tag, dimension and tag of its parent, number of partitions, these, then as above.
+//              $Elements then names these parts
 //   $Nodes:    blocks nodes min-tag max-tag;
 //              each block: dimension entity parametric n, n lines of tags, n lines  x y z [u v w]
 //   $Elements: blocks elements min-tag max-tag;
@@ -16,22 +19,55 @@ void require_total(const TextFile& file, std::string_view what, long announced, 
               what, announced);
 }
 
-}  // namespace
-
-void entities_41(TextFile& file, Content& content) {
-  file.require_line("the counts of $Entities");
+/// The counts of four dimensions, and the lines of those below volumes; returns the number of volumes.
+int skip_to_volumes(TextFile& file) {
+  file.require_line("the counts of the entities");
   long before = 0;
   for (const char* what : {"number of points", "number of curves", "number of surfaces"})
     before += file.count(what);
   const int volumes = file.count("number of volumes");
   for (long i = 0; i < before; ++i) file.require_line("a point, curve or surface");
-  for (int i = 0; i < volumes; ++i) {
+  return volumes;
+}
+
+/// The box, and the physical tags after it.
+std::vector<long> groups_after_box(TextFile& file) {
+  for (int k = 0; k < 6; ++k) file.real("bound of its box");
+  std::vector<long> out;
+  for (int left = file.count("number of physical tags"); left > 0; --left)
+    out.push_back(file.integer("physical tag"));
+  return out;
+}
+
+}  // namespace
+
+void entities_41(TextFile& file, Content& content) {
+  for (int left = skip_to_volumes(file); left > 0; --left) {
     file.require_line("a volume");
     const long tag = file.integer("volume tag");
-    for (int k = 0; k < 6; ++k) file.real("bound of its box");
-    if (file.count("number of physical tags") > 0)
-      content.physical_of_volume[tag] = file.integer("physical tag");
+    content.volumes[tag] = {tag, groups_after_box(file)};
   }
+}
+
+void partitioned_entities_41(TextFile& file, Content& content) {
+  file.require_line("the number of partitions");
+  file.count("number of partitions");
+  file.require_line("the number of ghosts");
+  for (int left = file.count("number of ghosts"); left > 0; --left) file.require_line("a ghost");
+  std::map<long, Volume> parts;
+  for (int left = skip_to_volumes(file); left > 0; --left) {
+    file.require_line("a part of a volume");
+    const long tag = file.integer("tag"), dimension = file.integer("dimension of the parent"),
+               parent = file.integer("tag of the parent");
+    for (int partitions = file.count("number of partitions"); partitions > 0; --partitions)
+      file.integer("partition");
+    Volume part{dimension == 3 ? parent : tag, groups_after_box(file)};
+    if (const auto whole = content.volumes.find(parent);
+        part.groups.empty() && dimension == 3 && whole != content.volumes.end())
+      part.groups = whole->second.groups;
+    parts[tag] = std::move(part);
+  }
+  content.volumes = std::move(parts);
 }
 
 void nodes_41(TextFile& file, Content& content) {
@@ -69,14 +105,13 @@ void elements_41(TextFile& file, Content& content) {
     file.require_line("a block of elements");
     file.integer("entity dimension");
     const long entity = file.integer("entity tag");
-    const auto physical = content.physical_of_volume.find(entity);
+    const auto known = content.volumes.find(entity);
+    const Volume volume = known != content.volumes.end() ? known->second : Volume{entity, {}};
     const long type = file.integer("element type");
     const int n = file.count("number of elements in the block");
     for (int i = 0; i < n; ++i) {
       file.require_line("an element");
-      if (type == kTet4)
-        add_tet(file, content, file.integer("element number"),
-                physical == content.physical_of_volume.end() ? 0 : physical->second, entity);
+      if (type == kTet4) add_tet(file, content, file.integer("element number"), volume.groups, volume.whole);
     }
     if (type == kTet10) content.second_order_tets += n;
     found += n;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <vector>
@@ -8,7 +9,7 @@
 // Wavefront OBJ:
 //   v x y z [w | r g b]
 //   f v v v ...          each v one of  7  7/1  7//3  7/1/3, counted from 1, or from the end if negative
-// Texture coordinates, normals, groups and materials are ignored.
+// Texture coordinates, normals, groups and materials are ignored.  A backslash at a line's end continues it.
 namespace palpate::mesh {
 namespace {
 
@@ -27,29 +28,46 @@ int corner(TextFile& file, std::string_view word, std::size_t vertices) {
   return static_cast<int>(index);
 }
 
-void read_face(TextFile& file, std::size_t vertices, std::vector<Eigen::Vector3i>& faces, Provenance& from,
-               long number) {
-  file.about("face", number);
-  std::vector<int> polygon;
+struct ObjFace {
+  std::vector<int> corners;
+  int line;
+};
+
+ObjFace read_face(TextFile& file, std::size_t vertices, std::size_t number) {
+  file.about("face", static_cast<long>(number));
+  ObjFace out{{}, file.line()};
   for (auto word = file.word(); !word.empty(); word = file.word())
-    polygon.push_back(corner(file, word, vertices));
-  if (polygon.size() < 3) file.fail("it has {} corners, a face has at least 3", polygon.size());
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    faces.emplace_back(polygon[0], polygon[i], polygon[i + 1]);
-    from.element_number.push_back(number);
-    from.element_line.push_back(file.line());
+    out.corners.push_back(corner(file, word, vertices));
+  if (out.corners.size() < 3) file.fail("it has {} corners, a face has at least 3", out.corners.size());
+  return out;
+}
+
+/// Cuts the polygons into triangles, which keep their polygon's number and line.
+void cut_faces(const std::vector<ObjFace>& faces, const std::vector<Vec3>& vertices, SurfaceFile& out) {
+  std::vector<std::array<int, 3>> triangles;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto& corners = faces[f].corners;
+    if (const int largest = *std::max_element(corners.begin(), corners.end());
+        largest >= static_cast<int>(vertices.size()))
+      fail("{}:{}: face {}: vertex {} is not in the file; it has {} vertices", out.from.source, faces[f].line,
+           f + 1, static_cast<long>(largest) + 1, vertices.size());
+    append_polygon(vertices, corners, triangles, out.polygons);
+    out.from.element_number.resize(triangles.size(), static_cast<long>(f) + 1);
+    out.from.element_line.resize(triangles.size(), faces[f].line);
   }
+  out.mesh.faces.resize(3, static_cast<Eigen::Index>(triangles.size()));
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    out.mesh.faces.col(static_cast<Eigen::Index>(t)) = Eigen::Map<const Eigen::Vector3i>(triangles[t].data());
 }
 
 }  // namespace
 
 SurfaceFile read_obj(const std::string& path) {
-  TextFile file(path, '#');
+  TextFile file(path, {.comment = '#', .continued = true});
   SurfaceFile out;
   out.from = surface_provenance(path);
   std::vector<Vec3> vertices;
-  std::vector<Eigen::Vector3i> faces;
-  long polygons = 0;
+  std::vector<ObjFace> faces;
   while (file.next_line()) {
     const std::string_view keyword = file.word();
     if (keyword == "v") {
@@ -59,19 +77,13 @@ SurfaceFile read_obj(const std::string& path) {
       out.from.node_number.push_back(static_cast<long>(vertices.size()));
       out.from.node_line.push_back(file.line());
     } else if (keyword == "f") {
-      read_face(file, vertices.size(), faces, out.from, ++polygons);
+      faces.push_back(read_face(file, vertices.size(), faces.size() + 1));
     }
   }
   out.mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
   for (std::size_t i = 0; i < vertices.size(); ++i)
     out.mesh.vertices.col(static_cast<Eigen::Index>(i)) = vertices[i];
-  out.mesh.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (const int largest = faces[f].maxCoeff(); largest >= static_cast<int>(vertices.size()))
-      fail("{}: vertex {} is not in the file; it has {} vertices", out.from.element(static_cast<int>(f)),
-           static_cast<long>(largest) + 1, vertices.size());
-    out.mesh.faces.col(static_cast<Eigen::Index>(f)) = faces[f];
-  }
+  cut_faces(faces, vertices, out);
   return out;
 }
 

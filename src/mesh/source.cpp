@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "palpate/core/log.h"
 #include "palpate/mesh/checks.h"
 #include "palpate/mesh/generators.h"
 #include "palpate/mesh/readers.h"
@@ -73,6 +74,10 @@ TriMesh surface(const MeshSpec& spec, const std::string& folder, MeshReport* rep
   SurfaceFile out;
   if (is_file(spec)) {
     out = read_surface((std::filesystem::path(folder) / spec.file).string());
+    if (const std::string crossing = crossing_text(out.polygons, out.from); !crossing.empty())
+      fail("{}", crossing);
+    if (const std::string warped = warped_text(out.polygons, out.from); !warped.empty())
+      log::warn("{}", warped);
     out.mesh.vertices *= spec.scale;
   } else {
     out.mesh = find(surface_generators(), spec.generator, "surface generator").make(spec);

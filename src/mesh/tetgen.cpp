@@ -74,7 +74,8 @@ void read_elements(TextFile& file, TetFile& out, long first) {
 
 TetFile read_tetgen(const std::string& path) {
   const std::filesystem::path stem = std::filesystem::path(path).replace_extension();
-  TextFile node_file(stem.string() + ".node", '#'), element_file(stem.string() + ".ele", '#');
+  TextFile node_file(stem.string() + ".node", {.comment = '#'}),
+      element_file(stem.string() + ".ele", {.comment = '#'});
   TetFile out;
   out.from.source = element_file.path();
   out.from.node_source = node_file.path();

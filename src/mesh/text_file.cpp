@@ -33,19 +33,35 @@ std::string printable(std::string_view word) {
   return word.size() > 40 ? out + "..." : out;
 }
 
-TextFile::TextFile(const std::string& path, char comment)
-    : path_(path), text_(read_whole(path)), comment_(comment) {
+TextFile::TextFile(const std::string& path, TextForm form)
+    : path_(path), text_(read_whole(path)), form_(form) {
   if (text_.starts_with("\xEF\xBB\xBF")) next_ = 3;  // byte order mark
+  // lines that end with a carriage return alone, as of old Macintosh programs
+  if (text_.find('\n') == std::string::npos) std::replace(text_.begin(), text_.end(), '\r', '\n');
+}
+
+/// End of the line that begins at `from`, which goes over its continuations; these become blanks.
+std::size_t TextFile::end_of_line(std::size_t from, int& lines) {
+  for (std::size_t begin = from;; ++lines) {
+    const std::size_t end = std::min(text_.find('\n', begin), text_.size());
+    const std::string_view line = std::string_view(text_).substr(from, end - from);
+    const std::size_t last = line.find_last_not_of(kBlank);
+    if (!form_.continued || end == text_.size() || last == std::string_view::npos || line[last] != '\\' ||
+        (form_.comment != '\0' && line.find(form_.comment) != std::string_view::npos))
+      return end;
+    text_[from + last] = text_[end] = ' ';
+    begin = end + 1;
+  }
 }
 
 bool TextFile::next_line() {
   noun_ = {};
   while (next_ < text_.size()) {
-    const std::size_t end = std::min(text_.find('\n', next_), text_.size());
+    line_number_ = ++lines_;
+    const std::size_t end = end_of_line(next_, lines_);
     rest_ = std::string_view(text_).substr(next_, end - next_);
     next_ = end + 1;
-    ++line_number_;
-    if (comment_ != '\0') rest_ = rest_.substr(0, rest_.find(comment_));
+    if (form_.comment != '\0') rest_ = rest_.substr(0, rest_.find(form_.comment));
     if (!at_end_of_line()) return true;
   }
   rest_ = {};

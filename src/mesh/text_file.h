@@ -6,13 +6,18 @@
 
 namespace palpate::mesh {
 
+struct TextForm {
+  char comment = '\0';     ///< from it on, a line is ignored; '\0': no comments
+  bool continued = false;  ///< a backslash at a line's end joins the next line, except after a comment
+};
+
 /// A text file read line by line and word by word; every error message carries FILE:LINE.  Holds the whole
 /// file in memory, so that a count in a header can be compared with what is really there before anything is
 /// allocated for it.
 class TextFile {
  public:
-  /// Throws Error when the file cannot be read.  From `comment` on, a line is ignored ('\0': no comments).
-  explicit TextFile(const std::string& path, char comment = '\0');
+  /// @throws Error when the file cannot be read
+  explicit TextFile(const std::string& path, TextForm form = {});
 
   bool next_line();  ///< goes to the next line that has a word; false at the end of the file
   void require_line(std::string_view what);
@@ -31,7 +36,7 @@ class TextFile {
   void about(std::string_view noun, long number) { noun_ = noun, number_ = number; }
 
   const std::string& path() const { return path_; }
-  int line() const { return line_number_; }
+  int line() const { return line_number_; }  ///< the first one, where several are joined
 
   template <class... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
@@ -43,12 +48,14 @@ class TextFile {
  private:
   std::string_view required_word(std::string_view what);
 
+  std::size_t end_of_line(std::size_t from, int& lines);
+
   std::string path_, text_;
-  char comment_;
-  std::size_t next_ = 0;   // where the next line starts in text_
-  std::string_view rest_;  // of the current line
-  int line_number_ = 0;
-  std::string_view noun_;  // literals only
+  TextForm form_;
+  std::size_t next_ = 0;             // where the next line starts in text_
+  std::string_view rest_;            // of the current line
+  int line_number_ = 0, lines_ = 0;  // the current one, and all that were read
+  std::string_view noun_;            // literals only
   long number_ = 0;
 };
 

@@ -8,6 +8,14 @@
 namespace palpate::model {
 namespace {
 
+void check_corners(const std::vector<int>& corners, std::size_t element, const Cells& cells,
+                   const std::string& path) {
+  for (const int corner : corners)
+    if (corner < 0 || static_cast<std::size_t>(corner) >= cells.points.size())
+      fail("{}: element {} counted from 0 names point {}, the file has {}", path, element, corner,
+           cells.points.size());
+}
+
 /// Elements with corners in the numbering of the points that they use, which go to `points`.
 template <std::size_t N>
 Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(
@@ -15,12 +23,7 @@ Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(
     Points& points, mesh::Provenance& from) {
   std::vector<int> place(cells.points.size(), -1);
   for (std::size_t e = 0; e < elements.size(); ++e)
-    for (const int corner : elements[e]) {
-      if (corner < 0 || static_cast<std::size_t>(corner) >= cells.points.size())
-        fail("{}: element {} counted from 0 names point {}, the file has {}", path, e, corner,
-             cells.points.size());
-      place[static_cast<std::size_t>(corner)] = 0;
-    }
+    for (const int corner : elements[e]) place[static_cast<std::size_t>(corner)] = 0;
   int used = 0;
   points.resize(3, std::count(place.begin(), place.end(), 0));
   for (std::size_t i = 0; i < place.size(); ++i)
@@ -41,10 +44,6 @@ Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(
 
 }  // namespace
 
-void Cells::polygon(const std::vector<int>& corners) {
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) triangle(corners[0], corners[i], corners[i + 1]);
-}
-
 void Cells::unread(std::string_view what) {
   for (auto& [name, count] : unread_)
     if (name == what) {
@@ -58,19 +57,29 @@ SourceFile Cells::finish(std::string format) const {
   if (!unread_.empty())
     fail("{}: holds {} {}, which are not read; linear tetrahedra or a surface of linear triangles are", path_,
          unread_[0].second, unread_[0].first);
-  if (tets_.empty() && triangles_.empty())
+  if (tets_.empty() && polygons_.empty())
     fail("{}: holds neither tetrahedra nor triangles ({} points)", path_, points.size());
   SourceFile out;
   out.format = std::move(format);
   if (!tets_.empty()) {
     out.from.source = path_;
+    for (std::size_t t = 0; t < tets_.size(); ++t)
+      check_corners({tets_[t].begin(), tets_[t].end()}, t, *this, path_);
     out.tets.tets = compact(tets_, *this, path_, out.tets.nodes, out.from);
     PALPATE_CHECK(labels.empty() || labels.size() == tets_.size(),
                   "{}: {} numbers of regions for {} tetrahedra", path_, labels.size(), tets_.size());
-    out.regions = mesh::regions_of_labels(labels, label_names, no_label);
+    out.regions = groups.empty() ? mesh::regions_of_labels(labels, label_names)
+                                 : mesh::regions_of_groups(groups, label_names, tets_.size());
   } else {
     out.from = mesh::surface_provenance(path_);
-    out.surface.faces = compact(triangles_, *this, path_, out.surface.vertices, out.from);
+    std::vector<std::array<int, 3>> triangles;
+    for (std::size_t p = 0; p < polygons_.size(); ++p) {
+      if (polygons_[p].size() < 3) continue;  // an edge or a point
+      check_corners(polygons_[p], p, *this, path_);
+      mesh::append_polygon(points, polygons_[p], triangles, out.polygons);
+      out.from.element_number.resize(triangles.size(), static_cast<long>(p));
+    }
+    out.surface.faces = compact(triangles, *this, path_, out.surface.vertices, out.from);
   }
   return out;
 }

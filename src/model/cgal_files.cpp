@@ -1,19 +1,43 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/polygon_soup_io.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+#include <sstream>
+
 #include "cells.h"
 #include "palpate/core/error.h"
 #include "palpate/core/rehearsal.h"
+#include "palpate/store/atomic_file.h"
 
 namespace palpate::model {
 namespace {
+
+/// CGAL knows the keywords of a text in small letters alone.  A file of bytes has a head of 80 and a count,
+/// and 50 bytes for each triangle, and may begin with "solid" too.
+std::string lower_keywords(std::string stl) {
+  constexpr std::size_t kHead = 80, kTriangle = 50;
+  std::uint32_t triangles = 0;
+  if (stl.size() >= kHead + sizeof triangles) std::memcpy(&triangles, stl.data() + kHead, sizeof triangles);
+  if (stl.size() == kHead + sizeof triangles + kTriangle * triangles) return stl;
+  std::transform(stl.begin(), stl.end(), stl.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return stl;
+}
 
 SourceFile read_here(const std::string& path, const std::string& format) {
   std::vector<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3> points;
   std::vector<std::vector<std::size_t>> faces;
   bool good = false;
   try {
-    good = CGAL::IO::read_polygon_soup(path, points, faces);
+    if (format == "STL") {
+      std::istringstream text(lower_keywords(store::read_file(path)));
+      good = CGAL::IO::read_STL(text, points, faces);
+    } else {
+      good = CGAL::IO::read_polygon_soup(path, points, faces);
+    }
   } catch (const std::exception&) { good = false; }
   if (!good || points.empty())
     fail("{}: cannot be read as {}; is it whole, and of that format?", path, format);

@@ -21,8 +21,9 @@ struct Ending {
 };
 constexpr Ending kEndings[] = {{".obj", "Wavefront OBJ"}, {".msh", "Gmsh"},    {".node", "TetGen"},
                                {".ele", "TetGen"},        {".mesh", "Medit"},  {".meshb", "Medit"},
-                               {".vtk", "legacy VTK"},    {".vtu", "VTK XML"}, {".stl", "STL"},
-                               {".ply", "PLY"},           {".off", "OFF"},     {".h5", "palpate HDF5"}};
+                               {".vtk", "legacy VTK"},    {".vtu", "VTK XML"}, {".vtp", "VTK XML"},
+                               {".stl", "STL"},           {".ply", "PLY"},     {".off", "OFF"},
+                               {".h5", "palpate HDF5"}};
 
 SourceFile of_tets(mesh::TetFile file, std::string format) {
   SourceFile out;
@@ -72,7 +73,8 @@ SourceFile read_source(const std::string& path) {
   if (known == std::end(kEndings))
     fail("{}: unknown ending \"{}\"; these are read: {}", path, ending, known_endings());
   if (ending == ".msh") return read_msh(path);
-  if (ending == ".vtu") return read_vtu(path);
+  if (ending == ".vtk") return read_vtk(path);
+  if (ending == ".vtu" || ending == ".vtp") return read_vtk_xml(path);
   if (ending == ".meshb") return read_meshb(path);
   if (ending == ".ply" || ending == ".off" || ending == ".stl") return read_by_cgal(path, known->format);
   if (ending == ".node" || ending == ".ele") return of_tets(mesh::read_tetgen(path), known->format);
@@ -86,13 +88,9 @@ SourceFile read_source(const std::string& path) {
     mesh::SurfaceFile file = mesh::read_obj(path);
     out.surface = std::move(file.mesh);
     out.from = std::move(file.from);
+    out.polygons = file.polygons;
   } else {
     out = read_by_gmsh(path, known->format);
-    if (ending != ".vtk" || out.tets.tets.cols() == 0) return out;
-    const std::vector<double> labels = labels_of_vtk(path);
-    if (!labels.empty() && static_cast<Eigen::Index>(labels.size()) != out.tets.tets.cols())
-      fail("{}: has {} tetrahedra, and {} numbers of regions", path, out.tets.tets.cols(), labels.size());
-    out.regions = mesh::regions_of_labels(labels);
   }
   return out;
 }

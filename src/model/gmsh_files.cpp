@@ -2,6 +2,7 @@
 #include <gmshc.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <map>
 #include <numeric>
@@ -68,58 +69,90 @@ struct Array {
 };
 
 struct Kind {
-  int type, corners;
+  int type;
+  std::size_t corners;  ///< 0: it is not read
   const char* name;
 };
 constexpr Kind kKinds[] = {{2, 3, "triangles"},
                            {3, 4, "quadrangles"},
-                           {4, 4, "tetrahedra"},
-                           {5, 8, "hexahedra"},
-                           {6, 6, "prisms"},
-                           {7, 5, "pyramids"},
-                           {9, 6, "triangles of second order"},
-                           {11, 10, "tetrahedra of second order"}};
+                           {5, 0, "hexahedra"},
+                           {6, 0, "prisms"},
+                           {7, 0, "pyramids"},
+                           {9, 0, "triangles of second order"},
+                           {11, 0, "tetrahedra of second order"}};
 
-/// The number and the name of the region of each volume: its first physical group, 0 for none; where no
-/// volume has a group, the volumes themselves.
-std::map<int, double> regions_of_volumes(const Gmsh& gmsh, Cells& cells) {
+/// Physical volumes of each volume of the model, with their names.
+std::map<int, std::vector<int>> groups_of_volumes(const Gmsh& gmsh, Cells& cells) {
   int error = 0;
   Array<int> entities(gmsh);
   gmsh.function<decltype(gmshModelGetEntities)>("gmshModelGetEntities")(&entities.data, &entities.size, 3,
                                                                         &error);
-  std::map<int, double> out;
-  bool any = false;
+  std::map<int, std::vector<int>> out;
   for (std::size_t i = 1; i < entities.size; i += 2) {  // pairs of dimension and tag
     Array<int> groups(gmsh);
     gmsh.function<decltype(gmshModelGetPhysicalGroupsForEntity)>("gmshModelGetPhysicalGroupsForEntity")(
         3, entities.data[i], &groups.data, &groups.size, &error);
-    const int group = error || groups.size == 0 ? 0 : std::abs(groups.data[0]);
-    out[entities.data[i]] = group;
-    any = any || group != 0;
-    if (group == 0) continue;
-    char* name = nullptr;
-    gmsh.function<decltype(gmshModelGetPhysicalName)>("gmshModelGetPhysicalName")(3, group, &name, &error);
-    if (name && *name) cells.label_names[group] = name;
-    if (name) gmsh.free(name);
+    std::vector<int>& of_volume = out[entities.data[i]];
+    for (std::size_t g = 0; !error && g < groups.size; ++g) {
+      const int group = std::abs(groups.data[g]);
+      of_volume.push_back(group);
+      char* name = nullptr;
+      gmsh.function<decltype(gmshModelGetPhysicalName)>("gmshModelGetPhysicalName")(3, group, &name, &error);
+      if (name && *name) cells.label_names[group] = name;
+      if (name) gmsh.free(name);
+    }
   }
-  if (any)
-    cells.no_label = 0.0;
-  else
-    for (auto& [volume, label] : out) label = volume;
   return out;
 }
 
-/// The region label of each tetrahedron, by its tag.
-std::map<std::size_t, double> labels_of_tetrahedra(const Gmsh& gmsh, Cells& cells) {
-  std::map<std::size_t, double> out;
-  for (const auto& [volume, label] : regions_of_volumes(gmsh, cells)) {
+/// The elements of one type in one entity (-1: in all): tags, and tags of their nodes.
+struct Elements {
+  Elements(const Gmsh& gmsh, int type, int entity) : tags(gmsh), nodes(gmsh) {
     int error = 0;
-    Array<std::size_t> elements(gmsh), nodes(gmsh);
     gmsh.function<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType")(
-        4, &elements.data, &elements.size, &nodes.data, &nodes.size, volume, 0, 1, &error);
-    for (std::size_t e = 0; !error && e < elements.size; ++e) out[elements.data[e]] = label;
+        type, &tags.data, &tags.size, &nodes.data, &nodes.size, entity, 0, 1, &error);
+    if (error) tags.size = nodes.size = 0;  // none of this type
+  }
+  Array<std::size_t> tags, nodes;
+};
+
+/// Corners of element `e`, as places in the list of points.
+std::vector<int> corners_of(const Elements& elements, std::size_t e, std::size_t count,
+                            const std::map<std::size_t, int>& place, const std::string& path) {
+  std::vector<int> out;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t tag = elements.nodes.data[e * count + k];
+    const auto at = place.find(tag);
+    if (at == place.end())
+      fail("{}: element {} names node {}, which the file does not have", path, elements.tags.data[e], tag);
+    out.push_back(at->second);
   }
   return out;
+}
+
+/// Tetrahedra, volume by volume, with their groups: the volumes themselves where there are no groups.  In
+/// versions 1 and 2 an element stands in the file once for each of its groups.
+void read_tetrahedra(const Gmsh& gmsh, const std::map<std::size_t, int>& place, const std::string& path,
+                     Cells& cells) {
+  const std::map<int, std::vector<int>> volumes = groups_of_volumes(gmsh, cells);
+  const bool grouped =
+      std::any_of(volumes.begin(), volumes.end(), [](const auto& v) { return !v.second.empty(); });
+  for (const auto& [volume, groups] : volumes) {
+    const Elements elements(gmsh, 4, volume);
+    std::map<std::array<int, 4>, std::size_t> times;
+    for (std::size_t e = 0; e < elements.tags.size; ++e) {
+      const std::vector<int> c = corners_of(elements, e, 4, place, path);
+      std::array<int, 4> sorted{c[0], c[1], c[2], c[3]};
+      std::sort(sorted.begin(), sorted.end());
+      if (groups.size() > 1) {
+        if (std::size_t& met = times[sorted]; ++met > 1 && met <= groups.size()) continue;
+      }
+      const auto tet = static_cast<int>(cells.tetrahedra());
+      cells.tetrahedron(c[0], c[1], c[2], c[3]);
+      if (!grouped) cells.groups[volume].push_back(tet);
+      for (const int group : groups) cells.groups[group].push_back(tet);
+    }
+  }
 }
 
 SourceFile read_here(const std::string& path, const std::string& format) {
@@ -150,31 +183,14 @@ SourceFile read_here(const std::string& path, const std::string& format) {
       cells.point_numbers.push_back(static_cast<long>(tags.data[i]));
     }
   }
-  const std::map<std::size_t, double> labels = labels_of_tetrahedra(gmsh, cells);
+  read_tetrahedra(gmsh, place, path, cells);
   for (const Kind& kind : kKinds) {
-    Array<std::size_t> elements(gmsh), nodes(gmsh);
-    gmsh.function<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType")(
-        kind.type, &elements.data, &elements.size, &nodes.data, &nodes.size, -1, 0, 1, &error);
-    if (error) continue;  // no element of this type
-    for (std::size_t e = 0; e < elements.size; ++e) {
-      std::vector<int> corners;
-      for (int k = 0; k < kind.corners; ++k) {
-        const std::size_t tag =
-            nodes.data[e * static_cast<std::size_t>(kind.corners) + static_cast<std::size_t>(k)];
-        const auto at = place.find(tag);
-        if (at == place.end())
-          fail("{}: element {} names node {}, which the file does not have", path, elements.data[e], tag);
-        corners.push_back(at->second);
-      }
-      if (kind.type == 2 || kind.type == 3)
-        cells.polygon(corners);
-      else if (kind.type == 4) {
-        cells.tetrahedron(corners[0], corners[1], corners[2], corners[3]);
-        const auto label = labels.find(elements.data[e]);
-        cells.labels.push_back(label == labels.end() ? 0.0 : label->second);
-      } else
+    const Elements elements(gmsh, kind.type, -1);
+    for (std::size_t e = 0; e < elements.tags.size; ++e)
+      if (kind.corners > 0)
+        cells.polygon(corners_of(elements, e, kind.corners, place, path));
+      else
         cells.unread(kind.name);
-    }
   }
   return cells.finish(format);
 }

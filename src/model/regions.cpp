@@ -54,22 +54,12 @@ std::vector<char> inside(const RegionSource& source, const TetMesh& tets, const 
   return out;
 }
 
-/// Names and region of each tetrahedron, as regions; those that hold none go.
-std::vector<MaterialRegion> regions_of(std::vector<MaterialRegion> regions, const std::vector<int>& owner) {
-  for (MaterialRegion& region : regions) region.tets.clear();
-  for (std::size_t t = 0; t < owner.size(); ++t)
-    if (owner[t] >= 0) regions[static_cast<std::size_t>(owner[t])].tets.push_back(static_cast<int>(t));
-  std::erase_if(regions, [](const MaterialRegion& r) { return r.tets.empty(); });
-  return regions;
-}
-
 }  // namespace
 
 std::vector<MaterialRegion> add_regions(const TetMesh& tets, const Skeleton& skeleton,
                                         std::vector<MaterialRegion> regions,
                                         const std::vector<RegionSource>& sources,
                                         std::vector<double>& surface_volumes) {
-  std::vector<int> owner = mesh::region_of_element(regions, static_cast<int>(tets.tets.cols()));
   const Points points = middles(tets);
   surface_volumes.assign(sources.size(), 0.0);
   for (std::size_t s = 0; s < sources.size(); ++s) {
@@ -77,21 +67,30 @@ std::vector<MaterialRegion> add_regions(const TetMesh& tets, const Skeleton& ske
     if (std::any_of(regions.begin(), regions.end(), [&](const MaterialRegion& r) { return r.name == name; }))
       fail("--region {}=...: there is a region of this name already; choose another", name);
     const std::vector<char> in = inside(sources[s], tets, points, skeleton, surface_volumes[s]);
-    for (std::size_t t = 0; t < owner.size(); ++t)
-      if (in[t]) owner[t] = static_cast<int>(regions.size());
+    for (MaterialRegion& region : regions)
+      std::erase_if(region.tets, [&](int tet) { return in[static_cast<std::size_t>(tet)] != 0; });
     regions.push_back({name, {}});
+    for (std::size_t t = 0; t < in.size(); ++t)
+      if (in[t]) regions.back().tets.push_back(static_cast<int>(t));
   }
-  return regions_of(std::move(regions), owner);
+  std::erase_if(regions, [](const MaterialRegion& r) { return r.tets.empty(); });
+  return regions;
 }
 
 std::vector<MaterialRegion> carried_over(const TetMesh& old, const std::vector<MaterialRegion>& regions,
                                          const TetMesh& tets) {
   if (regions.empty()) return {};
-  const std::vector<int> old_owner = mesh::region_of_element(regions, static_cast<int>(old.tets.cols()));
-  std::vector<int> owner;
-  for (const int tet : mesh::embed(old, middles(tets)).tet)
-    owner.push_back(old_owner[static_cast<std::size_t>(tet)]);
-  return regions_of(regions, owner);
+  const std::vector<int> held_by = mesh::embed(old, middles(tets)).tet;
+  std::vector<MaterialRegion> out = regions;
+  for (MaterialRegion& region : out) {
+    std::vector<char> held(static_cast<std::size_t>(old.tets.cols()), 0);
+    for (const int tet : region.tets) held[static_cast<std::size_t>(tet)] = 1;
+    region.tets.clear();
+    for (std::size_t t = 0; t < held_by.size(); ++t)
+      if (held[static_cast<std::size_t>(held_by[t])]) region.tets.push_back(static_cast<int>(t));
+  }
+  std::erase_if(out, [](const MaterialRegion& r) { return r.tets.empty(); });
+  return out;
 }
 
 }  // namespace palpate::model

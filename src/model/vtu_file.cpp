@@ -25,6 +25,7 @@ namespace {
 struct Document {
   std::string path;
   pugi::xml_document xml;
+  std::string kind;      ///< "UnstructuredGrid" or "PolyData"
   std::string appended;  ///< what stands after the underscore
   bool appended_raw = false, compressed = false, wide_header = false, swap = false;
 };
@@ -184,9 +185,10 @@ void load(Document& document) {
   if (const pugi::xml_parse_result parsed = document.xml.load_buffer(text.data(), text.size()); !parsed)
     fail("{}: is no XML at byte {}: {}", document.path, parsed.offset, parsed.description());
   const pugi::xml_node root = document.xml.child("VTKFile");
-  if (std::string(root.attribute("type").as_string()) != "UnstructuredGrid")
-    fail("{}: is no VTK file of an unstructured grid, but of \"{}\"", document.path,
-         root.attribute("type").as_string());
+  document.kind = root.attribute("type").as_string();
+  if (document.kind != "UnstructuredGrid" && document.kind != "PolyData")
+    fail("{}: is no VTK file of an unstructured grid or a surface (PolyData), but of \"{}\"", document.path,
+         document.kind);
   const std::string compressor = root.attribute("compressor").as_string();
   if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
     fail("{}: is compressed by {}, vtkZLibDataCompressor is read", document.path, compressor);
@@ -217,57 +219,74 @@ std::vector<double> labels_of(const Document& document, const pugi::xml_node& pi
   return {};
 }
 
-void take_cell(Cells& cells, int type, const std::vector<int>& corners) {
-  constexpr int kTriangle = 5, kPolygon = 7, kQuadrangle = 9, kTetrahedron = 10, kLastLine = 4;
-  if (type == kTetrahedron && corners.size() == 4)
-    cells.tetrahedron(corners[0], corners[1], corners[2], corners[3]);
-  else if (type == kTriangle || type == kPolygon || type == kQuadrangle)
-    cells.polygon(corners);
-  else if (type > kLastLine)
-    cells.unread(fmt::format("cells of VTK's type {}", type));
+/// Cells of one kind, as connectivity and the ends of the cells in it.
+std::vector<std::vector<int>> cells_in(const Document& document, const pugi::xml_node& section, int first,
+                                       std::size_t points) {
+  const auto array = [&](const char* name) {
+    return numbers<long long>(document, section.find_child_by_attribute("DataArray", "Name", name),
+                              fmt::format("array \"{}\"", name));
+  };
+  const std::vector<long long> connectivity = array("connectivity"), offsets = array("offsets");
+  std::vector<std::vector<int>> out;
+  long long begin = 0;
+  for (std::size_t c = 0; c < offsets.size(); ++c) {
+    if (offsets[c] < begin || offsets[c] > static_cast<long long>(connectivity.size()))
+      fail("{}: cell {} ends at {} of {} entries", document.path, c, offsets[c], connectivity.size());
+    std::vector<int>& corners = out.emplace_back();
+    for (; begin < offsets[c]; ++begin) {
+      const long long corner = connectivity[static_cast<std::size_t>(begin)];
+      if (corner < 0 || corner >= static_cast<long long>(points))
+        fail("{}: cell {} names point {}, the piece has {}", document.path, c, corner, points);
+      corners.push_back(first + static_cast<int>(corner));
+    }
+  }
+  return out;
+}
+
+void take_grid(const Document& document, const pugi::xml_node& piece, int first, std::size_t points,
+               Cells& cells) {
+  const auto list = cells_in(document, piece.child("Cells"), first, points);
+  const auto types =
+      numbers<long long>(document, piece.child("Cells").find_child_by_attribute("DataArray", "Name", "types"),
+                         "array \"types\"");
+  if (list.size() != types.size())
+    fail("{}: has {} offsets and {} types of cells", document.path, list.size(), types.size());
+  const std::vector<double> labels = labels_of(document, piece, list.size());
+  if (!labels.empty()) cells.labels.resize(cells.tetrahedra(), 0.0);
+  for (std::size_t c = 0; c < list.size(); ++c) {
+    const std::size_t before = cells.tetrahedra();
+    take_vtk_cell(cells, static_cast<int>(types[c]), list[c]);
+    if ((!labels.empty() || !cells.labels.empty()) && cells.tetrahedra() > before)
+      cells.labels.push_back(labels.empty() ? 0.0 : labels[c]);
+  }
+}
+
+void take_surface(const Document& document, const pugi::xml_node& piece, int first, std::size_t points,
+                  Cells& cells) {
+  constexpr int kStrip = 6, kPolygon = 7;
+  for (const auto& [section, type] : {std::pair("Polys", kPolygon), std::pair("Strips", kStrip)})
+    if (piece.child(section).child("DataArray"))
+      for (const std::vector<int>& corners : cells_in(document, piece.child(section), first, points))
+        take_vtk_cell(cells, type, corners);
 }
 
 }  // namespace
 
-SourceFile read_vtu(const std::string& path) {
+SourceFile read_vtk_xml(const std::string& path) {
   Document document;
   document.path = path;
   load(document);
+  const pugi::xml_node root = document.xml.child("VTKFile");
+  const bool grid = document.kind == "UnstructuredGrid";
   Cells cells(path);
-  for (const pugi::xml_node& piece :
-       document.xml.child("VTKFile").child("UnstructuredGrid").children("Piece")) {
+  for (const pugi::xml_node& piece : root.child(document.kind.c_str()).children("Piece")) {
     const int first = static_cast<int>(cells.points.size());
-    const auto coordinates = numbers<double>(document, piece.child("Points").child("DataArray"), "points");
-    for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3)
-      cells.points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
-    const auto array = [&](const char* name) {
-      return numbers<long long>(document,
-                                piece.child("Cells").find_child_by_attribute("DataArray", "Name", name),
-                                fmt::format("array \"{}\"", name));
-    };
-    const std::vector<long long> connectivity = array("connectivity"), offsets = array("offsets"),
-                                 types = array("types");
-    if (offsets.size() != types.size())
-      fail("{}: has {} offsets and {} types of cells", path, offsets.size(), types.size());
-    const std::vector<double> labels = labels_of(document, piece, offsets.size());
-    if (!labels.empty()) cells.labels.resize(cells.tetrahedra(), 0.0);
-    long long begin = 0;
-    for (std::size_t c = 0; c < offsets.size(); ++c) {
-      if (offsets[c] < begin || offsets[c] > static_cast<long long>(connectivity.size()))
-        fail("{}: cell {} ends at {} of {} entries", path, c, offsets[c], connectivity.size());
-      std::vector<int> corners;
-      for (long long i = begin; i < offsets[c]; ++i) {
-        const long long corner = connectivity[static_cast<std::size_t>(i)];
-        if (corner < 0 || corner >= static_cast<long long>(coordinates.size() / 3))
-          fail("{}: cell {} names point {}, the piece has {}", path, c, corner, coordinates.size() / 3);
-        corners.push_back(first + static_cast<int>(corner));
-      }
-      const std::size_t before = cells.tetrahedra();
-      take_cell(cells, static_cast<int>(types[c]), corners);
-      if ((!labels.empty() || !cells.labels.empty()) && cells.tetrahedra() > before)
-        cells.labels.push_back(labels.empty() ? 0.0 : labels[c]);
-      begin = offsets[c];
-    }
+    // an empty piece may have no array
+    if (piece.attribute("NumberOfPoints").as_ullong() == 0) continue;
+    const auto x = numbers<double>(document, piece.child("Points").child("DataArray"), "points");
+    for (std::size_t i = 0; i + 2 < x.size(); i += 3) cells.points.emplace_back(x[i], x[i + 1], x[i + 2]);
+    grid ? take_grid(document, piece, first, x.size() / 3, cells)
+         : take_surface(document, piece, first, x.size() / 3, cells);
   }
   return cells.finish("VTK XML");
 }

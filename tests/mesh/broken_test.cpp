@@ -44,6 +44,7 @@ const std::vector<Broken> kBroken = {
      {"blocks_disagree.msh:14: ", "4 nodes are in the blocks, but the section announces 5"}},
     {"duplicate_tag.msh", {"duplicate_tag.msh:14: node 2 is defined here and in line 12", "must differ"}},
     {"missing_end.msh", {"missing_end.msh:15: ", "$EndNodes is expected, found \"$Elements\""}},
+    {"crossed.obj", {"crossed.obj:25: face 9: ", "crosses or touches itself", "cut it into triangles"}},
     {"flat_world.ele", {"flat_world.node:1: ", "dimension = 2 must be 3"}},
     {"out_of_range.ele", {"out_of_range.ele:2: element 1: ", "node 5 is outside 1 to 4"}},
     {"gap.node", {"gap.node:4: ", "point 4 found where 3 is expected", "without gaps"}},

@@ -75,6 +75,12 @@ $NodeData
 $EndNodeData
 )";
 
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
 MeshReport read_text(const std::string& name, std::string_view text) {
   const TempFolder folder;
   folder.write(name, text);
@@ -172,12 +178,6 @@ std::string regions_of(const std::string& name, std::string_view text, const std
   return out;
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
-}
-
 }  // namespace
 
 TEST(Readers, PhysicalVolumesAreRegions) {
@@ -197,19 +197,50 @@ TEST(Readers, PhysicalVolumesAreRegions) {
   EXPECT_EQ(regions_of("b.msh", kGmsh41), "region-1: 0; region-2: 1; ") << "volumes of the model";
   const std::string physical = replaced(kGmsh41, "0 0 0 1\n1 0 0 0 1 1 1 0 0\n",
                                         "1 0 0 2\n1 0 0 0 0\n1 0 0 0 1 1 1 2 7 8 0\n2 0 0 0 1 1 1 0 0\n");
-  EXPECT_EQ(regions_of("b.msh", physical), "region-7: 0; ") << "the first of two; the other volume has none";
+  EXPECT_EQ(regions_of("b.msh", physical), "region-7: 0; region-8: 0; ") << "both; the other volume has none";
   EXPECT_EQ(
       regions_of(
           "b.msh",
           replaced(
               physical, "$Entities",
               "$PhysicalNames\n2\n2 7 \"a side\"\n3 7 \"bone of the leg\"\n$EndPhysicalNames\n$Entities")),
-      "bone of the leg: 0; ");
+      "bone of the leg: 0; region-8: 0; ");
   EXPECT_NE(error_of([&] {
               regions_of("b.msh", replaced(physical, "$Entities",
                                            "$PhysicalNames\n1\n3 7 bone\n$EndPhysicalNames\n$Entities"));
             }).find("b.msh:6: a name in double quotes is expected, found bone"),
             std::string::npos);
+}
+
+TEST(Readers, AnElementInSeveralGroupsIsOneElement) {
+  std::string text = replaced(kGmsh22, "\n1\n3 1 \"tissue\"\n", "\n2\n3 1 \"tissue\"\n3 4 \"all\"\n");
+  text = replaced(text, "$Elements\n4", "$Elements\n5");
+  text = replaced(text, "\n3 4 2 0 1 10 7 300 2000000000\n9 4 0 7",
+                  "\n3 4 2 1 5 10 7 300 2000000000\n4 4 2 4 5 10 7 300 2000000000\n9 4 2 4 6 7");
+  EXPECT_EQ(regions_of("a.msh", text), "tissue: 0; all: 0 1; ");
+  expect_two_tets(read_text("a.msh", text));
+  // the same group again: the file holds a part twice
+  expect_contains(error_of([&] { read_text("a.msh", replaced(text, "\n4 4 2 4", "\n4 4 2 1")); }),
+                  "has the same corners as");
+}
+
+TEST(Readers, PartsOfPartitionedVolumesKeepTheirGroups) {
+  const std::string parts =
+      replaced(kGmsh41, "$EndEntities\n",
+               "$EndEntities\n$PartitionedEntities\n2\n1\n9 1\n1 0 0 2\n5 3 1 1 1 0 0 0 0\n"
+               "1 3 1 1 1 0 0 0 1 1 1 2 7 8 0\n2 3 1 2 2 1 0 0 0 1 1 1 0 0\n$EndPartitionedEntities\n");
+  EXPECT_EQ(regions_of("b.msh", parts), "region-7: 0; region-8: 0; ");
+  // a part without groups is in those of its volume
+  EXPECT_EQ(regions_of("b.msh", replaced(parts, "1 0 0 0 1 1 1 0 0\n$EndE", "1 0 0 0 1 1 1 1 4 0\n$EndE")),
+            "region-4: 1; region-7: 0; region-8: 0; ");
+  // no groups: both belong to the one volume of the model
+  EXPECT_EQ(regions_of("b.msh", replaced(parts, "1 1 1 2 7 8 0", "1 1 1 0 0")), "");
+}
+
+TEST(Readers, GroupsOfOneNameAreOneRegion) {
+  EXPECT_EQ(regions_of_groups({{1, {0, 2}}, {2, {1, 2}}, {5, {3}}}, {{1, "a"}, {2, "a"}}, 4).size(), 2u);
+  EXPECT_EQ(regions_of_groups({{1, {0, 2}}, {2, {1, 2}}}, {{1, "a"}, {2, "a"}}, 4)[0].tets,
+            (std::vector<int>{0, 1, 2}));
 }
 
 TEST(Readers, TetGensAttributesAreRegions) {
@@ -225,8 +256,25 @@ TEST(Readers, TetGensAttributesAreRegions) {
 TEST(Readers, ARegionHasEachElementOnce) {
   const std::vector<MaterialRegion> regions = {{"a", {0, 2}}, {"b", {3}}};
   EXPECT_EQ(region_of_element(regions, 5), (std::vector<int>{0, -1, 0, 1, -1}));
-  EXPECT_THROW(region_of_element({{"a", {0, 2}}, {"b", {2}}}, 5), std::exception);
+  // the smaller of two has what both hold, whichever is listed first
+  EXPECT_EQ(region_of_element({{"part", {2}}, {"all", {0, 1, 2, 3, 4}}}, 5),
+            (std::vector<int>{1, 1, 0, 1, 1}));
   EXPECT_THROW(region_of_element(regions, 3), std::exception);
+}
+
+TEST(Readers, ObjJoinsContinuedLines) {
+  const std::string text =
+      "# a folder: C:\\\nv 0 0 0\nv 1 \\\n0 \\\r\n 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 \\\n1 "
+      "\\\n4\n";
+  EXPECT_NEAR(read_text("a.obj", text).volume, 1.0 / 6, 1e-15);
+  // lines are counted as the file has them, and a joined one by its first
+  expect_contains(error_of([&] { read_text("a.obj", replaced(text, "3 \\\n1 \\\n4", "3 \\\n1 \\\nx")); }),
+                  "a.obj:11: face 4: corner \"x\"");
+  std::string old = text;
+  std::erase(old, '\r');
+  std::replace(old.begin(), old.end(), '\n', '\r');
+  EXPECT_NEAR(read_text("a.obj", old).volume, 1.0 / 6, 1e-15)
+      << "lines that end with a carriage return alone";
 }
 
 TEST(Readers, ObjTakesPolygonsNormalsTexturesAndNegativeIndices) {

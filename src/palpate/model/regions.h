@@ -30,8 +30,8 @@ struct RegionFigures {
 std::vector<char> inside_of(const TriMesh& surface, const Points& points);
 
 /// The tetrahedra whose middle lies in what each source asks for, beside the regions that are there already;
-/// one that lies in several belongs to the last. The border of a region runs along faces of tetrahedra, so
-/// that its shape is right to an element: the finer, the better.
+/// one that lies in several sources belongs to the last, and leaves the regions that are there. The border of
+/// a region runs along faces of tetrahedra, so that its shape is right to an element: the finer, the better.
 /// @param surface_volumes  of each source, 0 for bones
 /// @throws Error for a source that holds the middle of none, for a name twice, for a surface that cannot be
 ///   mended
@@ -40,7 +40,7 @@ std::vector<MaterialRegion> add_regions(const TetMesh& tets, const Skeleton& ske
                                         const std::vector<RegionSource>& sources,
                                         std::vector<double>& surface_volumes);
 
-/// Regions of tetrahedra that are filled anew: each new one takes the region of the old one that holds its
+/// Regions of tetrahedra that are filled anew: each new one takes the regions of the old one that holds its
 /// middle.
 std::vector<MaterialRegion> carried_over(const TetMesh& old, const std::vector<MaterialRegion>& regions,
                                          const TetMesh& tets);

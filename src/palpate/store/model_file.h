@@ -15,7 +15,7 @@
 ///               hull p: corners[corner_offsets[p] ... corner_offsets[p + 1])
 ///   skeleton/   names (one a line), parent, head, tail, head_radius, tail_radius, bone_of_node
 ///   regions/    names (one a line), tets, offsets, youngs_modulus_factor, density_factor
-///               region r: tets[offsets[r] ... offsets[r + 1]), ascending; no tetrahedron is in two regions
+///               region r: tets[offsets[r] ... offsets[r + 1]), ascending; regions may overlap
 ///   made/       source, source_hash, options, version, notes (one a line),
 ///               figure_names (one a line), figures
 /// A missing group is an empty part of the model.
