@@ -96,17 +96,19 @@ class Carried final : public dynamics::DrivenMotion {
 
 std::vector<int> nodes_in_box(const Points& placed, const Vec3& box_min, const Vec3& box_max) {
   check_box(box_min, box_max, "attachment");
+  const double tolerance = selection_tolerance(placed);
   std::vector<int> out;
   for (int i = 0; i < placed.cols(); ++i)
-    if (in_box(placed.col(i), box_min, box_max)) out.push_back(i);
+    if (in_box(placed.col(i), box_min, box_max, tolerance)) out.push_back(i);
   return out;
 }
 
 std::vector<int> nodes_in_sphere(const Points& placed, const Vec3& centre, double radius) {
   if (!(radius > 0.0)) fail("attachment: radius_m = {} must be positive", radius);
+  const double reach = radius + selection_tolerance(placed);
   std::vector<int> out;
   for (int i = 0; i < placed.cols(); ++i)
-    if ((placed.col(i) - centre).norm() <= radius * (1.0 + 1e-12)) out.push_back(i);
+    if ((placed.col(i) - centre).norm() <= reach) out.push_back(i);
   return out;
 }
 

@@ -6,8 +6,18 @@
 
 namespace palpate::fem {
 
-inline bool in_box(const Vec3& p, const Vec3& low, const Vec3& high) {
-  return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
+/// What a box or a sphere reaches beyond its border, so that nodes on it are inside: a millionth of the
+/// mesh's extent, which files in single precision or with six digits are off by, and the rounding of a
+/// placement.
+inline double selection_tolerance(const Points& placed) {
+  if (placed.cols() == 0) return 0.0;
+  constexpr double kOfExtent = 1e-6, kRounding = 1e-15;
+  return kOfExtent * (placed.rowwise().maxCoeff() - placed.rowwise().minCoeff()).norm() +
+         kRounding * placed.cwiseAbs().maxCoeff();
+}
+
+inline bool in_box(const Vec3& p, const Vec3& low, const Vec3& high, double tolerance) {
+  return (p.array() >= low.array() - tolerance).all() && (p.array() <= high.array() + tolerance).all();
 }
 
 inline std::string describe(const Vec3& low, const Vec3& high) {

@@ -62,13 +62,14 @@ Points spread_over_boundary(const TetMesh& placed, const LoadSpec& load) {
   if (!load.force_n.allFinite())
     fail("load: force_n = ({}, {}, {}) must be finite", load.force_n.x(), load.force_n.y(), load.force_n.z());
   const mesh::Boundary boundary = mesh::boundary(placed);
+  const double tolerance = selection_tolerance(placed.nodes);
   VecX share = VecX::Zero(placed.nodes.cols());
   for (const auto& face : boundary.surface.faces.colwise()) {
     Eigen::Vector3i node;
     bool inside = true;
     for (int i = 0; i < 3; ++i) {
       node[i] = boundary.node_of_vertex[static_cast<std::size_t>(face[i])];
-      inside = inside && in_box(placed.nodes.col(node[i]), load.box_min_m, load.box_max_m);
+      inside = inside && in_box(placed.nodes.col(node[i]), load.box_min_m, load.box_max_m, tolerance);
     }
     if (!inside) continue;
     const Vec3 a = placed.nodes.col(node[0]), b = placed.nodes.col(node[1]), c = placed.nodes.col(node[2]);

@@ -44,6 +44,20 @@ TEST(Attachments, NodesInABoxBordersIncluded) {
                   "attachment: box_min_m[1] = 2 must not exceed box_max_m[1] = 1");
 }
 
+// A block of 0.1 m, turned, far from the origin, and written in single precision: its top lies on the border
+// of the box to about 1e-8 m, of the sphere's centre too.
+TEST(Attachments, NodesOnTheBorderAreInsideWhateverTheirRounding) {
+  Points p(3, 8);
+  for (int i = 0; i < 8; ++i)
+    p.col(i) = Vec3(0.1 * (i & 1), 0.1 * (i >> 1 & 1), 0.1 * (i >> 2)).cast<float>().cast<double>();
+  const Points one = p.colwise() + Vec3(7.3, -2.1, 0.2);
+  EXPECT_EQ(nodes_in_box(one, Vec3(7.3, -2.1, 0.3), Vec3(7.4, -2.0, 0.3)), (std::vector<int>{4, 5, 6, 7}));
+  EXPECT_EQ(nodes_in_sphere(one, Vec3(7.3, -2.1, 0.2), 0.1), (std::vector<int>{0, 1, 2, 4}));
+  const Points small = 1e-3 * one;
+  EXPECT_EQ(nodes_in_box(small, 1e-3 * Vec3(7.3, -2.1, 0.3), 1e-3 * Vec3(7.4, -2.0, 0.3)).size(), 4u);
+  EXPECT_TRUE(nodes_in_box(one, Vec3(7.3, -2.1, 0.300001), Vec3(7.4, -2.0, 0.31)).empty());
+}
+
 TEST(Attachments, DirectionsOfNodesByAxis) {
   EXPECT_EQ(dofs_of_nodes({4, 1}, 10, "zx"), (std::vector<int>{33, 35, 42, 44}));
   expect_contains(message_of([] { dofs_of_nodes({0}, 0, "xw"); }),

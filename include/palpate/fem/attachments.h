@@ -10,7 +10,8 @@
 
 namespace palpate::fem {
 
-/// Nodes of `placed` (initial world positions) inside the box, borders included.
+/// Nodes of `placed` (initial world positions) inside the box, borders included to a millionth of the extent
+/// of `placed`.
 std::vector<int> nodes_in_box(const Points& placed, const Vec3& box_min, const Vec3& box_max);
 
 /// The u indices of the named axes ("x", "xz", "xyz") of nodes, ascending; `first_node`: of the body, counted
@@ -27,8 +28,8 @@ std::shared_ptr<dynamics::DrivenMotion> make_fixed(std::vector<int> dofs, VecX x
 std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Points local_points_per_dof,
                                                     dynamics::Path path);
 
-/// Nodes of `placed` inside the sphere, its surface included.  @throws Error for a radius that is not
-/// positive
+/// Nodes of `placed` inside the sphere, its surface included in the same way.  @throws Error for a radius
+/// that is not positive
 std::vector<int> nodes_in_sphere(const Points& placed, const Vec3& centre, double radius);
 
 /// Nodes that sit rigidly on a free rigid body (block kRigidBody of the State, dynamics/rigid_body.h), all
