@@ -82,8 +82,8 @@ void take_skeleton(const SoftBodySpec& spec, const std::string& path, const Laye
   body.skeleton = model.skeleton;
   body.bone_of_node = model.bone_of_node;
   for (palpate::Bone& bone : body.skeleton.bones) {
-    bone.head *= spec.mesh.scale, bone.tail *= spec.mesh.scale;
-    bone.head_radius *= spec.mesh.scale, bone.tail_radius *= spec.mesh.scale;
+    bone.head *= spec.mesh.factor(), bone.tail *= spec.mesh.factor();
+    bone.head_radius *= spec.mesh.factor(), bone.tail_radius *= spec.mesh.factor();
   }
 }
 
@@ -94,21 +94,21 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
   if (spec.skin || spec.skeleton) {
     LayeredModel model = store::read_model(path).model;
-    take_model(model, path, spec.mesh.scale, body);
+    take_model(model, path, spec.mesh.factor(), body);
     if (spec.skeleton) take_skeleton(spec, path, model, body);
     if (!spec.skin) return std::move(model.regions);
     if (model.skin.faces.cols() == 0)
       fail("body \"{}\": skin = true, but {} has no skin; `palpate model` writes files that have one",
            spec.name, path);
     counters::count("loop.skin");
-    model.skin.vertices *= spec.mesh.scale;
+    model.skin.vertices *= spec.mesh.factor();
     std::shared_ptr<proxy::ProxySet> proxies;
     if (spec.proxies) {
       if (model.proxies.empty())
         fail("body \"{}\": proxies = true, but {} has none; `palpate model` writes files that have them",
              spec.name, path);
       model.tets = body.rest;  // as checked, scaled and numbered
-      for (ProxyHull& hull : model.proxies) hull.corners *= spec.mesh.scale;
+      for (ProxyHull& hull : model.proxies) hull.corners *= spec.mesh.factor();
       counters::count("loop.proxies");
       proxies = std::make_shared<proxy::ProxySet>(model);
     }
@@ -117,7 +117,7 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
   }
   std::vector<MaterialRegion> regions;
   if (spec.mesh.file.ends_with(".h5")) {
-    take_file(store::read_mesh(path), path, spec.mesh.scale, body);
+    take_file(store::read_mesh(path), path, spec.mesh.factor(), body);
     regions = store::read_regions(path, static_cast<int>(body.rest.tets.cols()));
   } else {
     take_tets(mesh::tet_mesh(spec.mesh, folder, &body.report, &regions), body);

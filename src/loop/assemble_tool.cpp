@@ -149,7 +149,7 @@ TriMesh tool_surface(const ToolSpec& spec, const std::string& folder) {
     TriMesh skin = store::read_model(path).model.skin;
     if (skin.faces.cols() == 0)
       fail("tool: mesh: {} has no skin; `palpate model` writes files that have one", path);
-    skin.vertices *= spec.mesh.scale;
+    skin.vertices *= spec.mesh.factor();
     return skin;
   }
   if (spec.shape == "mesh") return mesh::surface(spec.mesh, folder);

@@ -7,6 +7,7 @@
 #include "palpate/mesh/checks.h"
 #include "palpate/mesh/generators.h"
 #include "palpate/mesh/readers.h"
+#include "palpate/mesh/size_check.h"
 
 namespace palpate::mesh {
 namespace {
@@ -18,8 +19,8 @@ bool is_file(const MeshSpec& spec) {
          spec.generator);
   if (spec.file.empty() && spec.generator.empty())
     fail("mesh: neither file nor generator is given; give one (generators: box, ball, cylinder, tet)");
-  if (!MeshRanges::scale.holds(spec.scale))
-    fail("mesh: scale = {} {}", spec.scale, MeshRanges::scale.demand());
+  if (!MeshRanges::scale.holds(spec.factor()))
+    fail("mesh: scale = {} {}", spec.factor(), MeshRanges::scale.demand());
   return !spec.file.empty();
 }
 
@@ -50,6 +51,17 @@ SurfaceFile read_surface(const std::string& path) {
   return read_obj(path);
 }
 
+/// Refuses a size in metres that nobody is likely to mean, where the scene gives no scale.
+void check_size(const MeshSpec& spec, const Points& points, const std::string& path, const char* what) {
+  if (spec.scale) return;
+  if (const auto doubt = doubt_about_size(points))
+    fail(
+        "{}: the {} is {:.3g} m large: is that meant? Then write scale = 1 beside file = \"{}\"; a file in "
+        "{} "
+        "takes scale = {}",
+        path, what, doubt->size_m, spec.file, doubt->other_unit, doubt->factor);
+}
+
 std::string generator_name(const MeshSpec& spec) { return fmt::format("generator \"{}\"", spec.generator); }
 
 }  // namespace
@@ -59,7 +71,8 @@ TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* re
   TetFile out;
   if (is_file(spec)) {
     out = read_tets((std::filesystem::path(folder) / spec.file).string());
-    out.mesh.nodes *= spec.scale;
+    check_size(spec, out.mesh.nodes, out.from.source, "body");
+    out.mesh.nodes *= spec.factor();
   } else {
     out.mesh = find(tet_generators(), spec.generator, "mesh generator").make(spec);
     out.from.source = generator_name(spec);
@@ -78,7 +91,8 @@ TriMesh surface(const MeshSpec& spec, const std::string& folder, MeshReport* rep
       fail("{}", crossing);
     if (const std::string warped = warped_text(out.polygons, out.from); !warped.empty())
       log::warn("{}", warped);
-    out.mesh.vertices *= spec.scale;
+    check_size(spec, out.mesh.vertices, out.from.source, "tool");
+    out.mesh.vertices *= spec.factor();
   } else {
     out.mesh = find(surface_generators(), spec.generator, "surface generator").make(spec);
     out.from = surface_provenance(generator_name(spec));

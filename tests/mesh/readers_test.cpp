@@ -149,6 +149,31 @@ TEST(Readers, ScaleMultipliesCoordinates) {
   expect_contains(error_of([&] { tet_mesh(spec, folder.path()); }), "scale = 0 must be positive");
 }
 
+TEST(Readers, AFileInOtherUnitsIsAskedAboutWhereNoScaleIsGiven) {
+  const TempFolder folder;
+  std::string text = kGmsh22,
+              surface = "v 0 0 0\nv 80 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+  folder.write("large.msh", replaced(text, "7 1 0 0", "7 120 0 0"));
+  folder.write(
+      "small.msh",
+      replaced(replaced(replaced(replaced(text, "7 1 0 0", "7 1e-4 0 0"), "300 0 1 0", "300 0 1e-4 0"),
+                        "2000000000 0 0 1", "2000000000 0 0 1e-4"),
+               "5 1. 1.0e0 +1", "5 1e-4 1e-4 1e-4"));
+  folder.write("tool.obj", surface);
+  const auto refusal = [&](const char* name) { return error_of([&] { read_any(folder.path(), name); }); };
+  expect_contains(refusal("large.msh"),
+                  "large.msh: the body is 120 m large: is that meant? Then write scale = 1 beside "
+                  "file = \"large.msh\"; a file in millimetres takes scale = 0.001");
+  expect_contains(refusal("small.msh"), "the body is 0.0001 m large: is that meant?");
+  expect_contains(refusal("small.msh"), "a file in kilometres takes scale = 1000");
+  expect_contains(refusal("tool.obj"), "tool.obj: the tool is 80 m large");
+  MeshSpec spec = file_spec("large.msh");
+  for (const double scale : {1.0, 1e-3}) {
+    spec.scale = scale;
+    EXPECT_NO_THROW(tet_mesh(spec, folder.path()));
+  }
+}
+
 TEST(Readers, TetGenCountsFromZeroOrOneWithCommentsAttributesAndMarkers) {
   const TempFolder folder;
   folder.write("one.node",

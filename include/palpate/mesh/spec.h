@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "palpate/core/keys.h"
@@ -17,8 +18,10 @@ struct MeshSpec {
   double length_m = 1.0;              ///< cylinder, along z
   double element_size_m = 0.25;       ///< wanted edge length
   double grading = 1.0;               ///< element size in the middle / at the surface; 1 is uniform
-  double scale = 1.0;                 ///< applied to a file's coordinates
+  /// applied to a file's coordinates; empty: 1, for a file whose size in metres is likely
+  std::optional<double> scale;
 
+  double factor() const { return scale.value_or(1.0); }  ///< of a file's coordinates
   /// Whether the file is a layered model, with skin, proxies and bones, rather than a plain mesh.
   bool has_model() const { return file.ends_with(".h5") || file.starts_with("model:"); }
 };

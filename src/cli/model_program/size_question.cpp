@@ -6,23 +6,17 @@
 #include <iostream>
 
 #include "palpate/core/error.h"
+#include "palpate/mesh/size_check.h"
 
 namespace palpate::cli {
-namespace {
-
-constexpr double kLargest = 10.0, kSmallest = 1e-3;  // [m]
-
-}  // namespace
 
 void ask_about_size(const ModelArguments& arguments, const model::Input& input) {
   const Points& points = input.tets.nodes.cols() > 0 ? input.tets.nodes : input.surface.vertices;
-  if (arguments.scaled || points.cols() == 0 || !points.allFinite()) return;
-  const double size = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).maxCoeff();
-  if (size <= kLargest && size >= kSmallest) return;
-  const char* const units = size > kLargest ? "a file in millimetres takes --scale 0.001"
-                                            : "a file in kilometres takes --scale 1000";
-  const std::string question =
-      fmt::format("{}: the body is {:.3g} m large: is that meant?", input.source, size);
+  const std::optional<mesh::SizeDoubt> doubt = mesh::doubt_about_size(points);
+  if (arguments.scaled || !doubt) return;
+  const std::string units = fmt::format("a file in {} takes --scale {}", doubt->other_unit, doubt->factor),
+                    question = fmt::format("{}: the body is {:.3g} m large: is that meant?", input.source,
+                                           doubt->size_m);
   if (::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1) {
     fmt::print(stderr, "palpate: {} [y/N] ", question);
     std::string answer;
