@@ -95,6 +95,60 @@ void check(const TetrahedraOptions& options, double volume) {
          wanted, kPointsPerCell * wanted, options.limits.points);
 }
 
+/// Optimises; where a stage fails, the mesh of these sizes is made again, and optimised without that stage.
+void optimised(CellMesher& mesher, double cell, double facet, const Progress& progress) {
+  constexpr int kStages = 2;
+  for (int failed = 0;; ++failed) try {
+      return mesher.optimise(progress);
+    } catch (const OptimisationFailed&) {
+      PALPATE_CHECK(failed < kStages, "{} stages of {} failed", failed + 1, kStages);
+      mesher.refine(cell, facet, {});
+    }
+}
+
+/// Tetrahedra that a sheet of thickness t takes, about.
+double least_number(double volume, double thickness) {
+  return thickness > 0 ? kCellsPerVolume * volume / (thickness * thickness * thickness) : 0.0;
+}
+
+/// What the attempts of a search found.
+class Attempts {
+ public:
+  explicit Attempts(const TetrahedraOptions& options) : options_(options) {}
+
+  /// @returns false where more attempts are in vain: larger cells gave no fewer tetrahedra, and still too
+  /// many
+  bool add(double cell, const CellCount& found) {
+    constexpr double kLarger = 1.1, kAsMany = 0.95, kTooMany = 1.3;
+    const bool by_number = options_.element_size_m <= 0 && options_.nodes == 0 && !options_.at_least;
+    const bool in_vain = by_number && last_cell_ > 0 && cell > kLarger * last_cell_ &&
+                         found.tetrahedra > kAsMany * last_ &&
+                         found.tetrahedra > kTooMany * options_.tetrahedra;
+    const auto distance = [&](int number) { return std::abs(number - options_.tetrahedra); };
+    if (last_cell_ == 0 || distance(found.tetrahedra) < distance(nearest_)) nearest_ = found.tetrahedra;
+    last_cell_ = cell;
+    last_ = found.tetrahedra;
+    return !in_vain;
+  }
+
+  [[noreturn]] void refuse(double volume, double thickness) const {
+    const double least = std::max<double>(least_number(volume, thickness), nearest_);
+    fail("no mesh of {} tetrahedra within 3 % was found, the nearest has {}; {}", options_.tetrahedra,
+         nearest_,
+         nearest_ > options_.tetrahedra
+             ? fmt::format(
+                   "where the body is thinner than its elements they grow no larger: ask for {:.2g} or more "
+                   "with --tetrahedra, leave creases out with --creases none, or thicken it",
+                   least)
+             : std::string("ask for more with --tetrahedra"));
+  }
+
+ private:
+  const TetrahedraOptions& options_;
+  double last_cell_ = 0.0;
+  int last_ = 0, nearest_ = 0;
+};
+
 /// Takes away where the boundary touches itself, and says so.
 void part(FittedMesh& made, double volume, std::vector<std::string>& notes) {
   constexpr double kLargestShare = 0.02;
@@ -112,15 +166,23 @@ void part(FittedMesh& made, double volume, std::vector<std::string>& notes) {
 
 }  // namespace
 
-// A sheet of thickness t has the area 2 V / t on both its sides.  A tetrahedron with an angle of 8 degrees or
-// more between its faces along the sheet has edges up to about t / tan(8 degrees) = 7 t, and a triangle of
-// these, 0.43 (7 t)^2 large, stands for three tetrahedra through the sheet.
+// Two bounds.  A sheet of thickness t has the area 2 V / t on both its sides.  A tetrahedron with an angle of
+// 8 degrees or more between its faces along the sheet has edges up to about t / tan(8 degrees) = 7 t, and a
+// triangle of these, 0.43 (7 t)^2 large, stands for three tetrahedra through the sheet.
+//
+// And the ball about a point of one side through the corners of its boundary face must not reach the other
+// side, or faces join both sides and are split again: circumradii are at most about t, as long as no least
+// size ends that, and then N = k V / t^3.  (A washer of 2 mm: none below 6,300 tetrahedra; 8,200 by the
+// formula.)  2 V / A is less than the thickness of bodies with sides, a third of the edge of a cube: only
+// what is far below is refused.
 void refuse_too_thin(const BodySize& size, const Vec3& place, const TetrahedraOptions& options) {
-  constexpr double kLongestEdge = 7.0, kTriangle = 0.43, kThrough = 3.0, kTooMany = 2.0;
+  constexpr double kLongestEdge = 7.0, kTriangle = 0.43, kThrough = 3.0, kTooMany = 2.0, kFarBelow = 4.0;
   if (options.element_size_m > 0 || options.tetrahedra <= 0 || !(size.area > 0)) return;
-  const double thickness = 2 * size.volume / size.area,
-               least = kThrough * size.area / 2 / (kTriangle * std::pow(kLongestEdge * thickness, 2));
-  if (least <= kTooMany * options.tetrahedra) return;
+  const double thickness = size.thickness(),
+               flat = kThrough * size.area / 2 / (kTriangle * std::pow(kLongestEdge * thickness, 2)),
+               least = least_number(size.volume, thickness);
+  const bool exactly = options.nodes == 0 && !options.at_least;
+  if (flat <= kTooMany * options.tetrahedra && !(exactly && least > kFarBelow * options.tetrahedra)) return;
   fail(
       "the body is about {:.2g} m thick, with a surface of {:.3g} m^2, at ({:.4g}, {:.4g}, {:.4g}) m and "
       "elsewhere: it takes about {:.2g} tetrahedra; ask for that many with --tetrahedra, or thicken it",
@@ -143,6 +205,7 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
   };
   check(options, volume);
   Aim aim{options};
+  Attempts attempts_made(options);
   Tetrahedra out;
   CellCount last;
   const double guess = aim.by_size() ? options.element_size_m / kEdgePerCell
@@ -160,12 +223,13 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
                            [&](double fraction) { tell(from + (to - from) * fraction); });
       ++out.attempts;
       tell(to);
+      if (!attempts_made.add(sizes.cell, last)) attempts_made.refuse(volume, mesher.thickness());
       if ((aim.error(last, aim.left) < kClose && sizes.node_error(last) < kClose) || enough(last, aim.left) ||
           attempt + 1 == attempts)
         break;
       sizes.correct(aim, last, aim.left);
     }
-    mesher.optimise([&](double fraction) { tell(0.4 + 0.5 * fraction); });
+    optimised(mesher, sizes.cell, sizes.facet, [&](double fraction) { tell(0.4 + 0.5 * fraction); });
     FittedMesh made = mesher.take();
     std::vector<std::string> notes;
     part(made, volume, notes);
@@ -183,15 +247,13 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
     if (!aim.by_size()) aim.left = static_cast<double>(left.tetrahedra) / std::max(last.tetrahedra, 1);
     sizes.correct(aim, left, 1.0);
   }
-  if (const std::string note = mesher.note(); !note.empty()) out.notes.insert(out.notes.begin(), note);
+  const std::vector<std::string> given_up = mesher.notes();
+  out.notes.insert(out.notes.begin(), given_up.begin(), given_up.end());
   if (aim.error(last, 1.0) > kTolerance && !enough(last, 1.0)) {
     if (aim.by_size())
       fail("no mesh with edges of {} m within 3 % was found, the nearest has {:.4g} m; ask for another size",
            options.element_size_m, last.mean_edge);
-    fail(
-        "no mesh of {} tetrahedra within 3 % was found, the nearest has {}; ask for another number: the "
-        "surface's details and creases need a least one",
-        options.tetrahedra, last.tetrahedra);
+    attempts_made.refuse(volume, mesher.thickness());
   }
   if (sizes.node_error(last) > kTolerance)
     fail("no mesh of {} tetrahedra with {} nodes within 3 % was found, the nearest has {} and {}",

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fit_volume.h"
 #include "palpate/model/tetrahedralise.h"
@@ -12,14 +13,18 @@ struct CellCount {
   double mean_edge = 0.0;  ///< [m]
 };
 
+/// A stage of optimisation failed, and is left out from now on: the mesh is to be refined again.
+struct OptimisationFailed {};
+
 /// What the search asks of a mesher: refine() as often as it likes, then optimise() and take() the last one.
 class CellMesher : public SurfaceQuery {
  public:
   /// bounds on circumradii, in the body and on its surface [m]
   virtual CellCount refine(double cell_size, double facet_size, const Progress& progress) = 0;
-  virtual void optimise(const Progress& progress) = 0;
+  virtual void optimise(const Progress& progress) = 0;  ///< @throws OptimisationFailed
   virtual FittedMesh take() = 0;
-  virtual std::string note() const { return {}; }  ///< what had to be given up, for the outcome
+  virtual double thickness() const { return 0.0; }               ///< of the body, about [m]; 0: not known
+  virtual std::vector<std::string> notes() const { return {}; }  ///< what had to be given up, for the outcome
 };
 
 /// What is filled, for guesses of what a size of elements makes of it.
@@ -30,10 +35,13 @@ struct BodySize {
   double points(double cell_size, double facet_size) const {
     return volume / (cell_size * cell_size * cell_size) + 2.0 * area / (facet_size * facet_size);
   }
+
+  /// Twice the volume over the area: the thickness of a sheet, somewhat less of what has sides too [m].
+  double thickness() const { return area > 0 ? 2 * volume / area : 0.0; }
 };
 
-/// Refuses a sheet that is so thin for its extent that tetrahedra of bearable angles must be many more than
-/// are wanted: refinement would go on until the budget is spent.
+/// Refuses a sheet that is so thin for its extent that it takes many more tetrahedra than are wanted:
+/// refinement would go on until the budget is spent.
 /// @throws Error with about the number that it takes
 void refuse_too_thin(const BodySize& size, const Vec3& place, const TetrahedraOptions& options);
 

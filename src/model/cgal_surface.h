@@ -3,6 +3,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 
+#include "cgal_failure.h"
 #include "palpate/core/error.h"
 #include "soup.h"
 
@@ -21,8 +22,7 @@ auto guarded(const Soup& soup, Work work) {
   try {
     return work();
   } catch (const CGAL::Failure_exception& e) {
-    fail("{}: the surface cannot be mended: CGAL says {} ({})", soup.from->source, e.message(),
-         e.expression());
+    fail("{}: the surface cannot be mended; CGAL says: {}", soup.from->source, reason_of(e));
   }
 }
 

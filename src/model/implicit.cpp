@@ -51,12 +51,10 @@ Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec
     if (!lines.empty()) domain.add_features(lines.begin(), lines.end());
     Meter meter(options.limits);
     const double volume = lattice_volume(f, centre, radius);
-    Mesher<Domain> mesher(domain, !lines.empty(), {}, {volume, 4 * std::numbers::pi * radius * radius},
-                          meter);
+    Mesher<Domain> mesher(domain, options, {}, {volume, 4 * std::numbers::pi * radius * radius}, meter);
     return search_cells(mesher, volume, false, options, progress);
   } catch (const CGAL::Failure_exception& e) {
-    fail("the inside of the implicit surface cannot be filled with tetrahedra: CGAL says {} ({})",
-         e.message(), e.expression());
+    fail("the inside of the implicit surface cannot be filled with tetrahedra; CGAL says: {}", reason_of(e));
   }
 }
 

@@ -169,6 +169,11 @@ Input input_of_file(const std::string& path) {
   out.surface = std::move(file.surface);
   out.tets = std::move(file.tets);
   out.regions = std::move(file.regions);
+  mesh::Provenance place = out.from;
+  place.source = out.source;  // no folder of this machine stands in the record
+  for (const auto& text :
+       {mesh::warped_text(file.polygons, place), mesh::crossing_text(file.polygons, place)})
+    if (!text.empty()) out.notes.push_back(text);
   return out;
 }
 
@@ -238,7 +243,10 @@ mesh::Embedding embedded(const LayeredModel& model, const std::string& source,
 
 }  // namespace
 
-Made make_model(Input input, const Options& options, Watcher& watcher) {
+Made make_model(Input input, const Options& given_options, Watcher& watcher) {
+  Options options = given_options;
+  options.tetrahedra.stage = [&](const std::string& stage) { watcher.stage(stage); };
+  options.tetrahedra.place = [&](const Vec3& at) { watcher.point(at); };
   Made made;
   LayeredModel& model = made.file.model;
   store::ModelRecord& record = made.file.record;
@@ -246,6 +254,7 @@ Made make_model(Input input, const Options& options, Watcher& watcher) {
   record.source = input.source;
   record.source_hash = input.source_hash;
   record.version = store::provenance().version;
+  record.notes = std::move(input.notes);
   model.name = input.name;
   scale(input, options.scale);
   Steps step(watcher, made, record.source, options.tetrahedra.limits.seconds);

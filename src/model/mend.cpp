@@ -20,39 +20,74 @@ namespace palpate::model {
 namespace {
 namespace PMP = CGAL::Polygon_mesh_processing;
 
+/// A hole in a surface.
+struct Hole {
+  CgalSurface::Halfedge_index border;
+  int edges = 0;
+  double across = 0.0;      ///< [m]
+  double least_area = 0.0;  ///< of what closes it [m^2]
+};
+
+/// The area of a surface is at least the length of its area vector, which its border alone determines: half
+/// the sum of p x q over the border's edges.
+Hole hole_at(const CgalSurface& mesh, CgalSurface::Halfedge_index border) {
+  Hole out{border};
+  const auto start = mesh.point(mesh.target(border));
+  Kernel::Vector_3 twice(0, 0, 0);
+  for (const auto h : mesh.halfedges_around_face(border)) {
+    const auto to = mesh.point(mesh.target(h));
+    ++out.edges;
+    out.across = std::max(out.across, std::sqrt(CGAL::squared_distance(start, to)));
+    twice = twice + CGAL::cross_product(mesh.point(mesh.source(h)) - start, to - start);
+  }
+  out.least_area = std::sqrt(twice.squared_length()) / 2;
+  return out;
+}
+
+/// Closes all holes, or refuses the surface before the first is closed where they are plainly too large.  The
+/// bound is on all of them together: of loose triangles each can be closed by itself.
 int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& faces_added) {
   std::vector<CgalSurface::Halfedge_index> borders;
   PMP::extract_boundary_cycles(mesh, std::back_inserter(borders));
+  if (borders.empty()) return 0;
   const double whole = PMP::area(mesh);
-  for (const auto border : borders) {
-    int edges = 0;
-    double across = 0;
-    const auto start = mesh.point(mesh.target(border));
-    for (const auto h : mesh.halfedges_around_face(border)) {
-      ++edges;
-      across = std::max(across, std::sqrt(CGAL::squared_distance(start, mesh.point(mesh.target(h)))));
-    }
-    const auto vertex = mesh.target(border);
-    const auto refuse = [&](const std::string& why) {
-      const int source = mesh.property_map<CgalSurface::Vertex_index, int>("v:source").first[vertex];
-      fail(
-          "{} at ({:.6g}, {:.6g}, {:.6g}) m: the surface is open there: a hole of {} edges, {:.3g} m across, "
-          "{}; a body's surface is closed",
-          source >= 0 ? soup.from->node(source) : soup.from->source, start.x(), start.y(), start.z(), edges,
-          across, why);
-    };
+  const auto refuse = [&](const Hole& hole, const std::string& why) {
+    const auto vertex = mesh.target(hole.border);
+    const int source = mesh.property_map<CgalSurface::Vertex_index, int>("v:source").first[vertex];
+    const auto at = mesh.point(vertex);
+    fail(
+        "{} at ({:.6g}, {:.6g}, {:.6g}) m: the surface is open there: a hole of {} edges, {:.3g} m across, "
+        "{}; a body's surface is closed",
+        source >= 0 ? soup.from->node(source) : soup.from->source, at.x(), at.y(), at.z(), hole.edges,
+        hole.across, why);
+  };
+  const auto refuse_beyond = [&](const Hole& hole, double area) {
+    if (area <= largest_share * whole) return;
+    refuse(hole,
+           fmt::format("{} would add {:.0f} % to its area, more than {:.0f} %",
+                       borders.size() == 1 ? "whose closing"
+                                           : fmt::format("and closing this and {} more", borders.size() - 1),
+                       100 * area / whole, 100 * largest_share));
+  };
+  std::vector<Hole> holes;
+  double least = 0.0;
+  for (const auto border : borders) least += holes.emplace_back(hole_at(mesh, border)).least_area;
+  refuse_beyond(*std::max_element(holes.begin(), holes.end(),
+                                  [](const Hole& a, const Hole& b) { return a.least_area < b.least_area; }),
+                least);
+  double added = 0.0;
+  for (const Hole& hole : holes) {
     std::vector<CgalSurface::Face_index> patch;
     std::vector<CgalSurface::Vertex_index> fresh;
     const bool faired = std::get<0>(PMP::triangulate_refine_and_fair_hole(
-        mesh, border, std::back_inserter(patch), std::back_inserter(fresh)));
-    if (patch.empty()) refuse("which no triangles close");
-    if (const double share = PMP::area(patch, mesh) / whole; !(share <= largest_share))
-      refuse(fmt::format("whose closing would add {:.0f} % to its area, more than {:.0f} %", 100 * share,
-                         100 * largest_share));
+        mesh, hole.border, std::back_inserter(patch), std::back_inserter(fresh)));
     static_cast<void>(faired);  // a patch that could not be smoothed is flat: closed all the same
+    if (patch.empty()) refuse(hole, "which no triangles close");
+    added += PMP::area(patch, mesh);
+    refuse_beyond(hole, added);
     faces_added += static_cast<int>(patch.size());
   }
-  return static_cast<int>(borders.size());
+  return static_cast<int>(holes.size());
 }
 
 /// The faces that are too flat for any use, after CGAL collapsed what it could.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cell_search.h"
+#include "cgal_failure.h"
 #include "fit_volume.h"
 #include "metered_criteria.h"
 #include "palpate/core/error.h"
@@ -34,8 +35,15 @@ class Mesher : public CellMesher {
   using Segment = typename Domain::Segment_3;
   using Point = typename Domain::Point_3;
 
-  Mesher(const Domain& domain, bool creased, std::vector<Seed> seeds, const BodySize& size, Meter& meter)
-      : domain_(domain), creased_(creased), seeds_(std::move(seeds)), size_(size), meter_(meter) {}
+  Mesher(const Domain& domain, const TetrahedraOptions& options, std::vector<Seed> seeds,
+         const BodySize& size, Meter& meter)
+      : domain_(domain),
+        creased_(options.crease_deg || !options.creases.empty()),
+        seeds_(std::move(seeds)),
+        size_(size),
+        meter_(meter),
+        stage_(options.stage),
+        optimisation_(options.optimisation) {}
 
   // A boundary that nowhere touches itself cannot be had by refinement at an edge that is much sharper than a
   // right angle and not protected as a crease: however small the facets are there, both sides meet in some of
@@ -44,6 +52,7 @@ class Mesher : public CellMesher {
   // is then at least a fixed distance from all others, so that their number is bounded; what still touches
   // itself is taken away afterwards (manifold.h).
   CellCount refine(double cell_size, double facet_size, const Progress& progress) override {
+    if (stage_) stage_(kRefining);
     const double expected = size_.points(cell_size, facet_size);
     meter_.begin(expected, progress);
     if (!least_size_) {
@@ -71,15 +80,19 @@ class Mesher : public CellMesher {
     using Sliver = CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation>;
     using Perturber = CGAL::Mesh_3::Sliver_perturber<Complex, Domain, Sliver, Told>;
     constexpr double kWantedDeg = 12.0;  // the bound is raised degree by degree up to this one
-    const Sliver sliver(kWantedDeg, complex_.triangulation());
-    Perturber perturber(complex_, domain_, sliver);
-    for (auto* perturbation : CGAL::default_perturbation_vector(complex_, domain_, sliver))
-      perturber.add_perturbation(perturbation);
-    perturber.set_time_limit(meter_.seconds_left());
-    perturber(Told{&progress, kWantedDeg});
-    meter_.check("while vertices were moved for larger angles");
-    CGAL::exude_mesh_3(complex_, CGAL::parameters::time_limit = meter_.seconds_left());
-    meter_.check("while slivers were exuded");
+    stage(kMovingVertices, optimisation_.move_vertices, optimisation_.why_not_moved, [&] {
+      const Sliver sliver(kWantedDeg, complex_.triangulation());
+      Perturber perturber(complex_, domain_, sliver);
+      for (auto* perturbation : CGAL::default_perturbation_vector(complex_, domain_, sliver))
+        perturber.add_perturbation(perturbation);
+      perturber.set_time_limit(meter_.seconds_left());
+      perturber(Told{&progress, kWantedDeg});
+      meter_.check("while vertices were moved for larger angles");
+    });
+    stage(kExudingSlivers, optimisation_.exude_slivers, optimisation_.why_not_exuded, [&] {
+      CGAL::exude_mesh_3(complex_, CGAL::parameters::time_limit = meter_.seconds_left());
+      meter_.check("while slivers were exuded");
+    });
     if (progress) progress(1.0);
   }
 
@@ -108,7 +121,18 @@ class Mesher : public CellMesher {
     return out;
   }
 
-  std::string note() const override { return note_; }
+  double thickness() const override { return size_.thickness(); }
+
+  std::vector<std::string> notes() const override {
+    std::vector<std::string> out;
+    if (!note_.empty()) out.push_back(note_);
+    const auto left_out = [&](bool done, const char* stage, const std::string& why) {
+      if (!done) out.push_back(fmt::format("without \"{}\", in which CGAL failed: {}", stage, why));
+    };
+    left_out(optimisation_.move_vertices, kMovingVertices, optimisation_.why_not_moved);
+    left_out(optimisation_.exude_slivers, kExudingSlivers, optimisation_.why_not_exuded);
+    return out;
+  }
 
   /// Where the line from a to b meets the surface.
   std::optional<Vec3> crossing(const Vec3& a, const Vec3& b) const override {
@@ -124,6 +148,23 @@ class Mesher : public CellMesher {
   static constexpr double kRunawayAlways = 20'000, kRunawayFactor = 6.0;
   static constexpr double kVanishing = 1e-3;  ///< so do facets of this share of the wanted size
   static constexpr double kLeastSize = 0.1;   ///< of cells and facets that are split, of the wanted one
+
+  /// One stage of optimisation.  Where CGAL throws in it, the complex is no longer to be trusted: the stage
+  /// is left out from now on.
+  template <class Work>
+  void stage(const char* name, bool& wanted, std::string& why_not, const Work& work) {
+    if (!wanted) return;
+    if (stage_) stage_(name);
+    try {
+      work();
+    } catch (const Error&) { throw; } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& e) {
+      wanted = false;
+      why_not = reason_of(e);
+      throw OptimisationFailed{};
+    }
+  }
 
   /// One refinement from nothing, or where it ran away.
   std::optional<Runaway> refined(double cell_size, double facet_size, double largest, bool manifold) {
@@ -228,6 +269,8 @@ class Mesher : public CellMesher {
   std::vector<Seed> seeds_;
   BodySize size_;
   Meter& meter_;
+  std::function<void(const std::string&)> stage_;
+  Optimisation optimisation_;
   bool least_size_ = false;  ///< facets or points ran away before
   std::string note_;
   Complex complex_;

@@ -7,7 +7,8 @@
 
 namespace palpate::model {
 
-Meter::Meter(const Limits& limits) : limits_(limits), start_(wall_seconds() - limits.spent) {}
+Meter::Meter(const Limits& limits, std::function<void(const Vec3&)> place)
+    : limits_(limits), place_(std::move(place)), start_(wall_seconds() - limits.spent) {}
 
 void Meter::begin(double expected_points, Progress progress) {
   progress_ = std::move(progress);
@@ -26,6 +27,7 @@ void Meter::check(const char* what) const {
 }
 
 void Meter::look(std::size_t points, const Vec3& place) {
+  if (place_) place_(place);
   if (wall_seconds() - start_ >= limits_.seconds)
     fail(
         "the surface was not filled with tetrahedra within {:.3g} s: refinement stood at ({:.4g}, {:.4g}, "

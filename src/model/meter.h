@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <functional>
 
 #include "palpate/core/types.h"
 #include "palpate/model/limits.h"
@@ -11,7 +12,8 @@ namespace palpate::model {
 /// each element that they judge, in the mesher's own thread; an Error that it throws unwinds the mesher.
 class Meter {
  public:
-  explicit Meter(const Limits& limits);
+  /// @param place  is called with the place of the work at each look; may be empty
+  explicit Meter(const Limits& limits, std::function<void(const Vec3&)> place = {});
 
   /// A refinement that should make about so many points, and reports fractions of itself.
   void begin(double expected_points, Progress progress);
@@ -30,6 +32,7 @@ class Meter {
   void look(std::size_t points, const Vec3& place);
 
   Limits limits_;
+  std::function<void(const Vec3&)> place_;
   Progress progress_;
   double start_, expected_ = 1.0, reported_ = 0.0;
   unsigned calls_ = 0;

@@ -64,6 +64,11 @@ Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& optio
                           const Progress& progress) {
   const BodySize size{mesh::enclosed_volume(surface), area(surface)};
   refuse_too_thin(size, surface.vertices.col(0), options);
+  Vec3 last = surface.vertices.col(0);
+  const auto place = [&](const Vec3& at) {
+    last = at;
+    if (options.place) options.place(at);
+  };
   try {
     Domain domain(polyhedron_of(surface));
     if (options.crease_deg) domain.detect_features(*options.crease_deg);
@@ -75,12 +80,14 @@ Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& optio
       }
       domain.add_features(lines.begin(), lines.end());
     }
-    Meter meter(options.limits);
-    Mesher<Domain> mesher(domain, options.crease_deg || !options.creases.empty(), seeds_of(surface), size,
-                          meter);
+    Meter meter(options.limits, place);
+    Mesher<Domain> mesher(domain, options, seeds_of(surface), size, meter);
     return search_cells(mesher, size.volume, true, options, progress);
-  } catch (const CGAL::Failure_exception& e) {
-    fail("the surface cannot be filled with tetrahedra: CGAL says {} ({})", e.message(), e.expression());
+  } catch (const Error&) { throw; } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    fail("at ({:.4g}, {:.4g}, {:.4g}) m the surface cannot be filled with tetrahedra; CGAL says: {}",
+         last.x(), last.y(), last.z(), reason_of(e));
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <iostream>
 #include <memory>
 #include <new>
 
@@ -9,6 +11,7 @@
 #include "memory_question.h"
 #include "options.h"
 #include "outcome.h"
+#include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "pictures.h"
@@ -16,9 +19,29 @@
 #include "size_question.h"
 #include "sources.h"
 #include "stop.h"
+#include "worker.h"
 
 namespace palpate::cli {
 namespace {
+
+/// The exit status of a command; what it throws is printed.
+int reported(const std::function<int()>& command) {
+  try {
+    return command();
+  } catch (const Error& e) {
+    fmt::print(stderr, "palpate: error: {}\n", e.what());
+    return kExitError;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "palpate: error: not enough memory; fewer tetrahedra need less\n");
+    return kExitError;
+  } catch (const std::exception& e) {
+    fmt::print(stderr,
+               "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report "
+               "it with the surface and this message.\n",
+               e.what());
+    return kExitInternalError;
+  }
+}
 
 /// A bar a step, and what the guard says where the step does not end.
 class Bars : public model::Watcher {
@@ -28,12 +51,18 @@ class Bars : public model::Watcher {
   }
   void begin(const std::string& step) override {
     step_ = step;
+    worker_stage(step);
     refuse(fmt::format("{}: \"{}\" did not end", arguments_.source, step_), "");
     bar_ = std::make_unique<Progress>(step);
     (*bar_)(0.0);
   }
   void progress(double fraction) override { (*bar_)(fraction); }
+  void stage(const std::string& stage) override { worker_stage(stage); }
+  void point(const Vec3& at) override {
+    worker_place(fmt::format("at ({:.4g}, {:.4g}, {:.4g}) m", at.x(), at.y(), at.z()));
+  }
   void place(const std::string& where) override {
+    worker_place(where);
     refuse(fmt::format("{}: \"{}\" did not end", where, step_),
            ", or mend the surface there with a program for that");
   }
@@ -53,16 +82,48 @@ class Bars : public model::Watcher {
   std::unique_ptr<Progress> bar_;
 };
 
+/// Makes the model, writes and draws it; returns the exit status.
+int make(ModelArguments& arguments, model::Input input, double seconds) {
+  catch_stop();
+  for (std::ostream* const stream : {&std::cout, &std::cerr, &std::clog})
+    stream->rdbuf(nullptr);  // CGAL's words
+  Bars bars(arguments);
+  constexpr double kGrace = 1.0;  // where a step notices by itself, its own message says more
+  catch_time(seconds + kGrace);
+  model::Made made = model::make_model(std::move(input), arguments.options, bars);
+  made.file.record.options = arguments.as_given;
+  {
+    SignalsHeld whole_file;
+    store::write_model(arguments.output_path, made.file);
+    whole_file.written();
+  }
+  worker_stage("draw the model");
+  if (!arguments.picture.empty()) draw_model(made.file.model, arguments.picture_path);
+  if (!arguments.quiet) print_outcome(made, arguments.output);
+  return 0;
+}
+
+[[noreturn]] void refuse(const ModelArguments& arguments, const WorkerEnd& end) {
+  fail(
+      "{}: no model: a library that palpate uses did not survive \"{}\"{} ({}); ask for another number with "
+      "--tetrahedra, leave creases out with --creases none, or mend the surface there with a program for "
+      "that",
+      arguments.source, end.stage.empty() ? "the start" : end.stage, end.place.empty() ? "" : " " + end.place,
+      end.signal);
+}
+
 int model_command(int argc, char** argv) {
   ModelArguments arguments = parse_model(argc, argv);
   if (!arguments.given) return 0;
   log::configure(arguments.quiet, arguments.verbose);
   if (!arguments.picture.empty()) check_pictures(arguments.picture);
   catch_stop();
-  model::Input input = input_of(arguments);
+  const model::Input input = input_of(arguments);
   if (arguments.output.empty()) arguments.output = input.name + ".h5";
   if (std::error_code none; std::filesystem::equivalent(arguments.source, arguments.output, none))
     fail("-o {}: is the source itself; choose another name", arguments.output);
+  arguments.output_path = std::filesystem::absolute(arguments.output).string();
+  arguments.picture_path = std::filesystem::absolute(arguments.picture).string();
   ask_about_size(arguments, input);
   refuse_beyond_memory(arguments, input);
   const model::Limits& limits = arguments.options.tetrahedra.limits;
@@ -71,39 +132,19 @@ int model_command(int argc, char** argv) {
                limits.points);
     std::fflush(stdout);
   }
-  Bars bars(arguments);
-  constexpr double kGrace = 1.0;  // where a step notices by itself, its own message says more
-  catch_time(limits.seconds + kGrace);
-  model::Made made = model::make_model(std::move(input), arguments.options, bars);
-  made.file.record.options = arguments.as_given;
-  {
-    SignalsHeld whole_file;
-    store::write_model(arguments.output, made.file);
-    whole_file.written();
-  }
-  if (!arguments.picture.empty()) draw_model(made.file.model, arguments.picture);
-  if (!arguments.quiet) print_outcome(made, arguments.output);
-  return 0;
+  const double start = wall_seconds();
+  const WorkerEnd end =
+      run_attempts(arguments.options.tetrahedra.optimisation, [&](const model::Optimisation& optimisation) {
+        arguments.options.tetrahedra.optimisation = optimisation;
+        return reported([&] { return make(arguments, input, limits.seconds - (wall_seconds() - start)); });
+      });
+  if (!end.signal.empty()) refuse(arguments, end);
+  return end.status;
 }
 
 }  // namespace
 }  // namespace palpate::cli
 
 int main(int argc, char** argv) {
-  using namespace palpate;
-  try {
-    return cli::model_command(argc, argv);
-  } catch (const Error& e) {
-    fmt::print(stderr, "palpate: error: {}\n", e.what());
-    return cli::kExitError;
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "palpate: error: not enough memory; fewer tetrahedra need less\n");
-    return cli::kExitError;
-  } catch (const std::exception& e) {
-    fmt::print(stderr,
-               "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report "
-               "it with the surface and this message.\n",
-               e.what());
-    return cli::kExitInternalError;
-  }
+  return palpate::cli::reported([&] { return palpate::cli::model_command(argc, argv); });
 }

@@ -11,6 +11,8 @@ struct ModelArguments {
   std::string source;   ///< a file, or the name of a shape
   std::string output;   ///< empty: NAME.h5
   std::string picture;  ///< PNG file; empty: none
+  /// both from the root on, as the model is made in another folder
+  std::string output_path, picture_path;
   bool quiet = false, verbose = false;
   bool counted = false;   ///< --tetrahedra was given
   bool scaled = false;    ///< --scale was given

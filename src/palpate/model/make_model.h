@@ -21,6 +21,7 @@ struct Input {
   std::string source_hash;
   std::string format;
   mesh::Provenance from;
+  std::vector<std::string> notes;       ///< about what was read, for the outcome
   TriMesh surface;                      ///< is mended, then filled; empty where there are tetrahedra
   TetMesh tets;                         ///< taken as they are, unless remesh
   std::vector<MaterialRegion> regions;  ///< of the tetrahedra
@@ -60,6 +61,8 @@ class Watcher {
   virtual ~Watcher() = default;
   virtual void begin(const std::string& /*step*/) {}
   virtual void progress(double /*fraction*/) {}        ///< of the step
+  virtual void stage(const std::string& /*stage*/) {}  ///< a part of the step begins
+  virtual void point(const Vec3& /*place*/) {}         ///< that the work is at, many times a second
   virtual void place(const std::string& /*where*/) {}  ///< that a long piece of the step works at
   virtual void end(const Step& /*step*/) {}
 };

@@ -12,6 +12,15 @@ namespace palpate::model {
 
 using Polyline = std::vector<Vec3>;
 
+inline constexpr const char* kRefining = "fill with tetrahedra";
+/// Stages of optimisation; each can be left out, at the cost of smaller angles.
+inline constexpr const char* kMovingVertices = "move vertices for larger angles";
+inline constexpr const char* kExudingSlivers = "exude slivers";
+struct Optimisation {
+  bool move_vertices = true, exude_slivers = true;
+  std::string why_not_moved, why_not_exuded;  ///< for the note
+};
+
 struct TetrahedraOptions {
   int tetrahedra = 10000;  ///< wanted number, met within 3 %
   /// and this many nodes, within 3 %, by finer or coarser boundary faces; 0: as they come, faces as large as
@@ -25,6 +34,9 @@ struct TetrahedraOptions {
   /// and these lines, which lie on the surface, closed where first and last point agree
   std::vector<Polyline> creases = {};
   Limits limits = {};
+  Optimisation optimisation = {};
+  std::function<void(const std::string&)> stage = {};  ///< is called where a stage begins; may be empty
+  std::function<void(const Vec3&)> place = {};         ///< is called with the place of the work, often
 };
 
 /// Tetrahedra, and how they were found.
