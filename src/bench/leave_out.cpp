@@ -8,6 +8,7 @@
 #include "palpate/bench/bench.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
+#include "palpate/core/program.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
 #include "palpate/tool/tool.h"
@@ -69,7 +70,7 @@ Figures palpate_loop(const scene::Description& d, bool record) {
   const double start = wall_seconds();
   const auto world = loop::assemble(d);
   const std::string folder =
-      (std::filesystem::temp_directory_path() / fmt::format("palpate-leave-out-{}", getpid())).string();
+      (std::filesystem::path(temporary_folder()) / fmt::format("palpate-leave-out-{}", getpid())).string();
   std::unique_ptr<loop::Recorder> recorder;
   if (record) recorder = std::make_unique<loop::Recorder>(*world, folder);
   Figures out{};

@@ -1,41 +1,19 @@
-#include <cstdio>
-#include <exception>
-#include <new>
-
 #include "commands.h"
-#include "palpate/core/error.h"
+#include "guarded.h"
 #include "palpate/core/log.h"
-#include "palpate/core/memory.h"
 #include "palpate/core/process_pool.h"
 #include "stop.h"
+#include "streams.h"
 #include "tune.h"
 
 namespace palpate::cli {
 namespace {
 
-/// Every way out has one sentence and one exit status.
-int guarded(const std::function<int()>& action) {
-  try {
-    const int status = action();
-    return stop_flag() && status == 0 ? kExitStopped : status;
-  } catch (const Error& e) {
-    fmt::print(stderr, "palpate: error: {}\n", e.what());
-    return kExitError;
-  } catch (const std::bad_alloc&) {
-    const palpate::AvailableMemory left = palpate::available_memory();
-    fmt::print(
-        stderr,
-        "palpate: error: not enough memory: {} are left ({}); a coarser mesh (element_size_m) or fewer "
-        "recorded states need less\n",
-        palpate::memory_text(left.bytes), left.limited_by);
-    return kExitError;
-  } catch (const std::exception& e) {
-    fmt::print(stderr,
-               "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report "
-               "it with the scene and this message.\n",
-               e.what());
-    return kExitInternalError;
-  }
+int guarded(const std::function<int()>& action) { return guarded(action, "scene"); }
+
+int run_action(const Invocation& invocation) {
+  const int status = invocation.action();
+  return stop_flag() && status == 0 ? kExitStopped : status;
 }
 
 }  // namespace
@@ -43,6 +21,8 @@ int guarded(const std::function<int()>& action) {
 
 int main(int argc, char** argv) {
   using namespace palpate::cli;
+  palpate::log::configure(false, false);  // takes standard error as it is, for its colours
+  guard_streams();
   Invocation invocation;
   const int parsed = guarded([&] {
     invocation = parse(argc, argv);
@@ -59,5 +39,5 @@ int main(int argc, char** argv) {
   }
   palpate::log::configure(invocation.quiet, invocation.verbose);
   catch_stop_signals();
-  return guarded(invocation.action);
+  return guarded([&] { return run_action(invocation); });
 }

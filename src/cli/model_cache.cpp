@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/core/program.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/model_cache.h"
 
@@ -55,7 +56,7 @@ void make_model(const std::string& name, const fs::path& path) {
 }  // namespace
 
 std::string model_program() {
-  const fs::path program = fs::canonical("/proc/self/exe").parent_path() / "palpate-model";
+  const fs::path program = fs::path(program_path()).parent_path() / "palpate-model";
   if (!fs::exists(program))
     fail(
         "model: {} is not there: this build makes no models; configure with -DPALPATE_WITH_MODEL=ON "

@@ -6,14 +6,13 @@
 #include <sstream>
 
 #include "palpate/core/error.h"
+#include "palpate/core/program.h"
 
 namespace palpate::cli {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path share_folder() {
-  return fs::canonical("/proc/self/exe").parent_path().parent_path() / "share" / "palpate";
-}
+fs::path share_folder() { return fs::path(program_path()).parent_path().parent_path() / "share" / "palpate"; }
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "palpate/core/error.h"
+#include "palpate/core/program.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/result_folder.h"
 #include "palpate/study/slurm.h"
@@ -59,7 +60,7 @@ std::string job_of(const Plan& plan, const std::vector<std::size_t>& open, const
     return last.job;
   }
   study::ArrayJob array;
-  array.program = fs::canonical("/proc/self/exe").string();
+  array.program = program_path();
   array.folder = fs::absolute(folder).lexically_normal().string();
   array.options = arguments.slurm_options;
   for (const std::size_t i : open) array.threads = std::max(array.threads, plan.tasks[i].threads);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "palpate/core/error.h"
+#include "palpate/core/program.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/content_hash.h"
 #include "palpate/store/provenance.h"
@@ -31,7 +32,7 @@ const std::string& made_by() {
     const store::Provenance p = store::provenance();
     std::string out = p.version + " " + p.commit;
     if (p.commit.find("dirty") == std::string::npos && p.commit != "unknown") return out;
-    std::set<std::string> files = {fs::canonical("/proc/self/exe").string()};
+    std::set<std::string> files = {program_path()};
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);)
       if (const auto at = line.find('/');

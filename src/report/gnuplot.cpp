@@ -12,6 +12,7 @@
 #include <iterator>
 
 #include "palpate/core/error.h"
+#include "palpate/core/program.h"
 
 extern char** environ;
 
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
-    std::string name = (fs::temp_directory_path() / "palpate-plot-XXXXXX").string();
+    std::string name = (fs::path(temporary_folder()) / "palpate-plot-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr)
       fail("{}: no temporary directory could be made ({}); set TMPDIR to a folder that can be written", name,
            std::strerror(errno));

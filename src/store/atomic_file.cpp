@@ -14,8 +14,10 @@
 namespace palpate::store {
 namespace {
 
+std::string draft_of(const std::string& path) { return fmt::format("{}.{}.part", path, getpid()); }
+
 void write(const std::string& path, std::string_view content, bool durably) {
-  const std::string temporary = fmt::format("{}.{}.part", path, getpid());
+  const std::string temporary = draft_of(path);
   {
     errno = 0;
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
@@ -46,6 +48,17 @@ void write(const std::string& path, std::string_view content, bool durably) {
 void write_atomically(const std::string& path, std::string_view content) { write(path, content, false); }
 void write_durably(const std::string& path, std::string_view content) { write(path, content, true); }
 
+void check_can_write(const std::string& path) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) fail("{}: is a folder; name a file", path);
+  const std::string draft = draft_of(path);
+  const int file = open(draft.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  if (file < 0)
+    fail("{}: cannot be written ({}); is its folder there, and writable?", path, std::strerror(errno));
+  close(file);
+  std::filesystem::remove(draft, none);
+}
+
 void bring_to_disk(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const bool done = file >= 0 && (fsync(file) == 0 || errno == EINVAL);  // EINVAL: not that kind of file
@@ -54,15 +67,29 @@ void bring_to_disk(const std::string& path) {
   if (!done) fail("{}: cannot be brought to the disk: {}", path, std::strerror(reason));
 }
 
-void cut_to(const std::string& path, std::int64_t bytes) {
+void check_reaches(const std::string& path, std::int64_t bytes) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (error) fail("{}: the run cannot go on without this file: {}", path, error.message());
   if (bytes < 0 || size < static_cast<std::uintmax_t>(bytes))
     fail("{}: has {} bytes, and had {} at the checkpoint; it was changed since, run the scene anew", path,
          size, bytes);
+}
+
+void cut_to(const std::string& path, std::int64_t bytes) {
+  check_reaches(path, bytes);
+  std::error_code error;
   std::filesystem::resize_file(path, static_cast<std::uintmax_t>(bytes), error);
   if (error) fail("{}: cannot be cut back to its checkpoint: {}", path, error.message());
+}
+
+void check_content(const std::string& path, const ContentHash& found, const std::string& written) {
+  if (found.hex() != written)
+    fail(
+        "{}: is not what the run had written by its checkpoint; the file was changed or damaged since, run "
+        "the "
+        "scene anew",
+        path);
 }
 
 std::string read_file(const std::string& path) {

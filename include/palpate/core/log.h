@@ -9,8 +9,8 @@ using spdlog::error;
 using spdlog::info;
 using spdlog::warn;
 
-/// Pattern and sink; called once by a program's main.  A library user who never calls it gets spdlog's
-/// default.
+/// Pattern and level; for a program's main, before it changes `stderr`.  A library user who never calls it
+/// gets spdlog's default.  Messages are printable() then.
 void configure(bool quiet, bool verbose);
 
 }  // namespace palpate::log

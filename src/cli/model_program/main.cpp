@@ -2,12 +2,11 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <memory>
-#include <new>
 
 #include "guard.h"
+#include "guarded.h"
 #include "memory_question.h"
 #include "options.h"
 #include "outcome.h"
@@ -19,29 +18,11 @@
 #include "size_question.h"
 #include "sources.h"
 #include "stop.h"
+#include "streams.h"
 #include "worker.h"
 
 namespace palpate::cli {
 namespace {
-
-/// The exit status of a command; what it throws is printed.
-int reported(const std::function<int()>& command) {
-  try {
-    return command();
-  } catch (const Error& e) {
-    fmt::print(stderr, "palpate: error: {}\n", e.what());
-    return kExitError;
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "palpate: error: not enough memory; fewer tetrahedra need less\n");
-    return kExitError;
-  } catch (const std::exception& e) {
-    fmt::print(stderr,
-               "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report "
-               "it with the surface and this message.\n",
-               e.what());
-    return kExitInternalError;
-  }
-}
 
 /// A bar a step, and what the guard says where the step does not end.
 class Bars : public model::Watcher {
@@ -124,6 +105,8 @@ int model_command(int argc, char** argv) {
     fail("-o {}: is the source itself; choose another name", arguments.output);
   arguments.output_path = std::filesystem::absolute(arguments.output).string();
   arguments.picture_path = std::filesystem::absolute(arguments.picture).string();
+  store::check_can_write(arguments.output);
+  if (!arguments.picture.empty()) store::check_can_write(arguments.picture);
   ask_about_size(arguments, input);
   refuse_beyond_memory(arguments, input);
   const model::Limits& limits = arguments.options.tetrahedra.limits;
@@ -136,7 +119,8 @@ int model_command(int argc, char** argv) {
   const WorkerEnd end =
       run_attempts(arguments.options.tetrahedra.optimisation, [&](const model::Optimisation& optimisation) {
         arguments.options.tetrahedra.optimisation = optimisation;
-        return reported([&] { return make(arguments, input, limits.seconds - (wall_seconds() - start)); });
+        return guarded([&] { return make(arguments, input, limits.seconds - (wall_seconds() - start)); },
+                       "surface");
       });
   if (!end.signal.empty()) refuse(arguments, end);
   return end.status;
@@ -146,5 +130,8 @@ int model_command(int argc, char** argv) {
 }  // namespace palpate::cli
 
 int main(int argc, char** argv) {
-  return palpate::cli::reported([&] { return palpate::cli::model_command(argc, argv); });
+  using namespace palpate::cli;
+  palpate::log::configure(false, false);  // takes standard error as it is, for its colours
+  guard_streams();
+  return guarded([&] { return model_command(argc, argv); }, "surface");
 }

@@ -5,7 +5,7 @@ namespace palpate {
 double wall_seconds();         ///< monotonic wall clock [s]
 double cpu_seconds();          ///< CPU time of this process, all threads that live [s]; exact, some us
 double thread_cpu_seconds();   ///< CPU time of the calling thread [s]
-double peak_memory_mib();      ///< largest resident set so far [MiB]
+double peak_memory_mib();      ///< largest resident set of this program so far [MiB]
 double resident_memory_mib();  ///< resident set now [MiB]
 
 /// Adds the wall time of its life to a sum [s].

@@ -1,0 +1,60 @@
+#include "guarded.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
+#include <system_error>
+
+#include "palpate/core/error.h"
+#include "palpate/core/memory.h"
+#include "stop.h"
+#include "streams.h"
+
+namespace palpate::cli {
+namespace {
+
+int refuse(const std::string& why) {
+  fmt::print(stderr, "palpate: error: {}\n", why);
+  return kExitError;
+}
+
+int refuse_memory() {
+  const AvailableMemory left = available_memory();
+  return refuse(
+      fmt::format("not enough memory: {} are left ({}); a coarser mesh (element_size_m), fewer "
+                  "tetrahedra or fewer recorded states need less",
+                  memory_text(left.bytes), left.limited_by));
+}
+
+int run(const std::function<int()>& action, const char* input) {
+  try {
+    return action();
+  } catch (const Error& e) { return refuse(e.what()); } catch (const std::bad_alloc&) {
+    return refuse_memory();
+  } catch (const std::length_error&) {  // more than can be addressed
+    return refuse_memory();
+  } catch (const std::filesystem::filesystem_error& e) {
+    return refuse(fmt::format("{}: {}", e.path1().string(), e.code().message()));
+  } catch (const std::system_error& e) { return refuse(e.what()); } catch (const std::exception& e) {
+    fmt::print(stderr,
+               "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report "
+               "it with the {} and this message.\n",
+               e.what(), input);
+    return kExitInternalError;
+  }
+}
+
+}  // namespace
+
+int guarded(const std::function<int()>& action, const char* input) {
+  const int status = run(action, input);
+  if (const std::string why = output_failure(); !why.empty() && status == 0)
+    return refuse(fmt::format("standard output has not taken everything: {}; all else was done", why));
+  return status;
+}
+
+}  // namespace palpate::cli
