@@ -2,23 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "palpate/core/error.h"
 #include "palpate/report/table.h"
+#include "palpate/store/atomic_file.h"
+#include "palpate/store/json_text.h"
 
 namespace palpate::report {
 
 Json read_json(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail("{}: cannot be opened for reading; check the path and its permissions", path.string());
-  try {
-    return Json::parse(in);
-  } catch (const nlohmann::json::exception& e) {
-    fail("{}: is not valid JSON: {}; was the run that wrote it cut short? run it again", path.string(),
-         e.what());
-  }
+  return store::parse_json(store::read_file(path.string()), path.string());
 }
 
 double number_at(const Json& object, const char* key) {

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "palpate/core/error.h"
+#include "scene/toml_bounds.h"
 
 namespace palpate::scene {
 namespace {
@@ -23,6 +24,7 @@ Document parse_document(const std::string& text, const std::string& path,
                         const std::vector<std::string>& overrides) {
   Document document;
   document.path = path.empty() ? "scene" : path;
+  check_bounds(text, document.path);
   try {
     document.root = toml::parse(text, document.path);
   } catch (const toml::parse_error& e) {
@@ -31,6 +33,7 @@ Document parse_document(const std::string& text, const std::string& path,
   document.overrides = overrides;
   if (!overrides.empty()) document.original = document.root;
   for (const std::string& one : overrides) apply_override(document.root, one);
+  check_values(document.root);
   document.source = effective_source(document.root, text, overrides);
   return document;
 }

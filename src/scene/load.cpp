@@ -1,5 +1,7 @@
 #include "palpate/scene/load.h"
 
+#include <filesystem>
+
 #include "palpate/core/error.h"
 #include "scene/check.h"
 #include "scene/check_kinds.h"
@@ -33,6 +35,16 @@ Description parse(const std::string& text, const std::string& path, const std::v
 Description load(const std::string& path, const std::vector<std::string>& overrides, const Kinds& kinds) {
   const char* help = "`palpate list scenes` shows those that come with palpate";
   return parse(read_text_file(path, "scene", help), path, overrides, kinds);
+}
+
+std::string place_of(const Description& description, const std::string& at) {
+  const std::string& path = description.path;
+  try {
+    std::error_code none;
+    const bool is_file = std::filesystem::is_regular_file(path, none);
+    const std::string text = is_file ? read_text_file(path, "scene", "") : description.source;
+    return location(parse_document(text, path, {}), at);
+  } catch (const Error&) { return path.empty() ? "scene" : path; }
 }
 
 std::vector<std::string> known_keys(const Kinds& kinds) {

@@ -3,6 +3,7 @@
 
 #include "palpate/core/error.h"
 #include "scene/document.h"
+#include "scene/toml_bounds.h"
 
 namespace palpate::scene {
 namespace {
@@ -105,6 +106,8 @@ void refuse_control_characters(const std::string& text) {
 
 void apply_override(toml::table& root, const std::string& text) {
   refuse_control_characters(text);
+  constexpr std::size_t kShown = 200;
+  check_bounds(text, "--set " + (text.size() <= kShown ? text : text.substr(0, kShown) + "..."));
   const std::string from = "--set " + text;
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || trimmed(text.substr(0, equals)).empty() ||

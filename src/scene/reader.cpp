@@ -12,11 +12,18 @@ namespace {
          fmt::format("{} = {} {}", v.key, shown(v.node), must));
 }
 
+/// toml++ gives no double for a whole number that has none; parse_document() has refused those.
+/// @pre node.is_number()
+double double_of(const toml::node& node) {
+  const auto* whole = node.as_integer();
+  return whole ? static_cast<double>(whole->get()) : node.as_floating_point()->get();
+}
+
 /// One finite number within a range.  Whole numbers are numbers too; NaN and infinity, which TOML can spell,
 /// are not.
 double number_in(const Value& v, const toml::node& node, const Range& range) {
   if (!node.is_number()) refuse_value(v, "must be a number", &node);
-  const double x = *node.value<double>();
+  const double x = double_of(node);
   if (!std::isfinite(x)) refuse_value(v, "must be a finite number", &node);
   if (!range.holds(x)) refuse_value(v, range.demand(), &node);
   return x;
@@ -45,14 +52,14 @@ void refuse(const std::string& location, const std::string& where, const std::st
 
 std::optional<Setting> setting_of(const toml::node& node) {
   if (const auto* flag = node.as_boolean()) return flag->get();
-  if (node.is_number()) return *node.value<double>();
+  if (node.is_number()) return double_of(node);
   if (const auto* text = node.as_string()) return text->get();
   const toml::array* array = node.as_array();
   if (!array || array->size() != 3) return {};
   Vec3 out;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!array->get(i)->is_number()) return {};
-    out[static_cast<Eigen::Index>(i)] = *array->get(i)->value<double>();
+    out[static_cast<Eigen::Index>(i)] = double_of(*array->get(i));
   }
   return Setting(out);
 }

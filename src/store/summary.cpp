@@ -5,6 +5,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/store/atomic_file.h"
+#include "palpate/store/json_text.h"
 
 namespace palpate::store {
 namespace {
@@ -93,7 +94,7 @@ void write_summary(const std::string& path, const Summary& summary) {
 
 Summary read_summary(const std::string& path) {
   try {
-    return summary_of(Json::parse(read_file(path)));
+    return summary_of(parse_json(read_file(path), path));
   } catch (const Json::exception& e) { fail("{}: is no summary of palpate: {}", path, e.what()); }
 }
 

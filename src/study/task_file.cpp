@@ -6,6 +6,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/store/atomic_file.h"
+#include "palpate/store/json_text.h"
 #include "palpate/store/provenance.h"
 
 namespace palpate::study {
@@ -67,7 +68,10 @@ Json task_file(const Plan& plan, const Task& task, const Json& result) {
 std::optional<Json> read_task_file(const std::string& folder, const Task& task) {
   const std::string path = result_path(folder, task);
   if (!fs::is_regular_file(path)) return {};
-  Json file = Json::parse(store::read_file(path), nullptr, false);
+  Json file;
+  try {
+    file = store::parse_json(store::read_file(path), path);
+  } catch (const Error&) { return {}; }  // cut off, or of no task: it is run again
   const bool whole = file.is_object() && file.value("key", "") == task.key && file.contains("status") &&
                      file.contains("figures") && file["figures"].is_object() && file.contains("times") &&
                      file.contains("machine") && file.contains("limit_s");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "messages.h"
 #include "palpate/core/error.h"
 #include "palpate/store/atomic_file.h"
 #include "store/sample_run.h"
@@ -60,6 +61,24 @@ TEST(Summary, RefusesWhatIsNoSummary) {
     store::write_atomically(folder / "s.json", text);
     EXPECT_THROW(store::read_summary(folder / "s.json"), Error) << text;
   }
+}
+
+TEST(Summary, RefusesNumbersAndDepthsThatItWouldMisread) {
+  const sample_run::Folder folder;
+  const std::string path = folder / "s.json";
+  const auto refusal = [&](const std::string& text) {
+    store::write_atomically(path, text);
+    return expectations::message_of([&] { store::read_summary(path); });
+  };
+  for (const char* number : {"9007199254740993", "-9007199254740993", "18446744073709551615"}) {
+    std::string text = store::to_json(sample());
+    const std::size_t at = text.find("1234");
+    ASSERT_NE(at, std::string::npos);
+    const std::string message = refusal(text.replace(at, 4, number));
+    EXPECT_NE(message.find(path + ": " + number + " must be at most 9007199254740992"), std::string::npos)
+        << message;
+  }
+  EXPECT_NE(refusal(std::string(100'000, '[')).find("nests deeper than 64"), std::string::npos);
 }
 
 TEST(Provenance, SaysWhatMadeIt) {

@@ -22,6 +22,10 @@ Description load(const std::string& path, const std::vector<std::string>& overri
 Description parse(const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
                   const Kinds& kinds);
 
+/// `FILE:LINE:COLUMN` of the deepest part of `at` ("body[1].mesh") that the scene's file has, for what is
+/// found wrong after loading.  Reads the file again; where that is not to be had, its path alone.
+std::string place_of(const Description& description, const std::string& at);
+
 /// Every key that a scene may contain, dotted: "body.mesh.radius_m".
 std::vector<std::string> known_keys(const Kinds& kinds);
 

@@ -1,0 +1,34 @@
+#include "palpate/store/json_text.h"
+
+#include "palpate/core/error.h"
+#include "palpate/core/whole_number.h"
+
+namespace palpate::store {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int kMostNested = 64;
+
+/// A JSON parser's events, checked as they come.
+bool check(int depth, Json::parse_event_t event, const Json& value, const std::string& path) {
+  if (depth > kMostNested) fail("{}: is no result of palpate: it nests deeper than {}", path, kMostNested);
+  if (event != Json::parse_event_t::value || !value.is_number_integer()) return true;
+  const bool beyond = value.is_number_unsigned() ? beyond_whole(value.get<std::uint64_t>())
+                                                 : beyond_whole(value.get<std::int64_t>());
+  if (beyond) fail("{}: {} {}", path, value.dump(), kWholeDemand);
+  return true;
+}
+
+}  // namespace
+
+Json parse_json(const std::string& text, const std::string& path) {
+  try {
+    return Json::parse(text, [&](int depth, Json::parse_event_t event, const Json& value) {
+      return check(depth, event, value, path);
+    });
+  } catch (const nlohmann::json::exception& e) {
+    fail("{}: is not valid JSON: {}; was the run that wrote it cut short? run it again", path, e.what());
+  }
+}
+
+}  // namespace palpate::store
