@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/core/instructions.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/store/provenance.h"
 #include "palpate/store/table_file.h"
@@ -50,6 +52,12 @@ void RunIdentity::archive(Archive& a) {
   a("scene_path", scene_path);
   a("bodies", bodies);
   a("cpu", cpu);
+  a("instructions", instructions);
+}
+
+std::string instructions_in_use() {
+  const char* blas = std::getenv("OPENBLAS_CORETYPE");
+  return fmt::format("{}, OpenBLAS {}", name_of(best_instructions()), blas ? blas : "as it chooses");
 }
 
 loop::CheckpointPlan checkpoint_plan(RunIdentity identity, const scene::Description& description,

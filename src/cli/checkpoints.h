@@ -24,8 +24,13 @@ struct RunIdentity {
   std::string scene_path;  ///< absolute
   std::string bodies;      ///< loop::fingerprint() of the World as it was assembled
   std::string cpu;         ///< of the machine: others round differently
+  /// of the kernels in use, ours and the linear algebra's, which the environment may choose: likewise
+  std::string instructions;
   void archive(Archive& a);
 };
+
+/// "avx512, OpenBLAS SKYLAKEX"
+std::string instructions_in_use();
 
 /// When to keep a run of that scene, and how: each checkpoint takes the place of the one before.
 loop::CheckpointPlan checkpoint_plan(RunIdentity identity, const scene::Description& description,

@@ -27,13 +27,18 @@ void check_version(const Resumption& r) {
         checkpoint_path(r.folder), r.checkpoint.version, ours);
 }
 
+/// Reports what makes the rest of the run round differently.
 void compare_processors(const Resumption& r) {
-  if (const std::string cpu = store::provenance().cpu; r.identity.cpu != cpu)
-    fmt::print(
-        stderr,
-        "palpate: the run began on another processor ({}, this is {}): results go on as they would have, "
-        "but not to the last bit\n",
-        r.identity.cpu, cpu);
+  const auto compare = [](const char* what, const std::string& then, const std::string& now) {
+    if (then != now)
+      fmt::print(
+          stderr,
+          "palpate: the run began {} ({}, this is {}): it continues, but its results do not match bit for "
+          "bit those of an uninterrupted run\n",
+          what, then, now);
+  };
+  compare("on another processor", r.identity.cpu, store::provenance().cpu);
+  compare("with other instructions", r.identity.instructions, instructions_in_use());
 }
 
 scene::Description scene_of(const Resumption& r) {

@@ -366,7 +366,8 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   Ran ran;
   ran.assemble_s = wall_seconds() - start;
   RunIdentity identity{arguments, std::filesystem::absolute(description.path).lexically_normal().string(),
-                       checkpoints ? loop::fingerprint(*world) : "", store::provenance().cpu};
+                       checkpoints ? loop::fingerprint(*world) : "", store::provenance().cpu,
+                       instructions_in_use()};
   if (resumption) {
     if (identity.bodies != resumption->identity.bodies)
       fail(

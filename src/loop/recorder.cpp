@@ -37,7 +37,7 @@ int periods_between(const scene::Description& d) {
 
 /// Where the files of a run were at a checkpoint.
 struct Places {
-  int states = 0;
+  store::RunFile::Place states;
   std::vector<store::CsvWriter::Place> forces;
   std::vector<store::TableFile::Journal> haptic;
   store::CsvWriter::Place bones, energy;
@@ -142,7 +142,7 @@ struct Recorder::Impl {
 Places Recorder::Impl::places() {
   Places at;
   const auto safe = [&](const std::string& name) { store::bring_to_disk(path(name)); };
-  if (states) at.states = states->steps(), safe(kRunFile);
+  if (states) at.states = states->place(), safe(kRunFile);
   if (bones) at.bones = bones->place(), safe(kBoneFile);
   if (energy) at.energy = energy->place(), safe(kEnergyFile);
   const std::vector<std::string> names = haptic_files(description);
@@ -218,9 +218,13 @@ void Recorder::archive(Archive& a) {
   if (!m.description.record) return;
   Places at;
   if (!a.gives_back()) at = m.places();
-  a("states", at.states);
+  a("states", at.states.steps);
+  a("states_content", at.states.content);
   a.list("forces", at.forces, [&](store::CsvWriter::Place& place) { place.archive(a); });
-  a.list("haptic", at.haptic, [&](store::TableFile::Journal& journal) { a("bytes", journal.bytes); });
+  a.list("haptic", at.haptic, [&](store::TableFile::Journal& journal) {
+    a("bytes", journal.bytes);
+    a("content", journal.content);
+  });
   a("bones", at.bones);
   a("energy", at.energy);
   if (a.gives_back()) m.open(&at);

@@ -9,6 +9,7 @@
 
 #include "palpate/core/csv.h"
 #include "palpate/core/error.h"
+#include "palpate/core/whole_number.h"
 #include "palpate/store/atomic_file.h"
 
 namespace palpate::store {
@@ -49,6 +50,9 @@ CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers)
 
 CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers, const Place& place)
     : path_(path), columns_(headers.size()), rows_(place.rows) {
+  check_reaches(path, place.bytes);
+  content_.add_part(std::string_view(read_file(path)).substr(0, static_cast<std::size_t>(place.bytes)));
+  check_content(path, content_, place.content);
   cut_to(path, place.bytes);
   out_.rdbuf()->pubsetbuf(nullptr, 0);
   errno = 0;
@@ -58,12 +62,13 @@ CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers, 
 
 CsvWriter::Place CsvWriter::place() {
   hand_over();
-  return {static_cast<std::int64_t>(std::filesystem::file_size(path_)), rows_};
+  return {static_cast<std::int64_t>(std::filesystem::file_size(path_)), rows_, content_.hex()};
 }
 
 void CsvWriter::Place::archive(Archive& a) {
   a("bytes", bytes);
   a("rows", rows);
+  a("content", content);
 }
 
 void CsvWriter::row(std::span<const double> values) {
@@ -99,6 +104,7 @@ void CsvWriter::hand_over() {
   errno = 0;
   out_.write(lines_.data(), static_cast<std::streamsize>(lines_.size()));
   out_.flush();
+  content_.add_part(lines_);
   lines_.clear();
   if (!out_) fail("{}: cannot be written any further ({}); is the disk full?", path_, reason());
 }
@@ -150,6 +156,7 @@ std::vector<double> CsvTable::numbers(const std::string& header) const {
     double value = 0.0;
     if (!read_csv_number(cell, value))
       fail("column \"{}\", row {}: \"{}\" is no number", header, out.size() + 1, cell);
+    if (beyond_whole(cell)) fail("column \"{}\", row {}: {} {}", header, out.size() + 1, cell, kWholeDemand);
     out.push_back(value);
   }
   return out;

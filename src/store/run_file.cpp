@@ -7,6 +7,7 @@
 
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/store/content_hash.h"
 #include "palpate/store/xdmf.h"
 #include "store/series.h"
 
@@ -38,6 +39,10 @@ struct Cells {
   }
 };
 
+std::span<const double> numbers_of(const auto& matrix) {
+  return {matrix.data(), static_cast<std::size_t>(matrix.size())};
+}
+
 void check_part(const RunPart& part) {
   const auto n = part.reference.cols();
   PALPATE_CHECK(part.tets.size() == 0 || (part.tets.minCoeff() >= 0 && part.tets.maxCoeff() < n),
@@ -54,6 +59,7 @@ struct RunFile::Impl {
   Points reference, displacement;
   hsize_t capacity = 1;
   std::int64_t steps = 0;
+  ContentHash content;
   /// series with one row a step: time, zeros, offsets; and those with one row a point and step
   std::vector<Series> values, zeros, offsets, fields;
 
@@ -173,14 +179,14 @@ RunFile::RunFile(const std::string& path, const std::vector<RunPart>& parts, con
 }
 
 RunFile RunFile::continued(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info,
-                           int steps) {
+                           const Place& place) {
   const std::string temporary = path + ".part";
   std::optional<RunFile> out;
   {
     const RunReader old(path);
-    if (old.steps() < steps)
+    if (old.steps() < place.steps)
       fail("{}: has {} states, and had {} at the checkpoint; it was changed since, run the scene anew", path,
-           old.steps(), steps);
+           old.steps(), place.steps);
     const auto is_same = [](const RunPart& a, const RunPart& b) {
       return a.name == b.name && a.reference.cols() == b.reference.cols() && a.tets.cols() == b.tets.cols() &&
              a.faces.cols() == b.faces.cols();
@@ -188,8 +194,16 @@ RunFile RunFile::continued(const std::string& path, const std::vector<RunPart>& 
     if (!std::equal(parts.begin(), parts.end(), old.parts().begin(), old.parts().end(), is_same))
       fail("{}: its bodies are not those of the scene; run the scene anew", path);
     out.emplace(temporary, parts, info);
-    for (int i = 0; i < steps; ++i)
+    for (int i = 0; i < place.steps; ++i)
       out->append(old.times_s()[static_cast<std::size_t>(i)], old.points(i), old.velocity(i), old.stress(i));
+  }
+  if (out->place().content != place.content) {
+    out.reset();
+    std::filesystem::remove(temporary), std::filesystem::remove(xdmf_path(temporary));
+    fail(
+        "{}: its states are not those that the run had written by its checkpoint; the file was changed or "
+        "damaged since, run the scene anew",
+        path);
   }
   std::error_code error;
   std::filesystem::rename(temporary, path, error);
@@ -229,8 +243,13 @@ void RunFile::append(double time_s, const Points& points, const Points& velocity
   h5::check(H5Awrite(d.n_steps, H5T_NATIVE_INT64, &done), d.path, "cannot write NSteps");
   h5::check(H5Fflush(d.file, H5F_SCOPE_LOCAL), d.path, "cannot be flushed; is the disk full?");
   d.steps = done;
+  d.content.add_numbers({&time_s, 1})
+      .add_numbers(numbers_of(points))
+      .add_numbers(numbers_of(velocity))
+      .add_numbers(numbers_of(stress));
 }
 
+RunFile::Place RunFile::place() const { return {steps(), impl_->content.hex()}; }
 int RunFile::steps() const { return static_cast<int>(impl_->steps); }
 int RunFile::point_count() const { return static_cast<int>(impl_->reference.cols()); }
 

@@ -1,5 +1,7 @@
 #include "palpate/store/table_file.h"
 
+#include <bit>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
@@ -8,6 +10,7 @@
 #include "palpate/core/error.h"
 #include "palpate/core/rehearsal.h"
 #include "palpate/store/atomic_file.h"
+#include "palpate/store/content_hash.h"
 #include "store/series.h"
 
 namespace palpate::store {
@@ -30,6 +33,21 @@ std::vector<std::string> split(const std::string& text) {
     from = to + 1;
   }
   return out;
+}
+
+/// A journal is words of 64 bits, all of it.
+ContentHash content_of_journal(const std::string& journal, std::int64_t bytes) {
+  const std::string rows = read_file(journal);
+  std::vector<double> words(static_cast<std::size_t>(bytes) / sizeof(double));
+  std::memcpy(words.data(), rows.data(), std::min(rows.size(), words.size() * sizeof(double)));
+  return ContentHash().add_numbers(words);
+}
+
+/// Before anything is changed.
+void check_journal(const std::string& journal, const TableFile::Journal& from) {
+  if (from.bytes == 0) return;
+  check_reaches(journal, from.bytes);
+  check_content(journal, content_of_journal(journal, from.bytes), from.content);
 }
 
 /// Rows wait here for the next batch.
@@ -83,6 +101,7 @@ struct TableFile::Impl {
   h5::Id file;
   std::vector<Growing> tables;
   std::optional<std::ofstream> journal;
+  ContentHash journal_content;
 
   void append(std::size_t number, std::span<const double> row) {
     Growing& table = tables.at(number);
@@ -95,18 +114,23 @@ struct TableFile::Impl {
   }
   void write_journal(std::size_t number, std::span<const double> row) {
     const auto which = static_cast<std::uint64_t>(number);
+    const double as_number = std::bit_cast<double>(which);
+    journal_content.add_numbers({&as_number, 1}).add_numbers(row);
     journal->write(reinterpret_cast<const char*>(&which), sizeof which);
     journal->write(reinterpret_cast<const char*>(row.data()),
                    static_cast<std::streamsize>(row.size() * sizeof(double)));
   }
-  void take_journal(const std::string& from);
+  void take_journal(const std::string& from, std::int64_t bytes);
 };
 
-/// Rows of a journal, each behind the number of its table.
-void TableFile::Impl::take_journal(const std::string& from) {
+/// Rows of a journal, each behind the number of its table, in its first bytes.
+void TableFile::Impl::take_journal(const std::string& from, std::int64_t bytes) {
   std::ifstream in(from, std::ios::binary);
   std::vector<double> row;
-  for (std::uint64_t number = 0; in.read(reinterpret_cast<char*>(&number), sizeof number);) {
+  while (in.tellg() < bytes) {
+    std::uint64_t number = 0;
+    if (!in.read(reinterpret_cast<char*>(&number), sizeof number))
+      fail("{}: ends within a row; the file is damaged", from);
     if (number >= tables.size())
       fail("{}: a row of table {}, of {} tables; the file is damaged", from, number, tables.size());
     row.resize(tables[static_cast<std::size_t>(number)].width);
@@ -115,7 +139,6 @@ void TableFile::Impl::take_journal(const std::string& from) {
       fail("{}: ends within a row; the file is damaged", from);
     append(static_cast<std::size_t>(number), row);
   }
-  if (in.gcount() != 0) fail("{}: ends within a row; the file is damaged", from);
 }
 
 TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tables)
@@ -128,11 +151,12 @@ TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tabl
 }
 
 TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tables, const Journal& from)
-    : TableFile(path, tables) {
+    : TableFile((check_journal(journal_path(path), from), path), tables) {
   const std::string journal = journal_path(path);
   if (from.bytes > 0) {
+    impl_->take_journal(journal, from.bytes);
+    impl_->journal_content = content_of_journal(journal, from.bytes);
     cut_to(journal, from.bytes);
-    impl_->take_journal(journal);
   }
   impl_->journal.emplace(journal, std::ios::binary | (from.bytes > 0 ? std::ios::app : std::ios::trunc));
   if (!*impl_->journal) fail("{}: cannot be written; is its folder there, writable, and not full?", journal);
@@ -142,7 +166,8 @@ TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tabl
 TableFile::Journal TableFile::place() {
   PALPATE_CHECK(impl_->journal, "{}: has no journal", impl_->path);
   flush();
-  return {static_cast<std::int64_t>(std::filesystem::file_size(journal_path(impl_->path)))};
+  return {static_cast<std::int64_t>(std::filesystem::file_size(journal_path(impl_->path))),
+          impl_->journal_content.hex()};
 }
 
 TableFile::~TableFile() {

@@ -108,8 +108,15 @@ TEST(GoingOn, ATableFileIsMadeAnewFromItsJournal) {
   const auto again = [&] { store::TableFile file(path, tables, place); };
   store::write_atomically(journal, rows.substr(0, 100));
   EXPECT_NE(message_of(again).find("had " + std::to_string(place.bytes)), std::string::npos);
-  store::write_atomically(journal, std::string(rows.size(), '\x7f'));
-  EXPECT_NE(message_of(again).find("the file is damaged"), std::string::npos);
+  const std::string tables_before = store::read_file(path);
+  for (const std::size_t at : {std::size_t{0}, std::size_t{8}, static_cast<std::size_t>(place.bytes) / 2,
+                               static_cast<std::size_t>(place.bytes) - 1}) {
+    std::string flipped = rows;
+    flipped[at] ^= 0x10;
+    store::write_atomically(journal, flipped);
+    EXPECT_NE(message_of(again).find(journal + ": is not what the run had written"), std::string::npos) << at;
+  }
+  EXPECT_EQ(store::read_file(path), tables_before) << "what is rejected stays as it is";
   std::filesystem::remove(journal);
   EXPECT_NE(message_of(again).find("cannot go on without this file"), std::string::npos);
 }
@@ -130,6 +137,16 @@ TEST(GoingOn, ATextFileIsCutBack) {
     file.row(std::vector<double>{1.0, 3.0});
   }
   EXPECT_EQ(store::read_file(path), "t,f\n0,1\n1,3\n");
+  for (const char* changed : {"t,g\n0,1\n1,3\n", "t,f\n0,3\n1,3\n"}) {
+    store::write_atomically(path, changed);
+    EXPECT_NE(message_of([&] {
+                store::CsvWriter file(path, {"t", "f"}, place);
+              }).find("is not what the run"),
+              std::string::npos);
+    EXPECT_EQ(store::read_file(path), changed) << "what is rejected stays as it is";
+  }
+  store::write_atomically(path, "t,f\n0,1\n9,9\n");  // rows behind the checkpoint are computed again
+  EXPECT_EQ(message_of([&] { store::CsvWriter file(path, {"t", "f"}, place); }), "");
 }
 
 TEST(GoingOn, AFileOfStatesKeepsItsFirstSteps) {
@@ -140,13 +157,16 @@ TEST(GoingOn, AFileOfStatesKeepsItsFirstSteps) {
   const auto append = [&](store::RunFile& file, int from, int to) {
     for (int i = from; i < to; ++i) sample_run::append(file, i);
   };
+  store::RunFile::Place place;
   {
     store::RunFile file(path, parts, info);
-    append(file, 0, 4);
+    append(file, 0, 2);
+    place = file.place();
+    append(file, 2, 4);
   }
   const store::RunReader before(path);
   {
-    store::RunFile file = store::RunFile::continued(path, parts, info, 2);
+    store::RunFile file = store::RunFile::continued(path, parts, info, place);
     EXPECT_EQ(file.steps(), 2);
     append(file, 2, 4);
   }
@@ -158,12 +178,50 @@ TEST(GoingOn, AFileOfStatesKeepsItsFirstSteps) {
     EXPECT_EQ(after.velocity(i), before.velocity(i));
     EXPECT_EQ(after.stress(i), before.stress(i));
   }
-  EXPECT_NE(
-      message_of([&] { store::RunFile::continued(path, parts, info, 9); }).find("had 9 at the checkpoint"),
-      std::string::npos);
-  EXPECT_NE(
-      message_of([&] { store::RunFile::continued(path, {}, info, 1); }).find("are not those of the scene"),
-      std::string::npos);
+  EXPECT_NE(message_of([&] {
+              store::RunFile::continued(path, parts, info, {9, ""});
+            }).find("had 9 at the checkpoint"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] {
+              store::RunFile::continued(path, {}, info, {1, ""});
+            }).find("are not those of the scene"),
+            std::string::npos);
+}
+
+TEST(GoingOn, AFlippedBitInAStateIsFound) {
+  const sample_run::Folder folder;
+  const std::string path = folder / "run.vtkhdf";
+  const auto parts = sample_run::parts();
+  const store::RunInfo info = sample_run::info(3);
+  double next = 0.001;
+  const auto fill = [&](auto values) {
+    for (double& value : values.reshaped()) value = next += 0.001;
+    return values;
+  };
+  store::RunFile::Place place;
+  {
+    store::RunFile file(path, parts, info);
+    for (int i = 0; i < 3; ++i)
+      file.append(i, fill(sample_run::points(i)), fill(sample_run::velocity(i)), fill(sample_run::stress(i)));
+    place = file.place();
+  }
+  const std::string whole = store::read_file(path);
+  int found = 0;
+  for (double value = 0.002; value < next + 5e-4; value += 0.001) {  // each number stands in the file once
+    double exact = 0.001;
+    while (exact < value - 5e-4) exact += 0.001;  // by the same sums
+    const std::size_t at = whole.find(std::string(reinterpret_cast<const char*>(&exact), sizeof exact));
+    if (at == std::string::npos) continue;
+    std::string flipped = whole;
+    flipped[at] ^= 1;
+    store::write_atomically(path, flipped);
+    EXPECT_NE(
+        message_of([&] { store::RunFile::continued(path, parts, info, place); }).find("its states are not"),
+        std::string::npos);
+    EXPECT_EQ(store::read_file(path), flipped) << "what is rejected stays as it is";
+    ++found;
+  }
+  EXPECT_GT(found, 3 * 7 * sample_run::kPoints / 2);
 }
 
 }  // namespace

@@ -92,6 +92,10 @@ TEST(Csv, ErrorsSayWhere) {
   EXPECT_EQ(read("a,b\r\n1,2\r\n", "a"), "accepted") << "as Windows writes it";
   EXPECT_EQ(read("force_n\n1\n", "force_m"), "no column \"force_m\" (did you mean \"force_n\"?)");
   EXPECT_EQ(read("a\n1\n2x\n", "a"), "column \"a\", row 2: \"2x\" is no number");
+  EXPECT_NE(
+      read("a\n1\n9007199254740993\n", "a").find("column \"a\", row 2: 9007199254740993 must be at most"),
+      std::string::npos);
+  EXPECT_EQ(read("a\n9007199254740992\n1e300\n", "a"), read("a\n1\n", "a")) << "accepted";
   EXPECT_EQ(read("a\n1\n\"2\n", "a"), path + ":3: a quote is never closed");
   EXPECT_EQ(
       refusal([] { store::CsvWriter csv("/no/such/a.csv", {"a"}); }),

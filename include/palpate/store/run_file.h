@@ -36,11 +36,19 @@ class RunFile {
   /// @param path  of the file, which is replaced  @param info  kept with it
   /// @param parts  their points follow one another in this order  @throws Error when the file cannot be made
   RunFile(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info);
-  /// Goes on with a run's file behind its first `steps`: they are brought into a new file, which takes the
-  /// place of the old one.
-  /// @throws Error where the file cannot be read, has fewer steps or other parts
+  /// How far a file was written.
+  struct Place {
+    int steps = 0;
+    std::string content;  ///< hash of their times, positions, velocities and stresses
+  };
+  /// Where the file is now.
+  Place place() const;
+  /// Goes on with a run's file behind that place: the steps before are brought into a new file, which takes
+  /// the place of the old one.
+  /// @throws Error where the file cannot be read, has fewer steps, other ones than were written, or other
+  /// parts
   static RunFile continued(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info,
-                           int steps);
+                           const Place& place);
   ~RunFile();
   /// Moved from, it may only be destroyed.
   RunFile(RunFile&&) noexcept;

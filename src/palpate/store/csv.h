@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "palpate/core/archive.h"
+#include "palpate/store/content_hash.h"
 
 namespace palpate::store {
 
@@ -21,10 +22,11 @@ class CsvWriter {
   struct Place {
     std::int64_t bytes = 0;
     int rows = 0;
+    std::string content;  ///< hash of these bytes
     void archive(Archive& a);
   };
   /// Goes on with a file that a writer with these headers began: what stands behind the place is cut off.
-  /// @throws Error where the file does not reach to there
+  /// @throws Error where the file does not reach to there, or is not what was written
   CsvWriter(const std::string& path, std::vector<std::string> headers, const Place& place);
   /// Flushes.  @throws Error when the disk refused anything
   Place place();
@@ -47,6 +49,7 @@ class CsvWriter {
   int rows_ = 0;
   std::string line_;   ///< the row that is being made
   std::string lines_;  ///< rows that wait to be written together
+  ContentHash content_;
   std::ofstream out_;
 };
 

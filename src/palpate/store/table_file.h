@@ -25,9 +25,10 @@ class TableFile {
   /// made anew from it.
   struct Journal {
     std::int64_t bytes = 0;  ///< of the journal so far; 0: from the start
+    std::string content;     ///< hash of these bytes
   };
   /// @param from  where rows go on: those before are taken from the journal, what is behind is cut off
-  /// @throws Error where the journal does not reach to there
+  /// @throws Error where the journal does not reach to there, or is not what was written
   TableFile(const std::string& path, const std::vector<TableSpec>& tables, const Journal& from);
   /// Flushes both.  @throws Error when the disk refuses
   Journal place();
