@@ -146,8 +146,15 @@ std::string why_lost(const study::RunOutcome& outcome) {
                      outcome.lost.size() == 1 ? "it" : "them");
 }
 
-/// `--task`: these tasks alone, as an element of an array job does; no table.
+/// Results of tasks, a file each.  Elements of an array job share the folder; a command that runs all tasks
+/// here has it alone, and so has one that forgets them.
+store::ResultFolder tasks_folder(const std::string& folder, store::ResultFolder::Access access) {
+  return store::ResultFolder((fs::path(folder) / "tasks").string(), access);
+}
+
+/// `--tasks`: these tasks alone, as an element of an array job does; no table.
 int run_some(Plan& plan, const StudyArguments& arguments, const std::string& folder) {
+  const store::ResultFolder ours = tasks_folder(folder, store::ResultFolder::Access::kShared);
   const auto tasks = study::indices_of(arguments.tasks, plan.tasks.size());
   const study::RunOutcome outcome = run_here(plan, tasks, arguments, folder);
   fmt::print("{} run, {} done before, {} refused by their scenes; results in {}/tasks\n", outcome.run,
@@ -204,8 +211,12 @@ int study(const StudyArguments& arguments) {
     print_plan(plan);
     return 0;
   }
-  store::ResultFolder::make(folder);
+  const store::ResultFolder mine(folder);  // its tables
+  store::ResultFolder tasks;
+  const bool writes_tasks = arguments.fresh || !(arguments.merge || arguments.slurm);
+  if (writes_tasks) tasks = tasks_folder(folder, store::ResultFolder::Access::kAlone);
   if (arguments.fresh) study::forget_results(folder);
+  if (arguments.slurm) tasks = {};  // for the elements of the job
   const StudyEnd end = run_all(plan, arguments, folder);
   if (end.submitted) return 0;
 

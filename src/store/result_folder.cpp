@@ -61,7 +61,7 @@ std::string command_of(long process) {
 void ResultFolder::make(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (!fs::is_directory(path))
+  if (std::error_code none; !fs::is_directory(path, none))
     fail("{}: this output folder cannot be made ({}); choose another with -o DIR", path,
          error ? error.message() : "a file has this name");
   if (::access(path.c_str(), W_OK | X_OK) != 0)
@@ -69,10 +69,11 @@ void ResultFolder::make(const std::string& path) {
          std::strerror(errno));
 }
 
-ResultFolder::ResultFolder(const std::string& path) {
+ResultFolder::ResultFolder(const std::string& path, Access access) {
   make(path);
   lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  const int kind = access == Access::kAlone ? LOCK_EX : LOCK_SH;
+  if (lock_ < 0 || ::flock(lock_, kind | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   const int folder = std::exchange(lock_, -1);
   try {
     fail_busy(path, folder);

@@ -154,9 +154,13 @@ RunOutcome run_tasks(Plan& plan, const std::vector<std::size_t>& indices, const 
 }
 
 void forget_results(const std::string& folder) {
+  // the folder itself stays: its lock is on it
   std::error_code error;
-  fs::remove_all(fs::path(folder) / "tasks", error);
-  if (error) fail("{}/tasks: cannot be removed: {}", folder, error.message());
+  for (const auto& entry : fs::directory_iterator(fs::path(folder) / "tasks", error)) {
+    std::error_code failed;
+    fs::remove_all(entry.path(), failed);
+    if (failed) fail("{}: cannot be removed: {}", entry.path().string(), failed.message());
+  }
 }
 
 }  // namespace palpate::study

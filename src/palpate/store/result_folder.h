@@ -10,9 +10,11 @@ namespace palpate::store {
 class ResultFolder {
  public:
   ResultFolder() = default;
+  /// kShared: others may share it, each writing files of its own, and nobody has it alone.
+  enum class Access { kAlone, kShared };
   /// Makes the folder where it is missing, and locks it.
   /// @throws Error where it cannot be made or written, or another process has it: that one is named
-  explicit ResultFolder(const std::string& path);
+  explicit ResultFolder(const std::string& path, Access access = Access::kAlone);
   /// Makes the folder, and takes no lock.  @throws Error where it cannot be made or written
   static void make(const std::string& path);
   ~ResultFolder();
