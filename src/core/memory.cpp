@@ -66,22 +66,42 @@ void take_groups(AvailableMemory& least, const fs::path& root) {
   }
 }
 
-void take_addresses(AvailableMemory& least, const fs::path& root) {
+bool is_limited(__rlimit_resource_t resource, rlimit& most) {
+  return ::getrlimit(resource, &most) == 0 && most.rlim_cur != RLIM_INFINITY;
+}
+
+/// proc(5), /proc/self/statm: addresses of this process are its first number, those of data its sixth
+/// [pages].
+void take_addresses(AvailableMemory& least, const fs::path& root, double addresses) {
+  double pages[6] = {};
+  std::ifstream in(root / "proc/self/statm");
+  for (double& number : pages)
+    if (!(in >> number)) number = 0.0;
+  const auto page = static_cast<double>(::sysconf(_SC_PAGESIZE));
   rlimit most{};
-  if (::getrlimit(RLIMIT_AS, &most) != 0 || most.rlim_cur == RLIM_INFINITY) return;
-  const double pages = number_in(root / "proc/self/statm").value_or(0.0);
-  take(least, static_cast<double>(most.rlim_cur) - pages * static_cast<double>(::sysconf(_SC_PAGESIZE)),
-       "the limit of addresses, ulimit -v");
+  if (is_limited(RLIMIT_AS, most))
+    take(least, static_cast<double>(most.rlim_cur) - page * pages[0] - addresses,
+         "the limit of addresses, ulimit -v");
+  if (is_limited(RLIMIT_DATA, most))
+    take(least, static_cast<double>(most.rlim_cur) - page * pages[5] - addresses,
+         "the limit of data, ulimit -d");
 }
 
 }  // namespace
 
-AvailableMemory available_memory(const std::string& root) {
+AvailableMemory available_memory(const std::string& root, double addresses) {
   AvailableMemory least{std::numeric_limits<double>::infinity(), "nothing"};
   take(least, of_meminfo(root), "MemAvailable of /proc/meminfo");
   take_groups(least, root);
-  take_addresses(least, root);
+  take_addresses(least, root, addresses);
   return least;
+}
+
+bool addresses_are_limited() {
+  constexpr double kNeverMore = 2.0;
+  rlimit most{};
+  return is_limited(RLIMIT_AS, most) || is_limited(RLIMIT_DATA, most) ||
+         number_in("/proc/sys/vm/overcommit_memory") == kNeverMore;
 }
 
 std::string memory_text(double bytes) {
@@ -90,13 +110,17 @@ std::string memory_text(double bytes) {
 }
 
 void refuse_beyond_memory(const std::string& what, double needed, const std::string& parts,
-                          const std::string& advice) {
+                          const std::string& advice, double addresses) {
   if (const char* beyond = std::getenv("PALPATE_BEYOND_MEMORY"); beyond && *beyond != '\0') return;
-  const AvailableMemory available = available_memory();
+  const AvailableMemory available = available_memory("/", addresses);
   if (needed <= available.bytes) return;
-  fail("{} need about {} of memory{}, and {} are available ({}); {}; --beyond-memory goes on all the same",
+  const std::string libraries =
+      addresses > 0.0 && available.limited_by.starts_with("the limit of")
+          ? fmt::format(" beside {} of addresses for libraries", memory_text(addresses))
+          : "";
+  fail("{} need about {} of memory{}, and {} are available{} ({}); {}; --beyond-memory goes on all the same",
        what, memory_text(needed), parts.empty() ? "" : " (" + parts + ")", memory_text(available.bytes),
-       available.limited_by, advice);
+       libraries, available.limited_by, advice);
 }
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -51,9 +52,18 @@ class Pool {
  private:
   int size() const { return size_.load(std::memory_order_relaxed); }
   void grow_locked(int count) {
-    for (int worker = size(); worker < count; ++worker)
-      threads_.emplace_back([this, worker] { serve(worker); });
-    if (count > size()) size_ = count;
+    for (int worker = size(); worker < count; ++worker) {
+      try {
+        threads_.emplace_back([this, worker] { serve(worker); });
+      } catch (const std::system_error& e) {
+        fail(
+            "thread {} of {} cannot be started ({}); lower integrator.threads, or raise the limits on "
+            "addresses "
+            "(ulimit -v) and processes (ulimit -u)",
+            worker + 1, count, e.code().message());
+      }
+      size_ = worker + 1;
+    }
   }
 
   static constexpr std::uint64_t kBits = 20, kField = (std::uint64_t{1} << kBits) - 1;

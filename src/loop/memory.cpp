@@ -1,5 +1,7 @@
 #include "palpate/loop/memory.h"
 
+#include <sys/resource.h>
+
 #include <cmath>
 
 #include "palpate/integrate/integrators.h"
@@ -21,6 +23,14 @@ double factor_constant(const std::string& solver) {
   return 0.0;  // conjugate gradients keep none
 }
 
+/// Of a thread: the limit on the main thread's is the default of all others (pthread_create(3)).
+double stack_bytes() {
+  constexpr double kUsual = 8.0 * kMiB;
+  rlimit stack{};
+  const bool limited = ::getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur != RLIM_INFINITY;
+  return limited ? static_cast<double>(stack.rlim_cur) : kUsual;
+}
+
 /// A tool that is exchanged with bodies linearised at points has a matrix and a solver of its own beside the
 /// integrator's.
 bool touches_at_points(const scene::Description& d) {
@@ -36,6 +46,7 @@ MeshCounts counts_of(const Body& body) {
 
 MemoryEstimate estimate_memory(const scene::Description& description, const std::vector<MeshCounts>& bodies) {
   constexpr double kProgram = 40.0 * kMiB, kTetrahedron = 820.0, kTouched = 640.0, kSkinVertex = 200.0;
+  constexpr double kBlas = 128.0 * kMiB;  // measured of OpenBLAS 0.3.21, one thread
   const bool at_points = touches_at_points(description);
   MemoryEstimate out{.program = kProgram};
   const double constant =
@@ -46,6 +57,8 @@ MemoryEstimate estimate_memory(const scene::Description& description, const std:
     out.skins += kSkinVertex * body.skin_vertices;
     out.factor += constant * std::pow(body.nodes, 4.0 / 3.0);
   }
+  if (constant > 0.0) out.addresses += kBlas;
+  out.addresses += (description.integrator.threads - 1) * stack_bytes();
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "linear/direct/blas_memory.h"
 #include "linear/direct/direct_solver.h"
 #include "linear/make.h"
 #include "palpate/core/error.h"
@@ -89,6 +90,8 @@ class CholmodFactor final : public BodyFactor {
     const double* from = A.values().data();
     for (std::size_t k = 0; k < source_.size(); ++k) values_[k] = from[source_[k]];
     cholmod_sparse lower = view();
+    if (L_->xtype == CHOLMOD_PATTERN)  // the first one since the analysis, which knows its size
+      refuse_factor_beyond_memory(static_cast<double>(n_), sizeof(double) * static_cast<double>(L_->xsize));
     cholmod_factorize(&lower, L_, &common_);
     require("cholmod_factorize");
     return common_.status == CHOLMOD_OK && L_->minor == L_->n ? SolveStatus::kOk : SolveStatus::kIndefinite;
@@ -190,7 +193,7 @@ class CholmodFactor final : public BodyFactor {
   void require(const char* call) const {
     if (common_.status >= CHOLMOD_OK) return;
     if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE)
-      fail("{}: no memory for the factor of {} unknowns; use a coarser mesh", call, n_);
+      fail_without_memory(call, static_cast<double>(n_));
     PALPATE_CHECK(false, "{} returned status {}", call, common_.status);
   }
 

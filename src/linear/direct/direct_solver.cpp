@@ -1,5 +1,6 @@
 #include "linear/direct/direct_solver.h"
 
+#include "linear/direct/blas_memory.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -13,6 +14,7 @@ using dynamics::SolveStatus;
 DirectSolver::DirectSolver(std::string name, bool unsymmetric, std::unique_ptr<BodyFactor> body)
     : name_(std::move(name)), unsymmetric_(unsymmetric), body_(std::move(body)) {
   counters::count("integrate.solver." + name_);
+  reserve_blas_memory();
 }
 
 bool DirectSolver::same_pattern(const BorderedMatrix& A) const {

@@ -1,5 +1,6 @@
 #include <klu.h>
 
+#include "linear/direct/blas_memory.h"
 #include "linear/direct/direct_solver.h"
 #include "linear/direct/transposed_columns.h"
 #include "linear/make.h"
@@ -82,7 +83,7 @@ class KluFactor final : public BodyFactor {
   void require(const char* call) const {
     if (common_.status >= KLU_OK) return;
     if (common_.status == KLU_OUT_OF_MEMORY || common_.status == KLU_TOO_LARGE)
-      fail("{}: no memory for the factor of {} unknowns; use a coarser mesh", call, columns_.n);
+      fail_without_memory(call, static_cast<double>(columns_.n));
     PALPATE_CHECK(false, "{} returned status {}", call, common_.status);
   }
 

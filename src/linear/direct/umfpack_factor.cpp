@@ -1,5 +1,6 @@
 #include <umfpack.h>
 
+#include "linear/direct/blas_memory.h"
 #include "linear/direct/direct_solver.h"
 #include "linear/direct/transposed_columns.h"
 #include "linear/make.h"
@@ -60,8 +61,7 @@ class UmfpackFactor final : public BodyFactor {
  private:
   void require(int status, const char* call) const {
     if (status >= UMFPACK_OK) return;
-    if (status == UMFPACK_ERROR_out_of_memory)
-      fail("{}: no memory for the factor of {} unknowns; use a coarser mesh", call, columns_.n);
+    if (status == UMFPACK_ERROR_out_of_memory) fail_without_memory(call, static_cast<double>(columns_.n));
     PALPATE_CHECK(false, "{} returned status {}", call, status);
   }
 

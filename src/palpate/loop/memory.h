@@ -19,6 +19,10 @@ struct MemoryEstimate {
   double touch = 0.0;     ///< what a tool that is exchanged at points asks for: matrix and solver of its own
   double skins = 0.0;     ///< with their embedding and proxies
   double factor = 0.0;    ///< of a direct solver
+  /// What libraries take of addresses and hardly fill, beside all of it: the buffer of the BLAS where
+  /// something is factored, stacks of threads.  Only limits of addresses and of data (ulimit -v, -d) count
+  /// it.
+  double addresses = 0.0;
   double total() const { return program + elements + touch + skins + factor; }
 };
 /// Measured peaks were 0.8 to 1.4 of it, from 5,000 to 185,000 tetrahedra (tests/cli/bad_input_test.py holds

@@ -1,0 +1,88 @@
+#include "linear/direct/blas_memory.h"
+
+#include <dlfcn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <mutex>
+
+#include "palpate/core/error.h"
+#include "palpate/core/memory.h"
+
+namespace palpate::linear {
+namespace {
+
+/// Fortran's dgemm: C = alpha A B + beta C.
+using Dgemm = void (*)(const char*, const char*, const int*, const int*, const int*, const double*,
+                       const double*, const int*, const double*, const int*, const double*, double*,
+                       const int*);
+
+/// One small product; larger than what a BLAS computes without its buffer.
+void multiply(Dgemm dgemm) {
+  constexpr int n = 64;
+  static std::array<double, n * n> a{}, b{}, c{};
+  const double one = 1.0;
+  dgemm("N", "N", &n, &n, &n, &one, a.data(), &n, b.data(), &n, &one, c.data(), &n);
+}
+
+/// The child's life: a product takes microseconds; a BLAS that waits for memory ends by the limit on its
+/// time.
+[[noreturn]] void try_product(Dgemm dgemm) {
+  const rlimit no_core{0, 0}, one_second{1, 1};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  ::setrlimit(RLIMIT_CPU, &one_second);
+  constexpr unsigned kLongestWait = 60;
+  for (const int signal : {SIGALRM, SIGXCPU, SIGSEGV, SIGABRT}) std::signal(signal, SIG_DFL);
+  ::alarm(kLongestWait);
+  multiply(dgemm);
+  ::_exit(0);
+}
+
+bool comes_back(Dgemm dgemm) {
+  const pid_t child = ::fork();
+  if (child == 0) try_product(dgemm);
+  if (child < 0) return true;  // no process can be had: it may come back all the same
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+void reserve() {
+  const auto dgemm = reinterpret_cast<Dgemm>(::dlsym(RTLD_DEFAULT, "dgemm_"));
+  if (!dgemm) return;  // one whose names are others
+  if (addresses_are_limited() && !comes_back(dgemm)) {
+    const AvailableMemory left = available_memory();
+    fail(
+        "the BLAS gets no memory to work in: OpenBLAS takes about 128 MiB of addresses, and {} are left "
+        "({}); raise "
+        "the limit, or take integrator.linear_solver = \"pcg-single\", which needs none",
+        memory_text(left.bytes), left.limited_by);
+  }
+  multiply(dgemm);
+}
+
+}  // namespace
+
+void reserve_blas_memory() {
+  static std::once_flag once;
+  std::call_once(once, reserve);
+}
+
+void refuse_factor_beyond_memory(double unknowns, double bytes) {
+  refuse_beyond_memory(fmt::format("the factor of {:.0f} unknowns: its numbers", unknowns), bytes, "",
+                       "a coarser mesh or integrator.linear_solver = \"pcg-single\" needs less");
+}
+
+void fail_without_memory(const char* call, double unknowns) {
+  const AvailableMemory left = available_memory();
+  fail(
+      "{}: no memory for the factor of {:.0f} unknowns: {} are left ({}); use a coarser mesh, or "
+      "integrator.linear_solver = \"pcg-single\"",
+      call, unknowns, memory_text(left.bytes), left.limited_by);
+}
+
+}  // namespace palpate::linear
