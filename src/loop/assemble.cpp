@@ -14,6 +14,8 @@
 #include "palpate/mesh/checks.h"
 #include "palpate/mesh/spatial_order.h"
 #include "palpate/proxy/proxy_set.h"
+#include "palpate/scene/hands.h"
+#include "palpate/scene/load.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
 #include "tool_side.h"
@@ -87,6 +89,13 @@ void take_skeleton(const SoftBodySpec& spec, const std::string& path, const Laye
   }
 }
 
+/// @param path  of the model's file, for messages
+std::shared_ptr<proxy::ProxySet> proxies_of(const LayeredModel& model, const std::string& path) {
+  try {
+    return std::make_shared<proxy::ProxySet>(model);
+  } catch (const Error& e) { fail("{}: {}", path, e.what()); }
+}
+
 /// Loads a body's tetrahedra, and the skin and proxies that the scene names; returns the regions of its file.
 /// From a model file the tetrahedra alone are read where the scene names neither; else the file is read and
 /// checked as a whole, and what is not named is dropped.
@@ -110,7 +119,7 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
       model.tets = body.rest;  // as checked, scaled and numbered
       for (ProxyHull& hull : model.proxies) hull.corners *= spec.mesh.factor();
       counters::count("loop.proxies");
-      proxies = std::make_shared<proxy::ProxySet>(model);
+      proxies = proxies_of(model, path);
     }
     body.skin = Skin{std::move(model.skin), std::move(model.embedding), std::move(proxies)};
     return std::move(model.regions);
@@ -184,6 +193,14 @@ void add_forces(World& world, Body& body, const SoftBodySpec& spec, const fem::M
                                          body.block_id));
 }
 
+/// Whether a message says by itself which file it is about: what stands before its first colon is one.
+/// @param scene  also where there is no such file
+bool begins_with_file(const std::string& message, const std::string& scene) {
+  std::error_code none;
+  return (!scene.empty() && message.starts_with(scene)) ||
+         std::filesystem::exists(message.substr(0, message.find(':')), none);
+}
+
 /// The meshes are small: what is made of them takes the memory.
 void check_memory(const World& world) {
   std::vector<MeshCounts> counts;
@@ -204,17 +221,32 @@ void check_memory(const World& world) {
       fmt::format("{} for elements and matrix{}, {} for a direct solver's factor",
                   memory_text(estimate.elements + estimate.touch), skins, memory_text(estimate.factor)),
       direct ? "a larger element_size_m or integrator.linear_solver = \"pcg-single\" needs less"
-             : "a larger element_size_m needs less");
+             : "a larger element_size_m needs less",
+      estimate.addresses);
 }
 
 }  // namespace
 
+void at_place(const World& world, const std::string& at, const std::string& who,
+              const std::function<void()>& make) {
+  try {
+    make();
+  } catch (const Error& e) {
+    const std::string message = e.what();
+    const bool names_who = who.empty() || message.starts_with(who);
+    if (begins_with_file(message, world.description.path)) throw;
+    fail("{}: {}{}", scene::place_of(world.description, at), names_who ? "" : who + ": ", message);
+  }
+}
+
 void assemble_bodies(World& world) {
   std::vector<Body>& bodies = world.bodies;
   std::vector<fem::Materials> materials;
-  for (const SoftBodySpec& spec : world.description.bodies) {
+  const std::vector<SoftBodySpec>& specs = world.description.bodies;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
     materials.emplace_back(fem::Material{});
-    bodies.push_back(place_body(world, spec, materials.back()));
+    at_place(world, fmt::format("body[{}].mesh", i), fmt::format("body \"{}\"", specs[i].name),
+             [&] { bodies.push_back(place_body(world, specs[i], materials.back())); });
   }
   check_memory(world);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -224,7 +256,8 @@ void assemble_bodies(World& world) {
                                             initial_velocities(spec, bodies[i].placed, bodies[i].masses));
   }
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    add_forces(world, bodies[i], world.description.bodies[i], materials[i]);
+    at_place(world, fmt::format("body[{}]", i), fmt::format("body \"{}\"", specs[i].name),
+             [&] { add_forces(world, bodies[i], specs[i], materials[i]); });
 }
 
 std::unique_ptr<World> assemble(const scene::Description& description) {
@@ -244,13 +277,14 @@ std::unique_ptr<World> assemble(const scene::Description& description,
   workers::set_count(description.integrator.threads);
   world->folder = std::filesystem::path(description.path).parent_path().string();
   assemble_bodies(*world);
-  if (!description.bones.empty()) assemble_bones(*world);
+  if (!description.bones.empty()) at_place(*world, "bone", "", [&] { assemble_bones(*world); });
   assemble_skeletons(*world);
   ToolSide::make(*world);
   for (std::size_t i = 0; i < ToolSide::all(*world).size(); ++i) {
     ToolSide& side = ToolSide::of(*world, i);
     if (i < hands.size()) side.handle = std::move(hands[i]);
-    if (side.spec) assemble_tool(*world, i);
+    if (side.spec)
+      at_place(*world, scene::hands_of(description)[i].tool_key, "", [&] { assemble_tool(*world, i); });
   }
   assemble_attachments(*world);
   const auto& sides = ToolSide::all(*world);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "assemble_parts.h"
 #include "palpate/bones/shape.h"
@@ -104,7 +105,28 @@ void tie(const Body& body, const SoftBodySpec& tissue, const std::vector<int>& n
   }
 }
 
-void attach(World& world, const Body& body, const SoftBodySpec& tissue, const AttachmentSpec& spec) {
+/// Which attachment of the body holds or drives a direction of a node, by its number among them.
+using OwnersOfDofs = std::map<int, std::size_t>;
+
+/// @param first  of the body's nodes
+void take_dofs(const Body& body, const std::vector<int>& dofs, int first, std::size_t attachment,
+               OwnersOfDofs& owners) {
+  for (const int dof : dofs) {
+    const auto [at, is_free] = owners.emplace(dof, attachment);
+    if (is_free) continue;
+    const Vec3 node = body.placed.col(dof / 3 - first);
+    fail(
+        "body \"{}\": attachment {} overlaps attachment {}: both hold or drive the node at [{:g}, {:g}, "
+        "{:g}] m "
+        "along {}; make one of them smaller, or give it other axes",
+        body.name, attachment + 1, at->second + 1, node.x(), node.y(), node.z(), "xyz"[dof % 3]);
+  }
+}
+
+/// @param number  of the attachment among those of the body
+void attach(World& world, const Body& body, const SoftBodySpec& tissue, std::size_t number,
+            OwnersOfDofs& owners) {
+  const AttachmentSpec& spec = tissue.attachments[number];
   const std::vector<int> nodes = nodes_inside(world, body, spec);
   check_nodes(body, spec, nodes);
   const int first = world.state.layout().find(body.block_id)->u_offset / 3;
@@ -112,6 +134,7 @@ void attach(World& world, const Body& body, const SoftBodySpec& tissue, const At
   if (tool && !world.monolithic()) return tie(body, tissue, nodes, first, *tool);
   const Carrier carrier = carrier_of(world, body, spec);
   const std::vector<int> dofs = fem::dofs_of_nodes(nodes, first, spec.axes);
+  take_dofs(body, dofs, first, number, owners);
   const Pose from_world = carrier.start.inverse();
   VecX x0(static_cast<Eigen::Index>(dofs.size()));
   Points local(3, x0.size());
@@ -136,8 +159,10 @@ void attach(World& world, const Body& body, const SoftBodySpec& tissue, const At
 void assemble_attachments(World& world) {
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const SoftBodySpec& spec = world.description.bodies[i];
-    for (const AttachmentSpec& attachment : spec.attachments)
-      attach(world, world.bodies[i], spec, attachment);
+    OwnersOfDofs owners;
+    for (std::size_t k = 0; k < spec.attachments.size(); ++k)
+      at_place(world, fmt::format("body[{}].attachment[{}]", i, k), fmt::format("body \"{}\"", spec.name),
+               [&] { attach(world, world.bodies[i], spec, k, owners); });
   }
 }
 

@@ -245,23 +245,26 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
        spec.second, spec.second);
 }
 
+void add_contact(World& world, ContactSpec& given) {
+  scene::order_sides(world.description, given);
+  ContactSpec spec = given;
+  // In a step of one linear solve the secant is needed, though what is left out of a tool's rows besides
+  // buys no symmetric matrix: else friction that slides turns nodes round in each step and holds nothing.
+  if (spec.friction_tangent == "auto")
+    spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
+  // of a tool with ticks of its own on an obstacle no step matrix has a part
+  if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "symmetric";
+  world.contact->add_pair(source_of(world, spec), spec);
+  if (ToolSide* const side = ToolSide::named(world, spec.second)) make_touch(world, *side);  // of a soft body
+}
+
 }  // namespace
 
 void assemble_contact(World& world) {
   world.contact = std::make_shared<contact::ContactForce>();
-  for (ContactSpec& given : world.description.contacts) {
-    scene::order_sides(world.description, given);
-    ContactSpec spec = given;
-    // In a step of one linear solve the secant is needed, though what is left out of a tool's rows besides
-    // buys no symmetric matrix: else friction that slides turns nodes round in each step and holds nothing.
-    if (spec.friction_tangent == "auto")
-      spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
-    // of a tool with ticks of its own on an obstacle no step matrix has a part
-    if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "symmetric";
-    world.contact->add_pair(source_of(world, spec), spec);
-    if (ToolSide* const side = ToolSide::named(world, spec.second))
-      make_touch(world, *side);  // of a soft body
-  }
+  std::vector<ContactSpec>& contacts = world.description.contacts;
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    at_place(world, fmt::format("contact[{}]", i), "", [&] { add_contact(world, contacts[i]); });
   for (const auto& side : ToolSide::all(world)) {
     if (side->ties.empty()) continue;
     tool_motion(world, *side);

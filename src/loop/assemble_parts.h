@@ -1,8 +1,17 @@
 #pragma once
+#include <functional>
+#include <string>
+
 #include "palpate/loop/world.h"
 
 /// The steps of assemble(), one file each.
 namespace palpate::loop {
+
+/// Runs `make`, which is about the table `at` of the scene, "body[1]".  An Error of it that begins with no
+/// file gets the table's place in front: `scene.toml:12:1: body "liver": ...`.
+/// @param who  `body "liver"`, put there where the message does not begin with it; may be empty
+void at_place(const World& world, const std::string& at, const std::string& who,
+              const std::function<void()>& make);
 
 void assemble_bodies(World& world);
 /// The regions of a body and the number of each element's material; then the list of materials, the body's

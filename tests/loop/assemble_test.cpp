@@ -88,7 +88,8 @@ TEST(Assemble, AttachmentsThatHoldNothingOrOverlapAreRefused) {
   expect_refused(d, {"block", "holds no node", "5"});
   d = held_block();
   d.bodies[0].attachments.push_back(d.bodies[0].attachments[0]);
-  expect_refused(d, {"the node at [", ", 0] m is held or driven twice along x", "overlap"});
+  expect_refused(
+      d, {"scene: body \"block\": attachment 2 overlaps attachment 1", "the node at [", ", 0] m along x"});
 }
 
 #ifdef PALPATE_HAS_TOOL
