@@ -17,12 +17,11 @@ std::string line_of(const char* what, double rms, double max, double peak, const
                      100.0 * share_of_peak(max, peak));
 }
 
-std::string lines_of(const std::string& whose, const compare::FeltError& felt) {
+void add_lines(const std::string& whose, const compare::FeltError& felt, std::vector<std::string>& out) {
   const compare::TrajectoryError& e = felt.error;
-  return fmt::format(
-      "  {}{}\n  {}{}\n", whose,
-      line_of("force off by", e.force_rms_n, e.force_max_n, felt.peak_force_n, "N"), whose,
-      line_of("torque off by", e.torque_rms_n_m, e.torque_max_n_m, felt.peak_torque_n_m, "N m"));
+  out.push_back(whose + line_of("force off by", e.force_rms_n, e.force_max_n, felt.peak_force_n, "N"));
+  out.push_back(whose +
+                line_of("torque off by", e.torque_rms_n_m, e.torque_max_n_m, felt.peak_torque_n_m, "N m"));
 }
 
 void add_figures(store::SummarySection& s, const compare::FeltError& felt) {
@@ -49,11 +48,19 @@ compare::AgainstMonolithic against_monolithic(const loop::World& world,
     out = compare::against_monolithic(
         world, records, real_time, [&progress](double fraction) { progress(fraction); }, &stop_flag());
   }
-  if (!out.trouble.empty()) return out;
-  fmt::print("against {} ({:.3g} s of CPU){}:\n{}", out.made_by, out.cpu_s,
-             out.recorded_hand ? ", under the hand as it was recorded" : "", lines_of("", out));
-  for (std::size_t i = 0; i < out.more_hands.size(); ++i)
-    fmt::print("{}", lines_of(fmt::format("hand {}: ", world.description.hands[i].name), out.more_hands[i]));
+  for (const std::string& line : against_monolithic_remarks(world.description, out)) fmt::print("{}\n", line);
+  return out;
+}
+
+std::vector<std::string> against_monolithic_remarks(const scene::Description& description,
+                                                    const compare::AgainstMonolithic& against) {
+  std::vector<std::string> out;
+  if (!against.trouble.empty() || against.stopped) return out;
+  const std::string what = fmt::format("against {}{}: ", against.made_by,
+                                       against.recorded_hand ? ", under the hand as it was recorded" : "");
+  add_lines(what, against, out);
+  for (std::size_t i = 0; i < against.more_hands.size(); ++i)
+    add_lines(fmt::format("{}hand {}: ", what, description.hands[i].name), against.more_hands[i], out);
   return out;
 }
 

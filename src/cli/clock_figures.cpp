@@ -20,8 +20,7 @@ void print_series(const char* what, const std::vector<float>& values, double uni
 
 }  // namespace
 
-void print_clock(const loop::RunResult& result, const std::string& linearisation) {
-  const loop::RealTimeResult& clock = *result.real_time;
+void print_clock(const loop::RealTimeResult& clock) {
   fmt::print("ticks in real time: {}, {}, memory {}\n", clock.scheduling,
              clock.cpu < 0 ? std::string("on any processor") : fmt::format("on processor {}", clock.cpu),
              clock.memory);
@@ -29,38 +28,45 @@ void print_clock(const loop::RunResult& result, const std::string& linearisation
   print_series("tick late", clock.lateness_s, 1e-6, "us");
   print_series("tick's work", clock.work_s, 1e-6, "us");
   print_series("exchange's latency", clock.latency_s, 1e-3, "ms");
-  fmt::print("  {} of {} ticks late by a tick or more; bodies and contact at {:.1f} Hz (wanted {:g})\n",
-             clock.missed_ticks, clock.lateness_s.size(), clock.exchanges_per_s(), 1.0 / clock.period_s);
+}
+
+std::vector<std::string> clock_remarks(const loop::RunResult& result, const std::string& linearisation) {
+  const loop::RealTimeResult& clock = *result.real_time;
+  std::vector<std::string> out;
+  const auto add = [&out]<class... Args>(fmt::format_string<Args...> format, Args&&... args) {
+    out.push_back(fmt::format(format, std::forward<Args>(args)...));
+  };
+  add("real time: {} of {} ticks late by a tick or more; bodies and contact at {:.1f} Hz (target {:g} Hz)",
+      clock.missed_ticks, clock.lateness_s.size(), clock.exchanges_per_s(), 1.0 / clock.period_s);
   if (clock.left_out_ticks > 0)
-    fmt::print(
-        "  the clock started anew after ticks that were more than {:g} ms late: {} ticks were left out\n",
+    add("real time: the clock restarted after ticks that were more than {:g} ms late: {} ticks were left out",
         1e3 * clock.stall_s, clock.left_out_ticks);
   if (clock.stalls > 0)
-    fmt::print("  no wrench went out for more than {:g} ms, {} times: the force set in anew\n",
-               1e3 * clock.stall_s, clock.stalls);
+    add("real time: no wrench was sent for more than {:g} ms, {} times: the force ramped in again",
+        1e3 * clock.stall_s, clock.stalls);
   if (const double exchanges = static_cast<double>(clock.latency_s.size()); exchanges > 0.0) {
     const dynamics::StepperCounters& c = result.counters;
     const double step = c.force_s + c.tangent_s + c.solver.symbolic_s + c.solver.factor_s + c.solver.solve_s,
                  query = result.query_s, linearise = result.linearise_s;
-    fmt::print(
-        "  an exchange took the bodies {:.1f} ms in the mean: query {:.1f}, linearisation {:.1f}, step "
-        "{:.1f}\n",
+    add("real time: an exchange takes {:.1f} ms in the mean: query {:.1f}, linearisation {:.1f}, step of the "
+        "bodies {:.1f}",
         1e3 * (query + linearise + step) / exchanges, 1e3 * query / exchanges, 1e3 * linearise / exchanges,
         1e3 * step / exchanges);
   }
   if (clock.stretched_periods > 0)
-    fmt::print("  bodies fell behind: {} periods shared the contact query of the one before\n",
-               clock.stretched_periods);
+    add("real time: {} periods reused the contact query of the period before, to catch up",
+        clock.stretched_periods);
   if (clock.dropped_periods > 0)
-    fmt::print("  bodies fell behind too far: they stood still in {} periods, {:.3g} s in all\n",
-               clock.dropped_periods, clock.dropped_s());
+    add("real time: the bodies were not advanced in {} periods, {:.3g} s in all: they are slower than real "
+        "time",
+        clock.dropped_periods, clock.dropped_s());
   if (clock.stretched_periods + clock.dropped_periods > 0 && linearisation != "frozen")
-    fmt::print("  --set exchange.linearisation={} makes an exchange cheaper{}\n",
-               linearisation == "condensed" ? "points" : "frozen",
-               linearisation == "condensed" ? "" : ", and the force err by far more");
+    add("real time: --set exchange.linearisation={} makes an exchange cheaper{}",
+        linearisation == "condensed" ? "points" : "frozen",
+        linearisation == "condensed" ? "" : ", and the error of the force far larger");
   if (clock.unrecorded_ticks > 0)
-    fmt::print("  {} ticks are not recorded: the recorder fell behind by more than its queue\n",
-               clock.unrecorded_ticks);
+    add("real time: {} ticks are not recorded: the recorder's queue was full", clock.unrecorded_ticks);
+  return out;
 }
 
 void keep_clock(const loop::RealTimeResult& clock, const std::string& folder) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "palpate/core/error.h"
+#include "palpate/core/time_text.h"
 #include "palpate/render/field.h"
 #include "palpate/render/marks.h"
 #include "palpate/render/panels.h"
@@ -292,7 +293,8 @@ void ContactSnapshot::save(const loop::World& world, const std::string& folder, 
       render::save_png(draw(), path);
     } catch (const Error& e) { missing.add("picture " + path, e.what()); }
   };
-  const std::string title = fmt::format("{}, contact at t = {:g} s", world.description.name, instant_.time);
+  const std::string title =
+      fmt::format("{}, contact at t = {} s", world.description.name, time_text(instant_.time));
   keep("contact.png", [&] {
     if (!touched()) fail("nothing touched in this run");
     const render::Scene scene = scene_of(world, instant_, Shade::kPenetration);

@@ -11,6 +11,7 @@
 #include "export_draft.h"
 #include "export_tables.h"
 #include "palpate/core/error.h"
+#include "palpate/core/time_text.h"
 #include "palpate/store/run_file.h"
 #include "palpate/store/vtu.h"
 #include "recorded_surfaces.h"
@@ -53,7 +54,8 @@ int step_at(const store::RunReader& run, double time) {
   const std::vector<double>& times = run.times_s();
   const double slack = 1e-9 * std::max(std::abs(times.front()), std::abs(times.back()));
   if (!(time >= times.front() - slack && time <= times.back() + slack))
-    fail("--at {:g}: the states of the run go from {:g} to {:g} s", time, times.front(), times.back());
+    fail("--at {}: the states of the run go from {} to {} s", time_text(time), time_text(times.front()),
+         time_text(times.back()));
   const auto nearest = std::min_element(times.begin(), times.end(), [time](double a, double b) {
     return std::abs(a - time) < std::abs(b - time);
   });

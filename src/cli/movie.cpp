@@ -123,7 +123,7 @@ int movie(const MovieArguments& arguments, Undelivered& missing) {
   fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; {:.4g} a second as it is played\n",
              sink->written(), frames.count(), path, between_s, 1.0 / shown_s);
   if (!stop_flag().load()) return 0;
-  fmt::print(stderr, "palpate: stopped while it drew frames; those written are whole\n");
+  fmt::print(stderr, "palpate: stopped while drawing frames; those written are complete\n");
   return kExitStopped;
 }
 

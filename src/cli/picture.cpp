@@ -3,12 +3,14 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/core/time_text.h"
 #include "palpate/render/seen.h"
 
 namespace palpate::cli {
 
 void Snapshot::tick(const loop::TickRecord& tick) {
-  newest_force_n_ = std::max(newest_force_n_, tick.device.force.norm());
+  const double force_n = tick.device.force.norm();
+  if (force_n > newest_force_n_) newest_force_n_ = force_n, newest_force_s_ = tick.time;
 }
 
 void Snapshot::period(loop::World& world, double t) {
@@ -24,14 +26,17 @@ void Snapshot::consider(loop::World& world, double t) {
   newest_force_n_ = 0.0;
   if (world.description.tool && felt <= force_n_) return;
   force_n_ = felt;
+  force_s_ = newest_force_s_;
   instant_ = instant_of(world, t, shade_);
 }
 
 void Snapshot::save(const loop::World& world, const std::string& path) const {
   render::Scene scene = scene_of(world, instant_, shade_);
   add_obstacles(scene, world, view_of(scene));
-  scene.title = fmt::format("{}, t = {:g} s", world.description.name, instant_.time);
-  if (world.description.tool) scene.subtitle = fmt::format("the hand feels {:.3g} N", force_n_);
+  scene.title = fmt::format("{}, t = {} s", world.description.name, time_text(instant_.time));
+  if (world.description.tool)
+    scene.subtitle =
+        fmt::format("largest force on the hand {:.3g} N, at {} s", force_n_, time_text(force_s_));
   render::ViewChoice choice;
   choice.add(scene);
   render::Options options;

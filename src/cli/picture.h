@@ -22,7 +22,8 @@ class Snapshot : public loop::Observer {
 
   Shade shade_;
   Instant instant_;
-  double force_n_ = -1.0, newest_force_n_ = 0.0;
+  /// of the kept instant's period and of the current one: the largest force, and when
+  double force_n_ = -1.0, force_s_ = 0.0, newest_force_n_ = 0.0, newest_force_s_ = 0.0;
 };
 
 }  // namespace palpate::cli

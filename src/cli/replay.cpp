@@ -8,6 +8,7 @@
 #include "palpate/compare/felt_difference.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
+#include "palpate/core/time_text.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/summary.h"
 #include "palpate/scene/hands.h"
@@ -108,11 +109,12 @@ int replay(const ReplayArguments& arguments) {
   summary.overrides = arguments.overrides;
   store::write_summary((std::filesystem::path(folder) / "summary.json").string(), summary);
   store::write_atomically((std::filesystem::path(folder) / "scene.toml").string(), description.source);
-  fmt::print("{}: {:g} s simulated in {:.2f} s; in {}\n", short_name(description), result.time, result.wall_s,
-             folder);
+  fmt::print("{}: {} s simulated in {:.2f} s; in {}\n", short_name(description), time_text(result.time),
+             result.wall_s, folder);
   if (!result.status.ok())
-    fail("{} gave up at t = {:g} s: {}", description.integrator.name, result.status.t, result.status.message);
-  fmt::print("what the hand felt in {}, against this:\n", arguments.run);
+    fail("{} failed at t = {} s: {}", description.integrator.name, time_text(result.status.t),
+         result.status.message);
+  fmt::print("force on the hand in {}, against this:\n", arguments.run);
   for (std::size_t i = 0; i < records.size(); ++i)
     print_difference(description, i, ticks.of[i], records[i].ticks);
   return result.stopped ? kExitStopped : 0;

@@ -4,6 +4,7 @@
 
 #include "checkpoints.h"
 #include "palpate/core/error.h"
+#include "palpate/core/time_text.h"
 #include "palpate/store/provenance.h"
 #include "palpate/store/summary.h"
 #include "scene_of.h"
@@ -78,7 +79,7 @@ int resume(const ResumeArguments& arguments) {
   r.from.archive("command", r.identity);
   compare_processors(r);
   const scene::Description description = scene_of(r);
-  fmt::print("{} goes on from t = {:g} s\n", arguments.run, r.checkpoint.time_s);
+  fmt::print("{} resumes at t = {} s\n", arguments.run, time_text(r.checkpoint.time_s));
   Undelivered missing;
   return missing.close(resume_run(r, description, missing));
 }

@@ -16,10 +16,10 @@
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/core/time_text.h"
 #include "palpate/loop/haptic_memory.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/registries.h"
-#include "palpate/loop/silent_doings.h"
 #include "palpate/loop/summary.h"
 #include "palpate/loop/trace.h"
 #include "palpate/report/run_report.h"
@@ -31,6 +31,7 @@
 #include "picture.h"
 #include "progress.h"
 #include "run_files.h"
+#include "run_remarks.h"
 #include "scene_of.h"
 #include "stop.h"
 #include "undelivered.h"
@@ -64,20 +65,9 @@ class PeakWrench : public loop::Observer {
 
 void print_hand(const std::string& who, const PeakWrench::Peak& peak, long ticks, long limited) {
   fmt::print(
-      "on {}: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the device's "
+      "on {}: at most {:.4g} N (at {} s) and {:.4g} N m (at {} s) in {} ticks; {} held at the device's "
       "limit\n",
-      who, peak.force_n, peak.force_s, peak.torque_n_m, peak.torque_s, ticks, limited);
-}
-
-/// What its device counted, as "packets_stale" says it.
-void print_tallies(const std::string& who, const std::vector<std::pair<std::string, long long>>& tallies) {
-  std::string text;
-  for (const auto& [name, count] : tallies) {
-    std::string words = name;
-    std::replace(words.begin(), words.end(), '_', ' ');
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
-  }
-  if (!text.empty()) fmt::print("device of {}: {}\n", who, text);
+      who, peak.force_n, time_text(peak.force_s), peak.torque_n_m, time_text(peak.torque_s), ticks, limited);
 }
 
 /// What was asked for, and what the method makes of it.
@@ -87,9 +77,10 @@ void print_tolerance(const IntegratorSpec& spec) {
     fmt::print("{}: rtol {:g}, error test at {:.3g}\n", spec.name, spec.rtol, method.error_test_rtol(spec));
 }
 
-/// What a run came to.
+/// Result of one run and its cost.
 struct Ran {
   loop::RunResult result;
+  std::vector<std::string> remarks;  ///< run_remarks()
   double assemble_s = 0.0;
   PeakWrench peak;
   loop::CheckpointCost checkpoints;
@@ -110,79 +101,25 @@ void add_peaks(store::Summary& summary, const scene::Description& description, c
   }
 }
 
-void print_overlaps(const loop::World& world) {
-  const std::vector<loop::Overlap> overlaps = loop::overlaps_of(world);
-  std::string text;
-  for (const loop::Overlap& o : overlaps)
-    if (o.deepest_m > 0.0)
-      text += fmt::format("{}{} {:.3g} mm", text.empty() ? "" : ", ", o.pair, 1e3 * o.deepest_m);
-  if (!text.empty()) fmt::print("deepest overlap: {}\n", text);
-  for (const loop::Overlap& o : overlaps)
-    if (o.too_deep())
-      log::warn(
-          "contact {}: they lay {:.3g} mm in each other, more than half of the thinner one's width ({:.3g} "
-          "mm): "
-          "contact may push it out at the far side, or not at all; make the contact stiffer "
-          "(contact.stiffness_pa_m) or the body softer (body.youngs_modulus_pa), or press less",
-          o.pair, 1e3 * o.deepest_m, 1e3 * o.half_width_m);
-}
-
-/// What exchange.linearisation_error came to.
-void print_answers(const loop::World& world) {
-  for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
-    if (e.factored == e.exchanges) {
-      fmt::print("{}: bodies' answers in {} exchanges were factored, and exact\n", e.tool, e.exchanges);
-      continue;
-    }
-    std::string text = fmt::format(
-        "{}: in {} exchanges bodies answered less than they would by at most {:.2g} % (a bound; in the mean "
-        "{:.2g} %; wanted {:g} %)",
-        e.tool, e.exchanges, 100.0 * e.largest, 100.0 * e.mean, 100.0 * e.wanted);
-    if (e.beyond > 0) text += fmt::format("; {} ended beyond what was wanted", e.beyond);
-    if (e.factored > 0) text += fmt::format("; {} were factored, and exact", e.factored);
-    fmt::print("{}\n", text);
-  }
-}
-
 void print_outcome(const loop::World& world, const Ran& ran) {
   const loop::RunResult& result = ran.result;
   const PeakWrench& peak = ran.peak;
-  fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s, peak memory {:.0f} MiB\n",
-             short_name(world.description), result.time, result.wall_s, ran.assemble_s, peak_memory_mib());
+  fmt::print("{}: {} s simulated in {:.2f} s, assembled in {:.2f} s, peak memory {:.0f} MiB\n",
+             short_name(world.description), time_text(result.time), result.wall_s, ran.assemble_s,
+             peak_memory_mib());
   if (world.stepper) {
     const dynamics::StepperCounters& c = result.counters;
     fmt::print("{}: {} steps, {} force and {} tangent evaluations, {} factorisations, {} contact queries\n",
                world.stepper->name(), c.steps, c.force_evaluations, c.tangent_evaluations,
                c.solver.factorisations, result.contact_queries);
     print_tolerance(world.description.integrator);
-    if (const std::string silent = loop::silent_doings(c); !silent.empty())
-      fmt::print("on the way: {}\n", silent);
   }
   if (result.ticks > 0) print_hand("the hand", peak.of[0], result.ticks, result.limited_ticks);
   for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peak.of.size(); ++i)
     print_hand(fmt::format("hand \"{}\"", world.description.hands[i].name), peak.of[i + 1],
                result.more_hands[i].ticks, result.more_hands[i].limited_ticks);
-  for (std::size_t i = 0; result.ticks > 0 && i < peak.of.size(); ++i)
-    print_tallies(i == 0 ? "the hand" : fmt::format("hand \"{}\"", world.description.hands[i - 1].name),
-                  loop::tallies_of(world, i));
-  if (result.rejected_ticks > 0)
-    fmt::print("in {} ticks the wrench was not finite, or time did not go on: forces fall to nothing then\n",
-               result.rejected_ticks);
-  if (result.outside_ticks > 0)
-    fmt::print(
-        "in {} ticks the handle was outside the device's workspace, where forces fade to nothing; move it by "
-        "device.workspace_center_m\n",
-        result.outside_ticks);
-  if (result.buzz_n) fmt::print("buzz: {:.3g} N RMS of the force on the hand above 30 Hz\n", *result.buzz_n);
-  print_overlaps(world);
-  print_answers(world);
-  if (!result.port) return;
-  const loop::PortEnergy& port = *result.port;
-  fmt::print(
-      "port of the device: least energy {:.3g} J, at the end {:.3g} J; the controller dissipated {:.3g} J "
-      "in {} ticks, {:.2g} % of the motors' work\n",
-      port.least, port.energy, port.controller_dissipated, port.controller_ticks,
-      port.work > 0.0 ? 100.0 * port.controller_dissipated / port.work : 0.0);
+  if (result.real_time) print_clock(*result.real_time);
+  for (const std::string& remark : ran.remarks) fmt::print("{}\n", remark);
 }
 
 /// A word of the command line, quoted where a shell would split or expand it.
@@ -225,7 +162,7 @@ struct Outcome {
   std::string word, message;
 };
 /// Written when the run begins, so that one that is killed is known for what it is.
-const Outcome kUnfinished{"unfinished", "it is going on, or was killed; what it recorded by then is whole"};
+const Outcome kUnfinished{"unfinished", "it is running, or was killed; data written so far are complete"};
 
 void keep_summary(const loop::World& world, const Ran& ran,
                   const std::optional<compare::AgainstMonolithic>& against, const RunArguments& arguments,
@@ -238,6 +175,11 @@ void keep_summary(const loop::World& world, const Ran& ran,
     add_checkpoints(summary, ran.checkpoints, every_s);
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
+  summary.remarks = log::warnings();
+  summary.remarks.insert(summary.remarks.end(), ran.remarks.begin(), ran.remarks.end());
+  if (against)
+    for (std::string& line : against_monolithic_remarks(world.description, *against))
+      summary.remarks.push_back(std::move(line));
   store::write_summary((std::filesystem::path(folder) / "summary.json").string(), summary);
   store::write_atomically((std::filesystem::path(folder) / "scene.toml").string(), world.description.source);
 }
@@ -350,7 +292,7 @@ loop::RunResult run_kept(std::unique_ptr<loop::World>& world, const RunArguments
     try {
       if (world) keep_summary(*world, ran, {}, arguments, folder, Outcome{"failed", e.what()});
     } catch (const Error&) {}  // on the same disk; its summary says that the run is unfinished
-    fail("{} (what was recorded by then is whole, in {})", e.what(), folder);
+    fail("{} (data written so far are complete, in {})", e.what(), folder);
   }
 }
 
@@ -438,16 +380,17 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
                trace->attempts(), trace->rejected());
   }
 
+  warn_of_deep_overlaps(*world);
+  ran.remarks = run_remarks(*world, result);
   print_outcome(*world, ran);
   if (checkpoints) print_checkpoints(ran.checkpoints, arguments.checkpoint_every_s);
-  if (result.real_time) print_clock(result, world->description.exchange.linearisation);
   std::optional<compare::AgainstMonolithic> against;
   if (arguments.against_monolithic && result.status.ok() && !result.stopped)
     against = against_monolithic(*world, memory.records(), arguments.real_time);
   const bool against_cut = against && against->stopped;
   bool frames_cut = false;
   if (against && !against->stopped && !against->trouble.empty())
-    missing.add("distance from one system", against->trouble);
+    missing.add("error against the monolithic solution", against->trouble);
   if (keep) {
     keep_summary(*world, ran, against, arguments, folder);
     if (result.status.ok() && !result.stopped) remove_checkpoint(folder);
@@ -462,20 +405,21 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   }
   if (!result.status.ok())
     fail(
-        "{} gave up at t = {:g} s: {}{}; a smaller tolerance or step often helps (--set integrator.rtol=..., "
+        "{} failed at t = {} s: {}{}; a smaller tolerance or step often helps (--set integrator.rtol=..., "
         "integrator.step_s=...)",
-        description.integrator.name, result.status.t, result.status.message,
-        keep ? " (what was recorded by then is whole)" : "");
+        description.integrator.name, time_text(result.status.t), result.status.message,
+        keep ? " (data written so far are complete)" : "");
   if (result.stopped) {
-    fmt::print(stderr, "palpate: stopped at t = {:g} s{}\n", result.time,
-               keep ? "; what was recorded by then is whole" : "");
+    fmt::print(stderr, "palpate: stopped at t = {} s{}\n", time_text(result.time),
+               keep ? "; data written so far are complete" : "");
     if (ran.checkpoints.written > 0)
-      fmt::print(stderr, "palpate: `palpate resume {}` goes on with it\n", quoted(folder));
+      fmt::print(stderr, "palpate: `palpate resume {}` resumes it\n", quoted(folder));
     return kExitStopped;
   }
-  if (frames_cut) fmt::print(stderr, "palpate: stopped while it drew frames; those written are whole\n");
+  if (frames_cut) fmt::print(stderr, "palpate: stopped while drawing frames; those written are complete\n");
   if (against_cut)
-    fmt::print(stderr, "palpate: stopped before its distance from one system was known; the run is whole\n");
+    fmt::print(stderr,
+               "palpate: stopped before the monolithic solution was complete; the run itself is complete\n");
   if (frames_cut || against_cut) return kExitStopped;
   return 0;
 }

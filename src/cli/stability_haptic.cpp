@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "palpate/core/error.h"
+#include "palpate/core/log.h"
 #include "palpate/report/plot.h"
 #include "palpate/report/table.h"
 #include "palpate/stability/z_width.h"
@@ -51,17 +52,16 @@ void print_rows(const ZWidth& z) {
 }
 
 /// @param scale  from [N/m] to `unit`
-void print_points(const std::vector<OperatingPoint>& points, double tick_s, double scale,
-                  const std::string& unit) {
+void print_points(const std::vector<OperatingPoint>& points, double scale, const std::string& unit) {
   std::vector<std::vector<std::string>> rows;
   for (const OperatingPoint& p : points)
     rows.push_back({p.name, fmt::format("{:.4g}", scale * p.contact.stiffness),
                     fmt::format("{:.4g}", scale * p.series), fmt::format("{:.6f}", p.radius),
-                    p.simulated_stable ? "stable" : "unstable", p.words(tick_s, scale, unit)});
-  fmt::print("{}", report::format_table(
-                       {"", fmt::format("contact [{}]", unit), fmt::format("with coupling [{}]", unit),
-                        "spectral radius", "simulated", "verdict"},
-                       rows));
+                    p.simulated_stable ? "stable" : "unstable"});
+  fmt::print("{}",
+             report::format_table({"", fmt::format("contact [{}]", unit),
+                                   fmt::format("with coupling [{}]", unit), "spectral radius", "simulated"},
+                                  rows));
 }
 
 void print_rotation(const RotationalLoop& r, const std::vector<OperatingPoint>& points) {
@@ -73,7 +73,7 @@ void print_rotation(const RotationalLoop& r, const std::vector<OperatingPoint>& 
     fmt::print("device and arm of {:.3g} kg m^2\n\n", a2 * r.loop.device.total_mass());
   else
     fmt::print("the device drives no torque: its handle is held\n\n");
-  print_points(points, r.loop.tick_s, a2, "N m/rad");
+  print_points(points, a2, "N m/rad");
 }
 
 /// The operating points, of translation and rotation, that are unstable by theory or by simulation.
@@ -138,10 +138,39 @@ ToolContactRange range_of(const StabilityArguments& a, const scene::Description&
   return out;
 }
 
+/// The verdicts on the loop, a line each: standard output, summary.json and the page have them from here.
+/// @param scale  of the rotation, from [N/m] to [N m/rad]
+std::vector<std::string> verdicts_of(const ZWidth& z, double tick_s,
+                                     const std::vector<OperatingPoint>& points,
+                                     const std::vector<OperatingPoint>& turning, double scale) {
+  std::vector<std::string> out;
+  std::vector<std::string> unstable = unstable_points(points, "translation");
+  for (const std::string& one : unstable_points(turning, "rotation")) unstable.push_back(one);
+  if (!unstable.empty())
+    out.push_back(fmt::format("the loop of this scene is UNSTABLE: {}", fmt::join(unstable, ", ")));
+  for (const OperatingPoint& p : points)
+    out.push_back(fmt::format("{}, translation: {}", p.name, p.words(tick_s)));
+  for (const OperatingPoint& p : turning)
+    out.push_back(fmt::format("{}, rotation: {}", p.name, p.words(tick_s, scale, "N m/rad")));
+  if (std::all_of(z.rows.begin(), z.rows.end(), [](const ZWidthRow& r) { return r.passive <= 0.0; }))
+    out.emplace_back(
+        "no wall is passive: the device has no viscous friction of its own, which alone can make one so");
+  if (z.stopped)
+    out.emplace_back("stopped before all walls were simulated");
+  else
+    out.push_back(fmt::format(
+        "the passive walls are {} the stable ones; simulation and theory differ by at most {:.2g} %",
+        z.passive_within_stable() ? "within" : "NOT within", 100.0 * z.largest_difference()));
+  return out;
+}
+
 void keep_summary(const StabilityArguments& a, const scene::Description& d, const ZWidth& z,
                   const std::vector<OperatingPoint>& points, const RotationalLoop& rotation,
-                  const std::vector<OperatingPoint>& turning, const std::string& folder) {
+                  const std::vector<OperatingPoint>& turning, const std::vector<std::string>& verdicts,
+                  const std::string& folder) {
   store::Summary summary;
+  summary.remarks = log::warnings();
+  summary.remarks.insert(summary.remarks.end(), verdicts.begin(), verdicts.end());
   summary.command = "palpate stability --haptic " + a.scene.scene;
   summary.scene = d.name;
   summary.scene_source = d.source;
@@ -200,13 +229,15 @@ int stability_haptic(const StabilityArguments& a) {
       loop.delay_ticks, loop.coupling_stiffness_n_m, loop.coupling_damping_n_s_m);
   print_rows(z);
   fmt::print("\n");
-  print_points(points, loop.tick_s, 1.0, "N/m");
+  print_points(points, 1.0, "N/m");
   fmt::print("\n");
   print_rotation(rotation, turning);
 
   Undelivered missing;
   write_csv(z, (fs::path(folder) / "z_width.csv").string());
-  keep_summary(a, description, z, points, rotation, turning, folder);
+  const double scale = rotation.lever_m * rotation.lever_m;
+  const std::vector<std::string> verdicts = verdicts_of(z, loop.tick_s, points, turning, scale);
+  keep_summary(a, description, z, points, rotation, turning, verdicts, folder);
   const std::string svg = (fs::path(folder) / "z_width.svg").string();
   std::error_code none;
   fs::remove(svg, none);  // a plot of an earlier run would pass for this one's
@@ -214,18 +245,11 @@ int stability_haptic(const StabilityArguments& a) {
     store::write_atomically(svg, report::plot_svg(plot_of(z, loop, points)));
   } catch (const Error& e) { missing.add("plot " + svg, e.what()); }
   fmt::print("\nwritten: {}\n", folder);
+  for (const std::string& verdict : verdicts) fmt::print("{}\n", verdict);
   if (z.stopped) return kExitStopped;
-
-  const bool within = z.passive_within_stable(), agree = z.largest_difference() <= kAgreement;
-  if (std::all_of(z.rows.begin(), z.rows.end(), [](const ZWidthRow& r) { return r.passive <= 0.0; }))
-    fmt::print(
-        "no wall is passive: the device has no viscous friction of its own, which alone can make one so\n");
-  fmt::print("passive lies {} stable; simulation and theory differ by at most {:.2g} %\n",
-             within ? "within" : "NOT within", 100.0 * z.largest_difference());
-  std::vector<std::string> unstable = unstable_points(points, "translation");
-  for (const std::string& one : unstable_points(turning, "rotation")) unstable.push_back(one);
-  if (!unstable.empty()) fmt::print("the loop of this scene is UNSTABLE: {}\n", fmt::join(unstable, ", "));
-  return missing.close(within && agree && unstable.empty() ? 0 : kExitError);
+  const bool stable = unstable_points(points, "").empty() && unstable_points(turning, "").empty();
+  return missing.close(
+      z.passive_within_stable() && z.largest_difference() <= kAgreement && stable ? 0 : kExitError);
 }
 
 }  // namespace palpate::cli

@@ -188,6 +188,11 @@ void keep_summary(const Plan& plan, const Results& results, const StudyArguments
   for (const char* status : {"ok", "failed", "out of time", "crashed", "refused", "missing"})
     counts.values.emplace_back(status, static_cast<long long>(results.count(status)));
   summary.section("timings").values = {{"wall_s", wall_s}};
+  for (const scene::SweepSpec& sweep : plan.spec.sweeps)
+    if (sweep.spacing == "log") summary.section("logarithmic").values.emplace_back(sweep.key, true);
+  for (const scene::RandomSpec& random : plan.spec.randoms)
+    if (random.distribution == "log-uniform")
+      summary.section("logarithmic").values.emplace_back(random.key, true);
   store::write_summary((fs::path(folder) / "summary.json").string(), summary);
 }
 

@@ -42,12 +42,6 @@ std::vector<const ValidationCase*> chosen(const ValidateArguments& arguments) {
   return out;
 }
 
-std::string order_text(const Measurement& m) {
-  if (std::isnan(m.order)) return "-";
-  if (std::isnan(m.order_low)) return fmt::format("{:.2f}", m.order);
-  return fmt::format("{:.2f} in [{:g}, {:g}]", m.order, m.order_low, m.order_high);
-}
-
 std::vector<std::string> row(const ValidationCase& one, const Measurement& m) {
   return {one.name,
           m.quantity,
@@ -55,7 +49,7 @@ std::vector<std::string> row(const ValidationCase& one, const Measurement& m) {
           fmt::format("{:.6g}", m.exact),
           fmt::format("{:.2e}", m.error),
           fmt::format("{:.0e}", m.bar),
-          order_text(m),
+          report::within_text(m.order, m.order_low, m.order_high),
           m.passed() ? "pass" : "FAIL"};
 }
 

@@ -75,7 +75,7 @@ AgainstMonolithic against_monolithic(const loop::World& run, const std::vector<l
     out.cpu_s = result.cpu_s;
     out.stopped = result.stopped;
     if (!result.status.ok())
-      fail("{} gave up at t = {:g} s: {}", whole.description.integrator.name, result.status.t,
+      fail("{} failed at t = {:g} s: {}", whole.description.integrator.name, result.status.t,
            result.status.message);
     if (result.stopped) fail("stopped at t = {:g} s", result.time);
     static_cast<FeltError&>(out) = felt_error(felt_in(records.front()), felt.of(0));

@@ -1,7 +1,11 @@
 #include "palpate/core/log.h"
 
 #include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
+
+#include <algorithm>
+#include <mutex>
 
 #include "palpate/core/printable.h"
 
@@ -20,16 +24,46 @@ class PrintableMessage : public spdlog::custom_flag_formatter {
   }
 };
 
+/// Keeps the text of each message once.
+class Memory : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  std::vector<std::string> texts() {
+    const std::lock_guard lock(mutex_);
+    return texts_;
+  }
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    std::string text = printable({message.payload.data(), message.payload.size()});
+    if (std::find(texts_.begin(), texts_.end(), text) == texts_.end()) texts_.push_back(std::move(text));
+  }
+  void flush_() override {}
+
+ private:
+  std::vector<std::string> texts_;
+};
+
+std::shared_ptr<Memory>& memory() {
+  static std::shared_ptr<Memory> one;
+  return one;
+}
+
 }  // namespace
 
 void configure(bool quiet, bool verbose) {
-  static const auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
-  auto logger = std::make_shared<spdlog::logger>("palpate", sink);
+  const auto shown = quiet ? spdlog::level::err : verbose ? spdlog::level::debug : spdlog::level::info;
+  static const auto terminal = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  terminal->set_level(shown);
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   formatter->add_flag<PrintableMessage>('*').set_pattern("palpate: %^%l%$: %*");
+  memory() = std::make_shared<Memory>();
+  memory()->set_level(spdlog::level::warn);
+  auto logger = std::make_shared<spdlog::logger>("palpate", spdlog::sinks_init_list{terminal, memory()});
   logger->set_formatter(std::move(formatter));
-  logger->set_level(quiet ? spdlog::level::err : verbose ? spdlog::level::debug : spdlog::level::info);
+  logger->set_level(std::min(shown, spdlog::level::warn));
   spdlog::set_default_logger(logger);
 }
+
+std::vector<std::string> warnings() { return memory() ? memory()->texts() : std::vector<std::string>{}; }
 
 }  // namespace palpate::log

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
+#include "palpate/core/time_text.h"
 
 namespace palpate::report {
 namespace {
@@ -67,6 +68,14 @@ Answer headline(const Table& compare, const ReferenceError& reference) {
 
 }  // namespace
 
+Answer remarks_answer(const Json& summary) {
+  Answer out;
+  if (!summary.is_object() || !summary.contains("remarks") || !summary["remarks"].is_array()) return out;
+  for (const Json& remark : summary["remarks"])
+    if (remark.is_string()) out.points.push_back(remark.get<std::string>());
+  return out;
+}
+
 Answer run_answer(const Json& summary, const std::optional<Table>& force) {
   Answer out;
   const Json options = group_of(summary, "options"), sizes = group_of(summary, "sizes"),
@@ -78,7 +87,7 @@ Answer run_answer(const Json& summary, const std::optional<Table>& force) {
     out.lead = fmt::format("The run {}", outcome == "finished" ? outcome : "was " + outcome);
   if (outcome == "failed") out.lead = "The run failed";
   if (!out.lead.empty() && std::isfinite(simulated) && std::isfinite(cpu))
-    out.lead += fmt::format(": {} s simulated in {} s of CPU time{}{}", short_number(simulated),
+    out.lead += fmt::format(": {} s simulated in {} s of CPU time{}{}", time_text(simulated),
                             short_number(cpu), by.empty() ? "" : " by " + by,
                             std::isfinite(steps) ? fmt::format(" in {:.0f} steps", steps) : "");
   if (!out.lead.empty() && nodes > 0.0) out.lead += fmt::format(", with {:.0f} nodes", nodes);
@@ -97,13 +106,12 @@ Answer run_answer(const Json& summary, const std::optional<Table>& force) {
   }
   if (f.value > kNothing)
     out.points.push_back(fmt::format("The hand feels at most {} N, at {} s{}.", short_number(f.value),
-                                     short_number(f.time_s),
-                                     of_limit(number_at(options, "max_force_n"), "N")));
+                                     time_text(f.time_s), of_limit(number_at(options, "max_force_n"), "N")));
   else
     out.points.push_back("The hand feels no force.");
   if (t.value > kNothing)
     out.points.push_back(fmt::format("The torque on it is at most {} N m, at {} s{}.", short_number(t.value),
-                                     short_number(t.time_s),
+                                     time_text(t.time_s),
                                      of_limit(number_at(options, "max_torque_n_m"), "N m")));
   return out;
 }

@@ -11,6 +11,8 @@
 /// What each kind of result answers, in words: the first that a page says.
 namespace palpate::report {
 
+/// The warnings and verdicts of summary.json, as the command's standard output had them.
+Answer remarks_answer(const Json& summary);
 /// How a run ended, what it took, and what the hand felt.
 Answer run_answer(const Json& summary, const std::optional<Table>& force);
 /// When the force on the hand is largest [s]; NaN where there is none.

@@ -9,7 +9,7 @@ namespace {
 
 /// "1 thread", "2 threads".
 std::string counted(double n, const char* noun) {
-  return fmt::format("{:.0f} {}{}", n, noun, n == 1.0 ? "" : "s");
+  return fmt::format("{} {}{}", short_number(n, 15), noun, n == 1.0 ? "" : "s");
 }
 
 constexpr std::size_t kMostNamed = 5;  ///< failures named one by one
@@ -95,7 +95,7 @@ Answer bench_answer(const Json& bench) {
   if (bench.contains("rows") && bench["rows"].is_array()) {
     std::vector<std::pair<std::string, const Json*>> fastest;
     for (const Json& row : bench["rows"]) {
-      const std::string what = fmt::format("{:.0f} nodes, steps of {} ms", number_at(row, "nodes"),
+      const std::string what = fmt::format("{}, steps of {} ms", counted(number_at(row, "nodes"), "node"),
                                            short_number(1e3 * number_at(row, "step_s")));
       const auto known =
           std::find_if(fastest.begin(), fastest.end(), [&](const auto& f) { return f.first == what; });

@@ -72,8 +72,13 @@ Plot tick_histogram(const std::vector<double>& values_us, const std::string& x_l
 }
 
 void add_clock(Page& page, const Table& clock) {
-  const std::vector<double> late = clock.numbers("late_us"), work = clock.numbers("work_us");
-  if (late.empty()) return;
+  const auto finite = [&](const char* column) {
+    std::vector<double> out = clock.numbers(column);
+    std::erase_if(out, [](double value) { return !std::isfinite(value); });
+    return out;
+  };
+  const std::vector<double> late = finite("late_us"), work = finite("work_us");
+  if (late.empty() || work.empty()) return;
   page.add_heading("Ticks in real time");
   add_plot(page, tick_histogram(late, "tick late"),
            fmt::format("How late {} ticks began after they were due; lines at half of them, at 99 % and "

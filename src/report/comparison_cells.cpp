@@ -8,10 +8,14 @@
 namespace palpate::report {
 
 std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& reference) {
+  constexpr double kLeastPeak = 1e-12;  // below it a peak is rounding [N], [N m]
+  const auto size_of = [](double peak) { return peak > kLeastPeak ? peak : kUnknown; };
   const std::vector<Quantity> all = {
-      {"position_error_rel_l2", "position error, relative L2 [-]", reference.position_error_rel_l2},
-      {"force_error_rms_n", "force error, RMS [N]", reference.force_error_rms_n},
-      {"torque_error_rms_n_m", "torque error, RMS [N m]", reference.torque_error_rms_n_m}};
+      {"position_error_rel_l2", "position error, relative L2 [-]", reference.position_error_rel_l2, 1.0, ""},
+      {"force_error_rms_n", "force error, RMS [N]", reference.force_error_rms_n,
+       size_of(reference.peak_force_n), "N"},
+      {"torque_error_rms_n_m", "torque error, RMS [N m]", reference.torque_error_rms_n_m,
+       size_of(reference.peak_torque_n_m), "N m"}};
   std::vector<Quantity> present;
   for (const Quantity& q : all) {
     if (!table.has(q.column)) continue;
@@ -30,9 +34,9 @@ std::string capitalised(std::string text) {
 std::string cell_text(const Table& table, std::size_t row, const std::string& column) {
   if (!table.has(column)) return "-";
   const std::string& cell = table.rows[row][table.column(column)];
+  if (is_blank(cell)) return "-";
   const double value = to_number(cell);
-  if (std::isnan(value) && !cell.empty() && cell != "nan") return cell;
-  return std::isnan(value)                                      ? "-"
+  return std::isnan(value)                                      ? cell
          : value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value)
                                                                 : short_number(value);
 }

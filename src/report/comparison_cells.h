@@ -11,6 +11,9 @@ namespace palpate::report {
 struct Quantity {
   std::string column, label;
   double reference;
+  double
+      scale;  ///< size of what errs, in the error's unit: 1 of a relative error, else the peak; NaN: unknown
+  std::string unit;  ///< "N"; empty for a relative error
 };
 
 /// Errors that are nowhere larger than this are rounding, and get no plot: a scene without torque has no

@@ -31,7 +31,7 @@ void add_orders_table(Page& page, const Table& compare, const std::vector<Quanti
   std::vector<std::vector<std::string>> rows;
   for (const Quantity& q : quantities) {
     headers.push_back(q.label);
-    const std::vector<FittedOrder> orders = fitted_orders(compare, q.column);
+    const std::vector<FittedOrder> orders = fitted_orders(compare, q.column, q.scale);
     if (rows.empty())
       for (const FittedOrder& f : orders)
         rows.push_back({f.label, f.setting_name == "step_s"   ? "step"
@@ -82,8 +82,7 @@ void add_costs_table(Page& page, const Table& compare, double reference_error) {
   std::vector<double> best(kTargets.size(), kUnknown);
   for (const Ladder& ladder : all)
     for (std::size_t t = 0; t < kTargets.size(); ++t)
-      if (const double value = cost_at(ladder, kTargets[t], reference_error).value; !(value >= best[t]))
-        best[t] = value;
+      best[t] = std::fmin(best[t], cost_at(ladder, kTargets[t], reference_error).value);  // NaN: no cost
   std::vector<std::string> headers = {"integrator", "family", "order in theory", "fitted", "against"};
   for (const double target : kTargets)
     headers.push_back(fmt::format("CPU [s] at {:g}", target)), headers.push_back("of the best");
@@ -95,7 +94,7 @@ void add_costs_table(Page& page, const Table& compare, double reference_error) {
     for (std::size_t t = 0; t < kTargets.size(); ++t) {
       const Cost cost = cost_at(all[i], kTargets[t], reference_error);
       rows.back().push_back(cost_text(cost));
-      rows.back().push_back(std::isnan(cost.value) ? "-" : fmt::format("{:.2f}", cost.value / best[t]));
+      rows.back().push_back(ratio_text({cost.value / best[t]}));
     }
     marks.push_back(all[i].points.empty() ? RowMark::kBad : RowMark::kNone);
   }

@@ -13,14 +13,19 @@ constexpr const char* kCosts[][2] = {{"force_evaluations", "force evaluations"},
 
 void add_work_precision(Page& page, const Table& compare, const Quantity& q) {
   const bool many = ladders(compare, q.column, "cpu_s_median").size() > 3;
-  add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference),
+  std::string left_out;
+  if (const int count = points_not_drawn(compare, q.column, q.scale); count > 0)
+    left_out = fmt::format(
+        " Not drawn: {} point{} with an error above {:g}{}.", count, count == 1 ? "" : "s", kLargestDrawn,
+        q.unit.empty() ? "" : fmt::format(" times the peak of {} {}", short_number(q.scale), q.unit));
+  add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale),
            capitalised(q.label) + " against CPU time; down and to the left is better. " +
                (many ? "One line a ladder, coloured by family; the dark line joins the points that none "
                        "beats, named where another integrator takes over. "
                      : "Each point carries its relative tolerance or its step. ") +
-               "Rings lie within 10 times of the reference's own error" +
+               "Rings are within 10 times the reference's own error" +
                (std::isfinite(q.reference) ? fmt::format(" of {}.", short_number(q.reference)) : ".") +
-               " Errors above 3 are left out.");
+               left_out);
 }
 
 /// Charts that answer a second question, each quantity behind a switch of its own.
@@ -41,11 +46,12 @@ void add_counts_of_work(Page& page, const Table& compare, const Quantity& q) {
                      (against.empty() ? "" : " against " + against));
   if (families) {
     page.begin_multiples();
-    for (const Plot& plot : family_plots(compare, q.column, q.label, q.reference)) add_plot(page, plot, "");
+    for (const Plot& plot : family_plots(compare, q.column, q.label, q.reference, q.scale))
+      add_plot(page, plot, "");
     page.end_multiples();
   }
   for (const auto& [column, label] : counted)
-    add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, column, label),
+    add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale, column, label),
              fmt::format("{} against {}, which no noise of the machine touches.{}", capitalised(q.label),
                          label, column == "factorisations" ? " What factors no matrix is not here." : ""));
   page.end_details();
@@ -61,18 +67,12 @@ void add_reference(Page& page, const ReferenceError& reference) {
   if (!reference.trouble.empty()) page.add_paragraph("Mind: " + reference.trouble + ".");
 }
 
-/// What the targets of a quantity are shares of; NaN: it has none.
-double scale_of(const Quantity& q, const ReferenceError& reference) {
-  return q.column == kPosition ? 1.0 : q.column == "force_error_rms_n" ? reference.peak_force_n : kUnknown;
-}
-
 void add_winners(Page& page, const Table& compare, const std::vector<Quantity>& quantities,
-                 const ReferenceError& reference, const std::string& cost_column,
-                 const std::string& cost_label) {
+                 const std::string& cost_column, const std::string& cost_label) {
   bool explained = true;
   for (const Quantity& q : quantities)
-    if (const double scale = scale_of(q, reference); std::isfinite(scale)) {
-      add_winners_table(page, compare, q, scale, cost_column, cost_label, explained);
+    if (std::isfinite(q.scale) && q.column != "torque_error_rms_n_m") {
+      add_winners_table(page, compare, q, q.scale, cost_column, cost_label, explained);
       explained = false;
     }
 }
@@ -90,7 +90,7 @@ void add_scene_comparison(Page& page, const Table& compare, const ReferenceError
   const bool judged = std::isfinite(reference.position_error_rel_l2);
   if (judged) {
     page.add_heading("Cheapest for a wanted error", 3);
-    add_winners(page, compare, quantities, reference, "cpu_s_median", "CPU [s]");
+    add_winners(page, compare, quantities, "cpu_s_median", "CPU [s]");
   }
   page.add_heading("Error against run time", 3);
   for (const Quantity& q : quantities) add_work_precision(page, compare, q);
@@ -109,7 +109,7 @@ void add_scene_comparison(Page& page, const Table& compare, const ReferenceError
     page.add_heading("Cost of a wanted error", 3);
     add_costs_table(page, compare, reference.position_error_rel_l2);
     page.begin_details("Cheapest by force evaluations");
-    add_winners(page, compare, quantities, reference, "force_evaluations", "force evaluations");
+    add_winners(page, compare, quantities, "force_evaluations", "force evaluations");
     page.end_details();
   }
   if (!quantities.empty()) add_orders_table(page, compare, quantities);

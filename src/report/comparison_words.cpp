@@ -17,22 +17,18 @@ std::string list_of(const std::vector<std::string>& names) {
   return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
 
-std::string times(double ratio) {
-  return ratio < 1.995  ? fmt::format("{:.2f} times", ratio)
-         : ratio < 9.95 ? fmt::format("{:.2g} times", ratio)
-                        : fmt::format("{:.0f} times", ratio);
+std::string factor(double ratio) {
+  return !std::isfinite(ratio) ? short_number(ratio)
+         : ratio < 1.995       ? fmt::format("{:.2f}", ratio)
+         : ratio < 9.95        ? fmt::format("{:.2g}", ratio)
+                               : fmt::format("{:.0f}", ratio);
 }
 
 /// "12 (11 to 14) times".
 std::string times(const CostRatio& ratio) {
-  if (ratio.low == ratio.high || !std::isfinite(ratio.low)) return times(ratio.value);
-  const auto number = [](double value) {
-    return value < 1.995  ? fmt::format("{:.2f}", value)
-           : value < 9.95 ? fmt::format("{:.2g}", value)
-                          : fmt::format("{:.0f}", value);
-  };
-  return fmt::format("{} ({} to {}) times", number(ratio.value), number(ratio.low),
-                     std::isfinite(ratio.high) ? number(ratio.high) : "?");
+  if (ratio.low == ratio.high || !std::isfinite(ratio.low)) return factor(ratio.value) + " times";
+  return fmt::format("{} ({} to {}) times", factor(ratio.value), factor(ratio.low),
+                     std::isfinite(ratio.high) ? factor(ratio.high) : "?");
 }
 
 std::string winner_in_words(const Winner& win, const std::string& target) {
@@ -183,18 +179,17 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
     return "The reference's own error is not known: nothing is declared, and small errors may be its own.";
   if (best < kResolved * reference_error)
     return fmt::format(
-        "The reference's own error is {}: errors below {} cannot be distinguished by it (the best point "
-        "shows "
-        "{}).",
+        "The reference's own error is {}: errors below {} are not resolved by it (the best point has {}).",
         short_number(reference_error), short_number(kResolved * reference_error), short_number(best));
   std::string out = fmt::format(
-      "The reference's own error, {}, is {} below the best point that it can judge, {}: it bears every "
-      "figure here{}.",
-      short_number(reference_error), times(best / reference_error), short_number(best),
-      unresolved ? " but the marked ones" : "");
+      "The reference's own error is {}, {} below the best point that it resolves ({}): all figures{} are "
+      "resolved by the reference.",
+      short_number(reference_error),
+      reference_error > 0.0 ? factor(best / reference_error) + " times" : "to rounding", short_number(best),
+      unresolved ? " except those marked" : "");
   if (unresolved)
-    out += fmt::format(" {} within {:g} times of it, {}: errors below {} cannot be distinguished.",
-                       unresolved == 1 ? "1 point lies" : fmt::format("{} points lie", unresolved), kResolved,
+    out += fmt::format(" {} within {:g} times that error, {}: errors below {} are not resolved.",
+                       unresolved == 1 ? "1 point is" : fmt::format("{} points are", unresolved), kResolved,
                        unresolved == 1 ? "is marked, and counts nowhere" : "are marked, and count nowhere",
                        short_number(kResolved * reference_error));
   return out;

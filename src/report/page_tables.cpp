@@ -26,7 +26,7 @@ bool sorts_as_numbers(const std::vector<std::vector<std::string>>& rows, std::si
   bool any = false;
   for (const auto& row : rows) {
     std::string cell = row[column];
-    if (cell.empty() || cell == "-" || cell == "nan") continue;
+    if (is_blank(cell)) continue;
     if (cell.starts_with("<= ")) cell.erase(0, 3);
     if (std::isnan(to_number(cell.substr(0, cell.find(' '))))) return false;
     any = true;
@@ -42,7 +42,7 @@ std::string facts_table(const Page::Facts& facts, bool short_to_the_right) {
                          value.size() > kLongCell ? " class=\"w\""
                          : short_to_the_right     ? " class=\"n\""
                                                   : "",
-                         escape_html(value));
+                         escape_html(shown_cell(value)));
   return table + "</tbody></table>\n";
 }
 
@@ -75,7 +75,7 @@ Page& Page::add_table(const std::vector<std::string>& headers,
     body_ += fmt::format("<tr{}>", marks.empty() ? "" : class_of(marks[r]));
     for (std::size_t c = 0; c < headers.size(); ++c)
       body_ += fmt::format("<td{}>{}</td>", rows[r][c].size() > kLongCell ? " class=\"w\"" : classes[c],
-                           escape_html(rows[r][c]));
+                           escape_html(shown_cell(rows[r][c])));
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";

@@ -97,6 +97,7 @@ std::vector<Answer> answers_of(const Result& result) {
   if (has("stability.json")) out.push_back(stability_answer(read_json(result.dir / "stability.json")));
   for (const char* file : kinds().back().files)
     if (has(file)) out.push_back(bench_answer(read_json(result.dir / file)));
+  out.push_back(remarks_answer(result.summary));
   return out;
 }
 
@@ -118,7 +119,7 @@ std::string Result::title() const {
 std::string Result::first_answer() const {
   for (const Answer& answer : answers) {
     if (!answer.asks && !answer.lead.empty()) return answer.lead;
-    if (answer.asks && !answer.points.empty()) return answer.points[0];
+    if (!answer.points.empty()) return answer.points[0];
   }
   return "";
 }
@@ -162,7 +163,8 @@ void add_result(Page& page, const Result& result) {
   if (has("haptic.csv")) add_haptic(page, csv("haptic.csv"), result.summary);
   if (has("study.csv"))
     add_study(page, study_in(dir),
-              has("study.toml") ? store::read_file((dir / "study.toml").string()) : std::string());
+              has("study.toml") ? store::read_file((dir / "study.toml").string()) : std::string(),
+              result.summary);
   if (has("validation.json")) add_validation(page, read_json(dir / "validation.json"));
   if (has("stability.json")) add_stability(page, read_json(dir / "stability.json"));
   for (const char* file : kinds().back().files)

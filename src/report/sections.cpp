@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Groups of figures that have headings of their own.
-const std::set<std::string> kElsewhere = {"in_use", "left_out", "pictures"};
+const std::set<std::string> kElsewhere = {"in_use", "left_out", "pictures", "logarithmic"};
 
 /// A group of figures that summary.json holds, else an empty object.
 Json figures_of(const Json& summary, const char* group) {

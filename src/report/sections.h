@@ -33,8 +33,8 @@ void add_methods(Page& page, const Table& methods);
 void add_haptic(Page& page, const Table& haptic, const Json& summary);
 /// study.csv with the times of its tasks in a column "cpu_s".
 Table with_times(Table study, const Table& times);
-/// @param text  of the study file
-void add_study(Page& page, const Table& study, const std::string& text);
+/// @param text  of the study file  @param summary  which parameters are spaced by equal ratios
+void add_study(Page& page, const Table& study, const std::string& text, const Json& summary);
 void add_validation(Page& page, const Json& validation);
 void add_stability(Page& page, const Json& stability);
 /// @param file  its name

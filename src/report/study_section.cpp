@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "answers.h"
 #include "comparison_cells.h"
@@ -13,9 +14,10 @@
 namespace palpate::report {
 namespace {
 
-constexpr std::size_t kMostRows = 2000;  ///< of a table on the page
-constexpr std::size_t kMostSeries = 12;  ///< of a chart that can still be read
-constexpr double kLogRatio = 30.0;       ///< of greatest over least value: a logarithmic axis
+constexpr std::size_t kMostRows = 2000;              ///< of a table on the page
+constexpr const char* kLogarithmic = "logarithmic";  ///< group of summary.json, by parameter
+constexpr std::size_t kMostSeries = 12;              ///< of a chart that can still be read
+constexpr double kLogRatio = 30.0;                   ///< of two values: a logarithmic axis
 
 struct Spread {
   double n = 0.0, sum = 0.0, square = 0.0, least = HUGE_VAL, greatest = -HUGE_VAL;
@@ -83,20 +85,46 @@ void add_series(Plot& plot, const Table& study, const StudyGroup& group, const s
   if (several) plot.series.push_back(std::move(points));
 }
 
-void add_charts(Page& page, const Table& study, const StudyColumns& columns) {
+/// Sum of the squares of the gaps between ascending values, in units of their range: least, 1 / (n - 1),
+/// where the gaps are equal.
+double unevenness(const std::vector<double>& values) {
+  const double range = values.back() - values.front();
+  double sum = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) sum += std::pow((values[i] - values[i - 1]) / range, 2);
+  return sum;
+}
+
+/// Whether a parameter is drawn over a logarithmic axis: where the study says so (`declared`), or where its
+/// values stand more evenly there.  Two values are equally even on both.
+bool is_logarithmic(std::vector<double> values, bool declared) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  if (values.size() < 2 || values.front() <= 0.0) return false;
+  if (declared) return true;
+  if (values.size() == 2) return values.back() >= kLogRatio * values.front();
+  std::vector<double> logs;
+  for (const double value : values) logs.push_back(std::log(value));
+  return unevenness(logs) < unevenness(values);
+}
+
+void add_charts(Page& page, const Table& study, const StudyColumns& columns, const Json& summary) {
   const auto abscissa = abscissa_of(study, columns);
   if (!abscissa) return;
   const std::string& name = abscissa->column;
   const bool drawn = std::find(columns.drawn.begin(), columns.drawn.end(), name) != columns.drawn.end();
   const std::vector<double> x = study.numbers(name);
-  const auto [least, greatest] = std::minmax_element(x.begin(), x.end());
+  const bool declared = summary.is_object() && summary.contains("figures") &&
+                        summary["figures"].is_object() && summary["figures"].contains(kLogarithmic) &&
+                        summary["figures"][kLogarithmic].contains(name),
+             logarithmic = is_logarithmic(x, declared);
   const std::vector<StudyGroup> groups = groups_of(study, columns, abscissa->without);
   page.begin_multiples();
   for (const StudyFigure& figure : shown_figures(study)) {
     Plot plot;
     plot.x_label = name;
     plot.y_label = figure.label;
-    plot.log_x = *least > 0.0 && *greatest >= kLogRatio * *least;
+    plot.log_x = logarithmic;
     for (std::size_t g = 0; g < groups.size(); ++g)
       add_series(plot, study, groups[g], x, study.numbers(figure.column), drawn,
                  std::string(kPalette[g % kPalette.size()]));
@@ -187,11 +215,11 @@ Table with_times(Table study, const Table& times) {
   return study;
 }
 
-void add_study(Page& page, const Table& study, const std::string& text) {
+void add_study(Page& page, const Table& study, const std::string& text, const Json& summary) {
   if (study.rows.empty()) return;
   const StudyColumns columns = columns_of_study(study);
   page.add_heading("The study");
-  add_charts(page, study, columns);
+  add_charts(page, study, columns, summary);
   add_spreads(page, study, columns);
   add_tables(page, study, columns);
   if (!text.empty()) page.begin_details("The study's text").add_code(text).end_details();
@@ -210,6 +238,13 @@ Answer study_answer(const Table& study) {
     for (const auto& [status, n] : count)
       if (status != "ok") others += fmt::format("{}{} {}", others.empty() ? "" : ", ", n, status);
     out.lead = fmt::format("{} of {} tasks reached their end; {}.", ok, study.rows.size(), others);
+  }
+  std::map<std::string, bool> explained;  // the first reason of each kind of end
+  for (std::size_t r = 0; r < study.rows.size(); ++r) {
+    const std::string status = study.rows[r][study.column("status")],
+                      reason = study.has("reason") ? study.rows[r][study.column("reason")] : "";
+    if (status == "ok" || reason.empty() || std::exchange(explained[status], true)) continue;
+    out.points.push_back(fmt::format("{}, task {}: {}", status, r, reason.substr(0, reason.find('\n'))));
   }
   for (const StudyFigure& figure : shown_figures(study)) {
     const std::vector<double> values = study.numbers(figure.column);

@@ -137,11 +137,11 @@ Json parts_json(const std::vector<Shown>& parts, const Box& box, const Points& r
   return out;
 }
 
-std::size_t nearest(const std::vector<double>& times, double time) {
-  const auto at = std::min_element(times.begin(), times.end(), [time](double a, double b) {
-    return std::abs(a - time) < std::abs(b - time);
-  });
-  return static_cast<std::size_t>(at - times.begin());
+/// The first step that is not before a time, but for rounding; the last one where all are before it.
+std::size_t first_from(const std::vector<double>& times, double time) {
+  const double rounding = 1e-9 * std::abs(time);
+  const auto at = std::find_if(times.begin(), times.end(), [&](double t) { return t >= time - rounding; });
+  return static_cast<std::size_t>(std::min(at, times.end() - 1) - times.begin());
 }
 
 }  // namespace
@@ -170,7 +170,7 @@ std::string surface_json(const store::RunReader& run, const ViewBudget& budget, 
     positions.push_back(std::move(now));
   }
   if (positions.empty()) return "";
-  if (std::isfinite(shown_at_s)) first_shown = nearest(times, shown_at_s);
+  if (std::isfinite(shown_at_s)) first_shown = first_from(times, shown_at_s);
   return Json{{"times_s", times},
               {"low_m", list_of(box.low)},
               {"high_m", list_of(box.high)},

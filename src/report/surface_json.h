@@ -19,7 +19,7 @@ struct ViewBudget {
 /// with name, kind (body or tool), the number of vertices, and little-endian 16-bit numbers in base64: faces,
 /// rest, positions step by step. Empty where the run has no step, or a step whose positions are not finite
 /// and nothing before it.
-/// @param shown_at_s  when it is shown first; NaN: when the displacement is largest
+/// @param shown_at_s  the first step from then on is shown first; NaN: when the displacement is largest
 std::string surface_json(const store::RunReader& run, const ViewBudget& budget = {},
                          double shown_at_s = std::numeric_limits<double>::quiet_NaN());
 

@@ -35,14 +35,37 @@ double to_number(std::string_view cell) {
   return value;
 }
 
-std::string short_number(double value) { return std::isnan(value) ? "-" : fmt::format("{:.3g}", value); }
+std::string short_number(double value, int digits) {
+  if (std::isnan(value)) return "-";
+  if (std::isinf(value)) return value > 0.0 ? "∞" : "-∞";
+  return fmt::format("{:.{}g}", value, digits);
+}
+
+std::string within_text(double value, double low, double high) {
+  const std::string text = short_number(value);
+  const bool above = std::isfinite(low), below = std::isfinite(high);
+  if (above && below) return fmt::format("{} in [{:g}, {:g}]", text, low, high);
+  if (above) return fmt::format("{}, at least {:g}", text, low);
+  return below ? fmt::format("{}, at most {:g}", text, high) : text;
+}
+
+std::string shown_cell(const std::string& cell) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const bool number = error == std::errc{} && end == cell.data() + cell.size();
+  return number && !std::isfinite(value) ? short_number(value) : cell;
+}
+
+bool is_blank(std::string_view cell) {
+  return cell.empty() || cell == "-" || shown_cell(std::string(cell)) == "-";
+}
 
 bool is_numeric_column(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
   bool any = false;
   for (const auto& row : rows) {
     const std::string& cell = row[column];
-    if (cell.empty() || cell == "-" || cell == "nan") continue;
-    if (std::isnan(to_number(cell))) return false;
+    if (is_blank(cell)) continue;
+    if (std::isnan(to_number(cell)) && !cell.ends_with("∞")) return false;
     any = true;
   }
   return any;
@@ -71,13 +94,16 @@ std::string without_trailing_blanks(std::string line) {
 }  // namespace
 
 std::string format_table(const std::vector<std::string>& headers,
-                         const std::vector<std::vector<std::string>>& rows) {
+                         std::vector<std::vector<std::string>> rows) {
   const std::size_t columns = headers.size();
   std::vector<std::size_t> widths(columns);
   for (std::size_t c = 0; c < columns; ++c) widths[c] = width_of(headers[c]);
-  for (const auto& row : rows) {
+  for (auto& row : rows) {
     PALPATE_CHECK(row.size() == columns, "a row of {} cells under {} headers", row.size(), columns);
-    for (std::size_t c = 0; c < columns; ++c) widths[c] = std::max(widths[c], width_of(row[c]));
+    for (std::size_t c = 0; c < columns; ++c) {
+      row[c] = shown_cell(row[c]);
+      widths[c] = std::max(widths[c], width_of(row[c]));
+    }
   }
   std::vector<bool> right(columns);
   for (std::size_t c = 0; c < columns; ++c) right[c] = is_numeric_column(rows, c);

@@ -119,12 +119,11 @@ double closest(const Json& measurements) {
 void add_measurements(const Json& one, Marked& out) {
   for (const Json& m : one["measurements"]) {
     const bool passed = m.value("passed", false);
-    std::string order = short_number(number_at(m, "order"));
-    if (std::isfinite(number_at(m, "order_low")))
-      order += fmt::format(" in [{:g}, {:g}]", number_at(m, "order_low"), number_at(m, "order_high"));
     out.add({text_at(one, "name"), text_at(m, "quantity"), short_number(number_at(m, "error")),
-             short_number(number_at(m, "bar")), fmt::format("{:.6g}", number_at(m, "computed")),
-             fmt::format("{:.6g}", number_at(m, "exact")), order, verdict(passed)},
+             short_number(number_at(m, "bar")), short_number(number_at(m, "computed"), 6),
+             short_number(number_at(m, "exact"), 6),
+             within_text(number_at(m, "order"), number_at(m, "order_low"), number_at(m, "order_high")),
+             verdict(passed)},
             passed);
   }
 }

@@ -138,12 +138,12 @@ std::vector<Ladder> ladders(const Table& compare, const std::string& error_colum
   return out;
 }
 
-std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column) {
+std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column, double scale) {
   std::vector<FittedOrder> orders;
   for (const Ladder& ladder : ladders(compare, error_column, "setting")) {
     std::vector<double> setting, error;
     for (const LadderPoint& p : ladder.points) {
-      if (p.unresolved || p.error >= 1.0) continue;  // an error as large as the motion has no slope
+      if (p.unresolved || p.error >= scale) continue;
       setting.push_back(p.setting);
       error.push_back(p.error);
     }

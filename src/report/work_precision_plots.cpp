@@ -11,8 +11,9 @@
 namespace palpate::report {
 namespace {
 
-/// An error far above the motion itself says only that the run is wrong; drawing it would compress the rest.
-constexpr double kLargestDrawn = 3.0;
+/// Whether an error is drawn; of an unknown scale all are.
+bool is_drawn(double error, double scale) { return !(error > kLargestDrawn * scale); }
+
 /// Up to this many ladders each point carries its setting.
 constexpr std::size_t kFewLadders = 3;
 /// A family of more ladders than this is drawn order by order.
@@ -32,11 +33,11 @@ std::map<std::string, std::string> family_colours(const std::vector<Ladder>& all
   return out;
 }
 
-Series line_of(const Ladder& ladder, bool labelled) {
+Series line_of(const Ladder& ladder, double scale, bool labelled) {
   Series series{.name = ladder.label, .x = {}, .y = {}, .mark = Mark::kLinePoints};
   series.reading = ladder.label;
   for (const LadderPoint& p : ladder.points) {
-    if (!(p.error <= kLargestDrawn)) continue;
+    if (!is_drawn(p.error, scale)) continue;
     series.x.push_back(p.cost);
     series.y.push_back(p.error);
     series.notes.push_back(setting_text(ladder.setting_name, p.setting));
@@ -48,7 +49,7 @@ Series line_of(const Ladder& ladder, bool labelled) {
 
 /// The points that no other point beats in both cost and error, from cheap to accurate; each ladder is named
 /// where it first takes over.
-Series best_envelope(const std::vector<Ladder>& all) {
+Series best_envelope(const std::vector<Ladder>& all, double scale) {
   struct Entry {
     double cost, error;
     const Ladder* ladder;
@@ -56,7 +57,7 @@ Series best_envelope(const std::vector<Ladder>& all) {
   std::vector<Entry> entries;
   for (const Ladder& ladder : all)
     for (const LadderPoint& p : ladder.points)
-      if (p.cost > 0.0 && p.error > 0.0 && p.error <= kLargestDrawn && !p.unresolved)
+      if (p.cost > 0.0 && p.error > 0.0 && is_drawn(p.error, scale) && !p.unresolved)
         entries.push_back({p.cost, p.error, &ladder});
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.cost != b.cost ? a.cost < b.cost : a.error < b.error;
@@ -87,20 +88,27 @@ Plot frame_of(const std::string& error_label, double reference_error, const std:
 
 }  // namespace
 
+int points_not_drawn(const Table& compare, const std::string& error_column, double scale) {
+  int count = 0;
+  for (const Ladder& ladder : ladders(compare, error_column, "setting"))
+    for (const LadderPoint& p : ladder.points) count += !is_drawn(p.error, scale);
+  return count;
+}
+
 Plot work_precision_plot(const Table& compare, const std::string& error_column,
-                         const std::string& error_label, double reference_error,
+                         const std::string& error_label, double reference_error, double scale,
                          const std::string& cost_column, const std::string& cost_label) {
   const std::vector<Ladder> all = ladders(compare, error_column, cost_column);
   Plot plot = frame_of(error_label, reference_error, cost_label);
   if (all.size() <= kFewLadders) {
-    for (const Ladder& ladder : all) plot.series.push_back(line_of(ladder, true));
+    for (const Ladder& ladder : all) plot.series.push_back(line_of(ladder, scale, true));
     return plot;
   }
   plot.height = 520;
   const auto colours = family_colours(all);
   std::map<std::string, bool> named;
   for (const Ladder& ladder : all) {
-    Series series = line_of(ladder, false);
+    Series series = line_of(ladder, scale, false);
     const bool drawn = std::any_of(series.x.begin(), series.x.end(), [](double x) { return x > 0.0; });
     series.name = !drawn || named[ladder.family] ? "" : ladder.family;
     series.group = ladder.family;
@@ -109,12 +117,12 @@ Plot work_precision_plot(const Table& compare, const std::string& error_column,
     series.width = 1.0;
     plot.series.push_back(std::move(series));
   }
-  plot.series.push_back(best_envelope(all));
+  plot.series.push_back(best_envelope(all, scale));
   return plot;
 }
 
 std::vector<Plot> family_plots(const Table& compare, const std::string& error_column,
-                               const std::string& error_label, double reference_error,
+                               const std::string& error_label, double reference_error, double scale,
                                const std::string& cost_column, const std::string& cost_label) {
   const std::vector<Ladder> all = ladders(compare, error_column, cost_column);
   std::map<std::string, std::size_t> sizes;
@@ -136,7 +144,7 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
     plot.width = 520, plot.height = 400;
     for (const Ladder& ladder : all) {
       if (panel_of(ladder) == panel) continue;
-      Series series = line_of(ladder, false);
+      Series series = line_of(ladder, scale, false);
       series.name = "";
       series.reading.clear();
       series.notes.clear();
@@ -149,7 +157,7 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
     std::size_t next = 0;
     for (const Ladder& ladder : all) {
       if (panel_of(ladder) != panel) continue;
-      Series series = line_of(ladder, false);
+      Series series = line_of(ladder, scale, false);
       series.colour = kFamilyColours[next++ % kFamilyColours.size()];
       plot.series.push_back(std::move(series));
     }

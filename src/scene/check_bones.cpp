@@ -85,12 +85,12 @@ void check_target(const Document& doc, const std::string& key, const std::string
     Names names;
     for (const BoneSpec& bone : d.bones) names.push_back(bone.name);
     const bool known = std::find(names.begin(), names.end(), a.to) != names.end();
-    for (const HandSpec& hand : d.hands) names.push_back(hand.name);
+    for (const Hand& hand : hands_of(d)) names.push_back(hand.name);
     if (!known && names.empty())
       refuse(at, where, fmt::format("to = \"{}\", but the scene has no [[bone]]", a.to));
     if (!known)
       refuse(at, where,
-             fmt::format("no bone{} is called \"{}\"{}", d.hands.empty() ? "" : " and no hand", a.to,
+             fmt::format("no bone{} is called \"{}\"{}", d.tool ? " and no tool" : "", a.to,
                          suggestion(a.to, names)));
   }
   if (given(doc, key + ".axes"))

@@ -52,6 +52,7 @@ Summary summary_of(const Json& json) {
             json.at("overrides"),
             json.at("outcome"),
             json.at("message"),
+            json.value("remarks", std::vector<std::string>{}),
             provenance_of(json.at("provenance")),
             {}};
   for (const auto& [name, values] : json.at("figures").items()) {
@@ -80,6 +81,7 @@ std::string to_json(const Summary& s) {
                      {"scene", s.scene},
                      {"outcome", s.outcome},
                      {"message", s.message},
+                     {"remarks", s.remarks},
                      {"overrides", s.overrides},
                      {"figures", figures},
                      {"provenance", json_of(s.provenance)},

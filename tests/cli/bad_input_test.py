@@ -109,7 +109,7 @@ class FullDisk(Case):
                 text = self.refused("run", "press-ball", "-o", "full/x", wrapped=on_full_disk(size, size))
                 self.assertIn("full/x/", text)
                 self.assertIn("No space left on device", text)
-                self.assertIn("what was recorded by then is whole", text)
+                self.assertIn("data written so far are complete", text)
                 times = self.steps(f"{size}/x")
                 self.assertEqual(times, all_times[:len(times)])
                 counts.append(len(times))

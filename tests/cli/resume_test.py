@@ -151,7 +151,7 @@ class Resume(unittest.TestCase):
                 self.assertRegex(self.said, r"checkpoints: [2-9], one every .* s to keep them and .* s to a")
                 self.assertFalse((whole / "run" / "checkpoint.h5").exists())
                 killed = self.run_killed(command, 2)
-                self.assertIn("goes on from t = ", self.good("resume", "run", where=killed))
+                self.assertIn("resumes at t = ", self.good("resume", "run", where=killed))
                 self.assert_same(whole, killed)
 
     def test_kills_at_any_instant_and_again(self):
@@ -171,7 +171,7 @@ class Resume(unittest.TestCase):
         where = Path(tempfile.mkdtemp(dir=self.folder))
         status, out = self.kill(command, 2, where, sign=signal.SIGINT)
         self.assertEqual(status, 130, out)
-        self.assertIn("`palpate resume run` goes on", out[1])
+        self.assertIn("`palpate resume run` resumes it", out[1])
         self.good("resume", "run", where=where)
         self.assert_same(whole, where)
 

@@ -23,6 +23,17 @@ TEST(Error, NearestNameForgivesTyposOnly) {
   EXPECT_EQ(nearest_name("x", {}), "");
 }
 
+// A name that is the beginning of the word, or of which the word is the beginning, is no nearer for that.
+TEST(Error, NearestNameIsTheOneOfLeastDistance) {
+  EXPECT_EQ(nearest_name("blok", {"b", "block"}), "block");
+  EXPECT_EQ(nearest_name("ballon", {"ball", "balloon"}), "balloon");
+  EXPECT_EQ(nearest_name("bal", {"ballroom", "ball"}), "ball");
+  EXPECT_EQ(nearest_name("blal", {"bowl", "ball"}), "ball") << "two letters changed places: one slip";
+  EXPECT_EQ(nearest_name("FLOOR", {"flour", "floor"}), "floor") << "case is no slip";
+  EXPECT_EQ(nearest_name("stiffness", {"stiffening", "stiffness_pa_m"}), "stiffness_pa_m") << "a unit";
+  EXPECT_EQ(nearest_name("lin", {"verlet", "linearly-implicit-euler"}), "linearly-implicit-euler");
+}
+
 TEST(Error, SuggestionNamesTheNearestOrListsAll) {
   EXPECT_EQ(suggestion("bal", {"box", "ball"}), " (did you mean \"ball\"?)");
   EXPECT_EQ(suggestion("pumpkin", {"box", "ball"}), " (known: box, ball)");

@@ -270,6 +270,27 @@ TEST(RunReport, RefusesAMixThatHoldsAnEmptyFolderAndNamesIt) {
   EXPECT_FALSE(fs::exists(run / "page.html"));
 }
 
+// Warnings and verdicts of every kind of result stand in the head of its page, before the first section.
+TEST(RunReport, HasTheRemarksOfTheCommandInItsHead) {
+  const std::string summary =
+      R"({"scene": "x", "outcome": "finished", "remarks": ["bodies & contact at 21.7 Hz", "not passive"]})";
+  const std::vector<std::pair<const char*, const char*>> kinds = {
+      {"force.csv", "time_s,force_x_n,force_y_n,force_z_n\n0,0,0,0\n0.001,0,0,1\n"},
+      {"z_width.csv", "damping_n_s_m\n1\n"},
+      {"study.csv", "task,scene,integrator,status,reason,steps\n0,a,bdf2,ok,,3\n"},
+      {"stability.json", R"({"cells": []})"},
+      {"validation.json", R"({"cases": []})"}};
+  for (const auto& [file, text] : kinds) {
+    const TemporaryFolder dir;
+    put(dir / "summary.json", summary);
+    put(dir / file, text);
+    const std::string html = without_scripts(read(report::write_run_report(dir.path()).page));
+    const std::string head = html.substr(0, html.find("<h2>"));
+    for (const char* remark : {"<li>bodies &amp; contact at 21.7 Hz</li>", "<li>not passive</li>"})
+      EXPECT_NE(head.find(remark), std::string::npos) << file << ": " << remark;
+  }
+}
+
 TEST(RunReport, LeavesOutSectionsWithoutAFile) {
   const TemporaryFolder dir;
   put(dir / "summary.json", R"({"scene": "one-tet"})");
@@ -292,6 +313,17 @@ TEST(RunReport, SaysThePeakOfAForceThatWasNotRecorded) {
   put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n0,0,0,0\n0.001,0,0,1\n0.002,0,0,2\n");
   html = read(report::write_run_report(dir.path()).page);
   EXPECT_NE(html.find("The hand feels at most 2 N"), std::string::npos) << "what was recorded goes first";
+}
+
+TEST(RunReport, WritesOneMomentInOneWay) {
+  const TemporaryFolder dir;
+  put(dir / "summary.json", R"({"scene": "x", "outcome": "finished", "figures": {
+    "timings": {"simulated_s": 1.2345, "loop_cpu_s": 1},
+    "on the hand": {"peak_force_n": 1, "peak_force_at_s": 1.2340000000000002}}})");
+  const std::string html = read(report::write_run_report(dir.path()).page);
+  EXPECT_NE(html.find("1.2345 s simulated"), std::string::npos);
+  EXPECT_NE(html.find("at most 1 N, at 1.234 s."), std::string::npos)
+      << "no digit is cut off, no rounding shown";
 }
 
 TEST(RunReport, GivesTheReasonInPlaceOfAFigureThatCannotBeDrawn) {

@@ -62,8 +62,9 @@ TEST(StudySection, KnowsWhatIsSweptAndWhatIsDrawn) {
 TEST(StudySection, AnswersInWords) {
   const Answer answer = study_answer(table_of(kStudy));
   EXPECT_EQ(answer.lead, "6 of 8 tasks reached their end; 1 failed, 1 missing.");
-  ASSERT_GE(answer.points.size(), 1u);
-  EXPECT_EQ(answer.points[0], "Peak force on the hand [N]: from 1 (task 0) to 8 (task 6).")
+  ASSERT_GE(answer.points.size(), 2u);
+  EXPECT_EQ(answer.points[0], "failed, task 3: too many <steps>") << "as standard output has it";
+  EXPECT_EQ(answer.points[1], "Peak force on the hand [N]: from 1 (task 0) to 8 (task 6).")
       << "a task that failed says nothing of the force";
   const Answer all = study_answer(table_of("task,scene,status,reason,steps\n0,a,ok,,3\n1,b,ok,,4\n"));
   EXPECT_EQ(all.lead, "All 2 tasks reached their end.");
@@ -87,6 +88,31 @@ TEST(StudySection, DrawsTheSweepAndTheSeeds) {
   EXPECT_EQ(count_of(html, "class=\"plot-data\""), 3u) << "force, steps, CPU";
   // mean and deviation of 1 and 3
   EXPECT_NE(html.find(">2 ± 1.41</td>"), std::string::npos);
+}
+
+/// Whether the first chart of a sweep of `key` over these values is logarithmic along x.
+bool log_axis(const std::vector<double>& values, bool declared = false) {
+  const TemporaryFolder folder;
+  std::string study = "task,scene,integrator,key,status,reason,steps\n";
+  for (std::size_t i = 0; i < values.size(); ++i)
+    study += fmt::format("{},a,bdf2,{},ok,,{}\n", i, values[i], 10 + i);
+  folder.write("study.csv", study);
+  if (declared) folder.write("summary.json", R"({"scene": "s", "figures": {"logarithmic": {"key": true}}})");
+  const std::string html = read(write_run_report(folder.path()).page);
+  EXPECT_EQ(count_of(html, "\"log_x\":true") + count_of(html, "\"log_x\":false"), 1u);
+  return count_of(html, "\"log_x\":true") == 1u;
+}
+
+TEST(StudySection, ASweepOfEqualRatiosHasALogarithmicAxis) {
+  EXPECT_TRUE(log_axis({1e4, 1.414e4, 2e4, 2.828e4, 4e4})) << "whatever its range";
+  EXPECT_TRUE(log_axis({1, 10, 100, 1000}));
+  EXPECT_TRUE(log_axis({0.001, 0.01}, true)) << "the study says so";
+  EXPECT_TRUE(log_axis({1.0, 2.0}, true));
+  EXPECT_TRUE(log_axis({1e3, 1e5}));
+  EXPECT_FALSE(log_axis({1.0, 2.0}));
+  EXPECT_FALSE(log_axis({1, 21, 41, 61, 81, 101})) << "equal differences, though over two decades";
+  EXPECT_FALSE(log_axis({-1, 0, 1, 2}));
+  EXPECT_FALSE(log_axis({0, 0.5, 1}, true)) << "zero has no logarithm";
 }
 
 TEST(StudySection, WithoutASweepThereIsNoChart) {

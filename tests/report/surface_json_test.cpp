@@ -69,7 +69,9 @@ TEST(SurfaceJson, HoldsTheBoundaryAtItsPositionsWithinTheQuantisation) {
   EXPECT_EQ(view["parts"][1]["kind"], "tool");
   EXPECT_NEAR(view["most_displacement_m"], 4e-3, 1e-12);
   EXPECT_EQ(view["first_shown"], kSteps - 1);
-  EXPECT_EQ(json::parse(report::surface_json(run, {}, 0.021))["first_shown"], 2);
+  EXPECT_EQ(json::parse(report::surface_json(run, {}, 0.011))["first_shown"], 2) << "the state that follows";
+  EXPECT_EQ(json::parse(report::surface_json(run, {}, 0.01 * (1.0 + 1e-12)))["first_shown"], 1);
+  EXPECT_EQ(json::parse(report::surface_json(run, {}, 9.0))["first_shown"], kSteps - 1) << "the last";
   const auto vertices = static_cast<std::size_t>(outer.surface.vertices.cols());
   ASSERT_EQ(body["vertices"], vertices) << "nothing inside the ball";
   const std::vector<int> positions = numbers_of(body["positions"]), faces = numbers_of(body["faces"]);

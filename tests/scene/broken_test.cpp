@@ -22,7 +22,9 @@ const Broken kCases[] = {
     {"attachment-to-unknown", "9:6",
      "body \"ball\": attachment[0]: no bone is called \"fermur\" (did you mean \"femur\"?)"},
     {"attachment-to-unknown-hand", "9:6",
-     "body \"ball\": attachment[0]: no bone and no hand is called \"rigth\" (did you mean \"right\"?)"},
+     "body \"ball\": attachment[0]: no bone and no tool is called \"rigth\" (did you mean \"right\"?)"},
+    {"attachment-to-unknown-tool", "9:6",
+     "body \"ball\": attachment[0]: no bone and no tool is called \"tol\" (did you mean \"tool\"?)"},
     {"attachment-two-regions", "11:12",
      "body \"ball\": attachment[0]: a box and a sphere exclude each other; remove box_min_m and box_max_m, "
      "or centre_m and radius_m"},

@@ -42,11 +42,13 @@ TEST(Summary, RoundTrip) {
   store::Summary s = sample();
   s.outcome = "interrupted";
   s.message = "at t = 0.1 s, by Ctrl-C";
+  s.remarks = {"bodies and contact at 21.7 Hz", "too deep"};
   store::write_summary(folder / "summary.json", s);
   const store::Summary again = store::read_summary(folder / "summary.json");
   EXPECT_EQ(store::to_json(again), store::to_json(s));
   EXPECT_EQ(std::get<long long>(again.sections[0].values[0].second), 1234);
   EXPECT_TRUE(std::isnan(std::get<double>(again.sections[1].values[1].second)));
+  EXPECT_EQ(again.remarks, s.remarks);
 }
 
 TEST(Summary, ABadByteDoesNotLoseTheFile) {

@@ -27,14 +27,22 @@ Table read_csv(const std::filesystem::path& path);
 /// The number in a cell, locale-free; NaN when the cell is not exactly one number.
 double to_number(std::string_view cell);
 
-/// At most three significant digits, as short as they come: 0.0123, 12.3, 4.56e-07; "-" for NaN.
-std::string short_number(double value);
+/// At most `digits` significant digits, as short as they come: 0.0123, 12.3, 4.56e-07; "-" for NaN, "∞" and
+/// "-∞".
+std::string short_number(double value, int digits = 3);
+/// A figure and the range that it must lie in: "0.83 in [0.8, 1.2]"; "0.83, at least 0.8" where the other end
+/// is NaN or infinite; "0.83" where both are.
+std::string within_text(double value, double low, double high);
+
+/// A cell as people see it: a number that is not finite as short_number() writes it, all else as it is.
+std::string shown_cell(const std::string& cell);
+/// True when a cell holds no value: empty, "-", or NaN.
+bool is_blank(std::string_view cell);
 
 /// Aligned text for the terminal: two blanks between columns, a rule under the headers, numbers to the right,
 /// words to the left.  Width is counted in code points, so that Greek letters and dashes do not shift the
-/// columns.
-std::string format_table(const std::vector<std::string>& headers,
-                         const std::vector<std::vector<std::string>>& rows);
+/// columns.  Cells are written as shown_cell() has them.
+std::string format_table(const std::vector<std::string>& headers, std::vector<std::vector<std::string>> rows);
 
 /// True when every cell that is neither empty nor "-" is a number, and there is at least one: such a column
 /// is set to the right.

@@ -62,7 +62,9 @@ struct FittedOrder {
   double order = kUnknown;  ///< NaN with fewer than two usable points
   int points = 0;           ///< that were used: status ok, finite, not unresolved
 };
-std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column);
+/// @param scale  size of what errs, in the error's unit: an error as large has no slope; NaN: unknown
+std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column,
+                                       double scale = 1.0);
 
 /// Errors closer to the reference's own than this decide nothing (compare marks them, compare.h).
 inline constexpr double kResolved = 10.0;
@@ -116,17 +118,24 @@ std::vector<std::string> remarks_in_words(const Table& compare, const ReferenceE
 /// enough.  Paragraphs are separate lines.
 std::string in_words(const Table& compare, const ReferenceError& reference);
 
-/// Error against a cost, log-log: one line a ladder, coloured by family; the best envelope is drawn over
+/// Errors are drawn up to this many times the size of what errs: one far above it says only that the run is
+/// wrong, and would compress the others.
+inline constexpr double kLargestDrawn = 3.0;
+/// How many points work_precision_plot() leaves out for that.
+/// @param scale  size of what errs, in the error's unit: 1 of a relative error; NaN: unknown, all are drawn
+int points_not_drawn(const Table& compare, const std::string& error_column, double scale);
+
+/// Error against a cost, log-log: one line per ladder, coloured by family; the best envelope is drawn over
 /// them.
 Plot work_precision_plot(const Table& compare, const std::string& error_column,
-                         const std::string& error_label, double reference_error,
+                         const std::string& error_label, double reference_error, double scale = 1.0,
                          const std::string& cost_column = "cpu_s_median",
                          const std::string& cost_label = "CPU time [s]");
 
 /// Error against a cost in one small plot a family: its ladders in colour with their names, all others faint
 /// behind.
 std::vector<Plot> family_plots(const Table& compare, const std::string& error_column,
-                               const std::string& error_label, double reference_error,
+                               const std::string& error_label, double reference_error, double scale = 1.0,
                                const std::string& cost_column = "cpu_s_median",
                                const std::string& cost_label = "CPU time [s]");
 

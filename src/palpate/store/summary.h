@@ -25,6 +25,7 @@ struct Summary {
   std::vector<std::string> overrides;
   std::string outcome = "finished";  ///< "finished", "interrupted", "failed"
   std::string message;               ///< why not finished
+  std::vector<std::string> remarks;  ///< warnings and verdicts, as standard output had them
   Provenance provenance;
   std::vector<SummarySection> sections;  ///< options, counts, timings, errors, ...
 

@@ -1,0 +1,111 @@
+#include "run_remarks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "clock_figures.h"
+#include "palpate/core/log.h"
+#include "palpate/loop/silent_doings.h"
+#include "palpate/loop/summary.h"
+#include "palpate/scene/hands.h"
+
+namespace palpate::cli {
+namespace {
+
+using Remarks = std::vector<std::string>;
+
+std::string hand_label(const loop::World& world, std::size_t hand) {
+  return hand == 0 ? "the hand" : fmt::format("hand \"{}\"", world.description.hands[hand - 1].name);
+}
+
+/// Counts of a device, "packets_stale" as "3 packets stale".
+void add_device_counts(const loop::World& world, std::size_t hand, Remarks& out) {
+  std::string text;
+  for (const auto& [name, count] : loop::tallies_of(world, hand)) {
+    std::string words = name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
+  }
+  if (!text.empty()) out.push_back(fmt::format("device of {}: {}", hand_label(world, hand), text));
+}
+
+void add_ticks(const loop::RunResult& result, Remarks& out) {
+  if (result.rejected_ticks > 0)
+    out.push_back(
+        fmt::format("in {} ticks the wrench was not finite, or time did not advance: forces fell to zero",
+                    result.rejected_ticks));
+  if (result.outside_ticks > 0)
+    out.push_back(
+        fmt::format("in {} ticks the handle was outside the device's workspace, where forces fade to zero; "
+                    "move it by device.workspace_center_m",
+                    result.outside_ticks));
+}
+
+void add_overlaps(const loop::World& world, Remarks& out) {
+  const std::vector<loop::Overlap> overlaps = loop::overlaps_of(world);
+  std::string text;
+  for (const loop::Overlap& o : overlaps)
+    if (o.deepest_m > 0.0)
+      text += fmt::format("{}{} {:.3g} mm", text.empty() ? "" : ", ", o.pair, 1e3 * o.deepest_m);
+  if (!text.empty()) out.push_back(fmt::format("deepest overlap: {}", text));
+}
+
+/// The error that exchange.linearisation_error bounds.
+void add_reduction_errors(const loop::World& world, Remarks& out) {
+  for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
+    if (e.factored == e.exchanges) {
+      out.push_back(fmt::format("{}: reduced response of the bodies exact (factored) in all {} exchanges",
+                                e.tool, e.exchanges));
+      continue;
+    }
+    std::string text = fmt::format(
+        "{}: reduced response of the bodies: error at most {:.2g} % (bound; mean {:.2g} %, target {:g} %) "
+        "over {} exchanges",
+        e.tool, 100.0 * e.largest, 100.0 * e.mean, 100.0 * e.wanted, e.exchanges);
+    if (e.beyond > 0) text += fmt::format("; above the target in {}", e.beyond);
+    if (e.factored > 0) text += fmt::format("; exact (factored) in {}", e.factored);
+    out.push_back(text);
+  }
+}
+
+void add_port(const loop::PortEnergy& port, Remarks& out) {
+  out.push_back(fmt::format(
+      "energy at the device's port: least {:.3g} J, at the end {:.3g} J; the passivity controller "
+      "dissipated {:.3g} J in {} ticks, {:.2g} % of the motors' work",
+      port.least, port.energy, port.controller_dissipated, port.controller_ticks,
+      port.work > 0.0 ? 100.0 * port.controller_dissipated / port.work : 0.0));
+}
+
+}  // namespace
+
+void warn_of_deep_overlaps(const loop::World& world) {
+  for (const loop::Overlap& o : loop::overlaps_of(world))
+    if (o.too_deep())
+      log::warn(
+          "contact {}: penetration reached {:.3g} mm, more than half the thickness of the thinner side "
+          "({:.3g} mm): the two may pass through each other. Increase contact.stiffness_pa_m, decrease "
+          "body.youngs_modulus_pa, or press less deeply",
+          o.pair, 1e3 * o.deepest_m, 2e3 * o.half_width_m);
+}
+
+std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result) {
+  Remarks out;
+  if (world.stepper)
+    if (const std::string fallbacks = loop::silent_doings(result.counters); !fallbacks.empty())
+      out.push_back(fmt::format("fallbacks of {}: {}", world.stepper->name(), fallbacks));
+  if (result.ticks > 0)
+    for (std::size_t i = 0; i <= result.more_hands.size(); ++i) add_device_counts(world, i, out);
+  add_ticks(result, out);
+  if (result.buzz_n)
+    out.push_back(fmt::format("buzz: {:.3g} N RMS of the force on the hand above 30 Hz", *result.buzz_n));
+  add_overlaps(world, out);
+  add_reduction_errors(world, out);
+  if (result.port) add_port(*result.port, out);
+  if (result.real_time)
+    for (std::string& line : clock_remarks(result, world.description.exchange.linearisation))
+      out.push_back(std::move(line));
+  return out;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,18 @@
+// Warnings are kept, each once, whether or not the terminal shows them.
+#include "palpate/core/log.h"
+
+#include <gtest/gtest.h>
+
+using namespace palpate;
+
+TEST(Log, KeepsEveryWarningOnce) {
+  for (const bool quiet : {false, true}) {
+    log::configure(quiet, false);
+    EXPECT_TRUE(log::warnings().empty()) << "those of before are gone";
+    log::info("running");
+    log::warn("penetration reached {} mm", 11);
+    log::warn("too fast");
+    log::warn("penetration reached {} mm", 11);
+    EXPECT_EQ(log::warnings(), (std::vector<std::string>{"penetration reached 11 mm", "too fast"}));
+  }
+}
