@@ -61,7 +61,7 @@ void ContactForce::Impl::add_single_forces(const dynamics::StateView& state, Vec
   };
   visit_active(state, Which::kOfState,
                [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-                 const Vec3 force = sample_force(s, motion, law);
+                 const Vec3 force = force_of(s, motion, law);
                  add_point_force(s.a, motion.a.arm, force, row(s.a), f);
                  add_point_force(s.b, motion.b.arm, -force, row(s.b), f);
                });
@@ -72,7 +72,7 @@ void ContactForce::Impl::apply_single_tangents(const dynamics::StateView& state,
   bonds.apply_tangent(state, frame_states, k_scale, d_scale, x, y);
   visit_active(state, Which::kOfState,
                [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-                 const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
+                 const SampleForce force = tangent_of(s, motion, law, law.symmetric_tangent);
                  apply_sample_tangent(Side(s.a, motion.a, frame_states, 1.0, force.force),
                                       Side(s.b, motion.b, frame_states, -1.0, force.force), force, k_scale,
                                       d_scale, x, y);
@@ -169,7 +169,7 @@ void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale,
   m.groups.add_tangent(state, m.frame_states, k_scale, d_scale, A);
   m.linearise_friction(state);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-    const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
+    const SampleForce force = m.tangent_of(s, motion, law, law.symmetric_tangent);
     add_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force),
                        Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale,
                        state.layout->nodal_size, A);
@@ -230,7 +230,8 @@ void ContactForce::Impl::linearise_friction(const dynamics::StateView& state) {
   linearised.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Pair& pair = pairs[i];
-    if (!pair.law.symmetric_tangent || pair.law.friction == 0.0 || pair.given) continue;
+    if (!pair.law.symmetric_tangent || pair.law.friction == 0.0 || pair.given || has_step_friction(pair.law))
+      continue;
     Vec3 sum = Vec3::Zero();
     for (std::size_t s = pair.begin; s < pair.end; ++s) {
       const SampleMotion motion = sample_motion(samples[s], state, frame_states);

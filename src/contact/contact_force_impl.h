@@ -69,6 +69,33 @@ struct ContactForce::Impl {
   double largest_friction_lag = 0.0, largest_friction = 0.0;  ///< [N]
   void linearise_friction(const dynamics::StateView& state);
   void measure_friction_lag(const dynamics::StateView& state);
+  /// Friction within a step, where it is that of the step's end.
+  struct StepFriction {
+    bool on = false;
+    int solves = 0;
+    std::vector<FrictionGuess> guesses;    ///< by sample
+    double left_out = 0.0, largest = 0.0;  ///< of the last solve, of the pairs' sums [N]
+  } step_friction;
+  bool has_step_friction(const PressureLaw& law) const {
+    return step_friction.on && law.secant_friction && law.friction > 0.0;
+  }
+  FrictionLine line_of(const ContactSample& s, const PressureLaw& law) const {
+    return friction_line(step_friction.guesses[static_cast<std::size_t>(&s - samples.data())], s.normal,
+                         law.regularisation);
+  }
+  /// As the pair's law has it, or within a step as that takes it.
+  Vec3 force_of(const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) const {
+    return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s, law)).force
+                                  : sample_force(s, motion, law);
+  }
+  SampleForce tangent_of(const ContactSample& s, const SampleMotion& motion, const PressureLaw& law,
+                         bool symmetric) const {
+    return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s, law))
+                                  : sample_force_and_tangent(s, motion, law, symmetric);
+  }
+  /// @param step_of  (sample, motion) -> SampleStep
+  template <class StepOf>
+  bool improve(const dynamics::StateView& state, const StepOf& step_of);
   /// Frames, and with them the samples that follow, at the state of an evaluation.
   void place_frames(const dynamics::StateView& state);
   void follow(const dynamics::StateView& state);

@@ -74,7 +74,7 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
     PALPATE_CHECK(s.a.frame != s.b.frame, "a contact sample has frame {} on both sides", frame);
     const bool two_frames = s.a.frame >= 0 && s.b.frame >= 0;
     if (partners == (two_frames ? Partners::kNodes : Partners::kFrames)) return;
-    const SampleForce force = sample_force_and_tangent(s, motion, law);
+    const SampleForce force = m.tangent_of(s, motion, law, false);
     if (force.force.isZero(0.0)) return;
     const Side a(s.a, motion.a, m.frame_states, 1.0, force.force),
         b(s.b, motion.b, m.frame_states, -1.0, force.force);

@@ -19,7 +19,7 @@ void ContactForce::add_step(const dynamics::StateView& state, const VecX& shift,
   f -= m.product;
   m.linearise_friction(state);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-    const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
+    const SampleForce force = m.tangent_of(s, motion, law, law.symmetric_tangent);
     PointStiffness::OfPoint point;
     const auto take = [&](const SurfacePoint& p, double sign) {
       for (int i = 0; p.frame < 0 && i < p.count; ++i) {

@@ -3,13 +3,9 @@
 #include <algorithm>
 
 namespace palpate::contact {
-namespace {
-
-Vec3 tangential(const ContactSample& sample, const SampleMotion& motion) {
+Vec3 sliding_velocity(const ContactSample& sample, const SampleMotion& motion) {
   return motion.a.v - motion.b.v - motion.rate * sample.normal;
 }
-
-}  // namespace
 
 PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& state,
                          const std::vector<FrameState>& frames) {
@@ -41,8 +37,8 @@ SampleMotion sample_motion(const ContactSample& sample, const dynamics::StateVie
 Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
   const double p = pressure(law, motion.gap, motion.rate).p;
   if (law.friction == 0.0 || p == 0.0) return sample.area * p * sample.normal;
-  const Vec3 v_t = tangential(sample, motion);
-  return sample.area * p * (sample.normal - law.friction / std::max(v_t.norm(), law.regularisation) * v_t);
+  return sample.area * p * sample.normal +
+         friction_force(law.friction * sample.area * p, sliding_velocity(sample, motion), law.regularisation);
 }
 
 // With m = n - mu s, n and A frozen, p = p(gap, rate), gap = n . x_rel, rate = n . v_rel:
@@ -71,7 +67,7 @@ SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMo
     const Mat3 nn = sample.area * n * n.transpose();
     return {sample.area * p.p * n, -p.dp_dgap * nn, -p.dp_drate * nn};
   }
-  const Vec3 v_t = tangential(sample, motion);
+  const Vec3 v_t = sliding_velocity(sample, motion);
   const double speed = v_t.norm(), scale = std::max(speed, law.regularisation);
   const Vec3 s = v_t / scale, m = n - law.friction * s;
   const Mat3 P = Mat3::Identity() - n * n.transpose();
@@ -81,8 +77,27 @@ SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMo
   return {sample.area * p.p * m, -p.dp_dgap * mn, -p.dp_drate * mn + sample.area * law.friction * p.p * ds};
 }
 
+SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
+                                     const PressureLaw& law, const FrictionLine& friction) {
+  const Pressure p = pressure(law, motion.gap, motion.rate);
+  const Vec3& n = sample.normal;
+  const Mat3 nn = sample.area * n * n.transpose();
+  return {sample.area * p.p * n + friction.constant - friction.D * sliding_velocity(sample, motion),
+          -p.dp_dgap * nn, -p.dp_drate * nn + friction.D};
+}
+
+// The linear equations may find tension, where a contact opens within the step: no friction then.
+SampleEnd sample_end(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law,
+                     const SampleStep& step) {
+  const Pressure p = pressure(law, motion.gap, motion.rate);
+  const Vec3& n = sample.normal;
+  const double end = p.p + p.dp_dgap * n.dot(step.moved) + p.dp_drate * n.dot(step.change);
+  const Vec3 change = step.change - n.dot(step.change) * n;
+  return {law.friction * sample.area * std::max(end, 0.0), sliding_velocity(sample, motion) + change};
+}
+
 Vec3 friction_per_pressure(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
-  const Vec3 v_t = tangential(sample, motion);
+  const Vec3 v_t = sliding_velocity(sample, motion);
   return -sample.area * law.friction / std::max(v_t.norm(), law.regularisation) * v_t;
 }
 
@@ -98,7 +113,7 @@ double damping_power(const PressureLaw& law, double gap, double rate) {
 double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
   if (motion.gap >= 0.0) return 0.0;
   const double p = pressure(law, motion.gap, motion.rate).p;
-  const Vec3 v_t = tangential(sample, motion);
+  const Vec3 v_t = sliding_velocity(sample, motion);
   return sample.area * (damping_power(law, motion.gap, motion.rate) +
                         law.friction * p * v_t.squaredNorm() / std::max(v_t.norm(), law.regularisation));
 }

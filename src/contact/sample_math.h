@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "contact/friction.h"
 #include "contact/pressure.h"
 #include "palpate/contact/frame.h"
 #include "palpate/contact/sample.h"
@@ -43,6 +44,24 @@ Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const
 /// @param symmetric  K and D without the change of friction by pressure: symmetric, positive semi-definite
 SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
                                      const PressureLaw& law, bool symmetric = false);
+/// Tangential part of v_a - v_b [m/s].
+Vec3 sliding_velocity(const ContactSample& sample, const SampleMotion& motion);
+/// Force and its derivatives with friction as that line gives it at the sample's own velocity; symmetric,
+/// positive semi-definite.
+SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
+                                     const PressureLaw& law, const FrictionLine& friction);
+/// How a sample moves within a step, from its motion at the step's start.
+struct SampleStep {
+  Vec3 moved = Vec3::Zero();   ///< of x_a - x_b [m]
+  Vec3 change = Vec3::Zero();  ///< of v_a - v_b [m/s]
+};
+/// The step's end as its linear equations have it: mu times the normal force, and the sliding velocity.
+struct SampleEnd {
+  double limit;  ///< [N]
+  Vec3 v;        ///< [m/s]
+};
+SampleEnd sample_end(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law,
+                     const SampleStep& step);
 /// The part of the force that friction is, over the pressure: -A mu s [m^2].
 Vec3 friction_per_pressure(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
 /// Power per area that damping takes out of a touching contact [W/m^2], >= 0.

@@ -11,6 +11,7 @@
 #include "palpate/contact/spec.h"
 #include "palpate/core/archive.h"
 #include "palpate/dynamics/force_term.h"
+#include "palpate/dynamics/repeated_step.h"
 #include "palpate/dynamics/step_assembly.h"
 #include "palpate/mesh/embedding.h"
 
@@ -158,7 +159,9 @@ struct TouchTangent;
 enum class Partners { kAll, kNodes, kFrames };
 
 /// All contacts of a scene as one force term (docs/design.md 4.4).
-class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffnessTerm {
+class ContactForce : public dynamics::ForceTerm,
+                     public dynamics::PointStiffnessTerm,
+                     public dynamics::RepeatedStepTerm {
  public:
   ContactForce();
   ~ContactForce() override;
@@ -180,6 +183,14 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
                 dynamics::PointStiffness& C) override;
   void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,
                       VecX& f) override;
+  /// Of pairs with friction_tangent = "secant": within a step their friction is that of its end (friction.h).
+  bool bends_at(const dynamics::StateView& state) override;
+  bool begin_step(const dynamics::StateView& state) override;
+  bool improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) override;
+  /// Of a frame that is given from outside, and moves within the step beyond what it does at `state`.
+  /// @param moved  (rotation vector, displacement) [rad, m]  @param change  that of the twist [rad/s, m/s]
+  bool improve_step(const dynamics::StateView& state, int frame, const Vec6& moved, const Vec6& change);
+  void end_step() override;
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;
   bool refresh(const dynamics::StateView& state) override;

@@ -26,9 +26,52 @@ LinearizedStep::LinearizedStep(dynamics::System& system, std::unique_ptr<dynamic
       mixed_(dynamic_cast<dynamics::MixedPrecisionSolver*>(&solver_.chosen())),
       fused_(system) {}
 
+/// The terms that want the step's end, while they are told of it.
+class LinearizedStep::Repeats {
+ public:
+  /// @param terms  scratch, so that a step takes no memory
+  Repeats(const dynamics::System& system, const dynamics::StateView& at,
+          std::vector<dynamics::RepeatedStepTerm*>& terms)
+      : at_(at), terms_(terms) {
+    terms_.clear();
+    for (const auto& term : system.terms())
+      if (auto* const repeated = dynamic_cast<dynamics::RepeatedStepTerm*>(term.get());
+          repeated && repeated->begin_step(at))
+        terms_.push_back(repeated);
+  }
+  ~Repeats() {
+    for (dynamics::RepeatedStepTerm* term : terms_) term->end_step();
+  }
+  Repeats(const Repeats&) = delete;
+  Repeats& operator=(const Repeats&) = delete;
+  bool any() const { return !terms_.empty(); }
+  /// Whether all are content with the end.
+  bool improve(const VecX& moved, const VecX& change) {
+    bool done = true;
+    for (dynamics::RepeatedStepTerm* term : terms_) done = term->improve_step(at_, moved, change) && done;
+    return done;
+  }
+
+ private:
+  const dynamics::StateView& at_;
+  std::vector<dynamics::RepeatedStepTerm*>& terms_;
+};
+
 StepStatus LinearizedStep::solve(const Equations& e, VecX& du, dynamics::StepperCounters& counters) {
   counters_ = &counters;
   known_indefinite_ = false;
+  Repeats repeats(system_, e.at, repeated_terms_);
+  repeats_ = repeats.any();
+  for (;;) {
+    const StepStatus status = solve_once(e, du);
+    if (status != StepStatus::kOk || !repeats_ || !all_finite(du)) return status;
+    s_of_x_ = e.s + e.h * du;
+    dv_of_x_ = e.dv + du;
+    if (repeats.improve(s_of_x_, dv_of_x_)) return status;
+  }
+}
+
+StepStatus LinearizedStep::solve_once(const Equations& e, VecX& du) {
   if (mixed_ && fused_.applies(e.at)) {
     if (solve_by_lagged_matrix(e, du)) {
       if (!goes_along_negative_curvature(e, du)) return StepStatus::kOk;
@@ -114,7 +157,7 @@ bool LinearizedStep::assemble_fused(const Equations& e, dynamics::ZeroRowSumMatr
   {
     const ScopedTimer timer(counters_->tangent_s);
     ++counters_->tangent_evaluations;
-    fused_.assemble(e.at, e.s, 1.0, e.h, e.h * e.h, rhs_, A);
+    fused_.assemble(e.at, e.s, 1.0, e.h, e.h * e.h, rhs_, A, repeats_);
   }
   const ScopedTimer timer(counters_->force_s);
   return complete_right_hand_side(e);

@@ -1,6 +1,7 @@
 #pragma once
 #include "integrate/step_solver.h"
 #include "palpate/dynamics/mixed_precision_step.h"
+#include "palpate/dynamics/repeated_step.h"
 #include "palpate/dynamics/step_assembly.h"
 
 namespace palpate::integrate {
@@ -15,7 +16,9 @@ struct LinearizedEquations {
   bool dv_is_zero;
 };
 
-/// Solves them.  In order of cost:
+/// Solves them, and again where terms take a part of their force from the step's end (RepeatedStepTerm),
+/// until that is right.  What the soft bodies give is the same in all solves of a step, and is kept
+/// (dynamics::KeptStep).  A solve, in order of cost:
 ///
 ///     lagged matrix      residuals of the true equations, without their matrix, refined by the
 ///                        mixed-precision matrix of an earlier step of this length
@@ -57,8 +60,10 @@ class LinearizedStep {
 
  private:
   class Residual;
+  class Repeats;
   using Equations = LinearizedEquations;
 
+  dynamics::StepStatus solve_once(const Equations& e, VecX& du);
   bool solve_by_lagged_matrix(const Equations& e, VecX& du);
   bool solve_fused(const Equations& e, VecX& du);
   bool solve_fused_projected(const Equations& e, VecX& du, dynamics::ZeroRowSumMatrix& A);
@@ -79,9 +84,11 @@ class LinearizedStep {
   dynamics::StepperCounters* counters_ = nullptr;  ///< of the solve under way
   dynamics::BorderedMatrix A_;
   VecX rhs_, product_, s_of_x_, dv_of_x_, u1_;
-  double speed_ = 0.0;             ///< u1.M u1 [J]
-  bool known_indefinite_ = false;  ///< the matrix of the solve under way is
-  double lagged_h_ = 0.0;          ///< step of the mixed-precision matrix that the solver keeps; 0: none
+  double speed_ = 0.0;                                       ///< u1.M u1 [J]
+  bool known_indefinite_ = false;                            ///< the matrix of the solve under way is
+  std::vector<dynamics::RepeatedStepTerm*> repeated_terms_;  ///< scratch
+  bool repeats_ = false;   ///< the solve may be repeated from the same state
+  double lagged_h_ = 0.0;  ///< step of the mixed-precision matrix that the solver keeps; 0: none
   std::uint64_t lagged_pattern_ = 0;
 };
 

@@ -1,0 +1,135 @@
+// Friction over a step: that of its end, found by repeated solves (friction.cpp).
+#include <algorithm>
+
+#include "contact/contact_force_impl.h"
+
+namespace palpate::contact {
+namespace {
+
+/// How a surface point moves with its nodes or its frame, by displacements along u-directions; a frame that
+/// turns with its twist held changes the point's velocity besides (V of tangent.h).
+struct PointStep {
+  Vec3 moved = Vec3::Zero(), change = Vec3::Zero();
+};
+
+PointStep of_frame(const PointMotion& motion, const FrameState& frame, const Vec6& moved,
+                   const Vec6& change) {
+  const Vec3 turn = moved.head<3>();
+  return {turn.cross(motion.arm) + moved.tail<3>(),
+          change.head<3>().cross(motion.arm) + change.tail<3>() +
+              frame.twist.angular.cross(turn.cross(motion.rotating))};
+}
+
+PointStep of_state(const SurfacePoint& point, const PointMotion& motion,
+                   const std::vector<FrameState>& frames, const VecX& moved, const VecX& change) {
+  PointStep out;
+  if (point.frame >= 0) {
+    const FrameState& frame = frames[static_cast<std::size_t>(point.frame)];
+    if (frame.u_offset < 0) return out;
+    return of_frame(motion, frame, moved.segment<6>(frame.u_offset), change.segment<6>(frame.u_offset));
+  }
+  for (int i = 0; i < point.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    out.moved += point.weight[k] * moved.segment<3>(3 * point.node[k]);
+    out.change += point.weight[k] * change.segment<3>(3 * point.node[k]);
+  }
+  return out;
+}
+
+}  // namespace
+
+bool ContactForce::bends_at(const dynamics::StateView& state) {
+  Impl& m = *impl_;
+  bool sticks = false;
+  m.place_frames(state);
+  m.visit_active(state, Impl::Which::kOfState,
+                 [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+                   sticks = sticks ||
+                            (law.friction > 0.0 && sliding_velocity(s, motion).norm() <= law.regularisation);
+                 });
+  return sticks;
+}
+
+bool ContactForce::begin_step(const dynamics::StateView& state) {
+  Impl& m = *impl_;
+  if (!m.laws_kept.empty()) return false;
+  m.step_friction.on = std::any_of(m.pairs.begin(), m.pairs.end(), [](const Impl::Pair& pair) {
+    return pair.law.secant_friction && pair.law.friction > 0.0 && pair.begin < pair.end;
+  });
+  if (!m.step_friction.on) return false;
+  m.step_friction.solves = 0;
+  m.step_friction.guesses.resize(m.samples.size());
+  m.place_frames(state);
+  bool any = false;
+  m.visit_active(state, Impl::Which::kEvery,
+                 [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+                   if (!m.has_step_friction(law)) return;
+                   any = true;
+                   const SampleEnd start = sample_end(s, motion, law, {});
+                   m.step_friction.guesses[static_cast<std::size_t>(&s - m.samples.data())] =
+                       first_guess(start.limit, start.v, law.regularisation);
+                 });
+  m.step_friction.on = any;
+  return any;
+}
+
+/// Each pair's error counts for itself: a heavy body in the same step does not hide a light one's.
+template <class StepOf>
+bool ContactForce::Impl::improve(const dynamics::StateView& state, const StepOf& step_of) {
+  place_frames(state);
+  StepFriction& step = step_friction;
+  ++step.solves;
+  step.left_out = step.largest = 0.0;
+  double worst = 0.0;
+  for (const Pair& pair : pairs) {
+    if (pair.grouped || !has_step_friction(pair.law)) continue;
+    FrictionError error;
+    for (std::size_t i = pair.begin; i < pair.end; ++i) {
+      const ContactSample& s = samples[i];
+      const SampleMotion motion = sample_motion(s, state, frame_states);
+      if (motion.gap >= 0.0) continue;
+      const SampleEnd end = sample_end(s, motion, pair.law, step_of(s, motion));
+      FrictionGuess& guess = step.guesses[i];
+      const FrictionLine line = friction_line(guess, s.normal, pair.law.regularisation);
+      error.add(line.constant - line.D * end.v, end.limit, end.v, pair.law.regularisation);
+      guess = next_guess(guess, end.limit, end.v, pair.law.regularisation, step.solves);
+    }
+    worst = std::max(worst, error.relative());
+    if (pair.given) continue;
+    step.left_out = std::max(step.left_out, error.left_out.norm());
+    step.largest = std::max(step.largest, error.friction.norm());
+  }
+  return worst <= kFrictionTolerance || step.solves >= kFrictionSolves;
+}
+
+bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) {
+  Impl& m = *impl_;
+  return m.improve(state, [&](const ContactSample& s, const SampleMotion& motion) {
+    const PointStep a = of_state(s.a, motion.a, m.frame_states, moved, change),
+                    b = of_state(s.b, motion.b, m.frame_states, moved, change);
+    return SampleStep{a.moved - b.moved, a.change - b.change};
+  });
+}
+
+bool ContactForce::improve_step(const dynamics::StateView& state, int frame, const Vec6& moved,
+                                const Vec6& change) {
+  Impl& m = *impl_;
+  return m.improve(state, [&](const ContactSample& s, const SampleMotion& motion) {
+    const auto point = [&](const SurfacePoint& p, const PointMotion& of_point) {
+      return p.frame == frame
+                 ? of_frame(of_point, m.frame_states[static_cast<std::size_t>(frame)], moved, change)
+                 : PointStep();
+    };
+    const PointStep a = point(s.a, motion.a), b = point(s.b, motion.b);
+    return SampleStep{a.moved - b.moved, a.change - b.change};
+  });
+}
+
+void ContactForce::end_step() {
+  Impl& m = *impl_;
+  m.step_friction.on = false;
+  m.largest_friction = std::max(m.largest_friction, m.step_friction.largest);
+  m.largest_friction_lag = std::max(m.largest_friction_lag, m.step_friction.left_out);
+}
+
+}  // namespace palpate::contact
