@@ -43,7 +43,7 @@ class GeneralizedAlpha final : public ImplicitStep {
  private:
   Attempt attempt(double h, double t1) override {
     if (end_a_.size() != layout().u_size) {
-      if (!start_acceleration(end_a_)) {
+      if (!start_acceleration(h, t1, end_a_)) {
         end_a_.resize(0);
         return {.status = StepStatus::kNotFinite, .what = "the force is not finite"};
       }

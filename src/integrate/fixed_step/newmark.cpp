@@ -27,7 +27,7 @@ class Newmark final : public ImplicitStep {
 
  private:
   Attempt attempt(double h, double t1) override {
-    if (start_a_.size() != layout().u_size && !start_acceleration(start_a_)) {
+    if (start_a_.size() != layout().u_size && !start_acceleration(h, t1, start_a_)) {
       start_a_.resize(0);
       return {.status = StepStatus::kNotFinite, .what = "the force is not finite"};
     }
