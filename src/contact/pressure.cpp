@@ -55,7 +55,8 @@ PressureLaw pressure_law(const ContactSpec& spec) {
                   per_point ? spec.damping_n_s_m : spec.damping_pa_s_m,
                   spec.onset_width_m,
                   spec.friction,
-                  spec.friction_regularisation_m_s,
+                  spec.friction_regularisation_m_s > 0.0 ? spec.friction_regularisation_m_s
+                                                         : PressureLaw().regularisation,
                   spec.friction_tangent == "symmetric" || spec.friction_tangent == "secant",
                   per_point,
                   spec.friction_tangent == "secant"};

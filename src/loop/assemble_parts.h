@@ -22,6 +22,8 @@ void assemble_bones(World& world);      ///< only with [[bone]]
 void assemble_skeletons(World& world);  ///< bones of model files, where a [body.skeleton] asks for them
 void assemble_tool(World& world, std::size_t hand);  ///< for each of scene::hands_of()
 void assemble_attachments(World& world);             ///< after all that nodes may be attached to
+/// Speed below which friction of that tool is viscous, where a scene names none [m/s].
+double tool_friction_speed(const World& world, const ToolSpec& tool);
 void assemble_contact(World& world);  ///< only with [[contact]], or where a tool of ticks carries nodes
 
 }  // namespace palpate::loop

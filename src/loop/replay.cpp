@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assemble_parts.h"
 #include "palpate/core/error.h"
 #include "palpate/core/so3.h"
 #include "palpate/device/monotone_slope.h"
@@ -136,7 +137,11 @@ std::vector<TickRecord> retrace(const scene::Description& description, const Hap
   const auto world = assemble(alone, recorded_hand(record));
   ToolSide::of(*world).passivity =
       device::make_passivity_controller(record.passivity, *alone.device, alone.tool->tick_s);
-  TickSide side(*alone.tool, ToolSide::of(*world), record.models.empty() ? nullptr : &description.contacts);
+  std::vector<ContactSpec> laws = description.contacts;
+  for (ContactSpec& law : laws)
+    if (law.friction > 0.0 && law.friction_regularisation_m_s == 0.0)
+      law.friction_regularisation_m_s = tool_friction_speed(*world, *alone.tool);
+  TickSide side(*alone.tool, ToolSide::of(*world), record.models.empty() ? nullptr : &laws);
   side.start(0.0);
   std::vector<TickRecord> out;
   out.reserve(record.ticks.size());

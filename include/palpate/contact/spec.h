@@ -33,10 +33,10 @@ struct ContactSpec {
   std::string law = "kelvin_voigt";  ///< or "hunt_crossley"
   /// w: depth over which the pressure sets in smoothly (C1); 0: at once, with a kink
   double onset_width_m = 0.0;
-  double friction = 0.0;                      ///< mu, regularised Coulomb
-  double friction_regularisation_m_s = 1e-3;  ///< v_r
+  double friction = 0.0;                     ///< mu, regularised Coulomb
+  double friction_regularisation_m_s = 0.0;  ///< v_r; 0: of a scene by its size and gravity, else 1 mm/s
   /// "full"; "symmetric": without how friction follows pressure, which is unsymmetric; "secant": so, and
-  /// friction opposes the velocity that a step ends with; "auto": secant where a step is one linear solve
+  /// friction is that of a step's end, by repeated solves; "auto": secant where a step is one linear solve
   std::string friction_tangent = "auto";
   /// between two queries: "linear" in the positions, or "exact" at every evaluation (analytic alone)
   std::string gaps = "linear";
@@ -68,7 +68,7 @@ struct ContactRanges {
   static constexpr Range friction = Range::at_least(0.0);  ///< coefficient of friction [1]
   /// [m/s]
   static constexpr Range friction_regularisation_m_s =
-      Range::positive("below this sliding speed friction is viscous");
+      Range::at_least(0.0, "below this sliding speed friction is viscous; 0 lets the scene choose");
   /// [m]
   static constexpr Range candidate_gap_m = Range::at_least(0.0, "0 lets the mesh choose");
   static constexpr Range pixels = Range::closed(16, 4096);  ///< along an image's longer edge
