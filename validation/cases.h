@@ -25,6 +25,7 @@ ValidationCase elastic_foundation_peer();
 ValidationCase resting_sphere();
 ValidationCase block_on_incline();
 ValidationCase rolling_sphere();
+ValidationCase sliding_in_fixed_steps();
 ValidationCase felt_detail();
 ValidationCase contact_refresh();
 ValidationCase patch_test();

@@ -1,6 +1,7 @@
 // A contact that closes within a fixed step: Newton's iteration has no shorter step to fall back on.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <tuple>
 
 #include "loop/small_scenes.h"
@@ -100,6 +101,69 @@ TEST(FixedStepContact, SlidingEndsAtRestWhereAStepIsOneSolve) {
       EXPECT_GT(least, -0.01 * kLost) << tangent;
       EXPECT_LT(std::abs(last), 1e-3) << tangent << ": below v_r";
     }
+  }
+}
+
+/// A block on an incline of tan a = ratio times mu, whose regularisation is the scene's choice.
+scene::Description block_on_an_incline(const std::string& integrator, double ratio, double step_s) {
+  constexpr double kFriction = 0.5;
+  const double slope = ratio * kFriction;
+  scene::Description d = on_an_incline(integrator);
+  d.gravity_m_s2 = 9.81 / std::sqrt(1.0 + slope * slope) * Vec3(slope, 0, -1);
+  d.bodies[0].mesh.size_m = Vec3(0.06, 0.05, 0.02);
+  d.bodies[0].mesh.element_size_m = 0.02;
+  d.bodies[0].youngs_modulus_pa = 1e7;
+  d.bodies[0].position_m.z() = 0.00999804;  // in balance
+  d.contacts[0].stiffness_pa_m = 1e8;
+  d.contacts[0].damping_pa_s_m = 0.0;
+  d.contacts[0].friction = kFriction;
+  d.contacts[0].friction_regularisation_m_s = 0.0;
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
+  d.integrator.step_s = step_s;
+  return d;
+}
+
+/// Mean of the nodes along the slope.
+double place(const loop::World& world) {
+  const Points x = Eigen::Map<const Points>(world.state.q().data(), 3, world.state.q().size() / 3);
+  return x.row(0).mean();
+}
+
+// g (sin a - mu cos a) t^2/2 = g cos a mu (ratio - 1) t^2/2.  Euler's methods are ahead by h/t, 0.7 %.
+TEST(FixedStepContact, SlidingBeginsWhenTheLawSaysSo) {
+  constexpr double kTime = 1.5;
+  for (const char* integrator : {"linearly-implicit-euler", "backward-euler", "implicit-midpoint", "bdf2",
+                                 "newmark", "generalized-alpha"}) {
+    for (const double ratio : {1.02, 1.1, 1.5}) {
+      scene::Description d = block_on_an_incline(integrator, ratio, 0.01);
+      d.duration_s = kTime;
+      const auto world = loop::assemble(d);
+      const double start = place(*world);
+      const loop::RunResult result = loop::run(*world, {});
+      ASSERT_TRUE(result.status.ok()) << integrator << ": " << result.status.message;
+      const double slope = ratio * 0.5,
+                   exact = 9.81 / std::sqrt(1.0 + slope * slope) * 0.5 * (ratio - 1.0) * kTime * kTime / 2.0;
+      EXPECT_NEAR((place(*world) - start) / exact, 1.0, 0.01) << integrator << ", " << ratio;
+    }
+  }
+}
+
+// Below the angle of friction it creeps at v_r tan a/mu, v_r = 3e-4 sqrt(g L) of a block of 6 cm, and so does
+// one a hundred times as large, a tenth as fast as its speeds are.
+TEST(FixedStepContact, TheSpeedOfTheRegularisationFollowsTheScene) {
+  for (const double scale : {1.0, 100.0}) {
+    scene::Description d = block_on_an_incline("linearly-implicit-euler", 0.9, 0.01 * std::sqrt(scale));
+    d.bodies[0].mesh.size_m *= scale;
+    d.bodies[0].mesh.element_size_m *= scale;
+    d.bodies[0].position_m *= scale;
+    d.bodies[0].youngs_modulus_pa *= scale;
+    d.exchange.exchange_period_s = d.exchange.contact_refresh_s = d.integrator.step_s;
+    d.duration_s = 100 * d.integrator.step_s;
+    const auto world = loop::assemble(d);
+    ASSERT_TRUE(loop::run(*world, {}).status.ok());
+    const Points v = Eigen::Map<const Points>(world->state.u().data(), 3, world->state.u().size() / 3);
+    const double v_r = 3e-4 * std::sqrt(9.81 * 0.06 * scale);
+    EXPECT_NEAR(v.row(0).mean(), 0.9 * v_r, 0.01 * v_r) << scale;
   }
 }
 
