@@ -76,7 +76,7 @@ struct TouchTicks::Impl {
 
   /// In the first N modes.
   template <int N>
-  void linearise(double t1, dynamics::LinearisedContact& out);
+  void linearise(dynamics::LinearisedContact& out);
 };
 
 TouchTicks::TouchTicks(const std::vector<ContactSpec>& contacts) : impl_(std::make_unique<Impl>()) {
@@ -219,7 +219,7 @@ void Sums<N>::add_held(const TouchModel::Point& point, const ModesByThree& P_t) 
 }  // namespace
 
 template <int N>
-void TouchTicks::Impl::linearise(double t1, dynamics::LinearisedContact& out) {
+void TouchTicks::Impl::linearise(dynamics::LinearisedContact& out) {
   const double tau = t1 - model.time;
   using OfModes = Eigen::Matrix<double, N, 1>;
   const OfModes z_p = z.head<N>(), q_p = q.head<N>() + h * z_p;
@@ -296,15 +296,14 @@ dynamics::LinearisedContact TouchTicks::linearise(double t1, double h, const dyn
 
 dynamics::LinearisedContact TouchTicks::again() {
   Impl& m = *impl_;
-  const double t1 = m.t1;
   dynamics::LinearisedContact out;
   if (m.model.modes <= 4)
-    m.linearise<4>(t1, out);
+    m.linearise<4>(out);
   else if (m.model.modes <= 8)
-    m.linearise<8>(t1, out);
+    m.linearise<8>(out);
   else
-    m.linearise<kModes>(t1, out);
-  out.time = t1;
+    m.linearise<kModes>(out);
+  out.time = m.t1;
   const Quat& rotation = m.at.pose.rotation;
   const Vec3& x = m.at.pose.translation;
   out.x0 = {rotation.w(), rotation.x(), rotation.y(), rotation.z(), x.x(), x.y(), x.z()};
