@@ -51,9 +51,7 @@ std::string within_text(double value, double low, double high) {
 
 std::string shown_cell(const std::string& cell) {
   double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  const bool number = error == std::errc{} && end == cell.data() + cell.size();
-  return number && !std::isfinite(value) ? short_number(value) : cell;
+  return read_csv_number(cell, value) && !std::isfinite(value) ? short_number(value) : cell;
 }
 
 bool is_blank(std::string_view cell) {
