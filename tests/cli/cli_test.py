@@ -569,14 +569,16 @@ class Results(Cli):
             port = one.getsockname()[1]
         with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as peer:
             done = subprocess.Popen([PROGRAM, "run", "press-ball", "--duration-s", "0.4", "--realtime", "-o",
-                                     "out", "--set", f'device={{type="udp",port={port},wait_s=0.3}}'], cwd=self.folder,
+                                     "out", "--set", f'device={{type="udp",port={port},wait_s=0.3}}'],
+                                     cwd=self.folder,
                                     stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             while done.poll() is None:
                 peer.sendto(b"no packet of ours", ("127.0.0.1", port))
                 time.sleep(0.01)
             text, error = done.communicate()
         self.assertEqual(done.returncode, 1, text)
-        packets = re.search(r"within 0\.3 s \((\d+) packets came that are no poses of this scene: (\d+) malformed",
+        packets = re.search(r"within 0\.3 s \((\d+) packets came that are no poses of this scene: "
+                            r"(\d+) malformed",
                             error)
         self.assertGreater(int(packets[1]), 3)
         self.assertEqual(packets[1], packets[2])
@@ -596,7 +598,8 @@ class Results(Cli):
         text = self.good("run", "two-hands", "--duration-s", "0.2", "--against-monolithic", "-o", "first",
                          "--set", "compare.haptic.reference_rtol=1e-4",
                          "--set", "compare.haptic.reference_refresh_s=4e-3")
-        off = re.findall(r"(?m)^against .*?: (hand left: )?force off by \S+ N RMS \((\S+) % of the peak", text)
+        off = re.findall(r"(?m)^against .*?: (hand left: )?force off by \S+ N RMS \((\S+) % of the peak",
+                         text)
         self.assertEqual([whose for whose, _ in off], ["", "hand left: "], text)
         for _, share in off:
             self.assertLess(float(share), 10.0, text)
@@ -647,7 +650,8 @@ class Results(Cli):
     def test_a_run_says_how_far_it_was_from_one_system(self):
         run = ["run", "press-ball", "--duration-s", "0.1", "--against-monolithic", *self.HAPTIC, "-o", "held"]
         text = self.good(*run)
-        self.assertRegex(text, r"(?m)^against .*: force off by \S+ N RMS \(\S+ % of the peak of \S+\), at most ")
+        self.assertRegex(text,
+                         r"(?m)^against .*: force off by \S+ N RMS \(\S+ % of the peak of \S+\), at most ")
         self.assertNotIn("as it was recorded", text)
         kept = json.loads((self.folder / "held/summary.json").read_text())["figures"]["against monolithic"]
         self.assertLess(kept["force_error_rms_of_peak"], 0.2)
@@ -656,7 +660,8 @@ class Results(Cli):
 
     def test_a_scene_is_judged_as_a_haptic_loop(self):
         text = self.good("stability", "--haptic", "press-ball", "-o", "wall")
-        self.assertRegex(text, r"the passive walls are within the stable ones; simulation and theory differ by at most \S+ %")
+        self.assertRegex(text, r"the passive walls are within the stable ones; "
+                               r"simulation and theory differ by at most \S+ %")
         self.assertIn("z_width.csv", os.listdir(self.folder / "wall"))
         self.assertIn("about the tool's axis of least inertia", text)
         self.assertNotIn("UNSTABLE", text)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Every scene that comes with palpate keeps what README.md promises of a run: the states of its bodies, the force
-on each hand, a summary and the scene.  What says so is checked of all; those that need no model, which takes
+"""Every scene that comes with palpate records what README.md promises of a run: the states of its bodies, the
+force on each hand, a summary and the scene.  What says so is checked of all; those that need no model, which takes
 minutes to make, are run.
 
     scenes_test.py PROGRAM
@@ -26,7 +26,8 @@ def tools_of(scene):
 
 
 def needs_model(scene):
-    meshes = [body.get("mesh", {}) for body in scene.get("body", [])] + [scene.get("tool", {}).get("mesh", {})]
+    meshes = [body.get("mesh", {}) for body in scene.get("body", [])] + [scene.get("tool", {}).get("mesh",
+                                                                                                   {})]
     return any(mesh.get("file", "").startswith("model:") for mesh in meshes)
 
 

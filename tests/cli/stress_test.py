@@ -26,7 +26,8 @@ class Bounded(Case):
 
     def call(self, *arguments, before=None, wrapped=(), **options):
         environment = {key: options.pop(key) for key in list(options) if key.isupper()}
-        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "stdin": subprocess.DEVNULL, **options}
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "stdin": subprocess.DEVNULL,
+                   **options}
         done = subprocess.run([*wrapped, str(PROGRAM), *map(str, arguments)], text=True, cwd=self.folder,
                               timeout=LONGEST_S, env=dict(os.environ, **environment), preexec_fn=before,
                               check=False, errors="replace", **streams)
@@ -69,13 +70,15 @@ class MemoryLimits(Bounded):
 
     def test_what_the_blas_works_in_is_refused_with_figures(self):
         """The estimate fits, and the buffer of OpenBLAS does not."""
-        scene = ["one-tet", "--integrator", "linearly-implicit-euler", "--set", "integrator.linear_solver=cholmod",
+        scene = ["one-tet", "--integrator", "linearly-implicit-euler", "--set",
+                 "integrator.linear_solver=cholmod",
                  "--set", "integrator.step_s=0.01", "--duration-s", "0.02"]
         outcomes = set()
         for size in range(140, 420, 20):
             with self.subTest(mib=size):
                 done = self.call("run", *scene, "-o", "x", "--beyond-memory",
-                                 before=lambda: resource.setrlimit(resource.RLIMIT_AS, (size * MIB, size * MIB)))
+                                 before=lambda: resource.setrlimit(resource.RLIMIT_AS,
+                                                                   (size * MIB, size * MIB)))
                 outcomes.add(done.returncode)
                 if done.returncode != 0:
                     self.assertRegex(done.stderr, r"[\d.]+ MiB")
@@ -85,7 +88,8 @@ class MemoryLimits(Bounded):
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (700 * MIB, 700 * MIB))
             resource.setrlimit(resource.RLIMIT_STACK, (64 * MIB, 64 * MIB))
-        text = self.refused("run", "press-ball", "--set", "integrator.threads=64", "--duration-s", "0.01", "-o", "x",
+        text = self.refused("run", "press-ball", "--set", "integrator.threads=64", "--duration-s", "0.01",
+                            "-o", "x",
                             before=limit)
         self.assertRegex(text, r"[\d.]+ (MiB|GiB)|thread \d+ of 64 cannot be started")
 
@@ -97,7 +101,8 @@ class Outputs(Bounded):
                 with self.subTest(command=command):
                     done = self.call(*command, stdout=full)
                     self.assertEqual(done.returncode, 1)
-                    self.assertIn("standard output has not taken everything: No space left on device", done.stderr)
+                    self.assertIn("standard output has not taken everything: No space left on device",
+                                  done.stderr)
             done = self.call("run", "one-tet", "--duration-s", "0.02", "-o", "x", stdout=full)
             self.assertEqual(done.returncode, 1)
             self.assertEqual(self.summary("x")["outcome"], "finished")
@@ -122,10 +127,13 @@ class Outputs(Bounded):
         name = "\x1b[31mred\x07\x7f"
         scene = (Path(__file__).resolve().parents[2] / "scenes/one-tet.toml").read_text()
         (self.folder / (name + ".toml")).write_text(scene)
-        (self.folder / "escape.toml").write_text(re.sub(r'^name = .*$', r'name = "a\\u001b[2J"', scene, flags=re.M))
+        (self.folder / "escape.toml").write_text(re.sub(r'^name = .*$', r'name = "a\\u001b[2J"', scene,
+                                                        flags=re.M))
         (self.folder / "key.toml").write_text(scene + '\n["\\u001b[2J"]\n')
-        for command in (["run", name], ["run", name + ".toml", "--duration-s", "0.01"], ["run", "one-tet", "-o", name,
-                        "--duration-s", "0.01"], ["run", "escape.toml"], ["run", "key.toml"], ["report", name],
+        for command in (["run", name], ["run", name + ".toml", "--duration-s", "0.01"],
+                        ["run", "one-tet", "-o", name,
+                        "--duration-s", "0.01"], ["run", "escape.toml"], ["run", "key.toml"],
+                        ["report", name],
                         ["list", name], [name], ["run", "one-tet", "--set", f"scene.name={name}"],
                         ["run", "one-tet", "--integrator", name], ["study", name], ["resume", name]):
             with self.subTest(command=command):
@@ -138,7 +146,8 @@ class Outputs(Bounded):
 
 class Surroundings(Bounded):
     def test_a_missing_folder_for_temporary_files(self):
-        done = self.call("run", "press-ball", "--duration-s", "0.02", "--report", "-o", "x", TMPDIR="/no/such/folder")
+        done = self.call("run", "press-ball", "--duration-s", "0.02", "--report", "-o", "x",
+                         TMPDIR="/no/such/folder")
         self.assertIn(done.returncode, (0, 3), done.stderr)
         if done.returncode == 3:
             self.assertIn("TMPDIR", done.stderr)
@@ -153,9 +162,12 @@ class Surroundings(Bounded):
         (self.folder / "a.h5").symlink_to("a.h5")
         (self.folder / "a.obj").symlink_to("a.obj")
         self.good("run", "press-ball", "--duration-s", "0.02", "-o", "run")
-        for command in (["run", "a"], ["run", "a.toml"], ["run", "one-tet", "-o", "a"], ["run", "one-tet", "-o", "a/b"],
-                        ["report", "a"], ["export", "a", "--to", "vtu"], ["export", "run", "--to", "vtu", "-o", "a"],
-                        ["study", "a.toml"], ["diff", "a", "run"], ["replay", "a"], ["resume", "a"], ["movie", "a"],
+        for command in (["run", "a"], ["run", "a.toml"], ["run", "one-tet", "-o", "a"],
+                        ["run", "one-tet", "-o", "a/b"],
+                        ["report", "a"], ["export", "a", "--to", "vtu"],
+                        ["export", "run", "--to", "vtu", "-o", "a"],
+                        ["study", "a.toml"], ["diff", "a", "run"], ["replay", "a"], ["resume", "a"],
+                        ["movie", "a"],
                         ["compare", "one-tet", "--integrator", "cvode-bdf", "-o", "a"],
                         ["run", "press-ball", "--set", "device.type=recording", "--set", "device.file=a"],
                         ["inspect", "press-ball", "--set", 'body.0.mesh={file="a.h5"}'],
@@ -166,16 +178,20 @@ class Surroundings(Bounded):
     @unittest.skipUnless(can_mount(), "no mounts (root, or user namespaces)")
     def test_without_proc(self):
         wrapped = [*NAMESPACE, "sh", "-c", 'mount -t tmpfs none /proc && exec "$@"', "sh"]
-        for command in (["list", "scenes"], ["inspect", "press-ball"], ["run", "one-tet", "--duration-s", "0.02"],
+        for command in (["list", "scenes"], ["inspect", "press-ball"],
+                        ["run", "one-tet", "--duration-s", "0.02"],
                         ["run", "press-ball", "--duration-s", "0.02", "-o", "x"], ["report", "x"],
                         ["export", "x", "--to", "csv"],
-                        *([["model", "ball", "-o", "m.h5", "--tetrahedra", "500"]] if MODEL.exists() else [])):
+                        *([["model", "ball", "-o", "m.h5", "--tetrahedra",
+                            "500"]] if MODEL.exists() else [])):
             with self.subTest(command=command):
                 self.good(*command, wrapped=wrapped)
 
     def test_extreme_values(self):
-        keys = ("scene.duration_s", "body.0.youngs_modulus_pa", "body.0.density_kg_m3", "body.0.mesh.radius_m",
-                "body.0.mesh.element_size_m", "integrator.step_s", "integrator.rtol", "exchange.exchange_period_s",
+        keys = ("scene.duration_s", "body.0.youngs_modulus_pa", "body.0.density_kg_m3",
+                "body.0.mesh.radius_m",
+                "body.0.mesh.element_size_m", "integrator.step_s", "integrator.rtol",
+                "exchange.exchange_period_s",
                 "contact.1.stiffness_pa_m", "tool.mass_kg", "tool.tick_s", "record.state_period_s",
                 "body.0.position_m.0", "device.keyframe.1.time_s", "device.keyframe.1.position_m.2")
         for key in keys:
@@ -245,13 +261,15 @@ class Resumed(Bounded):
 
     def setUp(self):
         super().setUp()
-        process = self.started("run", "press-ball", "--duration-s", "0.4", "--checkpoint-every", "0.1", "-o", "run")
+        process = self.started("run", "press-ball", "--duration-s", "0.4", "--checkpoint-every", "0.1", "-o",
+                               "run")
         self.wait_for((self.folder / "run/checkpoint.h5").exists, process)
         process.kill()
         process.communicate()
 
     def test_a_flipped_bit_is_found(self):
-        for name, at in (("force.csv", 300), ("force.csv", 5000), ("haptic.h5.rows", 40), ("haptic.h5.rows", 9000)):
+        for name, at in (("force.csv", 300), ("force.csv", 5000), ("haptic.h5.rows", 40),
+                         ("haptic.h5.rows", 9000)):
             with self.subTest(name=name, at=at):
                 path = self.folder / "run" / name
                 whole = path.read_bytes()
@@ -289,7 +307,8 @@ class Killed(Bounded):
     def test_by_ctrl_c_a_run_under_a_limit_ends(self):
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (2048 * MIB, 2048 * MIB))
-        process = subprocess.Popen([str(PROGRAM), "run", "one-tet", "--duration-s", "1e6", "-o", "x"], cwd=self.folder,
+        process = subprocess.Popen([str(PROGRAM), "run", "one-tet", "--duration-s", "1e6", "-o", "x"],
+                                   cwd=self.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=limit)
         self.addCleanup(process.kill)
         self.wait_for((self.folder / "x/run.vtkhdf").exists, process)
