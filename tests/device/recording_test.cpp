@@ -109,8 +109,12 @@ TEST(Recording, between_two_lines_the_handle_stays_between_them) {
   long checked = 0;
   for (std::size_t i = 0; i + 1 < lines.size(); ++i)
     for (int k = 1; k < 50; ++k, ++checked) {
-      const Vec3 p = path(times[i] + 0.02 * k * (times[i + 1] - times[i])).pose.translation;
+      const double h = times[i + 1] - times[i];
+      const HandleSample sample = path(times[i] + 0.02 * k * h);
+      const Vec3 p = sample.pose.translation, way = lines[i + 1] - lines[i];
       for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(h * sample.twist.linear[axis] * way[axis], -1e-12 * way.squaredNorm())
+            << i << ": turns back";
         EXPECT_GE(p[axis], std::min(lines[i][axis], lines[i + 1][axis])) << i;
         EXPECT_LE(p[axis], std::max(lines[i][axis], lines[i + 1][axis])) << i;
       }
