@@ -9,7 +9,7 @@
 namespace palpate::cli {
 namespace {
 
-int guarded(const std::function<int()>& action) { return guarded(action, "scene"); }
+int run_guarded(const std::function<int()>& action) { return guarded(action, "scene"); }
 
 int run_action(const Invocation& invocation) {
   const int status = invocation.action();
@@ -24,14 +24,14 @@ int main(int argc, char** argv) {
   palpate::log::configure(false, false);  // takes standard error as it is, for its colours
   guard_streams();
   Invocation invocation;
-  const int parsed = guarded([&] {
+  const int parsed = run_guarded([&] {
     invocation = parse(argc, argv);
     return 0;
   });
   if (!invocation.action) return parsed;
   if (invocation.factorises) restart_tuned(argv);
   if (invocation.starts_processes) {
-    const int prepared = guarded([] {
+    const int prepared = run_guarded([] {
       palpate::ProcessPool::prepare();
       return 0;
     });
@@ -39,5 +39,5 @@ int main(int argc, char** argv) {
   }
   palpate::log::configure(invocation.quiet, invocation.verbose);
   catch_stop_signals();
-  return guarded([&] { return run_action(invocation); });
+  return run_guarded([&] { return run_action(invocation); });
 }

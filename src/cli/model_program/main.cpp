@@ -13,6 +13,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/store/atomic_file.h"
 #include "pictures.h"
 #include "progress.h"
 #include "size_question.h"
