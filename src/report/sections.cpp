@@ -104,6 +104,10 @@ void add_pictures(Page& page, const Json& summary, const fs::path& dir) {
 void add_forces(Page& page, const Json& summary, const Table& force) {
   const Json options = figures_of(summary, "options");
   page.add_heading("Force on the hand");
+  if (force.rows.empty()) {
+    page.add_paragraph("No tick was written before the run ended.");
+    return;
+  }
   const double max_force = number_at(options, "max_force_n"),
                max_torque = number_at(options, "max_torque_n_m");
   add_plot(page, force_plot(force, max_force),

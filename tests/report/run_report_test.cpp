@@ -326,9 +326,17 @@ TEST(RunReport, WritesOneMomentInOneWay) {
       << "no digit is cut off, no rounding shown";
 }
 
-TEST(RunReport, GivesTheReasonInPlaceOfAFigureThatCannotBeDrawn) {
+TEST(RunReport, MissesNoFigureOfARunThatWasKilledBeforeItsFirstTick) {
   const TemporaryFolder dir;
   put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n");
+  const report::RunReport report = report::write_run_report(dir.path());
+  EXPECT_NE(read(report.page).find("No tick was written before the run ended."), std::string::npos);
+  EXPECT_TRUE(report.missing_figures.empty());
+}
+
+TEST(RunReport, GivesTheReasonInPlaceOfAFigureThatCannotBeDrawn) {
+  const TemporaryFolder dir;
+  put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\nnan,0,0,1\n");
   const report::RunReport report = report::write_run_report(dir.path());
   EXPECT_NE(read(report.page).find("Figure not drawn"), std::string::npos);
   ASSERT_FALSE(report.missing_figures.empty()) << "whoever prints the last line must know";
