@@ -27,8 +27,7 @@ void add_restarts(Page& page, const Table& restarts) {
   page.add_paragraph(
       "A contact query that changes the set of contacts makes a multistep method drop its history and begin "
       "again with low order and short steps. A one-step method has no history to lose. No step of either "
-      "kind "
-      "extends past a query: where queries are more frequent than steps, each costs a step. Here every "
+      "kind extends past a query: where queries are more frequent than steps, each costs a step. Here every "
       "integrator runs at the scene's own tolerance or step, with more and more frequent queries.");
   for (const std::string& scene : distinct(restarts, "scene")) {
     const Table own = rows_where(restarts, "scene", scene);
