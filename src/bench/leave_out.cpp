@@ -2,6 +2,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 
@@ -27,23 +29,29 @@ Figures in_child(const std::function<Figures()>& measure) {
   const pid_t child = fork();
   PALPATE_CHECK(child >= 0, "fork failed");
   if (child == 0) {
-    Figures figures{-1, -1, -1};
+    int status = 0;
     try {
-      figures = measure();
+      const Figures figures = measure();
+      static_cast<void>(!write(ends[1], &figures, sizeof figures));
     } catch (const std::exception& e) {
-      static_cast<void>(!write(STDERR_FILENO, e.what(), std::char_traits<char>::length(e.what())));
+      static_cast<void>(!write(ends[1], e.what(), std::char_traits<char>::length(e.what())));
+      status = 1;
     }
-    static_cast<void>(!write(ends[1], &figures, sizeof figures));
-    _exit(0);
+    _exit(status);
   }
   close(ends[1]);
-  Figures figures{-1, -1, -1};
-  const ssize_t got = read(ends[0], &figures, sizeof figures);
+  std::string said;  // the figures, or why there are none
+  std::array<char, 4096> part{};
+  for (ssize_t n = 0; (n = read(ends[0], part.data(), part.size())) > 0;)
+    said.append(part.data(), static_cast<std::size_t>(n));
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
-  if (got != sizeof figures || figures.startup_ms < 0)
-    fail("bench leave-out: a measured process failed (status {})", status);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 1) fail("bench leave-out: {}", said);
+  if (status != 0 || said.size() != sizeof(Figures))
+    fail("bench leave-out: a measured process died (status {})", status);
+  Figures figures{};
+  std::memcpy(&figures, said.data(), sizeof figures);
   return figures;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
+#include <sstream>
 
 #include "commands.h"
 #include "palpate/core/error.h"
@@ -896,7 +897,9 @@ Invocation parse(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked);
+    std::ostringstream text;
+    app.exit(asked, text, text);
+    fmt::print("{}", text.str());
     return {};
   } catch (const CLI::ParseError& error) { refuse(app, error, argc, argv); }
   return invocation;

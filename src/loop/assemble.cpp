@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "assemble_parts.h"
@@ -166,6 +167,9 @@ dynamics::BlockSpec block_of(const SoftBodySpec& spec, const Body& body) {
   block.q_size = block.u_size = static_cast<int>(3 * body.placed.cols());
   block.q_scale = (body.placed.rowwise().maxCoeff() - body.placed.rowwise().minCoeff()).norm();
   block.u_scale = std::sqrt(spec.youngs_modulus_pa / spec.density_kg_m3);
+  if (!(block.u_scale > 0.0 && std::isfinite(block.u_scale)))
+    fail("youngs_modulus_pa = {:g} and density_kg_m3 = {:g} give a wave speed of {:g} m/s, which is none",
+         spec.youngs_modulus_pa, spec.density_kg_m3, block.u_scale);
   return block;
 }
 
@@ -250,10 +254,12 @@ void assemble_bodies(World& world) {
   }
   check_memory(world);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const SoftBodySpec& spec = world.description.bodies[i];
     const VecX q = Eigen::Map<const VecX>(bodies[i].placed.data(), bodies[i].placed.size());
-    bodies[i].block_id = world.state.insert(block_of(spec, bodies[i]), q,
-                                            initial_velocities(spec, bodies[i].placed, bodies[i].masses));
+    at_place(world, fmt::format("body[{}]", i), fmt::format("body \"{}\"", specs[i].name), [&] {
+      bodies[i].block_id =
+          world.state.insert(block_of(specs[i], bodies[i]), q,
+                             initial_velocities(specs[i], bodies[i].placed, bodies[i].masses));
+    });
   }
   for (std::size_t i = 0; i < bodies.size(); ++i)
     at_place(world, fmt::format("body[{}]", i), fmt::format("body \"{}\"", specs[i].name),

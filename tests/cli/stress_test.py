@@ -48,6 +48,11 @@ class MemoryLimits(Bounded):
               "unsymmetric": [*FINE, "--set", "integrator.linear_solver=umfpack"]}
     KINDS = {"addresses": resource.RLIMIT_AS, "data": resource.RLIMIT_DATA}
 
+    def is_loaded(self, limit):
+        """Whether the system's loader can map the program and its libraries: below, main() is not reached."""
+        return subprocess.run([str(PROGRAM), "list", "integrators"], capture_output=True, preexec_fn=limit,
+                              timeout=LONGEST_S, check=False).returncode == 0
+
     def test_between_half_and_twice_of_the_estimate(self):
         ended, refused = 0, 0
         for name, scene in self.SCENES.items():
@@ -57,8 +62,11 @@ class MemoryLimits(Bounded):
                 for share in (0.5, 0.8, 1.0, 1.2, 1.5, 2.0):
                     size = int(share * said * MIB)
                     with self.subTest(scene=name, kind=kind, share=share):
-                        done = self.call("run", *scene, "-o", "x",
-                                         before=lambda: resource.setrlimit(number, (size, size)))
+                        def limit(number=number, size=size):
+                            resource.setrlimit(number, (size, size))
+                        if not self.is_loaded(limit):
+                            continue
+                        done = self.call("run", *scene, "-o", "x", before=limit)
                         if done.returncode == 0:
                             ended += 1
                             continue
@@ -161,6 +169,10 @@ class Surroundings(Bounded):
         (self.folder / "a.toml").symlink_to("a.toml")
         (self.folder / "a.h5").symlink_to("a.h5")
         (self.folder / "a.obj").symlink_to("a.obj")
+        scene = (Path(__file__).resolve().parents[2] / "scenes/press-ball.toml").read_text()
+        scene = re.sub(r"\[\[device.keyframe\]\].*(?=\[exchange\])", "", scene, flags=re.S)
+        (self.folder / "recorded.toml").write_text(
+            scene.replace('type = "script"', 'type = "recording"\nfile = "a"'))
         self.good("run", "press-ball", "--duration-s", "0.02", "-o", "run")
         for command in (["run", "a"], ["run", "a.toml"], ["run", "one-tet", "-o", "a"],
                         ["run", "one-tet", "-o", "a/b"],
@@ -169,7 +181,7 @@ class Surroundings(Bounded):
                         ["study", "a.toml"], ["diff", "a", "run"], ["replay", "a"], ["resume", "a"],
                         ["movie", "a"],
                         ["compare", "one-tet", "--integrator", "cvode-bdf", "-o", "a"],
-                        ["run", "press-ball", "--set", "device.type=recording", "--set", "device.file=a"],
+                        ["run", "recorded.toml"],
                         ["inspect", "press-ball", "--set", 'body.0.mesh={file="a.h5"}'],
                         *([["model", "a.obj"], ["model", "ball", "-o", "a/m.h5"]] if MODEL.exists() else [])):
             with self.subTest(command=command):
@@ -252,7 +264,7 @@ class Studies(Bounded):
             if process.returncode == 1:
                 self.assertIn("here: process ", errors)
                 self.assertIn("is writing into this folder", errors)
-        self.good("study", "s.toml", "-o", "here", "--tasks", "0-3")
+        self.good("study", "s.toml", "-o", "here", "--task", "0-3")
         self.good("study", "s.toml", "-o", "here", "--merge")
 
 

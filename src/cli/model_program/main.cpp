@@ -105,7 +105,8 @@ int model_command(int argc, char** argv) {
   if (std::error_code none; std::filesystem::equivalent(arguments.source, arguments.output, none))
     fail("-o {}: is the source itself; choose another name", arguments.output);
   arguments.output_path = std::filesystem::absolute(arguments.output).string();
-  arguments.picture_path = std::filesystem::absolute(arguments.picture).string();
+  if (!arguments.picture.empty())
+    arguments.picture_path = std::filesystem::absolute(arguments.picture).string();
   store::check_can_write(arguments.output);
   if (!arguments.picture.empty()) store::check_can_write(arguments.picture);
   ask_about_size(arguments, input);

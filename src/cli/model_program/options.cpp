@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
@@ -189,7 +190,9 @@ ModelArguments parse_model(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked);
+    std::ostringstream text;
+    app.exit(asked, text, text);
+    fmt::print("{}", text.str());
     return out;
   } catch (const CLI::ParseError& error) { fail("{}; see `palpate model --help`", error.what()); }
   set_creases(creases, options);
