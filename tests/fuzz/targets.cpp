@@ -24,7 +24,7 @@ const std::vector<Target>& targets() {
 #ifdef PALPATE_FUZZ_FOREIGN
       {"medit", "a foreign mesh (Medit, binary)", medit},
       {"vtu", "a foreign mesh (VTK XML)", vtu},
-      {"vtk_labels", "regions of a foreign mesh (legacy VTK)", vtk_labels},
+      {"vtk", "foreign meshes (legacy VTK)", vtk},
       {"polygons", "a foreign surface (PLY, OFF or STL)", polygons},
 #endif
   };

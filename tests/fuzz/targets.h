@@ -41,7 +41,7 @@ void recording(std::string_view bytes);
 void results(std::string_view bytes);
 void medit(std::string_view bytes);
 void vtu(std::string_view bytes);
-void vtk_labels(std::string_view bytes);
+void vtk(std::string_view bytes);
 void polygons(std::string_view bytes);
 
 }  // namespace palpate::fuzz
