@@ -256,9 +256,8 @@ void assemble_bodies(World& world) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const VecX q = Eigen::Map<const VecX>(bodies[i].placed.data(), bodies[i].placed.size());
     at_place(world, fmt::format("body[{}]", i), fmt::format("body \"{}\"", specs[i].name), [&] {
-      bodies[i].block_id =
-          world.state.insert(block_of(specs[i], bodies[i]), q,
-                             initial_velocities(specs[i], bodies[i].placed, bodies[i].masses));
+      bodies[i].block_id = world.state.insert(
+          block_of(specs[i], bodies[i]), q, initial_velocities(specs[i], bodies[i].placed, bodies[i].masses));
     });
   }
   for (std::size_t i = 0; i < bodies.size(); ++i)

@@ -5,15 +5,17 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "palpate/core/error.h"
 
-// Newell's normal is the sum of the cross products of neighbouring corners: twice the vector area, also of a
-// concave or slightly warped outline.  The projection drops the coordinate along which that normal is
-// largest.  It changes no digit of the other two, so that corners on a line stay on one.
+// The plane is that of the least squares of distances, so that a crossed outline, whose vector area may
+// vanish, has one too.  Its normal points to the side of Newell's, the sum of the cross products of
+// neighbouring corners.  The projection drops the coordinate along which the normal is largest.  It changes
+// no digit of the other two, so that corners on a line stay on one.
 //
 // An edge that the outline passes twice, to and fro, bounds nothing: it is the bridge to a hole.  All other
 // edges are constraints.  A triangle is inside where the way to infinity crosses an odd number of them.  A
@@ -30,11 +32,21 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
     Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>, CGAL::No_constraint_intersection_tag>;
 using Triangles = std::vector<std::array<int, 3>>;
 
-Vec3 newell_normal(const std::vector<Vec3>& corners) {
-  Vec3 out = Vec3::Zero();
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    out += (corners[i] - corners[0]).cross(corners[(i + 1) % corners.size()] - corners[0]);
-  return out;
+/// Unit normal of the plane through the corners; zero where they lie on a line.
+Vec3 normal_of(const std::vector<Vec3>& corners) {
+  Vec3 middle = Vec3::Zero(), newell = Vec3::Zero();
+  for (const Vec3& p : corners) middle += p / static_cast<double>(corners.size());
+  Mat3 spread = Mat3::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3 a = corners[i] - middle, b = corners[(i + 1) % corners.size()] - middle;
+    spread += a * a.transpose();
+    newell += a.cross(b);
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);  // least first
+  constexpr double kRounding = 1e-14;                      // of squares: a width below 1e-7 of the length
+  if (!(axes.eigenvalues()[1] > kRounding * axes.eigenvalues()[2])) return Vec3::Zero();
+  const Vec3 normal = axes.eigenvectors().col(0);
+  return newell.dot(normal) < 0.0 ? Vec3(-normal) : normal;
 }
 
 double largest_extent(const std::vector<Vec3>& corners) {
@@ -133,9 +145,9 @@ PolygonCut cut_polygon(const std::vector<Vec3>& corners) {
   constexpr double kWholeTurn = 6.283185307179586;
   PolygonCut out{fan(corners.size())};
   const double extent = largest_extent(corners);
-  const Vec3 area = newell_normal(corners);
-  if (corners.size() < 4 || !(area.norm() > kDegenerateTriangle * extent * extent)) return out;
-  const Vec3 normal = area.normalized();
+  if (corners.size() < 4) return out;
+  const Vec3 normal = normal_of(corners);
+  if (normal.isZero(0.0)) return out;
   out.warp = warp_of(corners, normal, extent);
   if (turns_along(corners, out.triangles, normal) && swept(corners) < kWholeTurn) return out;
   Triangles cut = delaunay(corners, normal);

@@ -57,8 +57,7 @@ void check_size(const MeshSpec& spec, const Points& points, const std::string& p
   if (const auto doubt = doubt_about_size(points))
     fail(
         "{}: the {} is {:.3g} m large: is that meant? Then write scale = 1 beside file = \"{}\"; a file in "
-        "{} "
-        "takes scale = {}",
+        "{} takes scale = {}",
         path, what, doubt->size_m, spec.file, doubt->other_unit, doubt->factor);
 }
 

@@ -177,7 +177,8 @@ void part(FittedMesh& made, double volume, std::vector<std::string>& notes) {
 // what is far below is refused.
 void refuse_too_thin(const BodySize& size, const Vec3& place, const TetrahedraOptions& options) {
   constexpr double kLongestEdge = 7.0, kTriangle = 0.43, kThrough = 3.0, kTooMany = 2.0, kFarBelow = 4.0;
-  if (options.element_size_m > 0 || options.tetrahedra <= 0 || !(size.area > 0)) return;
+  check(options, size.volume);
+  if (options.element_size_m > 0 || !(size.area > 0)) return;
   const double thickness = size.thickness(),
                flat = kThrough * size.area / 2 / (kTriangle * std::pow(kLongestEdge * thickness, 2)),
                least = least_number(size.volume, thickness);

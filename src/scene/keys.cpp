@@ -69,8 +69,7 @@ const KeyTable<ContactSpec>& contact_keys() {
              number("friction_regularisation_m_s", &ContactSpec::friction_regularisation_m_s,
                     Ranges::friction_regularisation_m_s, "sliding speed below which friction is viscous")),
       text("friction_tangent", &ContactSpec::friction_tangent, {"auto", "full", "secant", "symmetric"},
-           "symmetric, secant: without its change by pressure; secant: friction of a step's end, by repeated "
-           "solves"),
+           "symmetric, secant: without its change by pressure; secant: of a step's end, by repeated solves"),
       text("gaps", &ContactSpec::gaps, {"linear", "exact"},
            "between two queries: linear in the positions, or exact at every evaluation (obstacles, spheres)"),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, Ranges::candidate_gap_m,

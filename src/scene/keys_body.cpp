@@ -119,12 +119,9 @@ const KeyTable<MeshSpec>& mesh_keys() {
              "wanted edge length of elements"),
       number("grading", &MeshSpec::grading, MeshRanges::grading,
              "size of elements in the middle over that at the surface; 1 is uniform"),
-      unless(
-          "1",
-          number(
-              "scale", &MeshSpec::scale, MeshRanges::scale,
-              "a file's coordinates are multiplied by this; to be given where the file is larger than 10 m "
-              "or smaller than 1 mm")),
+      unless("1", number("scale", &MeshSpec::scale, MeshRanges::scale,
+                         "multiplies a file's coordinates; to be given where it is larger than 10 m or "
+                         "smaller than 1 mm")),
   };
   return keys;
 }

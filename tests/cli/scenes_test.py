@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every scene that comes with palpate records what README.md promises of a run: the states of its bodies, the
-force on each hand, a summary and the scene.  What says so is checked of all; those that need no model, which takes
-minutes to make, are run.
+force on each hand, a summary and the scene.  What says so is checked of all; those that need no model, which
+takes minutes to make, are run.
 
     scenes_test.py PROGRAM
 """

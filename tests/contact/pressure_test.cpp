@@ -181,7 +181,7 @@ TEST(Pressure, BadValuesAreRefusedByName) {
   refused([](ContactSpec& s) { s.onset_width_m = -1e-3; }, "onset_width_m = -0.001 must not be negative");
   refused([](ContactSpec& s) { s.friction = -0.1; }, "friction = -0.1");
   refused([](ContactSpec& s) { s.friction_regularisation_m_s = -1.0; },
-          "friction_regularisation_m_s = -1 must be at least 0");
+          "friction_regularisation_m_s = -1 must not be negative");
   refused([](ContactSpec& s) { s.law = "kelvin"; },
           "unknown law \"kelvin\" (did you mean \"kelvin_voigt\"?)");
 }

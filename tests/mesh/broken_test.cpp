@@ -79,7 +79,7 @@ TEST(BrokenMeshes, AreRefusedWithFilePlaceValueAndRemedy) {
     for (const auto& fragment : broken.fragments) expect_contains(message, fragment);
     ++checked;
   }
-  EXPECT_EQ(checked, 42);
+  EXPECT_EQ(checked, 43);
 }
 
 TEST(BrokenMeshes, EachFileOfTheFolderIsInTheTable) {

@@ -26,6 +26,7 @@ class TempFolder {
 inline palpate::MeshSpec file_spec(const std::string& name) {
   palpate::MeshSpec spec;
   spec.file = name;
+  spec.scale = 1.0;  // as the file has it
   return spec;
 }
 

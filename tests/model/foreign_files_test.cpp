@@ -474,8 +474,8 @@ TEST_F(ForeignFiles, BrokenFilesAreRefusedWithTheirName) {
   EXPECT_NE(message("a.stl", "not at all").find("cannot be read as STL"), std::string::npos);
   EXPECT_NE(message("a.ply", "ply\n").find("cannot be read as PLY"), std::string::npos);
   EXPECT_NE(message("a.off", "OFF\n3 1 0\n0 0 0\n").find("a.off: "), std::string::npos);
-  EXPECT_NE(message("a.vtu", "<VTKFile type=\"PolyData\"/>")
-                .find("is no VTK file of an unstructured grid, but of \"PolyData\""),
+  EXPECT_NE(message("a.vtu", "<VTKFile type=\"ImageData\"/>")
+                .find("is no VTK file of an unstructured grid or a surface (PolyData), but of \"ImageData\""),
             std::string::npos);
   EXPECT_NE(message("b.vtu", "<VTKFile").find("is no XML"), std::string::npos);
   EXPECT_NE(message("a.mesh", "MeshVersionFormatted 1\nDimension 3\nEnd\n"), "accepted");
