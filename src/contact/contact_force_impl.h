@@ -79,18 +79,17 @@ struct ContactForce::Impl {
   bool has_step_friction(const PressureLaw& law) const {
     return step_friction.on && law.secant_friction && law.friction > 0.0;
   }
-  FrictionLine line_of(const ContactSample& s, const PressureLaw& law) const {
-    return friction_line(step_friction.guesses[static_cast<std::size_t>(&s - samples.data())], s.normal,
-                         law.regularisation);
+  FrictionLine line_of(const ContactSample& s) const {
+    return friction_line(step_friction.guesses[static_cast<std::size_t>(&s - samples.data())], s.normal);
   }
   /// As the pair's law has it, or within a step as that takes it.
   Vec3 force_of(const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) const {
-    return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s, law)).force
+    return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s)).force
                                   : sample_force(s, motion, law);
   }
   SampleForce tangent_of(const ContactSample& s, const SampleMotion& motion, const PressureLaw& law,
                          bool symmetric) const {
-    return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s, law))
+    return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s))
                                   : sample_force_and_tangent(s, motion, law, symmetric);
   }
   /// @param step_of  (sample, motion) -> SampleStep

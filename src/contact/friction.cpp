@@ -10,59 +10,102 @@ namespace palpate::contact {
 // quadratic form plus
 //     sum_i L_i phi(|v_i|),   phi(s) = s^2/(2 v_r) up to v_r,  s - v_r/2 beyond:
 // friction -L phi'(|v|) v/|v| lies within the cone and against v at the end of the step, whatever h.  Both
-// parts are convex, so that there is one minimum.  Each solve takes friction as affine about a guess v_k:
+// parts are convex and have gradients, so that there is one minimum and Newton's method with a line search
+// finds it from everywhere.  Newton's method is the primal-dual one (Chan, Golub, Mulet: A nonlinear
+// primal-dual method for total variation-based image restoration, SIAM J. Sci. Comput. 20, 1999), which
+// linearises max(|v|, v_r) f + L v = 0 in both v and f: about v_k and a guess f_k of the force, |f_k| <= L,
 //
-//     sticks   |v_k| <= v_r    f = -L v/v_r                                       exact there
-//     slides   beyond          f = -L t - L/|v_k| (I - n n^T - t t^T) v,  t = v_k/|v_k|     the tangent
-//     secant                   f = -L v/max(|v_k|, v_r)
+//     |v_k| <= v_r    f = -L v/v_r                                                  exact there
+//     beyond          f = -L t - (L (I - n n^T) + (f_k t^T + t f_k^T)/2)/|v_k| (v - v_k),  t = v_k/|v_k|
 //
-// The tangent is Newton's method: a sample that goes on sliding the way it slid needs one solve, and whether
-// it speeds up or slows down within the step makes no difference.  (The secant about the start, which has
-// the end's velocity over the start's speed, resists what speeds up by more than L and lets a block slide
-// too late.)  But where the sliding ends in the step the tangent carries it beyond, v . t < 0, and from there
-// back, without end: c = h L/m, m u + c sign(u) = b with |b| < c.  Such a sample sticks in the next solve.
-// In one dimension that ends after three solves: slides; sticks, where |b| <= c + m v_r; else slides the
-// other way.
+// With f_k = -L t that is the law's own tangent, and a sample that goes on sliding the way it slid needs one
+// solve, whether it speeds up or slows down within the step.  (The secant about the start, with the end's
+// velocity over the start's speed, resists what speeds up by more than L and lets a block slide too late.)
+// Its kinks cost fewer solves than the tangent's: 14 against 25 at most for chains of twelve masses.
 //
-// With many samples nothing bounds the number of such changes.  The secant's quadratic form L |v|^2/(2 |v_k|)
-// + constant touches L phi at v_k and lies above it elsewhere (of concave phi(sqrt(s)) the tangent by s), so
-// that each solve with it makes the sum smaller (iteratively reweighted least squares, Weiszfeld 1937): it
-// takes over after kNewtonSolves, and converges slowly but always.
+// Where a sample stops sliding a solve carries it beyond, and from there back.  Hence the line search.  A
+// solve satisfies the step's equations with the force of its line, and so does, with the interpolated force,
+// every point between two of them: they are linear.  At u_k + a d, d = u_end - u_k, the sum's slope is
+//     s(a) = sum_i d_i . ((1 - a) f_k + a f_end - f(v_k + a d))_i,
+// of the samples alone.  It increases with a, from at most 0; the next guess is its zero, at most a = 1.  The
+// start of a step satisfies no equation: the first solve is taken whole.
 //
 // L follows the pressure that the step itself ends with, from solve to solve: so the matrix stays symmetric.
 namespace {
 
-constexpr int kNewtonSolves = 5;
+/// The dual that the linearised law has at the solve's end, no longer than L there.
+Vec3 next_dual(const FrictionGuess& g) {
+  const double speed = g.v.norm(), largest = std::max(speed, g.v_r),
+               longer = speed > g.v_r ? g.v.dot(g.v_end - g.v) / speed : 0.0;
+  const Vec3 out = -(g.limit_end * g.v_end + longer * g.dual) / largest;
+  const double length = out.norm();
+  return length > g.limit_end ? Vec3(g.limit_end / length * out) : out;
+}
+
+/// s(a)
+double slope(std::span<const FrictionGuess> guesses, double a) {
+  double out = 0.0;
+  for (const FrictionGuess& g : guesses) {
+    if (!g.solved) continue;
+    const Vec3 d = g.v_end - g.v;
+    out += d.dot((1.0 - a) * g.force + a * g.force_end - friction_force(g.limit_end, g.v + a * d, g.v_r));
+  }
+  return out;
+}
+
+/// Where s(a) = 0, by bisection; 1 where it is not positive there.
+double step_length(std::span<const FrictionGuess> guesses) {
+  constexpr int kHalvings = 20;
+  if (slope(guesses, 1.0) <= 0.0 || slope(guesses, 0.0) >= 0.0) return 1.0;
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double a = (low + high) / 2.0;
+    (slope(guesses, a) > 0.0 ? high : low) = a;
+  }
+  return high;
+}
 
 }  // namespace
 
 Vec3 friction_force(double limit, const Vec3& v, double v_r) { return -limit / std::max(v.norm(), v_r) * v; }
 
 FrictionGuess first_guess(double limit, const Vec3& v, double v_r) {
-  using Kind = FrictionGuess::Kind;
-  return {v.norm() <= v_r ? Kind::kSticks : Kind::kSlides, limit, v};
+  FrictionGuess out;
+  out.limit = limit;
+  out.v_r = v_r;
+  out.v = v;
+  out.dual = friction_force(limit, v, v_r);
+  return out;
 }
 
-FrictionGuess next_guess(const FrictionGuess& last, double limit, const Vec3& v, double v_r, int solves) {
-  using Kind = FrictionGuess::Kind;
-  FrictionGuess next = first_guess(limit, v, v_r);
-  if (next.kind == Kind::kSlides && solves >= kNewtonSolves) next.kind = Kind::kSecant;
-  if (next.kind == Kind::kSlides && last.kind == Kind::kSlides && v.dot(last.v) <= 0.0)
-    next.kind = Kind::kSticks;
-  return next;
-}
-
-FrictionLine friction_line(const FrictionGuess& guess, const Vec3& n, double v_r) {
-  using Kind = FrictionGuess::Kind;
+FrictionLine friction_line(const FrictionGuess& guess, const Vec3& n) {
+  if (guess.limit == 0.0) return {};
   const double speed = guess.v.norm();
   const Mat3 P = Mat3::Identity() - n * n.transpose();
-  switch (guess.kind) {
-    case Kind::kSticks: return {Vec3::Zero(), guess.limit / v_r * P};
-    case Kind::kSecant: return {Vec3::Zero(), guess.limit / std::max(speed, v_r) * P};
-    case Kind::kSlides: break;
-  }
+  if (speed <= guess.v_r) return {Vec3::Zero(), guess.limit / guess.v_r * P};
   const Vec3 t = guess.v / speed;
-  return {-guess.limit * t, guess.limit / speed * (P - t * t.transpose())};
+  const Mat3 by_dual = guess.dual * t.transpose(),
+             D = (guess.limit * P + 0.5 * (by_dual + by_dual.transpose())) / speed;
+  return {D * guess.v - guess.limit * t, D};
+}
+
+void end_solve(FrictionGuess& guess, double limit, const Vec3& v, const Vec3& force) {
+  guess.solved = true;
+  guess.limit_end = limit;
+  guess.v_end = v;
+  guess.force_end = force;
+}
+
+void move_guesses(std::span<FrictionGuess> guesses, int solves) {
+  const double a = solves > 1 ? step_length(guesses) : 1.0;
+  for (FrictionGuess& g : guesses) {
+    if (!g.solved) continue;
+    g.dual = next_dual(g);
+    g.v += a * (g.v_end - g.v);
+    g.force += a * (g.force_end - g.force);
+    g.limit = g.limit_end;
+    g.solved = false;
+  }
 }
 
 }  // namespace palpate::contact

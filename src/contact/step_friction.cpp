@@ -58,7 +58,7 @@ bool ContactForce::begin_step(const dynamics::StateView& state) {
   });
   if (!m.step_friction.on) return false;
   m.step_friction.solves = 0;
-  m.step_friction.guesses.resize(m.samples.size());
+  m.step_friction.guesses.assign(m.samples.size(), {});
   m.place_frames(state);
   bool any = false;
   m.visit_active(state, Impl::Which::kEvery,
@@ -90,15 +90,17 @@ bool ContactForce::Impl::improve(const dynamics::StateView& state, const StepOf&
       if (motion.gap >= 0.0) continue;
       const SampleEnd end = sample_end(s, motion, pair.law, step_of(s, motion));
       FrictionGuess& guess = step.guesses[i];
-      const FrictionLine line = friction_line(guess, s.normal, pair.law.regularisation);
-      error.add(line.constant - line.D * end.v, end.limit, end.v, pair.law.regularisation);
-      guess = next_guess(guess, end.limit, end.v, pair.law.regularisation, step.solves);
+      const FrictionLine line = friction_line(guess, s.normal);
+      const Vec3 taken = line.constant - line.D * end.v;
+      error.add(taken, end.limit, end.v, pair.law.regularisation);
+      end_solve(guess, end.limit, end.v, taken);
     }
     worst = std::max(worst, error.relative());
     if (pair.given) continue;
     step.left_out = std::max(step.left_out, error.left_out.norm());
     step.largest = std::max(step.largest, error.friction.norm());
   }
+  move_guesses(step.guesses, step.solves);
   return worst <= kFrictionTolerance || step.solves >= kFrictionSolves;
 }
 

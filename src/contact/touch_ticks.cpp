@@ -65,7 +65,7 @@ struct TouchTicks::Impl {
   /// linearised
   std::array<FrictionGuess, TouchModel::kMostPoints> guess;
   std::array<TickPoint, TouchModel::kMostPoints> tick_point;
-  int solves = 0;  ///< 0: there is no guess yet
+  int solves = 0;
   Modes q = Modes::Zero(), z = Modes::Zero();
   // of the tick under way
   double h = 0.0, t1 = 0.0;
@@ -132,9 +132,9 @@ struct Sums {
   Mat6 K = Mat6::Zero(), B = Mat6::Zero();
   int pressing = 0;
 
-  /// @param P_t  P^T of the point  @param guess  of its friction; the first where `first`
+  /// @param P_t  P^T of the point  @param guess  of its friction; made where there is none
   void add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law,
-                    TickPoint& out, FrictionGuess& guess, bool first);
+                    TickPoint& out, FrictionGuess& guess);
   void add_held(const TouchModel::Point& point, const ModesByThree& P_t);
 
  private:
@@ -167,7 +167,7 @@ void Sums<N>::add(const ModesByThree& P_t, const Mat36& Z, const Vec3& arm, cons
 
 template <int N>
 void Sums<N>::add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law,
-                           TickPoint& out, FrictionGuess& guess, bool first) {
+                           TickPoint& out, FrictionGuess& guess) {
   const Vec3 slide = vec(point.slide), rotating = R * vec(point.offset), arm = rotating + slide;
   ContactSample& sample = out.sample;
   sample.normal = vec(point.normal);
@@ -179,13 +179,12 @@ void Sums<N>::add_touching(const TouchModel::Point& point, const ModesByThree& P
   out.touches = motion.gap < 0.0;
   if (!out.touches) return;
   motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
-  if (first && law.friction > 0.0) {
+  if (law.friction > 0.0 && guess.v_r == 0.0) {
     const SampleEnd start = sample_end(sample, motion, law, {});
     guess = first_guess(start.limit, start.v, law.regularisation);
   }
   const SampleForce s =
-      law.friction > 0.0 ? sample_force_and_tangent(sample, motion, law,
-                                                    friction_line(guess, sample.normal, law.regularisation))
+      law.friction > 0.0 ? sample_force_and_tangent(sample, motion, law, friction_line(guess, sample.normal))
                          : sample_force_and_tangent(sample, motion, law, true);
   if (s.force.isZero(0.0) && s.D.isZero(0.0)) return;
   ++pressing;
@@ -236,8 +235,7 @@ void TouchTicks::Impl::linearise(dynamics::LinearisedContact& out) {
     if (point.held_stiffness > 0.0)
       sums.add_held(point, P_t);
     else
-      sums.add_touching(point, P_t, laws[static_cast<std::size_t>(point.pair)], tick_point[i], guess[i],
-                        solves == 0);
+      sums.add_touching(point, P_t, laws[static_cast<std::size_t>(point.pair)], tick_point[i], guess[i]);
   }
   ++solves;
   pressing = sums.pressing;
@@ -274,12 +272,14 @@ bool TouchTicks::improve(const dynamics::RigidMotion& end) {
                             dv.head<3>().cross(mine.arm) + dv.tail<3>() +
                                 m.at.twist.angular.cross(turn.cross(mine.rotating)) - answer};
       const SampleEnd there = sample_end(at.sample, at.motion, law, step);
-      const FrictionLine line = friction_line(m.guess[i], at.sample.normal, law.regularisation);
-      error.add(line.constant - line.D * there.v, there.limit, there.v, law.regularisation);
-      m.guess[i] = next_guess(m.guess[i], there.limit, there.v, law.regularisation, m.solves);
+      const FrictionLine line = friction_line(m.guess[i], at.sample.normal);
+      const Vec3 taken = line.constant - line.D * there.v;
+      error.add(taken, there.limit, there.v, law.regularisation);
+      end_solve(m.guess[i], there.limit, there.v, taken);
     }
     worst = std::max(worst, error.relative());
   }
+  move_guesses(std::span(m.guess).first(static_cast<std::size_t>(m.model.points)), m.solves);
   return worst <= kFrictionTolerance || m.solves >= kFrictionSolves;
 }
 
@@ -287,6 +287,7 @@ dynamics::LinearisedContact TouchTicks::linearise(double t1, double h, const dyn
   Impl& m = *impl_;
   m.h = h;
   m.solves = 0;
+  std::fill_n(m.guess.begin(), m.model.points, FrictionGuess());
   m.at.twist = tool.twist;
   m.at.pose.rotation = (quaternion_of(h * tool.twist.angular) * tool.pose.rotation).normalized();
   m.at.pose.translation = tool.pose.translation + h * tool.twist.linear;

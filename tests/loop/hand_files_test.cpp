@@ -65,7 +65,10 @@ TEST(RecordedTimes, OfAnotherClockAreRefusedWithTheKeysThatMendThem) {
        "-3 to -1 s, the scene's from 0 to 0.5 s; set device.time_offset_s = 3 to begin with the scene"},
       {{0.5, 0.9},
        "0.5 to 0.9 s, the scene's from 0 to 0.5 s; set device.time_offset_s = -0.5 to begin with the scene"}};
-  for (const Case& one : cases) EXPECT_EQ(refusal(held_by(folder, one.times)), ranges + one.expected);
+  for (const Case& one : cases) {
+    const std::string said = refusal(held_by(folder, one.times));
+    EXPECT_TRUE(said.ends_with(": " + ranges + one.expected)) << said;
+  }
   EXPECT_EQ(std::size(cases), 7u);
 }
 

@@ -42,7 +42,7 @@ TEST(StudySlurm, TasksAreSharedOutOverTheElements) {
 
 TEST(StudySlurm, TheScriptNamesWhatAnElementRuns) {
   const TemporaryFolder folder;
-  const study::Plan plan = plan_of(folder, "name = \"soft & \\n hard\"\n");
+  const study::Plan plan = plan_of(folder, "name = \"soft & % hard\"\n");
   study::ArrayJob job{"/opt/it's here/palpate", "/shared/out 100%", "--time=10\n--oops", 3, {"0-1", "5"}};
   const std::string script = study::sbatch_script(plan, job);
   for (const char* line :
