@@ -63,6 +63,7 @@ struct Blocks {
     contact.stiffness_pa_m = 1e7;
     contact.damping_pa_s_m = 1e3;
     contact.friction = 0.3;
+    contact.friction_regularisation_m_s = 1e-3;  // the default follows the size of the body
     contact.candidate_gap_m = 1e-3;
     d.contacts.push_back(contact);
     d.integrator.name = "linearly-implicit-euler";

@@ -97,6 +97,7 @@ TEST(TouchReduction, WhatSticksGoesWithTheTool) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.005;
   d.contacts[0].friction = 0.8;
+  d.contacts[0].friction_regularisation_m_s = 1e-3;
   constexpr double kCreep = 1e-7;
   const Linear condensed(record_of(*touching(d, "condensed", 0.0, kCreep)).linear),
       frozen(record_of(*touching(d, "frozen", 0.0, kCreep)).linear);
