@@ -92,9 +92,6 @@ struct ContactForce::Impl {
     return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s))
                                   : sample_force_and_tangent(s, motion, law, symmetric);
   }
-  /// @param step_of  (sample, motion) -> SampleStep
-  template <class StepOf>
-  bool improve(const dynamics::StateView& state, const StepOf& step_of);
   /// Frames, and with them the samples that follow, at the state of an evaluation.
   void place_frames(const dynamics::StateView& state);
   void follow(const dynamics::StateView& state);

@@ -74,21 +74,23 @@ bool ContactForce::begin_step(const dynamics::StateView& state) {
 }
 
 /// Each pair's error counts for itself: a heavy body in the same step does not hide a light one's.
-template <class StepOf>
-bool ContactForce::Impl::improve(const dynamics::StateView& state, const StepOf& step_of) {
-  place_frames(state);
-  StepFriction& step = step_friction;
+bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) {
+  Impl& m = *impl_;
+  m.place_frames(state);
+  Impl::StepFriction& step = m.step_friction;
   ++step.solves;
   step.left_out = step.largest = 0.0;
   double worst = 0.0;
-  for (const Pair& pair : pairs) {
-    if (pair.grouped || !has_step_friction(pair.law)) continue;
+  for (const Impl::Pair& pair : m.pairs) {
+    if (pair.grouped || !m.has_step_friction(pair.law)) continue;
     FrictionError error;
     for (std::size_t i = pair.begin; i < pair.end; ++i) {
-      const ContactSample& s = samples[i];
-      const SampleMotion motion = sample_motion(s, state, frame_states);
+      const ContactSample& s = m.samples[i];
+      const SampleMotion motion = sample_motion(s, state, m.frame_states);
       if (motion.gap >= 0.0) continue;
-      const SampleEnd end = sample_end(s, motion, pair.law, step_of(s, motion));
+      const PointStep a = of_state(s.a, motion.a, m.frame_states, moved, change),
+                      b = of_state(s.b, motion.b, m.frame_states, moved, change);
+      const SampleEnd end = sample_end(s, motion, pair.law, {a.moved - b.moved, a.change - b.change});
       FrictionGuess& guess = step.guesses[i];
       const FrictionLine line = friction_line(guess, s.normal);
       const Vec3 taken = line.constant - line.D * end.v;
@@ -102,29 +104,6 @@ bool ContactForce::Impl::improve(const dynamics::StateView& state, const StepOf&
   }
   move_guesses(step.guesses, step.solves);
   return worst <= kFrictionTolerance || step.solves >= kFrictionSolves;
-}
-
-bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) {
-  Impl& m = *impl_;
-  return m.improve(state, [&](const ContactSample& s, const SampleMotion& motion) {
-    const PointStep a = of_state(s.a, motion.a, m.frame_states, moved, change),
-                    b = of_state(s.b, motion.b, m.frame_states, moved, change);
-    return SampleStep{a.moved - b.moved, a.change - b.change};
-  });
-}
-
-bool ContactForce::improve_step(const dynamics::StateView& state, int frame, const Vec6& moved,
-                                const Vec6& change) {
-  Impl& m = *impl_;
-  return m.improve(state, [&](const ContactSample& s, const SampleMotion& motion) {
-    const auto point = [&](const SurfacePoint& p, const PointMotion& of_point) {
-      return p.frame == frame
-                 ? of_frame(of_point, m.frame_states[static_cast<std::size_t>(frame)], moved, change)
-                 : PointStep();
-    };
-    const PointStep a = point(s.a, motion.a), b = point(s.b, motion.b);
-    return SampleStep{a.moved - b.moved, a.change - b.change};
-  });
 }
 
 void ContactForce::end_step() {

@@ -187,9 +187,6 @@ class ContactForce : public dynamics::ForceTerm,
   bool bends_at(const dynamics::StateView& state) override;
   bool begin_step(const dynamics::StateView& state) override;
   bool improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) override;
-  /// Of a frame that is given from outside, and moves within the step beyond what it does at `state`.
-  /// @param moved  (rotation vector, displacement) [rad, m]  @param change  that of the twist [rad/s, m/s]
-  bool improve_step(const dynamics::StateView& state, int frame, const Vec6& moved, const Vec6& change);
   void end_step() override;
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;

@@ -40,12 +40,13 @@ struct RecordingClock {
   double offset = 0.0;  ///< [s]
   /// As the scene says.  @throws Error for a scale that is not positive or an offset that is not finite
   static RecordingClock of(const DeviceSpec& spec);
+  /// @param t_file  in the file's units  @returns the scene's time [s]
   double operator()(double t_file) const { return scale * t_file + offset; }
 };
 
 /// A span of time [s].
 struct TimeSpan {
-  double first = 0.0, last = 0.0;
+  double first = 0.0, last = 0.0;  ///< both within it
 };
 
 /// Which poses and speeds a handle may have: others are a fault of whoever sent them.
@@ -53,6 +54,7 @@ struct PoseBounds {
   Vec3 center = Vec3::Zero();                    ///< [m]
   double radius = HUGE_VAL;                      ///< of the ball about it that holds each handle [m]
   double speed = HUGE_VAL, rotation = HUGE_VAL;  ///< largest [m/s, rad/s]
+  /// Whether a handle may be and move like that.
   bool hold(const Pose& pose, const Twist& twist) const;
 };
 
@@ -107,7 +109,7 @@ class Device {
   /// What it has to wait for before a run, in words: "the first pose at ..."; empty: for nothing.
   virtual std::string awaited() const { return {}; }
   /// Opens the device and waits for that, before the clock starts.  Returns early where `stop` is set.
-  /// @param t  time of the run's start [s]
+  /// @param t  time of the run's start [s]  @param stop  may be null
   /// @throws Error where it did not come in time
   void await(double t, const std::atomic<bool>* stop);
   /// From now on a pose outside of the bounds is dropped, by devices that cannot vouch for theirs.

@@ -17,6 +17,7 @@ class RepeatedStepTerm {
   /// nothing to end.
   virtual bool begin_step(const StateView& state) = 0;
   /// Takes the end that a solve found for the next guess.
+  /// @param state  where the step begins
   /// @param moved   displacement over the step, along u-directions  @param change  that of the velocity
   /// @return  whether the part that was taken as affine is within its tolerance of what it is at that end, or
   ///          no further solve is worth its cost

@@ -38,7 +38,7 @@ class RunFile {
   RunFile(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info);
   /// How far a file was written.
   struct Place {
-    int steps = 0;
+    int steps = 0;        ///< that are whole
     std::string content;  ///< hash of their times, positions, velocities and stresses
   };
   /// Where the file is now.
