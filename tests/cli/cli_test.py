@@ -527,8 +527,8 @@ class Results(Cli):
         text = self.good("run", "press-ball", "--duration-s", "0.2", "--realtime", "--passivity", "observe",
                          "-o", "first")
         self.assertIn("clock.csv", os.listdir(self.folder / "first"))
-        parts = re.search(r"bodies (\S+) ms in the mean: query (\S+), linearisation (\S+), step (\S+)\n",
-                          text)
+        parts = re.search(r"an exchange takes (\S+) ms in the mean: query (\S+), linearisation (\S+), "
+                          r"step of the bodies (\S+)\n", text)
         whole, *shares = map(float, parts.groups())
         self.assertGreater(whole, 0.0)
         self.assertAlmostEqual(whole, sum(shares), delta=0.25)
@@ -878,7 +878,7 @@ class Interrupt(Cli):
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 130, err)
-        self.assertIn("those written are whole", err)
+        self.assertIn("those written are complete", err)
         count = int(re.search(r"(\d+) of 40 frames", out).group(1))
         self.assertLess(count, 40)
         names = sorted(path.name for path in folder.iterdir())
