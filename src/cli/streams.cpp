@@ -48,7 +48,7 @@ void guard_streams() {
       if (const int null = ::open("/dev/null", O_RDWR); null != standard && null >= 0) ::close(null);
   const int buffering = ::isatty(STDOUT_FILENO) == 1 ? _IOLBF : _IOFBF;
   if (std::FILE* out = guarded_stream(STDOUT_FILENO, buffering)) stdout = out;
-  if (std::FILE* err = guarded_stream(STDERR_FILENO, _IOLBF)) stderr = err;
+  if (std::FILE* err = guarded_stream(STDERR_FILENO, _IONBF)) stderr = err;
 }
 
 std::string output_failure() {
