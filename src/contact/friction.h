@@ -21,7 +21,6 @@ struct FrictionGuess {
   double limit = 0.0;         ///< L [N]
   double v_r = 0.0;           ///< 0: there is no guess yet [m/s]
   Vec3 v = Vec3::Zero();      ///< tangential velocity [m/s]
-  Vec3 dual = Vec3::Zero();   ///< guess of the friction itself, of length L at most [N]
   Vec3 force = Vec3::Zero();  ///< with which the step's equations hold at v, once a solve was made [N]
   /// What the last solve ended with; `solved` of the samples that pressed there.
   bool solved = false;
@@ -31,7 +30,7 @@ struct FrictionGuess {
 
 /// The first guess: the step ends as it begins.
 FrictionGuess first_guess(double limit, const Vec3& v, double v_r);
-/// The law made affine about the guess.
+/// The law made affine about the guess: its tangent.
 /// @param n  unit normal, across which v lies
 FrictionLine friction_line(const FrictionGuess& guess, const Vec3& n);
 /// Writes down what a solve ended with.
@@ -41,10 +40,10 @@ void end_solve(FrictionGuess& guess, double limit, const Vec3& v, const Vec3& fo
 /// @param solves  done so far in this step
 void move_guesses(std::span<FrictionGuess> guesses, int solves);
 
-/// Solves of a step, at most (300 chains of twelve masses, all thrown at random, took 3 to 14), and the
-/// difference between the friction that a step took and the law's at its
-/// end that it may leave, of the largest that the law allows: below a thousandth of mu N.
-inline constexpr int kFrictionSolves = 20;
+/// Solves of a step, at most: Newton's method ends by itself (300 chains of twelve masses, all thrown at
+/// random, took 3 to 25).  And the difference between the friction that a step took and the law's at its end
+/// that it may leave, of the largest that the law allows: below a thousandth of mu N.
+inline constexpr int kFrictionSolves = 40;
 inline constexpr double kFrictionTolerance = 5e-4;
 
 /// Sums the difference between the friction of a step and the law's at the step's end.
