@@ -9,8 +9,8 @@ namespace palpate::cli {
 /// Logs a warning for each [[contact]] whose overlap became too deep for a penalty.
 void warn_of_deep_overlaps(const loop::World& world);
 
-/// What limits a run's result, and what it did on the way, a line each.  Standard output prints them,
-/// summary.json keeps them, and the head of the page shows them from there.
+/// Lists remarks on a run, a line each: limits of its result, and events on the way.  Standard output prints
+/// them, summary.json holds them, and the head of the page shows them from there.
 std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result);
 
 }  // namespace palpate::cli

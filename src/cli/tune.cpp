@@ -1,8 +1,10 @@
 #include "tune.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdlib>
+#include <cstring>
 
 // OpenBLAS 0.3.21 knows CPUs by family and model, and falls back to old kernels on those that came after it.
 // CPU features do not lie. CHOLMOD's supernodal code starts four OpenMP threads for copies of a few
@@ -12,6 +14,11 @@
 // One numeric factorisation of 11,100 rows (palpate bench fem; two cores with AVX-512): 30 ms as set here; 46
 // ms with the kernels that an unknown CPU gets; 62 ms without the thread limit; 33 ms with two BLAS threads;
 // 64 ms with nothing set.  The restart costs 20 ms.
+//
+// Where addresses are limited (ulimit -v, ulimit -d) the restart comes before any library begins.  OpenBLAS
+// starts its threads while it is loaded; each wants 128 MiB of addresses and asks for ever where it gets
+// none, and the program waits for it at its end: below 220 MiB `palpate list integrators` did not come back.
+// Without further threads it asks when a matrix is factorised, and is then refused (blas_memory.cpp).
 
 namespace palpate::cli {
 namespace {
@@ -20,6 +27,32 @@ namespace {
 bool provide(const char* name, const char* value) {
   return value && !std::getenv(name) && ::setenv(name, value, 0) == 0;
 }
+
+bool is_limited(__rlimit_resource_t resource) {
+  rlimit most{};
+  return ::getrlimit(resource, &most) == 0 && most.rlim_cur != RLIM_INFINITY;
+}
+
+/// Runs before the constructors of all libraries, the C library's too: the environment is its argument.
+void restart_where_limited(int /*argc*/, char** argv, char** envp) {
+  constexpr char kThreads[] = "OPENBLAS_NUM_THREADS=";
+  if (!is_limited(RLIMIT_AS) && !is_limited(RLIMIT_DATA)) return;
+  std::size_t count = 0;
+  for (; envp[count]; ++count)
+    if (std::strncmp(envp[count], kThreads, sizeof kThreads - 1) == 0) return;
+  auto** const changed = static_cast<char**>(std::calloc(count + 2, sizeof(char*)));
+  if (!changed) return;
+  static char one_thread[] = "OPENBLAS_NUM_THREADS=1";
+  std::memcpy(changed, envp, count * sizeof(char*));
+  changed[count] = one_thread;
+  ::execve("/proc/self/exe", argv, changed);
+  std::free(changed);
+}
+
+#ifndef __SANITIZE_ADDRESS__  // whose own functions are not ready by then
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)(int, char**,
+                                                                             char**) = restart_where_limited;
+#endif
 
 }  // namespace
 

@@ -103,8 +103,8 @@ FeltSeries series_of(const MatX& reference, const MatX& other, double rate, doub
   return out;
 }
 
-// What a sum of a million terms of the size that fingers notice leaves by rounding, 1.1e-16 of each at
-// random: 1.1e-13, and ten times that for the ticks that carry it on.  A share of less is a share of nothing.
+// Rounding of a sum of a million terms of perceptible size, 1.1e-16 of each with random signs: 1.1e-13; ten
+// times that for the error which later ticks carry on.  Below it no share is given.
 constexpr double kRounding = 1e-12;
 
 /// @param least  what fingers notice where there is none [the unit]

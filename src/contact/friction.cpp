@@ -16,7 +16,7 @@ namespace palpate::contact {
 //     |v_k| <= v_r    f = -L v/v_r                                                  exact there
 //     beyond          f = -L t - L/|v_k| (I - n n^T - t t^T) v,  t = v_k/|v_k|
 //
-// A sample that goes on sliding the way it slid needs one solve, whether it speeds up or slows down within
+// A sample that keeps sliding in its direction needs one solve, whether it speeds up or slows down within
 // the step.  (The secant about the start, with the end's velocity over the start's speed, resists what speeds
 // up by more than L and lets a block slide too late.)
 //

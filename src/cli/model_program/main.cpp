@@ -70,7 +70,7 @@ int make(ModelArguments& arguments, model::Input input, double seconds) {
   for (std::ostream* const stream : {&std::cout, &std::cerr, &std::clog})
     stream->rdbuf(nullptr);  // CGAL's words
   Bars bars(arguments);
-  constexpr double kGrace = 1.0;  // where a step notices by itself, its own message says more
+  constexpr double kGrace = 1.0;  // a step that finds its limit itself gives a more precise message
   catch_time(seconds + kGrace);
   model::Made made = model::make_model(std::move(input), arguments.options, bars);
   made.file.record.options = arguments.as_given;

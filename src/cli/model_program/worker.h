@@ -10,7 +10,7 @@
 namespace palpate::cli {
 
 struct WorkerEnd {
-  int status = 0;      ///< exit status, where it ended by itself
+  int status = 0;      ///< exit status, if no signal ended it
   std::string signal;  ///< "Floating point exception", where a signal ended it; else empty
   std::string stage;   ///< that it was in
   std::string place;   ///< "at (0.1, 0, 0) m", where it worked last; may be empty
