@@ -66,12 +66,11 @@ double moved(const scene::Description& d, const Ran& ran) {
 
 // The error of the iteration stays below what Newton's method sees: as many Newton iterations as by LU's
 // factors, to the same motion.  Error control turns the last digits into other lengths of steps (as far apart
-// are the runs by two LU factors, umfpack's and klu's; ark-imex-3's iterations of a step differ by a fifth
-// between two sets of OpenBLAS kernels): those methods are held to their own tolerance, and together to the
-// iterations of a step.  One method of each family that moves.
+// are the runs by two LU factors, umfpack's and klu's: ark-imex-3 takes 9.96 and 11.24 Newton iterations a
+// step): those methods are held to their own tolerance, and to the iterations of a step by either factor.
+// One method of each family that moves.
 TEST(FrictionSolver, NoFamilyOfMethodsNeedsLu) {
   std::set<std::string> families;
-  double by_krylov = 0.0, by_lu = 0.0;  // Newton iterations of a step, summed over controlled methods
   for (const auto& entry : integrate::stepper_registry()) {
     if (!entry.traits.implicit || entry.traits.stability == dynamics::Stability::kStatic) continue;
     if (!families.insert(entry.traits.family).second) continue;
@@ -92,11 +91,11 @@ TEST(FrictionSolver, NoFamilyOfMethodsNeedsLu) {
       EXPECT_EQ(krylov.counters.newton_iterations, lu.counters.newton_iterations) << entry.name;
     } else {
       EXPECT_LT(apart, d.integrator.rtol * moved(d, lu)) << entry.name;
-      by_krylov += newton_a_step(krylov);
-      by_lu += newton_a_step(lu);
+      const double by_umfpack = newton_a_step(lu), by_klu = newton_a_step(run(d, "klu"));
+      EXPECT_GE(newton_a_step(krylov), 0.9 * std::min(by_umfpack, by_klu)) << entry.name;
+      EXPECT_LE(newton_a_step(krylov), 1.1 * std::max(by_umfpack, by_klu)) << entry.name;
     }
   }
-  EXPECT_NEAR(by_krylov, by_lu, 0.1 * by_lu);
   EXPECT_GE(families.size(), 6u);
 }
 
