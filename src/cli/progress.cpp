@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
 #include "palpate/core/clock.h"
+#include "palpate/core/printable.h"
 
 namespace palpate::cli {
 namespace {
@@ -21,6 +23,20 @@ int terminal_width() {
   winsize size{};
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
+
+/// Past the guard of streams (streams.h): a bar is drawn by control characters of its own.
+void draw(const std::string& text) {
+  std::fflush(stderr);
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const ssize_t n = ::write(STDERR_FILENO, text.data() + at, text.size() - at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return;
+    at += static_cast<std::size_t>(n);
+  }
+}
+
+constexpr const char* kWipe = "\r\033[K";
 
 }  // namespace
 
@@ -48,17 +64,15 @@ void Progress::operator()(double fraction, const std::string& text) {
                                  std::string(kBarWidth - filled, '-'), 100.0 * fraction);
   if (fraction > 0.02)
     line += fmt::format("  {} left", duration_text((now - start_) * (1.0 - fraction) / fraction));
-  line += "  " + (text.empty() ? what_ : text);
+  line += "  " + printable(text.empty() ? what_ : text);
   line.resize(std::min<std::size_t>(line.size(), static_cast<std::size_t>(terminal_width() - 1)));
-  fmt::print(stderr, "\r\033[K{}", line);
-  std::fflush(stderr);
+  draw(kWipe + line);
   shown_ = true;
 }
 
 void Progress::wipe() {
   if (!shown_) return;
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  draw(kWipe);
   shown_ = false;
 }
 
