@@ -38,6 +38,10 @@ std::string of_limit(double limit, const char* unit) {
   return limit > 0.0 ? fmt::format(", of the {:g} {} that the device can do", limit, unit) : "";
 }
 
+std::string at_time(double time_s) {
+  return std::isfinite(time_s) ? fmt::format(", at {} s", time_text(time_s)) : "";
+}
+
 /// The one ladder that is the cheapest at every target that some ladder reaches; empty where there is none.
 std::string always_cheapest(const Table& compare, const std::string& column, double scale, double own_error) {
   std::vector<double> targets = kTargets;
@@ -105,13 +109,13 @@ Answer run_answer(const Json& summary, const std::optional<Table>& force) {
     return out;
   }
   if (f.value > kNothing)
-    out.points.push_back(fmt::format("The hand feels at most {} N, at {} s{}.", short_number(f.value),
-                                     time_text(f.time_s), of_limit(number_at(options, "max_force_n"), "N")));
+    out.points.push_back(fmt::format("The hand feels at most {} N{}{}.", short_number(f.value),
+                                     at_time(f.time_s), of_limit(number_at(options, "max_force_n"), "N")));
   else
     out.points.push_back("The hand feels no force.");
   if (t.value > kNothing)
-    out.points.push_back(fmt::format("The torque on it is at most {} N m, at {} s{}.", short_number(t.value),
-                                     time_text(t.time_s),
+    out.points.push_back(fmt::format("The torque on it is at most {} N m{}{}.", short_number(t.value),
+                                     at_time(t.time_s),
                                      of_limit(number_at(options, "max_torque_n_m"), "N m")));
   return out;
 }

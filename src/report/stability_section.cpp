@@ -20,7 +20,7 @@ constexpr std::array<VerdictName, 9> kVerdicts = {
      {"bounded", "B", "more than was put in, within a bound"},
      {"error", "E", "ended early, with a message that says why"},
      {"grew", "G", "went beyond every bound and called it success"},
-     {"not finite", "N", "returned NaN or infinity as a result"},
+     {"not finite", "N", "returned a result that is no finite number"},
      {"silent", "F", "failed without a reason, or kept back what it had to report"},
      {"too slow", "T", "cut off at the time limit"},
      {"wrong", "W", "did not do what physics or the method's own formula says must happen"}}};

@@ -48,7 +48,7 @@ std::vector<StudyGroup> groups_of(const Table& study, const StudyColumns& column
   for (std::size_t r = 0; r < study.rows.size(); ++r) {
     std::string name;
     for (const std::size_t c : by) {
-      const std::string& cell = study.rows[r][c];
+      const std::string cell = shown_cell(study.rows[r][c]);
       const bool named =
           contains(kAlways, study.headers[c]) && study.headers[c] != "rtol" && study.headers[c] != "step_s";
       if (!cell.empty()) name += (name.empty() ? "" : ", ") + (named ? cell : study.headers[c] + " " + cell);

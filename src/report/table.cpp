@@ -31,7 +31,7 @@ std::vector<double> Table::numbers(std::string_view header) const {
 
 double to_number(std::string_view cell) {
   double value = std::numeric_limits<double>::quiet_NaN();
-  read_csv_number(cell, value);
+  if (cell.find(',') == std::string_view::npos) read_csv_number(cell, value);  // our tables have points
   return value;
 }
 

@@ -27,7 +27,8 @@ std::string worst_of(const Table& trace, std::size_t row) {
   const auto cell = [&](const char* column) { return trace.rows[row][trace.column(column)]; };
   if (cell("worst_body").empty()) return "";
   return fmt::format("{}{}, {}", cell("worst_body"),
-                     cell("worst_node").empty() ? "" : ", node " + cell("worst_node"), cell("worst_axis"));
+                     cell("worst_node").empty() ? "" : ", node " + shown_cell(cell("worst_node")),
+                     cell("worst_axis"));
 }
 
 }  // namespace

@@ -70,6 +70,7 @@ const std::vector<std::string>& exchange_columns() {
 }
 
 std::string setting_text(const std::string& setting_name, double setting) {
+  if (!std::isfinite(setting)) return short_number(setting);
   if (setting_name == "step_s" || setting_name == "tick_s")
     return setting < 1e-3 ? fmt::format("{:.3g} us", setting * 1e6) : fmt::format("{:.3g} ms", setting * 1e3);
   // 1e-04 as people write it: 1e-4.

@@ -223,6 +223,7 @@ std::string text_of_page(const Kind& kind, Lost lost, const std::string& word) {
   for (const char* element : {"script", "style"})
     for (std::size_t at = 0; (at = html.find(fmt::format("<{}", element), at)) != std::string::npos;)
       html.erase(at, html.find(fmt::format("</{}>", element), at) + 3 + std::string(element).size() - at);
+  html = std::regex_replace(html, std::regex(" title=\"([^\"]*)\""), "> $1 <");  // shown under the pointer
   return std::regex_replace(html, std::regex("<[^>]*>"), " ");
 }
 

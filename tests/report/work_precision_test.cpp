@@ -266,17 +266,24 @@ TEST(InWords, SaysWhatTheNumbersSay) {
         "For an error of 0.0001, good is the cheapest (656 s).", "The reference cannot tell 1e-06",
         "Some rungs of fast failed: diverged."})
     EXPECT_NE(words.find(part), std::string::npos) << part << " in: " << words;
-  EXPECT_NE(words.find("cannot be distinguished"), std::string::npos) << "one point lies below the reference";
+  EXPECT_NE(words.find("all figures except those marked are resolved by the reference."), std::string::npos)
+      << words;
+  EXPECT_NE(words.find("1 point is within 10 times that error, is marked, and counts nowhere: errors below "
+                       "1e-05 are not resolved."),
+            std::string::npos)
+      << words;
   table.rows.pop_back();
   words = report::in_words(table, {.position_error_rel_l2 = 2e-6});
   EXPECT_NE(words.find("No point reaches 0.0001"), std::string::npos) << words;
-  EXPECT_NE(words.find("The reference's own error, 2e-06, is 156 times below the best point that it can "
-                       "judge, 0.000313: it bears every figure here."),
+  EXPECT_NE(words.find("The reference's own error is 2e-06, 156 times below the best point that it resolves "
+                       "(0.000313): all figures are resolved by the reference."),
             std::string::npos)
       << words;
-  EXPECT_NE(report::in_words(table, {.position_error_rel_l2 = 1e-4}).find("cannot be distinguished"),
+  words = report::in_words(table, {.position_error_rel_l2 = 1e-4});
+  EXPECT_NE(words.find("The reference's own error is 0.0001: errors below 0.001 are not resolved by it (the "
+                       "best point has 0.000313)."),
             std::string::npos)
-      << "only three times below";
+      << "only three times below: " << words;
   EXPECT_NE(report::in_words(table, {}).find("own error is not known"), std::string::npos);
 }
 
