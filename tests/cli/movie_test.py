@@ -194,7 +194,7 @@ class Frames(Movie):
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 130, err)
-        self.assertIn("those written are whole", err)
+        self.assertIn("those written are complete", err)
         count = int(re.search(r"(\d+) of 40 frames in cut.png", out).group(1))
         self.assertLess(count, 40)
         data = (self.folder / "cut.png").read_bytes()
