@@ -95,7 +95,10 @@ class Legacy {
     const bool texts = type == "string" || type == "variant";  // in text, one a line
     if (binary_ || texts) line();
     if (texts) {
-      for (std::size_t i = 0; i < n; ++i) binary_ ? skip_text() : line();
+      for (std::size_t i = 0; i < n; ++i) {
+        if (at_end()) fail("{}: ends before its time", path_);
+        binary_ ? skip_text() : line();
+      }
     } else if (type == "bit") {
       if (binary_) at_ = std::min(at_ + (n + 7) / 8, text_.size());
       for (std::size_t i = 0; i < n && !binary_; ++i) text_value();
@@ -107,6 +110,13 @@ class Legacy {
       if (n > (text_.size() - at_) / size) fail("{}: ends before its time", path_);
       for (std::size_t i = 0; i < n; ++i) out.push_back(binary_value(type));
     }
+    return out;
+  }
+  /// `n` values of the type that is named next, which must be one of numbers.
+  std::vector<double> numbers(std::size_t n) {
+    const std::string type = lower(word());
+    std::vector<double> out = values(n, type);
+    if (out.size() != n) fail("{}: type \"{}\" stands where numbers are expected", path_, type);
     return out;
   }
   bool binary() const { return binary_; }
@@ -174,9 +184,9 @@ CellList read_cells(Legacy& file, const std::string& path) {
     return static_cast<std::size_t>(value);
   };
   if (file.take("offsets")) {
-    const std::vector<double> offsets = file.values(n, lower(file.word()));
+    const std::vector<double> offsets = file.numbers(n);
     if (!file.take("connectivity")) fail("{}: CONNECTIVITY must follow the offsets of cells", path);
-    corners = file.values(size, lower(file.word()));
+    corners = file.numbers(size);
     for (std::size_t c = 1; c < offsets.size(); ++c) ends.push_back(bound(offsets[c], size));
   } else {
     const std::vector<double> entries = file.values(size, "int");
@@ -239,7 +249,7 @@ class Sections {
         fail("{}: holds a {}; UNSTRUCTURED_GRID and POLYDATA are read", path_, kind.substr(0, 40));
     } else if (section == "points") {
       const std::size_t n = file_.count();
-      const std::vector<double> x = file_.values(3 * n, lower(file_.word()));
+      const std::vector<double> x = file_.numbers(3 * n);
       for (std::size_t i = 0; i < n; ++i) cells_.points.emplace_back(x[3 * i], x[3 * i + 1], x[3 * i + 2]);
     } else if (section == "cells" || section == "vertices" || section == "lines" || section == "polygons" ||
                section == "triangle_strips") {

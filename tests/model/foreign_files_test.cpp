@@ -465,6 +465,24 @@ TEST_F(ForeignFiles, FieldsOfLegacyVtkCellsAreRegions) {
   EXPECT_EQ(regions_of(model::read_source(put("c.vtk", head))), "");
 }
 
+TEST_F(ForeignFiles, TextsInALegacyVtkFileAreNoNumbers) {
+  const std::string start = "# vtk DataFile Version 5.1\nt\nASCII\nDATASET UNSTRUCTURED_GRID\n",
+                    points = "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n";
+  for (const std::string type : {"string", "bit"})
+    for (const std::string& text :
+         {start + "POINTS 2 " + type + "\n0\n0\n0\n1\n0\n0\n",
+          start + points + "CELLS 2 4\nOFFSETS " + type + "\n0\n1\nCONNECTIVITY vtktypeint64\n0 1 2 3\n",
+          start + points + "CELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY " + type + "\n0\n1\n0\n1\n"})
+      EXPECT_NE(refusal([&] {
+                  model::read_source(put("a.vtk", text));
+                }).find("a.vtk: type \"" + type + "\" stands where numbers are expected"),
+                std::string::npos)
+          << text;
+  const std::string huge = start + points + "CELL_DATA 1\nFIELD f 1\nnames 99 99 string\n";
+  EXPECT_NE(refusal([&] { model::read_source(put("b.vtk", huge)); }).find("b.vtk: ends before its time"),
+            std::string::npos);
+}
+
 TEST_F(ForeignFiles, BrokenFilesAreRefusedWithTheirName) {
   const auto message = [&](const std::string& name, const std::string& text) {
     const std::string path = put(name, text);
