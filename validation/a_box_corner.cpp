@@ -59,7 +59,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const double product = kNormal.prod(), volume = std::pow(kReach, 3) / (6.0 * product),
                area = kReach * kReach / (2.0 * product);
   std::vector<Measurement> out;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     std::vector<double> h, of_volume, of_area;
     Sum last;
     for (const int pixels : {32, 64, 128, 256}) {

@@ -58,7 +58,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const Plates plates;
   const double x0 = kShiftOfWave * plates.wavelength, h0 = 0.2 * plates.overlap_amplitude(x0);
   const double volume = plates.facet_volume(x0, h0), area = plates.facet_area(x0, h0);
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     std::vector<double> h, of_volume, of_area;
     Sum last;
     for (const int pixels : {64, 128, 256}) {

@@ -143,7 +143,7 @@ Measurement sides_swapped(contact::DepthBackend backend, const TwoSoft& bodies, 
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   const Mesh mesh = spheres();
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const std::string name(contact::backend_name(backend));
     const std::vector<Pixel> plain = field(backend, mesh, fault);
     int different = 0;

@@ -158,7 +158,7 @@ double sampled_overlap(contact::DepthBackend backend, const Spheres& spheres, in
 
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const Spheres spheres(24, 0);
     const double exact = facet_overlap(spheres);
     std::vector<double> h, error, wall_s;

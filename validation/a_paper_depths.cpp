@@ -81,7 +81,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const Scene scene;
   const double area = 4.0 * M_PI * kRadius * kRadius / static_cast<double>(scene.sphere.faces.cols()),
                edge_squared = 4.0 * area / std::sqrt(3.0);
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const std::string name(contact::backend_name(backend));
     const DepthError own = error_of(
         scene, samples_of(scene, backend, 64, contact::SampleRule::kVertex, DepthReading::kTriangles, fault));

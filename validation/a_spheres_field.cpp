@@ -112,7 +112,7 @@ double true_error(const Pair& pair, const std::vector<contact::ContactSample>& s
 }
 
 void measure(bool plane, const std::string& fault, std::vector<Measurement>& out) {
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const Pair pair = make_pair(plane, 40, 0);
     const auto samples = samples_of(pair, backend, 256, fault);
     const FieldError field = compare_fields(samples, pair.a, pair.b);

@@ -117,7 +117,7 @@ std::vector<Measurement> run(const std::string& fault) {
   using contact::DepthReading;
   const Pair pair;
   std::vector<Measurement> out;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const std::string name(contact::backend_name(backend));
     const ListError list = compare(pair, backend, 256, DepthReading::kTriangles, fault);
     out.push_back({.quantity = name + ": depths of the colliding vertices, largest difference/R",

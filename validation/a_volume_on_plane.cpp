@@ -56,7 +56,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const TriMesh mesh = placed_sphere(32, 0);
   const double facets = volume_below_plane(mesh),
                cap = kPi * kDepth * kDepth * (3.0 * kRadius - kDepth) / 3.0;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     std::vector<double> h, error;
     double last = 0.0;
     for (const int pixels : {64, 128, 256}) {

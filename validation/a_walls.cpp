@@ -66,7 +66,7 @@ void measure(double slope, const std::string& fault, std::vector<Measurement>& o
       (Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix() * ball.vertices).eval();
   ball.vertices.colwise() += Vec3(0.013, -0.021, kRadius - kDepth);
   const TriMesh teeth = comb(slope);
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     SurfaceBody body(ball);
     contact::ImageOptions options;
     options.backend = backend;

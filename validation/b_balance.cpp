@@ -159,7 +159,7 @@ Balance balance_of(contact::DepthBackend backend, bool soft, int pose, const std
 
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
-  for (const contact::DepthBackend backend : image_backends())
+  for (const contact::DepthBackend backend : image_backends(fault))
     for (const bool soft : {false, true}) {
       Balance worst;
       worst.samples = 1 << 30;

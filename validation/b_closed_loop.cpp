@@ -77,7 +77,7 @@ std::vector<Measurement> run(const std::string& fault) {
     return along(h1, h2, lift(x1)) + along(x1, x2, slide(h2)) + along(h2, h1, lift(x2)) +
            along(x2, x1, slide(h1));
   };
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const double net = work(backend, false);
     out.push_back({.quantity = std::string(contact::backend_name(backend)) +
                                ": net work around the loop, plate on plate [J]",

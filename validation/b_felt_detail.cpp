@@ -175,7 +175,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const double exact = on_tool * std::abs(std::complex(kCoupling, w * kDamping)) /
                        std::abs(std::complex(kCoupling + wetted - kMass * w * w, w * kDamping));
   std::vector<Measurement> out;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const std::string name(contact::backend_name(backend));
     const DeviceForce skin = felt(drag(backend, model, fault != "coarse-surface", fault)),
                       coarse = felt(drag(backend, model, false, fault));

@@ -65,7 +65,7 @@ scene::Description block_on(contact::DepthBackend backend, double angle, double 
 std::vector<Measurement> run_block(const std::string& fault) {
   std::vector<Measurement> out;
   constexpr double kFriction = 0.4, kFlat = 15.0 * kPi / 180.0, kSteep = 35.0 * kPi / 180.0;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const std::string name(contact::backend_name(backend));
     scene::Description sticks = block_on(backend, kFlat, kFriction);
     sticks.duration_s = 0.03;
@@ -95,7 +95,7 @@ std::vector<Measurement> run_sphere(const std::string& fault) {
                    kFriction = 0.3;  // 3.5 mu = 1.05, tan a = 0.36
   const double exact = 5.0 / 7.0 * kGravity * std::sin(kAngle);
   std::vector<Measurement> out;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     scene::Description d = inclined(backend, kAngle, kFriction);
     d.tool->mesh.generator = "ball";
     d.tool->mesh.radius_m = kRadius;

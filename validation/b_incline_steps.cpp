@@ -78,7 +78,7 @@ bool takes_the_step(const dynamics::StepperEntry& entry) {
 std::vector<Measurement> run_slope(const std::string& fault) {
   std::vector<Measurement> out;
   for (const auto& entry : integrate::stepper_registry()) {
-    if (!takes_the_step(entry)) continue;
+    if (!takes_the_step(entry) || (!fault.empty() && entry.name != "linearly-implicit-euler")) continue;
     for (const double ratio : {1.02, 1.1, 1.5}) {
       const double angle = std::atan(ratio * kFriction),
                    exact = kGravity * kFriction * std::cos(angle) * (ratio - 1.0) * kTime * kTime / 2.0,

@@ -72,7 +72,7 @@ double angular_frequency(const std::vector<loop::TickRecord>& ticks, int stride)
 
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const std::string name(contact::backend_name(backend));
     scene::Description rest = on_plane(backend);
     rest.duration_s = 0.12;

@@ -91,7 +91,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const double b = kSize.x(), l = kSize.y(), restoring = kStiffness * std::pow(b, 3) * l / 12.0,
                h = 0.5 * kSize.z(), toppling = kStiffness * b * l * kDepth * h,
                through_images = -tilted_moment(kAngle) / kAngle;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     double tangent = 0.0, images = 0.0;
     for (int i = 0; i < kGridShifts; ++i) {
       const GridShift shift{(i + 0.5) / kGridShifts, (i + 0.5) / kGridShifts};  // the axes may be swapped

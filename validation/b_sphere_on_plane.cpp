@@ -98,7 +98,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const double facets = kStiffness * volume_below_plane(mesh);
   std::vector<Measurement> out;
   out.push_back(against("force on the facets, vertex samples [N]", vertex_force(mesh, fault), facets, 1e-3));
-  for (const contact::DepthBackend backend : image_backends())
+  for (const contact::DepthBackend backend : image_backends(fault))
     out.push_back(
         against("force on the facets, pixel samples, " + std::string(contact::backend_name(backend)) + " [N]",
                 pixel_force(backend, mesh, fault), facets, 1e-3));

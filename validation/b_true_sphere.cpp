@@ -216,7 +216,7 @@ std::vector<Measurement> pixels(contact::DepthBackend backend, const TriMesh& me
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   const TriMesh fine = low_facets(100, 0);
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     if (!fault.empty() && backend != contact::DepthBackend::kCpu) continue;
     for (const auto rule : {contact::SampleRule::kPixel, contact::SampleRule::kVertex})
       out.push_back(facets({.backend = backend, .rule = rule}, fault));

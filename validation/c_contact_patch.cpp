@@ -173,7 +173,7 @@ std::vector<Measurement> run(const std::string& fault) {
                exact = kPush / ((kLower.z() + kUpper.z()) / modulus + 1.0 / stiffness);
   std::vector<Measurement> out;
   double first = std::nan("");
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     const std::string name(contact::backend_name(backend));
     const Pressed pixel = press(backend, contact::SampleRule::kPixel, fault);
     out.push_back({.quantity = name + ", pixel: mean pressure of the contact [Pa]",

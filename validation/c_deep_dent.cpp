@@ -269,7 +269,7 @@ std::vector<Measurement> run(const std::string& fault) {
        .note = fmt::format("order over 5, 7, 11 cells; 9 and 14: {:.4f} and {:.4f} N", fine, finest),
        .refinement = {"cell / L", h, errors}});
   if (!fault.empty()) return out;
-  for (const contact::DepthBackend& backend : image_backends()) {
+  for (const contact::DepthBackend& backend : image_backends(fault)) {
     const double seen = force(9, &backend);
     out.push_back({.quantity = fmt::format("{}: force of the whole dent against exact gaps, 9 cells [N]",
                                            contact::backend_name(backend)),

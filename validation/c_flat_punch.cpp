@@ -234,7 +234,7 @@ std::vector<Measurement> run(const std::string& fault) {
                    .bar = 1e-3});
     out.push_back(measure({}, kStiff, fault));
   }
-  for (const contact::DepthBackend& backend : image_backends()) {
+  for (const contact::DepthBackend& backend : image_backends(fault)) {
     const bool first = backend == contact::DepthBackend::kCpu;
     if (!fault.empty() && !first) continue;
     for (const double kappa : {kStiff, kSoft}) out.push_back(measure({.backend = &backend}, kappa, fault));

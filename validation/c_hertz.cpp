@@ -109,7 +109,7 @@ Measurement measure(const contact::DepthBackend* backend, double depth, const st
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out = {measure(nullptr, kDepth, fault)};
   if (!fault.empty()) return out;
-  for (const contact::DepthBackend& backend : image_backends()) {
+  for (const contact::DepthBackend& backend : image_backends(fault)) {
     out.push_back(measure(&backend, kDepth, fault));
     if (backend != contact::DepthBackend::kCpu) continue;
     std::vector<double> depth = {kDepth}, force = {out.back().computed};

@@ -134,6 +134,7 @@ std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   Found plain{}, nodal{}, easy{};
   for (double nu : {0.3, 0.45, 0.49, 0.499, kWorst}) {
+    if (!fault.empty() && nu != kWorst) continue;  // what a fault is found by
     plain = bend(nu, kFine, false, fault);
     nodal = bend(nu, kFine, true, fault);
     if (nu == 0.3) easy = nodal;
@@ -144,6 +145,7 @@ std::vector<Measurement> run(const std::string& fault) {
                    .bar = 0.05,
                    .note = fmt::format("plain elements: {:.4f}; 16 cells over the height", plain.tip)});
   }
+  if (!fault.empty()) return out;
   std::vector<double> h, error;
   for (int cells : {4, 6, kFine}) {
     h.push_back(0.5 * kHeight / cells);

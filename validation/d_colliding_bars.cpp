@@ -125,7 +125,7 @@ std::vector<double> last_three(const std::vector<double>& all) { return {all.end
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   const double exact = 2.0 * kLength / kWave;
-  for (const contact::DepthBackend backend : image_backends()) {
+  for (const contact::DepthBackend backend : image_backends(fault)) {
     std::vector<double> h, time, velocity;
     Collision one;
     for (const int elements : {13, 25, 50, 100, 200}) {

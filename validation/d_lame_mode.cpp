@@ -48,6 +48,7 @@ void add(double poisson, const std::string& fault, std::vector<Measurement>& out
   std::vector<double> h, error;
   double overlap = 1.0, frequency = 0.0;
   for (int cells : {15, 20, 25}) {
+    if (!fault.empty() && cells == 25) break;  // a fault is found without it
     const Match match = lame(poisson, cells, fault);
     frequency = match.omega / (2.0 * M_PI);
     h.push_back(kSide / cells);
@@ -73,7 +74,8 @@ void add(double poisson, const std::string& fault, std::vector<Measurement>& out
 
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
-  for (const double poisson : {0.3, 0.45}) add(poisson, fault, out);
+  add(0.3, fault, out);
+  if (fault.empty()) add(0.45, fault, out);
   return out;
 }
 

@@ -10,8 +10,8 @@
 /// What the cases in image space share: which backends there are, and a source that is broken on purpose.
 namespace palpate::validation {
 
-/// `cpu`, `exact`, and `gpu` where an EGL device opens.
-std::vector<contact::DepthBackend> image_backends();
+/// `cpu`, `exact`, and `gpu` where an EGL device opens.  A fault is of what all share: with one, `cpu` alone.
+std::vector<contact::DepthBackend> image_backends(const std::string& fault);
 
 /// A line in the report that says that `gpu` was left out and why; nothing where it was not.
 void say_what_is_skipped(std::vector<Measurement>& out);
