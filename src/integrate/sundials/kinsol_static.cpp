@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <memory>
 
 #include "integrate/make.h"
 #include "integrate/settings.h"
@@ -429,7 +429,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     if (kinsol_ && layout_version_ == state_.layout().version) return;
     release();
     const double t = state_.time();
-    context_.emplace(on_error, this);
+    context_ = std::make_unique<Context>(on_error, this);
     x_ = N_VNew_Serial(state_.layout().u_size, *context_);
     check(x_, "N_VNew_Serial");
     use_fast_operations(x_);
@@ -512,7 +512,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   bool finite_ = true;
   std::string message_;
   std::uint64_t layout_version_ = 0;
-  std::optional<Context> context_;
+  std::unique_ptr<Context> context_;
   N_Vector x_ = nullptr, displacement_scale_ = nullptr, force_scale_ = nullptr;
   SUNLinearSolver linear_solver_ = nullptr;
   SUNMatrix matrix_ = nullptr;
