@@ -1,10 +1,13 @@
 #include "json.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/core/units.h"
 #include "palpate/report/table.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/json_text.h"
@@ -40,34 +43,13 @@ std::string value_text(const Json& value) {
 }
 
 std::string key_text(const std::string& key) {
-  static const std::vector<std::pair<std::string, std::string>> units = {{"_gflop_s", "Gflop/s"},
-                                                                         {"_gb_s", "GB/s"},
-                                                                         {"_kg_m3", "kg/m³"},
-                                                                         {"_n_s_m", "N s/m"},
-                                                                         {"_n_m", "N m"},
-                                                                         {"_m_s2", "m/s²"},
-                                                                         {"_m_s", "m/s"},
-                                                                         {"_pa", "Pa"},
-                                                                         {"_kg", "kg"},
-                                                                         {"_mib", "MiB"},
-                                                                         {"_hz", "Hz"},
-                                                                         {"_rad", "rad"},
-                                                                         {"_ms", "ms"},
-                                                                         {"_us", "µs"},
-                                                                         {"_s", "s"},
-                                                                         {"_n", "N"},
-                                                                         {"_m", "m"},
-                                                                         {"_j", "J"}};
   if (key == "gflop_s") return "Gflop/s";
-  std::string name = key, unit;
-  for (const auto& [ending, text] : units) {
-    if (!key.ends_with(ending) || key.size() == ending.size()) continue;
-    name = key.substr(0, key.size() - ending.size());
-    unit = " [" + text + "]";
-    break;
-  }
+  auto [name, unit] = split_unit(key);
   std::replace(name.begin(), name.end(), '_', ' ');
-  return name + unit;
+  if (unit.empty()) return name;
+  for (const auto& [plain, set] : std::array{std::pair{"^2", "²"}, std::pair{"^3", "³"}})
+    if (const std::size_t at = unit.find(plain); at != std::string::npos) unit.replace(at, 2, set);
+  return name + " [" + (unit == "us" ? "µs" : unit) + "]";
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const Json& object) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "palpate/core/units.h"
+
 namespace palpate::scene {
 namespace {
 
@@ -64,31 +66,7 @@ std::optional<Setting> setting_of(const toml::node& node) {
   return Setting(out);
 }
 
-std::string unit_of(const std::string& key) {
-  // the longest ending counts
-  static const std::vector<std::pair<std::string, std::string>> units = {{"_n_m_s_rad", "N m s/rad"},
-                                                                         {"_n_m_rad", "N m/rad"},
-                                                                         {"_pa_s_m", "Pa s/m"},
-                                                                         {"_pa_m", "Pa/m"},
-                                                                         {"_kg_m3", "kg/m^3"},
-                                                                         {"_kg_m2", "kg m^2"},
-                                                                         {"_rad_s", "rad/s"},
-                                                                         {"_n_s_m", "N s/m"},
-                                                                         {"_n_m", "N/m"},
-                                                                         {"_m_s2", "m/s^2"},
-                                                                         {"_m_s", "m/s"},
-                                                                         {"_per_s", "1/s"},
-                                                                         {"_s_m", "s/m"},
-                                                                         {"_kg", "kg"},
-                                                                         {"_pa", "Pa"},
-                                                                         {"_rad", "rad"},
-                                                                         {"_n", "N"},
-                                                                         {"_m", "m"},
-                                                                         {"_s", "s"}};
-  for (const auto& [ending, unit] : units)
-    if (key.ends_with(ending)) return unit;
-  return "";
-}
+std::string unit_of(const std::string& key) { return split_unit(key).unit; }
 
 std::string choices(const Names& names) {
   std::string out;

@@ -107,6 +107,7 @@ TEST(Keys, DefaultsAreThoseOfTheSpecs) {
   EXPECT_EQ(row("contact", "stiffness_pa_m").unit, "Pa/m");
   EXPECT_EQ(row("device", "max_torque_n_m").unit, "N m");
   EXPECT_EQ(row("tool.coupling", "stiffness_n_m").unit, "N/m");
+  EXPECT_EQ(row("device", "max_torque_n_m").unit, "N m");
   EXPECT_EQ(row("body", "mass").fallback, "\"lumped\"");
   EXPECT_EQ(row("body", "mass").range, "\"lumped\", \"consistent\"");
   EXPECT_EQ(row("obstacle", "normal").fallback, "[0.0, 0.0, 1.0]");
