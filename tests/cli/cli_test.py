@@ -6,6 +6,7 @@
 import contextlib
 import csv
 import fcntl
+import html
 import json
 import math
 import os
@@ -302,6 +303,25 @@ class Results(Cli):
         text = self.good("run", "one-tet", "--duration-s", "0.1", "--integrator", "linearly-implicit-euler",
                          "--set", "integrator.step_s=0.01")
         self.assertIn("linearly-implicit-euler: 10 steps", text)
+
+    def head_of_page(self, folder):
+        """The lines of the head of a page, above its first section."""
+        page = (self.folder / folder / "report.html").read_text()
+        head = page[page.index("<h1"):page.index("<h2")]
+        return [html.unescape(line).strip() for line in re.sub("<[^>]*>", "\n", head).split("\n")]
+
+    def test_a_page_says_first_what_the_terminal_said(self):
+        lines = self.good("run", "press-ball", "--realtime", "--duration-s", "0.1", "--report", "-o",
+                          "timed").splitlines()
+        verdicts = [line for line in lines if line.startswith(("buzz: ", "deepest overlap: ", "real time: "))]
+        self.assertGreaterEqual(len(verdicts), 3)
+        self.assertLessEqual(set(verdicts), set(self.head_of_page("timed")))
+
+        lines = self.good("stability", "--haptic", "press-ball", "-o", "judged").splitlines()
+        verdicts = [line for line in lines if ": stable" in line or ": unstable" in line]
+        self.assertEqual(len(verdicts), 6)
+        self.good("report", "judged")
+        self.assertLessEqual(set(verdicts), set(self.head_of_page("judged")))
 
     QUICK = ["--duration-s", "0.05", "--repeats", "1", "--set", "body.0.mesh.element_size_m=0.05"]
 
