@@ -63,8 +63,7 @@ std::vector<std::size_t> image_contacts(const Description& d) {
   return out;
 }
 
-const dynamics::StepperEntry& method_of(const Description& d, const std::string& name,
-                                        const std::string& key) {
+const dynamics::StepperEntry& method_of(const Description& d, const char* name, const char* key) {
   const dynamics::StepperEntry& entry = find(loop::steppers(), name, key);
   if (entry.traits.stability == dynamics::Stability::kStatic)
     fail("{}: {}: {} cannot make a reference: it does not move in time", d.path, key, name);
@@ -74,19 +73,19 @@ const dynamics::StepperEntry& method_of(const Description& d, const std::string&
 /// The method that checks a reference: the scene's, or one of another family, with error control or without
 /// as the reference has it.
 const dynamics::StepperEntry& check_of(const Description& d, const dynamics::StepperEntry& reference) {
-  const std::string key = "compare.haptic.reference_check";
+  constexpr const char* kKey = "compare.haptic.reference_check";
   const std::string& named = d.compare.haptic.reference_check;
   const bool fixed = reference.traits.control == dynamics::StepControl::kFixed;
   const auto other = [&](const char* usual, const char* instead) {
     return find_stepper(usual)->traits.family != reference.traits.family ? usual : instead;
   };
   const dynamics::StepperEntry& check = method_of(d,
-                                                  !named.empty() ? named
+                                                  !named.empty() ? named.c_str()
                                                   : fixed ? other("generalized-alpha", "implicit-midpoint")
                                                           : other("ark-dirk-esdirk437", "cvode-bdf"),
-                                                  key);
+                                                  kKey);
   if (check.traits.family == reference.traits.family)
-    fail("{}: {}: {} and {} are of one family, {}: the two would err alike", d.path, key, check.name,
+    fail("{}: {}: {} and {} are of one family, {}: the two would err alike", d.path, kKey, check.name,
          reference.name, check.traits.family);
   return check;
 }
@@ -95,7 +94,7 @@ const dynamics::StepperEntry& check_of(const Description& d, const dynamics::Ste
 /// @param coarser  above 1: the check, so many times as coarse, of another family, with another factorisation
 std::vector<std::string> monolithic_overrides(const Description& d, double coarser) {
   const scene::HapticCompareSpec& h = d.compare.haptic;
-  const dynamics::StepperEntry& reference = method_of(d, h.reference, "compare.haptic.reference");
+  const dynamics::StepperEntry& reference = method_of(d, h.reference.c_str(), "compare.haptic.reference");
   const dynamics::StepperEntry& entry = coarser > 1.0 ? check_of(d, reference) : reference;
   scene::LadderSpec ladder;
   ladder.integrator = entry.name;
