@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "cells.h"
+#include "gmsh_start.h"
 #include "palpate/core/error.h"
 #include "palpate/core/rehearsal.h"
 
@@ -19,10 +20,13 @@ namespace {
 class Gmsh {
  public:
   Gmsh() : handle_(::dlopen(PALPATE_GMSH_LIBRARY, RTLD_NOW | RTLD_LOCAL)) {
-    if (!handle_)
-      fail("{} cannot be loaded ({}); the package libgmsh4.8 brings it", PALPATE_GMSH_LIBRARY, ::dlerror());
+    if (!handle_) {
+      std::string package = PALPATE_GMSH_LIBRARY;  // Debian's: libgmsh4.8 of libgmsh.so.4.8
+      if (const std::size_t at = package.find(".so."); at != std::string::npos) package.erase(at, 4);
+      fail("{} cannot be loaded ({}); the package {} brings it", PALPATE_GMSH_LIBRARY, ::dlerror(), package);
+    }
     int error = 0;
-    function<decltype(gmshInitialize)>("gmshInitialize")(0, nullptr, 0, &error);
+    start_gmsh(function<decltype(gmshInitialize)>("gmshInitialize"), &error);
     const auto option = function<decltype(gmshOptionSetNumber)>("gmshOptionSetNumber");
     option("General.Terminal", 0, &error);
     option("General.NumThreads", 1, &error);

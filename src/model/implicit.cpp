@@ -40,9 +40,15 @@ Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec
   constexpr double kRelativeError = 1e-7;  // of a point on the surface, by bisection, in radii
   try {
     CGAL::Random random(0);
+    namespace P = CGAL::parameters;
+    const Kernel::Sphere_3 ball(Kernel::Point_3(centre.x(), centre.y(), centre.z()), radius * radius);
+#if CGAL_VERSION_MAJOR >= 6  // parameters are chained; 5.5 has them as objects alone
     Domain domain = Domain::create_implicit_mesh_domain(
-        value, Kernel::Sphere_3(Kernel::Point_3(centre.x(), centre.y(), centre.z()), radius * radius),
-        CGAL::parameters::relative_error_bound = kRelativeError, CGAL::parameters::p_rng = &random);
+        value, ball, P::relative_error_bound(kRelativeError).p_rng(&random));
+#else
+    Domain domain = Domain::create_implicit_mesh_domain(value, ball, P::relative_error_bound = kRelativeError,
+                                                        P::p_rng = &random);
+#endif
     std::vector<std::vector<Kernel::Point_3>> lines;
     for (const Polyline& line : cut_at_corners(options.creases)) {
       lines.emplace_back();

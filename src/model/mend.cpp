@@ -20,6 +20,15 @@ namespace palpate::model {
 namespace {
 namespace PMP = CGAL::Polygon_mesh_processing;
 
+/// A property map that is there, which CGAL 5.5 returns as the first of a pair and 6.0 as an optional.
+template <class Found>
+auto map_of(const Found& found) {
+  if constexpr (requires { found.first; })
+    return found.first;
+  else
+    return *found;
+}
+
 /// A hole in a surface.
 struct Hole {
   CgalSurface::Halfedge_index border;
@@ -53,7 +62,7 @@ int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& 
   const double whole = PMP::area(mesh);
   const auto refuse = [&](const Hole& hole, const std::string& why) {
     const auto vertex = mesh.target(hole.border);
-    const int source = mesh.property_map<CgalSurface::Vertex_index, int>("v:source").first[vertex];
+    const int source = map_of(mesh.property_map<CgalSurface::Vertex_index, int>("v:source"))[vertex];
     const auto at = mesh.point(vertex);
     fail(
         "{} at ({:.6g}, {:.6g}, {:.6g}) m: the surface is open there: a hole of {} edges, {:.3g} m across, "
@@ -78,10 +87,15 @@ int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& 
   double added = 0.0;
   for (const Hole& hole : holes) {
     std::vector<CgalSurface::Face_index> patch;
+    // A patch that could not be smoothed is flat: closed all the same.
+#if CGAL_VERSION_MAJOR >= 6
+    PMP::triangulate_refine_and_fair_hole(mesh, hole.border,
+                                          CGAL::parameters::face_output_iterator(std::back_inserter(patch)));
+#else
     std::vector<CgalSurface::Vertex_index> fresh;
-    const bool faired = std::get<0>(PMP::triangulate_refine_and_fair_hole(
-        mesh, hole.border, std::back_inserter(patch), std::back_inserter(fresh)));
-    static_cast<void>(faired);  // a patch that could not be smoothed is flat: closed all the same
+    PMP::triangulate_refine_and_fair_hole(mesh, hole.border, std::back_inserter(patch),
+                                          std::back_inserter(fresh));
+#endif
     if (patch.empty()) refuse(hole, "which no triangles close");
     added += PMP::area(patch, mesh);
     refuse_beyond(hole, added);
@@ -107,8 +121,14 @@ void collapse_degenerate(CgalSurface& mesh, const mesh::Provenance& from) {
   for (const auto& f : now.faces) needles |= flat(f);
   if (!needles) return;
   const double whole = now.diagonal();
-  PMP::experimental::remove_almost_degenerate_faces(mesh, std::cos(179.99 * CGAL_PI / 180), 1e5,
-                                                    1e-4 * whole);
+  const double cap = std::cos(179.99 * CGAL_PI / 180), needle = 1e5, shortest = 1e-4 * whole;
+#if CGAL_VERSION_MAJOR >= 6
+  PMP::remove_almost_degenerate_faces(
+      mesh,
+      CGAL::parameters::cap_threshold(cap).needle_threshold(needle).collapse_length_threshold(shortest));
+#else
+  PMP::experimental::remove_almost_degenerate_faces(mesh, cap, needle, shortest);
+#endif
 }
 
 /// One shell at a time: faces of different shells that cross are no fault of a shell's.

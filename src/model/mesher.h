@@ -184,9 +184,12 @@ class Mesher : public CellMesher {
       return P::mesh_3_options(P::maximal_number_of_vertices = static_cast<std::size_t>(points),
                                P::pointer_to_error_code = &error);
     };
+    P::internal::Mesh_3_options first;
+    first.maximal_number_of_vertices = static_cast<std::size_t>(meter_.points());
+    first.pointer_to_error_code = &error;
     try {
-      CGAL::Mesh_3::internal::C3t3_initializer<Complex, Domain, Criteria, true>()(
-          complex_, domain_, criteria, creased_, bounded(meter_.points()));
+      CGAL::Mesh_3::internal::C3t3_initializer<Complex, Domain, Criteria, true>()(complex_, domain_, criteria,
+                                                                                  creased_, first);
       if (error != CGAL::CGAL_MESH_3_NO_ERROR) refuse_creases();
       sow();
       const auto topology = manifold ? P::manifold() : P::non_manifold();

@@ -13,6 +13,7 @@ extern "C" {
 #include <filesystem>
 #include <fstream>
 
+#include "model/gmsh_start.h"
 #include "palpate/mesh/checks.h"
 #include "surfaces.h"
 #include "temporary_folder.h"
@@ -116,7 +117,7 @@ TEST_F(ForeignFiles, TetrahedraByGmsh) {
   put("a.msh", msh + "$EndElements\n");
 
   int error = 0;
-  gmshInitialize(0, nullptr, 0, &error);
+  model::start_gmsh(gmshInitialize, &error);
   gmshOptionSetNumber("General.Terminal", 0, &error);
   gmshOptionSetNumber("Mesh.SaveAll", 1, &error);
   gmshOpen(at("a.msh").c_str(), &error);
@@ -176,7 +177,7 @@ TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
   int error = 0, read = 0;
   const auto expect = [&](const std::string& from, const std::string& name, double version, double binary,
                           const std::string& wanted) {
-    gmshInitialize(0, nullptr, 0, &error);
+    model::start_gmsh(gmshInitialize, &error);
     gmshOptionSetNumber("General.Terminal", 0, &error);
     gmshOptionSetNumber("Mesh.SaveAll", from == "plain.msh", &error);  // else version 2.2 forgets the groups
     gmshOpen(at(from).c_str(), &error);
@@ -199,7 +200,7 @@ TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
   expect("plain.msh", "a.mesh", 4.1, 0, "region-2: 40; region-5: 40; ");
   EXPECT_EQ(read, 9);
   for (const double binary : {0.0, 1.0}) {
-    gmshInitialize(0, nullptr, 0, &error);
+    model::start_gmsh(gmshInitialize, &error);
     gmshOptionSetNumber("General.Terminal", 0, &error);
     gmshOpen(at("half.msh").c_str(), &error);
     gmshOptionSetNumber("Mesh.SaveAll", 1, &error);
@@ -443,7 +444,7 @@ TEST_F(ForeignFiles, FieldsOfLegacyVtkCellsAreRegions) {
   const std::string plain = put("plain.msh", msh_of_two("", {0, 0}));
   for (const bool binary : {false, true}) {
     int error = 0;
-    gmshInitialize(0, nullptr, 0, &error);
+    model::start_gmsh(gmshInitialize, &error);
     gmshOptionSetNumber("General.Terminal", 0, &error);
     gmshOptionSetNumber("Mesh.SaveAll", 1, &error);
     gmshOptionSetNumber("Mesh.Binary", binary, &error);
