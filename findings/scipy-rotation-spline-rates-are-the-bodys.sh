@@ -9,6 +9,7 @@
 package=python3-scipy version=1.10.1-2
 set -euo pipefail
 skip() { echo "cannot run here: $*"; exit 77; }
+[[ -x /usr/bin/python3 ]] || skip "/usr/bin/python3 is missing"
 folder=$(mktemp -d)
 trap 'rm -rf -- "$folder"' EXIT
 cd "$folder"
@@ -17,7 +18,7 @@ if [[ $(dpkg-query -W -f='${Version}' "$package" 2>/dev/null) != "$version" ]]; 
     skip "apt has no $package $version"
   sed -nE 's/^Inst ([^ ]+) .*\(([^ ]+) .*/\1=\2/p' plan | xargs apt-get download >/dev/null 2>&1 || skip "no network"
   for archive in *.deb; do dpkg -x "$archive" .; done
-  lib=$folder/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)
+  lib=$folder/usr/lib/$(uname -m)-linux-gnu
   export PYTHONPATH=$folder/usr/lib/python3/dist-packages LD_LIBRARY_PATH=$lib:$lib/blas:$lib/lapack
 fi
 /usr/bin/python3 - <<'END'
