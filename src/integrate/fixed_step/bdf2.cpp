@@ -17,8 +17,10 @@ using namespace dynamics;
 /// + g D + g^2 K. The displacements of a rigid body are rotations relative to q0; their rate differs from w
 /// by O(h^2): order 2 there as well.
 ///
-/// Start, after re-initialisation, and where r > 1 + sqrt(2) (beyond which steps that keep growing are not
-/// zero-stable): one step of the L-stable SDIRK of order 2 (Alexander 1977), s = 1 - 1/sqrt(2),
+/// Start, after re-initialisation, where sliding began in the step before (u bends there: of the speed v_r
+/// that friction lets through at once the formula would add a third again, a third of that, ..., v_r/2 for
+/// good), and where r > 1 + sqrt(2) (beyond which steps that keep growing are not zero-stable): one step of
+/// the L-stable SDIRK of order 2 (Alexander 1977), s = 1 - 1/sqrt(2),
 ///     u_s = u0 + s h a_s,  q_s = q0 (+) s h u_s;     u1 = u0 + (1 - s) h a_s + s h a,  q1 = q0 (+) [(1 - s)
 ///     h u_s + s h u1],
 /// two Stages with the matrix M + s h D + (s h)^2 K: so a restart costs no order, as a backward Euler step at
@@ -35,7 +37,9 @@ class Bdf2 final : public ImplicitStep {
  private:
   Attempt attempt(double h, double t1) override {
     u_start_ = state_.u();
-    const bool two_steps = theta_before_.size() == layout().u_size && h <= kLargestRatio * h_before_;
+    sticks_ = sticks();
+    const bool two_steps =
+        theta_before_.size() == layout().u_size && h <= kLargestRatio * h_before_ && sticks_ == stuck_;
     return two_steps ? step(h, t1) : start(h, t1);
   }
 
@@ -72,6 +76,7 @@ class Bdf2 final : public ImplicitStep {
     theta_before_ = stage_.theta + stage_.c_theta * a_;
     u_before_ = u_start_;
     h_before_ = h;
+    stuck_ = sticks_;
   }
   void forget(ReinitReason reason) override {
     ImplicitStep::forget(reason);
@@ -80,6 +85,7 @@ class Bdf2 final : public ImplicitStep {
 
   static constexpr double kLargestRatio = 2.4;  // < 1 + sqrt(2)
   double h_before_ = 0.0;
+  bool sticks_ = false, stuck_ = false;  ///< at the start of this step, and of the one before
   VecX u_before_, theta_before_, u_stage_, u_start_;
 };
 

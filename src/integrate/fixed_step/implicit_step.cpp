@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "integrate/settings.h"
+#include "integrate/tuning.h"
 #include "palpate/dynamics/repeated_step.h"
 
 namespace palpate::integrate {
@@ -21,27 +22,33 @@ ImplicitStep::Attempt ImplicitStep::solve_stage(const Attempt& before) {
   return {newton.status, before.iterations + newton.iterations, newton.correction, newton.what, true};
 }
 
+bool ImplicitStep::sticks() {
+  const auto& terms = system_.terms();
+  const dynamics::StateView at = now();
+  return std::any_of(terms.begin(), terms.end(), [&](const auto& term) {
+    auto* const repeated = dynamic_cast<dynamics::RepeatedStepTerm*>(term.get());
+    return repeated && repeated->bends_at(at);
+  });
+}
+
 // At rest friction is zero by its law, and the acceleration there that of a body without friction.  It
 // becomes mu N within the time v_r/(mu g), which no step resolves, and methods that keep the acceleration of
 // the start (the trapezoidal rule: half of it over h) would add h mu g/2 to the velocity for good.  Backward
 // Euler damps that layer; the acceleration at its end is one within the cone, and off by O(h) else, of one
-// step.
+// step.  It need not be of the step's length: where Newton's method fails it is halved, as steps are.
 bool ImplicitStep::start_acceleration(double h, double t1, VecX& a) {
   const dynamics::StateView at = now();
-  const auto& terms = system_.terms();
-  const bool bends = std::any_of(terms.begin(), terms.end(), [&](const auto& term) {
-    auto* const repeated = dynamic_cast<dynamics::RepeatedStepTerm*>(term.get());
-    return repeated && repeated->bends_at(at);
-  });
-  if (bends) {
+  if (sticks()) {
     Stage euler;
-    euler.t1 = t1;
-    euler.c_u = h;
-    euler.c_theta = h * h;
     euler.u = state_.u();
-    euler.theta = h * state_.u();
-    a.setZero(layout().u_size);
-    if (newton_.solve(euler, at, a, q1_, u1_, counters_).status == dynamics::StepStatus::kOk) return true;
+    for (int halvings = 0; halvings <= tuning::kHalvings; ++halvings, h /= 2.0) {
+      euler.t1 = halvings == 0 ? t1 : at.time + h;
+      euler.c_u = h;
+      euler.c_theta = h * h;
+      euler.theta = h * state_.u();
+      a.setZero(layout().u_size);
+      if (newton_.solve(euler, at, a, q1_, u1_, counters_).status == dynamics::StepStatus::kOk) return true;
+    }
   }
   if (!acceleration(at.time, at.q.data(), at.u.data(), a)) return false;
   for (int dof : system_.driven_dofs()) a[dof] = 0.0;

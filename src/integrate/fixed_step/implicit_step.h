@@ -14,6 +14,8 @@ class ImplicitStep : public FixedStep {
   /// Solves stage_ from the State; its end goes to q1_ and u1_, its unknown to a_.  Adds to what a stage
   /// before it in the same step took.
   Attempt solve_stage(const Attempt& before = {});
+  /// Whether friction sticks somewhere at the State.
+  bool sticks();
   /// u' at the State without its driven entries (no stage reads them); false where it is not finite.  Where
   /// friction sticks, that which a backward Euler step of length h to t1 has at its end.
   bool start_acceleration(double h, double t1, VecX& a);
