@@ -1,0 +1,305 @@
+#!/usr/bin/env python3
+"""Commands that judge: compare, validate, stability, bench, and runs held against others.
+
+    judgements_test.py PROGRAM [unittest's names of tests]
+"""
+import contextlib
+import csv
+import json
+import os
+import re
+import socket
+import sqlite3
+import subprocess
+import sys
+import time
+import unittest
+import xml.dom.minidom
+from pathlib import Path
+
+from program import PROGRAM, QUICK_COMPARISON, Cli
+
+
+class Judgements(Cli):
+    HAPTIC = ["--set", "compare.haptic.exchange_periods_s=[0.02, 0.01]",
+              "--set", "compare.haptic.ticks_s=[0.002, 0.001]", "--set", "compare.haptic.integrators=[]",
+              "--set", "compare.haptic.reference_rtol=1e-5",
+              "--set", "compare.haptic.reference_refresh_s=2e-3"]
+
+    def rows(self, database):
+        try:
+            with contextlib.closing(sqlite3.connect(f"file:{database}?mode=ro", uri=True)) as db:
+                return db.execute("select count(*) from run").fetchone()[0]
+        except sqlite3.Error:
+            return 0
+
+    def test_compare_prints_orders_and_writes_the_table(self):
+        text = self.good("compare", "cantilever", *QUICK_COMPARISON, "-o", "cmp", "--integrator", "cvode-bdf",
+                         "--integrator", "linearly-implicit-euler")
+        for words in ("fitted order", "its own error", "is the cheapest", "interleaved"):
+            self.assertIn(words, text)
+        names = {path.name for path in (self.folder / "cmp").iterdir()}
+        self.assertEqual({"compare.csv", "reference.json", "report.html", "study.sqlite"}, names)
+
+    def test_compare_takes_several_scenes_and_any_integrator(self):
+        arguments = ["compare", "cantilever", "one-tet", *QUICK_COMPARISON[:-2], "--integrator", "ark-erk-5",
+                     "-o", "two", "--limit-s", "5"]  # each run takes some 0.4 s: a busy machine ends none
+        self.good(*arguments)
+        table = (self.folder / "two/compare.csv").read_text().splitlines()
+        self.assertEqual({line.split(",")[0] for line in table[1:]}, {"cantilever", "one-tet"})
+        for scene in ("cantilever", "one-tet"):  # down to where the reference cannot tell errors
+            rows = [line for line in table if line.startswith(scene + ",")]
+            self.assertGreater(len(rows), 4)
+            self.assertLess(len(rows), 12)
+        page = (self.folder / "two/report.html").read_text()
+        xml.dom.minidom.parseString(page)
+        self.assertIn("Scene: one-tet", page)
+        again = self.good(*arguments)
+        self.assertIn("were done before", again)
+        self.assertEqual((self.folder / "two/compare.csv").read_text().splitlines(), table)
+        self.assertNotIn("were done before", self.good(*arguments, "--fresh"))
+
+    def test_compare_goes_on_after_a_kill(self):
+        arguments = [str(PROGRAM), "compare", "cantilever", *QUICK_COMPARISON, "-o", "cut",
+                     "--integrator", "linearly-implicit-euler", "--integrator", "cvode-bdf", "--jobs", "1"]
+        process = subprocess.Popen(arguments, cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        database = self.folder / "cut/study.sqlite"
+        end = time.monotonic() + 120
+        while self.rows(database) < 3 and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.01)
+        process.kill()
+        process.wait()
+        before = self.rows(database)
+        self.assertGreaterEqual(before, 3)
+        text = self.good(*arguments[1:])
+        self.assertIn("were done before", text)
+        with open(self.folder / "cut/compare.csv", newline="") as table:
+            run = [row for row in csv.DictReader(table) if row["status"] != "not tried"]
+        self.assertEqual(self.rows(database), len(run))
+
+    def test_bench_contact_prints_its_stages(self):
+        text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64", "-o", "out")
+        spread = r"\d+\.\d+ / \d+\.\d+ / \d+\.\d+"
+        self.assertRegex(text, rf"(?m)^cpu +64 +1 +[1-9]\d* +0\.0 +{spread} +- +\d")
+        self.assertRegex(text, rf"(?m)^gpu +64 +1 +[1-9]\d* +0\.0 +{spread} +\d+\.\d\d +- ")  # over cpu
+        self.assertRegex(text, r"(?m)^method .* skins +regions +faces +upload +passes +gather +readback "
+                               r"+gaps +groups +forces +tangent *$")
+        self.assertRegex(text, r"(?m)^cpu +64 +1( +\d+\.\d\d){11} *$")
+        for pixels in "wanted", "256":  # prices
+            self.assertRegex(text, rf"(?m)^press-ball +{pixels} ")
+        written = json.loads((self.folder / "out/bench-contact.json").read_text())
+        cpu, gpu = written["scenes"][0]["rows"]
+        self.assertEqual((cpu["method"], gpu["method"]), ("cpu", "gpu"))
+        self.assertRegex(cpu["device"], r"^.+, (baseline|avx2|avx512)$")
+        self.assertIn("4.", gpu["device"])
+        for row in cpu, gpu:
+            self.assertIn(f"\n  {row['method']}: {row['device']}", text)
+        self.assertIn("nothing to see in an image", self.refused("bench", "contact", "falling-ball"))
+
+    def test_bench_contact_gives_each_stage_its_spread(self):
+        text = self.good("bench", "contact", "press-ball", "--method", "exact", "--threads", "1", "--all",
+                         "--pixels", "64")
+        self.assertRegex(text, r"(?m)^exact +64 +1( +\d+\.\d+ / \d+\.\d+ / \d+\.\d+){11} *$")
+
+    def test_bench_contact_without_a_gpu_says_so(self):
+        done = self.call("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64",
+                         __EGL_VENDOR_LIBRARY_FILENAMES="/nowhere")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"(?m)^gpu is left out: .*install ")
+        self.assertNotRegex(done.stdout, r"(?m)^gpu +64 ")
+
+    def test_bench_contact_checks_its_bars(self):
+        scene = (PROGRAM.parent / "../share/palpate/scenes/press-ball.toml").read_text()
+        scene = scene.split("\n[compare]")[0]
+        # in one linear solve 300 nodes are stepped faster than 256 pixels along an edge are looked at
+        quick = scene.replace('name = "cvode-bdf"\nrtol = 1e-3',
+                              'name = "linearly-implicit-euler"\nstep_s = 0.01')
+        self.assertNotEqual(quick, scene)
+        (self.folder / "quick.toml").write_text(quick)
+        done = self.call("bench", "contact", "quick.toml", "--method", "cpu", "--threads", "1", "--check")
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertEqual(done.stderr, "")
+        self.assertRegex(done.stdout, r"(?m)^press-ball +query / step +\S+ +<= 1 +missed *$")
+        bars = re.findall(r"(?m)^press-ball .* (?:<=|>=) \S+ +(met|missed) *$", done.stdout)
+        self.assertTrue(done.stdout.endswith(f"\n{bars.count('met')} of {len(bars)} bars met\n"), done.stdout)
+        # before they touch there is little to look at: in one try of several, however busy the machine is
+        (self.folder / "apart.toml").write_text(scene.replace("duration_s = 0.4", "duration_s = 0.05"))
+        for _ in range(10):
+            done = self.call("bench", "contact", "apart.toml", "--method", "cpu", "--threads", "1", "--check")
+            met = 1 if done.returncode == 0 else 0
+            self.assertTrue(done.stdout.endswith(f"\n{met} of 1 bars met\n"), done.stdout + done.stderr)
+            if met:
+                break
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_a_run_is_replayed_and_compared(self):
+        text = self.good("run", "press-ball", "--duration-s", "0.2", "--realtime", "--passivity", "observe",
+                         "-o", "first")
+        self.assertIn("clock.csv", os.listdir(self.folder / "first"))
+        parts = re.search(r"an exchange takes (\S+) ms in the mean: query (\S+), linearisation (\S+), "
+                          r"step of the bodies (\S+)\n", text)
+        whole, *shares = map(float, parts.groups())
+        self.assertGreater(whole, 0.0)
+        self.assertAlmostEqual(whole, sum(shares), delta=0.25)
+        text = self.good("replay", "first")
+        self.assertEqual(text, "200 ticks compared, 0.001 to 0.2 s: identical to the last bit\n")
+        text = self.good("replay", "first", "--set", "exchange.latency_ticks=10", "-o", "late")
+        self.assertRegex(text, r"(?m)^force: differs by \S+ N RMS")
+        self.assertIn("force: differs by", self.good("diff", "first", "late"))
+        self.assertIn("identical to the last bit", self.good("diff", "late", "late"))
+        done = self.call("diff", "first", "nowhere")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("nowhere/haptic.h5: no such file", done.stderr)
+        error = self.refused("replay", "first", "--set", "scene.duration_s=0.001")
+        self.assertRegex(error, r"^palpate: error: \S*first/scene\.toml:\d+:\d+: ")
+
+    def test_a_hand_is_held_again_by_its_record(self):
+        self.good("run", "press-ball", "--duration-s", "0.2", "-o", "first")
+        self.good("run", "press-ball", "--duration-s", "0.2", "-o", "again", "--set",
+                  f'device={{type="recording",file="{self.folder}/first/haptic.h5"}}')
+        self.assertIn("200 ticks compared, 0.001 to 0.2 s: identical to the last bit",
+                      self.good("diff", "first", "again"))
+        error = self.refused("run", "press-ball", "--set",
+                             f'device={{type="recording",file="{self.folder}/first/run.h5"}}')
+        self.assertIn("run.h5", error)
+
+    def test_real_time_is_always_kept(self):
+        scene = Path(self.shipped("press-ball")).read_text()
+        (self.folder / "bare.toml").write_text(re.sub(r"\[record\]\n([^\[\n]*\n)*", "", scene))
+        text = self.good("run", "bare.toml", "--duration-s", "0.05", "--realtime", "-o", "kept")
+        self.assertRegex(text, r"in kept: clock\.csv, force\.csv, haptic\.h5, scene\.toml, summary\.json")
+        self.assertIn("50 ticks compared", self.good("replay", "kept"))
+        text = self.good("run", "bare.toml", "--duration-s", "0.05", "-o", "virtual")
+        self.assertIn("in virtual: scene.toml, summary.json\n", text)
+
+    def test_a_peer_that_sends_nothing_is_told_of(self):
+        with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as one:
+            one.bind(("127.0.0.1", 0))
+            port = one.getsockname()[1]
+        with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as peer:
+            done = subprocess.Popen([PROGRAM, "run", "press-ball", "--duration-s", "0.4", "--realtime", "-o",
+                                     "out", "--set", f'device={{type="udp",port={port},wait_s=0.3}}'],
+                                     cwd=self.folder,
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            while done.poll() is None:
+                peer.sendto(b"no packet of ours", ("127.0.0.1", port))
+                time.sleep(0.01)
+            text, error = done.communicate()
+        self.assertEqual(done.returncode, 1, text)
+        packets = re.search(r"within 0\.3 s \((\d+) packets came that are no poses of this scene: "
+                            r"(\d+) malformed",
+                            error)
+        self.assertGreater(int(packets[1]), 3)
+        self.assertEqual(packets[1], packets[2])
+
+    def test_semi_implicit_beyond_its_limit_is_warned_of(self):
+        run = ["run", "press-ball", "--duration-s", "0.02", "-o", "out", "--set",
+               "tool.integrator=semi-implicit-euler", "--set"]
+        # 4 m/h^2 - 2 b/h with 0.08 kg, 5 N s/m and ticks of 1 ms
+        done = self.call(*run, "tool.coupling.stiffness_n_m=3.2e5")
+        self.assertRegex(done.stderr, r"stiffness_n_m of 320000 N/m is not below 310000 N/m")
+        done = self.call(*run, "tool.coupling.stiffness_n_m=3e5")
+        self.assertNotIn("diverges", done.stderr)
+        done = self.call(*run, "tool.coupling.rotational_stiffness_n_m_rad=1e4")
+        self.assertRegex(done.stderr, r"rotational_stiffness_n_m_rad of 10000 N m/rad is not below")
+
+    def test_each_of_two_hands_is_replayed_and_compared(self):
+        text = self.good("run", "two-hands", "--duration-s", "0.2", "--against-monolithic", "-o", "first",
+                         "--set", "compare.haptic.reference_rtol=1e-4",
+                         "--set", "compare.haptic.reference_refresh_s=4e-3")
+        off = re.findall(r"(?m)^against .*?: (hand left: )?force off by \S+ N RMS \((\S+) % of the peak",
+                         text)
+        self.assertEqual([whose for whose, _ in off], ["", "hand left: "], text)
+        for _, share in off:
+            self.assertLess(float(share), 10.0, text)
+        figures = json.loads((self.folder / "first/summary.json").read_text())["figures"]
+        self.assertGreater(figures["hand left against monolithic"]["peak_force_n"], 1.0)
+        same = "200 ticks compared, 0.001 to 0.2 s: identical to the last bit\n"
+        self.assertEqual(self.good("replay", "first"), f"tool:\n{same}left:\n{same}")
+        text = self.good("replay", "first", "--set", "exchange.exchange_period_s=0.005", "-o", "other")
+        self.assertRegex(text, r"(?m)^tool:\n(.*\n)*force: differs(.*\n)*left:\n(.*\n)*force: differs")
+        self.assertIn("\nleft:\n", self.good("diff", "first", "other"))
+        # what an earlier run left there is not taken for this one's, and what a person put there stays
+        (self.folder / "other/force-measured.csv").write_text("1,2\n")
+        self.good("run", "press-ball", "--duration-s", "0.1", "-o", "other")
+        self.assertIn("left: there is none in other", self.good("diff", "first", "other"))
+        self.assertIn("left: there is none in other", self.good("diff", "other", "first"))
+        self.assertEqual((self.folder / "other/force-measured.csv").read_text(), "1,2\n")
+
+    def test_without_a_tool_nothing_is_replayed(self):
+        self.good("run", "falling-ball", "--duration-s", "0.05", "-o", "fallen")
+        done = self.call("replay", "fallen")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("the scene of fallen has no [tool]", done.stderr)
+
+    def test_what_a_hand_feels_is_compared_with_one_system(self):
+        arguments = ["compare", "--haptic", "press-ball", "--duration-s", "0.08", "--repeats", "1",
+                     *self.HAPTIC, "-o", "felt"]
+        text = self.good(*arguments)
+        self.assertRegex(text, r"(?m)^press-ball: reference tool and bodies as one system by cvode-bdf")
+        self.assertRegex(text, r"(?m)^observed order by exchange alone: force ")
+        for variable in ("exchange period", "exchange alone", "tick", "integrator", "linearisation"):
+            self.assertRegex(text, rf"(?m)^{variable} ")
+        names = {path.name for path in (self.folder / "felt").iterdir()}
+        self.assertEqual({"haptic.csv", "summary.json", "report.html", "study.sqlite"}, names)
+        figures = json.loads((self.folder / "felt/summary.json").read_text())["figures"]
+        self.assertGreater(figures["monolithic reference"]["peak_force_n"], 0.1)
+        self.assertLess(figures["the scene's own settings"]["force_error_rms_of_peak"], 0.2)
+        self.assertIn("Force on the hand against one system", (self.folder / "felt/report.html").read_text())
+        self.assertIn("were done before", self.good(*arguments))
+        self.assertIn("there is no [tool]", self.refused("compare", "--haptic", "cantilever"))
+        self.assertIn("takes one SCENE", self.refused("compare", "--haptic", "press-ball", "twist-ball"))
+        self.assertIn("--all", self.refused("compare", "--haptic", "press-ball", "--all"))
+
+    def test_a_run_says_how_far_it_was_from_one_system(self):
+        run = ["run", "press-ball", "--duration-s", "0.1", "--against-monolithic", *self.HAPTIC, "-o", "held"]
+        text = self.good(*run)
+        self.assertRegex(text,
+                         r"(?m)^against .*: force off by \S+ N RMS \(\S+ % of the peak of \S+\), at most ")
+        self.assertNotIn("as it was recorded", text)
+        kept = json.loads((self.folder / "held/summary.json").read_text())["figures"]["against monolithic"]
+        self.assertLess(kept["force_error_rms_of_peak"], 0.2)
+        self.assertIn("under the hand as it was recorded", self.good(*run, "--realtime"))
+        self.assertIn("there is no [tool]", self.refused("run", "one-tet", "--against-monolithic"))
+
+    def test_a_scene_is_judged_as_a_haptic_loop(self):
+        text = self.good("stability", "--haptic", "press-ball", "-o", "wall")
+        self.assertRegex(text, r"the passive walls are within the stable ones; "
+                               r"simulation and theory differ by at most \S+ %")
+        self.assertIn("z_width.csv", os.listdir(self.folder / "wall"))
+        self.assertIn("about the tool's axis of least inertia", text)
+        self.assertNotIn("UNSTABLE", text)
+        # 4 I/h^2 of the ball of 80 g and 20 mm is 51 N m/rad
+        done = self.call("stability", "--haptic", "press-ball", "-o", "turned", "--set",
+                         "tool.integrator=semi-implicit-euler", "--set",
+                         "tool.coupling.rotational_stiffness_n_m_rad=1e3")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertRegex(done.stdout, r"the loop of this scene is UNSTABLE: tool in the air \(rotation\)")
+        self.assertNotRegex(done.stdout, r"UNSTABLE.*\(translation\)")
+        self.assertIn("SCENE requires --haptic", self.refused("stability", "press-ball"))
+        self.assertIn("--rows", self.refused("stability", "--rows", "slivers"))
+
+    def test_validate(self):
+        self.assertIn("--slow excludes --quick", self.refused("validate", "--quick", "--slow"))
+        text = self.good("validate", "rigid-motion", "-o", "val")
+        self.assertRegex(text, r"(?m)^rigid-motion +C +any rotation and translation: no force, no energy")
+        self.assertRegex(text, r"(?m)^rigid-motion .* pass$")
+        cases = json.loads((self.folder / "val/validation.json").read_text())["cases"]
+        self.assertEqual([case["name"] for case in cases], ["rigid-motion"])
+        self.assertTrue(all(m["passed"] for m in cases[0]["measurements"]))
+        for option in ("--inject-faults", "--sabotage"):  # the second is an old name, not in the help
+            self.assertIn("fails, as it must", self.good("validate", "rigid-motion", option))
+        self.assertNotIn("sabotage", self.good("validate", "--help"))
+
+    def test_validate_side_by_side(self):
+        cases = ["patch-test", "rigid-motion", "vertex-list"]
+        rows = [self.good("validate", *cases, "--jobs", jobs) for jobs in ("1", "3")]
+        self.assertEqual(rows[0], rows[1])
+        self.assertIn("3 of 3 cases keep their bars", rows[0])
+        passed = re.findall(r"(?m)^([a-z-]+) .* pass$", rows[0])  # as they were named, whichever ended first
+        self.assertEqual(list(dict.fromkeys(passed)), cases)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)
