@@ -10,8 +10,8 @@ import re
 import sys
 from pathlib import Path
 
-BELOW_LOOP = ["core", "mesh", "dynamics", "fem", "proxy", "gl", "contact", "tool", "device", "bones",
-              "linear", "modes", "integrate", "store", "render", "scene"]
+BELOW_LOOP = ["core", "mesh", "dynamics", "fem", "distance", "proxy", "gl", "contact", "tool", "device",
+              "bones", "linear", "modes", "integrate", "store", "render", "scene"]
 
 ALLOWED = {
     "core": [],
@@ -19,6 +19,7 @@ ALLOWED = {
     "shapes": ["core", "mesh"],
     "dynamics": ["core"],
     "fem": ["core", "mesh", "dynamics"],
+    "distance": ["core", "mesh"],
     "proxy": ["core", "mesh"],
     "gl": ["core"],
     "contact": ["core", "mesh", "proxy", "dynamics", "gl"],

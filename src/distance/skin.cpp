@@ -1,0 +1,127 @@
+#include "palpate/distance/skin.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "palpate/core/error.h"
+#include "palpate/mesh/spatial_order.h"
+
+namespace palpate::distance {
+namespace {
+
+/// Bisects faces across the longest side of their box, at multiples of 32 and then of 16, 8 and 4 faces, so
+/// that all clusters but the last are full and their parts are compact.
+class Bisection {
+ public:
+  Bisection(const Points& centroids, std::vector<int>& order, std::vector<ClusterNode>& tree)
+      : centroids_(centroids), order_(order), tree_(tree) {}
+
+  void cut(int begin, int end) {
+    const std::size_t here = tree_.size();
+    tree_.push_back({begin / kClusterFaces, (end + kClusterFaces - 1) / kClusterFaces, 0});
+    if (end - begin <= kClusterFaces) return cut_cluster(begin, end);
+    const int middle = partition(begin, end, kClusterFaces);
+    cut(begin, middle);
+    tree_[here].right = static_cast<int>(tree_.size());
+    cut(middle, end);
+  }
+
+ private:
+  void cut_cluster(int begin, int end) {
+    const int count = end - begin;
+    if (count <= 4) return;
+    const int middle = partition(begin, end, count > 16 ? 16 : count > 8 ? 8 : 4);
+    cut_cluster(begin, middle);
+    cut_cluster(middle, end);
+  }
+  int partition(int begin, int end, int unit) {
+    const int units = std::max(1, (end - begin + unit) / (2 * unit));
+    const int middle = begin + units * unit;
+    mesh::cut_across_longest(centroids_, order_, begin, end, middle);
+    return middle;
+  }
+
+  const Points& centroids_;
+  std::vector<int>& order_;
+  std::vector<ClusterNode>& tree_;
+};
+
+void join_across_edges(Skin& skin) {
+  std::map<std::pair<int, int>, int> half_edges;  // from, to -> 3 face + opposite corner
+  for (int f = 0; f < skin.face_count(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const int from = skin.faces((k + 1) % 3, f), to = skin.faces((k + 2) % 3, f);
+      if (!half_edges.try_emplace({from, to}, 3 * f + k).second)
+        fail(
+            "contact needs a closed skin: the edge from vertex {} to vertex {} occurs twice in the same "
+            "direction",
+            from, to);
+    }
+  skin.across.resize(3, skin.face_count());
+  for (const auto& [edge, at] : half_edges) {
+    const auto other = half_edges.find({edge.second, edge.first});
+    if (other == half_edges.end())
+      fail("contact needs a closed skin: the edge from vertex {} to vertex {} has a face on one side alone",
+           edge.first, edge.second);
+    skin.across(at % 3, at / 3) = other->second / 3;
+  }
+}
+
+void collect_fans(Skin& skin) {
+  skin.fan_begin.assign(static_cast<std::size_t>(skin.vertex_count()) + 1, 0);
+  for (const int v : skin.faces.reshaped()) ++skin.fan_begin[static_cast<std::size_t>(v) + 1];
+  std::partial_sum(skin.fan_begin.begin(), skin.fan_begin.end(), skin.fan_begin.begin());
+  std::vector<int> next(skin.fan_begin.begin(), skin.fan_begin.end() - 1);
+  skin.fan.resize(static_cast<std::size_t>(skin.faces.size()));
+  for (int f = 0; f < skin.face_count(); ++f)
+    for (int k = 0; k < 3; ++k)
+      skin.fan[static_cast<std::size_t>(next[static_cast<std::size_t>(skin.faces(k, f))]++)] = f;
+}
+
+Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node_count) {
+  if (!rest.vertices.allFinite() || !weights.allFinite())
+    fail("contact needs a skin of finite positions and weights");
+  Skin skin;
+  skin.node_count = node_count;
+  skin.nodes = std::move(nodes);
+  skin.weights = std::move(weights);
+  const Eigen::Index count = rest.faces.cols();
+  Points centroids(3, count);
+  for (Eigen::Index f = 0; f < count; ++f)
+    centroids.col(f) = rest.vertices(Eigen::all, rest.faces.col(f)).rowwise().mean();
+  skin.given_face.resize(static_cast<std::size_t>(count));
+  std::iota(skin.given_face.begin(), skin.given_face.end(), 0);
+  Bisection(centroids, skin.given_face, skin.tree).cut(0, static_cast<int>(count));
+  skin.faces = rest.faces(Eigen::all, skin.given_face);
+  skin.area.resize(count);
+  for (int f = 0; f < skin.face_count(); ++f) {
+    const Vec3 a = rest.vertices.col(skin.faces(0, f));
+    const Vec3 normal =
+        (rest.vertices.col(skin.faces(1, f)) - a).cross(rest.vertices.col(skin.faces(2, f)) - a);
+    skin.area[f] = 0.5 * normal.norm();
+    if (!(skin.area[f] > 0.0))
+      fail("contact needs a skin without flat triangles: face {} has no area",
+           skin.given_face[static_cast<std::size_t>(f)]);
+  }
+  join_across_edges(skin);
+  collect_fans(skin);
+  return skin;
+}
+
+}  // namespace
+
+Skin make_skin(const TriMesh& rest, const mesh::Embedding& embedding, const Tets& tets, int node_count) {
+  return build(rest, tets(Eigen::all, embedding.tet), embedding.weights, node_count);
+}
+
+Skin make_skin(const TriMesh& rest) {
+  const Eigen::Index count = rest.vertices.cols();
+  NodeIndices nodes(4, count);
+  for (int i = 0; i < count; ++i) nodes.col(i).setConstant(i);
+  NodeWeights weights = NodeWeights::Zero(4, count);
+  weights.row(0).setOnes();
+  return build(rest, std::move(nodes), std::move(weights), static_cast<int>(count));
+}
+
+}  // namespace palpate::distance

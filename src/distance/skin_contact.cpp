@@ -1,0 +1,193 @@
+#include "palpate/distance/skin_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/core/error.h"
+
+namespace palpate::distance {
+
+SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& spec)
+    : spec_(spec), surfaces_{Surface(a), Surface(b)} {
+  if (!(spec.stiffness_pa_m > 0.0))
+    fail("contact stiffness is {} Pa/m; it must be positive", spec.stiffness_pa_m);
+  std::size_t count = 0;
+  for (int side = 0; side < 2; ++side) {
+    const Skin& skin = surfaces_[side].skin();
+    if (side == 0 || spec.two_sided) points_[side] = contact_points(skin, spec.cuts);
+    cluster_points_[side].assign(static_cast<std::size_t>(skin.cluster_count()) + 1, 0);
+    for (const ContactPoint& p : points_[side])
+      ++cluster_points_[side][static_cast<std::size_t>(p.face / kClusterFaces) + 1];
+    for (std::size_t c = 1; c < cluster_points_[side].size(); ++c)
+      cluster_points_[side][c] += cluster_points_[side][c - 1];
+    starts_[side].assign(static_cast<std::size_t>(skin.cluster_count()), -1);
+    count += points_[side].size();
+    VertexForces& at = vertex_forces_[side];
+    at.sum.setZero(3, skin.vertex_count());
+    at.is_touched.assign(static_cast<std::size_t>(skin.vertex_count()), 0);
+    at.touched.reserve(static_cast<std::size_t>(skin.vertex_count()));
+  }
+  springs_.reserve(count);
+}
+
+void SkinContact::find(const double* nodes_a, const double* nodes_b) {
+  surfaces_[0].move(nodes_a);
+  surfaces_[1].move(nodes_b);
+  springs_.clear();
+  find_side(0);
+  if (spec_.two_sided) find_side(1);
+}
+
+Vec3 SkinContact::position(int side, const ContactPoint& point) const {
+  return surfaces_[side].point(point.face, point.weights);
+}
+
+// The signed distance to a closed skin is 1-Lipschitz.  Where the middle c of a cluster's box lies outside at
+// a distance above the box's half diagonal r, the whole box lies outside.  No depth is assumed anywhere:
+// points far inside are found as any other.
+void SkinContact::find_side(int side) {
+  const Surface& own = surfaces_[side];
+  const Surface& other = surfaces_[1 - side];
+  const double factor = spec_.two_sided ? 0.5 * spec_.stiffness_pa_m : spec_.stiffness_pa_m;
+  for (std::size_t i = 0; i < own.skin().tree.size(); ++i) {
+    const ClusterNode& node = own.skin().tree[i];
+    const Eigen::AlignedBox3d& box = own.box(static_cast<int>(i));
+    if (node.right || !box.intersects(other.box(0))) continue;
+    const auto cluster = static_cast<std::size_t>(node.begin);
+    const Foot middle = other.nearest(box.center(), starts_[side][cluster]);
+    starts_[side][cluster] = middle.face;
+    const double radius = 0.5 * box.diagonal().norm();
+    if (std::sqrt(middle.at.distance2) > radius * (1.0 + 1e-12) && !other.is_inside(middle)) continue;
+    int start = middle.face;
+    for (int p = cluster_points_[side][cluster]; p < cluster_points_[side][cluster + 1]; ++p) {
+      const ContactPoint& point = points_[side][static_cast<std::size_t>(p)];
+      const Foot foot = other.nearest(position(side, point), start);
+      start = foot.face;
+      if (!other.is_inside(foot)) continue;
+      springs_.push_back(
+          {side, p, foot.face, foot.at.weights, -foot.at.away, factor * point.area, factor * point.coarse});
+    }
+  }
+}
+
+double SkinContact::energy() const {
+  double sum = 0.0;
+  for (const Spring& s : springs_) sum += 0.5 * s.stiffness * s.reach.squaredNorm();
+  return sum;
+}
+
+double SkinContact::deepest() const {
+  double most = 0.0;
+  for (const Spring& s : springs_) most = std::max(most, s.reach.squaredNorm());
+  return std::sqrt(most);
+}
+
+Resultant SkinContact::resultant() const {
+  Resultant out;
+  for (const Spring& s : springs_) {
+    const Vec3 force = (s.side == 0 ? s.stiffness : -s.stiffness) * s.reach;
+    out.force += force;
+    out.moment += position(s.side, points_[s.side][static_cast<std::size_t>(s.point)]).cross(force);
+  }
+  return out;
+}
+
+double SkinContact::largest_share() const {
+  const double all = resultant().force.norm();
+  double most = 0.0;
+  for (const Spring& s : springs_) most = std::max(most, s.stiffness * s.reach.norm());
+  return all > 0.0 ? most / all : 0.0;
+}
+
+// F = 3/4 F_centroids + 1/4 F_corners, so that F_corners - F_centroids = 4 (F - F_centroids).
+double SkinContact::quadrature_error() const {
+  Vec3 all = Vec3::Zero(), coarse = Vec3::Zero();
+  for (const Spring& s : springs_) {
+    const double sign = s.side == 0 ? 1.0 : -1.0;
+    all += sign * s.stiffness * s.reach;
+    coarse += sign * s.coarse * s.reach;
+  }
+  return all.norm() > 0.0 ? 4.0 * (all - coarse).norm() / all.norm() : 0.0;
+}
+
+Mat3 SkinContact::spring_matrix(const Spring& spring) const {
+  const Vec3& w = spring.weights;
+  const int zeros = (w[0] == 0.0) + (w[1] == 0.0) + (w[2] == 0.0);
+  if (zeros == 2) return spring.stiffness * Mat3::Identity();
+  const Surface& other = surfaces_[1 - spring.side];
+  if (zeros == 1) {
+    const int k = w[0] == 0.0 ? 0 : w[1] == 0.0 ? 1 : 2;
+    const Vec3 t =
+        (other.corner(spring.face, (k + 2) % 3) - other.corner(spring.face, (k + 1) % 3)).normalized();
+    return spring.stiffness * (Mat3::Identity() - t * t.transpose());
+  }
+  const Vec3 n = (other.corner(spring.face, 1) - other.corner(spring.face, 0))
+                     .cross(other.corner(spring.face, 2) - other.corner(spring.face, 0))
+                     .normalized();
+  return spring.stiffness * n * n.transpose();
+}
+
+/// x - y of values at vertices.
+template <class Of>
+Vec3 SkinContact::difference(const Spring& spring, const Of& vertex_value) const {
+  const ContactPoint& point = points_[spring.side][static_cast<std::size_t>(spring.point)];
+  const Skin& own = surfaces_[spring.side].skin();
+  const Skin& other = surfaces_[1 - spring.side].skin();
+  Vec3 out = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    out += point.weights[k] * vertex_value(spring.side, own.faces(k, point.face)) -
+           spring.weights[k] * vertex_value(1 - spring.side, other.faces(k, spring.face));
+  return out;
+}
+
+void SkinContact::add_to_vertices(const Spring& spring, const Vec3& force) {
+  const ContactPoint& point = points_[spring.side][static_cast<std::size_t>(spring.point)];
+  for (int end = 0; end < 2; ++end) {
+    const int side = end == 0 ? spring.side : 1 - spring.side;
+    const Vec3& weights = end == 0 ? point.weights : spring.weights;
+    VertexForces& at = vertex_forces_[side];
+    for (int k = 0; k < 3; ++k) {
+      const int v = surfaces_[side].skin().faces(k, end == 0 ? point.face : spring.face);
+      if (!at.is_touched[static_cast<std::size_t>(v)]) {
+        at.is_touched[static_cast<std::size_t>(v)] = 1;
+        at.touched.push_back(v);
+      }
+      at.sum.col(v) += (end == 0 ? weights[k] : -weights[k]) * force;
+    }
+  }
+}
+
+void SkinContact::add_to_nodes(double* nodes_a, double* nodes_b) {
+  for (int side = 0; side < 2; ++side) {
+    VertexForces& at = vertex_forces_[side];
+    const Skin& skin = surfaces_[side].skin();
+    double* nodes = side == 0 ? nodes_a : nodes_b;
+    for (const int v : at.touched) {
+      for (int k = 0; k < 4; ++k)
+        Eigen::Map<Vec3>(nodes + 3 * skin.nodes(k, v)) += skin.weights(k, v) * at.sum.col(v);
+      at.sum.col(v).setZero();
+      at.is_touched[static_cast<std::size_t>(v)] = 0;
+    }
+    at.touched.clear();
+  }
+}
+
+void SkinContact::add_force(double* nodes_a, double* nodes_b) {
+  for (const Spring& s : springs_) add_to_vertices(s, s.stiffness * s.reach);
+  add_to_nodes(nodes_a, nodes_b);
+}
+
+void SkinContact::apply_stiffness(const double* v_a, const double* v_b, double* y_a, double* y_b) {
+  const double* of[2] = {v_a, v_b};
+  const auto vertex_value = [&](int side, int v) {
+    const Skin& skin = surfaces_[side].skin();
+    Vec3 out = Vec3::Zero();
+    for (int k = 0; k < 4; ++k)
+      out += skin.weights(k, v) * Eigen::Map<const Vec3>(of[side] + 3 * skin.nodes(k, v));
+    return out;
+  };
+  for (const Spring& s : springs_) add_to_vertices(s, spring_matrix(s) * difference(s, vertex_value));
+  add_to_nodes(y_a, y_b);
+}
+
+}  // namespace palpate::distance

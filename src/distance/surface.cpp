@@ -1,0 +1,157 @@
+#include "palpate/distance/surface.h"
+
+#include <cmath>
+#include <limits>
+
+namespace palpate::distance {
+namespace {
+
+/// Upper bound on what the squared distance of a box can come out as, where nearest_on_triangle() found
+/// `distance2` for a triangle inside.  A foot is a convex combination of corners, so it lies in the box but
+/// for rounding: a few units in the last place of the coordinates, and of the squares' sum.  Sixteen cover
+/// both.
+constexpr double kUnit = std::numeric_limits<double>::epsilon();
+double with_rounding(double distance2, double largest_coordinate) {
+  const double slack = 16.0 * kUnit * largest_coordinate;
+  return distance2 + 2.0 * slack * std::sqrt(distance2) + slack * slack + 16.0 * kUnit * distance2;
+}
+
+bool is_before(double distance2, int face, const Foot& foot) {
+  return distance2 < foot.at.distance2 || (distance2 == foot.at.distance2 && face < foot.face);
+}
+
+}  // namespace
+
+// The foot lies inside where all three barycentric coordinates of the projection are positive.  Otherwise it
+// lies on an edge beyond which the projection is: at an edge's inner point the projection lies along its
+// outward normal, and at a corner, p - y = s m + t n with the outward normals of its edges and s, t >= 0, one
+// of (p - y) . m and (p - y) . n is positive unless m = -n.
+TrianglePoint nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
+  const Vec3 corners[3] = {a, b, c};
+  const Vec3 edge[3] = {c - b, a - c, b - a};  // opposite to each corner
+  const Vec3 normal = edge[2].cross(-edge[1]);
+  const double size2 = normal.squaredNorm();
+  TrianglePoint out;
+  double inside[3];
+  for (int k = 0; k < 3; ++k) inside[k] = normal.dot(edge[k].cross(x - corners[(k + 1) % 3]));
+  if (size2 > 0.0 && inside[0] > 0.0 && inside[1] > 0.0 && inside[2] > 0.0) {
+    const double sum = inside[0] + inside[1] + inside[2];
+    out.weights = Vec3(inside[0], inside[1], inside[2]) / sum;
+    // From the foot itself rather than along the normal: it lies in the triangle however thin that is.
+    out.away = x - a - (out.weights[1] * edge[2] - out.weights[2] * edge[1]);
+    out.distance2 = out.away.squaredNorm();
+    return out;
+  }
+  out.distance2 = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    if (inside[k] > 0.0 && size2 > 0.0) continue;
+    const int from = (k + 1) % 3, to = (k + 2) % 3;
+    const Vec3 v = x - corners[from];
+    const double length2 = edge[k].squaredNorm();
+    const double t = length2 > 0.0 ? std::min(1.0, std::max(0.0, v.dot(edge[k]) / length2)) : 0.0;
+    const Vec3 away = t == 1.0 ? Vec3(x - corners[to]) : Vec3(v - t * edge[k]);
+    const double distance2 = away.squaredNorm();
+    if (!(distance2 < out.distance2)) continue;
+    out.distance2 = distance2;
+    out.away = away;
+    out.weights.setZero();
+    out.weights[from] = 1.0 - t;
+    out.weights[to] = t;
+  }
+  return out;
+}
+
+Surface::Surface(const Skin& skin)
+    : skin_(skin), vertices_(Points::Zero(3, skin.vertex_count())), boxes_(skin.tree.size()) {}
+
+void Surface::move(const double* nodes) {
+  for (int v = 0; v < skin_.vertex_count(); ++v) {
+    Vec3 x = Vec3::Zero();
+    for (int k = 0; k < 4; ++k)
+      x += skin_.weights(k, v) * Eigen::Map<const Vec3>(nodes + 3 * skin_.nodes(k, v));
+    vertices_.col(v) = x;
+  }
+  for (std::size_t i = skin_.tree.size(); i-- > 0;) {
+    const ClusterNode& node = skin_.tree[i];
+    Eigen::AlignedBox3d& box = boxes_[i];
+    if (node.right) {
+      box = boxes_[i + 1].merged(boxes_[static_cast<std::size_t>(node.right)]);
+      continue;
+    }
+    box.setEmpty();
+    const int end = std::min(kClusterFaces * node.end, skin_.face_count());
+    for (int f = kClusterFaces * node.begin; f < end; ++f)
+      for (int k = 0; k < 3; ++k) box.extend(corner(f, k));
+  }
+}
+
+Vec3 Surface::point(int face, const Vec3& weights) const {
+  return weights[0] * corner(face, 0) + weights[1] * corner(face, 1) + weights[2] * corner(face, 2);
+}
+
+TrianglePoint Surface::nearest_on_face(int face, const Vec3& x) const {
+  return nearest_on_triangle(corner(face, 0), corner(face, 1), corner(face, 2), x);
+}
+
+void Surface::search_cluster(int cluster, const Vec3& x, Foot& best) const {
+  const int end = std::min(kClusterFaces * (cluster + 1), skin_.face_count());
+  for (int f = kClusterFaces * cluster; f < end; ++f) {
+    const TrianglePoint at = nearest_on_face(f, x);
+    if (is_before(at.distance2, f, best)) best = {f, at};
+  }
+  count_.triangles += end - kClusterFaces * cluster;
+}
+
+Foot Surface::nearest(const Vec3& x, int start) const {
+  Foot best;
+  best.at.distance2 = std::numeric_limits<double>::infinity();
+  if (start >= 0) best = {start, nearest_on_face(start, x)};
+  ++count_.searches;
+  const double size = std::max(box(0).min().cwiseAbs().maxCoeff(), box(0).max().cwiseAbs().maxCoeff()) +
+                      x.cwiseAbs().maxCoeff();
+  int open[64], depth = 0;  // bisection halves the faces: 64 levels are never reached
+  open[depth++] = 0;
+  while (depth > 0) {
+    const int i = open[--depth];
+    if (box(i).squaredExteriorDistance(x) > with_rounding(best.at.distance2, size)) continue;
+    const ClusterNode& node = skin_.tree[static_cast<std::size_t>(i)];
+    if (!node.right) {
+      search_cluster(node.begin, x, best);
+      continue;
+    }
+    const bool is_left_nearer =
+        box(i + 1).squaredExteriorDistance(x) <= box(node.right).squaredExteriorDistance(x);
+    open[depth++] = is_left_nearer ? node.right : i + 1;
+    open[depth++] = is_left_nearer ? i + 1 : node.right;
+  }
+  return best;
+}
+
+Vec3 Surface::unit_normal(int face) const {
+  const Vec3 normal = (corner(face, 1) - corner(face, 0)).cross(corner(face, 2) - corner(face, 0));
+  const double size = normal.norm();
+  return size > 0.0 ? Vec3(normal / size) : Vec3::Zero();
+}
+
+bool Surface::is_inside(const Foot& foot) const {
+  const Vec3& w = foot.at.weights;
+  Vec3 normal = unit_normal(foot.face);
+  const int zeros = (w[0] == 0.0) + (w[1] == 0.0) + (w[2] == 0.0);
+  if (zeros == 1) {
+    const int opposite = w[0] == 0.0 ? 0 : w[1] == 0.0 ? 1 : 2;
+    normal += unit_normal(skin_.across(opposite, foot.face));
+  } else if (zeros == 2) {
+    const int v = skin_.faces(w[0] != 0.0 ? 0 : w[1] != 0.0 ? 1 : 2, foot.face);
+    normal.setZero();
+    for (int i = skin_.fan_begin[static_cast<std::size_t>(v)];
+         i < skin_.fan_begin[static_cast<std::size_t>(v) + 1]; ++i) {
+      const int face = skin_.fan[static_cast<std::size_t>(i)];
+      const int k = skin_.faces(0, face) == v ? 0 : skin_.faces(1, face) == v ? 1 : 2;
+      const Vec3 e = corner(face, (k + 1) % 3) - vertex(v), g = corner(face, (k + 2) % 3) - vertex(v);
+      normal += std::atan2(e.cross(g).norm(), e.dot(g)) * unit_normal(face);
+    }
+  }
+  return foot.at.away.dot(normal) < 0.0;
+}
+
+}  // namespace palpate::distance

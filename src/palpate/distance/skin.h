@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "palpate/mesh/embedding.h"
+#include "palpate/mesh/mesh.h"
+
+namespace palpate::distance {
+
+/// Faces per cluster of a skin.
+inline constexpr int kClusterFaces = 32;
+
+using NodeIndices = Eigen::Matrix<int, 4, Eigen::Dynamic>;  ///< 4 x n, nodes of each vertex
+using NodeWeights =
+    Eigen::Matrix<double, 4, Eigen::Dynamic>;  ///< 4 x n, their weights; each column sums to 1
+
+/// A box of clusters and its two halves: the tree that searches descend.
+struct ClusterNode {
+  int begin = 0, end = 0;  ///< clusters
+  int right = 0;           ///< second half; the first one follows its parent; 0: one cluster
+};
+
+/// A closed triangulated skin whose vertices are carried by nodes, x_i = sum over k of weights(k, i) times
+/// the position of node nodes(k, i).  Topology and rest areas, fixed at assembly.
+///
+/// Faces are renumbered along a spatial bisection, so that faces 32 c to 32 c + 31 are cluster c, and runs of
+/// 16, 8 and 4 of them are compact, too.
+struct Skin {
+  int node_count = 0;
+  NodeIndices nodes;
+  NodeWeights weights;
+  Faces faces;
+  std::vector<int> given_face;    ///< number that each face had in the mesh
+  Faces across;                   ///< face beyond the edge opposite to each corner
+  std::vector<int> fan_begin;     ///< of each vertex in `fan`, and its length at the end
+  std::vector<int> fan;           ///< faces around each vertex, ascending
+  VecX area;                      ///< of each face at rest [m^2]
+  std::vector<ClusterNode> tree;  ///< parents before children; the root is the first
+
+  int vertex_count() const { return static_cast<int>(nodes.cols()); }
+  int face_count() const { return static_cast<int>(faces.cols()); }
+  int cluster_count() const { return (face_count() + kClusterFaces - 1) / kClusterFaces; }
+};
+
+/// A skin embedded in tetrahedra.
+/// @param rest  closed and oriented outwards, at rest [m]  @param node_count  nodes of the tetrahedral mesh
+/// @throws Error where an edge does not belong to exactly two faces of opposite direction, where a face has
+/// no
+///   area, or where a weight or position is not finite
+Skin make_skin(const TriMesh& rest, const mesh::Embedding& embedding, const Tets& tets, int node_count);
+
+/// A skin whose vertices are its nodes: a rigid mesh, or a shell.  Throws as above.
+Skin make_skin(const TriMesh& rest);
+
+}  // namespace palpate::distance

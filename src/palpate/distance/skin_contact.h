@@ -1,0 +1,98 @@
+#pragma once
+#include <vector>
+
+#include "palpate/distance/points.h"
+#include "palpate/distance/surface.h"
+
+namespace palpate::distance {
+
+/// What two skins in contact are given at assembly.
+struct SkinContactSpec {
+  double stiffness_pa_m = 0.0;
+  int cuts = 1;           ///< of the edges of each face, see contact_points()
+  bool two_sided = true;  ///< points of both skins, with half of the stiffness each; else of the first alone
+};
+
+/// A point of one skin that lies inside the other, tied to its nearest point there.
+struct Spring {
+  int side = 0;            ///< skin that the point belongs to
+  int point = 0;           ///< number of the point
+  int face = 0;            ///< of the other skin
+  Vec3 weights;            ///< of the face's corners
+  Vec3 reach;              ///< from the point to its foot, y - x [m]
+  double stiffness = 0.0;  ///< [N/m]
+  double coarse = 0.0;     ///< stiffness in the embedded rule [N/m]
+};
+
+/// Resultant of all springs on the first skin.
+struct Resultant {
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 moment = Vec3::Zero();  ///< about the origin [N m]
+};
+
+/// Contact of two closed skins as an energy of distances.  With x the material points of a skin that lie
+/// inside the other one, y(x) the nearest point of that one, a the rest area of a point and k in [Pa/m],
+///
+///     U = 1/2 sum_A k/2 a |x - y|^2 + 1/2 sum_B k/2 a |x - y|^2        (two-sided; one-sided: sum_A k/2 a |x
+///     - y|^2).
+///
+/// |x - y|^2 is a minimum over y, so its derivative leaves y's weights alone (envelope theorem) and the force
+/// is the exact gradient: k a (y - x) on the point, the opposite on the foot's three corners, one line
+/// through both.  A sphere of radius R pressed by delta into a half-space gives k pi R delta^2 to first order
+/// in delta/R (Sherman, Seth, Delp 2011, whose elastic foundation this is, per area).
+///
+/// Everything is a function of the positions in the last find(), bitwise, whatever was found before; sums are
+/// taken in a fixed order; nothing is allocated after construction.
+class SkinContact {
+ public:
+  /// @param a, b  outlive the contact
+  SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& spec);
+
+  /// Finds the springs.  @param nodes_a, nodes_b  x y z of each node [m]
+  void find(const double* nodes_a, const double* nodes_b);
+
+  const std::vector<Spring>& springs() const { return springs_; }
+  const std::vector<ContactPoint>& points(int side) const { return points_[side]; }
+  const Surface& surface(int side) const { return surfaces_[side]; }
+  double energy() const;                             ///< U [J]
+  double deepest() const;                            ///< largest |x - y| [m]
+  void add_force(double* nodes_a, double* nodes_b);  ///< adds -dU/dq to x y z of each node [N]
+  Resultant resultant() const;
+  /// Share of a point in the resultant: the largest force of one spring over |sum| [-], which bounds what a
+  /// foot that changes from one place of the skin to another changes.
+  double largest_share() const;
+  /// Embedded estimate of the quadrature error of the resultant force: the centroids alone and the corners
+  /// alone are rules of degree 1, and this is their difference over the whole, |F_corners - F_centroids| /
+  /// |F|.  0 without contact.
+  double quadrature_error() const;
+
+  /// The Gauss-Newton matrix K = sum of k a J' H J, J = dx/dq - dy/dq with the foot's weights held: H = n n'
+  /// on a face, I - t t' along an edge t, I at a vertex.  Symmetric, positive semi-definite.  It leaves out
+  /// that the foot slides, that the normal turns and that the skin is curved.
+  Mat3 spring_matrix(const Spring& spring) const;
+  /// y += K v.
+  void apply_stiffness(const double* v_a, const double* v_b, double* y_a, double* y_b);
+
+ private:
+  void find_side(int side);
+  Vec3 position(int side, const ContactPoint& point) const;
+  template <class Of>
+  Vec3 difference(const Spring& spring, const Of& vertex_value) const;
+  void add_to_vertices(const Spring& spring, const Vec3& force);
+  void add_to_nodes(double* nodes_a, double* nodes_b);
+
+  SkinContactSpec spec_;
+  Surface surfaces_[2];
+  std::vector<ContactPoint> points_[2];
+  std::vector<int> cluster_points_[2];  ///< first point of each cluster's faces, and the number of all
+  std::vector<int> starts_[2];          ///< face that was nearest to each cluster's middle: a bound, no more
+  std::vector<Spring> springs_;
+  struct VertexForces {
+    Points sum;  ///< zero between calls
+    std::vector<char> is_touched;
+    std::vector<int> touched;  ///< vertices in the order in which springs met them
+  };
+  VertexForces vertex_forces_[2];
+};
+
+}  // namespace palpate::distance

@@ -1,0 +1,70 @@
+#pragma once
+#include <vector>
+
+#include "palpate/distance/skin.h"
+
+namespace palpate::distance {
+
+/// A point of a triangle.  A weight is zero exactly where the point lies on the edge opposite to its corner,
+/// so that the zeros tell the feature: none the face, one an edge, two a vertex.
+struct TrianglePoint {
+  Vec3 weights = Vec3::Zero();
+  Vec3 away = Vec3::Zero();  ///< from it to the point that was asked for [m]
+  double distance2 = 0.0;    ///< [m^2]
+};
+TrianglePoint nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x);
+
+/// Nearest point of a skin.
+struct Foot {
+  int face = -1;  ///< -1: none within the bound
+  TrianglePoint at;
+};
+
+/// Number of searches and of the triangles that they tested.
+struct SearchCount {
+  long searches = 0, triangles = 0;
+};
+
+/// A skin where its nodes are now, and exact nearest points of it.
+///
+/// The nearest point is the least pair (squared distance, face), where the distance of a face is the one that
+/// nearest_on_triangle() computes.  Whatever bounds the search, a face is left out only where a lower bound
+/// on that value exceeds one that was computed for another face.  So the answer is a function of positions
+/// alone.
+class Surface {
+ public:
+  /// @param skin  outlives the surface
+  explicit Surface(const Skin& skin);
+
+  /// Evaluates vertices and boxes.  @param nodes  x y z of each node [m]
+  void move(const double* nodes);
+
+  const Skin& skin() const { return skin_; }
+  auto vertex(int v) const { return vertices_.col(v); }
+  Vec3 corner(int face, int k) const { return vertices_.col(skin_.faces(k, face)); }
+  /// Point of a face by weights of its corners.
+  Vec3 point(int face, const Vec3& weights) const;
+  /// Bounding box of a node of the skin's tree.
+  const Eigen::AlignedBox3d& box(int tree_node) const { return boxes_[static_cast<std::size_t>(tree_node)]; }
+
+  TrianglePoint nearest_on_face(int face, const Vec3& x) const;
+  /// @param start  a face that is probably near, -1: none.  It bounds the search and changes no result.
+  Foot nearest(const Vec3& x, int start = -1) const;
+  /// Whether x lies inside the skin, from its nearest point.  The sign of (x - y) . N, N the face's normal,
+  /// the sum of those of an edge's two faces, or the sum of those around a vertex weighted by their angles
+  /// (Baerentzen, Aanaes 2005: right for every closed surface).
+  bool is_inside(const Foot& foot) const;
+
+  SearchCount count() const { return count_; }
+
+ private:
+  Vec3 unit_normal(int face) const;
+  void search_cluster(int cluster, const Vec3& x, Foot& best) const;
+
+  const Skin& skin_;
+  Points vertices_;
+  std::vector<Eigen::AlignedBox3d> boxes_;
+  mutable SearchCount count_;
+};
+
+}  // namespace palpate::distance

@@ -1,0 +1,267 @@
+// The energy of two skins in contact: laws worked out by hand, gradient, balance, history, memory.
+#include "malloc_count.h"
+
+#include "bodies.h"
+
+using namespace distance_tests;
+
+namespace {
+
+constexpr double kStiffness = 1e6;  // [Pa/m]
+constexpr double kRadius = 0.05;
+
+/// Force on a sphere that is pressed by `depth` into the top of a box, over pi k R depth^2.
+double ratio_to_law(const Body& sphere, const Body& box, bool two_sided, bool of_box, double depth) {
+  Body ball = sphere;
+  ball.place(rotation({0.4, 0.3, 0.2}), {0.003, 0.002, 0.1 + kRadius - depth});
+  SkinContact contact(of_box ? box.skin : ball.skin, of_box ? ball.skin : box.skin,
+                      {.stiffness_pa_m = kStiffness, .cuts = 1, .two_sided = two_sided});
+  contact.find(of_box ? box.at() : ball.at(), of_box ? ball.at() : box.at());
+  const Vec3 force = (of_box ? -1 : 1) * contact.resultant().force;
+  EXPECT_LT(force.head<2>().norm(), 2e-3 * force.z());
+  return force.z() / (M_PI * kStiffness * kRadius * depth * depth);
+}
+
+}  // namespace
+
+// With d the depth at the angle t from the lowest point, d = delta - R (1 - cos t), the sphere's own points
+// give
+//   k integral of d dA = 2 pi k R^2 integral over c = cos t of (delta - R (1 - c)) = pi k R delta^2.
+// A point of the plane at the distance s from the centre, h = R - delta, is pushed by R - s along its radius:
+//   k integral of (R - s) h/s 2 pi s ds over h < s < R = pi k (R - delta) delta^2.
+// Half of each: pi k R delta^2 (1 - delta/(2 R)).  The volume is pi delta^2 (R - delta/3), so the first is
+// 1/(1 - delta/(3 R)) times k and the volume.
+TEST(SkinContact, SphereOnPlane) {
+  const Body sphere = shell(mesh::sphere(kRadius, 48));
+  const Body box = shell(mesh::box_surface({0.2, 0.2, 0.2}, {64, 64, 1}));
+  for (const double depth : {0.005, 0.01}) {
+    EXPECT_NEAR(ratio_to_law(sphere, box, false, false, depth), 1.0, 0.01);
+    EXPECT_NEAR(ratio_to_law(sphere, box, false, true, depth), 1.0 - depth / kRadius, 0.01);
+    EXPECT_NEAR(ratio_to_law(sphere, box, true, false, depth), 1.0 - 0.5 * depth / kRadius, 0.01);
+  }
+}
+
+// A polyhedron inscribed in the sphere lies inside by up to h^2/(8 R); so does the force err, to second
+// order.
+TEST(SkinContact, ForceConvergesToSecondOrderInTheMesh) {
+  const Body box = shell(mesh::box_surface({0.2, 0.2, 0.2}, {2, 2, 1}));
+  double error[3];
+  for (int i = 0; i < 3; ++i)
+    error[i] = std::abs(ratio_to_law(shell(mesh::sphere(kRadius, 12 << i)), box, false, false, 0.01) - 1.0);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_GT(std::log2(error[i] / error[i + 1]), 1.8);
+    EXPECT_LT(std::log2(error[i] / error[i + 1]), 2.3);
+  }
+}
+
+TEST(SkinContact, PrintedQuadratureErrorBoundsTheTrueOne) {
+  Pair pair;
+  SkinContactSpec spec{.stiffness_pa_m = kStiffness};
+  SkinContact once(pair.a.skin, pair.b.skin, spec);
+  spec.cuts = 4;
+  SkinContact refined(pair.a.skin, pair.b.skin, spec);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> turn(-0.2, 0.2), shift(-0.004, 0.004);
+  int bounded = 0, all = 0;
+  for (int i = 0; i < 20; ++i) {
+    pair.b.place(rotation({turn(random), -0.8 + turn(random), turn(random)}),
+                 {0.166 + shift(random), 0.01 + shift(random), shift(random)});
+    once.find(pair.a.at(), pair.b.at());
+    refined.find(pair.a.at(), pair.b.at());
+    const Vec3 exact = refined.resultant().force;
+    ASSERT_GT(exact.norm(), 0.0);
+    const double error = (once.resultant().force - exact).norm() / exact.norm();
+    EXPECT_LT(error, 0.05);
+    bounded += error <= once.quadrature_error();
+    ++all;
+  }
+  EXPECT_GE(bounded, 19 * all / 20);
+}
+
+TEST(SkinContact, ForceIsTheGradientOfTheEnergy) {
+  Pair pair;
+  for (const bool two_sided : {true, false}) {
+    SkinContact contact(pair.a.skin, pair.b.skin,
+                        {.stiffness_pa_m = kStiffness, .cuts = 1, .two_sided = two_sided});
+    Points fa, fb;
+    const double energy = contact_force(contact, pair.a, pair.b, fa, fb);
+    ASSERT_GT(contact.springs().size(), 50u);
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    Points va(3, fa.cols()), vb(3, fb.cols());
+    for (double& x : va.reshaped()) x = normal(random);
+    for (double& x : vb.reshaped()) x = normal(random);
+    const double slope = -(fa.cwiseProduct(va).sum() + fb.cwiseProduct(vb).sum());
+    double before = 0.0;
+    int steps = 0;
+    for (double h = 8e-6; h > 2e-7; h *= 0.5) {
+      Body a = pair.a, b = pair.b;
+      a.nodes += h * va;
+      b.nodes += h * vb;
+      contact.find(a.at(), b.at());
+      const double rest = std::abs(contact.energy() - energy - h * slope);
+      if (before > 0.0) {
+        EXPECT_GT(std::log2(before / rest), 1.8) << h;
+        EXPECT_LT(std::log2(before / rest), 2.3) << h;
+        ++steps;
+      }
+      before = rest;
+    }
+    EXPECT_EQ(steps, 5);
+  }
+}
+
+TEST(SkinContact, ForcesAndMomentsBalanceToRounding) {
+  Pair pair;
+  SkinContact contact(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
+  Points fa, fb;
+  contact_force(contact, pair.a, pair.b, fa, fb);
+  const Vec3 force = fa.rowwise().sum(), moment = moment_of(pair.a.nodes, fa);
+  ASSERT_GT(force.norm(), 0.1);
+  EXPECT_LT((force + fb.rowwise().sum()).norm(), 1e-13 * force.norm());
+  EXPECT_LT((moment + moment_of(pair.b.nodes, fb)).norm(), 1e-14 * force.norm());
+  EXPECT_LT((contact.resultant().force - force).norm(), 1e-13 * force.norm());
+  EXPECT_LT((contact.resultant().moment - moment).norm(), 1e-14 * force.norm());
+}
+
+// Exact spheres have no torque about their centres; of two inscribed polyhedra each foot's line passes the
+// centre by up to R times the angle between a face and the sphere, h/(2 R), as often on one side as on the
+// other.
+TEST(SkinContact, SpheresFeelNoTorque) {
+  const Body a = shell(mesh::sphere(0.05, 40));
+  Body b = shell(mesh::sphere(0.04, 40));
+  SkinContact contact(a.skin, b.skin, {.stiffness_pa_m = kStiffness});
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 5; ++i) {
+    const Vec3 way = Vec3(normal(random), normal(random), normal(random)).normalized();
+    b.place(rotation({0.1 * i, 0.3, -0.2 * i}), 0.085 * way);
+    contact.find(a.at(), b.at());
+    const Resultant r = contact.resultant();
+    EXPECT_LT(r.moment.norm(), 2e-5 * r.force.norm());  // [m]
+    EXPECT_LT(r.force.normalized().cross(way).norm(), 2e-3);
+    EXPECT_LT(r.force.dot(way), 0.0);
+  }
+}
+
+// Renaming the sides swaps the roles of the two skins and nothing else.
+TEST(SkinContact, OrderOfTheBodiesChangesRoundingAlone) {
+  Pair pair;
+  SkinContact one(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
+  SkinContact other(pair.b.skin, pair.a.skin, {.stiffness_pa_m = kStiffness});
+  one.find(pair.a.at(), pair.b.at());
+  other.find(pair.b.at(), pair.a.at());
+  EXPECT_EQ(one.springs().size(), other.springs().size());
+  EXPECT_LT((one.resultant().force + other.resultant().force).norm(), 1e-13 * one.resultant().force.norm());
+}
+
+TEST(SkinContact, RigidMotionOfAllTurnsTheForce) {
+  Pair pair;
+  SkinContact contact(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
+  contact.find(pair.a.at(), pair.b.at());
+  const Resultant r = contact.resultant();
+  const Mat3 R = rotation({1.0, -0.5, 0.7});
+  for (Body* body : {&pair.a, &pair.b}) body->nodes = (R * body->nodes).colwise() + Vec3(0.5, -1, 2);
+  contact.find(pair.a.at(), pair.b.at());
+  EXPECT_LT((contact.resultant().force - R * r.force).norm(), 1e-10 * r.force.norm());
+}
+
+// A small body whose surface is everywhere far from the large one's: no cap on depth, and the nearest way
+// out.
+TEST(SkinContact, DeepPointsAreFoundHoweverFarTheSkinIs) {
+  const Body large = shell(mesh::sphere(0.1, 24));
+  Body small = shell(mesh::sphere(0.01, 6));
+  small.place(Vec3(0.03, 0, 0));
+  SkinContact contact(small.skin, large.skin, {.stiffness_pa_m = kStiffness, .cuts = 1, .two_sided = false});
+  contact.find(small.at(), large.at());
+  EXPECT_EQ(contact.springs().size(), contact.points(0).size());
+  EXPECT_NEAR(contact.deepest(), 0.08, 1e-3);
+  EXPECT_GT(contact.resultant().force.x(), 0.0);
+}
+
+TEST(SkinContact, ResultIsTheSameWhateverWasFoundBefore) {
+  Pair pair;
+  const SkinContactSpec spec{.stiffness_pa_m = kStiffness};
+  SkinContact used(pair.a.skin, pair.b.skin, spec);
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> turn(-0.5, 0.5), shift(-0.02, 0.02);
+  long springs = 0;
+  for (int i = 0; i < 12; ++i) {
+    pair.b.place(rotation({0.3 + turn(random), turn(random), turn(random)}),
+                 {0.168 + 0.3 * shift(random), shift(random), shift(random)});
+    SkinContact fresh(pair.a.skin, pair.b.skin, spec);
+    Points f[2], g[2];
+    EXPECT_EQ(contact_force(used, pair.a, pair.b, f[0], f[1]),
+              contact_force(fresh, pair.a, pair.b, g[0], g[1]));
+    EXPECT_EQ(f[0], g[0]);
+    EXPECT_EQ(f[1], g[1]);
+    springs += static_cast<long>(fresh.springs().size());
+  }
+  EXPECT_GT(springs, 500);
+}
+
+TEST(SkinContact, GaussNewtonMatrixIsSymmetricAndNearTheDerivative) {
+  Pair pair;
+  SkinContact contact(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
+  Points fa, fb;
+  contact_force(contact, pair.a, pair.b, fa, fb);
+  std::mt19937 random(17);
+  std::normal_distribution<double> normal;
+  const auto random_points = [&](const Points& like) {
+    Points out = like;
+    for (double& x : out.reshaped()) x = normal(random);
+    return out;
+  };
+  const auto product = [&](const Points& va, const Points& vb) {
+    std::pair<Points, Points> y{Points::Zero(3, va.cols()), Points::Zero(3, vb.cols())};
+    contact.apply_stiffness(va.data(), vb.data(), y.first.data(), y.second.data());
+    return y;
+  };
+  const auto dot = [](const std::pair<Points, Points>& y, const Points& a, const Points& b) {
+    return y.first.cwiseProduct(a).sum() + y.second.cwiseProduct(b).sum();
+  };
+  const Points ua = random_points(fa), ub = random_points(fb), va = random_points(fa), vb = random_points(fb);
+  const auto ku = product(ua, ub), kv = product(va, vb);
+  EXPECT_NEAR(dot(ku, va, vb), dot(kv, ua, ub), 1e-12 * std::abs(dot(ku, ua, ub)));
+  EXPECT_GT(dot(ku, ua, ub), 0.0);
+  EXPECT_GT(dot(kv, va, vb), 0.0);
+  // A common shift is in its kernel.
+  const Points same_a = Points::Ones(3, fa.cols()), same_b = Points::Ones(3, fb.cols());
+  EXPECT_LT(product(same_a, same_b).first.norm(), 1e-12 * ku.first.norm());
+  // Along the force the resultant changes as the matrix tells, but for what it leaves out: k w d/R, the depth
+  // over the skins' radii of curvature, 8 mm over 40 mm.
+  const Vec3 way = fa.rowwise().sum().normalized();
+  const Points shift_a = way.replicate(1, fa.cols()), none_b = Points::Zero(3, fb.cols());
+  const double told = way.dot(product(shift_a, none_b).first.rowwise().sum());
+  const double h = 1e-6;
+  Body a = pair.a;
+  a.nodes += h * shift_a;
+  Points ga, gb;
+  contact_force(contact, a, pair.b, ga, gb);
+  const double changed = -way.dot((ga - fa).rowwise().sum()) / h;
+  EXPECT_NEAR(changed / told, 1.0, 0.2);
+}
+
+TEST(SkinContactMemory, NothingIsAllocatedAfterConstruction) {
+#if !PALPATE_CAN_COUNT
+  GTEST_SKIP() << "a sanitizer brings its own malloc";
+#else
+  Pair pair;
+  SkinContact contact(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
+  Points fa = Points::Zero(3, pair.a.nodes.cols()), fb = Points::Zero(3, pair.b.nodes.cols());
+  for (int i = 0; i < 4; ++i) {
+    pair.b.nodes.row(0).array() -= 0.003;
+    const long before = malloc_calls;
+    contact.find(pair.a.at(), pair.b.at());
+    contact.add_force(fa.data(), fb.data());
+    contact.apply_stiffness(pair.a.at(), pair.b.at(), fa.data(), fb.data());
+    EXPECT_EQ(malloc_calls - before, 0);
+  }
+  EXPECT_GT(contact.springs().size(), 100u);
+#endif
+}
+
+TEST(SkinContact, RejectsAStiffnessThatIsNone) {
+  const Skin skin = make_skin(mesh::sphere(1.0, 2));
+  expect_message([&] { SkinContact(skin, skin, {.stiffness_pa_m = 0.0}); }, {"stiffness is 0", "positive"});
+}
