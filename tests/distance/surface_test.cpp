@@ -93,8 +93,9 @@ TEST(DistanceSurface, NearestPointIsThatOfAllTrianglesWhateverBoundsTheSearch) {
       inside += surface.is_inside(found);
     }
     EXPECT_GT(inside, 10) << name;
-    if (body.skin.cluster_count() > 20)
+    if (body.skin.cluster_count() > 20) {
       EXPECT_LT(surface.count().triangles, surface.count().searches * body.skin.face_count() / 3) << name;
+    }
   }
 }
 
