@@ -79,6 +79,19 @@ void collect_fans(Skin& skin) {
       skin.fan[static_cast<std::size_t>(next[static_cast<std::size_t>(skin.faces(k, f))]++)] = f;
 }
 
+void collect_cluster_vertices(Skin& skin) {
+  skin.cluster_begin = {0};
+  for (int c = 0; c < skin.cluster_count(); ++c) {
+    const int begin = kClusterFaces * c, count = std::min(kClusterFaces, skin.face_count() - begin);
+    std::vector<int> list(skin.faces.middleCols(begin, count).data(),
+                          skin.faces.middleCols(begin, count).data() + 3 * count);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    skin.cluster_vertices.insert(skin.cluster_vertices.end(), list.begin(), list.end());
+    skin.cluster_begin.push_back(static_cast<int>(skin.cluster_vertices.size()));
+  }
+}
+
 Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node_count) {
   if (!rest.vertices.allFinite() || !weights.allFinite())
     fail("contact needs a skin of finite positions and weights");
@@ -106,6 +119,8 @@ Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node
   }
   join_across_edges(skin);
   collect_fans(skin);
+  collect_cluster_vertices(skin);
+  skin.weight_sum = skin.weights.cwiseAbs().colwise().sum().maxCoeff();
   return skin;
 }
 

@@ -3,71 +3,58 @@
 #include <algorithm>
 #include <cmath>
 
+#include "distance/contact_scratch.h"
 #include "palpate/core/error.h"
 
 namespace palpate::distance {
 
 SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& spec)
-    : spec_(spec), surfaces_{Surface(a), Surface(b)} {
+    : spec_(spec), surfaces_{Surface(a), Surface(b)}, scratch_(std::make_unique<Scratch>()) {
   if (!(spec.stiffness_pa_m > 0.0))
     fail("contact stiffness is {} Pa/m; it must be positive", spec.stiffness_pa_m);
-  std::size_t count = 0;
+  std::size_t count = 0, most_packets = 1;
   for (int side = 0; side < 2; ++side) {
     const Skin& skin = surfaces_[side].skin();
+    const auto clusters = static_cast<std::size_t>(skin.cluster_count());
     if (side == 0 || spec.two_sided) points_[side] = contact_points(skin, spec.cuts);
-    cluster_points_[side].assign(static_cast<std::size_t>(skin.cluster_count()) + 1, 0);
+    cluster_points_[side].assign(clusters + 1, 0);
     for (const ContactPoint& p : points_[side])
       ++cluster_points_[side][static_cast<std::size_t>(p.face / kClusterFaces) + 1];
-    for (std::size_t c = 1; c < cluster_points_[side].size(); ++c)
+    first_packet_[side] = {0};
+    for (std::size_t c = 1; c <= clusters; ++c) {
+      const int packets = (cluster_points_[side][c] + kPacket - 1) / kPacket;
+      most_packets = std::max(most_packets, static_cast<std::size_t>(packets));
+      first_packet_[side].push_back(first_packet_[side].back() + packets);
       cluster_points_[side][c] += cluster_points_[side][c - 1];
-    starts_[side].assign(static_cast<std::size_t>(skin.cluster_count()), -1);
+    }
+    std::array<int, kPacket> none;
+    none.fill(-1);
+    feet_[side].assign(static_cast<std::size_t>(first_packet_[side].back()), none);
+    starts_[side].assign(clusters, -1);
+    clear_[side].assign(clusters, -1.0);
+    searches_[side] = std::make_unique<LaneSearch>(surfaces_[side]);
     count += points_[side].size();
+    candidates_.reserve(std::max(candidates_.capacity(), clusters));
     VertexForces& at = vertex_forces_[side];
     at.sum.setZero(3, skin.vertex_count());
     at.is_touched.assign(static_cast<std::size_t>(skin.vertex_count()), 0);
     at.touched.reserve(static_cast<std::size_t>(skin.vertex_count()));
   }
   springs_.reserve(count);
+  scratch_->packets.resize(most_packets);
 }
 
-void SkinContact::find(const double* nodes_a, const double* nodes_b) {
-  surfaces_[0].move(nodes_a);
-  surfaces_[1].move(nodes_b);
-  springs_.clear();
-  find_side(0);
-  if (spec_.two_sided) find_side(1);
-}
+SkinContact::~SkinContact() = default;
 
 Vec3 SkinContact::position(int side, const ContactPoint& point) const {
   return surfaces_[side].point(point.face, point.weights);
 }
 
-// The signed distance to a closed skin is 1-Lipschitz.  Where the middle c of a cluster's box lies outside at
-// a distance above the box's half diagonal r, the whole box lies outside.  No depth is assumed anywhere:
-// points far inside are found as any other.
-void SkinContact::find_side(int side) {
-  const Surface& own = surfaces_[side];
-  const Surface& other = surfaces_[1 - side];
+void SkinContact::add_spring(int side, int point, const Foot& foot) {
+  const ContactPoint& p = points_[side][static_cast<std::size_t>(point)];
   const double factor = spec_.two_sided ? 0.5 * spec_.stiffness_pa_m : spec_.stiffness_pa_m;
-  for (std::size_t i = 0; i < own.skin().tree.size(); ++i) {
-    const ClusterNode& node = own.skin().tree[i];
-    const Eigen::AlignedBox3d& box = own.box(static_cast<int>(i));
-    if (node.right || !box.intersects(other.box(0))) continue;
-    const auto cluster = static_cast<std::size_t>(node.begin);
-    const Foot middle = other.nearest(box.center(), starts_[side][cluster]);
-    starts_[side][cluster] = middle.face;
-    const double radius = 0.5 * box.diagonal().norm();
-    if (std::sqrt(middle.at.distance2) > radius * (1.0 + 1e-12) && !other.is_inside(middle)) continue;
-    int start = middle.face;
-    for (int p = cluster_points_[side][cluster]; p < cluster_points_[side][cluster + 1]; ++p) {
-      const ContactPoint& point = points_[side][static_cast<std::size_t>(p)];
-      const Foot foot = other.nearest(position(side, point), start);
-      start = foot.face;
-      if (!other.is_inside(foot)) continue;
-      springs_.push_back(
-          {side, p, foot.face, foot.at.weights, -foot.at.away, factor * point.area, factor * point.coarse});
-    }
-  }
+  springs_.push_back(
+      {side, point, foot.face, foot.at.weights, -foot.at.away, factor * p.area, factor * p.coarse});
 }
 
 double SkinContact::energy() const {

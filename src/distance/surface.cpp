@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "distance/search_kernels.h"
+
 namespace palpate::distance {
 namespace {
 
@@ -62,26 +64,34 @@ TrianglePoint nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, c
 }
 
 Surface::Surface(const Skin& skin)
-    : skin_(skin), vertices_(Points::Zero(3, skin.vertex_count())), boxes_(skin.tree.size()) {}
+    : skin_(skin),
+      nodes_(Padded::Zero(4, skin.node_count)),
+      vertices_(Padded::Zero(4, skin.vertex_count())),
+      boxes_(skin.tree.size()) {}
 
 void Surface::move(const double* nodes) {
-  for (int v = 0; v < skin_.vertex_count(); ++v) {
-    Vec3 x = Vec3::Zero();
-    for (int k = 0; k < 4; ++k)
-      x += skin_.weights(k, v) * Eigen::Map<const Vec3>(nodes + 3 * skin_.nodes(k, v));
-    vertices_.col(v) = x;
+  const Eigen::Map<const Points> now(nodes, 3, skin_.node_count);
+  if (is_placed_) {
+    shift_ = (now - nodes_.topRows<3>()).rowwise().mean();
+    const double most2 = ((now - nodes_.topRows<3>()).colwise() - shift_).colwise().squaredNorm().maxCoeff();
+    stretch_ = skin_.weight_sum * std::sqrt(most2);
   }
+  is_placed_ = true;
+  nodes_.topRows<3>() = now;
+  const SearchKernels& kernels = best_search_kernels();
+  kernels.evaluate(nodes_.data(), skin_.nodes.data(), skin_.weights.data(), skin_.vertex_count(),
+                   vertices_.data());
   for (std::size_t i = skin_.tree.size(); i-- > 0;) {
     const ClusterNode& node = skin_.tree[i];
-    Eigen::AlignedBox3d& box = boxes_[i];
     if (node.right) {
-      box = boxes_[i + 1].merged(boxes_[static_cast<std::size_t>(node.right)]);
+      boxes_[i] = boxes_[i + 1].merged(boxes_[static_cast<std::size_t>(node.right)]);
       continue;
     }
-    box.setEmpty();
-    const int end = std::min(kClusterFaces * node.end, skin_.face_count());
-    for (int f = kClusterFaces * node.begin; f < end; ++f)
-      for (int k = 0; k < 3; ++k) box.extend(corner(f, k));
+    const int begin = skin_.cluster_begin[static_cast<std::size_t>(node.begin)];
+    const int end = skin_.cluster_begin[static_cast<std::size_t>(node.end)];
+    double low[4], high[4];
+    kernels.bound(vertices_.data(), skin_.cluster_vertices.data() + begin, end - begin, low, high);
+    boxes_[i] = {Eigen::Map<const Vec3>(low), Eigen::Map<const Vec3>(high)};
   }
 }
 
@@ -123,6 +133,26 @@ Foot Surface::nearest(const Vec3& x, int start) const {
         box(i + 1).squaredExteriorDistance(x) <= box(node.right).squaredExteriorDistance(x);
     open[depth++] = is_left_nearer ? node.right : i + 1;
     open[depth++] = is_left_nearer ? i + 1 : node.right;
+  }
+  return best;
+}
+
+Foot Surface::nearest_around(const Vec3& x, int face) const {
+  Foot best{face, nearest_on_face(face, x)};
+  for (int seen = -1; seen != best.face;) {  // the pair (distance, face) falls: it ends
+    seen = best.face;
+    const Vec3 w = best.at.weights;
+    const auto take = [&](int f) {
+      const TrianglePoint at = nearest_on_face(f, x);
+      if (is_before(at.distance2, f, best)) best = {f, at};
+    };
+    const int zeros = (w[0] == 0.0) + (w[1] == 0.0) + (w[2] == 0.0);
+    if (zeros == 1) take(skin_.across(w[0] == 0.0 ? 0 : w[1] == 0.0 ? 1 : 2, seen));
+    if (zeros == 2) {
+      const auto v = static_cast<std::size_t>(skin_.faces(w[0] != 0.0 ? 0 : w[1] != 0.0 ? 1 : 2, seen));
+      for (int i = skin_.fan_begin[v]; i < skin_.fan_begin[v + 1]; ++i)
+        take(skin_.fan[static_cast<std::size_t>(i)]);
+    }
   }
   return best;
 }

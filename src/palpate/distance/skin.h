@@ -30,11 +30,14 @@ struct Skin {
   NodeIndices nodes;
   NodeWeights weights;
   Faces faces;
-  std::vector<int> given_face;    ///< number that each face had in the mesh
-  Faces across;                   ///< face beyond the edge opposite to each corner
-  std::vector<int> fan_begin;     ///< of each vertex in `fan`, and its length at the end
-  std::vector<int> fan;           ///< faces around each vertex, ascending
-  VecX area;                      ///< of each face at rest [m^2]
+  std::vector<int> given_face;        ///< number that each face had in the mesh
+  Faces across;                       ///< face beyond the edge opposite to each corner
+  std::vector<int> fan_begin;         ///< of each vertex in `fan`, and its length at the end
+  std::vector<int> fan;               ///< faces around each vertex, ascending
+  VecX area;                          ///< of each face at rest [m^2]
+  std::vector<int> cluster_begin;     ///< of each cluster in `cluster_vertices`, and its length at the end
+  std::vector<int> cluster_vertices;  ///< vertices of each cluster, each once
+  double weight_sum = 0.0;  ///< largest sum of |weights| of a vertex: it moves by at most that times a node
   std::vector<ClusterNode> tree;  ///< parents before children; the root is the first
 
   int vertex_count() const { return static_cast<int>(nodes.cols()); }

@@ -1,10 +1,14 @@
 #pragma once
+#include <array>
+#include <memory>
 #include <vector>
 
 #include "palpate/distance/points.h"
 #include "palpate/distance/surface.h"
 
 namespace palpate::distance {
+
+class LaneSearch;
 
 /// What two skins in contact are given at assembly.
 struct SkinContactSpec {
@@ -47,9 +51,14 @@ class SkinContact {
  public:
   /// @param a, b  outlive the contact
   SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& spec);
+  ~SkinContact();
+  SkinContact(const SkinContact&) = delete;
+  SkinContact& operator=(const SkinContact&) = delete;
 
   /// Finds the springs.  @param nodes_a, nodes_b  x y z of each node [m]
   void find(const double* nodes_a, const double* nodes_b);
+  /// Finds them by Surface::nearest alone, point by point in double precision: what find() is tested against.
+  void find_by_reference(const double* nodes_a, const double* nodes_b);
 
   const std::vector<Spring>& springs() const { return springs_; }
   const std::vector<ContactPoint>& points(int side) const { return points_[side]; }
@@ -74,7 +83,14 @@ class SkinContact {
   void apply_stiffness(const double* v_a, const double* v_b, double* y_a, double* y_b);
 
  private:
+  static constexpr int kPacket = 16;  ///< points that are searched for together
+
+  void move(const double* nodes_a, const double* nodes_b);
   void find_side(int side);
+  void find_side_by_reference(int side);
+  void collect_clusters(int side);
+  void find_cluster(int side, int cluster, int near);
+  void add_spring(int side, int point, const Foot& foot);
   Vec3 position(int side, const ContactPoint& point) const;
   template <class Of>
   Vec3 difference(const Spring& spring, const Of& vertex_value) const;
@@ -85,8 +101,22 @@ class SkinContact {
   Surface surfaces_[2];
   std::vector<ContactPoint> points_[2];
   std::vector<int> cluster_points_[2];  ///< first point of each cluster's faces, and the number of all
-  std::vector<int> starts_[2];          ///< face that was nearest to each cluster's middle: a bound, no more
   std::vector<Spring> springs_;
+
+  // Bounds on the search, which change its time and no result.
+  std::unique_ptr<LaneSearch> searches_[2];        ///< for nearest points of each skin
+  std::vector<int> starts_[2];                     ///< face that was nearest to each cluster's middle
+  std::vector<std::array<int, kPacket>> feet_[2];  ///< faces that were nearest to each packet, -1 at the end
+  std::vector<int> first_packet_[2];               ///< of each cluster
+  double travelled_ = 0.0;        ///< bound on how far the skins have moved against each other [m]
+  std::vector<double> clear_[2];  ///< value of `travelled_` up to which each cluster lies outside
+  struct Candidate {
+    int cluster, tree_node;
+  };
+  std::vector<Candidate> candidates_;  ///< clusters of a side that may have points inside
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
+
   struct VertexForces {
     Points sum;  ///< zero between calls
     std::vector<char> is_touched;

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <vector>
 
 #include "palpate/distance/skin.h"
@@ -38,18 +39,28 @@ class Surface {
 
   /// Evaluates vertices and boxes.  @param nodes  x y z of each node [m]
   void move(const double* nodes);
+  /// Mean displacement of the nodes in the last move() [m].
+  const Vec3& shift() const { return shift_; }
+  /// No vertex was displaced by more than that from shift() in the last move() [m]; infinite in the first.
+  double stretch() const { return stretch_; }
 
   const Skin& skin() const { return skin_; }
-  auto vertex(int v) const { return vertices_.col(v); }
-  Vec3 corner(int face, int k) const { return vertices_.col(skin_.faces(k, face)); }
+  /// Four numbers each, the last one without a meaning.
+  const double* vertices() const { return vertices_.data(); }
+  auto vertex(int v) const { return vertices_.col(v).head<3>(); }
+  auto corner(int face, int k) const { return vertex(skin_.faces(k, face)); }
   /// Point of a face by weights of its corners.
   Vec3 point(int face, const Vec3& weights) const;
   /// Bounding box of a node of the skin's tree.
   const Eigen::AlignedBox3d& box(int tree_node) const { return boxes_[static_cast<std::size_t>(tree_node)]; }
+  const Eigen::AlignedBox3d& box() const { return boxes_[0]; }  ///< of all
 
   TrianglePoint nearest_on_face(int face, const Vec3& x) const;
   /// @param start  a face that is probably near, -1: none.  It bounds the search and changes no result.
   Foot nearest(const Vec3& x, int start = -1) const;
+  /// Nearest point among a face and those that share the feature with it where its foot lies, as far as that
+  /// leads. Equal to nearest() where `face` holds the nearest point but for rounding.
+  Foot nearest_around(const Vec3& x, int face) const;
   /// Whether x lies inside the skin, from its nearest point.  The sign of (x - y) . N, N the face's normal,
   /// the sum of those of an edge's two faces, or the sum of those around a vertex weighted by their angles
   /// (Baerentzen, Aanaes 2005: right for every closed surface).
@@ -61,8 +72,13 @@ class Surface {
   Vec3 unit_normal(int face) const;
   void search_cluster(int cluster, const Vec3& x, Foot& best) const;
 
+  using Padded = Eigen::Matrix<double, 4, Eigen::Dynamic>;
+
   const Skin& skin_;
-  Points vertices_;
+  Padded nodes_, vertices_;
+  Vec3 shift_ = Vec3::Zero();
+  double stretch_ = std::numeric_limits<double>::infinity();
+  bool is_placed_ = false;
   std::vector<Eigen::AlignedBox3d> boxes_;
   mutable SearchCount count_;
 };

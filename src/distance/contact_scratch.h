@@ -1,0 +1,14 @@
+#pragma once
+#include <vector>
+
+#include "distance/lane_search.h"
+#include "palpate/distance/skin_contact.h"
+
+namespace palpate::distance {
+
+/// Packets of the points of one cluster.
+struct SkinContact::Scratch {
+  std::vector<Packet> packets;
+};
+
+}  // namespace palpate::distance

@@ -1,0 +1,163 @@
+// Which points lie inside the other skin, and where their feet are.
+//
+// The signed distance to a closed skin is 1-Lipschitz.  Where the middle of a cluster's box lies outside, at
+// a distance e above the box's half diagonal r, all of the box lies outside, and stays there until the skins
+// have moved against each other by e - r.  No depth is assumed anywhere: points far inside are found as any
+// other.
+#include <algorithm>
+#include <cmath>
+
+#include "distance/contact_scratch.h"
+
+namespace palpate::distance {
+namespace {
+
+/// Part by which a bound is loosened, for the rounding of the few operations that make it.
+constexpr double kRounding = 1e-12;
+
+/// The distinct faces of a packet, -1 at the end.
+template <std::size_t count>
+void keep_faces(const Packet& packet, std::array<int, count>& faces) {
+  std::size_t kept = 0;
+  for (const int face : packet.face)
+    if (std::find(faces.begin(), faces.begin() + kept, face) == faces.begin() + kept) faces[kept++] = face;
+  std::fill(faces.begin() + kept, faces.end(), -1);
+}
+
+}  // namespace
+
+void SkinContact::move(const double* nodes_a, const double* nodes_b) {
+  surfaces_[0].move(nodes_a);
+  surfaces_[1].move(nodes_b);
+  const double step = (surfaces_[0].stretch() + surfaces_[1].stretch() +
+                       (surfaces_[0].shift() - surfaces_[1].shift()).norm()) *
+                      (1.0 + kRounding);
+  if (std::isfinite(step)) travelled_ += step;
+  springs_.clear();
+}
+
+void SkinContact::find(const double* nodes_a, const double* nodes_b) {
+  move(nodes_a, nodes_b);
+  const Eigen::AlignedBox3d both = surfaces_[0].box().intersection(surfaces_[1].box());
+  if (both.isEmpty()) return;
+  for (int side = 0; side < (spec_.two_sided ? 2 : 1); ++side) {
+    searches_[1 - side]->begin(both.center(), both);
+    find_side(side);
+  }
+}
+
+void SkinContact::collect_clusters(int side) {
+  const Surface& own = surfaces_[side];
+  const Eigen::AlignedBox3d& other = surfaces_[1 - side].box();
+  const std::vector<ClusterNode>& tree = own.skin().tree;
+  candidates_.clear();
+  int open[64], depth = 0;
+  open[depth++] = 0;
+  while (depth > 0) {
+    const int i = open[--depth];
+    if (!own.box(i).intersects(other)) continue;
+    const ClusterNode& node = tree[static_cast<std::size_t>(i)];
+    if (node.right) {
+      open[depth++] = node.right;
+      open[depth++] = i + 1;
+    } else if (clear_[side][static_cast<std::size_t>(node.begin)] < travelled_) {
+      candidates_.push_back({node.begin, i});
+    }
+  }
+}
+
+void SkinContact::find_side(int side) {
+  const Surface& own = surfaces_[side];
+  const Surface& other = surfaces_[1 - side];
+  LaneSearch& search = *searches_[1 - side];
+  collect_clusters(side);
+  for (std::size_t first = 0; first < candidates_.size(); first += kPacket) {
+    const std::size_t used = std::min<std::size_t>(kPacket, candidates_.size() - first);
+    Packet packet;
+    std::array<int, kPacket> starts{};
+    for (std::size_t lane = 0; lane < used; ++lane) {
+      const Candidate& at = candidates_[first + lane];
+      search.set_point(packet, static_cast<int>(lane), own.box(at.tree_node).center());
+      starts[lane] = starts_[side][static_cast<std::size_t>(at.cluster)];
+    }
+    search.finish(packet, static_cast<int>(used));
+    if (starts[0] < 0) starts[0] = 0;
+    search.start(packet, starts.data(), static_cast<int>(used));
+    search.search(&packet, 1);
+    for (std::size_t lane = 0; lane < used; ++lane) {
+      const Candidate& at = candidates_[first + lane];
+      const Eigen::AlignedBox3d& box = own.box(at.tree_node);
+      const auto cluster = static_cast<std::size_t>(at.cluster);
+      const int face = starts_[side][cluster] = packet.face[lane];
+      if (face < 0) continue;  // positions are not finite
+      const double radius = 0.5 * box.diagonal().norm() * (1.0 + kRounding);
+      const double least =
+          std::sqrt(static_cast<double>(packet.distance2[lane])) - 2.0 * search.slack() - radius;
+      if (least > 0.0 && !other.is_inside(other.nearest_around(box.center(), face)))
+        clear_[side][cluster] = travelled_ + least;
+      else
+        find_cluster(side, at.cluster, face);
+    }
+  }
+}
+
+void SkinContact::find_cluster(int side, int cluster, int near) {
+  const Surface& other = surfaces_[1 - side];
+  LaneSearch& search = *searches_[1 - side];
+  const auto c = static_cast<std::size_t>(cluster);
+  const int begin = cluster_points_[side][c], end = cluster_points_[side][c + 1];
+  std::vector<Packet>& packets = scratch_->packets;
+  const int count = (end - begin + kPacket - 1) / kPacket;
+  for (int p = 0; p < count; ++p) {
+    Packet& packet = packets[static_cast<std::size_t>(p)];
+    const int used = std::min(kPacket, end - begin - kPacket * p);
+    for (int lane = 0; lane < used; ++lane)
+      search.set_point(packet, lane,
+                       position(side, points_[side][static_cast<std::size_t>(begin + kPacket * p + lane)]));
+    search.finish(packet, used);
+    int faces[kPacket + 1] = {near};
+    const auto& feet = feet_[side][static_cast<std::size_t>(first_packet_[side][c] + p)];
+    std::copy(feet.begin(), feet.end(), faces + 1);
+    search.start(packet, faces, kPacket + 1);
+  }
+  search.search(packets.data(), count);
+  for (int p = 0; p < count; ++p) {
+    const Packet& packet = packets[static_cast<std::size_t>(p)];
+    keep_faces(packet, feet_[side][static_cast<std::size_t>(first_packet_[side][c] + p)]);
+    for (int lane = 0; lane < std::min(kPacket, end - begin - kPacket * p); ++lane) {
+      if (packet.height[lane] > search.slack() || packet.face[lane] < 0) continue;  // in front of its face
+      const int point = begin + kPacket * p + lane;
+      const Foot foot = other.nearest_around(position(side, points_[side][static_cast<std::size_t>(point)]),
+                                             packet.face[lane]);
+      if (other.is_inside(foot)) add_spring(side, point, foot);
+    }
+  }
+}
+
+void SkinContact::find_by_reference(const double* nodes_a, const double* nodes_b) {
+  move(nodes_a, nodes_b);
+  find_side_by_reference(0);
+  if (spec_.two_sided) find_side_by_reference(1);
+}
+
+void SkinContact::find_side_by_reference(int side) {
+  const Surface& own = surfaces_[side];
+  const Surface& other = surfaces_[1 - side];
+  for (std::size_t i = 0; i < own.skin().tree.size(); ++i) {
+    const ClusterNode& node = own.skin().tree[i];
+    const Eigen::AlignedBox3d& box = own.box(static_cast<int>(i));
+    if (node.right || !box.intersects(other.box())) continue;
+    const Foot middle = other.nearest(box.center());
+    const double radius = 0.5 * box.diagonal().norm();
+    if (std::sqrt(middle.at.distance2) > radius * (1.0 + kRounding) && !other.is_inside(middle)) continue;
+    int start = middle.face;
+    const auto cluster = static_cast<std::size_t>(node.begin);
+    for (int p = cluster_points_[side][cluster]; p < cluster_points_[side][cluster + 1]; ++p) {
+      const Foot foot = other.nearest(position(side, points_[side][static_cast<std::size_t>(p)]), start);
+      start = foot.face;
+      if (other.is_inside(foot)) add_spring(side, p, foot);
+    }
+  }
+}
+
+}  // namespace palpate::distance
