@@ -208,7 +208,7 @@ TEST(SkinContact, FindEqualsTheReference) {
   const auto compare = [&](const Body& a, Body& b, const Vec3& at, double scale, int cuts) {
     SkinContact fast(a.skin, b.skin, {.stiffness_pa_m = kStiffness, .cuts = cuts});
     SkinContact reference(a.skin, b.skin, {.stiffness_pa_m = kStiffness, .cuts = cuts});
-    std::size_t springs = 0;
+    std::size_t springs = 0, elsewhere = 0;
     for (int i = 0; i < 6; ++i) {
       b.place(rotation({turn(random), turn(random), turn(random)}),
               at + scale * Vec3(shift(random), shift(random), shift(random)));
@@ -218,13 +218,17 @@ TEST(SkinContact, FindEqualsTheReference) {
       for (std::size_t s = 0; s < fast.springs().size(); ++s) {
         const Spring &f = fast.springs()[s], &r = reference.springs()[s];
         ASSERT_EQ(f.point, r.point);
-        EXPECT_NEAR(f.reach.norm(), r.reach.norm(), 1e-6 * a.rest.norm() / std::sqrt(a.rest.cols()));
+        if (f.face == r.face) {
+          EXPECT_LT((f.reach - r.reach).norm(), 1e-15);
+        } else {
+          EXPECT_NEAR(f.reach.norm(), r.reach.norm(), 2e-7);  // [m], of bodies of 0.1 m: single precision
+          ++elsewhere;
+        }
       }
-      EXPECT_LT((fast.resultant().force - reference.resultant().force).norm(),
-                1e-6 * reference.resultant().force.norm());
       springs += fast.springs().size();
     }
     EXPECT_GT(springs, 200u);
+    EXPECT_LE(elsewhere, springs / 500);
   };
   Pair pair;
   compare(pair.a, pair.b, {0.168, 0.01, -0.006}, 1.0, 1);
