@@ -109,7 +109,8 @@ TEST_P(Driven, RigidMotionWithTheDriveFeelsNoForce) {
   }));
   system.prepare(state.view());
   IntegratorSpec s = mode_spec(GetParam());
-  s.rtol = 1e-3;
+  // Newton's remainder is a share of rtol, where a factor is kept for another step.
+  s.rtol = is_explicit(GetParam()) ? 1e-3 : 1e-8;
   s.step_s = is_explicit(GetParam()) ? 1e-4 : 0.1;  // the largest rate is 2e3
   const auto stepper = integrate::make_stepper(system, state, s);
   ASSERT_TRUE(stepper->advance_to(1.0).ok());

@@ -179,8 +179,7 @@ TEST_P(Steppers, StartAnewAfterReinit) {
 // that it had.
 TEST_P(Steppers, PayForARestartOnlyIfTheyHaveAHistory) {
   // Of three tolerances together: how short a step that lands on an output is left is chance, and the next
-  // ones grow from it (of ark-dirk-ark436 166 and 166 steps at 1e-4, 150 and 150 at 1e-5, 146 and 183 at
-  // 1e-6).
+  // ones grow from it.
   const auto steps_with = [this](int restarts) {
     long steps = 0;
     for (const double rtol : {1e-4, 1e-5, 1e-6}) {
@@ -203,6 +202,30 @@ TEST_P(Steppers, PayForARestartOnlyIfTheyHaveAHistory) {
     EXPECT_GT(ratio, 1.2);
   else
     EXPECT_NEAR(ratio, 1.0, 0.15);
+}
+
+// A step that an output shortens, or that is one of two equal ones before it, is no reason to halve the next.
+TEST_P(Steppers, HalveNoStepTwiceInARow) {
+  if (steps_are_fixed(GetParam())) GTEST_SKIP() << "steps are fixed";
+  struct Lengths final : StepTrace {
+    std::vector<double> all;
+    void attempt(const StepAttempt& a) override { all.push_back(a.h); }
+  } lengths;
+  for (const double rtol : {1e-4, 1e-5, 1e-6}) {
+    Chain chain;
+    chain.start_in_mode(0.1);
+    IntegratorSpec s = spec();
+    s.rtol = rtol;
+    const auto stepper = integrate::make_stepper(chain.system, chain.state, s);
+    stepper->set_trace(&lengths);
+    for (int i = 1; i <= 20; ++i) ASSERT_TRUE(stepper->advance_to(0.1 * i).ok());
+  }
+  const auto halved = [&](std::size_t i) {
+    return std::abs(lengths.all[i + 1] / lengths.all[i] - 0.5) < 1e-9;
+  };
+  int twice = 0;
+  for (std::size_t i = 0; i + 2 < lengths.all.size(); ++i) twice += halved(i) && halved(i + 1);
+  EXPECT_EQ(twice, 0) << "of " << lengths.all.size() << " steps";
 }
 
 TEST_P(Steppers, FollowALayoutThatGrows) {

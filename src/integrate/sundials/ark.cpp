@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "integrate/error_test.h"
 #include "integrate/make.h"
@@ -154,11 +155,16 @@ class Ark final : public Adapter {
   /// Where one step and a part of one are left, two equal ones are made.  A tiny last step would spoil the
   /// next: f of its last stage is deduced from (z - known) / (h a_ii), with an error of rounding / h, and
   /// multiplied by the whole h of the step that follows.
+  /// ARKODE shortens a step that would pass the stop time to h (1 - 4 eps), and its controller then offers
+  /// that h again: the second half, which it misses by rounding.  It lands there all the same, as on each
+  /// stop time that a step misses by less than kLanding (|t| + h), so that such a rest is one step.  Halved,
+  /// it would be halved again at each step, until the controller lets h grow.
   bool aim_halfway(double t_end) {
+    constexpr double kLanding = 100.0 * std::numeric_limits<double>::epsilon();
     double next = 0.0;
     check(ARKStepGetCurrentStep(memory_, &next), "ARKStepGetCurrentStep", now_, 0.0);
-    const double left = t_end - now_;
-    const bool halfway = next > 0.0 && next < left && left < 2.0 * next;
+    const double left = t_end - now_, reach = next + kLanding * (std::abs(t_end) + next);
+    const bool halfway = next > 0.0 && reach < left && left < 2.0 * next;
     check(ARKStepSetStopTime(memory_, halfway ? now_ + 0.5 * left : t_end), "ARKStepSetStopTime", now_, next);
     return halfway;
   }
