@@ -73,8 +73,8 @@ class Ark final : public Adapter {
     report_errors(Solver::kArkStep, memory_);
     check(ARKStepSetUserData(memory_, static_cast<Adapter*>(this)), "ARKStepSetUserData", t, 0.0);
     check(ARKStepWFtolerances(memory_, weights), "ARKStepWFtolerances", t, 0.0);
-    check(ARKStepSetTableNum(memory_, static_cast<ARKODE_DIRKTableID>(method_.implicit_table),
-                             static_cast<ARKODE_ERKTableID>(method_.explicit_table)),
+    check(set_tables(memory_, static_cast<ARKODE_DIRKTableID>(method_.implicit_table),
+                     static_cast<ARKODE_ERKTableID>(method_.explicit_table), problem().has_manifold()),
           "ARKStepSetTableNum", t, 0.0);
     check(ARKStepSetInterpolantDegree(memory_,
                                       spec().events == "root-finding" ? kRootDegree : kInterpolantDegree),
