@@ -1,17 +1,22 @@
 #pragma once
 #include <CGAL/exceptions.h>
 
+#include <algorithm>
 #include <exception>
 #include <sstream>
 #include <string>
 
 namespace palpate::model {
 
-/// The reason that CGAL gives for an exception, on one line: it writes several, with its files.
+/// Returns the reason that CGAL gives for an exception, on one line: it writes several, with its files.  The
+/// debugging information is left out: it has addresses in memory, with which the note in a model would differ
+/// from run to run.
 inline std::string reason_of(const std::exception& e) {
   const auto* const failure = dynamic_cast<const CGAL::Failure_exception*>(&e);
-  std::istringstream words(failure ? failure->message() + " (" + failure->expression() + ")"
-                                   : std::string(e.what()));
+  std::string text = failure ? failure->message() : e.what();
+  text.erase(std::min(text.find("Debugging information"), text.size()));
+  if (failure && !failure->expression().empty()) text += " (" + failure->expression() + ")";
+  std::istringstream words(text);
   std::string out, word;
   while (words >> word) out += (out.empty() ? "" : " ") + word;
   return out;
