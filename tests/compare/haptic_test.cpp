@@ -86,10 +86,10 @@ compare::CompareOptions once() {
   return options;
 }
 
-const HapticPoint& point_of(const HapticComparison& c, const std::string& variable, double setting) {
+const HapticPoint& point_of(const HapticComparison& c, const char* variable, double setting) {
   for (const HapticPoint& p : c.points)
     if (p.variable == variable && std::abs(p.setting - setting) < 1e-9) return p;
-  throw std::runtime_error("no point of " + variable);
+  throw std::runtime_error(std::string("no point of ") + variable);
 }
 
 const HapticPoint& own_point(const HapticComparison& c) {

@@ -45,7 +45,8 @@ class Obstacle : public testing::TestWithParam<std::string> {
   Vec3 near_by() { return centre + vector(random); }
   Nearest nearest(const Vec3& x) const { return entry.nearest(shape, x); }
 
-  const ObstacleEntry& entry = contact::obstacle_entry({"thing", GetParam(), {}});
+  const ObstacleSpec named{"thing", GetParam(), {}};
+  const ObstacleEntry& entry = contact::obstacle_entry(named);
   std::mt19937 random{20070322};
   ObstacleSpec spec;
   Settings shape;
