@@ -318,12 +318,15 @@ class Program(unittest.TestCase):
 
     def test_the_documented_counts_are_those_made(self):
         text = DOCUMENT.read_text(encoding="utf-8")
-        tetrahedra, nodes = re.search(r"`human`.*\| ([0-9,]+) with ([0-9,]+) nodes", text).groups()
+        counts = "([0-9,]+)"
+        documented = [match.groups() for match in (
+            re.search(rf"`human`.*\| {counts} with {counts} nodes", text),
+            re.search(rf"`human` with {counts} tetrahedra, {counts} nodes", text))]  # by another CGAL
         done = run("model", "human", "-o", self.path / "human.h5", "--proxies", "0")
         self.assertEqual(done.returncode, 0, done.stderr)
         made = dict(line.rsplit(maxsplit=1) for line in done.stdout.splitlines() if len(line.split()) == 2)
-        self.assertEqual((tetrahedra.replace(",", ""), nodes.replace(",", "")),
-                         (made["tetrahedra"], made["nodes"]))
+        self.assertIn((made["tetrahedra"], made["nodes"]),
+                      [tuple(count.replace(",", "") for count in pair) for pair in documented])
 
     def test_a_shape_takes_another_skin(self):
         made = {}
