@@ -27,6 +27,8 @@ class Contender {
 using Contenders = std::vector<std::unique_ptr<Contender>>;
 
 void add_own(const Motion& motion, Contenders& to);
+/// palpate by exact nearest points.
+void add_distance(const Motion& motion, Contenders& to);
 void add_gimpact(const Motion& motion, Contenders& to);
 void add_fcl(const Motion& motion, Contenders& to);
 void add_cgal(const Motion& motion, Contenders& to);

@@ -78,6 +78,7 @@ void run(const std::string& scene, const Options& options) {
   if (options.one_state) motion.states = {motion.states[motion.states.size() / 2]};
   Contenders contenders;
   add_own(motion, contenders);
+  add_distance(motion, contenders);
   add_gimpact(motion, contenders);
   add_fcl(motion, contenders);
   add_cgal(motion, contenders);

@@ -200,6 +200,24 @@ TEST(SkinContact, ResultIsTheSameWhateverWasFoundBefore) {
   EXPECT_GT(springs, 500);
 }
 
+// Straight towards the other body, so that a clearance is used up by nothing but the approach.
+TEST(SkinContact, SmallStepsTowardsEachOtherMissNothing) {
+  Pair pair;
+  const SkinContactSpec spec{.stiffness_pa_m = kStiffness};
+  SkinContact used(pair.a.skin, pair.b.skin, spec);
+  std::size_t springs = 0;
+  for (int i = 0; i < 16; ++i) {
+    pair.b.place(rotation({0.3, -0.8, 0.4}), {0.19 - 0.002 * i, 0.01, -0.006});
+    SkinContact fresh(pair.a.skin, pair.b.skin, spec);
+    used.find(pair.a.at(), pair.b.at());
+    fresh.find(pair.a.at(), pair.b.at());
+    EXPECT_EQ(used.springs().size(), fresh.springs().size());
+    EXPECT_EQ(used.energy(), fresh.energy());
+    springs = fresh.springs().size();
+  }
+  EXPECT_GT(springs, 200u);
+}
+
 // The packets' single precision picks a face; the foot is then that of the reference, but where two places
 // are as near to within rounding.
 TEST(SkinContact, FindEqualsTheReference) {

@@ -120,6 +120,19 @@ TEST(DistanceSurface, SideAtASharpVertexIsThePseudonormals) {
       behind += n.dot(x - surface.corner(f, 0)) < 0;
     }
   }
+  // Before each edge, within the wedge of its two normals and near one of them.
+  for (int f = 0; f < 4; ++f)
+    for (int k = 0; k < 3; ++k) {
+      const auto normal = [&](int face) {
+        return Vec3((surface.corner(face, 1) - surface.corner(face, 0))
+                        .cross(surface.corner(face, 2) - surface.corner(face, 0))
+                        .normalized());
+      };
+      const Vec3 y = 0.5 * (surface.corner(f, (k + 1) % 3) + surface.corner(f, (k + 2) % 3));
+      const Foot foot = surface.nearest(y + 0.01 * (0.9 * normal(f) + 0.1 * normal(body.skin.across(k, f))));
+      EXPECT_EQ((foot.at.weights.array() == 0.0).count(), 1);
+      EXPECT_FALSE(surface.is_inside(foot));
+    }
   EXPECT_GT(behind, 2);  // a single face would have said inside
   EXPECT_TRUE(surface.is_inside(surface.nearest(Vec3(0.8, 0.0, 0.02))));
 }

@@ -1,0 +1,50 @@
+// palpate's contact as an energy of distances: from positions of nodes to forces on nodes, by exact nearest
+// points.  Nothing is told of the motion: what it keeps from query to query is its own.
+#include "contender.h"
+#include "palpate/distance/skin_contact.h"
+
+namespace peers {
+namespace {
+
+distance::Skin skin_of(const loop::Body& body) {
+  return distance::make_skin(body.skin->rest, body.skin->embedding, body.rest.tets,
+                             static_cast<int>(body.rest.nodes.cols()));
+}
+
+class Distance final : public Contender {
+ public:
+  Distance(const Motion& motion, int cuts)
+      : a_(skin_of(motion.body(0))),
+        b_(skin_of(motion.body(1))),
+        contact_(a_, b_,
+                 {.stiffness_pa_m = motion.description.contacts.front().stiffness_pa_m, .cuts = cuts}),
+        cuts_(cuts) {
+    for (int k = 0; k < 2; ++k)
+      offsets_[k] = motion.world->state.layout().find(motion.body(k).block_id)->q_offset;
+    forces_[0].setZero(3 * a_.node_count);
+    forces_[1].setZero(3 * b_.node_count);
+  }
+  std::string group() const override { return "energy of distances"; }
+  std::string name() const override { return fmt::format("{} points per triangle", 1.5 * cuts_ * cuts_); }
+  void query(const Snapshot& state) override {
+    contact_.find(state.q.data() + offsets_[0], state.q.data() + offsets_[1]);
+    for (VecX& f : forces_) f.setZero();
+    contact_.add_force(forces_[0].data(), forces_[1].data());
+  }
+  Found found() const override { return {static_cast<long>(contact_.springs().size()), contact_.deepest()}; }
+
+ private:
+  distance::Skin a_, b_;
+  distance::SkinContact contact_;
+  int cuts_;
+  int offsets_[2] = {};
+  VecX forces_[2];
+};
+
+}  // namespace
+
+void add_distance(const Motion& motion, Contenders& to) {
+  to.push_back(std::make_unique<Distance>(motion, 1));
+}
+
+}  // namespace peers
