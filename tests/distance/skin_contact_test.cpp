@@ -218,6 +218,26 @@ TEST(SkinContact, SmallStepsTowardsEachOtherMissNothing) {
   EXPECT_GT(springs, 200u);
 }
 
+// Two balls along the diagonal: their boxes overlap by far before their skins touch, so that every cluster
+// near the contact was found clear, by up to 0.07 m, and is looked at again for nothing but the approach.
+TEST(SkinContact, AnApproachFromFarMissesNothing) {
+  const Body a = shell(mesh::sphere(0.1, 24));
+  Body b = a;
+  const SkinContactSpec spec{.stiffness_pa_m = kStiffness};
+  SkinContact used(a.skin, b.skin, spec);
+  std::size_t springs = 0;
+  for (int i = 0; i <= 40; ++i) {
+    b.place(Vec3::Constant((0.28 - 0.0025 * i) / std::sqrt(3.0)));
+    SkinContact fresh(a.skin, b.skin, spec);
+    used.find(a.at(), b.at());
+    fresh.find(a.at(), b.at());
+    EXPECT_EQ(used.springs().size(), fresh.springs().size()) << "step " << i;
+    EXPECT_EQ(used.energy(), fresh.energy()) << "step " << i;
+    springs = fresh.springs().size();
+  }
+  EXPECT_GT(springs, 50u);
+}
+
 // The packets' single precision picks a face; the foot is then that of the reference, but where two places
 // are as near to within rounding.
 TEST(SkinContact, FindEqualsTheReference) {
@@ -254,6 +274,11 @@ TEST(SkinContact, FindEqualsTheReference) {
   const Body box = shell(mesh::box_surface({0.1, 0.2, 0.05}, {6, 12, 3}));
   Body gear = shell(shapes::make("gear").skin);
   compare(box, gear, {0.08, 0, 0}, 1.0, 1);
+  // Deep inside, the points of a packet are close together against their distance: bounds on clusters are
+  // tight.
+  const Body around = shell(bumpy_sphere(0.1, 16, 0.2));
+  Body within = shell(bumpy_sphere(0.02, 8, 0.2));
+  compare(around, within, {0.03, 0.01, -0.02}, 1.0, 1);
 }
 
 TEST(SkinContact, GaussNewtonMatrixIsSymmetricAndNearTheDerivative) {
