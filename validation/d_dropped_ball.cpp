@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "b_bodies.h"
 #include "cases.h"
@@ -23,14 +25,17 @@
 // Gains are relative to the energy of the fall, m g h.  Pairs of order 2 are asked for 1e-7, the others
 // for 1e-10, which would take those of order 2 thirty times the steps.
 //
-// Why additive pairs need the kinks as roots.  A vertex that touches at the part theta of a step changes its
+// Why some pairs need the kinks as roots.  A vertex that touches at the part theta of a step changes its
 // force by J: y'' = J (t - theta h)+.  The step's error in the velocity and its estimate are then
 //     J h^2 |sum b_i (c_i - theta)+ - (1 - theta)^2/2|   and   J h^2 |sum (b_i - b^_i) (c_i - theta)+|.
-// The error is 3 times the estimate in the middle of all theta with Cash and Karp's pair and more than 100
-// times in 0.7 % of them; 35 times and in 18 % with ark-imex-4b, 20 times and in 18 % (more than 860 times in
-// a tenth) with ark-imex-5b.  So a tolerance of 1e-10 misses kinks, and ark-imex-5b gains 3e-6 by error
-// control alone, at rtol 1e-9 and 1e-10 alike.  With the kinks found as roots the steps on both sides are
-// smooth, and it meets the bar.
+// The error is more than 860 times the estimate in 25 % of all theta with ark-dirk-sdirk534, 13 % with
+// -ark548b and 8 % with -ark437, and in less than 0.5 % with every other diagonally implicit pair of order 4
+// and 5 (more than 100 times in 25, 19 and 20 %; less than 4).  Of additive pairs it is 35 times and more in
+// 18 % with ark-imex-4b, 20 times in 18 % (more than 860 times in a tenth) with ark-imex-5b; 3 times in the
+// middle of all theta, and more than 100 times in 0.7 %, with Cash and Karp's.  So a tolerance of 1e-10
+// misses kinks: by error control alone ark-imex-5b gains 3e-6, at rtol 1e-9 and 1e-10 alike,
+// ark-dirk-sdirk534 3.6e-6 and -ark548b 5.5e-6.  With the kinks found as roots the steps on both sides are
+// smooth, and they meet the bar.
 
 namespace palpate::validation {
 namespace {
@@ -38,6 +43,8 @@ namespace {
 constexpr double kRadius = 0.02, kDrop = 0.01, kGravity = 9.81, kMass = 0.03;
 constexpr double kStiffness = 5e8;             // [Pa/m]: depth about 1 mm, 12 ms of contact
 constexpr double kRefresh = 1e-3, kEnd = 0.4;  // [s]: four bounces
+constexpr std::array<std::string_view, 3> kBlindToKinks = {"ark-dirk-sdirk534", "ark-dirk-ark548b",
+                                                           "ark-dirk-ark437"};
 
 /// The vertices of a sphere carried by one node, over the plane z = 0 of frame 0.
 class BallSource final : public contact::SampleSource {
@@ -180,7 +187,10 @@ std::vector<Measurement> run(const std::string& fault) {
     // The digits of Cash's tables end at 5e-10: what error control takes from a kink is not small enough
     // there.
     const bool coarse = entry.tightest_rtol(spec) > 1e-10 && entry.traits.order > 2;
-    spec.events = coarse || entry.traits.family == "ImEx Runge-Kutta" ? "root-finding" : "error-control";
+    const bool blind =
+        entry.traits.family == "ImEx Runge-Kutta" ||
+        std::find(kBlindToKinks.begin(), kBlindToKinks.end(), entry.name) != kBlindToKinks.end();
+    spec.events = coarse || blind ? "root-finding" : "error-control";
     const double wanted = entry.traits.order <= 2 ? 1e-7 : std::max(1e-10, entry.tightest_rtol(spec));
     spec.rtol = fault == "tolerance-ignored" ? 1e-2 : wanted;
     spec.max_steps = 100'000'000;
@@ -217,8 +227,8 @@ ValidationCase dropped_ball() {
       .name = "dropped-ball",
       .section = "D",
       .summary =
-          "a rigid ball bounces on a plane: energy gained by every integrator with error control, additive "
-          "pairs and Cash's with root finding; a soft ball beside it",
+          "a rigid ball bounces on a plane: energy gained by every integrator with error control, with root "
+          "finding where the estimate does not see kinks; a soft ball beside it",
       .why = "energy from nowhere at contact is what makes a haptic device kick; conservation of energy",
       .run = run,
       .faults = {{"no-look-ahead", "rigid ball, undamped, cvode-bdf"},
