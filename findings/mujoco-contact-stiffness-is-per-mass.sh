@@ -19,15 +19,15 @@ npm install --silent --ignore-scripts --no-audit --no-fund "mujoco-js@$version" 
 cat >rest.mjs <<'END'
 import load from "mujoco-js";
 const mujoco = await load();
-mujoco.FS.mkdir("/work");
-mujoco.FS.mount(mujoco.MEMFS, { root: "." }, "/work");
+mujoco.FS.mkdir("/scene");
+mujoco.FS.mount(mujoco.MEMFS, { root: "." }, "/scene");
 const stiffness = 1e4;
 const depths = [0.1, 1, 10].map((mass) => {
-  mujoco.FS.writeFile("/work/ball.xml", `<mujoco><option timestep="0.001"/><worldbody>
+  mujoco.FS.writeFile("/scene/ball.xml", `<mujoco><option timestep="0.001"/><worldbody>
     <geom type="plane" size="1 1 1"/><body pos="0 0 0.1"><freejoint/>
     <geom type="sphere" size="0.1" mass="${mass}" solref="${-stiffness} -100" priority="1"/></body>
     </worldbody></mujoco>`);
-  const model = mujoco.MjModel.loadFromXML("/work/ball.xml");
+  const model = mujoco.MjModel.loadFromXML("/scene/ball.xml");
   const data = new mujoco.MjData(model);
   for (let i = 0; i < 4000; ++i) mujoco.mj_step(model, data);
   const depth = 0.1 - data.qpos[2];

@@ -1,5 +1,5 @@
 // palpate's contact as an energy of distances: from positions of nodes to forces on nodes, by exact nearest
-// points.  Nothing is told of the motion: what it keeps from query to query is its own.
+// points.  It is not told how the skins move: it bounds that by what it keeps from query to query.
 #include "contender.h"
 #include "palpate/distance/skin_contact.h"
 

@@ -20,7 +20,7 @@ struct alignas(64) Packet {
   float height[kLanes];       ///< above the plane of that face where the foot lies inside of it, else 0 [m]
 };
 
-/// What a packet is compared with.
+/// The faces and clusters of the other skin that a packet of points is searched in.
 struct Targets {
   const float* planes = nullptr;  ///< of all clusters, kPlaneFloats each; those below are up to date
   const int* faces = nullptr;     ///< single faces to begin with

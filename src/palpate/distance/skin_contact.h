@@ -10,7 +10,7 @@ namespace palpate::distance {
 
 class LaneSearch;
 
-/// What two skins in contact are given at assembly.
+/// Parameters of the contact between two skins, fixed at assembly.
 struct SkinContactSpec {
   double stiffness_pa_m = 0.0;
   int cuts = 1;           ///< of the edges of each face, see contact_points()

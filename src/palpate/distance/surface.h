@@ -6,8 +6,8 @@
 
 namespace palpate::distance {
 
-/// A point of a triangle.  A weight is zero exactly where the point lies on the edge opposite to its corner,
-/// so that the zeros tell the feature: none the face, one an edge, two a vertex.
+/// A point of a triangle.  A weight is zero exactly where the point lies on the edge opposite to its corner:
+/// without a zero the feature is the face, with one an edge, with two a vertex.
 struct TrianglePoint {
   Vec3 weights = Vec3::Zero();
   Vec3 away = Vec3::Zero();  ///< from it to the point that was asked for [m]
