@@ -82,6 +82,9 @@ struct ContactForce::Impl {
   FrictionLine line_of(const ContactSample& s) const {
     return friction_line(step_friction.guesses[static_cast<std::size_t>(&s - samples.data())], s.normal);
   }
+  /// ContactForce::improve_step.
+  bool improve_friction(const dynamics::StateView& state, const VecX& moved, const VecX& change,
+                        const FrameStep& given, double tolerance);
   /// As the pair's law has it, or within a step as that takes it.
   Vec3 force_of(const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) const {
     return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s)).force

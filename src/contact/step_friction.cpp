@@ -6,23 +6,19 @@
 namespace palpate::contact {
 namespace {
 
-/// How a surface point moves with its nodes or its frame, by displacements along u-directions; a frame that
-/// turns with its twist held changes the point's velocity besides (V of tangent.h).
-struct PointStep {
-  Vec3 moved = Vec3::Zero(), change = Vec3::Zero();
-};
-
-PointStep of_frame(const PointMotion& motion, const FrameState& frame, const Vec6& moved,
-                   const Vec6& change) {
+/// How a point moves with its frame, by displacements along u-directions; a frame that turns with its twist
+/// held changes the point's velocity besides (V of tangent.h).
+SampleStep of_frame(const PointMotion& motion, const FrameState& frame, const Vec6& moved,
+                    const Vec6& change) {
   const Vec3 turn = moved.head<3>();
   return {turn.cross(motion.arm) + moved.tail<3>(),
           change.head<3>().cross(motion.arm) + change.tail<3>() +
               frame.twist.angular.cross(turn.cross(motion.rotating))};
 }
 
-PointStep of_state(const SurfacePoint& point, const PointMotion& motion,
-                   const std::vector<FrameState>& frames, const VecX& moved, const VecX& change) {
-  PointStep out;
+SampleStep of_state(const SurfacePoint& point, const PointMotion& motion,
+                    const std::vector<FrameState>& frames, const VecX& moved, const VecX& change) {
+  SampleStep out;
   if (point.frame >= 0) {
     const FrameState& frame = frames[static_cast<std::size_t>(point.frame)];
     if (frame.u_offset < 0) return out;
@@ -52,7 +48,6 @@ bool ContactForce::bends_at(const dynamics::StateView& state) {
 
 bool ContactForce::begin_step(const dynamics::StateView& state) {
   Impl& m = *impl_;
-  if (!m.laws_kept.empty()) return false;
   m.step_friction.on = std::any_of(m.pairs.begin(), m.pairs.end(), [](const Impl::Pair& pair) {
     return pair.law.secant_friction && pair.law.friction > 0.0 && pair.begin < pair.end;
   });
@@ -73,11 +68,27 @@ bool ContactForce::begin_step(const dynamics::StateView& state) {
   return any;
 }
 
-/// Each pair's error counts for itself: a heavy body in the same step does not hide a light one's.
 bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) {
-  Impl& m = *impl_;
+  return improve_step(state, moved, change, {});
+}
+
+bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change,
+                                const FrameStep& given, double tolerance) {
+  return impl_->improve_friction(state, moved, change, given, tolerance > 0.0 ? tolerance : kFrictionTolerance);
+}
+
+/// Each pair's error counts for itself: a heavy body in the same step does not hide a light one's.
+bool ContactForce::Impl::improve_friction(const dynamics::StateView& state, const VecX& moved,
+                                          const VecX& change, const FrameStep& given, double tolerance) {
+  Impl& m = *this;
   m.place_frames(state);
-  Impl::StepFriction& step = m.step_friction;
+  const auto step_of = [&](const SurfacePoint& point, const PointMotion& motion) {
+    return point.frame >= 0 && point.frame == given.frame
+               ? of_frame(motion, m.frame_states[static_cast<std::size_t>(given.frame)], given.moved,
+                          given.change)
+               : of_state(point, motion, m.frame_states, moved, change);
+  };
+  StepFriction& step = m.step_friction;
   ++step.solves;
   step.left_out = step.largest = 0.0;
   double worst = 0.0;
@@ -88,8 +99,7 @@ bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& mo
       const ContactSample& s = m.samples[i];
       const SampleMotion motion = sample_motion(s, state, m.frame_states);
       if (motion.gap >= 0.0) continue;
-      const PointStep a = of_state(s.a, motion.a, m.frame_states, moved, change),
-                      b = of_state(s.b, motion.b, m.frame_states, moved, change);
+      const SampleStep a = step_of(s.a, motion.a), b = step_of(s.b, motion.b);
       const SampleEnd end = sample_end(s, motion, pair.law, {a.moved - b.moved, a.change - b.change});
       FrictionGuess& guess = step.guesses[i];
       const FrictionLine line = friction_line(guess, s.normal);
@@ -102,13 +112,15 @@ bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& mo
     step.left_out = std::max(step.left_out, error.left_out.norm());
     step.largest = std::max(step.largest, error.friction.norm());
   }
+  if (worst <= tolerance || step.solves >= kFrictionSolves) return true;
   move_guesses(step.guesses, step.solves);
-  return worst <= kFrictionTolerance || step.solves >= kFrictionSolves;
+  return false;
 }
 
 void ContactForce::end_step() {
   Impl& m = *impl_;
   m.step_friction.on = false;
+  if (!m.laws_kept.empty()) return;
   m.largest_friction = std::max(m.largest_friction, m.step_friction.largest);
   m.largest_friction_lag = std::max(m.largest_friction_lag, m.step_friction.left_out);
 }

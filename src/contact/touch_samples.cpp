@@ -17,11 +17,12 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
     tangents->clear();
     tangents->reserve(most);
   }
-  for (const ContactSample& s : m.all()) {
+  // a sample's friction within a step is kept by its place among those that are not in cells
+  const auto append = [&](const ContactSample& s) {
     const bool is_a = s.a.frame == frame, is_b = s.b.frame == frame;
     const SurfacePoint& mine = is_a ? s.a : s.b;
     const SurfacePoint& other = is_a ? s.b : s.a;
-    if (is_a == is_b || other.frame >= 0 || !(s.area > 0.0)) continue;
+    if (is_a == is_b || other.frame >= 0 || !(s.area > 0.0)) return;
     const SampleMotion motion = sample_motion(s, state, m.frame_states);
     const PressureLaw& law = m.pairs[static_cast<std::size_t>(s.source)].law;
     const double sign = is_a ? 1.0 : -1.0;
@@ -40,10 +41,17 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
                    .gap = motion.gap,
                    .pair = s.source,
                    .stiffness = s.area * slope,
-                   .force = presses ? Vec3(sign * sample_force(s, motion, law)) : Vec3(Vec3::Zero())});
-    if (!tangents) continue;
-    const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
+                   .force = presses ? Vec3(sign * m.force_of(s, motion, law)) : Vec3(Vec3::Zero())});
+    if (!tangents) return;
+    const SampleForce force = m.tangent_of(s, motion, law, law.symmetric_tangent);
     tangents->push_back({force.K, force.D});
+  };
+  const std::vector<ContactSample>& all = m.all();
+  std::size_t at = 0;
+  for (const Impl::Pair& pair : m.pairs) {
+    const std::size_t end = at + static_cast<std::size_t>(m.count_of(pair));
+    for (std::size_t i = pair.begin; i < pair.end; ++i, ++at) append(m.samples[i]);
+    for (; at < end; ++at) append(all[at]);
   }
   m.bonds.append_touch_samples(state, m.frame_states, frame, out, tangents);
   return out;

@@ -1,5 +1,7 @@
 #include <Eigen/Cholesky>
 
+#include <algorithm>
+
 #include "contact/grasp.h"
 #include "contact/sample_math.h"
 #include "palpate/contact/touch_model.h"
@@ -25,7 +27,8 @@ namespace palpate::contact {
 // with the tool: of the tool's moment r x F, r changes with the bodies, by h P dz, and F turns.
 //
 // A is symmetric and positive definite at any h: K_i and D_i are taken without how friction follows pressure,
-// and with friction against the velocity at the tick's end (sample_math.cpp).
+// and with friction as affine about a guess of the tick's end (friction.cpp).  Who integrates the tool finds
+// the end that the record leads to, and has the guess improved, until friction is the law's there.
 //
 // The sums are most of a tick's work.  They are made in so many modes as the model has, rounded up, with P
 // transposed: then all of them run along the modes, which lie together.
@@ -37,6 +40,13 @@ using ModesByModes = Eigen::Matrix<double, kModes, kModes>;
 using ModesBySix = Eigen::Matrix<double, kModes, 6>;
 using ModesByThree = Eigen::Matrix<double, kModes, 3>;  ///< P^T
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
+/// A touching point of the tick under way, where tool and bodies are carried on to.
+struct TickPoint {
+  bool touches = false;
+  ContactSample sample;
+  SampleMotion motion;
+};
 
 Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
@@ -51,9 +61,14 @@ struct TouchTicks::Impl {
   std::vector<PressureLaw> laws;
   TouchModel model;
   std::array<ModesByThree, TouchModel::kMostPoints> modes;  ///< of each point
+  /// of each point, where it has friction: the guess of the tick's end, and its motion where it was
+  /// linearised
+  std::array<FrictionGuess, TouchModel::kMostPoints> guess;
+  std::array<TickPoint, TouchModel::kMostPoints> tick_point;
+  int solves = 0;
   Modes q = Modes::Zero(), z = Modes::Zero();
   // of the tick under way
-  double h = 0.0;
+  double h = 0.0, t1 = 0.0;
   dynamics::RigidMotion at;  ///< x_p, v
   Modes dz = Modes::Zero();
   ModesBySix dz_dx = ModesBySix::Zero(), dz_dv = ModesBySix::Zero();
@@ -61,7 +76,7 @@ struct TouchTicks::Impl {
 
   /// In the first N modes.
   template <int N>
-  void linearise(double t1, dynamics::LinearisedContact& out);
+  void linearise(dynamics::LinearisedContact& out);
 };
 
 TouchTicks::TouchTicks(const std::vector<ContactSpec>& contacts) : impl_(std::make_unique<Impl>()) {
@@ -117,8 +132,9 @@ struct Sums {
   Mat6 K = Mat6::Zero(), B = Mat6::Zero();
   int pressing = 0;
 
-  /// @param P_t  P^T of the point
-  void add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law);
+  /// @param P_t  P^T of the point  @param guess  of its friction; made where there is none
+  void add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law,
+                    TickPoint& out, FrictionGuess& guess);
   void add_held(const TouchModel::Point& point, const ModesByThree& P_t);
 
  private:
@@ -150,19 +166,27 @@ void Sums<N>::add(const ModesByThree& P_t, const Mat36& Z, const Vec3& arm, cons
 }
 
 template <int N>
-void Sums<N>::add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law) {
+void Sums<N>::add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law,
+                           TickPoint& out, FrictionGuess& guess) {
   const Vec3 slide = vec(point.slide), rotating = R * vec(point.offset), arm = rotating + slide;
-  ContactSample sample;
+  ContactSample& sample = out.sample;
   sample.normal = vec(point.normal);
   sample.area = point.area;
-  SampleMotion motion;
+  SampleMotion& motion = out.motion;
   motion.a = {tool.pose.translation + arm, tool.twist.at(arm), arm, rotating};
   motion.b = {place(point, P_t), velocity(point, P_t), Vec3::Zero(), Vec3::Zero()};
   motion.gap = sample.normal.dot(motion.a.x - motion.b.x);
-  if (!(motion.gap < 0.0)) return;
+  out.touches = motion.gap < 0.0;
+  if (!out.touches) return;
   motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
-  const SampleForce s = sample_force_and_tangent(sample, motion, law, true);
-  if (s.force.isZero(0.0)) return;
+  if (law.friction > 0.0 && guess.v_r == 0.0) {
+    const SampleEnd start = sample_end(sample, motion, law, {});
+    guess = first_guess(start.limit, start.v, law.regularisation);
+  }
+  const SampleForce s =
+      law.friction > 0.0 ? sample_force_and_tangent(sample, motion, law, friction_line(guess, sample.normal))
+                         : sample_force_and_tangent(sample, motion, law, true);
+  if (s.force.isZero(0.0) && s.D.isZero(0.0)) return;
   ++pressing;
   Mat36 Z;
   Z << -cross_matrix(arm), Mat3::Identity();
@@ -194,7 +218,7 @@ void Sums<N>::add_held(const TouchModel::Point& point, const ModesByThree& P_t) 
 }  // namespace
 
 template <int N>
-void TouchTicks::Impl::linearise(double t1, dynamics::LinearisedContact& out) {
+void TouchTicks::Impl::linearise(dynamics::LinearisedContact& out) {
   const double tau = t1 - model.time;
   using OfModes = Eigen::Matrix<double, N, 1>;
   const OfModes z_p = z.head<N>(), q_p = q.head<N>() + h * z_p;
@@ -211,8 +235,9 @@ void TouchTicks::Impl::linearise(double t1, dynamics::LinearisedContact& out) {
     if (point.held_stiffness > 0.0)
       sums.add_held(point, P_t);
     else
-      sums.add_touching(point, P_t, laws[static_cast<std::size_t>(point.pair)]);
+      sums.add_touching(point, P_t, laws[static_cast<std::size_t>(point.pair)], tick_point[i], guess[i]);
   }
+  ++solves;
   pressing = sums.pressing;
   const Eigen::LLT<Eigen::Matrix<double, N, N>> factor(sums.A);
   dz.head<N>() = factor.solve(h * sums.r);
@@ -223,24 +248,68 @@ void TouchTicks::Impl::linearise(double t1, dynamics::LinearisedContact& out) {
   Eigen::Map<RowMajor6>(out.B.data()) = sums.S_by_Z.transpose() * dz_dv.topRows<N>() - sums.B;
 }
 
+// At the end that the record leads to, each point has moved and changed its velocity, against the bodies, by
+//     Z_i dx - h P_i dz,   V_i dx + Z_i dv - P_i dz
+// from where it was linearised: its pressure and its sliding there are the next guess.
+bool TouchTicks::improve(const dynamics::RigidMotion& end, double tolerance) {
+  Impl& m = *impl_;
+  const Vec6 dx = pose_difference(m.at.pose, end.pose);
+  Vec6 dv;
+  dv << end.twist.angular - m.at.twist.angular, end.twist.linear - m.at.twist.linear;
+  const Modes dz = m.dz + m.dz_dx * dx + m.dz_dv * dv;
+  double worst = 0.0;
+  for (std::size_t pair = 0; pair < m.laws.size(); ++pair) {
+    const PressureLaw& law = m.laws[pair];
+    if (law.friction == 0.0) continue;
+    FrictionError error;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(m.model.points); ++i) {
+      const TouchModel::Point& point = m.model.point[i];
+      const TickPoint& at = m.tick_point[i];
+      if (point.pair != static_cast<int>(pair) || point.held_stiffness > 0.0 || !at.touches) continue;
+      const Vec3 turn = dx.head<3>(), answer = m.modes[i].transpose() * dz;
+      const PointMotion& mine = at.motion.a;
+      const SampleStep step{turn.cross(mine.arm) + dx.tail<3>() - m.h * answer,
+                            dv.head<3>().cross(mine.arm) + dv.tail<3>() +
+                                m.at.twist.angular.cross(turn.cross(mine.rotating)) - answer};
+      const SampleEnd there = sample_end(at.sample, at.motion, law, step);
+      const FrictionLine line = friction_line(m.guess[i], at.sample.normal);
+      const Vec3 taken = line.constant - line.D * there.v;
+      error.add(taken, there.limit, there.v, law.regularisation);
+      end_solve(m.guess[i], there.limit, there.v, taken);
+    }
+    worst = std::max(worst, error.relative());
+  }
+  if (worst <= (tolerance > 0.0 ? tolerance : kFrictionTolerance) || m.solves >= kFrictionSolves) return true;
+  move_guesses(std::span(m.guess).first(static_cast<std::size_t>(m.model.points)), m.solves);
+  return false;
+}
+
 dynamics::LinearisedContact TouchTicks::linearise(double t1, double h, const dynamics::RigidMotion& tool) {
   Impl& m = *impl_;
   m.h = h;
+  m.solves = 0;
+  std::fill_n(m.guess.begin(), m.model.points, FrictionGuess());
   m.at.twist = tool.twist;
   m.at.pose.rotation = (quaternion_of(h * tool.twist.angular) * tool.pose.rotation).normalized();
   m.at.pose.translation = tool.pose.translation + h * tool.twist.linear;
+  m.t1 = t1;
+  return again();
+}
+
+dynamics::LinearisedContact TouchTicks::again() {
+  Impl& m = *impl_;
   dynamics::LinearisedContact out;
   if (m.model.modes <= 4)
-    m.linearise<4>(t1, out);
+    m.linearise<4>(out);
   else if (m.model.modes <= 8)
-    m.linearise<8>(t1, out);
+    m.linearise<8>(out);
   else
-    m.linearise<kModes>(t1, out);
-  out.time = t1;
+    m.linearise<kModes>(out);
+  out.time = m.t1;
   const Quat& rotation = m.at.pose.rotation;
   const Vec3& x = m.at.pose.translation;
   out.x0 = {rotation.w(), rotation.x(), rotation.y(), rotation.z(), x.x(), x.y(), x.z()};
-  Eigen::Map<Vec6>(out.v0.data()) << tool.twist.angular, tool.twist.linear;
+  Eigen::Map<Vec6>(out.v0.data()) << m.at.twist.angular, m.at.twist.linear;
   out.source = dynamics::LinearisedContact::Source::kPoints;
   out.samples = m.pressing;
   return out;

@@ -294,8 +294,8 @@ void add_contact(World& world, ContactSpec& given) {
   // buys no symmetric matrix: else friction that slides turns nodes round in each step and holds nothing.
   if (spec.friction_tangent == "auto")
     spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
-  // of a tool with ticks of its own on an obstacle no step matrix has a part
-  if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "symmetric";
+  // of a tool with ticks of its own on an obstacle no step matrix has a part; its ticks are one solve each
+  if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
   world.contact->add_pair(source_of(world, spec), spec);
   if (ToolSide* const side = ToolSide::named(world, spec.second)) make_touch(world, *side);  // of a soft body
 }

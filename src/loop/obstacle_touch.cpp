@@ -21,6 +21,19 @@ void ObstacleTouch::archive(Archive& a, double t, const dynamics::RigidMotion& t
   contact_.archive(a, nothing_.view());
 }
 
+bool ObstacleTouch::improve(const dynamics::RigidMotion& end) {
+  if (!rubs_) return true;
+  Vec6 change;
+  change << end.twist.angular - start_.twist.angular, end.twist.linear - start_.twist.linear;
+  return contact_.improve_step(nothing_.view(), {}, {},
+                               {frame_, pose_difference(start_.pose, end.pose), change});
+}
+
+void ObstacleTouch::end_tick() {
+  if (rubs_) contact_.end_step();
+  in_tick_ = rubs_ = false;
+}
+
 // The record R(t, x, v) is linear about (x0, v0); it goes on about (x, v) = now with the same F1, J and B:
 //     R(t + s, x + dx, v + dv) = R(t, x, v) + s F1 + J dx + B dv,
 // up to the second order in the rotation from x0.  To it come the obstacles' F, -K and -B, about (x, v).
@@ -31,6 +44,11 @@ dynamics::LinearisedContact ObstacleTouch::with(const dynamics::LinearisedContac
   if (t >= due_ - 1e-6 * look_ahead_) {
     contact_.refresh(nothing_.view());
     due_ = t + look_ahead_;
+  }
+  if (!in_tick_) {
+    in_tick_ = true;
+    start_ = tool;
+    rubs_ = contact_.begin_step(nothing_.view());
   }
   contact_.linearise(nothing_.view(), frame_, linear_, contact::Partners::kFrames);
   if (linear_.active == 0) return record;

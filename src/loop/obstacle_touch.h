@@ -23,6 +23,11 @@ class ObstacleTouch {
   /// @param tool  then
   dynamics::LinearisedContact with(const dynamics::LinearisedContact& record, double t,
                                    const dynamics::RigidMotion& tool);
+  /// Takes the tool's end of the tick, as the last record leads to it, for the next guess of friction.
+  /// False: the record's friction is not the law's at that end, and with() gives a better one.
+  bool improve(const dynamics::RigidMotion& end);
+  /// The tick is over: the next call of with() begins another.
+  void end_tick();
   /// Between two ticks.  The next one queries, whether one is due or not.
   void archive(Archive& a, double t, const dynamics::RigidMotion& tool);
 
@@ -35,6 +40,8 @@ class ObstacleTouch {
   int frame_;
   dynamics::State nothing_;  ///< a State without blocks: obstacles and the tool are all there is
   contact::FrameLinearisation linear_;
+  bool in_tick_ = false, rubs_ = false;  ///< between with() and end_tick(); and with friction
+  dynamics::RigidMotion start_;          ///< of the tick
 };
 
 }  // namespace palpate::loop

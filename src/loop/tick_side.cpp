@@ -59,15 +59,42 @@ void TickSide::take_up(const ContactRecord& record) {
     const Pose before{quaternion_of(-length * tool.twist.angular) * tool.pose.rotation,
                       tool.pose.translation - length * tool.twist.linear};
     touch_->linearise(past(last).time, length, {before, tool.twist});
+    while (!touch_->improve(tool)) touch_->again();
     touch_->follow(tool);
   }
 }
 
-dynamics::LinearisedContact TickSide::contact(double t, double h, const ContactRecord& record) {
-  const dynamics::LinearisedContact of_bodies = contact_with_bodies(t, h, record);
+dynamics::LinearisedContact TickSide::with_obstacles(const dynamics::LinearisedContact& of_bodies) {
   return side_.obstacles
              ? side_.obstacles->with(of_bodies, side_.tool->time(), {side_.tool->pose(), side_.tool->twist()})
              : of_bodies;
+}
+
+tool::HandleMotion TickSide::handle_motion() const {
+  return {handle_.pose, next_->pose, handle_.twist, next_->twist};
+}
+
+// A tick's friction is that of its end (contact/friction.h), to which a linearly implicit step of the tool
+// leads under the record; the tool's own scheme then takes the record that came out.
+dynamics::LinearisedContact TickSide::contact(double t, double h, const ContactRecord& record) {
+  next_ = side_.handle->sample(t);
+  dynamics::LinearisedContact of_bodies = contact_with_bodies(t, h, record);
+  dynamics::LinearisedContact all = with_obstacles(of_bodies);
+  const bool points = of_bodies.source == dynamics::LinearisedContact::Source::kPoints;
+  while (points || side_.obstacles) {
+    const dynamics::RigidMotion end = side_.tool->predict(h, handle_motion(), all);
+    const bool bodies_done = !points || touch_->improve(end),
+               obstacles_done = !side_.obstacles || side_.obstacles->improve(end);
+    if (bodies_done && obstacles_done) break;
+    if (points) {  // both records are about the same guess of the end
+      const std::uint64_t version = of_bodies.version;
+      of_bodies = touch_->again();
+      of_bodies.version = version;
+    }
+    all = with_obstacles(of_bodies);
+  }
+  if (side_.obstacles) side_.obstacles->end_tick();
+  return all;
 }
 
 dynamics::LinearisedContact TickSide::contact_with_bodies(double t, double h, const ContactRecord& record) {
@@ -80,9 +107,10 @@ dynamics::LinearisedContact TickSide::contact_with_bodies(double t, double h, co
 
 dynamics::StepResult TickSide::tick(double t, double h, const dynamics::LinearisedContact& contact,
                                     TickRecord& out) {
-  const device::HandleSample before = handle_, now = side_.handle->sample(t);
-  dynamics::StepResult status =
-      side_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, contact);
+  if (!next_) next_ = side_.handle->sample(t);
+  const device::HandleSample now = *next_;
+  dynamics::StepResult status = side_.tool->advance(h, handle_motion(), contact);
+  next_.reset();
   if (!status.ok()) return status;
   out = {};
   out.time = t;

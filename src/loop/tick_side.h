@@ -25,7 +25,7 @@ class TickSide {
   /// Takes the handle at the run's start.
   void start(double t);
   /// The contact of the tick of length h to t: the record's own, or what its points come to then, and that
-  /// with obstacles.
+  /// with obstacles.  Friction is that of the tick's end, found by repeated prediction.  Samples the handle.
   dynamics::LinearisedContact contact(double t, double h, const ContactRecord& record);
   /// No wrench went out for too long: that of the next tick ramps in from zero.
   void ramp_in() { ramps_in_ = true; }
@@ -42,6 +42,8 @@ class TickSide {
 
  private:
   dynamics::LinearisedContact contact_with_bodies(double t, double h, const ContactRecord& record);
+  dynamics::LinearisedContact with_obstacles(const dynamics::LinearisedContact& of_bodies);
+  tool::HandleMotion handle_motion() const;
   /// With the handle as it is.
   void feel_at(TickRecord& tick);
 
@@ -56,6 +58,7 @@ class TickSide {
   const ToolSpec& spec_;
   ToolSide& side_;
   device::HandleSample handle_;
+  std::optional<device::HandleSample> next_;  ///< of the tick whose contact was asked for
   double time_ = 0.0;                         ///< of the last tick [s]
   bool live_ = false;                         ///< the hand may feel a wrench
   bool ramps_in_ = false;                     ///< from the next tick on

@@ -30,10 +30,12 @@ namespace palpate::loop {
 // a and b of the body that is touched: where materials differ, the step over H is still exact, and what part
 // of it is damping is not.
 //
-// Friction is in A, K and D by its secant (sample_math.cpp), as in the ticks, whatever the bodies' own steps
-// have: a basis of nodes that slide freely does not let them hold again within the period, and one whose
-// loads weigh samples otherwise than A and the ticks do has those that hold move as those that slide (two
-// hands that lift a ball felt a third too much).  A is so symmetric with any friction.
+// Friction is in A, K and D as affine about the end of the period (contact/friction.h), as in the ticks and
+// in a linearly implicit step, whatever the bodies' own steps have; A is so symmetric with any friction. That
+// end is where X leads while the tool goes on with its twist v: with K_t, D_t the samples' own,
+//     X^T A X y = X^T [last load] + H X^T N^T (K_t Z H v),
+// and friction about it gives the next A and X, until it is the law's there.  Where samples slide as they
+// slid before, or hold, the first is.
 //
 // A body at rest goes nowhere but by rounding: then its own answer, however small, would span a direction of
 // its own, and a random one (the felt force knew by which method the body had come to rest, to 4e-5).  It is
@@ -52,7 +54,8 @@ struct TouchReduction::Answers {
   std::vector<int> nodes;  ///< that samples stand on
   MatX patterns;           ///< 3 nodes x patterns
   MatX X;                  ///< u_size x patterns and one
-  MatX A;                  ///< X^T A X; empty: not known
+  MatX work;               ///< X^T A X
+  bool exact;              ///< A X = loads, to rounding
   MatX loads, product;     ///< scratch, as large as X
   VecX s, w, f;            ///< f: all forces
   VecX stiff;              ///< K s + D w
@@ -218,8 +221,9 @@ bool TouchReduction::iterate(World& world, double H, Answers& out) {
     response_->solution(k, column);
     out.X.col(k) = column;
   }
-  out.A = response_->energies();
-  return all_finite(out.X) && all_finite(out.A);
+  out.work = response_->energies();
+  out.exact = false;
+  return all_finite(out.X) && all_finite(out.work);
 }
 
 /// False where the step matrix has no factor.
@@ -241,12 +245,13 @@ bool TouchReduction::factor(World& world, ToolSide& side, double H, Answers& out
   rhs.rightCols<1>() = right_hand_side(world, H, out.s, out.w, out.rate);
   out.X.resize(rhs.rows(), rhs.cols());
   if (solver->solve(rhs, out.X) != dynamics::SolveStatus::kOk || !all_finite(out.X)) return false;
+  out.work = out.X.transpose() * rhs;
+  out.exact = true;
   for (Eigen::Index i = 0; i < out.X.cols(); ++i) {
     column = out.X.col(i);
     world.system.expand(view, column);
     out.X.col(i) = column;
   }
-  out.A.resize(0, 0);
   return true;
 }
 
@@ -307,8 +312,8 @@ struct Reduced {
   MatX M, K, D;
 };
 
-/// @param A  X^T A X, empty: not known  @param scratch  room for as much as X
-Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, const MatX& A, MatX& scratch,
+/// @param work  X^T A X of X that is not exact: K and D come from it  @param scratch  room for as much as X
+Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, const MatX* work, MatX& scratch,
                 const SampleSums& sums, std::pair<double, double> damping) {
   const dynamics::StateView view = world.state.view();
   const Eigen::Index m = X.cols();
@@ -319,7 +324,7 @@ Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, con
     world.system.apply_mass(view, v, product);
     return product;
   });
-  if (A.size() == 0) {
+  if (!work) {
     out.K =
         products(X, scratch, [&](const VecX& v) { return tangent_times(world, 1.0, 0.0, v); }) - samples_K;
     out.D =
@@ -343,7 +348,7 @@ Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, con
   }
   const auto [a, b] = damping;
   const MatX elements =
-      (A - (1.0 + H * a) * out.M - H * H * (samples_K + others_K) - H * (samples_D + others_D)) /
+      (*work - (1.0 + H * a) * out.M - H * H * (samples_K + others_K) - H * (samples_D + others_D)) /
       (H * H + H * b);
   out.K = elements + others_K;
   out.D = a * out.M + b * elements + others_D;
@@ -361,45 +366,101 @@ void TouchReduction::prepare(World& world, double H) {
   response_->take_step_matrix();
 }
 
+namespace {
+
+/// Friction as affine about the end of a period, while it lives.
+struct FrictionOfPeriod {
+  FrictionOfPeriod(contact::ContactForce& force, const dynamics::StateView& state)
+      : contact_force(force), secant(force), rubs(force.begin_step(state)) {}
+  ~FrictionOfPeriod() {
+    if (rubs) contact_force.end_step();
+  }
+  FrictionOfPeriod(const FrictionOfPeriod&) = delete;
+  FrictionOfPeriod& operator=(const FrictionOfPeriod&) = delete;
+
+  contact::ContactForce& contact_force;
+  contact::SecantTangents secant;
+  bool rubs;
+};
+
+}  // namespace
+
+/// False: friction is not the law's at the end of the period that X leads to, and has a better guess of it.
+bool TouchReduction::improve(World& world, const ToolSide& side, double H,
+                             const std::vector<TouchSample>& samples,
+                             const std::vector<TouchTangent>& tangents) {
+  const Answers& x = *answers_;
+  const Mat3 R = side.known.pose.rotation.toRotationMatrix();
+  const Twist& v = side.known.twist;
+  VecX load = x.X.transpose() * x.loads.rightCols<1>();
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    const TouchSample& s = samples[j];
+    if (!presses(s)) continue;
+    const Vec3 moved = H * v.at(R * s.offset + s.slide), push = H * (tangents[j].K * moved);
+    load +=
+        moved_by(s, [&](int node) { return x.X.middleRows<3>(3 * x.nodes[static_cast<std::size_t>(node)]); })
+            .transpose() *
+        push;
+  }
+  const VecX change = x.X * x.work.completeOrthogonalDecomposition().solve(load);
+  contact::FrameStep tool{.frame = side.frame_index};
+  tool.moved << H * v.angular, H * v.linear;
+  return world.contact->improve_step(world.state.view(), x.s + H * change, x.w + change, tool, error_);
+}
+
+/// X, with the samples as they are then.  @return whether it was found
+bool TouchReduction::answer(World& world, ToolSide& side, double H, std::vector<TouchSample>& samples,
+                            std::vector<TouchTangent>& tangents) {
+  Answers& x = *answers_;
+  const dynamics::StateView view = world.state.view();
+  samples = world.contact->touch_samples(view, side.frame_index, &tangents);
+  x.nodes = number_nodes(samples);
+  for (TouchSample& sample : samples)
+    sample.velocity = moved_by(
+        sample, [&](int k) { return Vec3(x.s.segment<3>(3 * x.nodes[static_cast<std::size_t>(k)]) / H); });
+  world.system.force(view, x.f);
+  x.patterns = load_patterns(world, side, samples, tangents, x.nodes.size(), H, kModes - 1);
+  x.missing = 0.0;
+  return iterate(world, H, x) || factor(world, side, H, x);
+}
+
 bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& out) {
-  const contact::SecantTangents as_ticks_have_it(*world.contact);
   const dynamics::StateView view = world.state.view();
   out = {};
   out.time = world.state.time();
   std::vector<TouchTangent> tangents;
-  std::vector<TouchSample> samples = world.contact->touch_samples(view, side.frame_index, &tangents);
+  std::vector<TouchSample> samples = world.contact->touch_samples(view, side.frame_index);
   if (samples.empty()) return true;
   out.samples = static_cast<int>(std::count_if(samples.begin(), samples.end(), presses));
+  const FrictionOfPeriod friction(*world.contact, view);
   Answers& x = *answers_;
   x.still = still_of(samples);
-  x.nodes = number_nodes(samples);
   known_motion(world, H, x.s, x.w);
-  const VecX velocity = rows_of(x.s, x.nodes) / H, change = rows_of(x.w, x.nodes) / H;
-  for (TouchSample& sample : samples)
-    sample.velocity = moved_by(sample, [&](int node) { return velocity.segment<3>(3 * node); });
-  world.system.force(view, x.f);
   x.rate = rate_by_other_tools(world, side);
-  x.patterns = load_patterns(world, side, samples, tangents, x.nodes.size(), H, kModes - 1);
-  x.missing = 0.0;
-  const bool iterated = iterate(world, H, x), known = iterated || factor(world, side, H, x);
-  if (iterated)
-    missing_.take(x.missing, error_);
-  else if (known)
+  bool known = answer(world, side, H, samples, tangents);
+  while (known && friction.rubs && !improve(world, side, H, samples, tangents)) {
+    counters::count("loop.touch_bases_anew");
+    known = answer(world, side, H, samples, tangents);
+  }
+  if (known && x.exact)
     missing_.take_factored();
-  Rows modes = Rows::Zero(kModes, velocity.size());
+  else if (known)
+    missing_.take(x.missing, error_);
+  const VecX change = rows_of(x.w, x.nodes) / H;
+  Rows modes = Rows::Zero(kModes, change.size());
   MatX near;
   if (known) near = rows_of(x.X, x.nodes);
   if (known && farthest(samples, H * near.rightCols<1>()) <= x.still) {
     const Eigen::Index loads = x.patterns.cols();
     x.X.conservativeResize(Eigen::NoChange, loads);
     near.conservativeResize(Eigen::NoChange, loads);
-    if (x.A.size() > 0) x.A.conservativeResize(loads, loads);
+    x.work.conservativeResize(loads, loads);
   }
   if (known && x.X.cols() > 0) {
     const SampleSums sums = sum_of(samples, tangents, near, change);
-    const Reduced r = reduced(world, side, H, x.X, x.A, x.product, sums,
+    const Reduced r = reduced(world, side, H, x.X, x.exact ? nullptr : &x.work, x.product, sums,
                               damping_of(world, x.nodes[static_cast<std::size_t>(samples.front().node[0])]));
-    const MatX S = modes_of(r.M, r.K, r.D, x.A.size() > 0 ? kAlikeSingle : kAlike, out);
+    const MatX S = modes_of(r.M, r.K, r.D, x.exact ? kAlike : kAlikeSingle, out);
     if (!x.w.isZero(0.0)) {
       VecX inertia;
       world.system.apply_mass(view, x.w / H, inertia);

@@ -11,12 +11,14 @@ namespace palpate::tool {
 struct Tool::Impl {
   Impl(const ToolSpec& spec, const Vec3& gravity)
       : body(rigid_parameters(spec, gravity)),
+        predictor(make_linearly_implicit_euler(body)),
         scheme(find(tick_scheme_registry(), spec.integrator, "tool integrator").make(body)) {
     motion.pose = {quaternion_of(spec.rotation_vector_rad), spec.position_m};
     input.gains = coupling_gains(spec);
   }
 
   SimbodyBody body;
+  std::unique_ptr<TickScheme> predictor;  ///< has no history
   std::unique_ptr<TickScheme> scheme;
   double time = 0.0;
   RigidMotion motion;
@@ -78,6 +80,14 @@ dynamics::StepResult Tool::advance(double h, const HandleMotion& handle,
   me.motion = next;
   me.time += h;
   return result;
+}
+
+RigidMotion Tool::predict(double h, const HandleMotion& handle,
+                          const dynamics::LinearisedContact& contact) const {
+  const Impl& me = *impl_;
+  RigidMotion out = me.motion;
+  me.predictor->advance({me.time, h, handle, contact, me.input.gains}, out);
+  return out;
 }
 
 Wrench Tool::coupling_wrench(const Pose& handle, const Twist& handle_twist) const {

@@ -123,6 +123,41 @@ TEST(TouchTicks, FrictionStaysInItsCone) {
   }
 }
 
+// A free tool at rest is pushed with 1.01 to 3 times what friction can hold: from its first tick it slides as
+// the law says, and the force is the cone's.  Slowed down it comes to rest, and stays.
+TEST(TouchTicks, AToolThatStartsToSlideFeelsNoMoreThanTheCone) {
+  const double h = 1e-3, mass = 0.05, mu = 0.3;
+  for (const double push : {1.01, 1.5, 3.0}) {
+    contact::TouchTicks ticks({law(mu)});
+    ticks.adopt(wall(-1e-3));
+    RigidMotion tool = at(0.0, 0.0);
+    const auto end_of = [&](const dynamics::LinearisedContact& record, double pushed) {
+      using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+      const double by_dv = (h * Eigen::Map<const RowMajor6>(record.J.data()) +
+                            Eigen::Map<const RowMajor6>(record.B.data()))(3, 3);
+      RigidMotion end = tool;
+      end.twist.linear.x() += h * (record.F0[3] + pushed) / (mass - h * by_dv);
+      end.pose.translation.x() += h * end.twist.linear.x();
+      return end;
+    };
+    const auto tick = [&](int i, double pushed) {
+      auto record = ticks.linearise((i + 1) * h, h, tool);
+      while (!ticks.improve(end_of(record, pushed))) record = ticks.again();
+      tool = end_of(record, pushed);
+      ticks.follow(tool);
+      return force_at(record, (i + 1) * h, tool);
+    };
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 force = tick(i, push * mu);
+      EXPECT_LE(force.head<2>().norm(), 1.001 * mu * force.z()) << push << ", tick " << i;
+    }
+    const double slid = (push - 1.0) * mu / mass * 50 * h;
+    EXPECT_NEAR(tool.twist.linear.x(), slid, 0.01 * slid + 1e-3) << push;  // v_r = 1e-3
+    for (int i = 50; i < 400; ++i) tick(i, 0.0);
+    EXPECT_LT(std::abs(tool.twist.linear.x()), 1e-3) << push;
+  }
+}
+
 // One mass on a spring under one point: the pair of equations of a tick by hand.
 TEST(TouchTicks, OneMassAnswersByImplicitEuler) {
   TouchModel model = wall(-1e-3);

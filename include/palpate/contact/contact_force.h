@@ -155,6 +155,13 @@ struct Tie {
 struct TouchSample;  // touch_model.h
 struct TouchTangent;
 
+/// How a frame that the state does not have moves within a step.
+struct FrameStep {
+  int frame = -1;              ///< as add_frame() counts; -1: none moves
+  Vec6 moved = Vec6::Zero();   ///< rotation vector, displacement [rad, m]
+  Vec6 change = Vec6::Zero();  ///< of the twist [rad/s, m/s]
+};
+
 /// Which samples of a frame: those with nodes on the other side, those with another frame there.
 enum class Partners { kAll, kNodes, kFrames };
 
@@ -187,6 +194,10 @@ class ContactForce : public dynamics::ForceTerm,
   bool bends_at(const dynamics::StateView& state) override;
   bool begin_step(const dynamics::StateView& state) override;
   bool improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) override;
+  /// The same where a frame moves that the state does not have.
+  /// @param tolerance  of friction's difference from the law's, relative; 0: a step's own (friction.h)
+  bool improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change,
+                    const FrameStep& given, double tolerance = 0.0);
   void end_step() override;
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;

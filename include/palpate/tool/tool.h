@@ -5,6 +5,7 @@
 #include "palpate/core/pose.h"
 #include "palpate/core/registry.h"
 #include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/rigid_body.h"
 #include "palpate/dynamics/stepper.h"
 #include "palpate/tool/spec.h"
 
@@ -39,6 +40,10 @@ class Tool {
   /// One tick of `h` seconds with the contact linear about its record, by the scheme that the spec names.
   dynamics::StepResult advance(double h, const HandleMotion& handle,
                                const dynamics::LinearisedContact& contact);
+
+  /// Where a tick would lead by linearly-implicit-euler, whatever the spec names; nothing changes.
+  dynamics::RigidMotion predict(double h, const HandleMotion& handle,
+                                const dynamics::LinearisedContact& contact) const;
 
   /// Wrench that the coupling exerts on the tool about its origin, for a handle pose (before any limit).
   Wrench coupling_wrench(const Pose& handle, const Twist& handle_twist) const;

@@ -95,6 +95,12 @@ class TouchTicks {
   /// bodies' answer within the tick is in it.
   /// @param t1  end of the tick [s]  @param h  its length [s]  @param tool  at its start
   dynamics::LinearisedContact linearise(double t1, double h, const dynamics::RigidMotion& tool);
+  /// Takes the tool's end of the tick, as the last record leads to it, for the next guess of friction.
+  /// False: the record's friction is not the law's at that end, and again() gives a better one.
+  /// @param tolerance  of its difference from the law's, relative; 0: that of a step (contact/friction.h)
+  bool improve(const dynamics::RigidMotion& end, double tolerance = 0.0);
+  /// The record of the tick last linearised, with the guess as it is now.
+  dynamics::LinearisedContact again();
   /// The tool came there at the end of the tick that was linearised: so do the bodies.
   void follow(const dynamics::RigidMotion& tool);
   /// Points that pressed in the last linearisation.
