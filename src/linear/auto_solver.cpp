@@ -104,6 +104,7 @@ namespace {
 /// kProvisional, which serves stiff and soft ones; the number of one decides which solver has the next.
 class AutoSolver final : public dynamics::LinearSolver,
                          public dynamics::MixedPrecisionSolver,
+                         public dynamics::StepSolves,
                          public dynamics::EnergyTolerance {
  public:
   explicit AutoSolver(const IntegratorSpec& spec) : spec_(spec) { counters::count("integrate.solver.auto"); }
@@ -139,6 +140,13 @@ class AutoSolver final : public dynamics::LinearSolver,
   std::optional<SolveStatus> solve_by_refinement(dynamics::ResidualFunction& residual, VecX& x) override {
     return mixed_ ? mixed_->solve_by_refinement(residual, x) : std::nullopt;
   }
+  Solved solve_first(const VecX& b, VecX& x, double share) override {
+    return step_solves().solve_first(b, x, share);
+  }
+  Solved solve_next(const VecX& b, VecX& x, double share) override {
+    return step_solves().solve_next(b, x, share);
+  }
+  void end_solves(VecX& x) override { step_solves().end_solves(x); }
   void allow_error(double error) override {
     allowed_ = error;
     if (auto* tolerance = dynamic_cast<dynamics::EnergyTolerance*>(active_)) tolerance->allow_error(error);
@@ -165,6 +173,7 @@ class AutoSolver final : public dynamics::LinearSolver,
     PALPATE_CHECK(active_, "solver auto: solve without a factor");
     return *active_;
   }
+  dynamics::StepSolves& step_solves() { return dynamic_cast<dynamics::StepSolves&>(chosen()); }
   dynamics::LinearSolver& made(std::size_t k) {
     if (!made_[k]) made_[k] = make_linear_solver(kNames[k], spec_);
     return *made_[k];

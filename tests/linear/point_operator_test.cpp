@@ -283,6 +283,58 @@ TEST_P(PointSolvers, TheErrorIsWhatTheToleranceSays) {
     }
 }
 
+// Solves of one step, each with other sums and another right-hand side than the one before: those that
+// another one follows are as far as they say, and the last one is as accurate as a solve alone.
+TEST_P(PointSolvers, GoOnFromSolveToSolveOfAStep) {
+  constexpr double kStep = 1e-2, kTolerance = 1e-4, kShare = 0.1;
+  for (const int threads : {1, 2}) {
+    BentBeam beam(16, 1e5);
+    IntegratorSpec spec{.step_s = kStep, .linear_rtol = kTolerance};
+    spec.threads = threads;
+    const auto solver = linear::make_linear_solver(threads == 1 ? GetParam() : "auto", spec);
+    const auto direct = linear::make_linear_solver("cholmod");
+    auto& solves = dynamic_cast<dynamics::StepSolves&>(*solver);
+    BorderedMatrix whole;
+    VecX b, x, exact;
+    int rough = 0;
+    for (int k = 0; k < 4; ++k) {
+      beam.at(0.2 * k, kStep, whole, b);
+      ZeroRowSumMatrix* A = mixed(*solver).step_matrix(beam.pattern());
+      ASSERT_NE(A, nullptr);
+      beam.at(0.2 * k, kStep, *A, b);
+      const VecX weight = b;
+      VecX before = VecX::Zero(b.size());
+      for (int solve = 0; solve < 4; ++solve) {
+        const PointStiffness C = random_points(whole.body.block_rows(), 30, 2.0 + 0.3 * solve,
+                                               static_cast<unsigned>(4 * k + solve % 2));
+        const BorderedMatrix all = with(whole, C, beam.system.driven_nodes());
+        b = (1.0 + 0.1 * solve) * weight;
+        ASSERT_EQ(direct->factor(all), SolveStatus::kOk);
+        ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
+        A->points = C;
+        if (solve == 0) { ASSERT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kSolve); }
+        const double share = solve == 3 ? 0.0 : kShare;
+        const auto solved = solve == 0 ? solves.solve_first(b, x, share) : solves.solve_next(b, x, share);
+        ASSERT_EQ(solved.status, SolveStatus::kOk) << k << " " << solve;
+        const double error = energy_norm(all, x - exact) / energy_norm(all, exact);
+        const double way = energy_norm(all, before - exact) / energy_norm(all, exact);
+        if (solved.accurate) {
+          EXPECT_LE(error, kTolerance) << k << " " << solve;
+        } else if (solve > 0) {
+          EXPECT_LE(error, 1.01 * kShare * way) << k << " " << solve;
+        }
+        rough += !solved.accurate;
+        EXPECT_TRUE(share > 0.0 || solved.accurate);
+        before = x;
+      }
+      solves.end_solves(x);
+    }
+    EXPECT_GT(rough, 4);
+    EXPECT_EQ(solver->counters().factorisations, 4);
+    EXPECT_EQ(solver->counters().symbolic, 1);
+  }
+}
+
 // Tolerances below what single precision can say of a solution: corrected from the first step on, with new
 // sums at each, and never by a matrix in double, whose pattern would be another one every time.
 TEST_P(PointSolvers, AreCorrectedFromTheFirstStepOn) {

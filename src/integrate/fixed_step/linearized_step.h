@@ -63,6 +63,7 @@ class LinearizedStep {
   class Repeats;
   using Equations = LinearizedEquations;
 
+  bool solve_repeatedly(const Equations& e, VecX& du, Repeats& repeats);
   dynamics::StepStatus solve_once(const Equations& e, VecX& du);
   bool solve_by_lagged_matrix(const Equations& e, VecX& du);
   bool solve_fused(const Equations& e, VecX& du);
@@ -72,7 +73,8 @@ class LinearizedStep {
   bool goes_along_negative_curvature(const Equations& e, const VecX& du);
   bool goes_along_negative_curvature_of(const dynamics::BorderedMatrix& A, const Equations& e,
                                         const VecX& du);
-  bool assemble_fused(const Equations& e, dynamics::ZeroRowSumMatrix& A);
+  bool assemble_fused(const Equations& e, dynamics::ZeroRowSumMatrix& A, bool keep);
+  void assemble_beside(const Equations& e, dynamics::PointStiffness& C, VecX& out);
   bool evaluate_right_hand_side(const Equations& e);
   bool complete_right_hand_side(const Equations& e);
   void evaluate_residual(const Equations& e, const VecX& du, VecX& r);
@@ -80,10 +82,12 @@ class LinearizedStep {
   dynamics::System& system_;
   StepSolver solver_;
   dynamics::MixedPrecisionSolver* mixed_;  ///< capability of the chosen solver; null: it lacks it
+  dynamics::StepSolves* solves_;           ///< likewise
   dynamics::StepAssembly fused_;
   dynamics::StepperCounters* counters_ = nullptr;  ///< of the solve under way
   dynamics::BorderedMatrix A_;
   VecX rhs_, product_, s_of_x_, dv_of_x_, u1_;
+  VecX beside_, beside_before_;                              ///< of terms beside the pattern
   double speed_ = 0.0;                                       ///< u1.M u1 [J]
   bool known_indefinite_ = false;                            ///< the matrix of the solve under way is
   std::vector<dynamics::RepeatedStepTerm*> repeated_terms_;  ///< scratch

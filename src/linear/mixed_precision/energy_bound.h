@@ -31,6 +31,8 @@ class EnergyBound {
   void step(double alpha, double rho, double rho_next);
   /// Upper bound of |x - x_k|_A^2 for this rho_k; rho may be measured anew.
   double error(double rho) const { return lost_ ? HUGE_VAL : bound_ * rho; }
+  /// Lower bound of |x - x_0|_A^2: what the steps so far have gained.
+  double gained() const { return gained_; }
   /// Lower bound of |x|_A^2.
   double solution() const { return start_ + gained_; }
   bool first() const { return first_; }

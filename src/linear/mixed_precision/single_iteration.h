@@ -39,6 +39,12 @@ class SingleIteration {
   double solution() const { return bounds_[0].solution(); }
   /// An error whose square is no more than this is small enough too.
   void allow(double square) { allowed_ = square; }
+  /// So is one that is no more than this share of the way from the start of the solve.
+  void allow_share(double share) { share_ = share; }
+  /// Whether the error is below rtol of the solution, or allowed, without what allow_share() adds.
+  bool accurate(double rho, double rtol) const {
+    return bounds_[0].error(rho) <= wanted(bounds_[0], rtol) && rho <= floor_;
+  }
   /// Most that rho may be at the end, whatever the bound says.
   void set_floor(double rho) { floor_ = rho; }
 
@@ -73,7 +79,11 @@ class SingleIteration {
 
  private:
   bool reached(const EnergyBound& bound, double rho, double rtol) const {
-    return bound.error(rho) <= std::max(rtol * rtol * bound.solution(), allowed_) && rho <= floor_;
+    return bound.error(rho) <= std::max(wanted(bound, rtol), share_ * share_ * bound.gained()) &&
+           rho <= floor_;
+  }
+  double wanted(const EnergyBound& bound, double rtol) const {
+    return std::max(rtol * rtol * bound.solution(), allowed_);
   }
   bool coarse_on() const { return clusters_.ready(); }
   void precondition(std::size_t cluster, int first, int last);
@@ -90,7 +100,7 @@ class SingleIteration {
   Singles d_, r_, z_, p_, q_;
   Singles y_, w_;   ///< of the clusters: force and moment, and their motion
   Singles pieces_;  ///< motion of their pieces
-  double pq_ = 0.0, floor_ = 0.0, allowed_ = 0.0;
+  double pq_ = 0.0, floor_ = 0.0, allowed_ = 0.0, share_ = 0.0;
   bool moved_ = false;        ///< d_ + last_length_ p_ is what was found
   float last_length_ = 0.0f;  ///< of the last step, which d_ lacks
   /// one a thread, all alike: each decides for itself, with nothing to wait for

@@ -201,6 +201,16 @@ SolveStatus SingleMatrix::take_step_matrix(int count, Singles* from, Singles* to
   return any(RowStatus::kNotDefinite) ? SolveStatus::kIndefinite : SolveStatus::kOk;
 }
 
+void SingleMatrix::renew_points() {
+  for (const PointOperator::Diagonal& at : points_.diagonal()) {
+    const auto node = static_cast<std::size_t>(at.node);
+    store_inverse(node, own_block(node));
+  }
+  points_.take(written_.points, place_of_node_, order_, written_.scale);
+  point_stiffness_ = 0.0;
+  add_points_to_inverse();
+}
+
 void SingleMatrix::multiply(std::size_t part, int count, const Singles* from, Singles* to) {
   const Columns columns(count, from, to);
   kernels_.multiply(rows(part), count, columns.V, columns.AV);
@@ -276,10 +286,16 @@ void SingleMatrix::hold(std::size_t part) {
       for (int k = 0; k < 3; ++k) packing_.own_entry(own, k, axis) = packing_.own_entry(own, axis, k) = 0.0f;
       packing_.own_entry(own, axis, axis) = 1.0f;
     }
-    Eigen::Matrix3f block;
-    for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = packing_.entry(own, k % 3, k / 3);
-    store_inverse(node, block);
+    store_inverse(node, own_block(node));
   }
+}
+
+/// The packed one, without what points add.
+Eigen::Matrix3f SingleMatrix::own_block(std::size_t node) const {
+  Eigen::Matrix3f out;
+  for (int k = 0; k < 9; ++k)
+    out(k % 3, k / 3) = packing_.entry(static_cast<std::size_t>(row_start_[node]), k % 3, k / 3);
+  return out;
 }
 
 void SingleMatrix::store_inverse(std::size_t node, const Eigen::Matrix3f& block) {
@@ -295,9 +311,9 @@ void SingleMatrix::store_inverse(std::size_t node, const Eigen::Matrix3f& block)
 /// products add that.
 void SingleMatrix::add_points_to_inverse() {
   for (const PointOperator::Diagonal& at : points_.diagonal()) {
-    const auto node = static_cast<std::size_t>(at.node), own = static_cast<std::size_t>(row_start_[node]);
-    Eigen::Matrix3f block, added = at.block;
-    for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = packing_.entry(own, k % 3, k / 3);
+    const auto node = static_cast<std::size_t>(at.node);
+    const Eigen::Matrix3f block = own_block(node);
+    Eigen::Matrix3f added = at.block;
     for (int axis = 0; axis < 3; ++axis)
       if (std::binary_search(held_.begin(), held_.end(), 4 * node + static_cast<std::size_t>(axis)))
         added.row(axis).setZero(), added.col(axis).setZero();

@@ -33,6 +33,8 @@ class SingleMatrix {
   dynamics::ZeroRowSumMatrix& room(const dynamics::BlockSparse& pattern);
   /// take() of the matrix that was written there.  Held entries of `from` become zero.
   dynamics::SolveStatus take_step_matrix(int count, Singles* from, Singles* to);
+  /// The step matrix with the points that are written there now.
+  void renew_points();
   /// to[k] = scale A from[k], in single precision.
   void multiply(int count, const Singles* from, Singles* to);
   /// Ax = A x, in double.
@@ -71,6 +73,7 @@ class SingleMatrix {
   void find_held();
   void hold(std::size_t part);
   void add_points_to_inverse();
+  Eigen::Matrix3f own_block(std::size_t node) const;
   void store_inverse(std::size_t node, const Eigen::Matrix3f& block);
 
   const NodeKernels& kernels_;

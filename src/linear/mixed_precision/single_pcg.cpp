@@ -71,6 +71,7 @@ constexpr int kRefusedFor = 64;
 /// border.
 class SinglePcg final : public dynamics::LinearSolver,
                         public dynamics::MixedPrecisionSolver,
+                        public dynamics::StepSolves,
                         public dynamics::EnergyTolerance {
  public:
   SinglePcg(std::string name, bool two_level, const IntegratorSpec& spec)
@@ -135,9 +136,8 @@ class SinglePcg final : public dynamics::LinearSolver,
     ++counters_.factorisations;
     ProjectedGuess& guess = state_.guess;
     status_ = copy_.take_step_matrix(guess.count(), guess.solutions(), guess.products());
-    // Contact far stiffer than the nodes that it is between: rounding of its own reaches their motions too.
-    const bool coarse = !(kSingleRounding * std::sqrt(copy_.stiffness()) <= kRoundingShare * rtol_) ||
-                        !(kSingleRounding * copy_.point_stiffness() <= kRoundingShare * rtol_);
+    const bool coarse =
+        !(kSingleRounding * std::sqrt(copy_.stiffness()) <= kRoundingShare * rtol_) || points_are_coarse();
     use_ = use_of(use_copy(room_->positions, coarse), coarse);
     return use_;
   }
@@ -165,6 +165,27 @@ class SinglePcg final : public dynamics::LinearSolver,
     const SolveStatus status = solve_column(b.data(), x.data(), true);
     solve_.allow_error(0.0);
     return status;
+  }
+
+  Solved solve_first(const VecX& b, VecX& x, double share) override {
+    const long before = counters_.iterations;
+    const Solved out = approach(b, x, share, false);
+    if (out.status == SolveStatus::kOk) account(before);
+    return out;
+  }
+
+  Solved solve_next(const VecX& b, VecX& x, double share) override {
+    {
+      const ScopedTimer timer(counters_.factor_s);
+      copy_.renew_points();
+    }
+    if (points_are_coarse()) return {SolveStatus::kNotConverged, false};
+    return approach(b, x, share, true);
+  }
+
+  void end_solves(VecX& x) override {
+    const ScopedTimer timer(counters_.solve_s);
+    solve_.keep(x.data());
   }
 
   SolveStatus solve(const MatX& B, MatX& X) override {
@@ -205,6 +226,11 @@ class SinglePcg final : public dynamics::LinearSolver,
   void refuse() {
     refused_pattern_ = room_->pattern->pattern_version();
     refused_for_ = kRefusedFor;
+  }
+
+  /// Contact far stiffer than the nodes that it is between: rounding of its own reaches their motions too.
+  bool points_are_coarse() const {
+    return !(kSingleRounding * copy_.point_stiffness() <= kRoundingShare * rtol_);
   }
 
   // --- once a matrix
@@ -269,6 +295,17 @@ class SinglePcg final : public dynamics::LinearSolver,
     if (remember) refinement_.solved(state_.correction);
     account(before);
     return status;
+  }
+
+  /// Of a step that solves several times.
+  Solved approach(const VecX& b, VecX& x, double share, bool again) {
+    check_right_hand_side(b.rows());
+    const ScopedTimer timer(counters_.solve_s);
+    ++counters_.solves;
+    x.resize(b.size());
+    bool accurate = false;
+    const SolveStatus status = solve_.approach(b.data(), x.data(), again, share, accurate);
+    return {status, accurate};
   }
 
   /// What the age of E costs, for the decision in use_copy().

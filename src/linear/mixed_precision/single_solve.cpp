@@ -19,12 +19,16 @@ constexpr int kResidualReplacements = 40;
 
 void SingleSolve::prepare() { Ax_.assign(4 * static_cast<std::size_t>(s_.nodes()) + kVectorTail, 0.0); }
 
-SolveStatus SingleSolve::solve(const double* b, double* x, bool remember) {
-  if (remember && s_.guess.count() > 0 && !s_.guess.products_known()) {
+void SingleSolve::begin(bool warm) {
+  if (warm && s_.guess.count() > 0 && !s_.guess.products_known()) {
     s_.copy.multiply(s_.guess.count(), s_.guess.solutions(), s_.guess.products());
     s_.guess.products_are_known(true);
   }
-  s_.begin(remember);
+  s_.begin(warm);
+}
+
+/// False where it is zero.  @param guess  what the initial guess needs of it is summed
+bool SingleSolve::take_right_hand_side(const double* b, bool guess) {
   held_.resize(s_.copy.held().size());
   const int* node = s_.copy.order().node.data();
   s_.team.for_each([&](std::size_t part, int first, int last) {
@@ -39,38 +43,80 @@ SolveStatus SingleSolve::solve(const double* b, double* x, bool remember) {
     }
     s_.largest[part] = most;
     s_.copy.take_held(part, s_.b.data(), held_.data());
-    s_.guess.add_up(part, s_.b.data(), first, last);
+    if (guess) s_.guess.add_up(part, s_.b.data(), first, last);
   });
-  if (*std::max_element(s_.largest.begin(), s_.largest.end()) == 0.0 &&
-      std::all_of(s_.b.begin(), s_.b.end(), [](double value) { return value == 0.0; })) {
+  return *std::max_element(s_.largest.begin(), s_.largest.end()) != 0.0 ||
+         std::any_of(s_.b.begin(), s_.b.end(), [](double value) { return !(value == 0.0); });
+}
+
+void SingleSolve::put_solution(double* x, bool remember, bool follow) {
+  s_.put_solution(x, remember, follow);
+  const int* node = s_.copy.order().node.data();
+  for (std::size_t h = 0; h < held_.size(); ++h) {  // rows of the identity
+    const std::size_t entry = s_.copy.held()[h];
+    x[3 * static_cast<std::size_t>(node[entry / 4]) + entry % 4] = held_[h];
+  }
+}
+
+SolveStatus SingleSolve::solve(const double* b, double* x, bool remember) {
+  begin(remember);
+  if (!take_right_hand_side(b, true)) {
     std::fill_n(x, 3 * s_.nodes(), 0.0);
     return SolveStatus::kOk;
   }
   if (const SolveStatus status = iterate(); status != SolveStatus::kOk) return status;
-  s_.put_solution(x, remember, s_.copy.zero_row_sum());  // a next step may be solved by a zero-row-sum matrix
-  for (std::size_t h = 0; h < held_.size(); ++h) {       // rows of the identity
-    const std::size_t entry = s_.copy.held()[h];
-    x[3 * static_cast<std::size_t>(node[entry / 4]) + entry % 4] = held_[h];
+  put_solution(x, remember, s_.copy.zero_row_sum());  // a next step may be solved by a zero-row-sum matrix
+  return SolveStatus::kOk;
+}
+
+SolveStatus SingleSolve::approach(const double* b, double* x, bool again, double share, bool& accurate) {
+  if (!again) begin(true);
+  if (!take_right_hand_side(b, !again)) return SolveStatus::kNotConverged;
+  share_ = share;
+  SolveStatus status;
+  if (again) {
+    renew_residual();
+    s_.iteration.restart();
+    double energy = 0.0;
+    for (std::size_t i = 0; i < s_.x.size(); ++i) energy += s_.x[i] * Ax_[i];
+    status = s_.size == 0.0 ? SolveStatus::kOk : iterate(energy, true);
+  } else {
+    status = iterate();
   }
+  share_ = 0.0;
+  if (status != SolveStatus::kOk) return status;
+  accurate = accurate_ || s_.size == 0.0;
+  put_solution(x, false, false);
   return SolveStatus::kOk;
 }
 
 SolveStatus SingleSolve::iterate() {
   const ProjectedGuess::Start start = s_.choose();
-  if (!std::isfinite(s_.size)) return SolveStatus::kNotConverged;
-  s_.iteration.begin(start.energy);
-  s_.iteration.allow(allowed_);
-  const SolveStatus status = refine();
-  s_.iteration.allow(0.0);
-  if (status != SolveStatus::kOk) return status;
-  s_.iteration.end();
+  if (const SolveStatus status = iterate(start.energy, false); status != SolveStatus::kOk) return status;
   s_.correction =
       std::sqrt((start.change + s_.iteration.solution() - start.energy) / s_.iteration.solution());
   return SolveStatus::kOk;
 }
 
-SolveStatus SingleSolve::refine() {
-  double rho = s_.iteration.precondition([&](int first, int last) { s_.set_residual(first, last); });
+/// @param start  energy of where it begins
+SolveStatus SingleSolve::iterate(double start, bool residual_is_set) {
+  if (!std::isfinite(s_.size)) return SolveStatus::kNotConverged;
+  s_.iteration.begin(start);
+  s_.iteration.allow(allowed_);
+  s_.iteration.allow_share(share_);
+  double rho = s_.iteration.precondition([&](int first, int last) {
+    if (!residual_is_set) s_.set_residual(first, last);
+  });
+  const SolveStatus status = refine(rho);
+  accurate_ = status == SolveStatus::kOk && s_.iteration.accurate(rho * s_.unit(), s_.rtol);
+  s_.iteration.allow(0.0);
+  s_.iteration.allow_share(0.0);
+  if (status == SolveStatus::kOk) s_.iteration.end();
+  return status;
+}
+
+/// @param rho  r . P^-1 r, of the residual that is set, and at the end
+SolveStatus SingleSolve::refine(double& rho) {
   // At a first solve the spectrum is not known: the residual's own norm goes ten times below what is asked.
   s_.iteration.set_floor(s_.iteration.first() ? 0.01 * s_.rtol * s_.rtol * rho * s_.unit() : HUGE_VAL);
   const double unchecked =

@@ -41,4 +41,24 @@ class MixedPrecisionSolver {
   virtual std::optional<SolveStatus> solve_by_refinement(ResidualFunction& residual, VecX& x) = 0;
 };
 
+/// Optional capability of a MixedPrecisionSolver: the solves of one step that repeats them
+/// (RepeatedStepTerm). Their matrices differ in what stands beside the pattern alone, and each solution is
+/// close to the one before.  A class derives from it beside MixedPrecisionSolver.
+class StepSolves {
+ public:
+  virtual ~StepSolves() = default;
+  struct Solved {
+    SolveStatus status;
+    bool accurate;  ///< within the tolerance of LinearSolver::solve()
+  };
+  /// The first one, after factor_step_matrix() has returned StepMatrixUse::kSolve; from where solve() begins.
+  /// It ends where the error is within the tolerance, or `share` of the way that the solution has come.
+  virtual Solved solve_first(const VecX& b, VecX& x, double share) = 0;
+  /// The next one, from the last solution on; ZeroRowSumMatrix::points may have been written anew.  Nothing
+  /// is solved, and the status is not kOk, where these are beyond what the matrix serves for.
+  virtual Solved solve_next(const VecX& b, VecX& x, double share) = 0;
+  /// The last one was the step's: later steps begin with it.  @param x  it
+  virtual void end_solves(VecX& x) = 0;
+};
+
 }  // namespace palpate::dynamics
