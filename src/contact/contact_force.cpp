@@ -56,6 +56,7 @@ const std::vector<int>& ContactForce::Impl::rows_of_frames() {
 
 void ContactForce::Impl::add_single_forces(const dynamics::StateView& state, VecX& f) {
   if (!bonds.empty()) bonds.add_force(state, frame_states, rows_of_frames(), f);
+  if (step_friction.on) friction_cells.add_step_force(f);
   const auto row = [&](const SurfacePoint& p) {
     return p.frame >= 0 ? frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1;
   };
@@ -70,6 +71,7 @@ void ContactForce::Impl::add_single_forces(const dynamics::StateView& state, Vec
 void ContactForce::Impl::apply_single_tangents(const dynamics::StateView& state, double k_scale,
                                                double d_scale, const VecX& x, VecX& y) {
   bonds.apply_tangent(state, frame_states, k_scale, d_scale, x, y);
+  if (step_friction.on) friction_cells.apply_tangent(k_scale, d_scale, x, y);
   visit_active(state, Which::kOfState,
                [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                  const SampleForce force = tangent_of(s, motion, law, law.symmetric_tangent);
@@ -86,13 +88,14 @@ void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f, s
   frame_rows.resize(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) frame_rows[i] = nodal + 6 * static_cast<int>(i);
   groups.add_force(state, frame_states, frame_rows, f, &on_a);
+  friction_cells.add_force(state, frame_states, frame_rows, f, on_a);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const Vec3 force = sample_force(s, motion, law);
     add_point_force(s.a, motion.a.arm, force, nodal + 6 * s.a.frame, f);
     add_point_force(s.b, motion.b.arm, -force, nodal + 6 * s.b.frame, f);
     on_a[static_cast<std::size_t>(s.source)] += Wrench{motion.a.x.cross(force), force};
   };
-  visit_active(state, Which::kEvery, add);
+  visit_active(state, Which::kAlone, add);
   bonds.add_force(state, frame_states, frame_rows, f);
   bonds.add_resultants(state, frame_states, on_a);
 }
@@ -167,6 +170,7 @@ void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale,
   Impl& m = *impl_;
   m.place_frames(state);
   m.groups.add_tangent(state, m.frame_states, k_scale, d_scale, A);
+  if (m.step_friction.on) m.friction_cells.add_tangent(k_scale, d_scale, A);
   m.linearise_friction(state);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const SampleForce force = m.tangent_of(s, motion, law, law.symmetric_tangent);

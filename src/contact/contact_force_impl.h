@@ -1,4 +1,5 @@
 #pragma once
+#include "contact/friction_cells.h"
 #include "contact/grasp.h"
 #include "contact/resultants.h"
 #include "contact/sample_groups.h"
@@ -15,11 +16,13 @@ struct ContactForce::Impl {
   struct Pair {
     std::unique_ptr<SampleSource> source;
     PressureLaw law;
-    std::size_t begin = 0, end = 0;             ///< its samples, one by one
-    std::size_t first_cell = 0, last_cell = 0;  ///< or its cells
-    bool grouped = false;                       ///< they are in `groups`
-    bool follows = false;                       ///< they are exact at every evaluation
-    double deepest = 0.0;                       ///< largest overlap that a query saw [m]
+    std::size_t begin = 0, end = 0;                   ///< its samples, one by one
+    std::size_t first_cell = 0, last_cell = 0;        ///< or its cells, without friction
+    std::size_t first_rubbing = 0, last_rubbing = 0;  ///< or both, with friction of a step's end
+    bool in_cells = false;                            ///< they are in `friction_cells`
+    bool grouped = false;                             ///< they are in `groups`
+    bool follows = false;                             ///< they are exact at every evaluation
+    double deepest = 0.0;                             ///< largest overlap that a query saw [m]
     bool given = false;  ///< frames given from outside on both sides: nothing in the State feels them
   };
 
@@ -28,9 +31,11 @@ struct ContactForce::Impl {
   std::vector<PressureLaw> laws_kept;  ///< the pairs' own, while SecantTangents lives
   std::vector<ContactSample> samples, next_samples;
   SampleCells cells, next_cells;         ///< of image sources without friction
+  SampleCells rubbing;                   ///< of image sources with friction of a step's end
   SampleCells apart;                     ///< scratch of a query
   std::vector<ImageSource*> together;    ///< scratch of a query
   SampleGroups groups;                   ///< of all pairs without friction
+  FrictionCells friction_cells;          ///< of those with friction of a step's end
   std::vector<FrameState> frame_states;  ///< at the state of the evaluation under way
   std::vector<int> frame_rows;           ///< scratch
   VecX force_before, force_after;        ///< scratch of refresh
@@ -76,6 +81,8 @@ struct ContactForce::Impl {
     std::vector<FrictionGuess> guesses;    ///< by sample
     double left_out = 0.0, largest = 0.0;  ///< of the last solve, of the pairs' sums [N]
   } step_friction;
+  /// Whether its friction within the step under way is summed by cells.
+  bool rubs_in_cells(const Pair& pair) const { return step_friction.on && pair.in_cells; }
   bool has_step_friction(const PressureLaw& law) const {
     return step_friction.on && law.secant_friction && law.friction > 0.0;
   }
@@ -85,6 +92,7 @@ struct ContactForce::Impl {
   /// ContactForce::improve_step.
   bool improve_friction(const dynamics::StateView& state, const VecX& moved, const VecX& change,
                         const FrameStep& given, double tolerance);
+  std::vector<FrictionError> friction_errors;  ///< scratch: by pair
   /// As the pair's law has it, or within a step as that takes it.
   Vec3 force_of(const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) const {
     return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s)).force
@@ -119,6 +127,7 @@ struct ContactForce::Impl {
   void all_forces(const dynamics::StateView& state, VecX& f, std::vector<Wrench>& on_a);
 
   void group_samples();
+  bool can_rub_in_cells(const Pair& pair) const;
   VecX product;  ///< scratch of a step
 
   /// Whether its samples open and close with a kink that the State feels.
@@ -126,14 +135,17 @@ struct ContactForce::Impl {
     return pair.law.onset == 0.0 && !pair.given && pair.source->has_events();
   }
   enum class Which {
-    kEvery,   ///< sample that is not in `groups`
-    kOfState  ///< and of these, each that acts on the State
+    kEvery,    ///< sample that is not in `groups`, nor in a step's sums of `friction_cells`
+    kOfState,  ///< and of these, each that acts on the State
+    kAlone     ///< each that is in no cell
   };
   /// visit(sample, motion, law) for each sample in penetration, in order.  @pre frames are placed
   template <class Visit>
   void visit_active(const dynamics::StateView& state, Which which, const Visit& visit) {
     for (const Pair& pair : pairs) {
-      if (pair.grouped || (which == Which::kOfState && pair.given)) continue;
+      if (pair.grouped || rubs_in_cells(pair) || (which == Which::kOfState && pair.given) ||
+          (which == Which::kAlone && pair.in_cells))
+        continue;
       for (std::size_t i = pair.begin; i < pair.end; ++i) {
         const SampleMotion motion = sample_motion(samples[i], state, frame_states);
         if (motion.gap < 0.0) visit(samples[i], motion, pair.law);

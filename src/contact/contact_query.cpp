@@ -43,11 +43,13 @@ void ContactForce::Impl::measure_depth(Pair& pair) const {
   pair.deepest = std::max(pair.deepest, -least);
 }
 
-// Samples of an image without friction stay in cells; with friction each is looked at by itself.
+// Samples of an image without friction stay in cells; with friction each is there by itself as well.
 void ContactForce::Impl::query(const dynamics::StateView& state) {
   const ScopedTimer timer(query_seconds);
   next_samples.clear();
   next_cells.clear();
+  friction_cells.clear();
+  rubbing.clear();
   together.clear();
   for (Pair& pair : pairs)
     if (ImageSource* source = pair.source->in_images(); source && source->asks_together()) {
@@ -59,28 +61,35 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
     Pair& pair = pairs[i];
     pair.begin = next_samples.size();
     pair.first_cell = next_cells.cells.size();
+    pair.first_rubbing = rubbing.cells.size();
     if (ImageSource* source = pair.source->in_images()) {
-      SampleCells& out = pair.law.friction == 0.0 ? next_cells : apart;
+      SampleCells& out = pair.law.friction == 0.0 ? next_cells : pair.law.secant_friction ? rubbing : apart;
       apart.clear();
       if (std::find(together.begin(), together.end(), source) != together.end())
         source->close(out);
       else
         source->query(state, out);
+      rubbing.append_to(next_samples, pair.first_rubbing, rubbing.cells.size());
       apart.append_to(next_samples);
     } else {
       pair.source->query(state, next_samples);
     }
     pair.end = next_samples.size();
     pair.last_cell = next_cells.cells.size();
+    pair.last_rubbing = rubbing.cells.size();
     measure_depth(pair);
     for (std::size_t s = pair.begin; s < pair.end; ++s) {
       next_samples[s].source = static_cast<int>(i);
       if (pair.law.per_point) count_as_point(next_samples[s]);
     }
-    for (std::size_t c = pair.first_cell; c < pair.last_cell; ++c) {
-      next_cells.cells[c].pair = static_cast<int>(i);
-      if (pair.law.per_point) count_as_points(next_cells, next_cells.cells[c]);
-    }
+    const auto count_cells = [&](SampleCells& of, std::size_t first, std::size_t last) {
+      for (std::size_t c = first; c < last; ++c) {
+        of.cells[c].pair = static_cast<int>(i);
+        if (pair.law.per_point) count_as_points(of, of.cells[c]);
+      }
+    };
+    count_cells(next_cells, pair.first_cell, pair.last_cell);
+    count_cells(rubbing, pair.first_rubbing, pair.last_rubbing);
   }
   ++queries;
   counters::count("contact.query");
@@ -138,7 +147,8 @@ GraspCounts ContactForce::grasp_counts() const { return impl_->grasp_counts; }
 
 double ContactForce::sample_bytes() const {
   const Impl& m = *impl_;
-  return static_cast<double>(m.samples.size() * sizeof(ContactSample) + m.cells.bytes() + m.groups.bytes());
+  return static_cast<double>(m.samples.size() * sizeof(ContactSample) + m.cells.bytes() + m.rubbing.bytes() +
+                             m.groups.bytes());
 }
 
 int ContactForce::Impl::count_of(const Pair& pair) const {
@@ -169,6 +179,18 @@ void ContactForce::Impl::compare_events() {
     ++events_version;
 }
 
+/// What moves within a step is nodes alone.
+bool ContactForce::Impl::can_rub_in_cells(const Pair& pair) const {
+  const auto carrier = [&](int c) -> const Carrier& { return rubbing.carriers[static_cast<std::size_t>(c)]; };
+  bool out = pair.first_rubbing < pair.last_rubbing;
+  for (std::size_t c = pair.first_rubbing; c < pair.last_rubbing && out; ++c) {
+    const int frame = carrier(rubbing.cells[c].b).frame;
+    out = carrier(rubbing.cells[c].a).frame < 0 &&
+          (frame < 0 || !frames[static_cast<std::size_t>(frame)]->in_state());
+  }
+  return out;
+}
+
 void ContactForce::Impl::group_samples() {
   groups.clear();
   for (Pair& pair : pairs) {
@@ -182,6 +204,10 @@ void ContactForce::Impl::group_samples() {
       return is_given(s.a) && is_given(s.b);
     });
     if (pair.grouped) groups.append(own, pair.law);
+    const PressureLaw& own_law =
+        laws_kept.empty() ? pair.law : laws_kept[static_cast<std::size_t>(&pair - pairs.data())];
+    pair.in_cells = own_law.secant_friction && can_rub_in_cells(pair);
+    if (pair.in_cells) friction_cells.append(rubbing, pair.first_rubbing, pair.last_rubbing, pair.law);
     if (pair.first_cell < pair.last_cell) groups.append(cells, pair.first_cell, pair.last_cell, pair.law);
   }
 }
@@ -195,16 +221,19 @@ void ContactForce::Impl::check_samples(const dynamics::StateView& state) const {
       PALPATE_CHECK(p.node[static_cast<std::size_t>(i)] < node_count, "contact sample: node {} of {}",
                     p.node[static_cast<std::size_t>(i)], node_count);
   };
-  for (const ContactSample& s : samples) {
-    check(s.a);
-    check(s.b);
-    PALPATE_CHECK(s.area >= 0.0 && s.normal.allFinite(), "contact sample: area {}", s.area);
-  }
-  for (const ContactCell& cell : cells.cells) {
-    check(cells.carriers[static_cast<std::size_t>(cell.a)]);
-    check(cells.carriers[static_cast<std::size_t>(cell.b)]);
-    PALPATE_CHECK(cell.normal.allFinite(), "contact cell: a normal is not finite");
-  }
+  for (const Pair& pair : pairs)
+    for (std::size_t i = pair.begin; i < pair.end && pair.first_rubbing == pair.last_rubbing; ++i) {
+      const ContactSample& s = samples[i];
+      check(s.a);
+      check(s.b);
+      PALPATE_CHECK(s.area >= 0.0 && s.normal.allFinite(), "contact sample: area {}", s.area);
+    }
+  for (const SampleCells* of : {&cells, &rubbing})
+    for (const ContactCell& cell : of->cells) {
+      check(of->carriers[static_cast<std::size_t>(cell.a)]);
+      check(of->carriers[static_cast<std::size_t>(cell.b)]);
+      PALPATE_CHECK(cell.normal.allFinite(), "contact cell: a normal is not finite");
+    }
 }
 
 }  // namespace palpate::contact

@@ -1,6 +1,6 @@
 #include "contact/friction.h"
 
-#include <algorithm>
+#include <cmath>
 
 namespace palpate::contact {
 
@@ -30,66 +30,57 @@ namespace palpate::contact {
 // L follows the pressure that the step itself ends with, from solve to solve: so the matrix stays symmetric.
 namespace {
 
-/// s(a)
-double slope(std::span<const FrictionGuess> guesses, double a) {
-  double out = 0.0;
-  for (const FrictionGuess& g : guesses) {
-    if (!g.solved) continue;
-    const Vec3 d = g.v_end - g.v;
-    out += d.dot((1.0 - a) * g.force + a * g.force_end - friction_force(g.limit_end, g.v + a * d, g.v_r));
-  }
-  return out;
+/// What one sample adds to s(a).
+template <class Vec>
+double slope(const FrictionGuessOf<Vec>& g, double a) {
+  if (!g.solved) return 0.0;
+  const Vec d = g.v_end - g.v, v = g.v + a * d;
+  return d.dot((1.0 - a) * g.force + a * g.force_end - friction_force(g.limit_end, v, g.v_r));
 }
 
-/// Where s(a) = 0, by bisection; 1 where it is not positive there.
-double step_length(std::span<const FrictionGuess> guesses) {
-  constexpr int kHalvings = 20;
-  if (slope(guesses, 1.0) <= 0.0 || slope(guesses, 0.0) >= 0.0) return 1.0;
-  double low = 0.0, high = 1.0;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double a = (low + high) / 2.0;
-    (slope(guesses, a) > 0.0 ? high : low) = a;
+/// Where s(a) = 0, by regula falsi and bisection in turn: the sum of many samples is smooth, that of few has
+/// a step where they stick.  1 where it is not positive there.
+/// @param s  the sum
+template <class Sum>
+double step_length(const Sum& s) {
+  constexpr int kMost = 40;
+  constexpr double kFlat = 1e-3;  // of s(0): up to there Newton's method goes on as fast
+  double high = 1.0, s_high = s(high);
+  if (s_high <= 0.0) return 1.0;
+  double low = 0.0, s_low = s(low);
+  if (s_low >= 0.0) return 1.0;
+  const double flat = kFlat * -s_low;
+  for (int i = 0; i < kMost && s_high > flat; ++i) {
+    const double a = i % 2 ? (low + high) / 2.0 : (low * s_high - high * s_low) / (s_high - s_low),
+                 s_a = s(a);
+    if (std::abs(s_a) <= flat) return a;
+    (s_a > 0.0 ? high : low) = a;
+    (s_a > 0.0 ? s_high : s_low) = s_a;
   }
   return high;
 }
 
+template <class Vec>
+void move(FrictionGuessOf<Vec>& g, double a) {
+  if (!g.solved) return;
+  g.v += a * (g.v_end - g.v);
+  g.force += a * (g.force_end - g.force);
+  g.limit = g.limit_end;
+  g.solved = false;
+}
+
 }  // namespace
 
-Vec3 friction_force(double limit, const Vec3& v, double v_r) { return -limit / std::max(v.norm(), v_r) * v; }
-
-FrictionGuess first_guess(double limit, const Vec3& v, double v_r) {
-  FrictionGuess out;
-  out.limit = limit;
-  out.v_r = v_r;
-  out.v = v;
-  return out;
-}
-
-FrictionLine friction_line(const FrictionGuess& guess, const Vec3& n) {
-  if (guess.limit == 0.0) return {};
-  const double speed = guess.v.norm();
-  const Mat3 P = Mat3::Identity() - n * n.transpose();
-  if (speed <= guess.v_r) return {Vec3::Zero(), guess.limit / guess.v_r * P};
-  const Vec3 t = guess.v / speed;
-  return {-guess.limit * t, guess.limit / speed * (P - t * t.transpose())};
-}
-
-void end_solve(FrictionGuess& guess, double limit, const Vec3& v, const Vec3& force) {
-  guess.solved = true;
-  guess.limit_end = limit;
-  guess.v_end = v;
-  guess.force_end = force;
-}
-
-void move_guesses(std::span<FrictionGuess> guesses, int solves) {
-  const double a = solves > 1 ? step_length(guesses) : 1.0;
-  for (FrictionGuess& g : guesses) {
-    if (!g.solved) continue;
-    g.v += a * (g.v_end - g.v);
-    g.force += a * (g.force_end - g.force);
-    g.limit = g.limit_end;
-    g.solved = false;
-  }
+void move_guesses(std::span<FrictionGuess> guesses, std::span<FrictionGuess2> in_planes, int solves) {
+  const auto s = [&](double a) {
+    double sum = 0.0;
+    for (const FrictionGuess& g : guesses) sum += slope(g, a);
+    for (const FrictionGuess2& g : in_planes) sum += slope(g, a);
+    return sum;
+  };
+  const double a = solves > 1 ? step_length(s) : 1.0;
+  for (FrictionGuess& g : guesses) move(g, a);
+  for (FrictionGuess2& g : in_planes) move(g, a);
 }
 
 }  // namespace palpate::contact

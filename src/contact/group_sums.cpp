@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "contact/place_squares.h"
 #include "contact/sample_groups.h"
 #include "palpate/core/error.h"
 
@@ -38,24 +39,6 @@
 
 namespace palpate::contact {
 namespace {
-
-/// sum c q q^T of q = (p, 1), its parts apart: four numbers fill a processor's lanes, five do not.
-struct PlaceSquares {
-  Mat4 second = Mat4::Zero();
-  Vec4 first = Vec4::Zero();
-  double zero = 0.0;
-  void add(double c, const Vec4& p) {
-    const Vec4 cp = c * p;
-    second.noalias() += cp * p.transpose();
-    first += cp;
-    zero += c;
-  }
-  Eigen::Matrix<double, 5, 5> whole() const {
-    Eigen::Matrix<double, 5, 5> out;
-    out << second, first, first.transpose(), zero;
-    return out;
-  }
-};
 
 struct PlaceMoments {
   PlaceSquares k, d;
@@ -135,7 +118,7 @@ void SampleGroups::for_each_place(const Group& group, const PlaceMap& map, const
   }
 }
 
-SampleGroups::PlaceMap::PlaceMap(const SampleCells& cells, int cell) {
+PlaceMap::PlaceMap(const SampleCells& cells, int cell) {
   constexpr int kOfA[] = {0, 1, 2, 4}, kOfB[] = {0, 1, 3, 4};
   const ContactCell& at = cells.cells[static_cast<std::size_t>(cell)];
   const Carrier &a = cells.carriers[static_cast<std::size_t>(at.a)],

@@ -17,6 +17,7 @@ void ContactForce::add_step(const dynamics::StateView& state, const VecX& shift,
   m.product.setZero(f.size());
   m.apply_single_tangents(state, 1.0, 0.0, shift, m.product);
   f -= m.product;
+  if (m.step_friction.on) m.friction_cells.add_stiffness(k_scale, d_scale, C);
   m.linearise_friction(state);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const SampleForce force = m.tangent_of(s, motion, law, law.symmetric_tangent);

@@ -26,10 +26,13 @@ void Resultants::start(std::size_t pairs) {
 
 void Resultants::find_bodies(const Samples& samples, const dynamics::StateView& state,
                              const std::vector<std::shared_ptr<MovingFrame>>& frames) {
+  std::size_t unknown = 0;
+  for (const Bodies& bodies : bodies_) unknown += !bodies.known;
   const auto take = [&](int pair, const auto& a, const auto& b) {
     Bodies& bodies = bodies_[static_cast<std::size_t>(pair)];
     if (bodies.known) return;
     bodies.known = true;
+    --unknown;
     const auto add = [&](const auto& side) {
       if (side.frame < 0) {
         bodies.centres.push_back(centre_of_block(side.node[0], state));
@@ -40,7 +43,10 @@ void Resultants::find_bodies(const Samples& samples, const dynamics::StateView& 
     add(a);
     add(b);
   };
-  for (const ContactSample& s : samples.single) take(s.source, s.a, s.b);
+  for (const ContactSample& s : samples.single) {
+    if (unknown == 0) return;
+    take(s.source, s.a, s.b);
+  }
   for (const ContactCell& cell : samples.cells.cells)
     take(cell.pair, samples.cells.carriers[static_cast<std::size_t>(cell.a)],
          samples.cells.carriers[static_cast<std::size_t>(cell.b)]);

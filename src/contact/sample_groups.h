@@ -12,6 +12,16 @@
 
 namespace palpate::contact {
 
+using Vec5 = Eigen::Matrix<double, 5, 1>;
+
+/// From the places (u, v, w_a, w_b, 1) of a cell to the eight numbers y of a sample (group_sums.cpp), and
+/// what the gap has beside y.
+struct PlaceMap {
+  Eigen::Matrix<double, 8, 5> Y = Eigen::Matrix<double, 8, 5>::Zero();
+  Vec5 beside = Vec5::Zero();
+  PlaceMap(const SampleCells& cells, int cell);
+};
+
 /// Samples without friction that hang on the same nodes on side a, on the same nodes or the same frame on
 /// side b, and share a normal, one after the other.
 ///
@@ -64,19 +74,12 @@ class SampleGroups {
     Vec3 normal = Vec3::Zero();
     int law = 0;  ///< of `laws_`
   };
-  using Vec5 = Eigen::Matrix<double, 5, 1>;
   using Vec8 = Eigen::Matrix<double, 8, 1>;
   using Mat8 = Eigen::Matrix<double, 8, 8>;
   struct Sample {
     Vec8 y;        ///< group_sums.cpp
     double area;   ///< [m^2]
     double shift;  ///< what the gap has beside nodes and frame [m]
-  };
-  /// From the places of a cell to y, and what the gap has beside y.
-  struct PlaceMap {
-    Eigen::Matrix<double, 8, 5> Y = Eigen::Matrix<double, 8, 5>::Zero();
-    Vec5 beside = Vec5::Zero();
-    PlaceMap(const SampleCells& cells, int cell);
   };
   /// By which y gives the gap and its rate.
   struct Motion {

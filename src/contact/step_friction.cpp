@@ -36,12 +36,13 @@ SampleStep of_state(const SurfacePoint& point, const PointMotion& motion,
 
 bool ContactForce::bends_at(const dynamics::StateView& state) {
   Impl& m = *impl_;
-  bool sticks = false;
   m.place_frames(state);
-  m.visit_active(state, Impl::Which::kOfState,
+  bool sticks = m.friction_cells.sticks(state, m.frame_states);
+  m.visit_active(state, Impl::Which::kAlone,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-                   sticks = sticks ||
-                            (law.friction > 0.0 && sliding_velocity(s, motion).norm() <= law.regularisation);
+                   const Impl::Pair& pair = m.pairs[static_cast<std::size_t>(s.source)];
+                   sticks = sticks || (!pair.given && law.friction > 0.0 &&
+                                       sliding_velocity(s, motion).norm() <= law.regularisation);
                  });
   return sticks;
 }
@@ -53,9 +54,12 @@ bool ContactForce::begin_step(const dynamics::StateView& state) {
   });
   if (!m.step_friction.on) return false;
   m.step_friction.solves = 0;
-  m.step_friction.guesses.assign(m.samples.size(), {});
   m.place_frames(state);
-  bool any = false;
+  bool any = m.friction_cells.begin_step(state, m.frame_states);
+  const bool alone = std::any_of(m.pairs.begin(), m.pairs.end(), [&](const Impl::Pair& pair) {
+    return !pair.in_cells && m.has_step_friction(pair.law);
+  });
+  m.step_friction.guesses.assign(alone ? m.samples.size() : 0, {});
   m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                    if (!m.has_step_friction(law)) return;
@@ -74,7 +78,8 @@ bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& mo
 
 bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change,
                                 const FrameStep& given, double tolerance) {
-  return impl_->improve_friction(state, moved, change, given, tolerance > 0.0 ? tolerance : kFrictionTolerance);
+  return impl_->improve_friction(state, moved, change, given,
+                                 tolerance > 0.0 ? tolerance : kFrictionTolerance);
 }
 
 /// Each pair's error counts for itself: a heavy body in the same step does not hide a light one's.
@@ -91,11 +96,14 @@ bool ContactForce::Impl::improve_friction(const dynamics::StateView& state, cons
   StepFriction& step = m.step_friction;
   ++step.solves;
   step.left_out = step.largest = 0.0;
+  m.friction_errors.assign(m.pairs.size(), {});
+  m.friction_cells.end_solve(moved, change, given, m.frame_states, m.friction_errors);
   double worst = 0.0;
-  for (const Impl::Pair& pair : m.pairs) {
+  for (std::size_t p = 0; p < m.pairs.size(); ++p) {
+    const Impl::Pair& pair = m.pairs[p];
     if (pair.grouped || !m.has_step_friction(pair.law)) continue;
-    FrictionError error;
-    for (std::size_t i = pair.begin; i < pair.end; ++i) {
+    FrictionError& error = m.friction_errors[p];
+    for (std::size_t i = pair.begin; i < pair.end && !pair.in_cells; ++i) {
       const ContactSample& s = m.samples[i];
       const SampleMotion motion = sample_motion(s, state, m.frame_states);
       if (motion.gap >= 0.0) continue;
@@ -113,7 +121,8 @@ bool ContactForce::Impl::improve_friction(const dynamics::StateView& state, cons
     step.largest = std::max(step.largest, error.friction.norm());
   }
   if (worst <= tolerance || step.solves >= kFrictionSolves) return true;
-  move_guesses(step.guesses, step.solves);
+  move_guesses(step.guesses, m.friction_cells.guesses(), step.solves);
+  m.friction_cells.forget_sums();
   return false;
 }
 

@@ -17,8 +17,7 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
     tangents->clear();
     tangents->reserve(most);
   }
-  // a sample's friction within a step is kept by its place among those that are not in cells
-  const auto append = [&](const ContactSample& s) {
+  const auto append = [&](const ContactSample& s, const FrictionLine* line) {
     const bool is_a = s.a.frame == frame, is_b = s.b.frame == frame;
     const SurfacePoint& mine = is_a ? s.a : s.b;
     const SurfacePoint& other = is_a ? s.b : s.a;
@@ -28,6 +27,8 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
     const double sign = is_a ? 1.0 : -1.0;
     const PointMotion& body = is_a ? motion.b : motion.a;
     const bool presses = motion.gap < 0.0;
+    const SampleForce at = line ? sample_force_and_tangent(s, motion, law, *line)
+                                : sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
     const double slope = presses ? -pressure(law, motion.gap, motion.rate).dp_dgap : law.k;
     out.push_back({.offset = mine.offset,
                    .slide = mine.slide,
@@ -41,17 +42,23 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
                    .gap = motion.gap,
                    .pair = s.source,
                    .stiffness = s.area * slope,
-                   .force = presses ? Vec3(sign * m.force_of(s, motion, law)) : Vec3(Vec3::Zero())});
-    if (!tangents) return;
-    const SampleForce force = m.tangent_of(s, motion, law, law.symmetric_tangent);
-    tangents->push_back({force.K, force.D});
+                   .force = presses ? Vec3(sign * at.force) : Vec3(Vec3::Zero())});
+    if (tangents) tangents->push_back({at.K, at.D});
   };
   const std::vector<ContactSample>& all = m.all();
   std::size_t at = 0;
-  for (const Impl::Pair& pair : m.pairs) {
+  std::vector<FrictionLine> in_cells;
+  for (std::size_t p = 0; p < m.pairs.size(); ++p) {
+    const Impl::Pair& pair = m.pairs[p];
     const std::size_t end = at + static_cast<std::size_t>(m.count_of(pair));
-    for (std::size_t i = pair.begin; i < pair.end; ++i, ++at) append(m.samples[i]);
-    for (; at < end; ++at) append(all[at]);
+    const bool has_lines = m.has_step_friction(pair.law);
+    if (has_lines && pair.in_cells) in_cells = m.friction_cells.lines_of(static_cast<int>(p));
+    FrictionLine line;
+    for (std::size_t i = pair.begin; i < pair.end; ++i, ++at) {
+      if (has_lines) line = pair.in_cells ? in_cells[i - pair.begin] : m.line_of(m.samples[i]);
+      append(m.samples[i], has_lines ? &line : nullptr);
+    }
+    for (; at < end; ++at) append(all[at], nullptr);
   }
   m.bonds.append_touch_samples(state, m.frame_states, frame, out, tangents);
   return out;

@@ -371,7 +371,7 @@ namespace {
 /// Friction as affine about the end of a period, while it lives.
 struct FrictionOfPeriod {
   FrictionOfPeriod(contact::ContactForce& force, const dynamics::StateView& state)
-      : contact_force(force), secant(force), rubs(force.begin_step(state)) {}
+      : contact_force(force), rubs(force.begin_step(state)) {}
   ~FrictionOfPeriod() {
     if (rubs) contact_force.end_step();
   }
@@ -379,7 +379,6 @@ struct FrictionOfPeriod {
   FrictionOfPeriod& operator=(const FrictionOfPeriod&) = delete;
 
   contact::ContactForce& contact_force;
-  contact::SecantTangents secant;
   bool rubs;
 };
 
@@ -432,11 +431,12 @@ bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& 
   std::vector<TouchSample> samples = world.contact->touch_samples(view, side.frame_index);
   if (samples.empty()) return true;
   out.samples = static_cast<int>(std::count_if(samples.begin(), samples.end(), presses));
-  const FrictionOfPeriod friction(*world.contact, view);
+  const contact::SecantTangents whatever_steps_have(*world.contact);
   Answers& x = *answers_;
   x.still = still_of(samples);
   known_motion(world, H, x.s, x.w);
   x.rate = rate_by_other_tools(world, side);
+  const FrictionOfPeriod friction(*world.contact, view);
   bool known = answer(world, side, H, samples, tangents);
   while (known && friction.rubs && !improve(world, side, H, samples, tangents)) {
     counters::count("loop.touch_bases_anew");

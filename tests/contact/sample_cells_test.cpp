@@ -38,7 +38,7 @@ struct Scene {
     frames = static_cast<int>(of.size());
     if (!in_cells) {
       source = std::make_unique<InFull>(std::move(source));
-      law.friction = 1e-14;
+      if (law.friction == 0.0) law.friction = 1e-14;
     }
     term.add_pair(std::move(source), law);
     term.refresh(at_query.view());
@@ -49,8 +49,10 @@ struct Scene {
   }
 };
 
-ContactSpec law(bool hunt_crossley) {
+ContactSpec law(bool hunt_crossley, double friction = 0.0) {
   ContactSpec out;
+  out.friction = friction;
+  if (friction > 0.0) out.friction_tangent = "secant";
   out.stiffness_pa_m = 1e5;
   out.onset_width_m = 0.01;
   out.damping_pa_s_m = 2e3;
@@ -64,13 +66,13 @@ ContactSpec law(bool hunt_crossley) {
 /// Makes the scene with the samples in cells, or one by one.
 using MakeScene = std::function<std::unique_ptr<Scene>(bool in_cells)>;
 
-MakeScene two_balls(contact::SampleRule rule, bool hunt_crossley) {
+MakeScene two_balls(contact::SampleRule rule, bool hunt_crossley, double friction = 0.0) {
   return [=](bool in_cells) {
     TwoBalls balls;
     balls.samples = rule;
     return std::make_unique<Scene>(balls.state, balls.source(true),
-                                   std::vector<std::shared_ptr<contact::MovingFrame>>{}, law(hunt_crossley),
-                                   in_cells);
+                                   std::vector<std::shared_ptr<contact::MovingFrame>>{},
+                                   law(hunt_crossley, friction), in_cells);
   };
 }
 
@@ -95,7 +97,7 @@ MakeScene two_shells() {
 }
 
 /// A skin, or nodes in its places, under a ball that turns: in a frame that is given, or a body of the State.
-MakeScene under_a_ball(bool skin, bool in_state, contact::SampleRule rule) {
+MakeScene under_a_ball(bool skin, bool in_state, contact::SampleRule rule, double friction = 0.0) {
   return [=](bool in_cells) {
     SkinWorld on_tets;
     SurfaceWorld on_nodes({on_tets.vertices, on_tets.skin.faces});
@@ -117,7 +119,7 @@ MakeScene under_a_ball(bool skin, bool in_state, contact::SampleRule rule) {
         state,
         contact::make_image_source(skin ? on_tets.surface : on_nodes.surface, sphere(Vec3::Zero(), 0.5, 30),
                                    0, frame, options),
-        std::vector{frame}, law(false), in_cells);
+        std::vector{frame}, law(false, friction), in_cells);
   };
 }
 
@@ -175,9 +177,88 @@ void expect_the_same(const MakeScene& make) {
   }
 }
 
+MatX dense(const dynamics::PointStiffness& C, Eigen::Index size) {
+  MatX out = MatX::Zero(size, size);
+  const auto add = [&](const dynamics::PointStiffness::Nodes& nodes, const auto& block) {
+    for (int i = 0; i < nodes.count; ++i)
+      for (int j = 0; j < nodes.count; ++j)
+        out.block<3, 3>(3 * nodes.node[static_cast<std::size_t>(i)],
+                        3 * nodes.node[static_cast<std::size_t>(j)]) += block(i, j);
+  };
+  for (const auto& one : C.along)
+    add(one.nodes, [&](int i, int j) { return Mat3(one.G(i, j) * one.normal * one.normal.transpose()); });
+  for (const auto& one : C.points)
+    add(one.nodes, [&](int i, int j) { return Mat3(one.weight[i] * one.weight[j] * one.C); });
+  return out;
+}
+
+/// Forces and matrices of a step whose friction is that of its end, from solve to solve.
+void expect_the_same_steps(const MakeScene& make, bool by_frame) {
+  const auto cells = make(true), single = make(false);
+  contact::ContactForce &a = cells->term, &b = single->term;
+  EXPECT_NEAR(a.largest_resultant().force / b.largest_resultant().force, 1.0, 1e-11);
+  EXPECT_NEAR(a.largest_resultant().moment / b.largest_resultant().moment, 1.0, 1e-9);
+  for (const bool now : {true, false}) {
+    SCOPED_TRACE(now ? "at the query" : "later");
+    const dynamics::State &state = now ? cells->at_query : cells->later,
+                          &same = now ? single->at_query : single->later;
+    EXPECT_EQ(a.bends_at(state.view()), b.bends_at(same.view()));
+    ASSERT_TRUE(a.begin_step(state.view()));
+    ASSERT_TRUE(b.begin_step(same.view()));
+    const Eigen::Index size = state.layout().u_size;
+    std::mt19937 random(7);
+    bool done = false;
+    for (int solve = 0; solve < 5 && !done; ++solve) {
+      SCOPED_TRACE(solve);
+      EXPECT_LT(apart(force(a, state), force(b, same)), 1e-10);
+      const VecX x = VecX::LinSpaced(size, -1.0, 2.0).array().sin();
+      const MatX A = step_matrix(a, state, 0.7, 0.3).to_dense(),
+                 B = step_matrix(b, same, 0.7, 0.3).to_dense();
+      EXPECT_LT(apart(A, B), 1e-10);
+      VecX y = VecX::Zero(size);
+      a.apply_tangent(state.view(), 0.7, 0.3, x, y);
+      EXPECT_LT(apart(y, B * x), 1e-10);
+      dynamics::PointStiffness C;
+      VecX f = VecX::Zero(size), g = f;
+      a.add_step(state.view(), x, 0.7, 0.3, f, C);
+      EXPECT_FALSE(C.along.empty());
+      EXPECT_LT(apart(dense(C, size), B), 1e-10);
+      C.clear();
+      b.add_step(same.view(), x, 0.7, 0.3, g, C);
+      EXPECT_LT(apart(f, g), 1e-10);
+      VecX moved(size), change(size);
+      for (Eigen::Index i = 0; i < size; ++i) {
+        moved[i] = 1e-3 * uniform(random);
+        change[i] = 0.1 * uniform(random);
+      }
+      done = by_frame ? a.improve_step(state.view(), 0, Vec6(moved.head<6>()), Vec6(change.head<6>()))
+                      : a.improve_step(state.view(), moved, change);
+      EXPECT_EQ(done, by_frame ? b.improve_step(same.view(), 0, Vec6(moved.head<6>()), Vec6(change.head<6>()))
+                               : b.improve_step(same.view(), moved, change));
+    }
+    a.end_step();
+    b.end_step();
+    EXPECT_NEAR(a.largest_friction_lag(), b.largest_friction_lag(), 1e-9 * b.largest_lagged_friction());
+    EXPECT_NEAR(a.largest_lagged_friction() / b.largest_lagged_friction(), 1.0, 1e-10);
+    EXPECT_LT(apart(force(a, state), force(b, same)), 1e-11);
+  }
+}
+
 }  // namespace
 
 ON_EACH_BACKEND(SampleCells);
+
+TEST_P(SampleCells, RubWithinAStepAsTheirSamplesDo) {
+  for (const double friction : {0.05, 0.8}) {
+    for (const auto rule : {contact::SampleRule::kPixel, contact::SampleRule::kVertex}) {
+      SCOPED_TRACE(friction);
+      expect_the_same_steps(two_balls(rule, false, friction), false);
+      expect_the_same_steps(under_a_ball(true, false, rule, friction), false);
+    }
+    SCOPED_TRACE("a frame moves");
+    expect_the_same_steps(under_a_ball(true, false, contact::SampleRule::kPixel, friction), true);
+  }
+}
 
 TEST_P(SampleCells, OfTwoSoftBodies) {
   for (const auto rule : {contact::SampleRule::kPixel, contact::SampleRule::kVertex})
