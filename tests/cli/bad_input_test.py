@@ -220,7 +220,8 @@ class DamagedModel(Case):
         self.assertTrue(found)
         for one in found:
             shutil.copy(one, self.model)
-            self.assertIn("is damaged", self.refused("inspect", "s.toml"))
+            # HDF5 1.10 falls, and 1.14 says that it ran off the end of a buffer
+            self.assertRegex(self.refused("inspect", "s.toml"), r"m\.h5.*(is damaged|cannot open)")
 
 
 class Killed(Case):
@@ -379,7 +380,8 @@ class Memory(Case):
         self.assertFalse((self.folder / "big").exists(), "nothing was begun")
         done = self.call("run", "press-ball", *big, "--beyond-memory", "-o", "big", before=limit)
         self.assertEqual(done.returncode, 1)
-        self.assertIn("no memory for the factor", done.stderr)
+        # who meets the limit first depends on the libraries' releases
+        self.assertRegex(done.stderr, "no memory for the factor|not enough memory")
         self.good("run", "press-ball", "--duration-s", "0.01", "-o", "small", before=limit)
 
 

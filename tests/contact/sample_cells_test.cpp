@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "contact/image_source.h"
+#include "palpate/contact/touch_model.h"
 #include "two_balls.h"
 
 using namespace contact_tests;
@@ -192,6 +193,23 @@ MatX dense(const dynamics::PointStiffness& C, Eigen::Index size) {
   return out;
 }
 
+/// What a tool's reduction asks of the samples, within a step as well.
+void expect_the_same_touch(contact::ContactForce& a, const dynamics::State& state, contact::ContactForce& b,
+                           const dynamics::State& same) {
+  std::vector<contact::TouchTangent> of_a, of_b;
+  const auto touch_a = a.touch_samples(state.view(), 0, &of_a),
+             touch_b = b.touch_samples(same.view(), 0, &of_b);
+  ASSERT_EQ(touch_a.size(), touch_b.size());
+  double largest = 0.0, apart_by = 0.0;
+  for (std::size_t i = 0; i < touch_a.size(); ++i) {
+    largest = std::max({largest, touch_b[i].force.norm(), of_b[i].D.norm()});
+    apart_by =
+        std::max({apart_by, (touch_a[i].force - touch_b[i].force).norm(), (of_a[i].D - of_b[i].D).norm()});
+  }
+  EXPECT_GT(largest, 0.0);
+  EXPECT_LT(apart_by, 1e-10 * largest);
+}
+
 /// Forces and matrices of a step whose friction is that of its end, from solve to solve.
 void expect_the_same_steps(const MakeScene& make, bool by_frame) {
   const auto cells = make(true), single = make(false);
@@ -226,15 +244,16 @@ void expect_the_same_steps(const MakeScene& make, bool by_frame) {
       C.clear();
       b.add_step(same.view(), x, 0.7, 0.3, g, C);
       EXPECT_LT(apart(f, g), 1e-10);
+      if (by_frame) expect_the_same_touch(a, state, b, same);
       VecX moved(size), change(size);
       for (Eigen::Index i = 0; i < size; ++i) {
         moved[i] = 1e-3 * uniform(random);
         change[i] = 0.1 * uniform(random);
       }
-      done = by_frame ? a.improve_step(state.view(), 0, Vec6(moved.head<6>()), Vec6(change.head<6>()))
-                      : a.improve_step(state.view(), moved, change);
-      EXPECT_EQ(done, by_frame ? b.improve_step(same.view(), 0, Vec6(moved.head<6>()), Vec6(change.head<6>()))
-                               : b.improve_step(same.view(), moved, change));
+      contact::FrameStep given;
+      if (by_frame) given = {0, 2.0 * moved.tail<6>(), 2.0 * change.tail<6>()};
+      done = a.improve_step(state.view(), moved, change, given);
+      EXPECT_EQ(done, b.improve_step(same.view(), moved, change, given));
     }
     a.end_step();
     b.end_step();

@@ -79,6 +79,42 @@ std::vector<loop::TickRecord> run(const scene::Description& d, const Vec3& veloc
 
 }  // namespace
 
+// A hand draws a block over a plane, faster and faster, back, and across: whether it sticks, begins to slide,
+// turns round or comes to rest, at no tick is the force outside the cone of friction.
+TEST(ToolOnObstacle, NoTickIsOutsideTheConeOfFriction) {
+  constexpr double kMu = 0.3;
+  scene::Description d = ball_over("plane", 0.0);
+  d.tool->shape = "mesh";
+  d.tool->mesh.generator = "box";
+  d.tool->mesh.size_m = Vec3::Constant(2.0 * kR);
+  d.tool->mesh.element_size_m = kR;
+  d.tool->inertia_kg_m2 = Vec3::Constant(kMass * 4.0 * kR * kR / 6.0);
+  d.tool->coupling = {200.0, 1.0, 0.5, 2e-3};
+  d.contacts[0].stiffness_pa_m = 1e7;
+  d.contacts[0].friction = kMu;
+  const auto go = [&](double t, double x, double y) {
+    KeyframeSpec key;
+    key.time_s = t;
+    key.position_m = d.tool->position_m + Vec3(x, y, -1e-3);
+    d.device->keyframes.push_back(key);
+  };
+  go(0.1, 0.0, 0.0);
+  go(0.17, 0.02, 0.0);
+  go(0.25, -0.01, 0.0);
+  go(0.35, 0.0, 0.02);
+  go(0.45, 0.0, 0.02);
+  int sticks = 0, slides = 0;
+  for (const loop::TickRecord& tick : run(d)) {
+    const Vec3& force = tick.contact.force;
+    const double limit = kMu * force.z(), along = force.head<2>().norm();
+    EXPECT_LE(along, 1.001 * limit + 1e-12) << tick.time;
+    sticks += along < 0.9 * limit;
+    slides += along > 0.998 * limit && limit > 0.0;
+  }
+  EXPECT_GT(sticks, 50);
+  EXPECT_GT(slides, 50);
+}
+
 TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
   int checked = 0;
   for (const char* type : {"plane", "sphere", "box", "cylinder"})

@@ -16,7 +16,10 @@ using dynamics::StepStatus;
 namespace {
 
 constexpr double kSameStep = 1e-6;  // relative: steps that differ by rounding
-/// Of a solve whose successor in the same step goes on from it: the error, over the way that it has come.
+/// By how much the last but one solve of a step still improves the guess, relative: each squares its error,
+/// and the last leaves less than a thousandth.
+constexpr double kLastImprovement = 0.02;
+/// Of a solve whose successor goes on from it, at most: its error, over the way that it has come.
 constexpr double kRoughly = 0.1;
 
 }  // namespace
@@ -27,7 +30,8 @@ LinearizedStep::LinearizedStep(dynamics::System& system, std::unique_ptr<dynamic
       solver_(std::move(solver), spec),
       mixed_(dynamic_cast<dynamics::MixedPrecisionSolver*>(&solver_.chosen())),
       solves_(dynamic_cast<dynamics::StepSolves*>(&solver_.chosen())),
-      fused_(system) {}
+      fused_(system),
+      roughly_(std::min(kRoughly, spec.linear_rtol / kLastImprovement)) {}
 
 /// The terms that want the step's end, while they are told of it.
 class LinearizedStep::Repeats {
@@ -77,8 +81,9 @@ StepStatus LinearizedStep::solve(const Equations& e, VecX& du, dynamics::Stepper
 
 /// By one assembly and one packing of what the bodies give: from solve to solve only what stands beside the
 /// pattern changes, with its share of the right-hand side.  A solve that another one follows need not be more
-/// accurate than the guess that it is for: all of them together then take little more than one takes alone.
-/// False: nothing was found, and the step is to be solved otherwise.
+/// accurate than the guess that it is for: what the last one is left with of its error, it leaves of its own
+/// tolerance too.  All of them together then take little more than one takes alone.  False: nothing was
+/// found, and the step is to be solved otherwise.
 bool LinearizedStep::solve_repeatedly(const Equations& e, VecX& du, Repeats& repeats) {
   if (!mixed_ || !solves_ || !fused_.applies(e.at)) return false;
   dynamics::ZeroRowSumMatrix* A = mixed_->step_matrix(fused_.pattern());
@@ -87,14 +92,14 @@ bool LinearizedStep::solve_repeatedly(const Equations& e, VecX& du, Repeats& rep
   ++counters_->force_evaluations;
   if (!assemble_fused(e, *A, false) || mixed_->factor_step_matrix() != StepMatrixUse::kSolve) return false;
   assemble_beside(e, A->points, beside_);
-  dynamics::StepSolves::Solved solved = solves_->solve_first(rhs_, du, kRoughly);
-  for (double share = kRoughly;;) {
+  dynamics::StepSolves::Solved solved = solves_->solve_first(rhs_, du, roughly_);
+  for (double share = roughly_;;) {
     if (solved.status != SolveStatus::kOk || !all_finite(du)) return false;
     s_of_x_ = e.s + e.h * du;
     dv_of_x_ = e.dv + du;
     const bool done = repeats.improve(s_of_x_, dv_of_x_);
     if (done && (solved.accurate || share == 0.0)) break;
-    share = done ? 0.0 : kRoughly;
+    share = done ? 0.0 : roughly_;
     beside_before_.swap(beside_);
     assemble_beside(e, A->points, beside_);
     rhs_ += beside_ - beside_before_;

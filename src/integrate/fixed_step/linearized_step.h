@@ -84,6 +84,7 @@ class LinearizedStep {
   dynamics::MixedPrecisionSolver* mixed_;  ///< capability of the chosen solver; null: it lacks it
   dynamics::StepSolves* solves_;           ///< likewise
   dynamics::StepAssembly fused_;
+  double roughly_;  ///< of a solve whose successor in the same step goes on from it: error over way
   dynamics::StepperCounters* counters_ = nullptr;  ///< of the solve under way
   dynamics::BorderedMatrix A_;
   VecX rhs_, product_, s_of_x_, dv_of_x_, u1_;
