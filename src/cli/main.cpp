@@ -21,6 +21,7 @@ int run_action(const Invocation& invocation) {
 
 int main(int argc, char** argv) {
   using namespace palpate::cli;
+  end_where_loading_is_tried();
   palpate::log::configure(false, false);  // takes standard error as it is, for its colours
   guard_streams();
   Invocation invocation;

@@ -1,8 +1,14 @@
 #include "tune.h"
 
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -18,7 +24,9 @@
 // Where addresses are limited (ulimit -v, ulimit -d) the restart comes before any library begins.  OpenBLAS
 // starts its threads while it is loaded; each wants 128 MiB of addresses and asks for ever where it gets
 // none, and the program waits for it at its end: below 220 MiB `palpate list integrators` did not come back.
-// Without further threads it asks when a matrix is factorised, and is then refused (blas_memory.cpp).
+// Without further threads 0.3.21 asks when a matrix is factorised, and is then refused (blas_memory.cpp);
+// 0.3.29 asks while it is loaded, for ever as well.  So a child loads the libraries first, under a limit on
+// its time.
 
 namespace palpate::cli {
 namespace {
@@ -33,18 +41,65 @@ bool is_limited(__rlimit_resource_t resource) {
   return ::getrlimit(resource, &most) == 0 && most.rlim_cur != RLIM_INFINITY;
 }
 
+constexpr char kLoad[] = "PALPATE_LIBRARIES_LOAD";
+
+/// A child with that environment loads the libraries, and ends (end_where_loading_is_tried).  Loading takes
+/// some 30 ms.
+bool libraries_load(char** argv, char** envp) {
+  const pid_t child = ::fork();
+  if (child < 0) return true;  // no process can be had: they may load all the same
+  if (child == 0) {
+    const rlimit no_core{0, 0}, two_seconds{2, 2};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::setrlimit(RLIMIT_CPU, &two_seconds);
+    constexpr unsigned kLongestWait = 60;
+    ::alarm(kLongestWait);
+    ::execve("/proc/self/exe", argv, envp);
+    ::_exit(0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  return WIFEXITED(status);
+}
+
+[[noreturn]] void end_without_libraries() {
+  const auto mib = [](__rlimit_resource_t resource) {
+    rlimit most{};
+    return ::getrlimit(resource, &most) == 0 && most.rlim_cur != RLIM_INFINITY
+               ? static_cast<double>(most.rlim_cur) / (1024.0 * 1024.0)
+               : HUGE_VAL;
+  };
+  std::array<char, 256> text{};
+  const int size = std::snprintf(text.data(), text.size(),
+                                 "palpate: error: the libraries do not load within %.0f MiB of addresses "
+                                 "(ulimit -v, ulimit -d): OpenBLAS alone takes 128 MiB; raise the limit\n",
+                                 std::min(mib(RLIMIT_AS), mib(RLIMIT_DATA)));
+  const ssize_t written = ::write(STDERR_FILENO, text.data(), static_cast<std::size_t>(std::max(size, 0)));
+  ::_exit(written < 0 ? 3 : 1);
+}
+
 /// Runs before the constructors of all libraries, the C library's too: the environment is its argument.
 void restart_where_limited(int /*argc*/, char** argv, char** envp) {
   constexpr char kThreads[] = "OPENBLAS_NUM_THREADS=";
   if (!is_limited(RLIMIT_AS) && !is_limited(RLIMIT_DATA)) return;
+  const auto begins = [](const char* text, const char* with) {
+    return std::strncmp(text, with, std::strlen(with)) == 0;
+  };
+  bool has_threads = false;
   std::size_t count = 0;
-  for (; envp[count]; ++count)
-    if (std::strncmp(envp[count], kThreads, sizeof kThreads - 1) == 0) return;
-  auto** const changed = static_cast<char**>(std::calloc(count + 2, sizeof(char*)));
+  for (; envp[count]; ++count) {
+    if (begins(envp[count], kLoad)) return;
+    has_threads = has_threads || begins(envp[count], kThreads);
+  }
+  auto** const changed = static_cast<char**>(std::calloc(count + 3, sizeof(char*)));
   if (!changed) return;
-  static char one_thread[] = "OPENBLAS_NUM_THREADS=1";
+  static char one_thread[] = "OPENBLAS_NUM_THREADS=1", tried[] = "PALPATE_LIBRARIES_LOAD=try",
+              known[] = "PALPATE_LIBRARIES_LOAD=yes";
   std::memcpy(changed, envp, count * sizeof(char*));
-  changed[count] = one_thread;
+  changed[count] = tried;
+  if (!has_threads) changed[count + 1] = one_thread;
+  if (!libraries_load(argv, changed)) end_without_libraries();
+  changed[count] = known;
   ::execve("/proc/self/exe", argv, changed);
   std::free(changed);
 }
@@ -66,6 +121,10 @@ const char* openblas_core_type() {
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "HASWELL";
 #endif
   return nullptr;
+}
+
+void end_where_loading_is_tried() {
+  if (const char* load = std::getenv(kLoad); load && std::strcmp(load, "try") == 0) ::_exit(0);
 }
 
 void restart_tuned(char** argv) {

@@ -11,4 +11,8 @@ const char* openblas_core_type();
 /// there is nothing to change (or exec fails: then slower, not wrong).
 void restart_tuned(char** argv);
 
+/// Ends the process where it was started to see whether its libraries load within a limit on addresses.  To
+/// be called first.
+void end_where_loading_is_tried();
+
 }  // namespace palpate::cli

@@ -195,6 +195,8 @@ class ContactForce : public dynamics::ForceTerm,
   bool begin_step(const dynamics::StateView& state) override;
   bool improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) override;
   /// The same where a frame moves that the state does not have.
+  /// @param state  where the step begins  @param moved  along u-directions [m, rad]
+  /// @param change  of u [m/s, rad/s]  @param given  how that frame moves
   /// @param tolerance  of friction's difference from the law's, relative; 0: a step's own (friction.h)
   bool improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change,
                     const FrameStep& given, double tolerance = 0.0);
