@@ -87,6 +87,17 @@ TouchTicks::TouchTicks(TouchTicks&&) noexcept = default;
 
 int TouchTicks::pressing() const { return impl_->pressing; }
 
+bool TouchTicks::rubs() const {
+  const Impl& m = *impl_;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(m.model.points); ++i) {
+    const TouchModel::Point& point = m.model.point[i];
+    if (point.held_stiffness == 0.0 && m.tick_point[i].touches &&
+        m.laws[static_cast<std::size_t>(point.pair)].friction > 0.0)
+      return true;
+  }
+  return false;
+}
+
 VecX TouchTicks::rates() const { return impl_->z; }
 
 void TouchTicks::adopt(const TouchModel& model) {

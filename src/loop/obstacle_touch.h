@@ -23,6 +23,8 @@ class ObstacleTouch {
   /// @param tool  then
   dynamics::LinearisedContact with(const dynamics::LinearisedContact& record, double t,
                                    const dynamics::RigidMotion& tool);
+  /// Whether something with friction touches in the tick under way.
+  bool rubs() const { return rubs_; }
   /// Takes the tool's end of the tick, as the last record leads to it, for the next guess of friction.
   /// False: the record's friction is not the law's at that end, and with() gives a better one.
   bool improve(const dynamics::RigidMotion& end);

@@ -81,12 +81,14 @@ dynamics::LinearisedContact TickSide::contact(double t, double h, const ContactR
   dynamics::LinearisedContact of_bodies = contact_with_bodies(t, h, record);
   dynamics::LinearisedContact all = with_obstacles(of_bodies);
   const bool points = of_bodies.source == dynamics::LinearisedContact::Source::kPoints;
-  while (points || side_.obstacles) {
+  const bool bodies_rub = points && touch_->rubs(),
+             obstacles_rub = side_.obstacles && side_.obstacles->rubs();
+  while (bodies_rub || obstacles_rub) {
     const dynamics::RigidMotion end = side_.tool->predict(h, handle_motion(), all);
-    const bool bodies_done = !points || touch_->improve(end),
-               obstacles_done = !side_.obstacles || side_.obstacles->improve(end);
+    const bool bodies_done = !bodies_rub || touch_->improve(end),
+               obstacles_done = !obstacles_rub || side_.obstacles->improve(end);
     if (bodies_done && obstacles_done) break;
-    if (points) {  // both records are about the same guess of the end
+    if (bodies_rub) {  // both records are about the same guess of the end
       const std::uint64_t version = of_bodies.version;
       of_bodies = touch_->again();
       of_bodies.version = version;

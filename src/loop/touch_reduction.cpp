@@ -407,17 +407,16 @@ bool TouchReduction::improve(World& world, const ToolSide& side, double H,
   return world.contact->improve_step(world.state.view(), x.s + H * change, x.w + change, tool, error_);
 }
 
-/// X, with the samples as they are then.  @return whether it was found
+/// Finds X.  @param samples  whose nodes it numbers, and whose velocities it sets  @return false: there is
+/// none
 bool TouchReduction::answer(World& world, ToolSide& side, double H, std::vector<TouchSample>& samples,
-                            std::vector<TouchTangent>& tangents) {
+                            const std::vector<TouchTangent>& tangents) {
   Answers& x = *answers_;
-  const dynamics::StateView view = world.state.view();
-  samples = world.contact->touch_samples(view, side.frame_index, &tangents);
   x.nodes = number_nodes(samples);
   for (TouchSample& sample : samples)
     sample.velocity = moved_by(
         sample, [&](int k) { return Vec3(x.s.segment<3>(3 * x.nodes[static_cast<std::size_t>(k)]) / H); });
-  world.system.force(view, x.f);
+  world.system.force(world.state.view(), x.f);
   x.patterns = load_patterns(world, side, samples, tangents, x.nodes.size(), H, kModes - 1);
   x.missing = 0.0;
   return iterate(world, H, x) || factor(world, side, H, x);
@@ -428,7 +427,7 @@ bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& 
   out = {};
   out.time = world.state.time();
   std::vector<TouchTangent> tangents;
-  std::vector<TouchSample> samples = world.contact->touch_samples(view, side.frame_index);
+  std::vector<TouchSample> samples = world.contact->touch_samples(view, side.frame_index, &tangents);
   if (samples.empty()) return true;
   out.samples = static_cast<int>(std::count_if(samples.begin(), samples.end(), presses));
   const contact::SecantTangents whatever_steps_have(*world.contact);
@@ -437,9 +436,11 @@ bool TouchReduction::reduce(World& world, ToolSide& side, double H, TouchModel& 
   known_motion(world, H, x.s, x.w);
   x.rate = rate_by_other_tools(world, side);
   const FrictionOfPeriod friction(*world.contact, view);
+  if (friction.rubs) samples = world.contact->touch_samples(view, side.frame_index, &tangents);
   bool known = answer(world, side, H, samples, tangents);
   while (known && friction.rubs && !improve(world, side, H, samples, tangents)) {
     counters::count("loop.touch_bases_anew");
+    samples = world.contact->touch_samples(view, side.frame_index, &tangents);
     known = answer(world, side, H, samples, tangents);
   }
   if (known && x.exact)

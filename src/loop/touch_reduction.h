@@ -42,7 +42,7 @@ class TouchReduction {
   struct Answers;
   static Eigen::Index spread_patterns(Answers& x, Eigen::Index size);
   bool answer(World& world, ToolSide& side, double H, std::vector<contact::TouchSample>& samples,
-              std::vector<contact::TouchTangent>& tangents);
+              const std::vector<contact::TouchTangent>& tangents);
   bool improve(World& world, const ToolSide& side, double H, const std::vector<contact::TouchSample>& samples,
                const std::vector<contact::TouchTangent>& tangents);
   bool iterate(World& world, double H, Answers& out);

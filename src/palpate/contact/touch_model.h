@@ -95,6 +95,8 @@ class TouchTicks {
   /// bodies' answer within the tick is in it.
   /// @param t1  end of the tick [s]  @param h  its length [s]  @param tool  at its start
   dynamics::LinearisedContact linearise(double t1, double h, const dynamics::RigidMotion& tool);
+  /// Whether a point with friction touches, in the last linearisation.
+  bool rubs() const;
   /// Takes the tool's end of the tick, as the last record leads to it, for the next guess of friction.
   /// False: the record's friction is not the law's at that end, and again() gives a better one.
   /// @param tolerance  of its difference from the law's, relative; 0: that of a step (contact/friction.h)
