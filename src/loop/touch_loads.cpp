@@ -61,7 +61,7 @@ MatX load_patterns(const World& world, const ToolSide& side, const std::vector<T
   bool more = !pressed;
   for (std::size_t j = 0; j < samples.size(); ++j)
     more = more || (!presses(samples[j]) && depths[static_cast<Eigen::Index>(j)] > 0.0);
-  const Eigen::Index count = friction ? 13 : 6;
+  const Eigen::Index count = friction ? 12 : 6;
   MatX all = MatX::Zero(3 * static_cast<Eigen::Index>(nodes), count),
        coming = MatX::Zero(all.rows(), more ? 3 : 0);
   for (std::size_t j = 0; j < samples.size(); ++j) {
@@ -73,12 +73,12 @@ MatX load_patterns(const World& world, const ToolSide& side, const std::vector<T
     const Mat3 along = s.normal * s.normal.transpose(),
                nn = !s.held ? along : Mat3(Mat3::Identity() - (s.gap < 0.0 ? along : Mat3(Mat3::Zero())));
     // Where friction holds nodes go with the tool, those the most that are pressed hardest; what slides hears
-    // of the tool across its way alone, and is drawn along by a force that stays: loads by anything but the
-    // tangent and that force have one kind move as the other does.
+    // of the tool across its way alone: loads by anything but the tangent have one kind move as the other
+    // does.  (The force that stays, along its way, is among those of the last load.)
     const Mat3 across = Mat3::Identity() - along,
                friction_damping = s.held ? Mat3(Mat3::Zero()) : Mat3(across * tangents[j].D * across);
-    Eigen::Matrix<double, 3, 13> load;
-    load << s.stiffness * nn * Z, friction_damping * Z, s.held ? Vec3(Vec3::Zero()) : Vec3(across * s.force);
+    Eigen::Matrix<double, 3, 12> load;
+    load << s.stiffness * nn * Z, friction_damping * Z;
     for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
       const auto at = 3 * s.node[k];
       if (presses(s)) all.middleRows<3>(at) += s.weight[k] * load.leftCols(count);
@@ -89,13 +89,11 @@ MatX load_patterns(const World& world, const ToolSide& side, const std::vector<T
     }
   }
   if (friction) {  // both kinds count alike
-    const double along = all.middleCols<3>(3).norm(), across = all.middleCols<3>(9).norm(),
-                 drawn = all.col(12).norm();
-    if (across > 0.0) all.middleCols<6>(6) *= along / across;
-    if (drawn > 0.0) all.col(12) *= along / drawn;
+    const double along = all.middleCols<3>(3).norm(), across = all.middleCols<3>(9).norm();
+    if (across > 0.0) all.rightCols<6>() *= along / across;
   }
   // rotations count by the displacement that they come to where the tool touches
-  for (Eigen::Index k = 0; k + 6 <= count; k += 6) {
+  for (Eigen::Index k = 0; k < count; k += 6) {
     const double turn = all.middleCols<3>(k).norm(), push = all.middleCols<3>(k + 3).norm();
     if (turn > 1e-9 * push * tool.pose.translation.norm()) all.middleCols<3>(k) *= push / turn;
   }
