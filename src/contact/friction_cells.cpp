@@ -225,9 +225,9 @@ FrictionCells::Three FrictionCells::on_nodes(const Cell& cell, const VecX& x) {
 void FrictionCells::end_solve(const VecX& moved, const VecX& change, const FrameStep& given,
                               const std::vector<FrameState>& frames, std::vector<FrictionError>& errors) {
   for (const Cell& cell : cells_) {
-    if (cell.first == cell.last) continue;
+    if (cell.first == cell.last || (given.frame >= 0 && given.frame != cell.frame)) continue;
     Three by = on_nodes(cell, moved), by_change = on_nodes(cell, change);
-    if (given.frame >= 0 && given.frame == cell.frame) {
+    if (given.frame >= 0) {
       const FrameState& frame = frames[static_cast<std::size_t>(given.frame)];
       const Vec3 turn = given.moved.head<3>();
       for (int k = 0; k < 3; ++k) {

@@ -35,7 +35,8 @@ namespace palpate::loop {
 // end is where X leads while the tool goes on with its twist v: with K_t, D_t the samples' own,
 //     X^T A X y = X^T [last load] + H X^T N^T (K_t Z H v),
 // and friction about it gives the next A and X, until it is the law's there.  Where samples slide as they
-// slid before, or hold, the first is.
+// slid before, or hold, the first is.  So for the tool's own contact; all other friction is affine about the
+// state: what holds there ends with velocities that X does not resolve, and the tool hears little of it.
 //
 // A body at rest goes nowhere but by rounding: then its own answer, however small, would span a direction of
 // its own, and a random one (the felt force knew by which method the body had come to rest, to 4e-5).  It is

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "loop/linearise.h"
 #include "loop/small_scenes.h"
 #include "loop/step_answer.h"
@@ -205,6 +207,26 @@ TEST(TouchReduction, WhatSlidesIsNotTakenForWhatSticks) {
     expect_same(whole_tick(*other), exact, 1e-3);
     EXPECT_EQ(other->system.symmetric(), std::string(tangent) != "full") << "the pair has its own again";
   }
+}
+
+// The basis follows the tool's friction alone: that of a floor which the block shakes on takes no other one.
+TEST(TouchReduction, FrictionElsewhereTakesNoBasis) {
+  scene::Description d = pressed_block(0.002);
+  d.bodies[0].mesh.element_size_m = 0.005;
+  d.bodies[0].position_m.z() = 0.0097;  // 0.3 mm in the floor
+  d.contacts[0].friction = 0.8;
+  d.contacts[0].friction_tangent = "secant";
+  d.bodies[0].attachments[0].box_min_m = Vec3(-1, -1, -1);
+  d.bodies[0].attachments[0].box_max_m = Vec3(-0.0199, 1, 1);
+  add_floor(d, d.contacts[0]);
+  std::array<long, 2> anew{};
+  for (const bool rubs : {false, true}) {
+    d.contacts[1].friction = rubs ? 0.8 : 0.0;
+    counters::reset();
+    record_of(*touching(d, "points", 0.1, 0.02));
+    anew[rubs] = counters::snapshot()["loop.touch_bases_anew"];
+  }
+  EXPECT_LE(anew[1], anew[0] + 1);
 }
 
 TEST(TouchReduction, AFewIterationsAnswerToTheErrorAskedFor) {

@@ -194,7 +194,8 @@ class ContactForce : public dynamics::ForceTerm,
   bool bends_at(const dynamics::StateView& state) override;
   bool begin_step(const dynamics::StateView& state) override;
   bool improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) override;
-  /// The same where a frame moves that the state does not have.
+  /// Improves friction where a frame presses that moves and that the state does not have; all other friction
+  /// stays that of the step's start.
   /// @param state  where the step begins  @param moved  along u-directions [m, rad]
   /// @param change  of u [m/s, rad/s]  @param given  how that frame moves
   /// @param tolerance  of friction's difference from the law's, relative; 0: a step's own (friction.h)
