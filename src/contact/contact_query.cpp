@@ -43,7 +43,7 @@ void ContactForce::Impl::measure_depth(Pair& pair) const {
   pair.deepest = std::max(pair.deepest, -least);
 }
 
-// Samples of an image without friction stay in cells; with friction each is there by itself as well.
+// Samples of an image stay in cells; those with friction are also listed one by one.
 void ContactForce::Impl::query(const dynamics::StateView& state) {
   const ScopedTimer timer(query_seconds);
   next_samples.clear();
@@ -179,7 +179,7 @@ void ContactForce::Impl::compare_events() {
     ++events_version;
 }
 
-/// What moves within a step is nodes alone.
+/// Whether only nodes move within a step: side a stands on nodes, and side b on nodes or on a given frame.
 bool ContactForce::Impl::can_rub_in_cells(const Pair& pair) const {
   const auto carrier = [&](int c) -> const Carrier& { return rubbing.carriers[static_cast<std::size_t>(c)]; };
   bool out = pair.first_rubbing < pair.last_rubbing;

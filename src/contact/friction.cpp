@@ -30,7 +30,7 @@ namespace palpate::contact {
 // L follows the pressure that the step itself ends with, from solve to solve: so the matrix stays symmetric.
 namespace {
 
-/// What one sample adds to s(a).
+/// @return the contribution of a sample to s(a) [W]
 template <class Vec>
 double slope(const FrictionGuessOf<Vec>& g, double a) {
   if (!g.solved) return 0.0;

@@ -21,7 +21,7 @@ namespace palpate::contact {
 class FrictionCells {
  public:
   void clear();
-  /// Of one pair, appended: first <= cell < last; they stay where they are until `clear`.
+  /// Appends the cells first <= cell < last, all of one pair.  Keeps references to them until `clear`.
   void append(const SampleCells& cells, std::size_t first, std::size_t last, const PressureLaw& law);
   bool empty() const { return cells_.empty(); }
 
@@ -31,15 +31,17 @@ class FrictionCells {
   /// Whether some sample presses that slides no faster than the regularisation's speed.
   bool sticks(const dynamics::StateView& state, const std::vector<FrameState>& frames) const;
 
-  /// Makes the first guesses.  False: nothing presses.
+  /// Makes the first guesses.  @return whether anything presses
   bool begin_step(const dynamics::StateView& state, const std::vector<FrameState>& frames);
   std::span<FrictionGuess2> guesses() { return guesses_; }
 
-  /// Writes down what a solve ended with; how nodes and a frame moved as of ContactForce::improve_step.
+  /// Records the end of a solve.  With a given frame: of the cells on that frame alone.
+  /// @param moved, change, given  as of ContactForce::improve_step
   /// @param error  by pair (ContactCell::pair): is added to
   void end_solve(const VecX& moved, const VecX& change, const FrameStep& given,
                  const std::vector<FrameState>& frames, std::vector<FrictionError>& error);
-  /// Of the step under way: of each sample of a pair, in the order of its places; zero where nothing presses.
+  /// @return the lines of all samples of a pair in the current step, in the order of their places; zero where
+  /// nothing presses
   std::vector<FrictionLine> lines_of(int pair) const;
   /// The guesses have changed.
   void forget_sums() { summed_ = false; }
