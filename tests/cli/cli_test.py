@@ -163,9 +163,9 @@ class Incomplete(Cli):
         self.assertTrue(last.startswith("palpate: incomplete: there is no "), done.stderr)
         return last
 
-    QUICK = ["--duration-s", "0.02", "--repeats", "1", "--integrator", "linearly-implicit-euler",
-             "--set", "compare.exchange_periods_s=[0.01]", "--set", "compare.reference_rtol=1e-4",
-             "--set", "compare.reference_check_rtol=1e-4"]
+    QUICK = ["--limit-s", "1", "--duration-s", "0.02", "--repeats", "1",
+             "--integrator", "linearly-implicit-euler", "--set", "compare.exchange_periods_s=[0.01]",
+             "--set", "compare.reference_rtol=1e-4", "--set", "compare.reference_check_rtol=1e-4"]
 
     def test_picture_that_cannot_be_drawn(self):
         run = ["run", "one-tet", "--duration-s", "0.02", "--picture", "--report", "-o", "here"]

@@ -23,22 +23,28 @@ except ImportError:  # package python3-h5py
 
 PROGRAM = Path(sys.argv[1]).resolve()
 
+TOUCHING = ["--duration-s", "0.2"]
 # name: scene, simulated time between checkpoints, options
 RUNS = {
     "body alone, adaptive": ("cantilever", 0.05, []),
     "body alone, implicit steps": ("cantilever", 0.05, [
         "--integrator", "implicit-midpoint", "--set", "integrator.step_s=0.002"]),
+    "body alone, several steps back": ("cantilever", 0.05, [
+        "--integrator", "bdf2", "--set", "integrator.step_s=0.002"]),
     "contact with friction, linearly implicit": ("falling-ball", 0.05, [
         "--integrator", "linearly-implicit-euler", "--set", "integrator.step_s=0.002",
         "--set", "contact.0.friction=0.4", "--set", "record.energy=true"]),
-    "tool in exchange, points": ("press-ball", 0.05, ["--set", "exchange.latency_ticks=3"]),
-    "tool in exchange, condensed": ("press-ball", 0.05, ["--set", "exchange.linearisation=condensed"]),
-    "tool and body as one system": ("press-ball", 0.05, ["--set", "exchange.scheme=monolithic"]),
-    "contact in images": ("press-ball", 0.05, ["--set", "contact.1.method=cpu"]),
+    # touching from 0.06 s on
+    "tool in exchange, points": ("press-ball", 0.05, [*TOUCHING, "--set", "exchange.latency_ticks=3"]),
+    "tool in exchange, condensed": ("press-ball", 0.05, [
+        *TOUCHING, "--set", "exchange.linearisation=condensed"]),
+    "tool and body as one system": ("press-ball", 0.05, [*TOUCHING, "--set", "exchange.scheme=monolithic"]),
+    "contact in images": ("press-ball", 0.05, [*TOUCHING, "--set", "contact.1.method=cpu"]),
     "simulated hand, passivity": ("press-ball", 0.05, [
-        "--set", "device.type=hand", "--set", "device.encoder_resolution_m=1e-5",
+        *TOUCHING, "--set", "device.type=hand", "--set", "device.encoder_resolution_m=1e-5",
         "--set", "device.delay_s=0.002", "--passivity", "control"]),
-    "two bodies, tool, friction, energy": ("press-stack", 0.1, []),
+    "two bodies, tool, friction, energy": ("press-stack", 0.05, [
+        *TOUCHING, "--integrator", "linearly-implicit-euler", "--set", "integrator.step_s=0.002"]),
     "bones": ("swung-limb", 0.1, []),
     "a grasp": ("lift-ball", 0.3, ["--duration-s", "1.2"]),
     "two hands": ("two-hands", 0.2, ["--duration-s", "0.8"]),
