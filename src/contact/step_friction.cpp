@@ -105,7 +105,8 @@ bool ContactForce::Impl::improve_friction(const dynamics::StateView& state, cons
     FrictionError& error = m.friction_errors[p];
     for (std::size_t i = pair.begin; i < pair.end && !pair.in_cells; ++i) {
       const ContactSample& s = m.samples[i];
-      if (given.frame >= 0 && s.a.frame != given.frame && s.b.frame != given.frame) break;
+      const bool elsewhere = s.a.frame != given.frame && s.b.frame != given.frame;  // as all of a pair
+      if (given.frame >= 0 && elsewhere) break;
       const SampleMotion motion = sample_motion(s, state, m.frame_states);
       if (motion.gap >= 0.0) continue;
       const SampleStep a = step_of(s.a, motion.a), b = step_of(s.b, motion.b);

@@ -35,8 +35,9 @@ namespace palpate::loop {
 // end is where X leads while the tool goes on with its twist v: with K_t, D_t the samples' own,
 //     X^T A X y = X^T [last load] + H X^T N^T (K_t Z H v),
 // and friction about it gives the next A and X, until it is the law's there.  Where samples slide as they
-// slid before, or hold, the first is.  So for the tool's own contact; all other friction is affine about the
-// state: what holds there ends with velocities that X does not resolve, and the tool hears little of it.
+// slid before, or hold, the first is.  That is sought for the tool's own contact.  All other friction is
+// affine about the state: the velocities of what holds there are below what X resolves, and friction about
+// them would not settle.  Where it begins to slide the tool hears of that at the next exchange.
 //
 // A body at rest goes nowhere but by rounding: then its own answer, however small, would span a direction of
 // its own, and a random one (the felt force knew by which method the body had come to rest, to 4e-5).  It is
