@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "compare_tables.h"
 #include "palpate/core/error.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
@@ -23,8 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 using compare::HapticComparison;
 using compare::HapticPoint;
-
-constexpr std::size_t kReasonLength = 90;
 
 scene::Description scene_of(const CompareArguments& a) {
   if (a.scenes.size() != 1) fail("compare --haptic takes one SCENE, not {}", a.scenes.size());

@@ -14,7 +14,6 @@ using Rows = std::vector<std::vector<std::string>>;
 
 /// More points than this are left to compare.csv and the report: a screen holds no more.
 constexpr std::size_t kPointsOnScreen = 80;
-constexpr std::size_t kReasonLength = 90;
 
 std::string outcome_text(const compare::ComparePoint& p) {
   if (p.status == compare::PointStatus::kOk) {

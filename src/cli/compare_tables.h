@@ -5,6 +5,8 @@
 /// Output of `palpate compare` for one scene.
 namespace palpate::cli {
 
+constexpr std::size_t kReasonLength = 90;  ///< of why a point failed, in a table [characters]
+
 /// How the comparison was made, and how far its reference can be trusted.
 void print_reference(const compare::SceneComparison& scene);
 /// Which linear solvers were tried for each method, where that was asked for.

@@ -69,13 +69,13 @@ void add_bones(render::Scene& scene, const loop::World& world, const Instant& in
 
 /// Three spindles along the handle's axes, longer than the tool, which surrounds it where it is free.
 void add_handle(render::Scene& scene, const Pose& handle, const TriMesh& tool) {
-  constexpr double kLength = 1.5, kWidth = 0.14;  // of the tool's diameter
+  constexpr double kHandleLength = 1.5, kHandleWidth = 0.14;  // of the tool's diameter
   const double diameter = 2.0 * tool.vertices.colwise().norm().maxCoeff();
   const render::Surface spindle = render::dots(Points::Zero(3, 1), diameter);
   render::Surface jack{"handle", Points(3, 3 * spindle.points.cols()), Faces(3, 3 * spindle.faces.cols())};
   for (int axis = 0; axis < 3; ++axis) {
-    Vec3 scale = Vec3::Constant(kWidth);
-    scale[axis] = kLength;
+    Vec3 scale = Vec3::Constant(kHandleWidth);
+    scale[axis] = kHandleLength;
     const Eigen::Index points = spindle.points.cols(), faces = spindle.faces.cols();
     jack.points.middleCols(axis * points, points) =
         (handle.rotation.toRotationMatrix() * scale.asDiagonal() * spindle.points).colwise() +

@@ -44,7 +44,7 @@ file, line and column, and with the nearest known key. [keys.md](keys.md) has th
 |---|---|
 )";
 
-using Rows = std::vector<scene::KeyRow>;
+using KeyRows = std::vector<scene::KeyRow>;
 
 bool is_table(const scene::KeyRow& row) { return row.type == "table" || row.type == "tables"; }
 
@@ -92,7 +92,7 @@ std::string users_of(const scene::KeyRow& row) {
 }
 
 /// Without kinds no row has a user: the column is left out.
-void print_table(const scene::KeyRow& table, const Rows& rows, const scene::Kinds& kinds) {
+void print_table(const scene::KeyRow& table, const KeyRows& rows, const scene::Kinds& kinds) {
   const bool users = !kinds.empty();
   fmt::print("\n## {}\n\n`{}`:\n{}.\n\n", path_of(table), bracketed(table), table.meaning);
   fmt::print("| key | type | unit | range | default | meaning |{}\n|---|---|---|---|---|---|{}\n",
@@ -104,9 +104,9 @@ void print_table(const scene::KeyRow& table, const Rows& rows, const scene::Kind
                  users ? fmt::format(" {} |", users_of(row)) : "");
 }
 
-void print_page(const char* introduction, const Rows& rows, const scene::Kinds& kinds) {
+void print_page(const char* introduction, const KeyRows& rows, const scene::Kinds& kinds) {
   fmt::print("{}", introduction);
-  Rows tables;
+  KeyRows tables;
   for (const scene::KeyRow& row : rows)
     if (is_table(row) && std::any_of(rows.begin(), rows.end(),
                                      [&](const scene::KeyRow& one) { return one.table == path_of(row); }))

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cells.h"
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
 #include "palpate/store/atomic_file.h"
@@ -36,7 +37,6 @@ const std::vector<std::string> kMethodColumns = {"scene",
                                                  "cpu_s"};
 
 CsvCell number(long n) { return static_cast<double>(n); }
-CsvCell yes_no(bool yes) { return std::string(yes ? "yes" : "no"); }
 
 /// The columns that reports know, then every other number of a run.
 std::vector<std::string> with_every_number(std::vector<std::string> columns) {

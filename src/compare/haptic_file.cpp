@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "cells.h"
 #include "haptic_plan.h"
 #include "palpate/core/error.h"
 #include "palpate/store/csv.h"
@@ -12,14 +13,10 @@ namespace {
 namespace fs = std::filesystem;
 using store::CsvCell;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-CsvCell yes_no(bool yes) { return std::string(yes ? "yes" : "no"); }
-
 /// Name and cell of one point, in the order of the columns.
 std::vector<std::pair<std::string, CsvCell>> cells_of(const HapticComparison& c, const HapticPoint& p) {
   const bool ran = p.status == PointStatus::kOk;
-  const auto time = [ran](double s) { return CsvCell(ran ? s : kNone); };
+  const auto time = [ran](double s) { return CsvCell(ran ? s : kEmpty); };
   const auto [least, greatest] = std::minmax_element(p.cpu_s.begin(), p.cpu_s.end());
   std::vector<std::pair<std::string, CsvCell>> out = {
       {"scene", c.scene},
@@ -38,8 +35,8 @@ std::vector<std::pair<std::string, CsvCell>> cells_of(const HapticComparison& c,
       {"force_unresolved", yes_no(p.force_unresolved)},
       {"torque_unresolved", yes_no(p.torque_unresolved)},
       {"cpu_s_median", time(p.cpu_median_s)},
-      {"cpu_s_min", time(p.cpu_s.empty() ? kNone : *least)},
-      {"cpu_s_max", time(p.cpu_s.empty() ? kNone : *greatest)},
+      {"cpu_s_min", time(p.cpu_s.empty() ? kEmpty : *least)},
+      {"cpu_s_max", time(p.cpu_s.empty() ? kEmpty : *greatest)},
       {"repeats", static_cast<double>(p.cpu_s.size())},
       {"bodies_s", time(p.bodies_s())},
       {"status", std::string(to_string(p.status))},

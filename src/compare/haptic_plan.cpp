@@ -5,6 +5,7 @@
 #include <limits>
 #include <string_view>
 
+#include "cells.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
 #include "palpate/loop/registries.h"
@@ -15,7 +16,6 @@ namespace {
 
 using scene::Description;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Ticks of "exchange alone" in a period.
 constexpr int kTicksAlone = 10;
 /// Tolerance of the reference's iterative linear solver.
@@ -163,7 +163,7 @@ class Plan {
   template <class Make>
   void add_names(const char* variable, std::vector<std::string> values, const std::string& own, Make make) {
     if (std::find(values.begin(), values.end(), own) == values.end()) values.insert(values.begin(), own);
-    for (const std::string& v : values) add(variable, v, kNone, v == own, make(v));
+    for (const std::string& v : values) add(variable, v, kEmpty, v == own, make(v));
   }
 
   std::vector<HapticPoint> points;
@@ -217,7 +217,7 @@ void add_resolution(Plan& plan, const Description& d) {
 
 /// Least-squares slope of log y over log x; NaN with fewer than two points.
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
-  if (x.size() < 2) return kNone;
+  if (x.size() < 2) return kEmpty;
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   const auto n = static_cast<double>(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -229,7 +229,7 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 
 }  // namespace
 
-double share_of_peak(double error, double peak) { return peak > kLeastPeak ? error / peak : kNone; }
+double share_of_peak(double error, double peak) { return peak > kLeastPeak ? error / peak : kEmpty; }
 
 MonolithicScene monolithic_scene(const Description& d, double coarser) {
   std::vector<std::string> overrides = monolithic_overrides(d, coarser);

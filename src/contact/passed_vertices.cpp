@@ -119,7 +119,7 @@ class FastVertices {
 
 /// Looks at boxes that a count may take for each vertex and each face, and how many of them a meeting is
 /// worth: a few tenths of a second for skins of 30,000 vertices.
-constexpr long kLooks = 1000, kPriceOfMeeting = 50;
+constexpr long kLooksAVertex = 1000, kPriceOfMeeting = 50;
 
 }  // namespace
 
@@ -164,8 +164,8 @@ long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces
   double widest = 0.0;
   for (const FaceBox& box : boxes_) widest = std::max(widest, box.high[axis] - box.low[axis]);
 
-  long passed = 0,
-       left = kLooks * static_cast<long>(boxes_.size() + static_cast<std::size_t>(vertices.now.cols()));
+  long passed = 0, left = kLooksAVertex *
+                          static_cast<long>(boxes_.size() + static_cast<std::size_t>(vertices.now.cols()));
   for (Eigen::Index v = first; v < vertices.now.cols(); ++v) {
     if (!is_fast(v)) continue;
     if (left < 0) {

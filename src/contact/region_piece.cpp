@@ -19,7 +19,7 @@
 namespace palpate::contact {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 bool meet(const AxisBox& p, const AxisBox& q) {
   bool out = true;
@@ -174,11 +174,11 @@ void RegionPiece::finish(const AxisBox& within, Patch& patch) {
 
 ContactWindow fit_window(RegionPiece& of_a, RegionPiece& of_b, const ContactAxes& axes, double candidate_gap,
                          Patch& a, Patch& b) {
-  const AxisBox all{Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
+  const AxisBox all{Vec3::Constant(-kUnbounded), Vec3::Constant(kUnbounded)};
   const AxisBox box_a = of_a.see(axes, -1.0, all);
   AxisBox within = box_a;
   within.low.z() -= candidate_gap;
-  within.high.z() = kInfinity;
+  within.high.z() = kUnbounded;
   const AxisBox box_b = of_b.see(axes, 1.0, within);
   const ContactWindow window = cut_to_window(
       box_a, box_b, candidate_gap, [&](const AxisBox& to) { return of_a.cut(to); },

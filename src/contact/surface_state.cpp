@@ -140,7 +140,7 @@ int SurfaceState::carrier_choice(int face, int corner, int choice) const {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// Barycentric coordinates by the place, of a tetrahedron with these corners, the first at 0; NaN of one that
 /// is too flat to have them.
@@ -148,7 +148,7 @@ Mat4 coordinates_in(const Mat34& x) {
   constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
   const Mat3 edges = x.rightCols<3>();
   const double size = edges.colwise().norm().maxCoeff();
-  if (!(std::abs(edges.determinant()) > kFlat * size * size * size)) return Mat4::Constant(kNone);
+  if (!(std::abs(edges.determinant()) > kFlat * size * size * size)) return Mat4::Constant(kNoNumber);
   Mat4 out = Mat4::Zero();
   out.bottomLeftCorner<3, 3>() = edges.inverse();
   out.row(0) = Vec4(0.0, 0.0, 0.0, 1.0).transpose() - out.bottomRows<3>().colwise().sum();
@@ -162,7 +162,8 @@ Mat4 least_weights(const Mat34& x) {
   const Eigen::Vector2d middle = x.topRows<2>().rowwise().mean();
   const Eigen::Matrix<double, 2, 4> p = x.topRows<2>().colwise() - middle;
   const Eigen::Matrix2d squares = p * p.transpose();
-  if (!(squares.determinant() > kEdgeOn * squares.trace() * squares.trace())) return Mat4::Constant(kNone);
+  if (!(squares.determinant() > kEdgeOn * squares.trace() * squares.trace()))
+    return Mat4::Constant(kNoNumber);
   Mat4 out = Mat4::Zero();
   out.leftCols<2>().noalias() = p.transpose() * squares.inverse();
   out.col(3) = Vec4::Constant(0.25) - out.leftCols<2>() * middle;

@@ -22,7 +22,7 @@ namespace palpate::contact {
 namespace {
 
 using Six = Eigen::Matrix<double, 6, 1>;
-using Modes = Eigen::Matrix<double, TouchModel::kMostModes, Eigen::Dynamic>;
+using ModesOfSamples = Eigen::Matrix<double, TouchModel::kMostModes, Eigen::Dynamic>;
 using MovedBy = Eigen::Matrix<double, TouchModel::kMostModes, 3>;
 
 /// A range of the samples' order.
@@ -107,8 +107,8 @@ class Bunches {
 
 void write(const Vec3& from, std::array<double, 3>& to) { to = {from.x(), from.y(), from.z()}; }
 
-TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes& modes, const Mat3& R,
-                           const Vec3& origin, const Bunches& bunches, const Bunch& bunch) {
+TouchModel::Point point_of(const std::vector<TouchSample>& samples, const ModesOfSamples& modes,
+                           const Mat3& R, const Vec3& origin, const Bunches& bunches, const Bunch& bunch) {
   const bool presses = samples[static_cast<std::size_t>(bunches.member(bunch.first))].gap < 0.0;
   Vec3 along = Vec3::Zero(), moment = along, offset = along, slide = along, place = along, velocity = along;
   double area = 0.0, gap = 0.0;
@@ -171,8 +171,6 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes&
   return out;
 }
 
-Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
 // Arms that change by d_i = F_i x l change the moment by sum (F_i x l) x F_i = sum (|F_i|^2 - F_i F_i^T) l.
 // Where all forces have one direction nothing is missing along it, and the sum is singular there.
 /// Gives the points of samples that press the moment of the samples.  Their forces stay as they are.
@@ -205,7 +203,7 @@ void complete_moment(const std::vector<TouchSample>& samples, const std::vector<
 }
 
 /// Held ones as one: the same stiffness between the means of where they are and where they are held.
-TouchModel::Point held_point_of(const std::vector<TouchSample>& samples, const Modes& modes,
+TouchModel::Point held_point_of(const std::vector<TouchSample>& samples, const ModesOfSamples& modes,
                                 const Bunches& bunches, const Bunch& bunch) {
   Vec3 normal = Vec3::Zero(), offset = normal, place = normal, velocity = normal;
   MovedBy moved = MovedBy::Zero();
@@ -243,7 +241,7 @@ struct Kind {
 
 }  // namespace
 
-void gather_points(const std::vector<TouchSample>& samples, const Pose& pose, const Modes& modes,
+void gather_points(const std::vector<TouchSample>& samples, const Pose& pose, const ModesOfSamples& modes,
                    TouchModel& out) {
   out.points = 0;
   std::vector<Kind> kinds;

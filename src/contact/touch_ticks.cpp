@@ -48,8 +48,6 @@ struct TickPoint {
   SampleMotion motion;
 };
 
-Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
 PressureLaw law_of_ticks(ContactSpec spec) {
   spec.friction_tangent = "secant";
   return pressure_law(spec);

@@ -31,11 +31,6 @@
 namespace palpate::device {
 namespace {
 
-double to_step(double value, double step) { return step > 0.0 ? std::round(value / step) * step : value; }
-Vec3 to_step(const Vec3& value, double step) {
-  return value.unaryExpr([step](double one) { return to_step(one, step); });
-}
-
 /// The rotation vector of q that is nearest to `near`: the same rotation is also a turn more or less.
 Vec3 unwrapped(const Quat& q, const Vec3& near) {
   const Vec3 theta = rotation_vector(q);

@@ -4,6 +4,11 @@
 /// One function a device, each in a file of its own.
 namespace palpate::device {
 
+/// The nearest whole number of steps; as it is where the step is 0.
+inline Vec3 to_step(const Vec3& value, double step) {
+  return step > 0.0 ? Vec3((value / step).array().round() * step) : value;
+}
+
 /// @throws Error `device: KEY = VALUE ...` for a value out of its range
 void check_range(const char* key, double value, const Range& range);
 

@@ -8,10 +8,6 @@
 namespace palpate::device {
 namespace {
 
-Vec3 to_step(const Vec3& value, double step) {
-  return step > 0.0 ? Vec3((value / step).array().round() * step) : value;
-}
-
 Vec3 cut(const Vec3& value, double max) {
   const double norm = value.norm();
   return norm > max ? Vec3(value * (max / norm)) : value;

@@ -8,7 +8,7 @@
 namespace palpate::dynamics {
 namespace {
 
-std::uint64_t fresh_version() {
+std::uint64_t fresh_state_version() {
   static std::atomic<std::uint64_t> next{1};
   return next++;
 }
@@ -23,7 +23,7 @@ void place_blocks(Layout& layout) {
     layout.u_size += b.u_size;
     if (b.kind == BlockKind::kNodes) layout.nodal_size += b.u_size;
   }
-  layout.version = fresh_version();
+  layout.version = fresh_state_version();
 }
 
 void check_spec(const BlockSpec& spec, const ConstSegment& q, const ConstSegment& u) {

@@ -12,8 +12,6 @@
 namespace palpate::fem {
 namespace {
 
-double double_dot(const Mat3& A, const Mat3& B) { return A.cwiseProduct(B).sum(); }
-
 /// C = c G with its eigenvalues bounded: those of G by 1/kSmallestSum, and those of C by `largest`.
 Mat3 bounded_coupling(const Mat3& inverse_of_G, double c, double largest, bool& clamped) {
   Eigen::SelfAdjointEigenSolver<Mat3> eigen(inverse_of_G);

@@ -4,12 +4,12 @@
 
 namespace palpate::fem {
 
-#define PALPATE_LAW(name) extern const LawKernels name;
+#define PALPATE_DECLARE_KERNELS(name) extern const LawKernels name;
 #define PALPATE_ADDRESS(name) &name,
 #define PALPATE_SET(set)                                                 \
   namespace set {                                                        \
   extern const SharedKernels shared;                                     \
-  PALPATE_LAWS(PALPATE_LAW)                                              \
+  PALPATE_LAWS(PALPATE_DECLARE_KERNELS)                                  \
   constexpr const LawKernels* kLaws[] = {PALPATE_LAWS(PALPATE_ADDRESS)}; \
   constexpr LaneKernels kKernels{#set, &shared, kLaws};                  \
   }

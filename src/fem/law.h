@@ -7,6 +7,9 @@
 
 namespace palpate::fem {
 
+/// A : B
+inline double double_dot(const Mat3& A, const Mat3& B) { return A.cwiseProduct(B).sum(); }
+
 /// A hyperelastic, isotropic law by its energy density Psi(F) of the deformation gradient F, one element at a
 /// time.  These formulas are the reference; the ones in lanes (lanes_NAME.cpp) are the same in vector
 /// registers. Every F is allowed, flat and inverted as well.  Lame's constants are those of linear elasticity

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "corotational.h"
+#include "law.h"
 #include "node_block.h"
 #include "node_rings.h"
 #include "palpate/core/counters.h"
@@ -63,8 +64,6 @@ namespace {
 
 /// The four gradients as columns.
 using Gradients = Eigen::Matrix<double, 3, 4>;
-
-double double_dot(const Mat3& A, const Mat3& B) { return A.cwiseProduct(B).sum(); }
 
 /// Where averages are taken: at each node, once for each material at it.  Of one material, the nodes
 /// themselves: nothing is kept then.

@@ -3,7 +3,7 @@
 namespace palpate::fem {
 namespace {
 
-constexpr int kNodesAhead = 24;  // how long before they are added to nodes are prefetched
+constexpr int kReducedAhead = 24;  // how long before they are added to nodes are prefetched
 
 }  // namespace
 
@@ -16,8 +16,8 @@ void NodalReduction::add(const ElementChunks& chunks, const ElementChunks::Chunk
   const int* nodes = chunks.nodes.data() + chunk.first_node;
   const int direct = in_order() ? chunk.nodes : chunk.owned_nodes;
   for (int n = 0; n < direct; ++n) {
-    if (n + kNodesAhead < direct)
-      __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
+    if (n + kReducedAhead < direct)
+      __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kReducedAhead]));
     for (int axis = 0; axis < 3; ++axis)
       out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
   }

@@ -62,8 +62,6 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-double double_dot(const Mat3& A, const Mat3& B) { return A.cwiseProduct(B).sum(); }
-
 Mat3 cofactors(const Mat3& F) {
   Mat3 G;
   for (int i = 0; i < 3; ++i) G.col(i) = F.col((i + 1) % 3).cross(F.col((i + 2) % 3));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "linear/settings.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -16,8 +17,6 @@ using dynamics::SolveStatus;
 
 namespace {
 
-/// Below this the residual is rounding.
-constexpr double kTightest = 1e-15;
 /// The recurrences of r and S^-1 r drift by some roundings times the root of S's condition, 1e-11 at 1e10.
 /// From this tolerance on the end is checked with b - A x itself.
 constexpr double kCheckedBelow = 1e-10;

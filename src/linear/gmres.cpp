@@ -20,8 +20,6 @@ namespace {
 /// What the recurrence says of a residual drifts from b - A x by rounding; so often is the iteration begun
 /// again from there.
 constexpr int kRestarts = 4;
-/// Below this |r| / |b| is rounding.
-constexpr double kTightest = 1e-15;
 /// Of the preconditioner's own iterations: each direction takes two digits at most, so no more of them are
 /// spent than the residual needs.
 constexpr double kInnerTolerance = 1e-2;

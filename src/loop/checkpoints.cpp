@@ -18,10 +18,10 @@ namespace palpate::loop {
 namespace {
 
 /// Times of checkpoints and periods are multiples of different decimal numbers.
-constexpr double kSame = 1e-9;
+constexpr double kSamePeriod = 1e-9;
 
 bool is_due(const SteppedRun& run, double every_s) {
-  const auto before = [&](int periods) { return std::floor(periods * run.period() / every_s + kSame); };
+  const auto before = [&](int periods) { return std::floor(periods * run.period() / every_s + kSamePeriod); };
   const int done = run.periods_done();
   return done < run.periods() && before(done) > before(done - 1);
 }
@@ -96,13 +96,13 @@ std::string why_no_checkpoints(const World& world, const RunOptions& options) {
 void check_checkpoints(const scene::Description& description, double every_s, double duration_s) {
   const double period = period_of(description),
                duration = duration_s > 0.0 ? duration_s : description.duration_s;
-  if (every_s < period * (1.0 - kSame))
+  if (every_s < period * (1.0 - kSamePeriod))
     fail(
         "a checkpoint every {} s: the loop of this scene goes on in periods of {} s, and a checkpoint is at "
         "the end of one; take {} s or longer{}",
         every_s, period, period,
         description.tool || !description.contacts.empty() ? "" : ", or a shorter record.state_period_s");
-  if (!(every_s < duration * (1.0 - kSame)))
+  if (!(every_s < duration * (1.0 - kSamePeriod)))
     fail("a checkpoint every {} s: the run is over at {} s, before the first one; take a shorter time",
          every_s, duration);
 }

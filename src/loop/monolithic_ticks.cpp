@@ -8,7 +8,7 @@ namespace {
 
 /// Ticks and output times are multiples of different decimal numbers: times that differ by less than this
 /// part of a tick are equal.
-constexpr double kSame = 1e-6;
+constexpr double kSameTick = 1e-6;
 
 TickRecord tick_of(const World& world, const ToolSide& side, double t, const dynamics::StateView& state) {
   const dynamics::Block& block = *state.layout->find(side.block_id);
@@ -40,7 +40,7 @@ MonolithicTicks::~MonolithicTicks() {
   if (follows_) world_.stepper->follow(nullptr);
 }
 
-bool MonolithicTicks::due(double t) const { return next() <= t + kSame * tick_s_; }
+bool MonolithicTicks::due(double t) const { return next() <= t + kSameTick * tick_s_; }
 
 dynamics::StepResult MonolithicTicks::advance_to(double t1) {
   if (follows_) return world_.stepper->advance_to(t1);

@@ -11,17 +11,17 @@ namespace palpate::mesh {
 namespace {
 
 /// One face of one tetrahedron; equal faces have equal `nodes`, which are sorted.
-struct Side {
+struct NumberedSide {
   std::array<int, 3> nodes;
   int tet, face;
 };
 
-std::vector<Side> sides(const Tets& tets) {
-  std::vector<Side> out;
+std::vector<NumberedSide> sides(const Tets& tets) {
+  std::vector<NumberedSide> out;
   out.reserve(4 * static_cast<std::size_t>(tets.cols()));
   for (int t = 0; t < static_cast<int>(tets.cols()); ++t)
     for (int f = 0; f < 4; ++f) {
-      Side side{{tets(kTetFaces[f][0], t), tets(kTetFaces[f][1], t), tets(kTetFaces[f][2], t)}, t, f};
+      NumberedSide side{{tets(kTetFaces[f][0], t), tets(kTetFaces[f][1], t), tets(kTetFaces[f][2], t)}, t, f};
       std::sort(side.nodes.begin(), side.nodes.end());
       out.push_back(side);
     }
@@ -29,26 +29,28 @@ std::vector<Side> sides(const Tets& tets) {
 }
 
 /// The sides whose nodes no other side has, in the order of the tetrahedra.
-std::vector<Side> single_sides(std::vector<Side> all) {
-  std::sort(all.begin(), all.end(), [](const Side& a, const Side& b) { return a.nodes < b.nodes; });
-  std::vector<Side> out;
+std::vector<NumberedSide> single_sides(std::vector<NumberedSide> all) {
+  std::sort(all.begin(), all.end(),
+            [](const NumberedSide& a, const NumberedSide& b) { return a.nodes < b.nodes; });
+  std::vector<NumberedSide> out;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool like_last = i > 0 && all[i - 1].nodes == all[i].nodes;
     const bool like_next = i + 1 < all.size() && all[i + 1].nodes == all[i].nodes;
     if (!like_last && !like_next) out.push_back(all[i]);
   }
-  std::sort(out.begin(), out.end(),
-            [](const Side& a, const Side& b) { return std::pair(a.tet, a.face) < std::pair(b.tet, b.face); });
+  std::sort(out.begin(), out.end(), [](const NumberedSide& a, const NumberedSide& b) {
+    return std::pair(a.tet, a.face) < std::pair(b.tet, b.face);
+  });
   return out;
 }
 
 }  // namespace
 
 Boundary boundary(const TetMesh& mesh) {
-  const std::vector<Side> outer = single_sides(sides(mesh.tets));
+  const std::vector<NumberedSide> outer = single_sides(sides(mesh.tets));
   Boundary out;
   std::vector<int> vertex_of_node(static_cast<std::size_t>(mesh.nodes.cols()), -1);
-  for (const Side& side : outer)
+  for (const NumberedSide& side : outer)
     for (const int node : side.nodes) vertex_of_node[static_cast<std::size_t>(node)] = 0;
   for (std::size_t node = 0; node < vertex_of_node.size(); ++node)
     if (vertex_of_node[node] == 0) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "palpate/core/error.h"
 
@@ -43,6 +44,12 @@ Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(
 }
 
 }  // namespace
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
 
 void Cells::unread(std::string_view what) {
   for (auto& [name, count] : unread_)

@@ -39,6 +39,8 @@ class Cells {
   std::vector<std::pair<std::string, int>> unread_;
 };
 
+std::string lower(std::string text);  ///< in small letters, of ASCII
+
 SourceFile read_by_gmsh(const std::string& path, const std::string& format);
 SourceFile read_by_cgal(const std::string& path, const std::string& format);  ///< .ply .off .stl
 SourceFile read_meshb(const std::string& path);

@@ -22,12 +22,10 @@ std::string lower_keywords(std::string stl) {
   std::uint32_t triangles = 0;
   if (stl.size() >= kHead + sizeof triangles) std::memcpy(&triangles, stl.data() + kHead, sizeof triangles);
   if (stl.size() == kHead + sizeof triangles + kTriangle * triangles) return stl;
-  std::transform(stl.begin(), stl.end(), stl.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return stl;
+  return lower(std::move(stl));
 }
 
-SourceFile read_here(const std::string& path, const std::string& format) {
+SourceFile soup_in(const std::string& path, const std::string& format) {
   std::vector<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3> points;
   std::vector<std::vector<std::size_t>> faces;
   bool good = false;
@@ -54,7 +52,7 @@ SourceFile read_here(const std::string& path, const std::string& format) {
 }  // namespace
 
 SourceFile read_by_cgal(const std::string& path, const std::string& format) {
-  return rehearsed(path, "CGAL", [&] { return read_here(path, format); });
+  return rehearsed(path, "CGAL", [&] { return soup_in(path, format); });
 }
 
 }  // namespace palpate::model

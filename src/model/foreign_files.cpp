@@ -65,9 +65,7 @@ std::string known_endings() {
 
 SourceFile read_source(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) fail("{}: no such file", path);
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower(std::filesystem::path(path).extension().string());
   const auto known = std::find_if(std::begin(kEndings), std::end(kEndings),
                                   [&](const Ending& e) { return ending == e.ending; });
   if (known == std::end(kEndings))

@@ -159,7 +159,7 @@ void read_tetrahedra(const Gmsh& gmsh, const std::map<std::size_t, int>& place, 
   }
 }
 
-SourceFile read_here(const std::string& path, const std::string& format) {
+SourceFile mesh_in(const std::string& path, const std::string& format) {
   const Gmsh gmsh;
   int error = 0;
   gmsh.function<decltype(gmshOpen)>("gmshOpen")(path.c_str(), &error);
@@ -202,7 +202,7 @@ SourceFile read_here(const std::string& path, const std::string& format) {
 }  // namespace
 
 SourceFile read_by_gmsh(const std::string& path, const std::string& format) {
-  return rehearsed(path, "Gmsh", [&] { return read_here(path, format); });
+  return rehearsed(path, "Gmsh", [&] { return mesh_in(path, format); });
 }
 
 }  // namespace palpate::model

@@ -13,7 +13,7 @@ namespace palpate::model {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Domain = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_domain_3<Kernel>>;
+using ImplicitDomain = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_domain_3<Kernel>>;
 
 /// Volume of the inside by counting the points of a lattice, good enough to start the search [m^3].
 double lattice_volume(const std::function<double(const Vec3&)>& f, const Vec3& centre, double radius) {
@@ -43,11 +43,11 @@ Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec
     namespace P = CGAL::parameters;
     const Kernel::Sphere_3 ball(Kernel::Point_3(centre.x(), centre.y(), centre.z()), radius * radius);
 #if CGAL_VERSION_MAJOR >= 6  // parameters are chained; 5.5 has them as objects alone
-    Domain domain = Domain::create_implicit_mesh_domain(
+    ImplicitDomain domain = ImplicitDomain::create_implicit_mesh_domain(
         value, ball, P::relative_error_bound(kRelativeError).p_rng(&random));
 #else
-    Domain domain = Domain::create_implicit_mesh_domain(value, ball, P::relative_error_bound = kRelativeError,
-                                                        P::p_rng = &random);
+    ImplicitDomain domain = ImplicitDomain::create_implicit_mesh_domain(
+        value, ball, P::relative_error_bound = kRelativeError, P::p_rng = &random);
 #endif
     std::vector<std::vector<Kernel::Point_3>> lines;
     for (const Polyline& line : cut_at_corners(options.creases)) {
@@ -57,7 +57,8 @@ Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec
     if (!lines.empty()) domain.add_features(lines.begin(), lines.end());
     Meter meter(options.limits);
     const double volume = lattice_volume(f, centre, radius);
-    Mesher<Domain> mesher(domain, options, {}, {volume, 4 * std::numbers::pi * radius * radius}, meter);
+    Mesher<ImplicitDomain> mesher(domain, options, {}, {volume, 4 * std::numbers::pi * radius * radius},
+                                  meter);
     return search_cells(mesher, volume, false, options, progress);
   } catch (const CGAL::Failure_exception& e) {
     fail("the inside of the implicit surface cannot be filled with tetrahedra; CGAL says: {}", reason_of(e));

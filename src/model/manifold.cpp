@@ -11,7 +11,7 @@
 namespace palpate::model {
 namespace {
 
-using Tetrahedra = std::vector<int>;
+using TetList = std::vector<int>;
 
 /// Groups of tetrahedra, or of faces, that were joined.
 class Groups {
@@ -31,7 +31,7 @@ class Groups {
 };
 
 /// The tetrahedra of a list that hang together by faces which hold all of `at`; each group rising.
-std::vector<Tetrahedra> fans(const TetMesh& mesh, const Tetrahedra& list, const std::vector<int>& at) {
+std::vector<TetList> fans(const TetMesh& mesh, const TetList& list, const std::vector<int>& at) {
   std::map<std::array<int, 3>, std::size_t> first;
   Groups groups(list.size());
   for (std::size_t i = 0; i < list.size(); ++i)
@@ -44,21 +44,21 @@ std::vector<Tetrahedra> fans(const TetMesh& mesh, const Tetrahedra& list, const 
       std::sort(nodes.begin(), nodes.end());
       if (const auto [old, fresh] = first.emplace(nodes, i); !fresh) groups.join(old->second, i);
     }
-  std::map<std::size_t, Tetrahedra> by_root;
+  std::map<std::size_t, TetList> by_root;
   for (std::size_t i = 0; i < list.size(); ++i) by_root[groups.of(i)].push_back(list[i]);
-  std::vector<Tetrahedra> out;
+  std::vector<TetList> out;
   for (auto& [root, group] : by_root) out.push_back(std::move(group));
   return out;
 }
 
-double volume_of(const TetMesh& mesh, const Tetrahedra& list) {
+double volume_of(const TetMesh& mesh, const TetList& list) {
   double out = 0;
   for (const int tet : list) out += mesh::tet_volume(mesh, tet);
   return out;
 }
 
 /// Marks all fans but the largest; false: there is one only.
-bool mark_lesser(const TetMesh& mesh, const std::vector<Tetrahedra>& fans, std::vector<char>& marked) {
+bool mark_lesser(const TetMesh& mesh, const std::vector<TetList>& fans, std::vector<char>& marked) {
   if (fans.size() < 2) return false;
   std::size_t largest = 0;
   for (std::size_t i = 1; i < fans.size(); ++i)
@@ -111,7 +111,7 @@ std::vector<std::vector<int>> touching(const TetMesh& mesh) {
 }
 
 /// The smallest tetrahedron of a list that has a face of the boundary at the place.
-int smallest_outer(const TetMesh& mesh, const Tetrahedra& list, const std::vector<int>& at) {
+int smallest_outer(const TetMesh& mesh, const TetList& list, const std::vector<int>& at) {
   int best = list[0];
   double least = std::numeric_limits<double>::infinity();
   for (const int tet : list) {
@@ -159,19 +159,19 @@ void remove(FittedMesh& mesh, const std::vector<char>& marked, ManifoldReport& r
 }
 
 /// The tetrahedra that hold all of `at`, for each entry of a list of places.
-std::vector<Tetrahedra> tetrahedra_at(const TetMesh& mesh, const std::vector<std::vector<int>>& places) {
-  std::map<int, Tetrahedra> around;
+std::vector<TetList> tetrahedra_at(const TetMesh& mesh, const std::vector<std::vector<int>>& places) {
+  std::map<int, TetList> around;
   for (const std::vector<int>& at : places)
     for (const int node : at) around[node];
   for (Eigen::Index t = 0; t < mesh.tets.cols(); ++t)
     for (int k = 0; k < 4; ++k)
       if (const auto found = around.find(mesh.tets(k, t)); found != around.end())
         found->second.push_back(static_cast<int>(t));
-  std::vector<Tetrahedra> out;
+  std::vector<TetList> out;
   for (const std::vector<int>& at : places) {
-    Tetrahedra both = around[at[0]];
+    TetList both = around[at[0]];
     for (std::size_t i = 1; i < at.size(); ++i) {
-      Tetrahedra shared;
+      TetList shared;
       std::set_intersection(both.begin(), both.end(), around[at[i]].begin(), around[at[i]].end(),
                             std::back_inserter(shared));
       both = std::move(shared);
@@ -189,7 +189,7 @@ ManifoldReport make_boundary_manifold(FittedMesh& mesh) {
   for (;;) {
     const std::vector<std::vector<int>> places = touching(mesh.mesh);
     if (places.empty()) break;
-    const std::vector<Tetrahedra> there = tetrahedra_at(mesh.mesh, places);
+    const std::vector<TetList> there = tetrahedra_at(mesh.mesh, places);
     std::vector<char> marked(static_cast<std::size_t>(mesh.mesh.tets.cols()), 0);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const auto taken = [&](int tet) { return marked[static_cast<std::size_t>(tet)] != 0; };
@@ -200,7 +200,7 @@ ManifoldReport make_boundary_manifold(FittedMesh& mesh) {
     remove(mesh, marked, report);
   }
   if (report.taken == 0) return report;
-  Tetrahedra all(static_cast<std::size_t>(mesh.mesh.tets.cols()));
+  TetList all(static_cast<std::size_t>(mesh.mesh.tets.cols()));
   std::iota(all.begin(), all.end(), 0);
   std::vector<char> marked(all.size(), 0);
   if (mark_lesser(mesh.mesh, fans(mesh.mesh, all, {}), marked)) remove(mesh, marked, report);

@@ -16,7 +16,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Polyhedron = CGAL::Mesh_polyhedron_3<Kernel>::type;
-using Domain = CGAL::Polyhedral_mesh_domain_with_features_3<Kernel>;
+using PolyhedralDomain = CGAL::Polyhedral_mesh_domain_with_features_3<Kernel>;
 
 Polyhedron polyhedron_of(const TriMesh& surface) {
   std::vector<Kernel::Point_3> points;
@@ -70,7 +70,7 @@ Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& optio
     if (options.place) options.place(at);
   };
   try {
-    Domain domain(polyhedron_of(surface));
+    PolyhedralDomain domain(polyhedron_of(surface));
     if (options.crease_deg) domain.detect_features(*options.crease_deg);
     if (!options.creases.empty()) {
       std::vector<std::vector<Kernel::Point_3>> lines;
@@ -81,7 +81,7 @@ Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& optio
       domain.add_features(lines.begin(), lines.end());
     }
     Meter meter(options.limits, place);
-    Mesher<Domain> mesher(domain, options, seeds_of(surface), size, meter);
+    Mesher<PolyhedralDomain> mesher(domain, options, seeds_of(surface), size, meter);
     return search_cells(mesher, size.volume, true, options, progress);
   } catch (const Error&) { throw; } catch (const std::bad_alloc&) {
     throw;

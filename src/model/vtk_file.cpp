@@ -25,12 +25,6 @@
 namespace palpate::model {
 namespace {
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 /// Bytes of a value in a binary file; 0: of no fixed size, or unknown.
 std::size_t bytes_of(const std::string& type) {
   if (type == "double" || type == "long" || type == "unsigned_long" || type == "vtktypeint64" ||

@@ -198,12 +198,6 @@ void load(Document& document) {
                   (std::endian::native == std::endian::big);
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 /// Numbers of the regions of a piece's cells; empty: it has no array that is known for that.
 std::vector<double> labels_of(const Document& document, const pugi::xml_node& piece, std::size_t cells) {
   for (const std::string& known : known_region_arrays())

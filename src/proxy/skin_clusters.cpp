@@ -11,7 +11,7 @@ namespace palpate::proxy {
 namespace {
 
 using Features = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// How many clusters each group gets: one, and of the rest its share by area (largest remainders first; of
 /// equals the first group).
@@ -55,7 +55,7 @@ std::vector<int> k_means(const Features& x, const VecX& weight, int count) {
     bool changed = false;
     for (Eigen::Index i = 0; i < n; ++i) {
       int best = 0;
-      double least = kInfinity;
+      double least = kFar;
       for (int c = 0; c < count; ++c) {
         const double distance = (x.col(i) - centre.col(c)).squaredNorm();
         if (distance < least) {
@@ -86,7 +86,7 @@ std::vector<int> k_means(const Features& x, const VecX& weight, int count) {
 std::vector<int> nearest_bone(const Skeleton& skeleton, const Points& points) {
   std::vector<int> out(static_cast<std::size_t>(points.cols()), 0);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    double least = kInfinity;
+    double least = kFar;
     for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
       const Bone& bone = skeleton.bones[b];
       const Vec3 axis = bone.tail - bone.head, arm = points.col(i) - bone.head;

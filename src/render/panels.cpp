@@ -11,8 +11,9 @@
 namespace palpate::render {
 namespace {
 
-constexpr Rgb kPage = {0.968f, 0.973f, 0.980f}, kInk = {0.13f, 0.16f, 0.19f}, kQuiet = {0.62f, 0.66f, 0.70f},
-              kLine = {0.15f, 0.35f, 0.60f}, kMark = {0.80f, 0.33f, 0.10f};
+constexpr Rgb kPanel = {0.968f, 0.973f, 0.980f}, kPanelInk = {0.13f, 0.16f, 0.19f},
+              kPanelQuiet = {0.62f, 0.66f, 0.70f}, kLine = {0.15f, 0.35f, 0.60f},
+              kMark = {0.80f, 0.33f, 0.10f};
 
 void copy_into(Picture& to, const Picture& from, int left, int top) {
   for (int y = 0; y < from.height; ++y)
@@ -32,18 +33,18 @@ void draw_axes(Canvas& canvas, const Axes& axes, const Curve& curve, double text
   const ScaledUnit seconds = scaled_unit("s", axes.t1);
   const double step = round_up((axes.high - axes.low) / 3.0);
   for (double k = std::ceil(axes.low / step - 1e-9); k * step <= axes.high * (1.0 + 1e-9); k += 1.0) {
-    canvas.set_colour(kQuiet, 0.5);
+    canvas.set_colour(kPanelQuiet, 0.5);
     canvas.fill_rectangle(axes.left, axes.y(k * step) - 0.5, axes.width, 1.0);
-    canvas.set_colour(kInk);  // + 0: never "-0"
+    canvas.set_colour(kPanelInk);  // + 0: never "-0"
     canvas.text(fmt::format("{:g}", k * step * unit.factor + 0.0), axes.left - 8,
                 axes.y(k * step) + 0.36 * text, text, 1.0);
   }
   for (const Tick& tick : ticks(axes.t0, axes.t1, seconds)) {
-    canvas.set_colour(kInk);
+    canvas.set_colour(kPanelInk);
     const double half = 0.5 * canvas.text_width(tick.text, text);
     canvas.text(tick.text, axes.x(tick.value) - half, axes.top + axes.height + 1.3 * text, text);
   }
-  canvas.set_colour(kInk);
+  canvas.set_colour(kPanelInk);
   canvas.text(fmt::format("{} [{}]", curve.label, unit.name), axes.left, axes.top - 0.6 * text, text);
   canvas.text(fmt::format("[{}]", seconds.name), axes.left + axes.width + 1.2 * text,
               axes.top + axes.height + 1.3 * text, text);
@@ -71,7 +72,7 @@ Picture beside(const std::vector<Picture>& pictures) {
 Picture with_curve(const Picture& picture, const Curve& curve, double now, int height) {
   PALPATE_CHECK(!curve.times.empty() && curve.times.size() == curve.values.size(),
                 "a curve of {} times, {} values", curve.times.size(), curve.values.size());
-  Picture page(picture.width, picture.height + height, kPage);
+  Picture page(picture.width, picture.height + height, kPanel);
   copy_into(page, picture, 0, 0);
   Canvas canvas(page);
   const double text = 0.11 * height;

@@ -9,8 +9,6 @@
 namespace palpate::report {
 namespace {
 
-bool is_yes(const std::string& cell) { return cell == "true" || cell == "1" || cell == "yes"; }
-
 std::string point_text(const Table& compare, std::size_t row) {
   return setting_text(compare.rows[row][compare.column("setting_name")],
                       to_number(compare.rows[row][compare.column("setting")]));

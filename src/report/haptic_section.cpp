@@ -10,8 +10,6 @@
 namespace palpate::report {
 namespace {
 
-bool is_yes(const std::string& cell) { return cell == "yes"; }
-
 /// One quantity on the hand, as haptic.csv and summary.json call it.
 struct Felt {
   std::string name;                        ///< "force"
@@ -119,7 +117,7 @@ std::string percent(const Table& table, std::size_t row, const char* column) {
   return std::isfinite(value) ? short_number(100.0 * value) : "-";
 }
 
-void add_points(Page& page, const Table& table) {
+void add_variables(Page& page, const Table& table) {
   std::vector<std::vector<std::string>> rows;
   std::vector<RowMark> marks;
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -169,7 +167,7 @@ void add_haptic(Page& page, const Table& table, const Json& summary) {
     if (std::any_of(errors.begin(), errors.end(), [](double e) { return e > kRounding; }))
       add_charts(page, table, q, orders);
   }
-  add_points(page, table);
+  add_variables(page, table);
 }
 
 }  // namespace palpate::report

@@ -19,7 +19,7 @@ constexpr const char* kLogarithmic = "logarithmic";  ///< group of summary.json,
 constexpr std::size_t kMostSeries = 12;              ///< of a chart that can still be read
 constexpr double kLogRatio = 30.0;                   ///< of two values: a logarithmic axis
 
-struct Spread {
+struct SeedSpread {
   double n = 0.0, sum = 0.0, square = 0.0, least = HUGE_VAL, greatest = -HUGE_VAL;
   void add(double value) {
     if (!std::isfinite(value)) return;
@@ -59,7 +59,7 @@ std::optional<Abscissa> abscissa_of(const Table& study, const StudyColumns& colu
 /// The mean over seeds at each value, and where there are seeds each of them as a point.
 void add_series(Plot& plot, const Table& study, const StudyGroup& group, const std::vector<double>& x,
                 const std::vector<double>& y, bool drawn, const std::string& colour) {
-  std::map<double, Spread> at;
+  std::map<double, SeedSpread> at;
   Series points{.name = "", .x = {}, .y = {}};
   points.mark = Mark::kPoints;
   points.group = group.name;
@@ -139,7 +139,7 @@ void add_charts(Page& page, const Table& study, const StudyColumns& columns, con
 
 /// "0.417 ± 0.0038"; "-" where no task of the group reached its end.
 std::string spread_text(const Table& study, const StudyGroup& group, const std::vector<double>& values) {
-  Spread spread;
+  SeedSpread spread;
   for (const std::size_t r : group.rows)
     if (is_ok(study, r)) spread.add(values[r]);
   if (spread.n < 1.0) return "-";

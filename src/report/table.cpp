@@ -54,6 +54,8 @@ std::string shown_cell(const std::string& cell) {
   return read_csv_number(cell, value) && !std::isfinite(value) ? short_number(value) : cell;
 }
 
+bool is_yes(std::string_view cell) { return cell == "yes" || cell == "true" || cell == "1"; }
+
 bool is_blank(std::string_view cell) {
   return cell.empty() || cell == "-" || shown_cell(std::string(cell)) == "-";
 }

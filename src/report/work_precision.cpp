@@ -9,8 +9,6 @@
 namespace palpate::report {
 namespace {
 
-bool is_yes(const std::string& cell) { return cell == "yes" || cell == "true" || cell == "1"; }
-
 /// The least and the largest cost of a point's repeats.  A point that ran once takes the median spread of the
 /// others, unknown (NaN) where none ran again; counts have none.
 class Spread {

@@ -61,8 +61,8 @@ namespace {
 
 constexpr double kFollowed = 1e3;  // of the energy
 constexpr double kNearABar = 0.01;
-constexpr double kEps = 2.3e-16;
-constexpr double kRounding = 1e-9;
+constexpr double kUnitRounding = 2.3e-16;
+constexpr double kRoundingKept = 1e-9;
 constexpr double kNonlinear = 1e-3;
 constexpr double kMultistepNorm = 10.0, kUseful = 0.01;
 constexpr double kPowerBound = 100.0;  // of multistep methods under error control
@@ -113,16 +113,16 @@ LinearBars linear_bars(const Column& column, const LinearProblem& problem, doubl
   const IntegratorSpec spec = spec_of(column, linear_rtol(problem), H);
   // the speed that the whole energy would be as kinetic energy
   const double speed = std::sqrt(std::min(highest, 1e300)) * problem.largest_speed_rms(),
-               kept = kRounding * std::sqrt(problem.condition()) +
+               kept = kRoundingKept * std::sqrt(problem.condition()) +
                       static_cast<double>(steps) * problem.tolerance(spec, speed),
-               rounding = kEps * problem.condition();
+               rounding = kUnitRounding * problem.condition();
   if (is_static(column)) return {rounding + kAccurate, 2.0 * kept, kPowerBound, 0.0};
   if (!has_modal_steps(column)) {
     const double bar = std::min(kUseful, kept * (traits.multistep ? kMultistepNorm : 1.0));
     return {rounding + bar, 2.0 * kept, kPowerBound, 0.0};
   }
   const double y = problem.omega()[problem.omega().size() - 1] * H,
-               of_acceleration = traits.family == "Newmark" ? kEps * y * y : 0.0;
+               of_acceleration = traits.family == "Newmark" ? kUnitRounding * y * y : 0.0;
   const double of_elements = problem.is_by_elements() ? kNonlinear : 0.0;
   const double agreement = kLinearPeriods * (10.0 * kLinearRtol + rounding + of_acceleration) + of_elements;
   const double most = predict_linear(column, problem, H).highest;

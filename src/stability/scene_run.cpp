@@ -7,7 +7,7 @@
 namespace palpate::stability {
 namespace {
 
-constexpr double kGrown = 1e3, kFollow = 100.0;
+constexpr double kGrownSpeed = 1e3, kFollow = 100.0;
 
 /// Follows the energy while the run goes on, and ends the run.
 class Watch : public loop::Observer {
@@ -24,7 +24,7 @@ class Watch : public loop::Observer {
     course_.interrupted = lab_.time_is_up();
     if (probe_) probe_(world, t);
     const bool growing = lab_.column.entry && lab_.column.fixed && is_explicit(lab_.column) &&
-                         course_.highest > kGrown * course_.available;
+                         course_.highest > kGrownSpeed * course_.available;
     if (course_.interrupted || !course_.finite || (t >= duration_ * (1.0 - 1e-9) && !growing)) stop_ = true;
   }
   const std::atomic<bool>* stop() const { return &stop_; }
@@ -82,8 +82,8 @@ SceneCourse run_scene(const Lab& lab, const scene::Description& description, dou
 std::string gave_up_early(const Lab& lab, const SceneCourse& course) {
   if (is_static(lab.column)) return {};
   if (lab.column.fixed && is_explicit(lab.column))
-    return course.gain() > kGrown ? std::string()
-                                  : fmt::format("gave up at {:.1e} of the energy", 1.0 + course.gain());
+    return course.gain() > kGrownSpeed ? std::string()
+                                       : fmt::format("gave up at {:.1e} of the energy", 1.0 + course.gain());
   if (!lab.column.fixed)
     return course.steps >= kMaxSteps ? std::string() : fmt::format("gave up after {} steps", course.steps);
   return "gave up";

@@ -38,7 +38,7 @@ std::string hash_of(const Checkpoint& checkpoint) {
   return hash.hex();
 }
 
-struct Writer {
+struct ValueWriter {
   hid_t group;
   const std::string& name;
   const std::string& path;
@@ -119,13 +119,13 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
             path);
   {
     const h5::Id state = h5::create_group(file, "state", path);
-    for (const auto& [name, value] : checkpoint.values) std::visit(Writer{state, name, path}, value);
+    for (const auto& [name, value] : checkpoint.values) std::visit(ValueWriter{state, name, path}, value);
   }
   write_durably(path, h5::image(file, path));
 }
 
 namespace {
-Checkpoint read_here(const std::string& path) {
+Checkpoint checkpoint_in(const std::string& path) {
   const h5::Quiet quiet;
   Checkpoint out;
   std::string content;
@@ -149,7 +149,7 @@ Checkpoint read_here(const std::string& path) {
 
 Checkpoint read_checkpoint(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) fail("{}: no such file", path);
-  return rehearsed(path, "HDF5", [&] { return read_here(path); });
+  return rehearsed(path, "HDF5", [&] { return checkpoint_in(path); });
 }
 
 }  // namespace palpate::store

@@ -20,7 +20,7 @@ Eigen::Index rows_of(const h5::Opened& set, const char* name, hsize_t width, con
   return static_cast<Eigen::Index>(set.shape[0]);
 }
 
-TetMesh read_here(const std::string& path) {
+TetMesh mesh_in(const std::string& path) {
   const h5::Quiet quiet;
   const h5::Id file = h5::open_file(path);
   // a file made by other means may lack it; one that says something else is something else
@@ -63,7 +63,7 @@ void write_mesh(const std::string& path, const TetMesh& mesh) {
 }
 
 TetMesh read_mesh(const std::string& path) {
-  return rehearsed(path, "HDF5", [&] { return read_here(path); });
+  return rehearsed(path, "HDF5", [&] { return mesh_in(path); });
 }
 
 }  // namespace palpate::store

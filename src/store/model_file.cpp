@@ -10,7 +10,7 @@ namespace palpate::store {
 namespace {
 
 /// The file while it is being made, in memory.
-struct Writer {
+struct ModelWriter {
   std::string path;
 
   template <class Matrix>
@@ -39,7 +39,7 @@ struct Writer {
   h5::Id group(hid_t parent, const char* name) const { return h5::create_group(parent, name, path); }
 };
 
-void write_skin(const Writer& to, hid_t file, const LayeredModel& model) {
+void write_skin(const ModelWriter& to, hid_t file, const LayeredModel& model) {
   if (model.skin.vertices.cols() == 0) return;
   const h5::Id skin = to.group(file, "skin"), embedding = to.group(file, "embedding");
   to.matrix(skin, "vertices", model.skin.vertices);
@@ -48,7 +48,7 @@ void write_skin(const Writer& to, hid_t file, const LayeredModel& model) {
   to.matrix(embedding, "weights", model.embedding.weights);
 }
 
-void write_proxies(const Writer& to, hid_t file, const std::vector<ProxyHull>& proxies) {
+void write_proxies(const ModelWriter& to, hid_t file, const std::vector<ProxyHull>& proxies) {
   if (proxies.empty()) return;
   std::vector<int> corner_offsets{0}, member_offsets{0}, members, bones;
   for (const ProxyHull& proxy : proxies) {
@@ -68,7 +68,7 @@ void write_proxies(const Writer& to, hid_t file, const std::vector<ProxyHull>& p
   to.column(group, "bone", bones);
 }
 
-void write_skeleton(const Writer& to, hid_t file, const LayeredModel& model) {
+void write_skeleton(const ModelWriter& to, hid_t file, const LayeredModel& model) {
   const std::vector<Bone>& bones = model.skeleton.bones;
   if (bones.empty()) return;
   std::vector<std::string> names;
@@ -93,7 +93,7 @@ void write_skeleton(const Writer& to, hid_t file, const LayeredModel& model) {
   to.column(group, "bone_of_node", model.bone_of_node);
 }
 
-void write_regions(const Writer& to, hid_t file, const std::vector<MaterialRegion>& regions) {
+void write_regions(const ModelWriter& to, hid_t file, const std::vector<MaterialRegion>& regions) {
   if (regions.empty()) return;
   std::vector<std::string> names;
   std::vector<int> tets, offsets{0};
@@ -113,7 +113,7 @@ void write_regions(const Writer& to, hid_t file, const std::vector<MaterialRegio
   to.column(group, "density_factor", density);
 }
 
-void write_record(const Writer& to, hid_t file, const ModelRecord& record) {
+void write_record(const ModelWriter& to, hid_t file, const ModelRecord& record) {
   std::vector<std::string> names;
   std::vector<double> values;
   for (const auto& [name, value] : record.figures) {
@@ -135,7 +135,7 @@ void write_record(const Writer& to, hid_t file, const ModelRecord& record) {
 void write_model(const std::string& path, const ModelFile& file) {
   const LayeredModel& model = file.model;
   const h5::Quiet quiet;
-  const Writer to{path};
+  const ModelWriter to{path};
   const h5::Id root = h5::create_in_memory(path);
   h5::write_attribute_text(root, "format", kModelFormat, path);
   h5::write_attribute_text(root, "name", model.name, path);

@@ -200,7 +200,7 @@ ModelRecord read_record(hid_t file, const std::string& path) {
   return record;
 }
 
-ModelFile read_here(const std::string& path) {
+ModelFile model_in(const std::string& path) {
   ModelFile out;
   out.model.tets = read_mesh(path);
   if (!is_model(path))
@@ -222,7 +222,7 @@ ModelFile read_here(const std::string& path) {
 }  // namespace
 
 ModelFile read_model(const std::string& path) {
-  return rehearsed(path, "HDF5", [&] { return read_here(path); });
+  return rehearsed(path, "HDF5", [&] { return model_in(path); });
 }
 
 std::vector<MaterialRegion> read_regions(const std::string& path, int tets) {

@@ -25,7 +25,7 @@ namespace {
 constexpr std::uint8_t kVtkTriangle = 5, kVtkTetra = 10;
 
 /// The cells of all parts as one grid.
-struct Cells {
+struct GridCells {
   std::vector<std::int64_t> connectivity, offsets{0};
   std::vector<std::uint8_t> types;
   std::vector<std::int32_t> body;  ///< which part a cell belongs to
@@ -74,7 +74,7 @@ struct RunFile::Impl {
 };
 
 void RunFile::Impl::write_cells(const std::vector<RunPart>& parts) {
-  Cells cells;
+  GridCells cells;
   std::int64_t first = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     cells.add(parts[i].tets, kVtkTetra, first, static_cast<int>(i));

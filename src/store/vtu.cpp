@@ -62,7 +62,7 @@ std::string stress_array(const RunReader& run, const std::vector<int>& parts, co
 }
 
 /// The cells of some parts, as the file wants them.
-struct Cells {
+struct PartCells {
   std::vector<std::int32_t> connectivity, offsets, part;
   std::vector<std::uint8_t> types;
   void add(const auto& columns, std::uint8_t type, Eigen::Index first_point, int number) {
@@ -76,8 +76,8 @@ struct Cells {
   }
 };
 
-Cells cells_of(const RunReader& run, const std::vector<int>& parts) {
-  Cells out;
+PartCells cells_of(const RunReader& run, const std::vector<int>& parts) {
+  PartCells out;
   Eigen::Index first = 0;
   for (const int number : parts) {
     const RunPart& part = run.parts()[static_cast<std::size_t>(number)];
@@ -96,7 +96,7 @@ std::string cell_array(const char* name, const auto& values) {
 
 std::string vtu_of(const RunReader& run, int step, const std::vector<int>& parts) {
   const Points points = chosen(run, parts, run.points(step));
-  const Cells cells = cells_of(run, parts);
+  const PartCells cells = cells_of(run, parts);
   const double time = run.times_s()[static_cast<std::size_t>(step)];
   std::string out = "<?xml version=\"1.0\"?>\n";
   fmt::format_to(std::back_inserter(out), fmt::runtime(kFileTag), "UnstructuredGrid");

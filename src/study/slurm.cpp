@@ -12,6 +12,7 @@
 #include <regex>
 
 #include "palpate/core/error.h"
+#include "task_file.h"
 
 extern char** environ;
 
@@ -20,12 +21,6 @@ namespace {
 
 constexpr std::size_t kDefaultArraySize = 1001;
 constexpr const char* kPackage = "slurm-client";  // Debian's, with sbatch, squeue and scontrol
-
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
 
 /// A path in an #SBATCH line, where % begins a field.
 std::string sbatch_path(const std::string& path) {

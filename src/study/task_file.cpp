@@ -19,13 +19,6 @@ std::string host_name() {
   return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
 }
 
-/// A word of the command line, quoted for a shell.
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 /// The command line that runs this task alone, and keeps what its scene records.
 std::string command_of(const Plan& plan, const Task& task) {
   std::string out = "palpate run " + quoted(plan.scenes[task.scene].path);
@@ -34,6 +27,12 @@ std::string command_of(const Plan& plan, const Task& task) {
 }
 
 }  // namespace
+
+std::string quoted(const std::string& word) {
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
 
 std::string result_path(const std::string& folder, const Task& task) {
   return (fs::path(folder) / "tasks" / (task.key + ".json")).string();

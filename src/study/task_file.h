@@ -20,4 +20,7 @@ bool is_final(const Plan& plan, const Json& file);
 /// Of the limit as it is now: a task that had more and did not end in it does not end in less.
 std::string out_of_time_reason(const Plan& plan);
 
+/// A word of a command line, quoted for a shell.
+std::string quoted(const std::string& word);
+
 }  // namespace palpate::study

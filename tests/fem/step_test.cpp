@@ -68,7 +68,7 @@ Material material_with(double stiffness_damping, double mass_damping) {
   return m;
 }
 
-std::vector<std::string> instruction_sets() {
+std::vector<std::string> sets_here() {
   std::vector<std::string> out;
   for (const char* name : {"baseline", "avx2", "avx512"})
     if (message_of([&] { SoftBody("b", one_tet(), soft_material(), {.instructions = name}, 0); }).empty())
@@ -82,7 +82,7 @@ std::vector<std::string> instruction_sets() {
 // the diagonal to single precision, every one of them.
 TEST(Step, IsForceProductAndTangentInOne) {
   int compared = 0;
-  for (const std::string& set : instruction_sets())
+  for (const std::string& set : sets_here())
     for (const Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped})
       for (const double shake : {0.01, 0.12})  // the second inverts elements
         for (const Material& material : {material_with(0.0, 0.0), material_with(0.4, 0.3)}) {
@@ -134,7 +134,7 @@ TEST(Step, IsForceProductAndTangentInOne) {
 TEST(Step, OfALargeBodyIsTheSame) {
   const Case c(0.01, 24);
   ASSERT_GT(c.rest.tets.cols(), 16 * 4096) << "more than sixteen chunks";
-  for (const std::string& set : instruction_sets())
+  for (const std::string& set : sets_here())
     for (const int threads : {1, 3}) {
       workers::set_count(threads);
       OneBody at(c.x, c.v);

@@ -16,10 +16,10 @@ using dynamics::SolveStatus;
 
 namespace {
 
-struct Columns {
+struct BorderColumns {
   const float* V[kMostColumns] = {};
   float* AV[kMostColumns] = {};
-  Columns(int count, const Singles* from, Singles* to) {
+  BorderColumns(int count, const Singles* from, Singles* to) {
     for (int k = 0; k < count; ++k) {
       V[k] = from[k].data();
       AV[k] = to[k].data();
@@ -181,7 +181,7 @@ SolveStatus SingleMatrix::take_step_matrix(int count, Singles* from, Singles* to
       }
     }
     mass_trace_[c] = sum;
-    const Columns columns(count, from, to);
+    const BorderColumns columns(count, from, to);
     row_status_[c] =
         kernels_.complete(rows(c), {written_.values.data(), written_offset_.data(), transposed_.data()},
                           sums_.data(), inverse_.data(), &trace_[c], count, columns.V, columns.AV);
@@ -212,7 +212,7 @@ void SingleMatrix::renew_points() {
 }
 
 void SingleMatrix::multiply(std::size_t part, int count, const Singles* from, Singles* to) {
-  const Columns columns(count, from, to);
+  const BorderColumns columns(count, from, to);
   kernels_.multiply(rows(part), count, columns.V, columns.AV);
   for (int k = 0; k < count; ++k) {
     if (!points_.empty()) points_.product(part, columns.V[k], columns.AV[k]);

@@ -22,7 +22,7 @@ using dynamics::StepMatrixUse;
 using dynamics::ZeroRowSumMatrix;
 
 /// Tighter than rounding of the residual in double is not asked for.
-constexpr double kTightest = 1e-13;
+constexpr double kTightestSingle = 1e-13;
 /// Rounding of a number in single precision, relative; and how many tolerances the bound below may come to
 /// for a body one element thick.
 constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
@@ -77,7 +77,7 @@ class SinglePcg final : public dynamics::LinearSolver,
   SinglePcg(std::string name, bool two_level, const IntegratorSpec& spec)
       : name_(std::move(name)),
         two_level_(two_level),
-        rtol_(std::max(spec.linear_rtol, kTightest)),
+        rtol_(std::max(spec.linear_rtol, kTightestSingle)),
         spec_(spec),
         kernels_(node_kernels()),
         team_(spec.threads),

@@ -14,6 +14,8 @@
 /// Contact of soft bodies with a rigid tool as the tool's own ticks carry it on between two exchanges.
 namespace palpate::contact {
 
+inline Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
 /// The points at which the tool touches or may soon touch, and how the bodies answer there, reduced to a few
 /// modes (docs/design.md, 4.5).  The bodies' displacement from where they were at `time`, tau later, is
 ///     tau v + sum of q_k mode_k,       q'' + D q' + diag(stiffness) q = force + tau force_rate + contact,

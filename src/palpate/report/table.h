@@ -36,6 +36,8 @@ std::string within_text(double value, double low, double high);
 
 /// A cell as people see it: a number that is not finite as short_number() writes it, all else as it is.
 std::string shown_cell(const std::string& cell);
+/// True of "yes", "true" and "1".
+bool is_yes(std::string_view cell);
 /// True when a cell holds no value: empty, "-", or NaN.
 bool is_blank(std::string_view cell);
 

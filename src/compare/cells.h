@@ -1,0 +1,14 @@
+#pragma once
+#include <limits>
+#include <string>
+
+#include "palpate/store/csv.h"
+
+/// Cells of compare.csv and haptic.csv.
+namespace palpate::compare {
+
+constexpr double kEmpty = std::numeric_limits<double>::quiet_NaN();  // of a cell
+
+inline store::CsvCell yes_no(bool yes) { return std::string(yes ? "yes" : "no"); }
+
+}  // namespace palpate::compare
