@@ -60,10 +60,11 @@ void add_reduction_errors(const loop::World& world, Remarks& out) {
       continue;
     }
     std::string text = fmt::format(
-        "{}: reduced response of the bodies: error at most {:.2g} % (bound; mean {:.2g} %, target {:g} %) "
-        "over {} exchanges",
-        e.tool, 100.0 * e.largest, 100.0 * e.mean, 100.0 * e.wanted, e.exchanges);
-    if (e.beyond > 0) text += fmt::format("; above the target in {}", e.beyond);
+        "{}: reduced response of the bodies: error at most {:.2g} % (bound) in {} of {} exchanges", e.tool,
+        100.0 * (e.beyond > 0 ? e.wanted : e.largest), e.exchanges - e.beyond, e.exchanges);
+    if (e.beyond > 0)  // a bound beyond 100 % says nothing
+      text += fmt::format("; in {} the iteration ended at its limit with bounds up to {:.2g} %{}", e.beyond,
+                          100.0 * e.largest, e.largest > 1.0 ? ", which say nothing" : "");
     if (e.factored > 0) text += fmt::format("; exact (factored) in {}", e.factored);
     out.push_back(text);
   }

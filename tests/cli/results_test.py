@@ -140,6 +140,22 @@ class Results(Cli):
             self.assertAlmostEqual(figures[section]["peak_force_n"], math.hypot(*peak), delta=1e-5)
             self.assertAlmostEqual(figures[section]["peak_force_at_s"], time_s, delta=1e-9)
 
+    def test_a_bound_beyond_the_target_is_no_error(self):
+        """Exchanges within the target are counted, the others' bounds told apart from it."""
+        text = self.good("run", "two-hands", "--duration-s", "0.12", "-o", "out")
+        figures = json.loads((self.folder / "out/summary.json").read_text())["figures"]
+        beyond = 0
+        for tool in ("tool", "left"):
+            kept = figures[f"answers to {tool}"]
+            all_of_them, missed = kept["exchanges"], kept["exchanges_beyond_wanted_error"]
+            beyond += missed
+            line = next(x for x in text.splitlines() if x.startswith(f"{tool}: reduced response"))
+            self.assertIn(f"(bound) in {all_of_them - missed} of {all_of_them} exchanges", line)
+            self.assertEqual("ended at its limit" in line, missed > 0)
+            self.assertEqual("which say nothing" in line, kept["largest_error_bound"] > 1.0)
+            self.assertLessEqual(float(re.search(r"at most (\S+) %", line)[1]), 100.0 * kept["wanted_error"])
+        self.assertGreater(beyond, 0)  # or this test sees nothing
+
     def test_integrator_option_is_the_one_that_runs(self):
         text = self.good("run", "one-tet", "--duration-s", "0.1", "--integrator", "linearly-implicit-euler",
                          "--set", "integrator.step_s=0.01")
