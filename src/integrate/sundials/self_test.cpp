@@ -67,6 +67,8 @@ double cvode(double t) {
   return ok ? s.value() : kFailed;
 }
 
+// Without a stop time: at some, ARKODE 7.1.1 (Debian 13) returns the state of a later time, off by up to
+// 4e-4 of it; without one it is right to 1e-11.
 double arkode(double t) {
   Scalar s;
   void* memory = s.solver ? ARKStepCreate(nullptr, decay, 0.0, s.y, s.context) : nullptr;
@@ -75,7 +77,6 @@ double arkode(double t) {
   double reached = 0.0;
   const bool ok = ARKStepSStolerances(memory, kRtol, kAtol) == 0 &&
                   ARKStepSetLinearSolver(memory, s.solver, s.matrix) == 0 &&
-                  ARKStepSetStopTime(memory, t) == 0 &&
                   ARKStepEvolve(memory, t, s.y, &reached, ARK_NORMAL) >= 0;
   ARKStepFree(&memory);
   return ok ? s.value() : kFailed;
