@@ -82,9 +82,9 @@ void print_steps(const FemBenchReport& report) {
       "  error: of the velocity change against a direct solution, largest of the checks, in the norms of "
       "energy and of mass\n\n{}\n",
       report::format_table(
-          {"size",   "nodes",      "E [Pa]", "h [shown_ms]",    "rtol", "solver",        "thr", "force",
-           "matrix", "factor",     "solve",  "step [shown_ms]", "mean", "least",         "CPU", "its solver",
-           "scaled", "lagged [%]", "iter",   "error",           "mass", "rotation [rad]"},
+          {"size",   "nodes",      "E [Pa]", "h [ms]",    "rtol", "solver",        "thr", "force",
+           "matrix", "factor",     "solve",  "step [ms]", "mean", "least",         "CPU", "its solver",
+           "scaled", "lagged [%]", "iter",   "error",     "mass", "rotation [rad]"},
           rows));
 }
 
@@ -103,8 +103,8 @@ void print_shares(const FemBenchReport& report) {
   fmt::print(
       "share of the limit [%]: what a stage must read and write once, at the bandwidth of the step's (the "
       "solve's) working set, or its operations, whichever takes longer\n{}\n",
-      report::format_table({"size", "E [Pa]", "h [shown_ms]", "rtol", "solver", "thr", "force", "matrix",
-                            "factor", "solve", "step", "limit [shown_ms]"},
+      report::format_table({"size", "E [Pa]", "h [ms]", "rtol", "solver", "thr", "force", "matrix", "factor",
+                            "solve", "step", "limit [ms]"},
                            rows));
 }
 
@@ -123,9 +123,9 @@ void print_elements(const FemBenchReport& report) {
       "  residual: forces less K w; fused assembly: that and the warped matrix in single precision; tangents "
       "are "
       "stored in a matrix in double, whatever it held before\n\n{}\n",
-      report::format_table({"size", "thr", "stage", "least [shown_ms]", "median [shown_ms]", "least [ns/tet]",
-                            "limit [%]", "runs"},
-                           rows));
+      report::format_table(
+          {"size", "thr", "stage", "least [ms]", "median [ms]", "least [ns/tet]", "limit [%]", "runs"},
+          rows));
   Rows growth;
   for (const auto& [kind, timings] : kinds) {
     const auto exponent = [&](auto size, double bench::ElementTiming::*figure) {
@@ -169,7 +169,7 @@ void print_memory(const FemBenchReport& report) {
 std::map<std::string, std::vector<const FemBenchRow*>> by_kind(const FemBenchReport& report) {
   std::map<std::string, std::vector<const FemBenchRow*>> kinds;
   for (const FemBenchRow& r : report.rows)
-    kinds[fmt::format("E {:g} Pa, {:g} shown_ms, {:g}, {}, {} thread{}", r.youngs_modulus_pa, 1e3 * r.step_s,
+    kinds[fmt::format("E {:g} Pa, {:g} ms, {:g}, {}, {} thread{}", r.youngs_modulus_pa, 1e3 * r.step_s,
                       r.linear_rtol, r.linear_solver, r.threads, r.threads > 1 ? "s" : "")]
         .push_back(&r);
   return kinds;
@@ -202,8 +202,7 @@ void print_exponents(const FemBenchReport& report) {
   }
   if (rows.empty()) return;
   fmt::print(
-      "growth with the number of nodes n: exponent e of shown_ms ~ n^e, and in brackets that of the "
-      "limit\n{}\n"
+      "growth with the number of nodes n: exponent e of ms ~ n^e, and in brackets that of the limit\n{}\n"
       "  with less surface there is more to a node: tetrahedra grow with {:.3f}, blocks of the matrix with "
       "{:.3f}\n\n",
       report::format_table({"kind", "force", "matrix", "factor", "solve", "step"}, rows), tetrahedra, blocks);
@@ -220,22 +219,20 @@ void print_published(const FemBenchReport& report, const bench::PublishedTimings
     fmt::print(
         "others on this beam at E = 1e5, one thread, quoted (measured once on the reference machine, not "
         "here): compare with \"scaled\"\n{}\n",
-        report::format_table(
-            {"program", "size", "10 shown_ms step [shown_ms]", "1 shown_ms step [shown_ms]", "tolerance"},
-            rows));
+        report::format_table({"program", "size", "10 ms step [ms]", "1 ms step [ms]", "tolerance"}, rows));
 }
 
 void write_accuracy(const std::vector<bench::AccuracyPoint>& points, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   report::Plot plot;
   plot.title = "Fall of the beam: error against run time";
-  plot.x_label = "run time of 10 shown_ms of motion, one thread [shown_ms]";
+  plot.x_label = "run time of 10 ms of motion, one thread [ms]";
   plot.y_label = "error of the end";
   plot.log_x = plot.log_y = true;
   std::map<std::string, report::Series> kinds;
   for (const bench::AccuracyPoint& p : points) {
     report::Series& series =
-        kinds[p.step_s > 0.0 && !p.quoted ? fmt::format("{}, {:g} shown_ms", p.program, 1e3 * p.step_s)
+        kinds[p.step_s > 0.0 && !p.quoted ? fmt::format("{}, {:g} ms", p.program, 1e3 * p.step_s)
                                           : p.program + (p.quoted ? " (quoted)" : "")];
     series.mark = report::Mark::kLinePoints;
     series.x.push_back(p.ms_of_ten_ms);
@@ -269,8 +266,7 @@ void bench_accuracy(const BenchArguments& arguments) {
       "and material, over the way fallen (norm of mass)\n  set-up: a first step, done once a mesh and no "
       "part of the time beside it\n{}\n",
       size,
-      report::format_table({"program", "h [shown_ms]", "tolerance", "shown_ms of 10 shown_ms", "error",
-                            "set-up [shown_ms]", ""},
+      report::format_table({"program", "h [ms]", "tolerance", "ms of 10 ms", "error", "set-up [ms]", ""},
                            rows));
   if (!arguments.folder.empty()) write_accuracy(points, arguments.folder);
 }
@@ -281,7 +277,7 @@ void write_files(const FemBenchReport& report, const std::filesystem::path& fold
   report::Plot plot;
   plot.title = "One linearly implicit step";
   plot.x_label = "nodes";
-  plot.y_label = "shown_ms";
+  plot.y_label = "ms";
   plot.log_x = plot.log_y = true;
   for (const auto& [kind, members] : by_kind(report)) {
     report::Series series;
