@@ -79,6 +79,16 @@ class Judgements(Cli):
             run = [row for row in csv.DictReader(table) if row["status"] != "not tried"]
         self.assertEqual(self.rows(database), len(run))
 
+    def test_bench_fem_names_units(self):
+        text = self.good("bench", "fem", "--size", "XS", "--threads", "1", "--steps", "3", "--linear-rtol",
+                         "1e-3", "--youngs-modulus-pa", "1e5", "--linear-solver", "cholmod", "-o", "out")
+        self.assertRegex(text, r"(?m)^size +nodes +E \[Pa\] +h \[ms\] .* step \[ms\] ")
+        self.assertRegex(text, r"(?m)^size .* limit \[ms\] *$")
+        self.assertRegex(text, r"(?m)^size +thr +stage +least \[ms\] +median \[ms\] +least \[ns/tet\]")
+        plot = (self.folder / "out/bench-fem.svg").read_text()
+        self.assertIn(">ms<", plot)
+        self.assertIn("E 100000 Pa, 10 ms, 0.001, cholmod, 1 thread", plot)
+
     def test_bench_contact_prints_its_stages(self):
         text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64", "-o", "out")
         spread = r"\d+\.\d+ / \d+\.\d+ / \d+\.\d+"
