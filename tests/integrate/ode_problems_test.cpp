@@ -127,5 +127,23 @@ TEST_P(StiffEquations, Robertson) {
   EXPECT_NEAR(late.y.sum(), 1.0, 100.0 * rtol());
 }
 
+// y' = -y to 157 times, at each of which the last step is shortened, and the factor of the steps before kept
+// where it is shortened by less than a fifth.  On a linear equation every solve with a fresh factor converges
+// at once: a test of convergence that remembers how fast takes the first correction with the old factor,
+// wrong by |h / h' - 1|, for exact (findings/sundials-7-arkstep-trusts-an-old-factor.sh): errors of 1e3 to
+// 1e6 rtol by most tables, where all stay below 3.
+TEST_P(StiffEquations, LinearDecayToAnyStopTime) {
+  const Equation e{[](const VecX& y, VecX& f) { f = -y; }, [](const VecX&, MatX& J) { J << -1.0; },
+                   VecX::Ones(1), VecX::Ones(1)};
+  double worst = 0.0;
+  for (int i = 0; i < 157; ++i) {
+    const double end = 0.3 + 0.0173 * i;
+    const Answer a = integrate_to(e, GetParam(), rtol(), {end});
+    ASSERT_TRUE(a.result.ok()) << a.result.message;
+    worst = std::max(worst, std::abs(a.y[0] * std::exp(end) - 1.0));
+  }
+  EXPECT_LT(worst, 10.0 * rtol());
+}
+
 }  // namespace
 }  // namespace palpate
