@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "commands.h"
+#include "help_formatter.h"
 #include "palpate/core/error.h"
 #include "palpate/store/provenance.h"
 
@@ -862,7 +863,7 @@ Invocation parse(int argc, char** argv) {
     return fmt::format("palpate {} (commit {}, {}, {})", made_by.version, made_by.commit, made_by.compiler,
                        made_by.build_type);
   });
-  app.get_formatter()->column_width(34);
+  app.formatter(std::make_shared<HelpFormatter>());
   app.add_flag("-q,--quiet", invocation.quiet, "only errors");
   app.add_flag("-v,--verbose", invocation.verbose, "details, too");
   app.footer(kExamples);

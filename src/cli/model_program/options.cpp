@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <sstream>
 
+#include "help_formatter.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/store/provenance.h"
@@ -117,7 +119,7 @@ ModelArguments parse_model(int argc, char** argv) {
   std::string creases = "auto";
   std::vector<std::string> regions;
   CLI::App app(kDescription, "palpate model");
-  app.get_formatter()->column_width(34);
+  app.formatter(std::make_shared<HelpFormatter>());
   app.footer(kExamples);
   app.set_version_flag("--version",
                        [] { return fmt::format("palpate model {}", store::provenance().version); });
