@@ -16,8 +16,9 @@ class Distance final : public Contender {
   Distance(const Motion& motion, int cuts)
       : a_(skin_of(motion.body(0))),
         b_(skin_of(motion.body(1))),
-        contact_(a_, b_,
-                 {.stiffness_pa_m = motion.description.contacts.front().stiffness_pa_m, .cuts = cuts}),
+        contact_(
+            a_, b_,
+            {.stiffness_pa_m = motion.description.contacts.front().stiffness_pa_m, .cuts = {cuts, cuts}}),
         cuts_(cuts) {
     for (int k = 0; k < 2; ++k)
       offsets_[k] = motion.world->state.layout().find(motion.body(k).block_id)->q_offset;

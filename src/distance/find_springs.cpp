@@ -15,6 +15,10 @@ namespace {
 /// Part by which a bound is loosened, for the rounding of the few operations that make it.
 constexpr double kRounding = 1e-12;
 
+Eigen::AlignedBox3d widened(const Eigen::AlignedBox3d& box, double by) {
+  return {box.min() - Vec3::Constant(by), box.max() + Vec3::Constant(by)};
+}
+
 /// The distinct faces of a packet, -1 at the end.
 template <std::size_t count>
 void keep_faces(const Packet& packet, std::array<int, count>& faces) {
@@ -33,22 +37,61 @@ void SkinContact::move(const double* nodes_a, const double* nodes_b) {
                        (surfaces_[0].shift() - surfaces_[1].shift()).norm()) *
                       (1.0 + kRounding);
   if (std::isfinite(step)) travelled_ += step;
-  springs_.clear();
 }
 
-void SkinContact::find(const double* nodes_a, const double* nodes_b) {
+void SkinContact::find(const double* nodes_a, const double* nodes_b, double near) {
   move(nodes_a, nodes_b);
-  const Eigen::AlignedBox3d both = surfaces_[0].box().intersection(surfaces_[1].box());
+  springs_.clear();
+  const Eigen::AlignedBox3d both =
+      widened(surfaces_[0].box(), near).intersection(widened(surfaces_[1].box(), near));
   if (both.isEmpty()) return;
   for (int side = 0; side < (spec_.two_sided ? 2 : 1); ++side) {
     searches_[1 - side]->begin(both.center(), both);
-    find_side(side);
+    find_side(side, near);
   }
 }
 
-void SkinContact::collect_clusters(int side) {
+void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
+  move(nodes_a, nodes_b);
+  if (springs_.empty()) return;
+  const Eigen::AlignedBox3d both = surfaces_[0].box().merged(surfaces_[1].box());
+  for (LaneSearch* search : {searches_[0].get(), searches_[1].get()}) search->begin(both.center(), both);
+  const auto cluster = [&](const Spring& s) {
+    return points_[s.side][static_cast<std::size_t>(s.point)].face / kClusterFaces;
+  };
+  for (std::size_t first = 0, last = 0; first < springs_.size(); first = last) {
+    const Spring& head = springs_[first];
+    while (last < springs_.size() && last < first + kPacket && springs_[last].side == head.side &&
+           cluster(springs_[last]) == cluster(head))
+      ++last;
+    follow(first, last);
+  }
+}
+
+/// Springs of points of one cluster, at most a packet.
+void SkinContact::follow(std::size_t first, std::size_t last) {
+  const int side = springs_[first].side;
+  const Surface& other = surfaces_[1 - side];
+  LaneSearch& search = *searches_[1 - side];
+  Packet packet;
+  int faces[kPacket];
+  for (std::size_t i = first; i < last; ++i) {
+    search.set_point(packet, static_cast<int>(i - first), position(springs_[i]));
+    faces[i - first] = springs_[i].face;
+  }
+  search.finish(packet, static_cast<int>(last - first));
+  search.start(packet, faces, static_cast<int>(last - first));
+  search.search(&packet, 1);
+  for (std::size_t i = first; i < last; ++i) {
+    const int face = packet.face[i - first];
+    const Foot foot = other.nearest_around(position(springs_[i]), face < 0 ? springs_[i].face : face);
+    set_foot(springs_[i], foot, other.is_inside(foot));
+  }
+}
+
+void SkinContact::collect_clusters(int side, double near) {
   const Surface& own = surfaces_[side];
-  const Eigen::AlignedBox3d& other = surfaces_[1 - side].box();
+  const Eigen::AlignedBox3d other = widened(surfaces_[1 - side].box(), near);
   const std::vector<ClusterNode>& tree = own.skin().tree;
   candidates_.clear();
   int open[64], depth = 0;
@@ -60,17 +103,17 @@ void SkinContact::collect_clusters(int side) {
     if (node.right) {
       open[depth++] = node.right;
       open[depth++] = i + 1;
-    } else if (clear_[side][static_cast<std::size_t>(node.begin)] < travelled_) {
+    } else if (clear_[side][static_cast<std::size_t>(node.begin)] < travelled_ + near) {
       candidates_.push_back({node.begin, i});
     }
   }
 }
 
-void SkinContact::find_side(int side) {
+void SkinContact::find_side(int side, double near) {
   const Surface& own = surfaces_[side];
   const Surface& other = surfaces_[1 - side];
   LaneSearch& search = *searches_[1 - side];
-  collect_clusters(side);
+  collect_clusters(side, near);
   for (std::size_t first = 0; first < candidates_.size(); first += kPacket) {
     const std::size_t used = std::min<std::size_t>(kPacket, candidates_.size() - first);
     Packet packet;
@@ -93,15 +136,15 @@ void SkinContact::find_side(int side) {
       const double radius = 0.5 * box.diagonal().norm() * (1.0 + kRounding);
       const double least =
           std::sqrt(static_cast<double>(packet.distance2[lane])) - 2.0 * search.slack() - radius;
-      if (least > 0.0 && !other.is_inside(other.nearest_around(box.center(), face)))
+      if (least > near && !other.is_inside(other.nearest_around(box.center(), face)))
         clear_[side][cluster] = travelled_ + least;
       else
-        find_cluster(side, at.cluster, face);
+        find_cluster(side, at.cluster, face, near);
     }
   }
 }
 
-void SkinContact::find_cluster(int side, int cluster, int near) {
+void SkinContact::find_cluster(int side, int cluster, int start, double near) {
   const Surface& other = surfaces_[1 - side];
   LaneSearch& search = *searches_[1 - side];
   const auto c = static_cast<std::size_t>(cluster);
@@ -115,7 +158,7 @@ void SkinContact::find_cluster(int side, int cluster, int near) {
       search.set_point(packet, lane,
                        position(side, points_[side][static_cast<std::size_t>(begin + kPacket * p + lane)]));
     search.finish(packet, used);
-    int faces[kPacket + 1] = {near};
+    int faces[kPacket + 1] = {start};
     const auto& feet = feet_[side][static_cast<std::size_t>(first_packet_[side][c] + p)];
     std::copy(feet.begin(), feet.end(), faces + 1);
     search.start(packet, faces, kPacket + 1);
@@ -125,17 +168,22 @@ void SkinContact::find_cluster(int side, int cluster, int near) {
     const Packet& packet = packets[static_cast<std::size_t>(p)];
     keep_faces(packet, feet_[side][static_cast<std::size_t>(first_packet_[side][c] + p)]);
     for (int lane = 0; lane < std::min(kPacket, end - begin - kPacket * p); ++lane) {
-      if (packet.height[lane] > search.slack() || packet.face[lane] < 0) continue;  // in front of its face
+      if (packet.face[lane] < 0) continue;
+      const bool is_in_front = packet.height[lane] > search.slack();  // of its face
+      if (is_in_front && !(std::sqrt(static_cast<double>(packet.distance2[lane])) < near + search.slack()))
+        continue;
       const int point = begin + kPacket * p + lane;
       const Foot foot = other.nearest_around(position(side, points_[side][static_cast<std::size_t>(point)]),
                                              packet.face[lane]);
-      if (other.is_inside(foot)) add_spring(side, point, foot);
+      const bool is_inside = other.is_inside(foot);
+      if (is_inside || foot.at.distance2 < near * near) add_spring(side, point, foot, is_inside);
     }
   }
 }
 
 void SkinContact::find_by_reference(const double* nodes_a, const double* nodes_b) {
   move(nodes_a, nodes_b);
+  springs_.clear();
   find_side_by_reference(0);
   if (spec_.two_sided) find_side_by_reference(1);
 }
@@ -155,7 +203,7 @@ void SkinContact::find_side_by_reference(int side) {
     for (int p = cluster_points_[side][cluster]; p < cluster_points_[side][cluster + 1]; ++p) {
       const Foot foot = other.nearest(position(side, points_[side][static_cast<std::size_t>(p)]), start);
       start = foot.face;
-      if (other.is_inside(foot)) add_spring(side, p, foot);
+      if (other.is_inside(foot)) add_spring(side, p, foot, true);
     }
   }
 }

@@ -16,7 +16,8 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& sp
   for (int side = 0; side < 2; ++side) {
     const Skin& skin = surfaces_[side].skin();
     const auto clusters = static_cast<std::size_t>(skin.cluster_count());
-    if (side == 0 || spec.two_sided) points_[side] = contact_points(skin, spec.cuts);
+    if (side == 0 || spec.two_sided)
+      points_[side] = contact_points(skin, spec.cuts[static_cast<std::size_t>(side)]);
     cluster_points_[side].assign(clusters + 1, 0);
     for (const ContactPoint& p : points_[side])
       ++cluster_points_[side][static_cast<std::size_t>(p.face / kClusterFaces) + 1];
@@ -50,31 +51,58 @@ Vec3 SkinContact::position(int side, const ContactPoint& point) const {
   return surfaces_[side].point(point.face, point.weights);
 }
 
-void SkinContact::add_spring(int side, int point, const Foot& foot) {
+Vec3 SkinContact::position(const Spring& spring) const {
+  return position(spring.side, points_[spring.side][static_cast<std::size_t>(spring.point)]);
+}
+
+void SkinContact::set_foot(Spring& spring, const Foot& foot, bool is_inside) const {
+  const double distance = std::sqrt(foot.at.distance2);
+  spring.face = foot.face;
+  spring.weights = foot.at.weights;
+  spring.reach = -foot.at.away;
+  spring.gap = is_inside ? -distance : distance;
+}
+
+void SkinContact::add_spring(int side, int point, const Foot& foot, bool is_inside) {
   const ContactPoint& p = points_[side][static_cast<std::size_t>(point)];
   const double factor = spec_.two_sided ? 0.5 * spec_.stiffness_pa_m : spec_.stiffness_pa_m;
   springs_.push_back(
-      {side, point, foot.face, foot.at.weights, -foot.at.away, factor * p.area, factor * p.coarse});
+      {.side = side, .point = point, .stiffness = factor * p.area, .coarse = factor * p.coarse});
+  set_foot(springs_.back(), foot, is_inside);
+}
+
+// A direction between two points is rounded by the unit in the last place of their coordinates over their
+// distance: 2e-7 at the distance below which the pseudonormal is taken, where the spring has no force to
+// speak of.
+Vec3 SkinContact::outward(const Spring& spring) const {
+  constexpr double kCoincide = 1e-9;  // of the coordinates
+  const Surface& other = surfaces_[1 - spring.side];
+  const double size =
+      std::max(other.box().min().cwiseAbs().maxCoeff(), other.box().max().cwiseAbs().maxCoeff());
+  if (std::abs(spring.gap) > kCoincide * size) return -spring.reach / spring.gap;
+  return other.outward({spring.face, {.weights = spring.weights}}).normalized();
 }
 
 double SkinContact::energy() const {
   double sum = 0.0;
-  for (const Spring& s : springs_) sum += 0.5 * s.stiffness * s.reach.squaredNorm();
+  for (const Spring& s : springs_)
+    if (s.gap < 0.0) sum += 0.5 * s.stiffness * s.reach.squaredNorm();
   return sum;
 }
 
 double SkinContact::deepest() const {
   double most = 0.0;
-  for (const Spring& s : springs_) most = std::max(most, s.reach.squaredNorm());
-  return std::sqrt(most);
+  for (const Spring& s : springs_) most = std::max(most, -s.gap);
+  return most;
 }
 
 Resultant SkinContact::resultant() const {
   Resultant out;
   for (const Spring& s : springs_) {
+    if (s.gap >= 0.0) continue;
     const Vec3 force = (s.side == 0 ? s.stiffness : -s.stiffness) * s.reach;
     out.force += force;
-    out.moment += position(s.side, points_[s.side][static_cast<std::size_t>(s.point)]).cross(force);
+    out.moment += position(s).cross(force);
   }
   return out;
 }
@@ -82,7 +110,8 @@ Resultant SkinContact::resultant() const {
 double SkinContact::largest_share() const {
   const double all = resultant().force.norm();
   double most = 0.0;
-  for (const Spring& s : springs_) most = std::max(most, s.stiffness * s.reach.norm());
+  for (const Spring& s : springs_)
+    if (s.gap < 0.0) most = std::max(most, s.stiffness * s.reach.norm());
   return all > 0.0 ? most / all : 0.0;
 }
 
@@ -90,6 +119,7 @@ double SkinContact::largest_share() const {
 double SkinContact::quadrature_error() const {
   Vec3 all = Vec3::Zero(), coarse = Vec3::Zero();
   for (const Spring& s : springs_) {
+    if (s.gap >= 0.0) continue;
     const double sign = s.side == 0 ? 1.0 : -1.0;
     all += sign * s.stiffness * s.reach;
     coarse += sign * s.coarse * s.reach;
@@ -160,7 +190,8 @@ void SkinContact::add_to_nodes(double* nodes_a, double* nodes_b) {
 }
 
 void SkinContact::add_force(double* nodes_a, double* nodes_b) {
-  for (const Spring& s : springs_) add_to_vertices(s, s.stiffness * s.reach);
+  for (const Spring& s : springs_)
+    if (s.gap < 0.0) add_to_vertices(s, s.stiffness * s.reach);
   add_to_nodes(nodes_a, nodes_b);
 }
 
@@ -173,7 +204,8 @@ void SkinContact::apply_stiffness(const double* v_a, const double* v_b, double* 
       out += skin.weights(k, v) * Eigen::Map<const Vec3>(of[side] + 3 * skin.nodes(k, v));
     return out;
   };
-  for (const Spring& s : springs_) add_to_vertices(s, spring_matrix(s) * difference(s, vertex_value));
+  for (const Spring& s : springs_)
+    if (s.gap < 0.0) add_to_vertices(s, spring_matrix(s) * difference(s, vertex_value));
   add_to_nodes(y_a, y_b);
 }
 

@@ -163,7 +163,7 @@ Vec3 Surface::unit_normal(int face) const {
   return size > 0.0 ? Vec3(normal / size) : Vec3::Zero();
 }
 
-bool Surface::is_inside(const Foot& foot) const {
+Vec3 Surface::outward(const Foot& foot) const {
   const Vec3& w = foot.at.weights;
   Vec3 normal = unit_normal(foot.face);
   const int zeros = (w[0] == 0.0) + (w[1] == 0.0) + (w[2] == 0.0);
@@ -181,7 +181,7 @@ bool Surface::is_inside(const Foot& foot) const {
       normal += std::atan2(e.cross(g).norm(), e.dot(g)) * unit_normal(face);
     }
   }
-  return foot.at.away.dot(normal) < 0.0;
+  return normal;
 }
 
 }  // namespace palpate::distance

@@ -15,7 +15,7 @@ double ratio_to_law(const Body& sphere, const Body& box, bool two_sided, bool of
   Body ball = sphere;
   ball.place(rotation({0.4, 0.3, 0.2}), {0.003, 0.002, 0.1 + kRadius - depth});
   SkinContact contact(of_box ? box.skin : ball.skin, of_box ? ball.skin : box.skin,
-                      {.stiffness_pa_m = kStiffness, .cuts = 1, .two_sided = two_sided});
+                      {.stiffness_pa_m = kStiffness, .cuts = {1, 1}, .two_sided = two_sided});
   contact.find(of_box ? box.at() : ball.at(), of_box ? ball.at() : box.at());
   const Vec3 force = (of_box ? -1 : 1) * contact.resultant().force;
   EXPECT_LT(force.head<2>().norm(), 2e-3 * force.z());
@@ -58,7 +58,7 @@ TEST(SkinContact, PrintedQuadratureErrorBoundsTheTrueOne) {
   Pair pair;
   SkinContactSpec spec{.stiffness_pa_m = kStiffness};
   SkinContact once(pair.a.skin, pair.b.skin, spec);
-  spec.cuts = 4;
+  spec.cuts = {4, 4};
   SkinContact refined(pair.a.skin, pair.b.skin, spec);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> turn(-0.2, 0.2), shift(-0.004, 0.004);
@@ -82,7 +82,7 @@ TEST(SkinContact, ForceIsTheGradientOfTheEnergy) {
   Pair pair;
   for (const bool two_sided : {true, false}) {
     SkinContact contact(pair.a.skin, pair.b.skin,
-                        {.stiffness_pa_m = kStiffness, .cuts = 1, .two_sided = two_sided});
+                        {.stiffness_pa_m = kStiffness, .cuts = {1, 1}, .two_sided = two_sided});
     Points fa, fb;
     const double energy = contact_force(contact, pair.a, pair.b, fa, fb);
     ASSERT_GT(contact.springs().size(), 50u);
@@ -172,7 +172,8 @@ TEST(SkinContact, DeepPointsAreFoundHoweverFarTheSkinIs) {
   const Body large = shell(mesh::sphere(0.1, 24));
   Body small = shell(mesh::sphere(0.01, 6));
   small.place(Vec3(0.03, 0, 0));
-  SkinContact contact(small.skin, large.skin, {.stiffness_pa_m = kStiffness, .cuts = 1, .two_sided = false});
+  SkinContact contact(small.skin, large.skin,
+                      {.stiffness_pa_m = kStiffness, .cuts = {1, 1}, .two_sided = false});
   contact.find(small.at(), large.at());
   EXPECT_EQ(contact.springs().size(), contact.points(0).size());
   EXPECT_NEAR(contact.deepest(), 0.08, 1e-3);
@@ -244,8 +245,8 @@ TEST(SkinContact, FindEqualsTheReference) {
   std::mt19937 random(23);
   std::uniform_real_distribution<double> turn(-1.0, 1.0), shift(-0.01, 0.01);
   const auto compare = [&](const Body& a, Body& b, const Vec3& at, double scale, int cuts) {
-    SkinContact fast(a.skin, b.skin, {.stiffness_pa_m = kStiffness, .cuts = cuts});
-    SkinContact reference(a.skin, b.skin, {.stiffness_pa_m = kStiffness, .cuts = cuts});
+    SkinContact fast(a.skin, b.skin, {.stiffness_pa_m = kStiffness, .cuts = {cuts, cuts}});
+    SkinContact reference(a.skin, b.skin, {.stiffness_pa_m = kStiffness, .cuts = {cuts, cuts}});
     std::size_t springs = 0, elsewhere = 0;
     for (int i = 0; i < 6; ++i) {
       b.place(rotation({turn(random), turn(random), turn(random)}),

@@ -13,19 +13,20 @@ class LaneSearch;
 /// Parameters of the contact between two skins, fixed at assembly.
 struct SkinContactSpec {
   double stiffness_pa_m = 0.0;
-  int cuts = 1;           ///< of the edges of each face, see contact_points()
+  std::array<int, 2> cuts = {1, 1};  ///< of the edges of each skin's faces, see contact_points()
   bool two_sided = true;  ///< points of both skins, with half of the stiffness each; else of the first alone
 };
 
-/// A point of one skin that lies inside the other, tied to its nearest point there.
+/// A point of one skin, tied to its nearest point on the other; it has a force while it lies inside.
 struct Spring {
-  int side = 0;            ///< skin that the point belongs to
-  int point = 0;           ///< number of the point
-  int face = 0;            ///< of the other skin
-  Vec3 weights;            ///< of the face's corners
-  Vec3 reach;              ///< from the point to its foot, y - x [m]
-  double stiffness = 0.0;  ///< [N/m]
-  double coarse = 0.0;     ///< stiffness in the embedded rule [N/m]
+  int side = 0;                 ///< skin that the point belongs to
+  int point = 0;                ///< number of the point
+  int face = 0;                 ///< of the other skin
+  Vec3 weights = Vec3::Zero();  ///< of the face's corners
+  Vec3 reach = Vec3::Zero();    ///< from the point to its foot, y - x [m]
+  double gap = 0.0;             ///< signed distance of the point: -|y - x| inside, |y - x| outside [m]
+  double stiffness = 0.0;       ///< [N/m]
+  double coarse = 0.0;          ///< stiffness in the embedded rule [N/m]
 };
 
 /// Resultant of all springs on the first skin.
@@ -55,13 +56,21 @@ class SkinContact {
   SkinContact(const SkinContact&) = delete;
   SkinContact& operator=(const SkinContact&) = delete;
 
-  /// Finds the springs.  @param nodes_a, nodes_b  x y z of each node [m]
-  void find(const double* nodes_a, const double* nodes_b);
+  /// Finds the springs: of all points inside, and of those outside that are nearer than `near`.
+  /// @param nodes_a, nodes_b  x y z of each node [m]  @param near  [m]
+  void find(const double* nodes_a, const double* nodes_b, double near = 0.0);
+  /// Moves the springs' feet to where they are nearest at other positions: what find() would give for these
+  /// points.  No spring comes or goes, but gaps may change their sign.
+  void follow(const double* nodes_a, const double* nodes_b);
   /// Finds them by Surface::nearest alone, point by point in double precision: what find() is tested against.
   void find_by_reference(const double* nodes_a, const double* nodes_b);
 
   const std::vector<Spring>& springs() const { return springs_; }
   const std::vector<ContactPoint>& points(int side) const { return points_[side]; }
+  Vec3 position(const Spring& spring) const;  ///< of its point [m]
+  /// The direction that leads out of the other skin at the spring's foot, unit: away from the nearest point
+  /// outside and towards it inside, and the pseudonormal of Surface::outward() where the two coincide.
+  Vec3 outward(const Spring& spring) const;
   const Surface& surface(int side) const { return surfaces_[side]; }
   double energy() const;                             ///< U [J]
   double deepest() const;                            ///< largest |x - y| [m]
@@ -86,11 +95,13 @@ class SkinContact {
   static constexpr int kPacket = 16;  ///< points that are searched for together
 
   void move(const double* nodes_a, const double* nodes_b);
-  void find_side(int side);
+  void find_side(int side, double near);
+  void follow(std::size_t first, std::size_t last);
   void find_side_by_reference(int side);
-  void collect_clusters(int side);
-  void find_cluster(int side, int cluster, int near);
-  void add_spring(int side, int point, const Foot& foot);
+  void collect_clusters(int side, double near);
+  void find_cluster(int side, int cluster, int start, double near);
+  void add_spring(int side, int point, const Foot& foot, bool is_inside);
+  void set_foot(Spring& spring, const Foot& foot, bool is_inside) const;
   Vec3 position(int side, const ContactPoint& point) const;
   template <class Of>
   Vec3 difference(const Spring& spring, const Of& vertex_value) const;

@@ -61,10 +61,13 @@ class Surface {
   /// Nearest point among a face and those that share the feature with it where its foot lies, as far as that
   /// leads. Equal to nearest() where `face` holds the nearest point but for rounding.
   Foot nearest_around(const Vec3& x, int face) const;
-  /// Whether x lies inside the skin, from its nearest point.  The sign of (x - y) . N, N the face's normal,
-  /// the sum of those of an edge's two faces, or the sum of those around a vertex weighted by their angles
-  /// (Baerentzen, Aanaes 2005: right for every closed surface).
-  bool is_inside(const Foot& foot) const;
+  /// The pseudonormal N where a foot lies, not of unit length: the face's normal, the sum of those of an
+  /// edge's two faces, or the sum of those around a vertex weighted by their angles (Baerentzen, Aanaes
+  /// 2005).
+  Vec3 outward(const Foot& foot) const;
+  /// Whether x lies inside the skin, from its nearest point: the sign of (x - y) . N, right for every closed
+  /// surface.
+  bool is_inside(const Foot& foot) const { return foot.at.away.dot(outward(foot)) < 0.0; }
 
   SearchCount count() const { return count_; }
 
