@@ -736,7 +736,7 @@ void add_bench(CLI::App& app, Invocation& invocation) {
           "OpenGL opens, gpu; of continuity cpu")
       ->type_name("NAME")
       ->delimiter(',')
-      ->check(CLI::IsMember({"cpu", "gpu", "exact"}));
+      ->check(CLI::IsMember({"cpu", "gpu", "exact", "distance"}));
   command
       ->add_option("--pixels", arguments->pixels,
                    "contact: longer edge of the images; 0: as the scene wants; default 0,256")

@@ -9,6 +9,7 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
 #include "palpate/loop/registries.h"
+#include "palpate/scene/contact_sides.h"
 #include "plan.h"
 
 namespace palpate::compare {
@@ -49,7 +50,7 @@ std::string milliseconds(double s) { return fmt::format("{:.4g} ms", 1e3 * s); }
 
 /// Whether the tool's contact is found in an image: see assemble_contact.
 bool is_image(const Description& d, const ContactSpec& contact) {
-  if (contact.second != "tool" || contact.method == "analytic") return false;
+  if (contact.second != "tool" || !scene::is_in_images(contact)) return false;
   const auto body = std::find_if(d.bodies.begin(), d.bodies.end(),
                                  [&](const SoftBodySpec& one) { return one.name == contact.first; });
   const bool pruned = body != d.bodies.end() && body->proxies;

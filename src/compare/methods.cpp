@@ -7,8 +7,11 @@ namespace palpate::compare {
 namespace {
 
 scene::Description with_method(scene::Description d, const std::string& method) {
-  for (ContactSpec& contact : d.contacts)
-    if (contact.second == "tool") contact.method = method;
+  for (ContactSpec& contact : d.contacts) {
+    if (contact.second != "tool") continue;
+    contact.method = method;
+    if (method != "analytic") contact.gaps = method == "distance" ? "exact" : "linear";
+  }
   return d;
 }
 

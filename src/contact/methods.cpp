@@ -22,6 +22,10 @@ const std::vector<MethodEntry>& method_registry() {
        "exact gaps where there are any; else image space, on a GPU where the machine has one, else on the "
        "processor",
        all_keys()},
+      {"distance",
+       "material points of both skins and their nearest points on the other one: the gradient of an energy, "
+       "continuous; of soft bodies and tools of any shape",
+       part_keys({"gaps"})},
       {"cpu", "image space on the processor: tools of any shape, other soft bodies, a body against itself",
        image_keys()},
       {"gpu", "the same image by OpenGL, without a GPU by Mesa's software rasteriser", image_keys()},

@@ -44,6 +44,7 @@ double friction_speed(const World& world, double length) {
 struct Pair {
   const ContactSpec& spec;
   contact::NodeSurface surface;
+  const Points& rest;  ///< of the surface's vertices
   double candidate_gap, look_ahead;
   std::shared_ptr<proxy::ProxySet> proxies{};
 };
@@ -58,11 +59,15 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
   if (body->skin)
     return {spec,
             {body->block_id, {}, body->skin->rest.faces, body->skin->embedding, body->rest.tets},
+            body->skin->rest.vertices,
             gap,
             look_ahead,
             body->skin->proxies};
-  return {
-      spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap, look_ahead};
+  return {spec,
+          {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces},
+          body->boundary.surface.vertices,
+          gap,
+          look_ahead};
 }
 
 /// Which backend a method in image space is: "auto" takes a GPU where there is one.
@@ -86,8 +91,20 @@ contact::ImageOptions options_of(const Pair& pair) {
   return out;
 }
 
+/// Nearest points of a body and another surface, which both have to be closed.
+template <class... Other>
+std::unique_ptr<contact::SampleSource> distance_source(Pair pair, Other... other) {
+  try {
+    return contact::make_distance_source(std::move(pair.surface), pair.rest, std::move(other)...,
+                                         {pair.candidate_gap, pair.look_ahead});
+  } catch (const Error& error) {
+    fail("contact {} - {}: method \"distance\": {}", pair.spec.first, pair.spec.second, error.what());
+  }
+}
+
 /// Contact of two soft bodies.
-std::unique_ptr<contact::SampleSource> image_source(Pair a, Pair b) {
+std::unique_ptr<contact::SampleSource> pair_source(Pair a, Pair b) {
+  if (a.spec.method == "distance") return distance_source(std::move(a), std::move(b.surface), b.rest);
   if (a.spec.method == "analytic")
     fail("contact {} - {}: two soft bodies meet in image space; use method = \"auto\"", a.spec.first,
          a.spec.second);
@@ -104,7 +121,7 @@ std::unique_ptr<contact::SampleSource> image_source(Pair a, Pair b) {
 /// Contact of one soft body with itself: its bones' regions against each other.
 std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair) {
   const std::string who = fmt::format("contact {} - {}", pair.spec.first, pair.spec.second);
-  if (pair.spec.method == "analytic")
+  if (!scene::is_in_images(pair.spec))
     fail("{}: a body meets itself in image space; use method = \"auto\"", who);
   if (!pair.proxies)
     fail(
@@ -153,6 +170,8 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side,
   const ToolSpec& tool = *side.spec;
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
   const bool sphere = tool.shape == "sphere";
+  if (pair.spec.method == "distance")
+    return distance_source(std::move(pair), tool_surface(tool, world.folder), side.frame_index, motion);
   if (pair.spec.method != "analytic" && !(pair.spec.method == "auto" && sphere && !pair.proxies))
     return image_source(std::move(pair), tool_surface(tool, world.folder), side.proxies, side.frame_index,
                         motion);
@@ -256,7 +275,7 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
     return tool_source(world, *side, std::move(pair));
   if (obstacle != obstacles.end()) return obstacle_source(world, std::move(pair), *obstacle);
   if (spec.second == spec.first) return own_source(world, std::move(pair));
-  if (world.find_body(spec.second)) return image_source(std::move(pair), pair_of(world, spec, spec.second));
+  if (world.find_body(spec.second)) return pair_source(std::move(pair), pair_of(world, spec, spec.second));
   fail("contact {} - {}: nothing is called \"{}\"; name soft bodies, obstacles or \"tool\"", spec.first,
        spec.second, spec.second);
 }

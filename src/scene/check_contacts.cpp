@@ -61,7 +61,7 @@ void check_own_contact(const Document& doc, const std::string& key, const std::s
     refuse(location(doc, key + ".between"), where,
            "a body touches itself with the skin of one bone against that of another, by its proxies: give it "
            "skin = true and proxies = true, or name two things");
-  if (c.method == "analytic")
+  if (!is_in_images(c))
     refuse(location(doc, key + ".method"), where,
            "a body meets itself in image space: leave the method out, or write \"auto\"");
 }
@@ -84,18 +84,26 @@ void check_method(const Document& doc, const std::string& key, const std::string
     }
     c.method = "analytic";
   }
-  if (c.gaps == "exact" && c.method != "analytic")
-    refuse(location(doc, key + ".gaps"), where,
-           sphere_tool
-               ? "gaps = \"exact\" needs the formula of the sphere, and an image is made at a query alone: "
-                 "write method = \"analytic\" and leave out the body's proxies, or remove it"
-               : "gaps = \"exact\" is for obstacles and sphere tools, whose gaps have a formula; an image is "
-                 "made at a query alone: remove it, or refresh the contact more often (contact_refresh_s)");
+  if (c.method == "distance" && !given(doc, key + ".gaps")) c.gaps = "exact";
+  if (c.gaps == "exact" && is_in_images(c))
+    refuse(
+        location(doc, key + ".gaps"), where,
+        sphere_tool
+            ? "gaps = \"exact\" needs the formula of the sphere, and an image is made at a query alone: "
+              "write method = \"analytic\" and leave out the body's proxies, or remove it"
+            : "gaps = \"exact\" is for obstacles and sphere tools, whose gaps have a formula, and for "
+              "method = \"distance\"; an image is made at a query alone: remove it, or refresh the contact "
+              "more often (contact_refresh_s)");
   if (c.depths == "interpolated" && c.samples != "vertex")
     refuse(location(doc, key + ".depths"), where,
            "depths = \"interpolated\" is for vertices: a pixel has a depth of its own; write samples = "
            "\"vertex\" as well, or remove it");
-  if (c.spring == "per_point" && c.method != "analytic" && c.samples != "vertex")
+  if (c.spring == "per_point" && c.method == "distance")
+    refuse(
+        location(doc, key + ".spring"), where,
+        "spring = \"per_point\" is a spring at each colliding vertex, and method = \"distance\" has points "
+        "that stand for areas; remove it");
+  if (c.spring == "per_point" && is_in_images(c) && c.samples != "vertex")
     refuse(location(doc, key + ".spring"), where,
            "spring = \"per_point\" is a spring at each colliding vertex, and samples = \"pixel\" has none; "
            "write samples = \"vertex\" as well, or remove it");
@@ -120,7 +128,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
         if (body.name == name) return body.proxies;
       return false;
     };
-    if (proxies(c.first) != proxies(c.second))
+    if (is_in_images(c) && proxies(c.first) != proxies(c.second))
       refuse(location(doc, key + ".between"), where,
              fmt::format("proxies = true stands in \"{}\" alone; both need it, or neither",
                          proxies(c.first) ? c.first : c.second));

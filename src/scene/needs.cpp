@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/scene/contact_sides.h"
 #include "palpate/scene/hands.h"
 
 namespace palpate::scene {
@@ -89,12 +90,13 @@ bool tools_carry(const Description& d) {
 
 void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const bool any = !d.contacts.empty();
-  const int image = count_if(d.contacts, [](const auto&c) { return c.method != "analytic"; }),
+  const int image = count_if(d.contacts, [](const ContactSpec&c) { return is_in_images(c); }),
+            near = count_if(d.contacts, [](const ContactSpec&c) { return c.method == "distance"; }),
             gpu = count_if(d.contacts, [](const auto&c) { return c.method == "gpu"; }),
             automatic = count_if(d.contacts, [](const auto&c) { return c.method == "auto"; });
   const int rubbing = count_if(d.contacts, [](const auto& c) { return c.friction > 0.0; });
   const int own = count_if(d.contacts, [](const auto& c) { return c.first == c.second; });
-  const std::string no_image = any ? "every contact has an analytic gap" : "no [[contact]]";
+  const std::string no_image = any ? "every contact has exact gaps" : "no [[contact]]";
   const bool tied = tools_carry(d);
   out.push_back({"contact", any || tied,
                  any    ? fmt::format("{} [[contact]]", d.contacts.size())
@@ -107,6 +109,10 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
                  own > 0 ? fmt::format("{} [[contact]] of a body with itself", own)
                  : any   ? "every [[contact]] names two"
                          : "no [[contact]]"});
+  out.push_back({"nearest points", near > 0,
+                 near > 0 ? fmt::format("{} [[contact]] with method \"distance\"", near)
+                 : any    ? "no contact has method \"distance\""
+                          : "no [[contact]]"});
   out.push_back({"contact plane", image > 0,
                  image > 0 ? fmt::format("{} contact in image space needs its plane", image) : no_image});
   out.push_back(

@@ -22,7 +22,7 @@ ALLOWED = {
     "distance": ["core", "mesh"],
     "proxy": ["core", "mesh"],
     "gl": ["core"],
-    "contact": ["core", "mesh", "proxy", "dynamics", "gl"],
+    "contact": ["core", "mesh", "proxy", "distance", "dynamics", "gl"],
     "simbody": [],  # Simbody's headers as its library was built; see WRAPPERS
     "tool": ["core", "dynamics", "simbody"],
     "device": ["core"],

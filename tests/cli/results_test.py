@@ -240,6 +240,20 @@ class Results(Cli):
         self.assertIn("no [[contact]]",
                       self.refused("run", "cantilever", "--picture", "--shade", "penetration"))
 
+    def test_nearest_points_press_as_images_do(self):
+        """The same force to a percent, and smoother: error control takes fewer steps."""
+        force, steps = {}, {}
+        for method in ("cpu", "distance"):
+            self.good("run", "press-ball", "--duration-s", "0.3", "--set", f"contact.1.method={method}",
+                      "-o", method)
+            with (self.folder / method / "force.csv").open(newline="") as file:
+                force[method] = max(float(row["force_z_n"]) for row in csv.DictReader(file))
+            summary = json.loads((self.folder / method / "summary.json").read_text())
+            steps[method] = summary["figures"]["counts"]["steps"]
+        self.assertGreater(force["cpu"], 0.4)
+        self.assertAlmostEqual(force["distance"] / force["cpu"], 1.0, delta=0.01)
+        self.assertLess(steps["distance"], steps["cpu"])
+
     def test_the_order_of_a_contacts_names_changes_no_byte(self):
         swapped = [f"contact.{i}.between={names}" for i, names in enumerate(
             ['["floor", "slab"]', '["slab", "ball"]', '["tool", "ball"]', '["floor", "tool"]'])]

@@ -101,6 +101,29 @@ inline Touching on_tool(contact::SampleRule samples, bool pruned, bool in_state)
   return out;
 }
 
+/// The same ball by nearest points.
+inline Touching near_tool(bool in_state) {
+  const Soft soft = soft_skin();
+  Touching out;
+  out.state = soft.state;
+  const auto frame = add_frame(out, tool_pose(), in_state);
+  TriMesh tool = sphere(Vec3::Zero(), 0.6, 16);
+  for (auto x : tool.vertices.colwise())
+    x = tool_pose().inverse() * Vec3(x + soft.bottom - Vec3(0.05, 0.02, 0.45));
+  out.source = contact::make_distance_source(soft.surface, mesh::sphere(1.0, 12).vertices, tool, 0, frame,
+                                             {.candidate_gap = 0.05});
+  return out;
+}
+
+inline Touching two_near() {
+  TwoBalls balls;
+  Touching out;
+  out.source = contact::make_distance_source(balls.a.surface, balls.a.model.skin.vertices, balls.b.surface,
+                                             balls.b.model.skin.vertices, {.candidate_gap = 0.02});
+  out.state = balls.state;
+  return out;
+}
+
 inline Touching two_soft(contact::SampleRule samples, bool pruned) {
   TwoBalls balls;
   balls.samples = samples;
@@ -164,6 +187,8 @@ inline std::vector<TouchingKind> touching_kinds() {
     out.push_back({"two skins, unpruned, " + name, [=] { return touching::two_soft(samples, false); }, false,
                    vertices});
   }
+  out.push_back({"a skin on a tool, nearest points", [] { return touching::near_tool(true); }, false});
+  out.push_back({"two skins, nearest points", [] { return touching::two_near(); }, false});
   out.push_back({"a body against itself", [] { return touching::itself(); }});
   return out;
 }

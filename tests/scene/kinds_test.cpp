@@ -191,7 +191,8 @@ TEST(Kinds, ContactMethods) {
       with({"contact.1.method=vertex"}),
       "--set contact.1.method=vertex: contact between \"ball\" and \"tool\": method = \"vertex\" is no "
       "method; obstacles and spheres are sampled at the vertices by method = \"analytic\", and for a tool of "
-      "another shape or a soft body write samples = \"vertex\" (known: analytic, auto, cpu, gpu, exact)");
+      "another shape or a soft body write samples = \"vertex\" (known: analytic, auto, distance, cpu, gpu, "
+      "exact)");
   EXPECT_NE(with({"contact.1.method=pixel"}).find("is no method; write samples = \"pixel\""),
             std::string::npos);
   EXPECT_EQ(with({"contact.1.method=cpu", "contact.1.samples=vertex", "contact.1.depths=interpolated"}),
@@ -201,7 +202,7 @@ TEST(Kinds, ContactMethods) {
             "\"interpolated\" is for vertices: a pixel has a depth of its own; write samples = \"vertex\" as "
             "well, or remove it");
   EXPECT_NE(with({"contact.1.method=spheres"})
-                .find("method = \"spheres\" is not known (known: analytic, auto, cpu, gpu, exact)"),
+                .find("method = \"spheres\" is not known (known: analytic, auto, distance, cpu, gpu, exact)"),
             std::string::npos);
   EXPECT_NE(with({"compare.contact_methods=[\"analytic\", \"vertex\"]"})
                 .find("compare: contact_methods = \"vertex\" is no method; obstacles"),

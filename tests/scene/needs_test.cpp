@@ -48,7 +48,10 @@ TEST(Needs, PressBall) {
   EXPECT_FALSE(press.at("gravity"));
   auto image = used("press-ball", {"contact.1.method=gpu"});
   EXPECT_TRUE(image.at("gl") && image.at("contact plane"));
-  EXPECT_FALSE(image.at("broad phase"));
+  EXPECT_FALSE(image.at("broad phase") || image.at("nearest points"));
+  auto near = used("press-ball", {"contact.1.method=distance"});
+  EXPECT_TRUE(near.at("nearest points"));
+  EXPECT_FALSE(near.at("contact plane") || near.at("gl"));
   auto quiet = used("press-ball", {"record.states=false", "record.forces=false"});
   EXPECT_FALSE(quiet.at("run file") || quiet.at("force file"));
 }

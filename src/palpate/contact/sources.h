@@ -118,4 +118,22 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<p
 std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
                                                 const Points& rest_nodes, const ImageOptions& options);
 
+struct DistanceOptions {
+  double candidate_gap = 0.0;  ///< points nearer than this are kept as candidates [m]
+  double look_ahead = 0.0;     ///< [s] to the next query: points that may come near until then are kept, too
+};
+
+/// Nearest points (src/contact/distance_source.cpp): material points of both skins, fixed at assembly, each
+/// with the nearest point of the other one.  With a pressure k |gap| their forces are those of an energy,
+/// continuous wherever nearest points are, and of each point on one line with its opposite.
+/// @param rest_a, rest_b  vertices of the surfaces at rest [m]
+/// @throws Error where a surface is not closed, or a face of it has no area
+std::unique_ptr<SampleSource> make_distance_source(NodeSurface a, const Points& rest_a, NodeSurface b,
+                                                   const Points& rest_b, const DistanceOptions& options);
+/// A soft surface and a rigid one in a frame.
+/// @param rest  vertices of the soft one at rest [m]
+std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest, TriMesh rigid,
+                                                   int frame, std::shared_ptr<MovingFrame> motion,
+                                                   const DistanceOptions& options);
+
 }  // namespace palpate::contact

@@ -7,4 +7,9 @@ namespace palpate::scene {
 /// obstacles.  So the result does not depend on which is named first, to the last bit.
 void order_sides(const Description& description, ContactSpec& contact);
 
+/// Whether a contact is seen in images: by all methods but those with exact gaps.
+inline bool is_in_images(const ContactSpec& contact) {
+  return contact.method != "analytic" && contact.method != "distance";
+}
+
 }  // namespace palpate::scene
