@@ -164,6 +164,26 @@ TEST(DistanceSource, FollowsAsAQueryFinds) {
   }
 }
 
+// Two soft bodies that slide far between queries: the tangent stays within the blocks that the query said.
+TEST(DistanceSource, TangentOfWhatFollowsStaysInThePattern) {
+  Balls balls(Balls::Other::kSoft, "exact");
+  dynamics::BorderedMatrix A = step_matrix(balls.term, balls.a.state, 1.0, 0.0);
+  const dynamics::Block* block = balls.a.state.layout().find(balls.b.block_id);
+  for (int i = 0; i < block->q_size; i += 3) {
+    auto x = balls.a.state.q().segment<3>(block->q_offset + i);
+    x = quaternion_of(Vec3(0.0, 0.0, 0.6)) * Vec3(x);
+  }
+  const double before =
+      A.body.values().empty()
+          ? 0.0
+          : Eigen::Map<const VecX>(A.body.values().data(), static_cast<Eigen::Index>(A.body.values().size()))
+                .norm();
+  EXPECT_NO_THROW(balls.term.add_tangent(balls.a.state.view(), 1.0, 0.0, A));
+  EXPECT_NE(Eigen::Map<const VecX>(A.body.values().data(), static_cast<Eigen::Index>(A.body.values().size()))
+                .norm(),
+            before);
+}
+
 // A ball of radius R, delta deep in a half-space: k pi R delta^2 (1 - delta / (3 R)), and no moment about its
 // middle.
 TEST(DistanceSource, BallInHalfSpace) {
