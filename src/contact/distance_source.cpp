@@ -31,8 +31,6 @@
 namespace palpate::contact {
 namespace {
 
-constexpr int kMostCuts = 16;
-
 double mean_edge(const distance::Skin& skin, const Points& vertices) {
   double sum = 0.0;
   for (Eigen::Index f = 0; f < skin.faces.cols(); ++f)
@@ -49,7 +47,7 @@ std::array<int, 2> cuts_of(const distance::Skin& a, const Points& rest_a, const 
   const double edge_a = mean_edge(a, rest_a), edge_b = mean_edge(b, rest_b);
   const auto cuts = [](double edge, double other_edge, const Points& other) {
     const double spacing = std::max(other_edge, proxy::least_width(other) / 8.0);
-    return static_cast<int>(std::clamp(std::ceil(edge / spacing), 1.0, double{kMostCuts}));
+    return static_cast<int>(std::clamp(std::ceil(edge / spacing), 1.0, double{distance::kMostCuts}));
   };
   return {cuts(edge_a, edge_b, rest_b), cuts(edge_b, edge_a, rest_a)};
 }

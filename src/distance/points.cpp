@@ -7,9 +7,6 @@
 namespace palpate::distance {
 namespace {
 
-/// Largest number of parts of an edge: 384 points per face.
-constexpr int kMostCuts = 16;
-
 /// Corners of the similar triangles, at i, j and k = n - i - j parts from the face's edges.  One inside the
 /// face belongs to six triangles, one on an edge to three of this face and three beyond it, a vertex to one
 /// per face.

@@ -84,15 +84,21 @@ inline Touching on_shape(const std::string& shape, bool skin, bool in_state) {
   return out;
 }
 
-/// A rigid ball in image space, pressed into the skin from below.
+/// A rigid ball in the axes of tool_pose(), pressed into the body from below.
+inline TriMesh tool_ball(const Soft& soft) {
+  TriMesh tool = sphere(Vec3::Zero(), 0.6, 16);
+  for (auto x : tool.vertices.colwise())
+    x = tool_pose().inverse() * Vec3(x + soft.bottom - Vec3(0.05, 0.02, 0.45));
+  return tool;
+}
+
+/// It in image space.
 inline Touching on_tool(contact::SampleRule samples, bool pruned, bool in_state) {
   const Soft soft = soft_skin();
   Touching out;
   out.state = soft.state;
   const auto frame = add_frame(out, tool_pose(), in_state);
-  TriMesh tool = sphere(Vec3::Zero(), 0.6, 16);
-  for (auto x : tool.vertices.colwise())
-    x = tool_pose().inverse() * Vec3(x + soft.bottom - Vec3(0.05, 0.02, 0.45));
+  const TriMesh tool = tool_ball(soft);
   contact::ImageOptions options = image_options(24, 0.05);
   options.samples = samples;
   out.source = pruned ? contact::make_image_source(soft.surface, soft.proxies, tool, proxies_of(tool), 0,
@@ -101,15 +107,13 @@ inline Touching on_tool(contact::SampleRule samples, bool pruned, bool in_state)
   return out;
 }
 
-/// The same ball by nearest points.
+/// And by nearest points.
 inline Touching near_tool(bool in_state) {
   const Soft soft = soft_skin();
   Touching out;
   out.state = soft.state;
   const auto frame = add_frame(out, tool_pose(), in_state);
-  TriMesh tool = sphere(Vec3::Zero(), 0.6, 16);
-  for (auto x : tool.vertices.colwise())
-    x = tool_pose().inverse() * Vec3(x + soft.bottom - Vec3(0.05, 0.02, 0.45));
+  const TriMesh tool = tool_ball(soft);
   out.source = contact::make_distance_source(soft.surface, mesh::sphere(1.0, 12).vertices, tool, 0, frame,
                                              {.candidate_gap = 0.05});
   return out;

@@ -5,6 +5,9 @@
 
 namespace palpate::distance {
 
+/// Largest number of parts of an edge: 384 points per face.
+inline constexpr int kMostCuts = 16;
+
 /// A material point of a skin and the rest area that it stands for.
 struct ContactPoint {
   int face = 0;         ///< that carries it
