@@ -71,9 +71,6 @@ struct References {
   }
 };
 
-struct Band {
-  double low = 0.1, high = 10.0;
-};
 /// A pair whose test is held tighter than smooth motion needs buys so many times less than it was asked for.
 inline double spare_of(const std::string& method) {
   for (const auto& ark : integrate::ark_methods())
@@ -81,53 +78,59 @@ inline double spare_of(const std::string& method) {
   return 1.0;
 }
 
-/// Where a method is known to leave [0.1, 10] for another reason: docs/tolerances.md.
-inline Band band_of(const std::string& method, const std::string& scene, double rtol) {
+/// What no error may exceed: 10, but for what is known (docs/tolerances.md).
+inline double largest_of(const std::string& method, const std::string& scene, double rtol) {
+  const auto is = [&](const char* of, double at) {
+    return method == of && scene == "spinning top" && std::abs(rtol / at - 1.0) < 0.01;
+  };
+  // at 1e-3 the order stays at 2 and 3, whose power is not 1.2 but 1.5 and 1.33
+  if (is("cvode-bdf", 1e-3) || is("cvode-bdf", 1e-9)) return 15.0;
+  if (is("cvode-adams", 1e-8)) return 30.0;  // one rung of eight, where the order reaches 8
+  return 10.0;
+}
+
+/// What the errors of a row may not fall below in their geometric mean, or work is wasted: 0.1, but for what
+/// is known (docs/tolerances.md).  One error may: it is the sum of many steps' errors, which may cancel.
+inline double least_mean_of(const std::string& method, const std::string& scene) {
   struct Exception {
     const char *method, *scene;
-    double from, to;  ///< of rtol
-    Band band;
+    double least;
   };
   static const Exception exceptions[] = {
       // an estimate that is made nearly zero on linear motion sees nonlinear ones a hundred times as well
-      {"ark-dirk-ark548", "swinging bar", 1e-3, 1e-10, {0.02, 10.0}},
-      {"ark-dirk-ark548", "landing block", 1e-3, 1e-5, {0.07, 10.0}},
-      {"ark-imex-5", "swinging bar", 1e-3, 1e-10, {0.02, 10.0}},
-      {"ark-imex-5", "landing block", 1e-3, 1e-5, {0.07, 10.0}},
-      {"ark-dirk-esdirk437", "swinging bar", 1e-8, 1e-10, {0.04, 10.0}},
-      {"ark-dirk-esdirk437", "landing block", 1e-8, 1e-10, {0.05, 10.0}},
+      {"ark-dirk-ark548", "swinging bar", 0.03},
+      {"ark-imex-5", "swinging bar", 0.03},
       // with the explicit half an additive pair's estimate is another one: only the implicit one is
       // calibrated
-      {"ark-imex-4", "block, split", 1e-3, 1e-10, {0.06, 10.0}},
-      {"ark-imex-5", "block, split", 1e-3, 1e-10, {0.005, 10.0}},
+      {"ark-imex-5", "block, split", 0.015},
       // on damped motions the error is a small part of what it is on undamped ones
-      {"ark-erk-5", "swinging bar", 1e-7, 1e-10, {0.03, 10.0}},
-      {"ark-erk-5", "landing block", 1e-3, 1e-10, {0.02, 10.0}},
-      // at 1e-3 the order stays at 2 and 3, whose power is not 1.2 but 1.5 and 1.33
-      {"cvode-bdf", "spinning top", 1e-3, 1e-3, {0.1, 15.0}},
-      {"cvode-bdf", "spinning top", 1e-9, 1e-9, {0.1, 15.0}},
-      // one rung of eight, where the order reaches 8
-      {"cvode-adams", "spinning top", 1e-8, 1e-8, {0.1, 30.0}},
+      {"ark-erk-5", "landing block", 0.05},
   };
   for (const Exception& e : exceptions)
-    if (method == e.method && scene == e.scene && rtol < 1.01 * e.from && rtol > 0.99 * e.to) return e.band;
-  return {.low = Band{}.low / spare_of(method)};
+    if (method == e.method && scene == e.scene) return e.least;
+  return 0.1 / spare_of(method);
 }
 
-/// Runs a method over decades of rtol from 1e-3 on and holds each to its band.  @returns the table's row
+/// Runs a method over decades of rtol from 1e-3 on, and holds each error and the row's mean to their bounds.
+/// @returns the table's row
 inline std::string expect_within_band(const ToleranceScene& scene, const References& references,
                                       const dynamics::StepperEntry& entry, double tightest, double factor) {
   std::string row = fmt::format("{:<14} {:<23}", scene.name, entry.name);
+  double logarithms = 0.0;
+  int rungs = 0;
   for (double rtol = 1e-3; rtol >= 0.999 * std::max(tightest, entry.tightest_rtol({.name = entry.name}));
        rtol *= factor) {
     const Course c = course(scene, {.name = entry.name, .rtol = rtol, .max_steps = 100000000});
     const double ratio = over_wanted(scene, c, references.of_another_family(entry.traits), rtol);
     row += fmt::format(" {:7.2g}", ratio);
-    const Band band = band_of(entry.name, scene.name, rtol);
-    EXPECT_GE(ratio, band.low) << scene.name << ", " << entry.name << ", rtol " << rtol;
-    EXPECT_LE(ratio, band.high) << scene.name << ", " << entry.name << ", rtol " << rtol;
+    EXPECT_LE(ratio, largest_of(entry.name, scene.name, rtol))
+        << scene.name << ", " << entry.name << ", rtol " << rtol;
+    logarithms += std::log(ratio);
+    ++rungs;
   }
-  return row;
+  const double mean = std::exp(logarithms / rungs);
+  EXPECT_GE(mean, least_mean_of(entry.name, scene.name)) << scene.name << ", " << entry.name;
+  return row + fmt::format("   mean {:.2g}", mean);
 }
 
 }  // namespace palpate::fakes
