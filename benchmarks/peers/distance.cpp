@@ -13,20 +13,17 @@ distance::Skin skin_of(const loop::Body& body) {
 
 class Distance final : public Contender {
  public:
-  Distance(const Motion& motion, int cuts)
+  explicit Distance(const Motion& motion)
       : a_(skin_of(motion.body(0))),
         b_(skin_of(motion.body(1))),
-        contact_(
-            a_, b_,
-            {.stiffness_pa_m = motion.description.contacts.front().stiffness_pa_m, .cuts = {cuts, cuts}}),
-        cuts_(cuts) {
+        contact_(a_, b_, {.stiffness_pa_m = motion.description.contacts.front().stiffness_pa_m}) {
     for (int k = 0; k < 2; ++k)
       offsets_[k] = motion.world->state.layout().find(motion.body(k).block_id)->q_offset;
     forces_[0].setZero(3 * a_.node_count);
     forces_[1].setZero(3 * b_.node_count);
   }
   std::string group() const override { return "energy of distances"; }
-  std::string name() const override { return fmt::format("{} points per triangle", 1.5 * cuts_ * cuts_); }
+  std::string name() const override { return "1.5 points per triangle"; }
   void query(const Snapshot& state) override {
     contact_.find(state.q.data() + offsets_[0], state.q.data() + offsets_[1]);
     for (VecX& f : forces_) f.setZero();
@@ -37,15 +34,12 @@ class Distance final : public Contender {
  private:
   distance::Skin a_, b_;
   distance::SkinContact contact_;
-  int cuts_;
   int offsets_[2] = {};
   VecX forces_[2];
 };
 
 }  // namespace
 
-void add_distance(const Motion& motion, Contenders& to) {
-  to.push_back(std::make_unique<Distance>(motion, 1));
-}
+void add_distance(const Motion& motion, Contenders& to) { to.push_back(std::make_unique<Distance>(motion)); }
 
 }  // namespace peers

@@ -2,6 +2,7 @@
 
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
+#include "palpate/scene/contact_sides.h"
 
 namespace palpate::compare {
 namespace {
@@ -11,6 +12,7 @@ scene::Description with_method(scene::Description d, const std::string& method) 
     if (contact.second != "tool") continue;
     contact.method = method;
     if (method != "analytic") contact.gaps = method == "distance" ? "exact" : "linear";
+    if (method == "distance") contact.quadrature_error = scene::kPointsError;
   }
   return d;
 }

@@ -3,6 +3,7 @@
 
 #include "contact/ball_source.h"
 #include "contact/frame_vertices.h"
+#include "contact/material_points.h"
 #include "contact/safe_time.h"
 #include "contact/surface_state.h"
 #include "palpate/contact/obstacle.h"
@@ -13,7 +14,10 @@
 
 namespace palpate::contact {
 
-/// Vertices of a surface, a SurfaceState or FrameVertices, against an exact shape.  A Shape has
+/// Vertices of a surface, a SurfaceState or FrameVertices, or material points, a MaterialPointState, against
+/// an exact shape.  Vertices stand for their area as it is now, seen along the normal; material points for
+/// their area at rest, so that with a pressure k |gap| their force is the gradient of sum k/2 area gap^2.
+/// A Shape has
 ///   kName                    for messages and counters
 ///   move_to(pose of its frame), before each query
 ///   Nearest at(x)            x and the answer in world axes
@@ -44,7 +48,9 @@ class AnalyticSource final : public SampleSource {
     a("tunnelled", tunnelled_);
     a("fast", fast_);
     a("warned", warned_);
+    if constexpr (kMaterial) a("sum_error", sum_error_);
   }
+  const SumError* sum_error() const override { return kMaterial ? &sum_error_ : nullptr; }
   void add_pattern(dynamics::PatternBuilder& pattern) const override { surface_.add_vertex_pattern(pattern); }
   std::uint64_t pattern_version() const override { return surface_.vertex_pattern_version(); }
 
@@ -56,7 +62,9 @@ class AnalyticSource final : public SampleSource {
     find_tunnelled(inverse, state.time);
     kept_.clear();
     if (!find_candidates(state, pose)) return;
-    surface_.area_vectors(wanted_, areas_);
+    find_areas();
+    double sum = 0.0, largest = 0.0;
+    Vec3 fine_less_coarse = Vec3::Zero();
     for (int v = 0; v < surface_.vertex_count(); ++v) {
       if (!wanted_[static_cast<std::size_t>(v)]) continue;
       const ContactSample sample = sample_at(v, inverse);
@@ -64,7 +72,16 @@ class AnalyticSource final : public SampleSource {
       if (sample.area <= 0.0 && !follows_) continue;
       samples.push_back(sample);
       if (follows_) kept_.push_back(v);
+      if constexpr (kMaterial) {
+        if (!(sample.gap < 0.0)) continue;
+        const double term = -sample.gap * sample.area;
+        sum += term;
+        largest = std::max(largest, term);
+        fine_less_coarse -= sample.gap * (sample.area - surface_.coarse_area(v)) * sample.normal;
+      }
     }
+    // as of two skins (SkinContact::force_sum)
+    if (sum > 0.0) sum_error_.take(sum, 4.0 * fine_less_coarse.norm(), largest);
   }
 
   bool start_following() override { return follows_ = true; }
@@ -75,7 +92,7 @@ class AnalyticSource final : public SampleSource {
     surface_.update(state);
     const Pose pose = motion_->pose(state), inverse = pose.inverse();
     shape_.move_to(pose);
-    surface_.area_vectors(wanted_, areas_);
+    find_areas();
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const int source = samples[i].source;
       samples[i] = sample_at(kept_[i], inverse);
@@ -84,7 +101,18 @@ class AnalyticSource final : public SampleSource {
   }
 
  private:
-  /// One that faces away has no area: pressure there would pull.
+  static constexpr bool kMaterial = requires(const Surface& s) { s.rest_area(0); };
+
+  void find_areas() {
+    if constexpr (!kMaterial) surface_.area_vectors(wanted_, areas_);
+  }
+  /// A vertex that faces away has no area: pressure there would pull.
+  double area_of(int v, const Vec3& normal) const {
+    if constexpr (kMaterial)
+      return surface_.rest_area(v);
+    else
+      return std::max(0.0, -normal.dot(areas_.col(v)));
+  }
   ContactSample sample_at(int v, const Pose& inverse) const {
     const Vec3 x = surface_.position(v);
     const Nearest nearest = shape_.at(x);
@@ -93,7 +121,7 @@ class AnalyticSource final : public SampleSource {
     sample.b = frame_point(frame_, inverse, x - (nearest.gap + nearest.radius) * nearest.normal);
     sample.b.slide = nearest.radius * nearest.normal;
     sample.normal = nearest.normal;
-    sample.area = std::max(0.0, -nearest.normal.dot(areas_.col(v)));
+    sample.area = area_of(v, nearest.normal);
     sample.gap = nearest.gap;
     return sample;
   }
@@ -106,7 +134,7 @@ class AnalyticSource final : public SampleSource {
     const Twist twist = motion_->twist(state);
     wanted_.assign(static_cast<std::size_t>(surface_.vertex_count()), 0);
     for (int v = 0; v < surface_.vertex_count(); ++v) {
-      const Vec3 x = surface_.positions().col(v);
+      const Vec3 x = surface_.position(v);
       const Nearest nearest = shape_.at(x);
       const double rate = nearest.normal.dot(surface_.velocity(v, state) -
                                              twist.at(x - nearest.gap * nearest.normal - pose.translation));
@@ -123,10 +151,9 @@ class AnalyticSource final : public SampleSource {
   /// A vertex's way since the last query, seen from the frame, as a straight line: outside at both ends, but
   /// through the shape in between. Nothing pushed it back; it is on the wrong side, or inside a body that is.
   void find_tunnelled(const Pose& inverse, double t) {
-    const Points& world = surface_.positions();
-    seen_.resize(3, world.cols());
-    for (Eigen::Index v = 0; v < world.cols(); ++v) {
-      const Vec3 now = inverse * Vec3(world.col(v));
+    seen_.resize(3, surface_.vertex_count());
+    for (int v = 0; v < surface_.vertex_count(); ++v) {
+      const Vec3 now = inverse * surface_.position(v);
       if (seen_before_ && shape_.is_crossed(seen_.col(v), now)) ++tunnelled_;
       seen_.col(v) = now;
     }
@@ -134,9 +161,9 @@ class AnalyticSource final : public SampleSource {
     if (tunnelled_ == 0 || warned_) return;
     warned_ = true;
     log::warn(
-        "contact at t = {:.6g} s: {} vertices went through the {} between two queries, unseen; refresh "
+        "contact at t = {:.6g} s: {} {} went through the {} between two queries, unseen; refresh "
         "contact more often (contact_refresh_s), make the contact stiffer, or the {} thicker",
-        t, tunnelled_, Shape::kName, Shape::kName);
+        t, tunnelled_, kMaterial ? "points" : "vertices", Shape::kName, Shape::kName);
   }
 
   Surface surface_;
@@ -152,6 +179,7 @@ class AnalyticSource final : public SampleSource {
   bool seen_before_ = false, warned_ = false;
   long tunnelled_ = 0, fast_ = 0;
   double safe_time_ = HUGE_VAL;  ///< as SampleSource::safe_time
+  SumError sum_error_;
 };
 
 /// The source of one side, soft or rigid, against a shape.
@@ -162,13 +190,16 @@ std::unique_ptr<SampleSource> make_analytic_source(ContactSide side, int frame,
   PALPATE_CHECK(motion, "a {} source needs a frame", Shape::kName);
   PALPATE_CHECK(candidate_gap >= 0.0, "candidate gap {} must not be negative", candidate_gap);
   PALPATE_CHECK(look_ahead >= 0.0, "look-ahead {} must not be negative", look_ahead);
-  counters::count(std::string("contact.") + Shape::kName + "_source");
+  counters::count(fmt::format("contact.{}_source", Shape::kName));
   if (auto* soft = std::get_if<NodeSurface>(&side))
     return std::make_unique<AnalyticSource<SurfaceState, Shape>>(
         SurfaceState(std::move(*soft)), frame, std::move(motion), shape, candidate_gap, look_ahead);
   if (auto* rigid = std::get_if<FrameSurface>(&side))
     return std::make_unique<AnalyticSource<FrameVertices, Shape>>(
         FrameVertices(std::move(*rigid)), frame, std::move(motion), shape, candidate_gap, look_ahead);
+  if (auto* points = std::get_if<MaterialPoints>(&side))
+    return std::make_unique<AnalyticSource<MaterialPointState, Shape>>(
+        MaterialPointState(std::move(*points)), frame, std::move(motion), shape, candidate_gap, look_ahead);
   return std::make_unique<BallSource<Shape>>(std::get<FrameBall>(std::move(side)), frame, std::move(motion),
                                              shape, candidate_gap, look_ahead);
 }

@@ -26,6 +26,9 @@ namespace palpate::contact {
 // 1/(4 N^2) of the force.  Beyond the patch, rings get finer towards its rim, so that a contact that begins
 // is resolved.
 //
+// By its own surface (FrameBall::by_surface), as material points have it, a ring between p and q has the area
+// 2 pi R (p - q) and the mean height (p + q)/2, both exactly; on a plane that is pi R depth^2.
+//
 // All samples stand on the axis.  A ball without friction feels no moment about its centre, and a ball that
 // rotates about it feels no change; both are so here, exactly, for the arm of each force is along n.  The
 // torque of friction against spin about n, of the order of friction times the patch's radius, is left out.
@@ -157,7 +160,8 @@ class BallSource final : public SampleSource {
   void add_cell(double a0, double a1, double phi, double margin, std::vector<ContactSample>& samples) {
     if (!follows_ && !(a1 > a0)) return;
     const double R2 = ball_.radius * ball_.radius, p = std::sqrt(std::max(R2 - a0, 0.0)),
-                 q = std::sqrt(std::max(R2 - a1, 0.0)), below = 2.0 / 3.0 * (p * p + p * q + q * q) / (p + q),
+                 q = std::sqrt(std::max(R2 - a1, 0.0)),
+                 below = ball_.by_surface ? 0.5 * (p + q) : 2.0 / 3.0 * (p * p + p * q + q * q) / (p + q),
                  top = height(0.5 * (a0 + a1), phi), gap = -below - top;
     if (!follows_ && !(gap < margin)) return;
     ContactSample sample;
@@ -166,7 +170,7 @@ class BallSource final : public SampleSource {
     sample.a.slide = -below * n_;
     sample.b = frame_point(frame_, inverse_, c_ + top * n_);
     sample.normal = n_;
-    sample.area = std::numbers::pi * (a1 - a0) / sectors_;
+    sample.area = std::numbers::pi / sectors_ * (ball_.by_surface ? 2.0 * ball_.radius * (p - q) : a1 - a0);
     sample.gap = gap;
     samples.push_back(sample);
   }

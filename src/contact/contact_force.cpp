@@ -341,6 +341,12 @@ std::vector<const proxy::PruneCounts*> ContactForce::pruning() const {
   return out;
 }
 
+std::vector<const SumError*> ContactForce::sum_errors() const {
+  std::vector<const SumError*> out;
+  for (const auto& pair : impl_->pairs) out.push_back(pair.source->sum_error());
+  return out;
+}
+
 std::vector<const QueryStages*> ContactForce::stages() const {
   std::vector<const QueryStages*> out;
   for (const auto& pair : impl_->pairs) out.push_back(pair.source->stages());

@@ -31,27 +31,6 @@
 namespace palpate::contact {
 namespace {
 
-double mean_edge(const distance::Skin& skin, const Points& vertices) {
-  double sum = 0.0;
-  for (Eigen::Index f = 0; f < skin.faces.cols(); ++f)
-    for (int k = 0; k < 3; ++k)
-      sum += (vertices.col(skin.faces(k, f)) - vertices.col(skin.faces((k + 1) % 3, f))).norm();
-  return sum / (3.0 * static_cast<double>(skin.faces.cols()));
-}
-
-// A shape smaller than the spacing of the other skin's points may lie between them, and then only one of the
-// two sums sees it.  So points are no farther apart than an eighth of the other body's least width, or than
-// its triangles, whose own corners see no less.
-std::array<int, 2> cuts_of(const distance::Skin& a, const Points& rest_a, const distance::Skin& b,
-                           const Points& rest_b) {
-  const double edge_a = mean_edge(a, rest_a), edge_b = mean_edge(b, rest_b);
-  const auto cuts = [](double edge, double other_edge, const Points& other) {
-    const double spacing = std::max(other_edge, proxy::least_width(other) / 8.0);
-    return static_cast<int>(std::clamp(std::ceil(edge / spacing), 1.0, double{distance::kMostCuts}));
-  };
-  return {cuts(edge_a, edge_b, rest_b), cuts(edge_b, edge_a, rest_a)};
-}
-
 class DistanceSource final : public SampleSource {
  public:
   DistanceSource(std::unique_ptr<ImageSide> a, const TriMesh& rest_a, std::unique_ptr<ImageSide> b,
@@ -59,11 +38,12 @@ class DistanceSource final : public SampleSource {
       : a_(std::move(a)),
         b_(std::move(b)),
         skins_{distance::make_skin(rest_a), distance::make_skin(rest_b)},
-        contact_(
-            skins_[0], skins_[1],
-            {.stiffness_pa_m = 1.0, .cuts = cuts_of(skins_[0], rest_a.vertices, skins_[1], rest_b.vertices)}),
-        options_(options),
-        thickness_(std::min(proxy::least_width(rest_a.vertices), proxy::least_width(rest_b.vertices))) {
+        options_(options) {
+    const double width_a = proxy::least_width(rest_a.vertices), width_b = proxy::least_width(rest_b.vertices),
+                 spacing = point_spacing(width_a, width_b, options.quadrature_error);
+    thickness_ = std::min(width_a, width_b);
+    contact_.emplace(skins_[0], skins_[1],
+                     distance::SkinContactSpec{.stiffness_pa_m = 1.0, .spacing_m = {spacing, spacing}});
     counters::count("contact.distance_source");
   }
 
@@ -72,19 +52,22 @@ class DistanceSource final : public SampleSource {
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     update(state);
     const proxy::ProxyMotion of_a = a_->motion(state), of_b = b_->motion(state);
-    contact_.find(a_->positions().data(), b_->positions().data(),
-                  proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction());
+    contact_->find(a_->positions().data(), b_->positions().data(),
+                   proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction());
     cells_.clear();
     follows_now_ = false;
-    for (const distance::Spring& spring : contact_.springs()) add(spring);
+    for (const distance::Spring& spring : contact_->springs()) add(spring);
     couple();
     safe_time_ = HUGE_VAL;
     const double speed = (of_a.velocity - of_b.velocity).norm() + of_a.spread + of_b.spread;
-    for (const distance::Spring& spring : contact_.springs())
+    for (const distance::Spring& spring : contact_->springs())
       safe_time_ = std::min(safe_time_, time_to_middle(spring.gap, -speed, thickness_));
     fast_ += safe_time_ < options_.look_ahead;
+    if (const distance::ForceSum of = contact_->force_sum(); of.sum > 0.0)
+      sum_error_.take(of.sum, of.error, of.largest_term);
     cells_.append_to(samples);
   }
+  const SumError* sum_error() const override { return &sum_error_; }
 
   bool start_following() override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
@@ -92,10 +75,10 @@ class DistanceSource final : public SampleSource {
                   samples.size(), cells_.cells.size());
     if (samples.empty()) return;
     update(state);
-    contact_.follow(a_->positions().data(), b_->positions().data());
+    contact_->follow(a_->positions().data(), b_->positions().data());
     follows_now_ = true;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      place(contact_.springs()[i], i);
+      place(contact_->springs()[i], i);
       const int source = samples[i].source;
       samples[i] = cells_.sample(cells_.cells[i], static_cast<int>(i));
       samples[i].source = source;
@@ -115,7 +98,10 @@ class DistanceSource final : public SampleSource {
   }
   double safe_time() const override { return safe_time_; }
   long fast_regions() const override { return fast_; }
-  void archive(Archive& a) override { a("fast", fast_); }
+  void archive(Archive& a) override {
+    a("fast", fast_);
+    a("sum_error", sum_error_);
+  }
 
  private:
   /// What carries a point.
@@ -147,9 +133,9 @@ class DistanceSource final : public SampleSource {
   };
   Ends ends_of(const distance::Spring& spring) const {
     const distance::ContactPoint& point =
-        contact_.points(spring.side)[static_cast<std::size_t>(spring.point)];
-    const Vec3 x = contact_.position(spring), y = x + spring.reach;
-    const Vec3 out = contact_.outward(spring);  // of b where the point is a's
+        contact_->points(spring.side)[static_cast<std::size_t>(spring.point)];
+    const Vec3 x = contact_->position(spring), y = x + spring.reach;
+    const Vec3 out = contact_->outward(spring);  // of b where the point is a's
     if (spring.side == 0)
       return {point.face, spring.face, point.weights, spring.weights, x, y, ContactAxes(x, out)};
     return {spring.face, point.face, spring.weights, point.weights, y, x, ContactAxes(y, -out)};
@@ -219,9 +205,9 @@ class DistanceSource final : public SampleSource {
 
   std::unique_ptr<ImageSide> a_, b_;
   std::array<distance::Skin, 2> skins_;
-  distance::SkinContact contact_;
+  std::optional<distance::SkinContact> contact_;  ///< there once the widths are known
   DistanceOptions options_;
-  double thickness_;
+  double thickness_ = 0.0;
   SampleCells cells_;            ///< one a sample
   std::vector<Joint> at_query_;  ///< of two soft bodies: the carriers of `cells_` at the query
   bool follows_now_ = false;
@@ -230,6 +216,7 @@ class DistanceSource final : public SampleSource {
   std::uint64_t counted_in_ = 0;
   double safe_time_ = HUGE_VAL;
   long fast_ = 0;
+  SumError sum_error_;
 };
 
 }  // namespace

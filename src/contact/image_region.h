@@ -17,6 +17,7 @@ struct RegionContext {
   std::shared_ptr<ImageSide> a, b;
   ImageOptions options;
   QueryStages stages;
+  SumError sum_error;
   std::optional<QueryView> view = {};   ///< of the last query, where somebody asked
   double candidate_gap = 0.0;           ///< what counts as near without any motion [m]
   double safe_time = 0.0;               ///< as SampleSource::safe_time, of the query under way

@@ -66,19 +66,18 @@ void ImageSource::archive(Archive& a) {
   a("fallback", fallback);
   if (a.gives_back() && !fallback.empty()) fall_back(fallback);
   QueryStages& s = context_.stages;
-  for (auto& [name, seconds] : std::initializer_list<std::pair<const char*, double&>>{
-           {"positions_s", s.positions_s},
-           {"regions_s", s.regions_s},
-           {"patches_s", s.patches_s},
-           {"images_s", s.images_s},
-           {"upload_s", s.upload_s},
-           {"passes_s", s.passes_s},
-           {"gather_s", s.gather_s},
-           {"readback_s", s.readback_s},
-           {"gaps_s", s.gaps_s},
-           {"quadrature_error", s.quadrature_error},
-           {"largest_quadrature_error", s.largest_quadrature_error}})
+  for (auto& [name, seconds] :
+       std::initializer_list<std::pair<const char*, double&>>{{"positions_s", s.positions_s},
+                                                              {"regions_s", s.regions_s},
+                                                              {"patches_s", s.patches_s},
+                                                              {"images_s", s.images_s},
+                                                              {"upload_s", s.upload_s},
+                                                              {"passes_s", s.passes_s},
+                                                              {"gather_s", s.gather_s},
+                                                              {"readback_s", s.readback_s},
+                                                              {"gaps_s", s.gaps_s}})
     a(name, seconds);
+  a("sum_error", context_.sum_error);
   for (auto& [name, count] : std::initializer_list<std::pair<const char*, long&>>{{"images", s.images},
                                                                                   {"pairs", s.pairs},
                                                                                   {"pixels", s.pixels},
@@ -184,11 +183,7 @@ std::size_t ImageSource::begin(const dynamics::StateView& state) {
 }
 
 void ImageSource::end(const SampleCells& samples, std::size_t first_cell) {
-  if (context_.volume > 0.0) {
-    QueryStages& stages = context_.stages;
-    stages.quadrature_error = std::sqrt(context_.variance) / context_.volume;
-    stages.largest_quadrature_error = std::max(stages.largest_quadrature_error, stages.quadrature_error);
-  }
+  if (context_.volume > 0.0) context_.sum_error.take(context_.volume, std::sqrt(context_.variance), 0.0);
   if (!context_.b->soft()) return;
   if (const std::uint64_t now = sides_version(); now != counted_ || neighbours_a_.empty()) {
     neighbours_a_ = context_.a->soft()->neighbours();

@@ -25,6 +25,7 @@ class ImageSource : public SampleSource {
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) final;
   void query(const dynamics::StateView& state, SampleCells& samples);  ///< the same, appended
   const QueryStages* stages() const final { return &context_.stages; }
+  const SumError* sum_error() const final { return &context_.sum_error; }
   void keep_view() final { context_.view.emplace(); }
   const QueryView* view() const final { return context_.view ? &*context_.view : nullptr; }
   long tunnelled() const final { return tunnelled_; }

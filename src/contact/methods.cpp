@@ -23,9 +23,9 @@ const std::vector<MethodEntry>& method_registry() {
        "processor",
        all_keys()},
       {"distance",
-       "material points of both skins and their nearest points on the other one: the gradient of an energy, "
-       "continuous; of soft bodies and tools of any shape",
-       part_keys({"gaps"})},
+       "material points of skins and their nearest points on what they touch: the gradient of an energy, "
+       "continuous; of soft bodies, tools of any shape and obstacles",
+       part_keys({"gaps", "quadrature_error"})},
       {"cpu", "image space on the processor: tools of any shape, other soft bodies, a body against itself",
        image_keys()},
       {"gpu", "the same image by OpenGL, without a GPU by Mesa's software rasteriser", image_keys()},

@@ -108,11 +108,12 @@ Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node
   Bisection(centroids, skin.given_face, skin.tree).cut(0, static_cast<int>(count));
   skin.faces = rest.faces(Eigen::all, skin.given_face);
   skin.area.resize(count);
+  skin.longest_edge.resize(count);
   for (int f = 0; f < skin.face_count(); ++f) {
-    const Vec3 a = rest.vertices.col(skin.faces(0, f));
-    const Vec3 normal =
-        (rest.vertices.col(skin.faces(1, f)) - a).cross(rest.vertices.col(skin.faces(2, f)) - a);
-    skin.area[f] = 0.5 * normal.norm();
+    const Vec3 a = rest.vertices.col(skin.faces(0, f)), b = rest.vertices.col(skin.faces(1, f)),
+               c = rest.vertices.col(skin.faces(2, f));
+    skin.area[f] = 0.5 * (b - a).cross(c - a).norm();
+    skin.longest_edge[f] = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     if (!(skin.area[f] > 0.0))
       fail("contact needs a skin without flat triangles: face {} has no area",
            skin.given_face[static_cast<std::size_t>(f)]);

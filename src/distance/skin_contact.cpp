@@ -17,7 +17,7 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& sp
     const Skin& skin = surfaces_[side].skin();
     const auto clusters = static_cast<std::size_t>(skin.cluster_count());
     if (side == 0 || spec.two_sided)
-      points_[side] = contact_points(skin, spec.cuts[static_cast<std::size_t>(side)]);
+      points_[side] = contact_points(skin, spec.spacing_m[static_cast<std::size_t>(side)]);
     cluster_points_[side].assign(clusters + 1, 0);
     for (const ContactPoint& p : points_[side])
       ++cluster_points_[side][static_cast<std::size_t>(p.face / kClusterFaces) + 1];
@@ -107,24 +107,19 @@ Resultant SkinContact::resultant() const {
   return out;
 }
 
-double SkinContact::largest_share() const {
-  const double all = resultant().force.norm();
-  double most = 0.0;
-  for (const Spring& s : springs_)
-    if (s.gap < 0.0) most = std::max(most, s.stiffness * s.reach.norm());
-  return all > 0.0 ? most / all : 0.0;
-}
-
 // F = 3/4 F_centroids + 1/4 F_corners, so that F_corners - F_centroids = 4 (F - F_centroids).
-double SkinContact::quadrature_error() const {
-  Vec3 all = Vec3::Zero(), coarse = Vec3::Zero();
+ForceSum SkinContact::force_sum() const {
+  ForceSum out;
+  Vec3 difference = Vec3::Zero();
   for (const Spring& s : springs_) {
     if (s.gap >= 0.0) continue;
-    const double sign = s.side == 0 ? 1.0 : -1.0;
-    all += sign * s.stiffness * s.reach;
-    coarse += sign * s.coarse * s.reach;
+    const double force = s.stiffness * s.reach.norm();
+    out.sum += force;
+    out.largest_term = std::max(out.largest_term, force);
+    difference += (s.side == 0 ? s.stiffness - s.coarse : s.coarse - s.stiffness) * s.reach;
   }
-  return all.norm() > 0.0 ? 4.0 * (all - coarse).norm() / all.norm() : 0.0;
+  out.error = 4.0 * difference.norm();
+  return out;
 }
 
 Mat3 SkinContact::spring_matrix(const Spring& spring) const {

@@ -11,6 +11,7 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/proxy/decompose_solid.h"
+#include "palpate/proxy/region.h"
 #include "palpate/scene/contact_sides.h"
 #include "tool_side.h"
 
@@ -44,7 +45,8 @@ double friction_speed(const World& world, double length) {
 struct Pair {
   const ContactSpec& spec;
   contact::NodeSurface surface;
-  const Points& rest;  ///< of the surface's vertices
+  const Points& rest;   ///< of the surface's vertices
+  const TetMesh& body;  ///< at rest
   double candidate_gap, look_ahead;
   std::shared_ptr<proxy::ProxySet> proxies{};
 };
@@ -60,12 +62,14 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
     return {spec,
             {body->block_id, {}, body->skin->rest.faces, body->skin->embedding, body->rest.tets},
             body->skin->rest.vertices,
+            body->rest,
             gap,
             look_ahead,
             body->skin->proxies};
   return {spec,
           {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces},
           body->boundary.surface.vertices,
+          body->rest,
           gap,
           look_ahead};
 }
@@ -91,15 +95,19 @@ contact::ImageOptions options_of(const Pair& pair) {
   return out;
 }
 
+[[noreturn]] void refuse_distance(const ContactSpec& spec, const Error& error) {
+  fail("contact {} - {}: method \"distance\": {}", spec.first, spec.second, error.what());
+}
+
 /// Nearest points of a body and another surface, which both have to be closed.
 template <class... Other>
 std::unique_ptr<contact::SampleSource> distance_source(Pair pair, Other... other) {
   try {
     return contact::make_distance_source(std::move(pair.surface), pair.rest, std::move(other)...,
-                                         {pair.candidate_gap, pair.look_ahead});
-  } catch (const Error& error) {
-    fail("contact {} - {}: method \"distance\": {}", pair.spec.first, pair.spec.second, error.what());
-  }
+                                         {.quadrature_error = pair.spec.quadrature_error,
+                                          .candidate_gap = pair.candidate_gap,
+                                          .look_ahead = pair.look_ahead});
+  } catch (const Error& error) { refuse_distance(pair.spec, error); }
 }
 
 /// Contact of two soft bodies.
@@ -196,7 +204,7 @@ bool steps_are_linearised(const World& world) {
 std::unique_ptr<contact::SampleSource> obstacle_source(contact::ContactForce& force, const ContactSpec& spec,
                                                        contact::ContactSide side, double candidate_gap,
                                                        double look_ahead, const ObstacleSpec& obstacle) {
-  if (spec.method != "analytic" && spec.method != "auto")
+  if (spec.method != "analytic" && spec.method != "auto" && spec.method != "distance")
     fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"analytic\"", spec.first,
          obstacle.name, obstacle.type);
   const contact::ObstacleEntry& entry = contact::obstacle_entry(obstacle);
@@ -206,10 +214,23 @@ std::unique_ptr<contact::SampleSource> obstacle_source(contact::ContactForce& fo
                            candidate_gap, look_ahead);
 }
 
+/// How far apart the points of a surface stand on an obstacle.
+double spacing_on(const ObstacleSpec& obstacle, const Points& rest, double wanted_error) {
+  const double thickness = contact::obstacle_entry(obstacle).thickness(contact::obstacle_shape(obstacle));
+  return contact::point_spacing(proxy::least_width(rest), thickness, wanted_error);
+}
+
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
                                                        const ObstacleSpec& obstacle) {
-  return obstacle_source(*world.contact, pair.spec, std::move(pair.surface), pair.candidate_gap,
-                         pair.look_ahead, obstacle);
+  contact::ContactSide side = [&]() -> contact::ContactSide {
+    if (pair.spec.method != "distance") return std::move(pair.surface);
+    try {
+      return contact::material_points(pair.surface, pair.rest, pair.body,
+                                      spacing_on(obstacle, pair.rest, pair.spec.quadrature_error));
+    } catch (const Error& error) { refuse_distance(pair.spec, error); }
+  }();
+  return obstacle_source(*world.contact, pair.spec, std::move(side), pair.candidate_gap, pair.look_ahead,
+                         obstacle);
 }
 
 /// How the tool stands in a contact.
@@ -227,8 +248,15 @@ std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, cons
     fail("contact {} - {}: spring = \"per_point\" is for vertices, and a sphere has none", spec.first,
          obstacle.name);
   contact::ContactSide side = [&]() -> contact::ContactSide {
-    if (tool.shape == "sphere") return contact::FrameBall{tool.radius_m, Vec3::Zero(), in.frame, in.motion};
-    return contact::FrameSurface{tool_surface(tool, world.folder), in.frame, in.motion};
+    const bool nearest_points = spec.method == "distance";
+    if (tool.shape == "sphere")
+      return contact::FrameBall{tool.radius_m, Vec3::Zero(), in.frame, in.motion, nearest_points};
+    contact::FrameSurface surface{tool_surface(tool, world.folder), in.frame, in.motion};
+    if (!nearest_points) return surface;
+    try {
+      return contact::material_points(surface,
+                                      spacing_on(obstacle, surface.mesh.vertices, spec.quadrature_error));
+    } catch (const Error& error) { refuse_distance(spec, error); }
   }();
   return obstacle_source(in.force, spec, std::move(side), spec.candidate_gap_m, in.look_ahead, obstacle);
 }

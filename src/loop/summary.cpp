@@ -110,19 +110,24 @@ void add_jumps(store::Summary& summary, const World& world) {
     s.values.emplace_back(pair + ": deep poses that kept the last normal", static_cast<long long>(kept[i]));
     s.values.emplace_back(pair + ": deepest_overlap_m", deepest[i]);
   }
-  double quadrature_error = 0.0;
+  const std::vector<const contact::SumError*> errors = world.contact->sum_errors();
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!errors[i] || errors[i]->is_empty()) continue;
+    const std::string pair = d[i].first + " - " + d[i].second;
+    s.values.emplace_back(pair + ": largest_quadrature_error", errors[i]->largest());
+    if (const double share = errors[i]->largest_share(); share > 0.0)
+      s.values.emplace_back(pair + ": largest_share_of_a_point", share);
+  }
   long lines = 0, pairs = 0, unaligned = 0;
   bool images = false;
   for (const contact::QueryStages* stages : world.contact->stages())
     if (stages) {
       images = true;
-      quadrature_error = std::max(quadrature_error, stages->largest_quadrature_error);
       lines += stages->lines;
       pairs += stages->pairs;
       unaligned += stages->unaligned;
     }
   if (images) {
-    if (quadrature_error > 0.0) s.values.emplace_back("largest_quadrature_error", quadrature_error);
     s.values.emplace_back("pixels_seen", static_cast<long long>(pairs));
     s.values.emplace_back("pixels_left_to_exact_lines", static_cast<long long>(lines));
     s.values.emplace_back("regions_not_aligned_with_their_overlap", static_cast<long long>(unaligned));

@@ -84,7 +84,15 @@ void check_method(const Document& doc, const std::string& key, const std::string
     }
     c.method = "analytic";
   }
-  if (c.method == "distance" && !given(doc, key + ".gaps")) c.gaps = "exact";
+  if (c.method == "distance") {
+    if (!given(doc, key + ".gaps")) c.gaps = "exact";
+    if (!given(doc, key + ".quadrature_error")) c.quadrature_error = kPointsError;
+    if (c.quadrature_error == 0.0)
+      refuse(
+          location(doc, key + ".quadrature_error"), where,
+          "quadrature_error = 0 takes all pixels of an image, and method = \"distance\" has points instead, "
+          "more of them the smaller the error: write a positive one");
+  }
   if (c.gaps == "exact" && is_in_images(c))
     refuse(
         location(doc, key + ".gaps"), where,
@@ -112,10 +120,10 @@ void check_method(const Document& doc, const std::string& key, const std::string
         location(doc, key + ".spring"), where,
         "spring = \"per_point\" is a spring at each colliding vertex, and a tool with shape = \"sphere\" has "
         "none; remove it");
-  if (c.method != "analytic" && obstacle)
+  if (is_in_images(c) && obstacle)
     refuse(location(doc, key + ".method"), where,
            fmt::format("method = \"{}\" is for tools and soft bodies: an obstacle has exact gaps; use "
-                       "\"analytic\"",
+                       "\"analytic\" or \"distance\"",
                        c.method));
   if (c.first == c.second)
     check_own_contact(doc, key, where, d, c);

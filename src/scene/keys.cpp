@@ -77,7 +77,7 @@ const KeyTable<ContactSpec>& contact_keys() {
              "samples with a smaller positive gap are kept as well; 0: chosen from the mesh"),
       integer("pixels", &ContactSpec::pixels, Ranges::pixels, "longer edge of the image, at most"),
       number("quadrature_error", &ContactSpec::quadrature_error, Ranges::quadrature_error,
-             "what the image's pixels may err in a region's force, relative; 0: always as many as `pixels`"),
+             "what pixels may err in a region's force, relative (0: all pixels); points, by default 0.01"),
       text("samples", &ContactSpec::samples, {"pixel", "vertex"},
            "in image space: one a pixel of the overlap, or one a vertex of the soft skins"),
       text("depths", &ContactSpec::depths, {"triangles", "interpolated"},

@@ -250,6 +250,9 @@ class Results(Cli):
                 force[method] = max(float(row["force_z_n"]) for row in csv.DictReader(file))
             summary = json.loads((self.folder / method / "summary.json").read_text())
             steps[method] = summary["figures"]["counts"]["steps"]
+            self.assertLess(summary["contact"]["ball - tool: largest_quadrature_error"], 0.05)
+            self.assertEqual("ball - tool: largest_share_of_a_point" in summary["contact"],
+                             method == "distance")
         self.assertGreater(force["cpu"], 0.4)
         self.assertAlmostEqual(force["distance"] / force["cpu"], 1.0, delta=0.01)
         self.assertLess(steps["distance"], steps["cpu"])

@@ -40,7 +40,8 @@ RUNS = {
         *TOUCHING, "--set", "exchange.linearisation=condensed"]),
     "tool and body as one system": ("press-ball", 0.05, [*TOUCHING, "--set", "exchange.scheme=monolithic"]),
     "contact in images": ("press-ball", 0.05, [*TOUCHING, "--set", "contact.1.method=cpu"]),
-    "contact by nearest points": ("press-ball", 0.05, [*TOUCHING, "--set", "contact.1.method=distance"]),
+    "contact by nearest points": ("press-ball", 0.05, [
+        *TOUCHING, "--set", "contact.0.method=distance", "--set", "contact.1.method=distance"]),
     "simulated hand, passivity": ("press-ball", 0.05, [
         *TOUCHING, "--set", "device.type=hand", "--set", "device.encoder_resolution_m=1e-5",
         "--set", "device.delay_s=0.002", "--passivity", "control"]),

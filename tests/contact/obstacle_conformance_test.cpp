@@ -53,6 +53,18 @@ class Obstacle : public testing::TestWithParam<std::string> {
   Vec3 centre;
 };
 
+// The nearest way out of its middle is half of it; of a half-space there is no middle.
+TEST_P(Obstacle, ThicknessIsTheLeastWayThrough) {
+  for (int i = 0; i < 20; ++i) {
+    renew();
+    const double half = 0.5 * entry.thickness(shape);
+    ASSERT_GT(half, 0.0);
+    for (int k = 0; k < 50; ++k) EXPECT_GE(nearest(near_by()).gap, -half - 1e-12);
+    if (!std::isfinite(half)) continue;
+    EXPECT_NEAR(nearest(centre).gap, -half, 1e-12);
+  }
+}
+
 TEST_P(Obstacle, DescribesItsKeys) {
   EXPECT_GT(entry.summary.size(), 10u);
   std::vector<std::string> seen = {"name", "type"};

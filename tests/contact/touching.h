@@ -44,24 +44,31 @@ struct Soft {
   contact::NodeSurface surface;
   std::shared_ptr<proxy::ProxySet> proxies;
   Vec3 bottom;
+  Points rest;  ///< of the surface's vertices
+  TetMesh body{};
 };
 inline Soft soft_nodes() {
   SurfaceWorld world(sphere(Vec3::Zero(), 1.0, 16));
   for (Eigen::Index i = 0; i < world.state.u().size(); ++i)
     world.state.u()[i] = 0.3 * std::sin(1.0 + 2.0 * static_cast<double>(i));
-  return {world.state, world.surface, nullptr, Vec3(0, 0, -1)};
+  return {world.state, world.surface, nullptr, Vec3(0, 0, -1), sphere(Vec3::Zero(), 1.0, 16).vertices};
 }
 inline Soft soft_skin() {
   SkinWorld world;
   world.state.u() *= 0.3;
   Eigen::Index lowest = 0;
   world.vertices.row(2).minCoeff(&lowest);
-  return {world.state, world.surface, proxies_of(world.ball, world.skin, world.surface.embedding, 2),
-          world.vertices.col(lowest)};
+  return {world.state,
+          world.surface,
+          proxies_of(world.ball, world.skin, world.surface.embedding, 2),
+          world.vertices.col(lowest),
+          world.skin.vertices,
+          world.ball};
 }
 
-/// An analytic shape below the soft body, overlapping by `depth`, in a frame at tool_pose().
-inline Touching on_shape(const std::string& shape, bool skin, bool in_state) {
+/// An analytic shape below the soft body, overlapping by `depth`, in a frame at tool_pose(); by vertices or
+/// by material points.
+inline Touching on_shape(const std::string& shape, bool skin, bool in_state, bool points = false) {
   constexpr double kDepth = 0.15;
   const Soft soft = skin ? soft_skin() : soft_nodes();
   Touching out;
@@ -73,7 +80,8 @@ inline Touching on_shape(const std::string& shape, bool skin, bool in_state) {
   // the shape's own axes, its z along up; its top face or its round side touches
   const Pose upright{Quat::FromTwoVectors(Vec3::UnitZ(), up), top - 0.6 * up},
       lying{Quat::FromTwoVectors(Vec3::UnitX(), up), top - 0.6 * up};
-  const contact::NodeSurface& surface = soft.surface;
+  contact::ContactSide surface = soft.surface;
+  if (points) surface = contact::material_points(soft.surface, soft.rest, soft.body, 0.2);
   if (shape == "plane") out.source = contact::make_plane_source(surface, 0, frame, top, up, 0.05);
   if (shape == "sphere")
     out.source = contact::make_sphere_source(surface, 0, frame, top - 0.6 * up, 0.6, 0.05);
@@ -179,6 +187,10 @@ inline std::vector<TouchingKind> touching_kinds() {
     out.push_back(
         {"a skin on a moving " + name, [=] { return touching::on_shape(name, true, true); }, false, true});
   }
+  out.push_back({"points of nodes on a cylinder",
+                 [] { return touching::on_shape("cylinder", false, false, true); }, false});
+  out.push_back({"points of a skin on a moving sphere",
+                 [] { return touching::on_shape("sphere", true, true, true); }, false});
   for (const auto& [rule, name] : {std::pair{SampleRule::kPixel, std::string("pixels")},
                                    std::pair{SampleRule::kVertex, std::string("vertices")}}) {
     const SampleRule samples = rule;

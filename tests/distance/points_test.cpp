@@ -18,15 +18,14 @@ double exact(const Skin& skin, const Points& x, const Function& f) {
 
 }  // namespace
 
+// Cut to equal parts or to parts that differ from face to face.
 TEST(ContactPoints, IntegrateQuadraticsAndTheCoarseRuleLinearOnes) {
   const TriMesh mesh = bumpy_sphere(1.0, 4, 0.2);
   const Skin skin = make_skin(mesh);
   const auto quadratic = [](const Vec3& x) { return x.x() * x.x() + 0.3 * x.y() * x.z() - x.z() + 0.7; };
   const auto linear = [](const Vec3& x) { return x.x() - 2 * x.y() + 0.5 * x.z() + 1; };
-  for (const int cuts : {1, 2, 3}) {
-    const auto points = contact_points(skin, cuts);
-    // Euler: 3/2 points per triangle, and the two that a sphere has more.
-    EXPECT_EQ(static_cast<int>(points.size()), skin.face_count() * cuts * cuts * 3 / 2 + 2);
+  for (const double spacing : {HUGE_VAL, 0.9 * skin.longest_edge.mean(), 0.3 * skin.longest_edge.mean()}) {
+    const auto points = contact_points(skin, spacing);
     double fine = 0.0, fine_linear = 0.0, coarse = 0.0, coarse_quadratic = 0.0;
     for (const ContactPoint& p : points) {
       EXPECT_GT(p.area, 0.0);
@@ -45,13 +44,38 @@ TEST(ContactPoints, IntegrateQuadraticsAndTheCoarseRuleLinearOnes) {
   }
 }
 
+// Euler: 3/2 points per triangle, and the two that a sphere has more.
+TEST(ContactPoints, AreSharedByFacesThatAreCutAlike) {
+  const Skin skin = make_skin(mesh::sphere(1.0, 1));
+  ASSERT_LT(skin.longest_edge.maxCoeff() / skin.longest_edge.minCoeff(), 1.0 + 1e-12);
+  for (const int n : {1, 2, 3, 16}) {
+    EXPECT_EQ(static_cast<int>(contact_points(skin, skin.longest_edge[0] / n).size()),
+              skin.face_count() * n * n * 3 / 2 + 2);
+  }
+}
+
+TEST(ContactPoints, StandNoFartherApartThanAsked) {
+  const Skin skin = make_skin(bumpy_sphere(1.0, 4, 0.2));
+  const double spacing = 0.4 * skin.longest_edge.mean();
+  int least = kMostCuts, most = 1;
+  for (int face = 0; face < skin.face_count(); ++face) {
+    const int n = cuts_of(skin, face, spacing);
+    EXPECT_LE(skin.longest_edge[face] / n, spacing * (1.0 + 1e-8));
+    EXPECT_TRUE(n == 1 || skin.longest_edge[face] / (n - 1) > spacing) << n;
+    least = std::min(least, n);
+    most = std::max(most, n);
+  }
+  EXPECT_LT(least, most) << "faces of one size test nothing";
+  EXPECT_EQ(cuts_of(skin, 0, 1e-9), kMostCuts);
+}
+
 TEST(ContactPoints, AreOrderedByFace) {
-  const auto points = contact_points(make_skin(mesh::sphere(1.0, 3)), 2);
+  const auto points = contact_points(make_skin(mesh::sphere(1.0, 3)), 0.3);
   for (std::size_t i = 1; i < points.size(); ++i) EXPECT_LE(points[i - 1].face, points[i].face);
 }
 
-TEST(ContactPoints, RejectsAbsurdNumbers) {
+TEST(ContactPoints, RejectASpacingThatIsNone) {
   const Skin skin = make_skin(mesh::sphere(1.0, 2));
-  expect_message([&] { contact_points(skin, 0); }, {"0 parts per edge", "1 to 16"});
-  expect_message([&] { contact_points(skin, 17); }, {"17 parts per edge"});
+  expect_message([&] { contact_points(skin, 0.0); }, {"a spacing of 0 m"});
+  expect_message([&] { contact_points(skin, std::nan("")); }, {"it must be positive"});
 }

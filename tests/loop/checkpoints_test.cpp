@@ -114,7 +114,11 @@ Outcome outcome_of(const loop::World& world, const loop::RunResult& result, cons
         out.counts["images"] += static_cast<double>(s->images);
         out.counts["pairs"] += static_cast<double>(s->pairs);
         out.counts["lines"] += static_cast<double>(s->lines);
-        out.counts["quadrature"] += s->largest_quadrature_error;
+      }
+    for (const contact::SumError* e : c.sum_errors())
+      if (e) {
+        out.counts["quadrature"] += e->largest();
+        out.counts["largest share"] += e->largest_share();
       }
   }
   for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
@@ -291,7 +295,7 @@ const std::vector<std::string> kShownNowhere = {
     "bodies.contact.pair..hits",
     "bodies.contact.pair..pixels",
     "bodies.contact.pair..vertices",
-    "bodies.contact.pair..quadrature_error",
+    "bodies.contact.pair..sum_error.last",
     // of poses so deep that no skin says which way is out, and of a run without steps in parts
     "bodies.contact.pair..finder.",
     "bodies.contact.pair..normal",

@@ -9,6 +9,7 @@
 #include "palpate/contact/query_view.h"
 #include "palpate/contact/sample.h"
 #include "palpate/contact/spec.h"
+#include "palpate/contact/sum_error.h"
 #include "palpate/core/archive.h"
 #include "palpate/dynamics/force_term.h"
 #include "palpate/dynamics/repeated_step.h"
@@ -50,9 +51,6 @@ struct QueryStages {
   /// regions whose normal the last look still turned by over 0.02 rad, or in which it saw several planes
   long unaligned = 0;
   long lines = 0;  ///< pixels with layers or walls, or on a triangle's rim: an image left them to exact lines
-  /// Standard error that the pixels left in the overlap volume, relative, as they estimate it themselves:
-  /// of the last query with an overlap, and the largest.
-  double quadrature_error = 0.0, largest_quadrature_error = 0.0;
 };
 
 class ImageSource;
@@ -89,6 +87,8 @@ class SampleSource {
   virtual long normals_kept() const { return 0; }
   /// What was left out before the image, of a source that has proxies; else null.
   virtual const proxy::PruneCounts* pruning() const { return nullptr; }
+  /// Of a source that estimates the error of its sums; else null.
+  virtual const SumError* sum_error() const { return nullptr; }
   /// Of a source in image space; else null.
   virtual const QueryStages* stages() const { return nullptr; }
   /// A source in image space; else null.
@@ -261,6 +261,8 @@ class ContactForce : public dynamics::ForceTerm,
   std::vector<double> deepest() const;
   /// What the proxies of each pair left out, in the pairs' order; null for a pair without proxies.
   std::vector<const proxy::PruneCounts*> pruning() const;
+  /// Quadrature error of each pair; null where its source does not estimate it.
+  std::vector<const SumError*> sum_errors() const;
   /// Where the time of each pair's queries went; null for a pair without an image.
   std::vector<const QueryStages*> stages() const;
   /// The name of each pair's source ("cpu", "plane"), and why it is another than the scene asked for.

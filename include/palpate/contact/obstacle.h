@@ -48,6 +48,8 @@ struct ObstacleEntry {
   std::string name, summary;       ///< as a scene's `obstacle.type`; one line about it
   std::vector<PartKey> keys;       ///< what its shape is made of
   MakeObstacleSource make_source;  ///< its contact
+  /// least way through it [m]; infinite of a half-space
+  double (*thickness)(const Settings& shape);
   /// the surface's point nearest to x, in world axes, where the shape does not move
   Nearest (*nearest)(const Settings& shape, const Vec3& x);
   /// its surface, for pictures

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <variant>
+#include <vector>
 
 #include "palpate/contact/contact_force.h"
 #include "palpate/mesh/mesh.h"
@@ -15,15 +16,26 @@ struct FrameSurface {
   std::shared_ptr<MovingFrame> motion{};  ///< moves the frame
 };
 
+/// Material points of a surface, each with the area that it stands for at rest.
+struct MaterialPoints {
+  std::vector<SurfacePoint> at;           ///< of nodes, counted inside the block; or of a frame
+  VecX area;                              ///< [m^2]
+  VecX coarse;                            ///< in the embedded rule, which their sum's error is told by [m^2]
+  int block_id = -1;                      ///< the node block that carries them; -1: a frame does
+  std::shared_ptr<MovingFrame> motion{};  ///< moves the frame
+};
+
 /// A ball that a frame carries: its surface is exact.
 struct FrameBall {
   double radius = 0.0;                    ///< [m]
   Vec3 centre = Vec3::Zero();             ///< in the frame
   int frame = -1;                         ///< index for SurfacePoint::frame
   std::shared_ptr<MovingFrame> motion{};  ///< moves the frame
+  /// whether its own surface counts, as material points do, or the overlap's cross-section
+  bool by_surface = false;
 };
 
 /// What one side of a contact may be.
-using ContactSide = std::variant<NodeSurface, FrameSurface, FrameBall>;
+using ContactSide = std::variant<NodeSurface, FrameSurface, MaterialPoints, FrameBall>;
 
 }  // namespace palpate::contact

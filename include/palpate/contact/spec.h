@@ -43,7 +43,8 @@ struct ContactSpec {
   /// samples with a smaller positive gap are kept too; 0: chosen from the mesh
   double candidate_gap_m = 0.0;
   int pixels = 256;  ///< in image space: the image's longer edge, at most
-  /// in image space: what the pixels may err in a region's force, relative; 0: `pixels` always
+  /// what pixels may err in a region's force, relative (0: `pixels` always), or points, of which it chooses
+  /// the number
   double quadrature_error = 1e-3;
   /// in image space: "pixel", or "vertex": at the soft skins' vertices
   std::string samples = "pixel";

@@ -88,6 +88,7 @@ const ObstacleEntry& box_obstacle() {
         return make_box_source(std::move(side), frame, std::move(motion), pose_of(shape), size_of(shape), gap,
                                look_ahead);
       },
+      [](const Settings& shape) { return Box(pose_of(shape), size_of(shape)).thickness(); },
       [](const Settings& shape, const Vec3& x) { return nearest_to(Box(pose_of(shape), size_of(shape)), x); },
       picture,
   };

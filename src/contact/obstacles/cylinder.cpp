@@ -99,6 +99,9 @@ const ObstacleEntry& cylinder_obstacle() {
         return make_cylinder_source(std::move(side), frame, std::move(motion), pose_of(shape),
                                     radius_of(shape), length_of(shape), gap, look_ahead);
       },
+      [](const Settings& shape) {
+        return Cylinder(pose_of(shape), radius_of(shape), length_of(shape)).thickness();
+      },
       [](const Settings& shape, const Vec3& x) {
         return nearest_to(Cylinder(pose_of(shape), radius_of(shape), length_of(shape)), x);
       },

@@ -79,6 +79,7 @@ const ObstacleEntry& plane_obstacle() {
         return make_plane_source(std::move(side), frame, std::move(motion), position_of(shape),
                                  normal_of(shape), gap, look_ahead);
       },
+      [](const Settings&) { return double{HUGE_VAL}; },
       [](const Settings& shape, const Vec3& x) {
         return nearest_to(Plane(position_of(shape), normal_of(shape)), x);
       },

@@ -70,6 +70,7 @@ const ObstacleEntry& sphere_obstacle() {
         return make_sphere_source(std::move(side), frame, std::move(motion), position_of(shape),
                                   radius_of(shape), gap, look_ahead);
       },
+      [](const Settings& shape) { return Sphere(position_of(shape), radius_of(shape)).thickness(); },
       [](const Settings& shape, const Vec3& x) {
         return nearest_to(Sphere(position_of(shape), radius_of(shape)), x);
       },

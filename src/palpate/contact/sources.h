@@ -118,9 +118,24 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<p
 std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
                                                 const Points& rest_nodes, const ImageOptions& options);
 
+/// Returns how far apart contact points stand: the longest edge of the triangles that they belong to [m]
+/// (src/contact/material_points.cpp).
+/// @param width_a, width_b  least widths of the two bodies [m]; infinite of a half-space
+/// @param wanted_error  standard error of the force of a contact an eighth as deep as its radius [-]
+double point_spacing(double width_a, double width_b, double wanted_error);
+/// Returns material points of a soft surface, against an exact shape.
+/// @param rest  its vertices at rest [m]  @param body  at rest: what a skin hangs on, else unused
+/// @param spacing  as point_spacing() has it [m]
+/// @throws Error where the surface is not closed, or a face of it has no area
+MaterialPoints material_points(const NodeSurface& surface, const Points& rest, const TetMesh& body,
+                               double spacing);
+/// Returns those of a rigid surface.  Throws as above.
+MaterialPoints material_points(const FrameSurface& surface, double spacing);
+
 struct DistanceOptions {
-  double candidate_gap = 0.0;  ///< points nearer than this are kept as candidates [m]
-  double look_ahead = 0.0;     ///< [s] to the next query: points that may come near until then are kept, too
+  double quadrature_error = 1e-2;  ///< wanted, as point_spacing() has it
+  double candidate_gap = 0.0;      ///< points nearer than this are kept as candidates [m]
+  double look_ahead = 0.0;  ///< [s] to the next query: points that may come near until then are kept, too
 };
 
 /// Nearest points (src/contact/distance_source.cpp): material points of both skins, fixed at assembly, each

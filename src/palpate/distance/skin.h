@@ -35,6 +35,7 @@ struct Skin {
   std::vector<int> fan_begin;         ///< of each vertex in `fan`, and its length at the end
   std::vector<int> fan;               ///< faces around each vertex, ascending
   VecX area;                          ///< of each face at rest [m^2]
+  VecX longest_edge;                  ///< of each face at rest [m]
   std::vector<int> cluster_begin;     ///< of each cluster in `cluster_vertices`, and its length at the end
   std::vector<int> cluster_vertices;  ///< vertices of each cluster, each once
   double weight_sum = 0.0;  ///< largest sum of |weights| of a vertex: it moves by at most that times a node

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -13,7 +14,9 @@ class LaneSearch;
 /// Parameters of the contact between two skins, fixed at assembly.
 struct SkinContactSpec {
   double stiffness_pa_m = 0.0;
-  std::array<int, 2> cuts = {1, 1};  ///< of the edges of each skin's faces, see contact_points()
+  /// of each skin's points [m], see contact_points()
+  std::array<double, 2> spacing_m = {std::numeric_limits<double>::infinity(),
+                                     std::numeric_limits<double>::infinity()};
   bool two_sided = true;  ///< points of both skins, with half of the stiffness each; else of the first alone
 };
 
@@ -33,6 +36,16 @@ struct Spring {
 struct Resultant {
   Vec3 force = Vec3::Zero();   ///< [N]
   Vec3 moment = Vec3::Zero();  ///< about the origin [N m]
+};
+
+/// What the springs' forces say of their own sum.
+struct ForceSum {
+  double sum = 0.0;  ///< of the forces' norms [N]
+  /// Embedded estimate of the quadrature error of the resultant [N]: the centroids alone and the corners
+  /// alone are rules of degree 1, and this is their difference, |F_corners - F_centroids|.
+  double error = 0.0;
+  /// largest force of one spring [N], which bounds what a foot changes that finds another place nearest
+  double largest_term = 0.0;
 };
 
 /// Contact of two closed skins as an energy of distances.  With x the material points of a skin that lie
@@ -76,13 +89,7 @@ class SkinContact {
   double deepest() const;                            ///< largest |x - y| [m]
   void add_force(double* nodes_a, double* nodes_b);  ///< adds -dU/dq to x y z of each node [N]
   Resultant resultant() const;
-  /// Share of a point in the resultant: the largest force of one spring over |sum| [-], which bounds what a
-  /// foot that changes from one place of the skin to another changes.
-  double largest_share() const;
-  /// Embedded estimate of the quadrature error of the resultant force: the centroids alone and the corners
-  /// alone are rules of degree 1, and this is their difference over the whole, |F_corners - F_centroids| /
-  /// |F|.  0 without contact.
-  double quadrature_error() const;
+  ForceSum force_sum() const;
 
   /// The Gauss-Newton matrix K = sum of k a J' H J, J = dx/dq - dy/dq with the foot's weights held: H = n n'
   /// on a face, I - t t' along an edge t, I at a vertex.  Symmetric, positive semi-definite.  It leaves out

@@ -84,6 +84,7 @@ const ObstacleEntry& capsule_obstacle() {
         return make_analytic_source(std::move(side), frame, std::move(motion), capsule_of(shape), gap,
                                     look_ahead);
       },
+      [](const Settings& shape) { return capsule_of(shape).thickness(); },
       [](const Settings& shape, const Vec3& x) { return nearest_to(capsule_of(shape), x); },
       picture,
   };

@@ -1,0 +1,172 @@
+#include "contact/material_points.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "palpate/contact/sources.h"
+#include "palpate/core/error.h"
+#include "palpate/distance/points.h"
+
+// How far apart.  Two bodies as thick as balls of radii r and s touch as a ball of R = r s/(r + s) and a
+// plane do (Hertz); pressed in by d = R/8, in a circle of radius a, a^2 = 2 R d, hence a = R/2.  Points that
+// stand for h^2 each err, in the sum of the depth over such a circle, by
+//     c (h/a)^(5/2) of it,    c = 0.1,
+// as a standard error over all places of the points: 0.102 is that of a square grid (quadrature.cpp), and
+// tests/contact/material_points_test.cpp holds that of our points to it.  Triangles of edge e have 3/2 points
+// each, h^2 = sqrt(3)/6 e^2, so that
+//     e = (12)^(1/4) h = 1.86 (R/2) (wanted/c)^(2/5).
+// A contact that is less deep has a smaller circle, and errs by more of a smaller force: the run says by how
+// much.
+
+namespace palpate::contact {
+
+double point_spacing(double width_a, double width_b, double wanted_error) {
+  constexpr double kStandardError = 0.1;
+  if (!(wanted_error > 0.0))
+    fail("contact points: a quadrature error of {} asks for points without an end; it must be positive",
+         wanted_error);
+  const double R = 0.5 / (1.0 / width_a + 1.0 / width_b);
+  return std::pow(12.0, 0.25) * 0.5 * R * std::pow(wanted_error / kStandardError, 0.4);
+}
+
+namespace {
+
+/// Points on faces, and what they stand for, still without what carries them.
+struct PlacedPoints {
+  std::vector<distance::ContactPoint> points;
+  distance::Skin skin;
+  Points at;  ///< at rest [m]
+};
+PlacedPoints place_points(const TriMesh& rest, double spacing) {
+  PlacedPoints out;
+  out.skin = distance::make_skin(rest);
+  out.points = distance::contact_points(out.skin, spacing);
+  out.at.setZero(3, static_cast<Eigen::Index>(out.points.size()));
+  for (std::size_t i = 0; i < out.points.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      out.at.col(static_cast<Eigen::Index>(i)) +=
+          out.points[i].weights[k] * rest.vertices.col(out.skin.faces(k, out.points[i].face));
+  return out;
+}
+
+MaterialPoints with_areas(const PlacedPoints& placed) {
+  MaterialPoints out;
+  out.at.resize(placed.points.size());
+  out.area.resize(placed.at.cols());
+  out.coarse.resize(placed.at.cols());
+  for (std::size_t i = 0; i < placed.points.size(); ++i) {
+    out.area[static_cast<Eigen::Index>(i)] = placed.points[i].area;
+    out.coarse[static_cast<Eigen::Index>(i)] = placed.points[i].coarse;
+  }
+  return out;
+}
+
+}  // namespace
+
+// A point of a skin hangs on the tetrahedron that holds it, as the skin's vertices do: four nodes carry it
+// exactly, where the three vertices of its face would hang it on twelve.
+MaterialPoints material_points(const NodeSurface& surface, const Points& rest, const TetMesh& body,
+                               double spacing) {
+  const PlacedPoints placed = place_points({rest, surface.faces}, spacing);
+  MaterialPoints out = with_areas(placed);
+  out.block_id = surface.block_id;
+  const bool is_skin = surface.node_of_vertex.empty();
+  const mesh::Embedding embedding = is_skin ? mesh::embed(body, placed.at) : mesh::Embedding{};
+  for (std::size_t i = 0; i < out.at.size(); ++i) {
+    SurfacePoint& point = out.at[i];
+    point.count = is_skin ? 4 : 3;
+    const auto column = static_cast<Eigen::Index>(i);
+    for (int k = 0; k < point.count; ++k) {
+      const auto n = static_cast<std::size_t>(k);
+      if (is_skin) {
+        point.node[n] = body.tets(k, embedding.tet[i]);
+        point.weight[n] = embedding.weights(k, column);
+      } else {
+        const int vertex = placed.skin.faces(k, placed.points[i].face);
+        point.node[n] = surface.node_of_vertex[static_cast<std::size_t>(vertex)];
+        point.weight[n] = placed.points[i].weights[k];
+      }
+    }
+  }
+  return out;
+}
+
+MaterialPoints material_points(const FrameSurface& surface, double spacing) {
+  const PlacedPoints placed = place_points(surface.mesh, spacing);
+  MaterialPoints out = with_areas(placed);
+  out.motion = surface.motion;
+  for (std::size_t i = 0; i < out.at.size(); ++i) {
+    out.at[i].frame = surface.frame;
+    out.at[i].offset = placed.at.col(static_cast<Eigen::Index>(i));
+  }
+  return out;
+}
+
+MaterialPointState::MaterialPointState(MaterialPoints points) : points_(std::move(points)) {
+  PALPATE_CHECK(points_.area.size() == vertex_count() && points_.coarse.size() == vertex_count(),
+                "material points: {} points, {} areas", vertex_count(), points_.area.size());
+  PALPATE_CHECK(is_rigid() || points_.block_id >= 0, "material points of no block and no frame");
+}
+
+void MaterialPointState::update(const dynamics::StateView& state) {
+  if (is_rigid()) {
+    pose_ = points_.motion->pose(state);
+    twist_ = points_.motion->twist(state);
+    R_ = pose_.rotation.toRotationMatrix();
+    PALPATE_CHECK(R_.allFinite() && pose_.translation.allFinite(),
+                  "contact query at t = {}: a rigid surface's pose is not finite", state.time);
+    return;
+  }
+  const dynamics::Block* block = state.layout->find(points_.block_id);
+  PALPATE_CHECK(block && block->kind == dynamics::BlockKind::kNodes,
+                "material points: block {} is no node block of this State", points_.block_id);
+  if (const int offset = block->u_offset / 3; offset != node_offset_) {
+    node_offset_ = offset;
+    ++pattern_version_;
+  }
+  nodes_ = Eigen::Map<const Points>(state.q.data() + block->q_offset, 3, block->q_size / 3);
+  PALPATE_CHECK(nodes_.allFinite(), "contact query at t = {}: a node's position is not finite", state.time);
+}
+
+Vec3 MaterialPointState::position(int point) const {
+  const SurfacePoint& p = at(point);
+  if (is_rigid()) return R_ * p.offset + pose_.translation;
+  Vec3 x = Vec3::Zero();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(p.count); ++k)
+    x += p.weight[k] * nodes_.col(p.node[k]);
+  return x;
+}
+
+Vec3 MaterialPointState::velocity(int point, const dynamics::StateView& state) const {
+  const SurfacePoint& p = at(point);
+  if (is_rigid()) return twist_.at(R_ * p.offset);
+  Vec3 v = Vec3::Zero();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(p.count); ++k)
+    v += p.weight[k] * state.velocity(node_offset_ + p.node[k]);
+  return v;
+}
+
+SurfacePoint MaterialPointState::vertex_point(int point) const {
+  SurfacePoint out = at(point);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(out.count); ++k) out.node[k] += node_offset_;
+  return out;
+}
+
+double MaterialPointState::mean_edge() const {
+  return vertex_count() > 0 ? std::sqrt(points_.area.sum() / vertex_count()) : 0.0;
+}
+
+void MaterialPointState::add_vertex_pattern(dynamics::PatternBuilder& pattern) const {
+  if (is_rigid()) return;
+  std::set<std::array<int, 4>> seen;
+  for (const SurfacePoint& point : points_.at) {
+    std::array<int, 4> nodes{-1, -1, -1, -1};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k)
+      nodes[k] = node_offset_ + point.node[k];
+    if (seen.insert(nodes).second) pattern.add_clique(nodes.data(), point.count);
+  }
+}
+
+}  // namespace palpate::contact

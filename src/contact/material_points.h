@@ -1,0 +1,43 @@
+#pragma once
+#include <vector>
+
+#include "palpate/contact/side.h"
+
+namespace palpate::contact {
+
+/// MaterialPoints at a state: what SurfaceState and FrameVertices are for the vertices of a surface, with the
+/// same names, so that AnalyticSource takes any of the three.  A point stands for its area at rest.
+class MaterialPointState {
+ public:
+  /// @throws InternalError where areas and points differ in number, or points of nodes have no block
+  explicit MaterialPointState(MaterialPoints points);
+
+  void update(const dynamics::StateView& state);
+
+  int vertex_count() const { return static_cast<int>(points_.at.size()); }
+  /// In the world, evaluated when it is asked for: what does not touch costs nothing between queries [m].
+  Vec3 position(int point) const;
+  Vec3 velocity(int point, const dynamics::StateView& state) const;
+  /// Its nodes are counted over all node blocks.
+  SurfacePoint vertex_point(int point) const;
+  double rest_area(int point) const { return points_.area[point]; }      ///< [m^2]
+  double coarse_area(int point) const { return points_.coarse[point]; }  ///< in the embedded rule [m^2]
+  double mean_edge() const;  ///< of squares of the points' mean area [m]
+
+  void add_vertex_pattern(dynamics::PatternBuilder& pattern) const;
+  std::uint64_t vertex_pattern_version() const { return pattern_version_; }
+
+ private:
+  bool is_rigid() const { return points_.motion != nullptr; }
+  const SurfacePoint& at(int point) const { return points_.at[static_cast<std::size_t>(point)]; }
+
+  MaterialPoints points_;
+  int node_offset_ = 0;
+  std::uint64_t pattern_version_ = 0;
+  Points nodes_;  ///< of the block, now
+  Pose pose_;
+  Mat3 R_ = Mat3::Identity();
+  Twist twist_;
+};
+
+}  // namespace palpate::contact

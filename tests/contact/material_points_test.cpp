@@ -1,0 +1,222 @@
+// Material points of surfaces against exact shapes: how far apart they stand, what their sum errs and says
+// that it errs, and that its force is the gradient of an energy.
+#include <numbers>
+
+#include "messages.h"
+#include "palpate/contact/obstacle.h"
+#include "surfaces.h"
+
+using namespace contact_tests;
+
+namespace {
+
+constexpr double kRadius = 0.05, kDepth = kRadius / 8.0;
+
+/// A flat block of nodes, its triangles much larger than a ball.
+TriMesh block() { return mesh::box_surface({1.0, 1.0, 0.5}, {10, 8, 4}); }
+
+/// On the block's top, at height 0, its points made once.
+struct OnBlock {
+  SurfaceWorld world{block()};
+  contact::MaterialPoints points;
+  std::unique_ptr<contact::SampleSource> source;
+
+  explicit OnBlock(double spacing)
+      : points(contact::material_points(world.surface, block().vertices, {}, spacing)) {}
+  void place(const Vec3& ball, double turn) {
+    TriMesh mesh = block();
+    for (auto x : mesh.vertices.colwise())
+      x = Eigen::AngleAxisd(turn, Vec3::UnitZ()) * Vec3(x - Vec3(0, 0, 0.25));
+    world.state.q().tail(mesh.vertices.size()) = mesh.vertices.reshaped();
+    source = contact::make_sphere_source(points, 0, contact::fixed_frame(), ball, kRadius, 0.01);
+  }
+  Vec3 force() {
+    std::vector<contact::ContactSample> samples;
+    source->query(world.state.view(), samples);
+    Vec3 sum = Vec3::Zero();
+    for (const auto& s : samples) sum += s.area * std::max(0.0, -s.gap) * s.normal;
+    return sum;
+  }
+};
+
+/// Integral of depth times normal over the circle that a ball presses into a plane, along z.
+double exact_force() {
+  const double z = kRadius - kDepth, a2 = kRadius * kRadius - z * z;
+  constexpr int n = 200000;
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i) {
+    const double r2 = a2 * (i + 0.5) / n, distance = std::sqrt(r2 + z * z);
+    sum += (kRadius - distance) * z / distance * std::numbers::pi * a2 / n;
+  }
+  return sum;
+}
+
+struct Errors {
+  double standard = 0.0;  ///< relative
+  int bounded = 0;        ///< by what the source says, of 100
+};
+Errors errors_at(double spacing) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(-0.3, 0.3), turn(0.0, 2.0 * std::numbers::pi);
+  const Vec3 exact(0, 0, -exact_force());
+  Errors out;
+  OnBlock on(spacing);
+  double squares = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 ball(place(random), place(random), kRadius - kDepth);
+    on.place(ball, turn(random));
+    const double error = (on.force() - exact).norm() / exact.norm();
+    squares += error * error;
+    out.bounded += error <= on.source->sum_error()->last();
+  }
+  out.standard = std::sqrt(squares / 100.0);
+  return out;
+}
+
+}  // namespace
+
+// 0.6 of what was asked for at each: the power 5/2 holds, and 0.1 is on the safe side.
+TEST(MaterialPoints, ErrByWhatWasAskedFor) {
+  for (const double wanted : {3e-2, 1e-2, 3e-3}) {
+    const Errors errors = errors_at(contact::point_spacing(2.0 * kRadius, HUGE_VAL, wanted));
+    EXPECT_LT(errors.standard, wanted);
+    EXPECT_GT(errors.standard, 0.3 * wanted) << "more points than that takes";
+    EXPECT_GE(errors.bounded, 95);
+  }
+}
+
+// By dimension: two equal balls are as one of half the radius on a plane, and an error a tenth as large wants
+// 10^0.4 times finer points.
+TEST(MaterialPoints, SpacingFollowsWidthsAndError) {
+  const double one = contact::point_spacing(0.1, HUGE_VAL, 1e-2);
+  EXPECT_NEAR(contact::point_spacing(0.2, 0.2, 1e-2), one, 1e-15);
+  EXPECT_NEAR(contact::point_spacing(HUGE_VAL, 0.1, 1e-2), one, 1e-15);
+  EXPECT_NEAR(contact::point_spacing(0.1, HUGE_VAL, 1e-3), one * std::pow(10.0, -0.4), 1e-12);
+  expectations::expect_contains(expectations::message_of([] { contact::point_spacing(0.1, 0.1, 0.0); }),
+                                "it must be positive");
+}
+
+// The points of a skin hang on one tetrahedron each, so that four nodes have all of their force.
+TEST(MaterialPoints, ForceIsTheGradientOfItsEnergy) {
+  SkinWorld skin;
+  const TriMesh rest = mesh::sphere(1.0, 12);
+  const auto lowest = skin.vertices.row(2).minCoeff();
+  contact::MaterialPoints points = contact::material_points(skin.surface, rest.vertices, skin.ball, 0.05);
+  contact::ContactForce term;
+  term.add_frame(contact::fixed_frame());
+  ContactSpec law;
+  law.stiffness_pa_m = 1e4;
+  law.gaps = "exact";
+  term.add_pair(contact::make_box_source(std::move(points), 0, contact::fixed_frame(),
+                                         {quaternion_of(Vec3(0.2, 0.3, 0.1)), Vec3(0.1, 0.1, lowest - 0.2)},
+                                         Vec3(0.8, 0.9, 0.7), 0.05),
+                law);
+  term.refresh(skin.state.view());
+  const VecX f = force(term, skin.state);
+  ASSERT_GT(f.norm(), 1.0);
+  std::mt19937 random(3);
+  for (int i = 0; i < 5; ++i) {
+    VecX d(f.size());
+    for (auto& x : d) x = uniform(random);
+    const double h = 1e-6;
+    const auto energy = [&](double s) {
+      const dynamics::State at = moved(skin.state, d, s);
+      return term.energy(at.view());
+    };
+    EXPECT_NEAR((energy(h) - energy(-h)) / (2.0 * h), -f.dot(d), 1e-6 * f.norm());
+  }
+}
+
+TEST(MaterialPoints, AreaIsTheSurfacesAndPointsLieOnIt) {
+  const SkinWorld skin;
+  const TriMesh rest = mesh::sphere(1.0, 12);
+  const contact::MaterialPoints soft = contact::material_points(skin.surface, rest.vertices, skin.ball, 0.1),
+                                rigid = contact::material_points(
+                                    contact::FrameSurface{rest, 4, contact::fixed_frame()}, 0.1);
+  double area = 0.0;
+  for (Eigen::Index f = 0; f < rest.faces.cols(); ++f)
+    area += 0.5 * Vec3(rest.vertices.col(rest.faces(1, f)) - rest.vertices.col(rest.faces(0, f)))
+                      .cross(Vec3(rest.vertices.col(rest.faces(2, f)) - rest.vertices.col(rest.faces(0, f))))
+                      .norm();
+  ASSERT_EQ(soft.at.size(), rigid.at.size());
+  ASSERT_GT(soft.at.size(), static_cast<std::size_t>(4 * rest.faces.cols()));
+  for (const contact::MaterialPoints& points : {soft, rigid}) {
+    EXPECT_NEAR(points.area.sum(), area, 1e-12 * area);
+    EXPECT_NEAR(points.coarse.sum(), area, 1e-12 * area);
+  }
+  for (std::size_t i = 0; i < soft.at.size(); ++i) {
+    Vec3 x = Vec3::Zero();
+    for (std::size_t k = 0; k < 4; ++k) x += soft.at[i].weight[k] * skin.ball.nodes.col(soft.at[i].node[k]);
+    EXPECT_LT((x - rigid.at[i].offset).norm(), 1e-13);
+    EXPECT_EQ(rigid.at[i].frame, 4);
+  }
+}
+
+// k pi R depth^2, whatever the depth; and a block's points on a sphere that is smaller than its triangles
+// feel what the block's exact surface feels, where its vertices feel nothing.
+TEST(MaterialPoints, ABallFeelsItsOwnSurface) {
+  const dynamics::State state;
+  for (const double depth : {1e-6, 1e-3, 0.04}) {
+    const contact::FrameBall ball{kRadius, Vec3::Zero(), 0,
+                                  contact::fixed_frame({Quat::Identity(), Vec3(0.4, -2.0, kRadius - depth)}),
+                                  true};
+    const auto source =
+        contact::make_plane_source(ball, 1, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.01);
+    std::vector<contact::ContactSample> samples;
+    source->query(state.view(), samples);
+    double sum = 0.0;
+    for (const auto& s : samples) sum += s.area * std::max(0.0, -s.gap);
+    EXPECT_NEAR(sum / (std::numbers::pi * kRadius * depth * depth), 1.0, depth < 1e-5 ? 1e-6 : 1e-12)
+        << depth;
+  }
+}
+
+TEST(MaterialPoints, SeeWhatIsSmallerThanATriangle) {
+  const Vec3 between(0.1, 0.03, kRadius - kDepth);
+  OnBlock on(contact::point_spacing(2.0 * kRadius, HUGE_VAL, 1e-2));
+  on.place(between, 0.0);
+  EXPECT_NEAR(on.force().norm() / exact_force(), 1.0, 0.03);
+  contact::NodeSurface surface = on.world.surface;
+  const auto vertices =
+      contact::make_sphere_source(std::move(surface), 0, contact::fixed_frame(), between, kRadius, 0.01);
+  std::vector<contact::ContactSample> samples;
+  vertices->query(on.world.state.view(), samples);
+  for (const auto& s : samples) EXPECT_GT(s.gap, 0.0);
+}
+
+// Corner down and edge down: what lies below the plane is smaller than a triangle of the box.
+TEST(MaterialPoints, ABoxOfLargeTrianglesFeelsItsCornersAndEdges) {
+  const dynamics::State state;
+  const Vec3 size(0.03, 0.02, 0.02);
+  const double spacing = contact::point_spacing(size.minCoeff(), HUGE_VAL, 1e-2);
+  for (const Vec3& turn : {Vec3(0.4, 0.3, 0.2), Vec3(0.6, 0.0, 0.0), Vec3(0.5, -0.7, 0.0)}) {
+    const auto force = [&](const std::array<int, 3>& cells, double points) {
+      const TriMesh box = mesh::box_surface(size, cells);
+      const Quat rotation = quaternion_of(turn);
+      const double lowest = (rotation.toRotationMatrix() * box.vertices).row(2).minCoeff();
+      const Pose pose{rotation, Vec3(0, 0, -2e-3 - lowest)};
+      const auto source = contact::make_plane_source(
+          contact::material_points(contact::FrameSurface{box, 0, contact::fixed_frame(pose)}, points), 1,
+          contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.01);
+      std::vector<contact::ContactSample> samples;
+      source->query(state.view(), samples);
+      double sum = 0.0;
+      for (const auto& s : samples) sum += s.area * std::max(0.0, -s.gap);
+      return std::pair{sum, source->sum_error()->last()};
+    };
+    const double exact = force({60, 40, 40}, HUGE_VAL).first;
+    const auto [coarse, bound] = force({2, 1, 1}, spacing);
+    EXPECT_NEAR(coarse / exact, 1.0, 0.02) << turn.transpose();
+    EXPECT_LT(std::abs(coarse / exact - 1.0), bound);
+  }
+}
+
+TEST(MaterialPoints, RefuseASurfaceThatIsOpen) {
+  TriMesh open = block();
+  open.faces.conservativeResize(3, open.faces.cols() - 1);
+  expectations::expect_contains(
+      expectations::message_of([&] {
+        contact::material_points(contact::FrameSurface{open, 0, contact::fixed_frame()}, 0.1);
+      }),
+      "closed");
+}
