@@ -51,6 +51,19 @@ void add_overlaps(const loop::World& world, Remarks& out) {
   if (!text.empty()) out.push_back(fmt::format("deepest overlap: {}", text));
 }
 
+void add_quadrature(const loop::World& world, Remarks& out) {
+  std::string text;
+  for (const loop::Overlap& o : loop::overlaps_of(world)) {
+    if (o.quadrature_error == 0.0) continue;
+    text += fmt::format("{}{} {:.2g} % of the largest force ({})", text.empty() ? "" : ", ", o.pair,
+                        100.0 * o.quadrature_error,
+                        o.largest_share > 0.0
+                            ? fmt::format("bound; one point has {:.2g} %", 100.0 * o.largest_share)
+                            : "standard error of its pixels");
+  }
+  if (!text.empty()) out.push_back(fmt::format("contact quadrature: {}", text));
+}
+
 /// The error that exchange.linearisation_error bounds.
 void add_reduction_errors(const loop::World& world, Remarks& out) {
   for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
@@ -101,6 +114,7 @@ std::vector<std::string> run_remarks(const loop::World& world, const loop::RunRe
   if (result.buzz_n)
     out.push_back(fmt::format("buzz: {:.3g} N RMS of the force on the hand above 30 Hz", *result.buzz_n));
   add_overlaps(world, out);
+  add_quadrature(world, out);
   add_reduction_errors(world, out);
   if (result.port) add_port(*result.port, out);
   if (result.real_time)

@@ -61,27 +61,9 @@ class AnalyticSource final : public SampleSource {
     shape_.move_to(pose);
     find_tunnelled(inverse, state.time);
     kept_.clear();
-    if (!find_candidates(state, pose)) return;
-    find_areas();
-    double sum = 0.0, largest = 0.0;
-    Vec3 fine_less_coarse = Vec3::Zero();
-    for (int v = 0; v < surface_.vertex_count(); ++v) {
-      if (!wanted_[static_cast<std::size_t>(v)]) continue;
-      const ContactSample sample = sample_at(v, inverse);
-      // a vertex that follows may come to face the shape later, by as little as that
-      if (sample.area <= 0.0 && !follows_) continue;
-      samples.push_back(sample);
-      if (follows_) kept_.push_back(v);
-      if constexpr (kMaterial) {
-        if (!(sample.gap < 0.0)) continue;
-        const double term = -sample.gap * sample.area;
-        sum += term;
-        largest = std::max(largest, term);
-        fine_less_coarse -= sample.gap * (sample.area - surface_.coarse_area(v)) * sample.normal;
-      }
-    }
-    // as of two skins (SkinContact::force_sum)
-    if (sum > 0.0) sum_error_.take(sum, 4.0 * fine_less_coarse.norm(), largest);
+    SumError::Query sum;
+    if (find_candidates(state, pose)) take_samples(inverse, samples, sum);
+    if constexpr (kMaterial) sum_error_.take(sum);
   }
 
   bool start_following() override { return follows_ = true; }
@@ -102,6 +84,27 @@ class AnalyticSource final : public SampleSource {
 
  private:
   static constexpr bool kMaterial = requires(const Surface& s) { s.rest_area(0); };
+
+  void take_samples(const Pose& inverse, std::vector<ContactSample>& samples, SumError::Query& of) {
+    find_areas();
+    Vec3 fine_less_coarse = Vec3::Zero();
+    for (int v = 0; v < surface_.vertex_count(); ++v) {
+      if (!wanted_[static_cast<std::size_t>(v)]) continue;
+      const ContactSample sample = sample_at(v, inverse);
+      // a vertex that follows may come to face the shape later, by as little as that
+      if (sample.area <= 0.0 && !follows_) continue;
+      samples.push_back(sample);
+      if (follows_) kept_.push_back(v);
+      if constexpr (kMaterial) {
+        if (!(sample.gap < 0.0)) continue;
+        const double term = -sample.gap * sample.area;
+        of.sum += term;
+        of.largest_term = std::max(of.largest_term, term);
+        fine_less_coarse -= sample.gap * (sample.area - surface_.coarse_area(v)) * sample.normal;
+      }
+    }
+    of.error = 4.0 * fine_less_coarse.norm();  // as of two skins (SkinContact::force_sum)
+  }
 
   void find_areas() {
     if constexpr (!kMaterial) surface_.area_vectors(wanted_, areas_);

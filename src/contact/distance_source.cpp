@@ -63,8 +63,8 @@ class DistanceSource final : public SampleSource {
     for (const distance::Spring& spring : contact_->springs())
       safe_time_ = std::min(safe_time_, time_to_middle(spring.gap, -speed, thickness_));
     fast_ += safe_time_ < options_.look_ahead;
-    if (const distance::ForceSum of = contact_->force_sum(); of.sum > 0.0)
-      sum_error_.take(of.sum, of.error, of.largest_term);
+    const distance::ForceSum of = contact_->force_sum();
+    sum_error_.take({of.sum, of.error, of.largest_term});
     cells_.append_to(samples);
   }
   const SumError* sum_error() const override { return &sum_error_; }

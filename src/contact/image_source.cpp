@@ -183,7 +183,7 @@ std::size_t ImageSource::begin(const dynamics::StateView& state) {
 }
 
 void ImageSource::end(const SampleCells& samples, std::size_t first_cell) {
-  if (context_.volume > 0.0) context_.sum_error.take(context_.volume, std::sqrt(context_.variance), 0.0);
+  if (context_.volume > 0.0) context_.sum_error.take({context_.volume, std::sqrt(context_.variance), 0.0});
   if (!context_.b->soft()) return;
   if (const std::uint64_t now = sides_version(); now != counted_ || neighbours_a_.empty()) {
     neighbours_a_ = context_.a->soft()->neighbours();

@@ -4,15 +4,15 @@
 
 namespace palpate::contact {
 
-void SumError::take(double sum, double error, double largest_term) {
-  last_ = error / sum;
-  largest_sum_ = std::max(largest_sum_, sum);
-  largest_error_ = std::max(largest_error_, error);
-  largest_term_ = std::max(largest_term_, largest_term);
+void SumError::take(const Query& query) {
+  last_ = query;
+  largest_sum_ = std::max(largest_sum_, query.sum);
+  largest_error_ = std::max(largest_error_, query.error);
+  largest_term_ = std::max(largest_term_, query.largest_term);
 }
 
+// The last query is made again where a run goes on.
 void SumError::archive(Archive& a) {
-  a("last", last_);
   a("largest_sum", largest_sum_);
   a("largest_error", largest_error_);
   a("largest_term", largest_term_);

@@ -100,23 +100,20 @@ void add_jumps(store::Summary& summary, const World& world) {
   s.values.emplace_back("largest_moment_jump_at_a_query_n_m", jump.moment);
   s.values.emplace_back("largest_force_after_a_query_n", after.force);
   s.values.emplace_back("largest_moment_after_a_query_n_m", after.moment);
-  const auto& d = world.description.contacts;
   const std::vector<long> fast = world.contact->fast_regions();
   const std::vector<long> kept = world.contact->normals_kept();
-  const std::vector<double> deepest = world.contact->deepest();
+  const std::vector<Overlap> overlaps = overlaps_of(world);
   for (std::size_t i = 0; i < fast.size(); ++i) {
-    const std::string pair = d[i].first + " - " + d[i].second;
-    s.values.emplace_back(pair + ": regions fast enough to go through", static_cast<long long>(fast[i]));
-    s.values.emplace_back(pair + ": deep poses that kept the last normal", static_cast<long long>(kept[i]));
-    s.values.emplace_back(pair + ": deepest_overlap_m", deepest[i]);
-  }
-  const std::vector<const contact::SumError*> errors = world.contact->sum_errors();
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!errors[i] || errors[i]->is_empty()) continue;
-    const std::string pair = d[i].first + " - " + d[i].second;
-    s.values.emplace_back(pair + ": largest_quadrature_error", errors[i]->largest());
-    if (const double share = errors[i]->largest_share(); share > 0.0)
-      s.values.emplace_back(pair + ": largest_share_of_a_point", share);
+    const Overlap& overlap = overlaps[i];
+    s.values.emplace_back(overlap.pair + ": regions fast enough to go through",
+                          static_cast<long long>(fast[i]));
+    s.values.emplace_back(overlap.pair + ": deep poses that kept the last normal",
+                          static_cast<long long>(kept[i]));
+    s.values.emplace_back(overlap.pair + ": deepest_overlap_m", overlap.deepest_m);
+    if (overlap.quadrature_error > 0.0)
+      s.values.emplace_back(overlap.pair + ": largest_quadrature_error", overlap.quadrature_error);
+    if (overlap.largest_share > 0.0)
+      s.values.emplace_back(overlap.pair + ": largest_share_of_a_point", overlap.largest_share);
   }
   long lines = 0, pairs = 0, unaligned = 0;
   bool images = false;
@@ -306,9 +303,14 @@ std::vector<Overlap> overlaps_of(const World& world) {
   std::vector<Overlap> out;
   if (!world.contact) return out;
   const std::vector<double> deepest = world.contact->deepest();
+  const std::vector<const contact::SumError*> errors = world.contact->sum_errors();
   for (std::size_t i = 0; i < deepest.size(); ++i) {
     const ContactSpec& contact = world.description.contacts[i];
     Overlap one{fmt::format("{} - {}", contact.first, contact.second), deepest[i], HUGE_VAL};
+    if (errors[i]) {
+      one.quadrature_error = errors[i]->largest();
+      one.largest_share = errors[i]->largest_share();
+    }
     if (one.deepest_m > 0.0 && contact.first != contact.second)
       one.half_width_m = std::min(half_width(world, contact.first), half_width(world, contact.second));
     out.push_back(one);

@@ -67,7 +67,7 @@ Errors errors_at(double spacing) {
     on.place(ball, turn(random));
     const double error = (on.force() - exact).norm() / exact.norm();
     squares += error * error;
-    out.bounded += error <= on.source->sum_error()->last();
+    out.bounded += error <= on.source->sum_error()->last_relative();
   }
   out.standard = std::sqrt(squares / 100.0);
   return out;
@@ -202,7 +202,7 @@ TEST(MaterialPoints, ABoxOfLargeTrianglesFeelsItsCornersAndEdges) {
       source->query(state.view(), samples);
       double sum = 0.0;
       for (const auto& s : samples) sum += s.area * std::max(0.0, -s.gap);
-      return std::pair{sum, source->sum_error()->last()};
+      return std::pair{sum, source->sum_error()->last_relative()};
     };
     const double exact = force({60, 40, 40}, HUGE_VAL).first;
     const auto [coarse, bound] = force({2, 1, 1}, spacing);

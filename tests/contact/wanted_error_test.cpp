@@ -20,7 +20,7 @@ struct Resolved {
 Resolved resolved(contact::SampleSource& source, const SkinWorld& skin) {
   std::vector<contact::ContactSample> samples;
   source.query(skin.state.view(), samples);
-  return {total(samples, skin.state.view()), samples.size(), source.sum_error()->last()};
+  return {total(samples, skin.state.view()), samples.size(), source.sum_error()->last_relative()};
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ TEST(WantedErrorOfParts, IsSharedByVolume) {
         error += (seen[wall] - of_wall[wall]) / volume;
       }
       squares += error * error;
-      EXPECT_NEAR(source->sum_error()->last() / kWanted, 1.0, 0.15);
+      EXPECT_NEAR(source->sum_error()->last_relative() / kWanted, 1.0, 0.15);
     }
   EXPECT_LT(std::sqrt(squares / (kGrids * kGrids)), 1.25 * kWanted);
   EXPECT_NEAR(pressed / (kGrids * kGrids) / (kPi * std::pow(0.102 / kWanted, 0.8) * shares), 1.0, 0.15);

@@ -295,7 +295,6 @@ const std::vector<std::string> kShownNowhere = {
     "bodies.contact.pair..hits",
     "bodies.contact.pair..pixels",
     "bodies.contact.pair..vertices",
-    "bodies.contact.pair..sum_error.last",
     // of poses so deep that no skin says which way is out, and of a run without steps in parts
     "bodies.contact.pair..finder.",
     "bodies.contact.pair..normal",

@@ -9,23 +9,28 @@ namespace palpate::contact {
 /// hence large relative errors of small forces.
 class SumError {
  public:
-  /// Takes a query with an overlap.
-  /// @param sum  of depth times area over all points [m^3], positive  @param error  estimate of its error
-  /// [m^3]
-  /// @param largest_term  of one point [m^3]; 0 where points are not told apart
-  void take(double sum, double error, double largest_term);
+  /// The sum of one query.
+  struct Query {
+    double sum = 0.0;           ///< of depth times area over all points [m^3]; 0 where nothing overlaps
+    double error = 0.0;         ///< estimate of its error [m^3]
+    double largest_term = 0.0;  ///< of one point [m^3]; 0 where points are not told apart
+  };
+  void take(const Query& query);
 
-  bool is_empty() const { return largest_sum_ == 0.0; }
+  const Query& last() const { return last_; }
   /// Error of the last sum, relative to it [-].
-  double last() const { return last_; }
+  double last_relative() const { return last_.sum > 0.0 ? last_.error / last_.sum : 0.0; }
   /// Largest error over the largest sum [-].
-  double largest() const { return is_empty() ? 0.0 : largest_error_ / largest_sum_; }
+  double largest() const { return of_largest_sum(largest_error_); }
   /// Largest term over the largest sum [-]: it bounds what a point changes that finds another place nearest.
-  double largest_share() const { return is_empty() ? 0.0 : largest_term_ / largest_sum_; }
+  double largest_share() const { return of_largest_sum(largest_term_); }
   void archive(Archive& a);
 
  private:
-  double last_ = 0.0, largest_sum_ = 0.0, largest_error_ = 0.0, largest_term_ = 0.0;
+  double of_largest_sum(double x) const { return largest_sum_ > 0.0 ? x / largest_sum_ : 0.0; }
+
+  Query last_;
+  double largest_sum_ = 0.0, largest_error_ = 0.0, largest_term_ = 0.0;
 };
 
 }  // namespace palpate::contact

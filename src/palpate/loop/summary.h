@@ -11,7 +11,8 @@ std::vector<scene::Need> needs(const scene::Description& description);
 /// What the device of a hand has counted (device::Device::tallies).
 std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand);
 
-/// How deep the two sides of a [[contact]] lay in each other.
+/// How deep the two sides of a [[contact]] lay in each other, and what the sum over its points or pixels
+/// errs.
 struct Overlap {
   std::string pair;        ///< "head - tool"
   double deepest_m = 0.0;  ///< the largest overlap that a query saw; 0: they never touched
@@ -19,6 +20,8 @@ struct Overlap {
   /// side, or nowhere; infinite where they never touched, of obstacles, and of a body
   /// against itself
   double half_width_m = 0.0;
+  double quadrature_error = 0.0;  ///< relative, as contact::SumError::largest(); 0: not estimated
+  double largest_share = 0.0;     ///< of one point; 0 of pixels
   bool too_deep() const { return deepest_m > half_width_m; }
 };
 /// One for each [[contact]] of the scene.
