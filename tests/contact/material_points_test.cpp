@@ -211,6 +211,26 @@ TEST(MaterialPoints, ABoxOfLargeTrianglesFeelsItsCornersAndEdges) {
   }
 }
 
+TEST(MaterialPoints, SumsErrorsLargestOnesGoOn) {
+  contact::SumError kept;
+  kept.take({4.0, 0.2, 0.5});
+  kept.take({1.0, 0.4, 0.1});
+  EXPECT_EQ(kept.last_relative(), 0.4);
+  EXPECT_EQ(kept.largest(), 0.1);
+  EXPECT_EQ(kept.largest_share(), 0.125);
+  Archive keeps;
+  kept.archive(keeps);
+  Archive gives(keeps.values(), "kept");
+  contact::SumError on;
+  on.archive(gives);
+  gives.check_all_given_back();
+  on.take({2.0, 0.1, 0.1});
+  EXPECT_EQ(on.largest(), 0.1);
+  EXPECT_EQ(on.largest_share(), 0.125);
+  on.take({});
+  EXPECT_EQ(on.last_relative(), 0.0) << "nothing overlaps, nothing errs";
+}
+
 TEST(MaterialPoints, RefuseASurfaceThatIsOpen) {
   TriMesh open = block();
   open.faces.conservativeResize(3, open.faces.cols() - 1);

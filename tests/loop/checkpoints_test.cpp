@@ -311,6 +311,8 @@ const std::vector<std::string> kShownNowhere = {
     // fingers do not yield: a path has its switches at every time
     "hand..ticks.handle.switches",
     "bodies.hand..device.switches",
+    // largest ones, which these scenes reach later (MaterialPoints.SumsErrorsLargestOnesGoOn has them)
+    "bodies.contact.pair..sum_error.largest_",
     // what is near, and no nearer: samples that do not press
     "bodies.contact.pair..near",
     // a largest area that is held still, and a guess that only a controller that acts makes

@@ -15,16 +15,17 @@ class SumError {
     double error = 0.0;         ///< estimate of its error [m^3]
     double largest_term = 0.0;  ///< of one point [m^3]; 0 where points are not told apart
   };
+  /// Takes what a query has found.
   void take(const Query& query);
 
-  const Query& last() const { return last_; }
+  const Query& last() const { return last_; }  ///< what was taken last
   /// Error of the last sum, relative to it [-].
   double last_relative() const { return last_.sum > 0.0 ? last_.error / last_.sum : 0.0; }
   /// Largest error over the largest sum [-].
   double largest() const { return of_largest_sum(largest_error_); }
   /// Largest term over the largest sum [-]: it bounds what a point changes that finds another place nearest.
   double largest_share() const { return of_largest_sum(largest_term_); }
-  void archive(Archive& a);
+  void archive(Archive& a);  ///< keeps the largest of each, and gives them back
 
  private:
   double of_largest_sum(double x) const { return largest_sum_ > 0.0 ? x / largest_sum_ : 0.0; }
