@@ -59,6 +59,7 @@ class AnalyticSource final : public SampleSource {
     if (candidate_gap_ == 0.0) candidate_gap_ = surface_.mean_edge();
     const Pose pose = motion_->pose(state), inverse = pose.inverse();
     shape_.move_to(pose);
+    if constexpr (kMaterial) open_runs(state, pose);
     find_tunnelled(inverse, state.time);
     kept_.clear();
     SumError::Query sum;
@@ -88,22 +89,58 @@ class AnalyticSource final : public SampleSource {
   void take_samples(const Pose& inverse, std::vector<ContactSample>& samples, SumError::Query& of) {
     find_areas();
     Vec3 fine_less_coarse = Vec3::Zero();
-    for (int v = 0; v < surface_.vertex_count(); ++v) {
-      if (!wanted_[static_cast<std::size_t>(v)]) continue;
+    for_each_near([&](int v) {
+      if (!wanted_[static_cast<std::size_t>(v)]) return;
       const ContactSample sample = sample_at(v, inverse);
       // a vertex that follows may come to face the shape later, by as little as that
-      if (sample.area <= 0.0 && !follows_) continue;
+      if (sample.area <= 0.0 && !follows_) return;
       samples.push_back(sample);
       if (follows_) kept_.push_back(v);
       if constexpr (kMaterial) {
-        if (!(sample.gap < 0.0)) continue;
+        if (!(sample.gap < 0.0)) return;
         const double term = -sample.gap * sample.area;
         of.sum += term;
         of.largest_term = std::max(of.largest_term, term);
         fine_less_coarse -= sample.gap * (sample.area - surface_.coarse_area(v)) * sample.normal;
       }
-    }
+    });
     of.error = 4.0 * fine_less_coarse.norm();  // as of two skins (SkinContact::force_sum)
+  }
+
+  // Material points stand in runs of neighbours.  A signed distance is 1-Lipschitz, so a run whose least one
+  // was g stays outside until its points have gone as far as g, and comes near at the next query only where
+  // that, at the speed of the fastest, is not enough.  What is left out would have been no sample, would have
+  // crossed nothing and have been safe for longer than the look-ahead: it changes the time of a query alone.
+  static constexpr int kRun = 64;
+  void open_runs(const dynamics::StateView& state, const Pose& pose) {
+    constexpr double kRounding = 1e-12;
+    const auto count = static_cast<std::size_t>((surface_.vertex_count() + kRun - 1) / kRun);
+    const Twist twist = motion_->twist(state);
+    const bool is_still = twist.linear.isZero(0.0) && twist.angular.isZero(0.0) &&
+                          pose.translation == shape_pose_.translation &&
+                          pose.rotation.coeffs() == shape_pose_.rotation.coeffs();
+    shape_pose_ = pose;
+    const double way = surface_.way() * (1.0 + kRounding);
+    if (clear_.size() != count || !is_still || !std::isfinite(way)) {
+      clear_.assign(count, -1.0);
+      gone_ = 0.0;
+    } else {
+      gone_ += way;
+    }
+    const double near = candidate_gap_ + look_ahead_ * surface_.fastest(state);
+    open_.clear();
+    for (std::size_t r = 0; r < count; ++r)
+      if (!(clear_[r] > gone_ + near)) open_.push_back(static_cast<int>(r));
+  }
+  /// visit(v) for what may be near, in order.
+  template <class Visit>
+  void for_each_near(const Visit& visit) const {
+    if constexpr (kMaterial) {
+      for (const int run : open_)
+        for (int v = kRun * run; v < std::min(kRun * (run + 1), surface_.vertex_count()); ++v) visit(v);
+    } else {
+      for (int v = 0; v < surface_.vertex_count(); ++v) visit(v);
+    }
   }
 
   void find_areas() {
@@ -136,9 +173,15 @@ class AnalyticSource final : public SampleSource {
     safe_time_ = HUGE_VAL;
     const Twist twist = motion_->twist(state);
     wanted_.assign(static_cast<std::size_t>(surface_.vertex_count()), 0);
-    for (int v = 0; v < surface_.vertex_count(); ++v) {
+    if constexpr (kMaterial)
+      for (const int run : open_) clear_[static_cast<std::size_t>(run)] = HUGE_VAL;
+    for_each_near([&](int v) {
       const Vec3 x = surface_.position(v);
       const Nearest nearest = shape_.at(x);
+      if constexpr (kMaterial) {
+        double& clear = clear_[static_cast<std::size_t>(v / kRun)];
+        clear = std::min(clear, gone_ + nearest.gap);
+      }
       const double rate = nearest.normal.dot(surface_.velocity(v, state) -
                                              twist.at(x - nearest.gap * nearest.normal - pose.translation));
       safe_time_ = std::min(safe_time_, time_to_middle(nearest.gap, rate, shape_.thickness()));
@@ -146,7 +189,7 @@ class AnalyticSource final : public SampleSource {
         wanted_[static_cast<std::size_t>(v)] = 1;
         any = true;
       }
-    }
+    });
     fast_ += safe_time_ < look_ahead_;
     return any;
   }
@@ -154,11 +197,20 @@ class AnalyticSource final : public SampleSource {
   /// A vertex's way since the last query, seen from the frame, as a straight line: outside at both ends, but
   /// through the shape in between. Nothing pushed it back; it is on the wrong side, or inside a body that is.
   void find_tunnelled(const Pose& inverse, double t) {
-    seen_.resize(3, surface_.vertex_count());
-    for (int v = 0; v < surface_.vertex_count(); ++v) {
-      const Vec3 now = inverse * surface_.position(v);
-      if (seen_before_ && shape_.is_crossed(seen_.col(v), now)) ++tunnelled_;
-      seen_.col(v) = now;
+    if constexpr (kMaterial) {
+      for_each_near([&](int v) {
+        const Vec3 now = inverse * surface_.position(v);
+        if (seen_before_ && shape_.is_crossed(seen_from_ * surface_.kept_position(v), now)) ++tunnelled_;
+      });
+      surface_.keep();
+      seen_from_ = inverse;
+    } else {
+      seen_.resize(3, surface_.vertex_count());
+      for (int v = 0; v < surface_.vertex_count(); ++v) {
+        const Vec3 now = inverse * surface_.position(v);
+        if (seen_before_ && shape_.is_crossed(seen_.col(v), now)) ++tunnelled_;
+        seen_.col(v) = now;
+      }
     }
     seen_before_ = true;
     if (tunnelled_ == 0 || warned_) return;
@@ -177,6 +229,11 @@ class AnalyticSource final : public SampleSource {
   std::vector<char> wanted_;
   Points areas_;
   Points seen_;            ///< vertices at the last query, in the frame
+  Pose seen_from_;         ///< of material points: into the frame, at the last query
+  std::vector<double> clear_;  ///< of each run of material points: value of `gone_` up to which it is outside
+  std::vector<int> open_;      ///< runs that may be near
+  double gone_ = 0.0;          ///< bound on the points' way [m]
+  Pose shape_pose_;
   std::vector<int> kept_;  ///< vertices of the last query's samples, where these follow
   bool follows_ = false;
   bool seen_before_ = false, warned_ = false;

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 
+#include "palpate/contact/sample.h"
 #include "palpate/core/types.h"
 
 namespace palpate::contact {
@@ -27,6 +28,15 @@ struct Carrier {
   /// times (u, v, w, 1) from there: by how much the point lies further along the normal than what the nodes
   /// carry [m]
   Vec4 beside = Vec4::Zero();
+};
+
+/// The point at a place, counted from the carrier's `at`.  @param normal  the axes' w
+SurfacePoint point_of(const Carrier& carrier, const Vec3& from_carrier, const Vec3& normal);
+
+/// One point of a surface, and the number of what carries it.
+struct CarriedPoint {
+  SurfacePoint point;
+  int number = 0;  ///< as Carrier::number
 };
 
 }  // namespace palpate::contact

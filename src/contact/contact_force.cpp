@@ -34,11 +34,7 @@ void ContactForce::Impl::follow(const dynamics::StateView& state) {
     same = followed.poses[i].translation == frame_states[i].pose.translation &&
            followed.poses[i].rotation.coeffs() == frame_states[i].pose.rotation.coeffs();
   if (same) return;
-  followed.query = queries;
-  followed.time = state.time;
-  followed.q = state.q;
-  followed.poses.clear();
-  for (const FrameState& frame : frame_states) followed.poses.push_back(frame.pose);
+  note_followed(state);
   for (const Pair& pair : pairs) {
     if (!pair.follows) continue;
     const auto own = std::span(samples).subspan(pair.begin, pair.end - pair.begin);
@@ -46,6 +42,14 @@ void ContactForce::Impl::follow(const dynamics::StateView& state) {
     if (pair.law.per_point)
       for (ContactSample& sample : own) count_as_point(sample);
   }
+}
+
+void ContactForce::Impl::note_followed(const dynamics::StateView& state) {
+  followed.query = queries;
+  followed.time = state.time;
+  followed.q = state.q;
+  followed.poses.clear();
+  for (const auto& frame : frames) followed.poses.push_back(frame->pose(state));
 }
 
 const std::vector<int>& ContactForce::Impl::rows_of_frames() {

@@ -76,10 +76,13 @@ void CoupledNodes::take(const SampleCells& samples, std::size_t first) {
   for (std::size_t c = first; c < samples.cells.size(); ++c) {
     const Carrier &a = samples.carriers[static_cast<std::size_t>(samples.cells[c].a)],
                   &b = samples.carriers[static_cast<std::size_t>(samples.cells[c].b)];
-    const auto key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(a.number)) << 32 |
-                     static_cast<std::uint32_t>(b.number);
-    joints_.push_back({key, a.count, b.count, a.node, b.node});
+    joints_.push_back({key_of(a.number, b.number), a.count, b.count, a.node, b.node});
   }
+  behind_ = true;
+}
+
+void CoupledNodes::take(std::span<const Joint> joints) {
+  joints_.assign(joints.begin(), joints.end());
   behind_ = true;
 }
 

@@ -39,21 +39,26 @@ class NodeNeighbours {
 /// only notes what its samples hang on, and the pattern is made when somebody asks.
 class CoupledNodes {
  public:
+  /// What carries both points of some samples.
+  struct Joint {
+    std::uint64_t key = 0;  ///< both carriers' numbers
+    int count_a = 0, count_b = 0;
+    std::array<int, 4> a{}, b{};  ///< nodes
+  };
+  static std::uint64_t key_of(int carrier_a, int carrier_b) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(carrier_a)) << 32 |
+           static_cast<std::uint32_t>(carrier_b);
+  }
   /// The nodes are counted otherwise from now on.  @pre both are there as long as this is
   void start(const NodeNeighbours& a, const NodeNeighbours& b);
   /// @param first  of the cells that these bodies have made
   void take(const SampleCells& samples, std::size_t first);
+  void take(std::span<const Joint> joints);
   void add_pattern(dynamics::PatternBuilder& pattern);
   std::uint64_t version();  ///< grows with every change
 
  private:
   using Pairs = std::vector<std::pair<int, int>>;
-  /// What carries the samples of a cell.
-  struct Joint {
-    std::uint64_t key;  ///< both carriers' numbers
-    int count_a, count_b;
-    std::array<int, 4> a, b;  ///< nodes
-  };
   template <class Visit>
   static bool for_each_pair(const Joint& joint, Visit visit);
   void catch_up();  ///< with what was taken last

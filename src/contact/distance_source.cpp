@@ -19,12 +19,10 @@
 #include "contact/coupled_nodes.h"
 #include "contact/image_side.h"
 #include "contact/safe_time.h"
-#include "contact/sample_cells.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/distance/skin_contact.h"
-#include "palpate/mesh/embedding.h"
 #include "palpate/proxy/reach.h"
 #include "palpate/proxy/region.h"
 
@@ -33,14 +31,14 @@ namespace {
 
 class DistanceSource final : public SampleSource {
  public:
-  DistanceSource(std::unique_ptr<ImageSide> a, const TriMesh& rest_a, std::unique_ptr<ImageSide> b,
-                 const TriMesh& rest_b, const DistanceOptions& options)
+  DistanceSource(std::unique_ptr<ImageSide> a, distance::Skin skin_a, double width_a,
+                 std::unique_ptr<ImageSide> b, distance::Skin skin_b, double width_b,
+                 const DistanceOptions& options)
       : a_(std::move(a)),
         b_(std::move(b)),
-        skins_{distance::make_skin(rest_a), distance::make_skin(rest_b)},
+        skins_{std::move(skin_a), std::move(skin_b)},
         options_(options) {
-    const double width_a = proxy::least_width(rest_a.vertices), width_b = proxy::least_width(rest_b.vertices),
-                 spacing = point_spacing(width_a, width_b, options.quadrature_error);
+    const double spacing = point_spacing(width_a, width_b, options.quadrature_error);
     thickness_ = std::min(width_a, width_b);
     contact_.emplace(skins_[0], skins_[1],
                      distance::SkinContactSpec{.stiffness_pa_m = 1.0, .spacing_m = {spacing, spacing}});
@@ -51,36 +49,42 @@ class DistanceSource final : public SampleSource {
 
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     update(state);
-    const proxy::ProxyMotion of_a = a_->motion(state), of_b = b_->motion(state);
-    contact_->find(a_->positions().data(), b_->positions().data(),
+    const proxy::ProxyMotion of_a = motion(0, state), of_b = motion(1, state);
+    contact_->find(carrying(*a_), carrying(*b_),
                    proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction());
-    cells_.clear();
-    follows_now_ = false;
-    for (const distance::Spring& spring : contact_->springs()) add(spring);
-    couple();
+    joints_.clear();
     safe_time_ = HUGE_VAL;
     const double speed = (of_a.velocity - of_b.velocity).norm() + of_a.spread + of_b.spread;
-    for (const distance::Spring& spring : contact_->springs())
+    for (const distance::Spring& spring : contact_->springs()) {
+      const Pair pair = pair_of(spring);
+      samples.push_back(sample_of(spring, pair));
+      if (is_coupled()) joints_.push_back(joint_of(pair));
       safe_time_ = std::min(safe_time_, time_to_middle(spring.gap, -speed, thickness_));
+    }
+    if (is_coupled()) couple();
     fast_ += safe_time_ < options_.look_ahead;
     const distance::ForceSum of = contact_->force_sum();
     sum_error_.take({of.sum, of.error, of.largest_term});
-    cells_.append_to(samples);
   }
   const SumError* sum_error() const override { return &sum_error_; }
 
   bool start_following() override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
-    PALPATE_CHECK(samples.size() == cells_.cells.size(), "distance: {} samples follow, {} were found",
-                  samples.size(), cells_.cells.size());
+    const std::vector<distance::Spring>& springs = contact_->springs();
+    PALPATE_CHECK(samples.size() == springs.size(), "distance: {} samples follow, {} were found",
+                  samples.size(), springs.size());
     if (samples.empty()) return;
     update(state);
-    contact_->follow(a_->positions().data(), b_->positions().data());
-    follows_now_ = true;
+    contact_->follow(carrying(*a_), carrying(*b_));
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      place(contact_->springs()[i], i);
+      if (contact_->is_clear(springs[i])) {
+        samples[i].area = 0.0;  // its points are not where they were nearest: no force, whatever they do
+        continue;
+      }
+      Pair pair = pair_of(springs[i]);
+      if (is_coupled()) keep_in_pattern(joints_[i], pair);
       const int source = samples[i].source;
-      samples[i] = cells_.sample(cells_.cells[i], static_cast<int>(i));
+      samples[i] = sample_of(springs[i], pair);
       samples[i].source = source;
     }
   }
@@ -104,103 +108,84 @@ class DistanceSource final : public SampleSource {
   }
 
  private:
-  /// What carries a point.
-  struct Joint {
-    int number, count;
-    std::array<int, 4> node;
-  };
-
   void update(const dynamics::StateView& state) {
     a_->update(state);
     b_->update(state);
   }
-
-  /// A cell of its own for each sample: the carriers of both points, and where they are.
-  void add(const distance::Spring& spring) {
-    const int i = static_cast<int>(cells_.cells.size());
-    cells_.cells.push_back({.a = 2 * i, .b = 2 * i + 1, .first = i, .last = i + 1});
-    cells_.cells.back().area = spring.stiffness;  // of 1 Pa/m: half of the point's area
-    cells_.places.emplace_back();
-    cells_.carriers.resize(cells_.carriers.size() + 2);
-    place(spring, static_cast<std::size_t>(i));
+  /// What the skin's vertices hang on: nodes, or themselves.
+  static const double* carrying(ImageSide& side) {
+    return (side.soft() ? side.points() : side.positions()).data();
   }
 
-  /// Both points of a spring, and axes along its normal.
-  struct Ends {
-    int face_a, face_b;
-    Vec3 weights_a, weights_b, a, b;
-    ContactAxes axes;
+  /// Velocities of the skin's vertices, which bound those of all its points.
+  proxy::ProxyMotion motion(int side, const dynamics::StateView& state) {
+    const ImageSide& of = side == 0 ? *a_ : *b_;
+    proxy::ProxyMotion out = of.motion(state);
+    if (of.soft() && of.soft()->is_skin())
+      out.spread = contact_->spread(side, of.soft()->node_velocities(state).data(), out.velocity);
+    return out;
+  }
+
+  /// Both points of a spring and the normal, from b to a.
+  struct Pair {
+    CarriedPoint a, b;
+    Vec3 at_a, at_b, normal;
   };
-  Ends ends_of(const distance::Spring& spring) const {
+  Pair pair_of(const distance::Spring& spring) const {
     const distance::ContactPoint& point =
         contact_->points(spring.side)[static_cast<std::size_t>(spring.point)];
     const Vec3 x = contact_->position(spring), y = x + spring.reach;
     const Vec3 out = contact_->outward(spring);  // of b where the point is a's
-    if (spring.side == 0)
-      return {point.face, spring.face, point.weights, spring.weights, x, y, ContactAxes(x, out)};
-    return {spring.face, point.face, spring.weights, point.weights, y, x, ContactAxes(y, -out)};
-  }
-
-  /// The first choice whose weights are bounded, or the last one: see SurfaceState::carrier_choice.
-  static Carrier choose(const ImageSide& side, const distance::Skin& skin, int face, const Vec3& weights,
-                        const Vec3& x, const ContactAxes& axes) {
-    constexpr double kRounding = 1e-9;
-    Eigen::Index corner = 0;
-    weights.maxCoeff(&corner);
-    const int given = skin.given_face[static_cast<std::size_t>(face)];
-    Carrier out;
-    for (int c = 0; c < side.carrier_choices(); ++c) {
-      const int number = side.carrier_choice(given, static_cast<int>(corner), c);
-      out = side.carrier(number, axes);
-      out.number = number;
-      const double sum = (out.by_place * (axes.in_axes(x) - out.at).homogeneous()).cwiseAbs().sum();
-      if (out.frame >= 0 || sum <= (1.0 + kRounding) * mesh::kLargestWeightSum) break;
-    }
-    return out;
-  }
-
-  /// Brings cell i, its carriers and its place to where they are now.
-  void place(const distance::Spring& spring, std::size_t i) {
-    const Ends ends = ends_of(spring);
-    Carrier &a = cells_.carriers[2 * i], &b = cells_.carriers[2 * i + 1];
-    a = choose(*a_, skins_[0], ends.face_a, ends.weights_a, ends.a, ends.axes);
-    b = choose(*b_, skins_[1], ends.face_b, ends.weights_b, ends.b, ends.axes);
-    if (follows_now_ && is_coupled()) {
-      keep_in_pattern(*a_, ends.axes, at_query_[2 * i], a);
-      keep_in_pattern(*b_, ends.axes, at_query_[2 * i + 1], b);
-    }
-    const Vec3 from_a = ends.axes.in_axes(ends.a) - a.at;
-    cells_.places[i] = {from_a[0], from_a[1], from_a[2], from_a[2] - spring.gap};
-    cells_.cells[i].normal = ends.axes.normal();
-  }
-
-  /// The blocks between two bodies are those of the query's carriers and of all that these share nodes with
-  /// (CoupledNodes).  A point that has gone farther hangs on what carried it at the query.
-  static void keep_in_pattern(const ImageSide& side, const ContactAxes& axes, const Joint& then,
-                              Carrier& now) {
-    const auto shares = [&](int node) {
-      return std::find(now.node.begin(), now.node.begin() + now.count, node) != now.node.begin() + now.count;
+    Pair pair;
+    const bool is_of_a = spring.side == 0;
+    pair.normal = is_of_a ? out : Vec3(-out);
+    pair.at_a = is_of_a ? x : y;
+    pair.at_b = is_of_a ? y : x;
+    const auto carried = [&](int side, int face, const Vec3& weights, const Vec3& at) {
+      const int given = skins_[static_cast<std::size_t>(side)].given_face[static_cast<std::size_t>(face)];
+      return (side == 0 ? *a_ : *b_).carried(given, weights, at, pair.normal);
     };
-    if (now.number == then.number || std::any_of(then.node.begin(), then.node.begin() + then.count, shares))
-      return;
-    now = side.carrier(then.number, axes);
-    now.number = then.number;
+    (is_of_a ? pair.a : pair.b) = carried(spring.side, point.face, point.weights, x);
+    (is_of_a ? pair.b : pair.a) = carried(1 - spring.side, spring.face, spring.weights, y);
+    return pair;
+  }
+  static ContactSample sample_of(const distance::Spring& spring, const Pair& pair) {
+    ContactSample out;
+    out.a = pair.a.point;
+    out.b = pair.b.point;
+    out.normal = pair.normal;
+    out.area = spring.stiffness;  // of 1 Pa/m: half of the point's area
+    out.gap = spring.gap;
+    return out;
   }
 
   /// Blocks between the nodes of two soft bodies.
   bool is_coupled() const { return a_->soft() && b_->soft(); }
+  static CoupledNodes::Joint joint_of(const Pair& pair) {
+    return {CoupledNodes::key_of(pair.a.number, pair.b.number), pair.a.point.count, pair.b.point.count,
+            pair.a.point.node, pair.b.point.node};
+  }
   void couple() {
-    if (!is_coupled()) return;
     const std::uint64_t layout = a_->soft()->pattern_version() + b_->soft()->pattern_version();
     if (!neighbours_ || layout != counted_in_) {
       neighbours_ = {a_->soft()->neighbours(), b_->soft()->neighbours()};
       coupled_.start((*neighbours_)[0], (*neighbours_)[1]);
       counted_in_ = layout;
     }
-    coupled_.take(cells_, 0);
-    at_query_.clear();
-    for (const Carrier& carrier : cells_.carriers)
-      at_query_.push_back({carrier.number, carrier.count, carrier.node});
+    coupled_.take(joints_);
+  }
+  /// The blocks between two bodies are those of the query's carriers and of all that these share nodes with
+  /// (CoupledNodes).  A point that has gone farther hangs on what carried it at the query.
+  void keep_in_pattern(const CoupledNodes::Joint& then, Pair& now) const {
+    const auto keep = [&](const ImageSide& side, int number, const std::array<int, 4>& nodes, int count,
+                          const Vec3& x, CarriedPoint& point) {
+      const auto end = point.point.node.begin() + point.point.count;
+      const auto is_shared = [&](int node) { return std::find(point.point.node.begin(), end, node) != end; };
+      if (number != point.number && std::none_of(nodes.begin(), nodes.begin() + count, is_shared))
+        point = side.carried_by(number, x, now.normal);
+    };
+    keep(*a_, static_cast<int>(then.key >> 32), then.a, then.count_a, now.at_a, now.a);
+    keep(*b_, static_cast<int>(then.key & 0xffffffffu), then.b, then.count_b, now.at_b, now.b);
   }
 
   std::unique_ptr<ImageSide> a_, b_;
@@ -208,9 +193,7 @@ class DistanceSource final : public SampleSource {
   std::optional<distance::SkinContact> contact_;  ///< there once the widths are known
   DistanceOptions options_;
   double thickness_ = 0.0;
-  SampleCells cells_;            ///< one a sample
-  std::vector<Joint> at_query_;  ///< of two soft bodies: the carriers of `cells_` at the query
-  bool follows_now_ = false;
+  std::vector<CoupledNodes::Joint> joints_;  ///< of two soft bodies: what carried the samples at the query
   mutable CoupledNodes coupled_;
   std::optional<std::array<NodeNeighbours, 2>> neighbours_;
   std::uint64_t counted_in_ = 0;
@@ -219,22 +202,32 @@ class DistanceSource final : public SampleSource {
   SumError sum_error_;
 };
 
+distance::Skin skin_of(const NodeSurface& surface, const Points& rest) {
+  const TriMesh mesh{rest, surface.faces};
+  const bool is_embedded = surface.node_of_vertex.empty();
+  return is_embedded
+             ? distance::make_skin(mesh, surface.embedding, surface.tets, surface.tets.maxCoeff() + 1)
+             : distance::make_skin(mesh);
+}
+
 }  // namespace
 
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface a, const Points& rest_a, NodeSurface b,
                                                    const Points& rest_b, const DistanceOptions& options) {
-  const TriMesh mesh_a{rest_a, a.faces}, mesh_b{rest_b, b.faces};
-  return std::make_unique<DistanceSource>(soft_side(std::move(a)), mesh_a, soft_side(std::move(b)), mesh_b,
-                                          options);
+  distance::Skin skin_a = skin_of(a, rest_a), skin_b = skin_of(b, rest_b);
+  return std::make_unique<DistanceSource>(soft_side(std::move(a)), std::move(skin_a),
+                                          proxy::least_width(rest_a), soft_side(std::move(b)),
+                                          std::move(skin_b), proxy::least_width(rest_b), options);
 }
 
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest, TriMesh rigid,
                                                    int frame, std::shared_ptr<MovingFrame> motion,
                                                    const DistanceOptions& options) {
-  const TriMesh mesh{rest, surface.faces}, rigid_mesh = rigid;
-  return std::make_unique<DistanceSource>(soft_side(std::move(surface)), mesh,
-                                          rigid_side(std::move(rigid), frame, std::move(motion)), rigid_mesh,
-                                          options);
+  distance::Skin skin = skin_of(surface, rest), rigid_skin = distance::make_skin(rigid);
+  const double rigid_width = proxy::least_width(rigid.vertices);
+  return std::make_unique<DistanceSource>(
+      soft_side(std::move(surface)), std::move(skin), proxy::least_width(rest),
+      rigid_side(std::move(rigid), frame, std::move(motion)), std::move(rigid_skin), rigid_width, options);
 }
 
 }  // namespace palpate::contact

@@ -38,6 +38,9 @@ class SoftSide final : public ImageSide {
     return state_.carrier_choice(face, corner, choice);
   }
   Carrier carrier(int number, const ContactAxes& axes) const override { return state_.carrier(number, axes); }
+  CarriedPoint carried(int face, const Vec3& weights, const Vec3& x, const Vec3& normal) const override {
+    return state_.carried(face, weights, x, normal);
+  }
   const SurfaceState* soft() const override { return &state_; }
   const Points& points() const override { return state_.is_skin() ? state_.nodes() : state_.positions(); }
   int block_id() const override { return state_.surface().block_id; }
@@ -126,6 +129,12 @@ class RigidSide final : public ImageSide {
     out.by_place.topLeftCorner<3, 3>().noalias() = turn_.transpose() * axes.to_world;
     out.by_place.topRightCorner<3, 1>().noalias() = turn_.transpose() * (axes.origin - pose_.translation);
     out.by_place(3, 3) = 1.0;
+    return out;
+  }
+  CarriedPoint carried(int, const Vec3&, const Vec3& x, const Vec3&) const override {
+    CarriedPoint out;
+    out.point.frame = frame_;
+    out.point.offset.noalias() = turn_.transpose() * (x - pose_.translation);
     return out;
   }
 

@@ -38,6 +38,15 @@ class ImageSide {
   virtual int carrier_choices() const = 0;
   virtual int carrier_choice(int face, int corner, int choice) const = 0;
   virtual Carrier carrier(int number, const ContactAxes& axes) const = 0;  ///< @pre updated
+  /// The point of a face with these weights of its corners, at x, on what carries it now.
+  /// @param normal  along which a carrier may miss it  @pre updated
+  virtual CarriedPoint carried(int face, const Vec3& weights, const Vec3& x, const Vec3& normal) const = 0;
+  /// The point at x on one carrier.  @param number  as of carrier()
+  CarriedPoint carried_by(int number, const Vec3& x, const Vec3& normal) const {
+    const ContactAxes axes(x, normal);
+    const Carrier by = carrier(number, axes);
+    return {point_of(by, axes.in_axes(x) - by.at, axes.normal()), number};
+  }
 
   /// For a backend that has surfaces in memory of its own.  Each vertex is a mean of some of these points: a
   /// body's nodes, or the vertices themselves.

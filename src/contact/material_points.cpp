@@ -108,6 +108,12 @@ MaterialPointState::MaterialPointState(MaterialPoints points) : points_(std::mov
   PALPATE_CHECK(points_.area.size() == vertex_count() && points_.coarse.size() == vertex_count(),
                 "material points: {} points, {} areas", vertex_count(), points_.area.size());
   PALPATE_CHECK(is_rigid() || points_.block_id >= 0, "material points of no block and no frame");
+  for (const SurfacePoint& point : points_.at) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) sum += std::abs(point.weight[k]);
+    weight_sum_ = std::max(weight_sum_, sum);
+    radius_ = std::max(radius_, point.offset.norm());
+  }
 }
 
 void MaterialPointState::update(const dynamics::StateView& state) {
@@ -130,13 +136,45 @@ void MaterialPointState::update(const dynamics::StateView& state) {
   PALPATE_CHECK(nodes_.allFinite(), "contact query at t = {}: a node's position is not finite", state.time);
 }
 
-Vec3 MaterialPointState::position(int point) const {
+Vec3 MaterialPointState::position(int point, const Points& nodes, const Mat3& R, const Vec3& t) const {
   const SurfacePoint& p = at(point);
-  if (is_rigid()) return R_ * p.offset + pose_.translation;
+  if (is_rigid()) return R * p.offset + t;
   Vec3 x = Vec3::Zero();
-  for (std::size_t k = 0; k < static_cast<std::size_t>(p.count); ++k)
-    x += p.weight[k] * nodes_.col(p.node[k]);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(p.count); ++k) x += p.weight[k] * nodes.col(p.node[k]);
   return x;
+}
+
+Vec3 MaterialPointState::position(int point) const {
+  return position(point, nodes_, R_, pose_.translation);
+}
+
+Vec3 MaterialPointState::kept_position(int point) const {
+  return position(point, kept_nodes_, kept_R_, kept_pose_.translation);
+}
+
+void MaterialPointState::keep() {
+  is_kept_ = true;
+  kept_nodes_ = nodes_;
+  kept_pose_ = pose_;
+  kept_R_ = R_;
+}
+
+// Of nodes: sum w_i dx_i, at most sum |w_i| times the largest |dx_i|.  Of a frame: dt + dR o, and a rotation
+// by theta moves o by 2 |o| sin(theta/2) at most.
+double MaterialPointState::way() const {
+  if (!is_kept_) return HUGE_VAL;
+  if (is_rigid()) {
+    const double angle = rotation_vector(pose_.rotation * kept_pose_.rotation.conjugate()).norm();
+    return (pose_.translation - kept_pose_.translation).norm() + 2.0 * std::sin(0.5 * angle) * radius_;
+  }
+  return weight_sum_ * std::sqrt((nodes_ - kept_nodes_).colwise().squaredNorm().maxCoeff());
+}
+
+double MaterialPointState::fastest(const dynamics::StateView& state) const {
+  if (is_rigid()) return twist_.linear.norm() + twist_.angular.norm() * radius_;
+  const dynamics::Block* block = state.layout->find(points_.block_id);
+  const Eigen::Map<const Points> v(state.u.data() + block->u_offset, 3, block->u_size / 3);
+  return weight_sum_ * std::sqrt(v.colwise().squaredNorm().maxCoeff());
 }
 
 Vec3 MaterialPointState::velocity(int point, const dynamics::StateView& state) const {

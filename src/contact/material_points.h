@@ -18,6 +18,12 @@ class MaterialPointState {
   /// In the world, evaluated when it is asked for: what does not touch costs nothing between queries [m].
   Vec3 position(int point) const;
   Vec3 velocity(int point, const dynamics::StateView& state) const;
+  double fastest(const dynamics::StateView& state) const;  ///< bound on any point's speed [m/s]
+
+  // The way since the points were last kept.
+  void keep();                           ///< as they are now
+  double way() const;                    ///< bound on any point's displacement [m]; infinite before keep()
+  Vec3 kept_position(int point) const;   ///< @pre kept
   /// Its nodes are counted over all node blocks.
   SurfacePoint vertex_point(int point) const;
   double rest_area(int point) const { return points_.area[point]; }      ///< [m^2]
@@ -29,14 +35,18 @@ class MaterialPointState {
 
  private:
   bool is_rigid() const { return points_.motion != nullptr; }
+  Vec3 position(int point, const Points& nodes, const Mat3& R, const Vec3& t) const;
   const SurfacePoint& at(int point) const { return points_.at[static_cast<std::size_t>(point)]; }
 
   MaterialPoints points_;
   int node_offset_ = 0;
   std::uint64_t pattern_version_ = 0;
-  Points nodes_;  ///< of the block, now
-  Pose pose_;
-  Mat3 R_ = Mat3::Identity();
+  double weight_sum_ = 1.0;  ///< largest sum |w| of a point
+  double radius_ = 0.0;      ///< largest distance of a rigid one from the frame's origin [m]
+  bool is_kept_ = false;
+  Points nodes_, kept_nodes_;  ///< of the block, now and when they were kept
+  Pose pose_, kept_pose_;
+  Mat3 R_ = Mat3::Identity(), kept_R_ = Mat3::Identity();
   Twist twist_;
 };
 

@@ -3,9 +3,8 @@
 #include <algorithm>
 
 namespace palpate::contact {
-namespace {
 
-SurfacePoint point(const Carrier& carrier, const Vec3& from_carrier, const Vec3& normal) {
+SurfacePoint point_of(const Carrier& carrier, const Vec3& from_carrier, const Vec3& normal) {
   SurfacePoint out;
   const Vec4 place = from_carrier.homogeneous();
   const Vec4 rows = carrier.by_place * place;
@@ -20,8 +19,6 @@ SurfacePoint point(const Carrier& carrier, const Vec3& from_carrier, const Vec3&
   out.offset = carrier.beside.dot(place) * normal;
   return out;
 }
-
-}  // namespace
 
 void SampleCells::clear() {
   carriers.clear();
@@ -40,8 +37,8 @@ ContactSample SampleCells::sample(const ContactCell& cell, int place) const {
   const Carrier &a = carriers[static_cast<std::size_t>(cell.a)],
                 &b = carriers[static_cast<std::size_t>(cell.b)];
   ContactSample out;
-  out.a = point(a, Vec3(at.u, at.v, at.w_a), cell.normal);
-  out.b = point(b, Vec3(at.u, at.v, at.w_b) + a.at - b.at, cell.normal);
+  out.a = point_of(a, Vec3(at.u, at.v, at.w_a), cell.normal);
+  out.b = point_of(b, Vec3(at.u, at.v, at.w_b) + a.at - b.at, cell.normal);
   out.normal = cell.normal;
   out.area = area(cell, place);
   out.gap = at.w_a - at.w_b;

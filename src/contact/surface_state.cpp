@@ -6,6 +6,7 @@
 
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/mesh/embedding.h"
 
 namespace palpate::contact {
 
@@ -141,14 +142,14 @@ int SurfaceState::carrier_choice(int face, int corner, int choice) const {
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFlatTetrahedron = 1e-6;  // volume over the cube of the longest edge
 
 /// Barycentric coordinates by the place, of a tetrahedron with these corners, the first at 0; NaN of one that
 /// is too flat to have them.
 Mat4 coordinates_in(const Mat34& x) {
-  constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
   const Mat3 edges = x.rightCols<3>();
   const double size = edges.colwise().norm().maxCoeff();
-  if (!(std::abs(edges.determinant()) > kFlat * size * size * size)) return Mat4::Constant(kNoNumber);
+  if (!(std::abs(edges.determinant()) > kFlatTetrahedron * size * size * size)) return Mat4::Constant(kNoNumber);
   Mat4 out = Mat4::Zero();
   out.bottomLeftCorner<3, 3>() = edges.inverse();
   out.row(0) = Vec4(0.0, 0.0, 0.0, 1.0).transpose() - out.bottomRows<3>().colwise().sum();
@@ -220,6 +221,52 @@ Carrier SurfaceState::carrier(int number, const ContactAxes& axes) const {
       out.by_place = number % 2 == 0 ? coordinates_in(x) : least_weights(x);
   }
   out.beside = Vec4(0.0, 0.0, 1.0, 0.0) - out.by_place.transpose() * x.row(2).transpose();
+  return out;
+}
+
+CarriedPoint SurfaceState::carried(int face, const Vec3& weights, const Vec3& x, const Vec3& normal) const {
+  // a vertex that was embedded with weights at the bound may come out above it by rounding
+  constexpr double kBound = (1.0 + 1e-9) * mesh::kLargestWeightSum;
+  CarriedPoint out;
+  SurfacePoint& point = out.point;
+  if (!is_skin()) {
+    out.number = face;
+    point.count = 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto corner = static_cast<Eigen::Index>(k);
+      point.node[k] = node(surface_.faces(corner, face));
+      point.weight[k] = weights[corner];
+    }
+    return out;
+  }
+  Eigen::Index corner = 0;
+  weights.maxCoeff(&corner);
+  // The first choice without axes: x = sum w_i x_i in three equations.
+  out.number = carrier_choice(face, static_cast<int>(corner), 0);
+  const auto tet = surface_.tets.col(out.number / 2);
+  const Vec3 x0 = nodes_.col(tet[0]);
+  const Vec3 a = nodes_.col(tet[1]) - x0, b = nodes_.col(tet[2]) - x0, c = nodes_.col(tet[3]) - x0,
+             p = x - x0, bc = b.cross(c);
+  const double det = a.dot(bc), size2 = std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm()});
+  if (std::abs(det) > kFlatTetrahedron * size2 * std::sqrt(size2)) {
+    const double wa = p.dot(bc) / det, wb = a.dot(p.cross(c)) / det, wc = a.dot(b.cross(p)) / det,
+                 w0 = 1.0 - wa - wb - wc;
+    if (std::abs(w0) + std::abs(wa) + std::abs(wb) + std::abs(wc) <= kBound) {
+      point.count = 4;
+      point.weight = {w0, wa, wb, wc};
+      for (std::size_t k = 0; k < 4; ++k) point.node[k] = node_offset_ + tet[static_cast<Eigen::Index>(k)];
+      return out;
+    }
+  }
+  const ContactAxes axes(x, normal);
+  for (int choice = 1; choice < carrier_choices(); ++choice) {
+    out.number = carrier_choice(face, static_cast<int>(corner), choice);
+    const Carrier by = carrier(out.number, axes);
+    point = point_of(by, axes.in_axes(x) - by.at, axes.normal());
+    double sum = 0.0;
+    for (const double w : point.weight) sum += std::abs(w);
+    if (sum <= kBound) break;
+  }
   return out;
 }
 

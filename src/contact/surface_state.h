@@ -53,6 +53,9 @@ class SurfaceState {
   int carrier_choice(int face, int corner, int choice) const;
   /// As it stands, for places in these axes; NaN where it can carry none.
   Carrier carrier(int number, const ContactAxes& axes) const;
+  /// The point of a face with these weights of its corners, at x: on the corners themselves where they are
+  /// nodes, else on the first choice of tetrahedra.
+  CarriedPoint carried(int face, const Vec3& weights, const Vec3& x, const Vec3& normal) const;
   /// One third of the area vectors of the adjacent faces, deformed [m^2]; outward.  Sums over `faces` with a
   /// vertex in `wanted`.
   void area_vectors(const std::vector<char>& wanted, Points& areas) const;

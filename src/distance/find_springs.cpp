@@ -59,33 +59,42 @@ void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
   const auto cluster = [&](const Spring& s) {
     return points_[s.side][static_cast<std::size_t>(s.point)].face / kClusterFaces;
   };
-  for (std::size_t first = 0, last = 0; first < springs_.size(); first = last) {
-    const Spring& head = springs_[first];
-    while (last < springs_.size() && last < first + kPacket && springs_[last].side == head.side &&
-           cluster(springs_[last]) == cluster(head))
-      ++last;
-    follow(first, last);
+  packet_.clear();
+  for (std::size_t i = 0; i < springs_.size(); ++i) {
+    const Spring& spring = springs_[i];
+    if (is_clear(spring)) continue;
+    if (!packet_.empty()) {
+      const Spring& head = springs_[packet_.front()];
+      if (packet_.size() == kPacket || head.side != spring.side || cluster(head) != cluster(spring)) {
+        follow_packet(packet_);
+        packet_.clear();
+      }
+    }
+    packet_.push_back(i);
   }
+  if (!packet_.empty()) follow_packet(packet_);
 }
 
-/// Springs of points of one cluster, at most a packet.
-void SkinContact::follow(std::size_t first, std::size_t last) {
-  const int side = springs_[first].side;
+/// @param springs  of points of one cluster, at most a packet
+void SkinContact::follow_packet(const std::vector<std::size_t>& springs) {
+  const int side = springs_[springs.front()].side;
   const Surface& other = surfaces_[1 - side];
   LaneSearch& search = *searches_[1 - side];
   Packet packet;
   int faces[kPacket];
-  for (std::size_t i = first; i < last; ++i) {
-    search.set_point(packet, static_cast<int>(i - first), position(springs_[i]));
-    faces[i - first] = springs_[i].face;
+  int used = 0;
+  for (const std::size_t i : springs) {
+    search.set_point(packet, used, position(springs_[i]));
+    faces[used++] = springs_[i].face;
   }
-  search.finish(packet, static_cast<int>(last - first));
-  search.start(packet, faces, static_cast<int>(last - first));
+  search.finish(packet, used);
+  search.start(packet, faces, used);
   search.search(&packet, 1);
-  for (std::size_t i = first; i < last; ++i) {
-    const int face = packet.face[i - first];
-    const Foot foot = other.nearest_around(position(springs_[i]), face < 0 ? springs_[i].face : face);
-    set_foot(springs_[i], foot, other.is_inside(foot));
+  for (int lane = 0; lane < used; ++lane) {
+    Spring& spring = springs_[springs[static_cast<std::size_t>(lane)]];
+    const int face = packet.face[lane];
+    const Foot foot = other.nearest_around(position(spring), face < 0 ? spring.face : face);
+    set_foot(spring, foot, other.is_inside(foot));
   }
 }
 

@@ -42,6 +42,7 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& sp
     at.touched.reserve(static_cast<std::size_t>(skin.vertex_count()));
   }
   springs_.reserve(count);
+  packet_.reserve(kPacket);
   scratch_->packets.resize(most_packets);
 }
 
@@ -61,6 +62,7 @@ void SkinContact::set_foot(Spring& spring, const Foot& foot, bool is_inside) con
   spring.weights = foot.at.weights;
   spring.reach = -foot.at.away;
   spring.gap = is_inside ? -distance : distance;
+  spring.clear = is_inside ? 0.0 : travelled_ + distance;
 }
 
 void SkinContact::add_spring(int side, int point, const Foot& foot, bool is_inside) {

@@ -67,20 +67,25 @@ Surface::Surface(const Skin& skin)
     : skin_(skin),
       nodes_(Padded::Zero(4, skin.node_count)),
       vertices_(Padded::Zero(4, skin.vertex_count())),
+      nodes_of_(nodes_),
+      other_(vertices_),
       boxes_(skin.tree.size()) {}
 
 void Surface::move(const double* nodes) {
   const Eigen::Map<const Points> now(nodes, 3, skin_.node_count);
   if (is_placed_) {
     shift_ = (now - nodes_.topRows<3>()).rowwise().mean();
-    const double most2 = ((now - nodes_.topRows<3>()).colwise() - shift_).colwise().squaredNorm().maxCoeff();
-    stretch_ = skin_.weight_sum * std::sqrt(most2);
+    std::swap(vertices_, other_);
   }
-  is_placed_ = true;
   nodes_.topRows<3>() = now;
   const SearchKernels& kernels = best_search_kernels();
   kernels.evaluate(nodes_.data(), skin_.nodes.data(), skin_.weights.data(), skin_.vertex_count(),
                    vertices_.data());
+  if (is_placed_) {
+    const auto way = vertices_.topRows<3>() - other_.topRows<3>();
+    stretch_ = std::sqrt((way.colwise() - shift_).colwise().squaredNorm().maxCoeff());
+  }
+  is_placed_ = true;
   for (std::size_t i = skin_.tree.size(); i-- > 0;) {
     const ClusterNode& node = skin_.tree[i];
     if (node.right) {
@@ -93,6 +98,13 @@ void Surface::move(const double* nodes) {
     kernels.bound(vertices_.data(), skin_.cluster_vertices.data() + begin, end - begin, low, high);
     boxes_[i] = {Eigen::Map<const Vec3>(low), Eigen::Map<const Vec3>(high)};
   }
+}
+
+double Surface::spread(const double* node_velocities, const Vec3& about) {
+  nodes_of_.topRows<3>() = Eigen::Map<const Points>(node_velocities, 3, skin_.node_count);
+  best_search_kernels().evaluate(nodes_of_.data(), skin_.nodes.data(), skin_.weights.data(),
+                                 skin_.vertex_count(), other_.data());
+  return std::sqrt((other_.topRows<3>().colwise() - about).colwise().squaredNorm().maxCoeff());
 }
 
 Vec3 Surface::point(int face, const Vec3& weights) const {

@@ -30,6 +30,7 @@ struct Spring {
   double gap = 0.0;             ///< signed distance of the point: -|y - x| inside, |y - x| outside [m]
   double stiffness = 0.0;       ///< [N/m]
   double coarse = 0.0;          ///< stiffness in the embedded rule [N/m]
+  double clear = 0.0;           ///< way of the skins up to which the point lies outside [m]
 };
 
 /// Resultant of all springs on the first skin.
@@ -73,8 +74,12 @@ class SkinContact {
   /// @param nodes_a, nodes_b  x y z of each node [m]  @param near  [m]
   void find(const double* nodes_a, const double* nodes_b, double near = 0.0);
   /// Moves the springs' feet to where they are nearest at other positions: what find() would give for these
-  /// points.  No spring comes or goes, but gaps may change their sign.
+  /// points.  No spring comes or goes, but gaps may change their sign.  A point that cannot have come inside
+  /// yet is not looked at, and its spring stays as it was: see is_clear().
   void follow(const double* nodes_a, const double* nodes_b);
+  /// Whether a spring's point lies outside for sure, because it was farther outside when it was last looked
+  /// at than the skins have moved against each other since.
+  bool is_clear(const Spring& spring) const { return travelled_ < spring.clear; }
   /// Finds them by Surface::nearest alone, point by point in double precision: what find() is tested against.
   void find_by_reference(const double* nodes_a, const double* nodes_b);
 
@@ -85,6 +90,10 @@ class SkinContact {
   /// outside and towards it inside, and the pseudonormal of Surface::outward() where the two coincide.
   Vec3 outward(const Spring& spring) const;
   const Surface& surface(int side) const { return surfaces_[side]; }
+  /// As Surface::spread(), of one side.
+  double spread(int side, const double* node_velocities, const Vec3& about) {
+    return surfaces_[side].spread(node_velocities, about);
+  }
   double energy() const;                             ///< U [J]
   double deepest() const;                            ///< largest |x - y| [m]
   void add_force(double* nodes_a, double* nodes_b);  ///< adds -dU/dq to x y z of each node [N]
@@ -103,7 +112,7 @@ class SkinContact {
 
   void move(const double* nodes_a, const double* nodes_b);
   void find_side(int side, double near);
-  void follow(std::size_t first, std::size_t last);
+  void follow_packet(const std::vector<std::size_t>& springs);
   void find_side_by_reference(int side);
   void collect_clusters(int side, double near);
   void find_cluster(int side, int cluster, int start, double near);
@@ -132,6 +141,7 @@ class SkinContact {
     int cluster, tree_node;
   };
   std::vector<Candidate> candidates_;  ///< clusters of a side that may have points inside
+  std::vector<std::size_t> packet_;    ///< springs that are followed together
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
 

@@ -44,6 +44,9 @@ class Surface {
   /// No vertex was displaced by more than that from shift() in the last move() [m]; infinite in the first.
   double stretch() const { return stretch_; }
 
+  /// Returns how far a vertex' velocity is from one, at most, where the nodes have these [m/s].
+  double spread(const double* node_velocities, const Vec3& about);
+
   const Skin& skin() const { return skin_; }
   /// Four numbers each, the last one without a meaning.
   const double* vertices() const { return vertices_.data(); }
@@ -79,6 +82,7 @@ class Surface {
 
   const Skin& skin_;
   Padded nodes_, vertices_;
+  Padded nodes_of_, other_;  ///< of velocities, or of the vertices before the last move
   Vec3 shift_ = Vec3::Zero();
   double stretch_ = std::numeric_limits<double>::infinity();
   bool is_placed_ = false;
