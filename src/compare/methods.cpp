@@ -10,9 +10,7 @@ namespace {
 scene::Description with_method(scene::Description d, const std::string& method) {
   for (ContactSpec& contact : d.contacts) {
     if (contact.second != "tool") continue;
-    contact.method = method;
-    if (method != "analytic") contact.gaps = method == "distance" ? "exact" : "linear";
-    if (method == "distance") contact.quadrature_error = scene::kPointsError;
+    scene::set_method(contact, method);
   }
   return d;
 }

@@ -11,6 +11,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/distance/points.h"
 
 namespace palpate::contact {
 
@@ -23,7 +24,7 @@ namespace palpate::contact {
 ///   Nearest at(x)            x and the answer in world axes
 ///   is_crossed(a, b)         whether the way from a to b, in the frame, passes through it from outside to
 ///   outside
-///   thickness()              least way through it [m]
+///   lengths()                its CharacteristicLengths
 /// and, for balls (ball_source.h),
 ///   kRound                   whether it looks the same all around a normal
 ///   height(x, n)             how far along the unit vector n from x the line leaves it, -infinity where the
@@ -37,6 +38,7 @@ class AnalyticSource final : public SampleSource {
         frame_(frame),
         motion_(std::move(motion)),
         shape_(shape),
+        thickness_(shape.lengths().width),
         candidate_gap_(candidate_gap),
         look_ahead_(look_ahead) {}
 
@@ -62,9 +64,9 @@ class AnalyticSource final : public SampleSource {
     if constexpr (kMaterial) open_runs(state, pose);
     find_tunnelled(inverse, state.time);
     kept_.clear();
-    SumError::Query sum;
+    distance::EmbeddedSum sum;
     if (find_candidates(state, pose)) take_samples(inverse, samples, sum);
-    if constexpr (kMaterial) sum_error_.take(sum);
+    if constexpr (kMaterial) sum_error_.take({sum.sum, sum.error(), sum.largest_term});
   }
 
   bool start_following() override { return follows_ = true; }
@@ -86,9 +88,8 @@ class AnalyticSource final : public SampleSource {
  private:
   static constexpr bool kMaterial = requires(const Surface& s) { s.rest_area(0); };
 
-  void take_samples(const Pose& inverse, std::vector<ContactSample>& samples, SumError::Query& of) {
+  void take_samples(const Pose& inverse, std::vector<ContactSample>& samples, distance::EmbeddedSum& of) {
     find_areas();
-    Vec3 fine_less_coarse = Vec3::Zero();
     for_each_near([&](int v) {
       if (!wanted_[static_cast<std::size_t>(v)]) return;
       const ContactSample sample = sample_at(v, inverse);
@@ -97,14 +98,9 @@ class AnalyticSource final : public SampleSource {
       samples.push_back(sample);
       if (follows_) kept_.push_back(v);
       if constexpr (kMaterial) {
-        if (!(sample.gap < 0.0)) return;
-        const double term = -sample.gap * sample.area;
-        of.sum += term;
-        of.largest_term = std::max(of.largest_term, term);
-        fine_less_coarse -= sample.gap * (sample.area - surface_.coarse_area(v)) * sample.normal;
+        if (sample.gap < 0.0) of.add(-sample.gap * sample.normal, sample.area, surface_.coarse_area(v));
       }
     });
-    of.error = 4.0 * fine_less_coarse.norm();  // as of two skins (SkinContact::force_sum)
   }
 
   // Material points stand in runs of neighbours.  A signed distance is 1-Lipschitz, so a run whose least one
@@ -115,19 +111,23 @@ class AnalyticSource final : public SampleSource {
   void open_runs(const dynamics::StateView& state, const Pose& pose) {
     constexpr double kRounding = 1e-12;
     const auto count = static_cast<std::size_t>((surface_.vertex_count() + kRun - 1) / kRun);
-    const Twist twist = motion_->twist(state);
-    const bool is_still = twist.linear.isZero(0.0) && twist.angular.isZero(0.0) &&
-                          pose.translation == shape_pose_.translation &&
-                          pose.rotation.coeffs() == shape_pose_.rotation.coeffs();
+    // of a point r from the frame's origin, seen from the frame: its own way, the origin's, and 2 r
+    // sin(theta/2)
+    const double farthest = surface_.farthest_from(pose.translation);
+    const double angle = rotation_vector(pose.rotation * shape_pose_.rotation.conjugate()).norm();
+    const double way = (surface_.way() + (pose.translation - shape_pose_.translation).norm() +
+                        2.0 * std::sin(0.5 * angle) * farthest) *
+                       (1.0 + kRounding);
     shape_pose_ = pose;
-    const double way = surface_.way() * (1.0 + kRounding);
-    if (clear_.size() != count || !is_still || !std::isfinite(way)) {
+    if (clear_.size() != count || !std::isfinite(way)) {
       clear_.assign(count, -1.0);
       gone_ = 0.0;
     } else {
       gone_ += way;
     }
-    const double near = candidate_gap_ + look_ahead_ * surface_.fastest(state);
+    const Twist twist = motion_->twist(state);
+    const double near = candidate_gap_ + look_ahead_ * (surface_.fastest(state) + twist.linear.norm() +
+                                                        twist.angular.norm() * farthest);
     open_.clear();
     for (std::size_t r = 0; r < count; ++r)
       if (!(clear_[r] > gone_ + near)) open_.push_back(static_cast<int>(r));
@@ -184,7 +184,7 @@ class AnalyticSource final : public SampleSource {
       }
       const double rate = nearest.normal.dot(surface_.velocity(v, state) -
                                              twist.at(x - nearest.gap * nearest.normal - pose.translation));
-      safe_time_ = std::min(safe_time_, time_to_middle(nearest.gap, rate, shape_.thickness()));
+      safe_time_ = std::min(safe_time_, time_to_middle(nearest.gap, rate, thickness_));
       if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < candidate_gap_) {
         wanted_[static_cast<std::size_t>(v)] = 1;
         any = true;
@@ -225,11 +225,11 @@ class AnalyticSource final : public SampleSource {
   int frame_;
   std::shared_ptr<MovingFrame> motion_;
   Shape shape_;
-  double candidate_gap_, look_ahead_;
+  double thickness_, candidate_gap_, look_ahead_;
   std::vector<char> wanted_;
   Points areas_;
-  Points seen_;            ///< vertices at the last query, in the frame
-  Pose seen_from_;         ///< of material points: into the frame, at the last query
+  Points seen_;                ///< vertices at the last query, in the frame
+  Pose seen_from_;             ///< of material points: into the frame, at the last query
   std::vector<double> clear_;  ///< of each run of material points: value of `gone_` up to which it is outside
   std::vector<int> open_;      ///< runs that may be near
   double gone_ = 0.0;          ///< bound on the points' way [m]

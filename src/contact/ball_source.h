@@ -74,7 +74,7 @@ class BallSource final : public SampleSource {
     find_tunnelled(inverse_ * c_, state.time);
     const double gap = nearest_.gap - ball_.radius,
                  margin = candidate_gap_ - look_ahead_ * std::min(rate, 0.0);
-    safe_time_ = time_to_middle(gap, rate, shape_.thickness());
+    safe_time_ = time_to_middle(gap, rate, shape_.lengths().width);
     fast_ += safe_time_ < look_ahead_;
     if (gap < margin) sample(gap, margin, samples);
   }

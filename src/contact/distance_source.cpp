@@ -24,24 +24,20 @@
 #include "palpate/core/error.h"
 #include "palpate/distance/skin_contact.h"
 #include "palpate/proxy/reach.h"
-#include "palpate/proxy/region.h"
 
 namespace palpate::contact {
 namespace {
 
 class DistanceSource final : public SampleSource {
  public:
-  DistanceSource(std::unique_ptr<ImageSide> a, distance::Skin skin_a, double width_a,
-                 std::unique_ptr<ImageSide> b, distance::Skin skin_b, double width_b,
-                 const DistanceOptions& options)
+  DistanceSource(std::unique_ptr<ImageSide> a, distance::Skin skin_a, std::unique_ptr<ImageSide> b,
+                 distance::Skin skin_b, double spacing, double thickness, const DistanceOptions& options)
       : a_(std::move(a)),
         b_(std::move(b)),
         skins_{std::move(skin_a), std::move(skin_b)},
-        options_(options) {
-    const double spacing = point_spacing(width_a, width_b, options.quadrature_error);
-    thickness_ = std::min(width_a, width_b);
-    contact_.emplace(skins_[0], skins_[1],
-                     distance::SkinContactSpec{.stiffness_pa_m = 1.0, .spacing_m = {spacing, spacing}});
+        contact_(skins_[0], skins_[1], {.stiffness_pa_m = 1.0, .spacing_m = {spacing, spacing}}),
+        options_(options),
+        thickness_(thickness) {
     counters::count("contact.distance_source");
   }
 
@@ -50,12 +46,12 @@ class DistanceSource final : public SampleSource {
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     update(state);
     const proxy::ProxyMotion of_a = motion(0, state), of_b = motion(1, state);
-    contact_->find(carrying(*a_), carrying(*b_),
-                   proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction());
+    contact_.find(carrying(*a_), carrying(*b_),
+                  proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction());
     joints_.clear();
     safe_time_ = HUGE_VAL;
     const double speed = (of_a.velocity - of_b.velocity).norm() + of_a.spread + of_b.spread;
-    for (const distance::Spring& spring : contact_->springs()) {
+    for (const distance::Spring& spring : contact_.springs()) {
       const Pair pair = pair_of(spring);
       samples.push_back(sample_of(spring, pair));
       if (is_coupled()) joints_.push_back(joint_of(pair));
@@ -63,21 +59,21 @@ class DistanceSource final : public SampleSource {
     }
     if (is_coupled()) couple();
     fast_ += safe_time_ < options_.look_ahead;
-    const distance::ForceSum of = contact_->force_sum();
-    sum_error_.take({of.sum, of.error, of.largest_term});
+    const distance::EmbeddedSum of = contact_.force_sum();
+    sum_error_.take({of.sum, of.error(), of.largest_term});
   }
   const SumError* sum_error() const override { return &sum_error_; }
 
   bool start_following() override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
-    const std::vector<distance::Spring>& springs = contact_->springs();
+    const std::vector<distance::Spring>& springs = contact_.springs();
     PALPATE_CHECK(samples.size() == springs.size(), "distance: {} samples follow, {} were found",
                   samples.size(), springs.size());
     if (samples.empty()) return;
     update(state);
-    contact_->follow(carrying(*a_), carrying(*b_));
+    contact_.follow(carrying(*a_), carrying(*b_));
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (contact_->is_clear(springs[i])) {
+      if (contact_.is_clear(springs[i])) {
         samples[i].area = 0.0;  // its points are not where they were nearest: no force, whatever they do
         continue;
       }
@@ -122,7 +118,7 @@ class DistanceSource final : public SampleSource {
     const ImageSide& of = side == 0 ? *a_ : *b_;
     proxy::ProxyMotion out = of.motion(state);
     if (of.soft() && of.soft()->is_skin())
-      out.spread = contact_->spread(side, of.soft()->node_velocities(state).data(), out.velocity);
+      out.spread = contact_.spread(side, of.soft()->node_velocities(state).data(), out.velocity);
     return out;
   }
 
@@ -133,9 +129,9 @@ class DistanceSource final : public SampleSource {
   };
   Pair pair_of(const distance::Spring& spring) const {
     const distance::ContactPoint& point =
-        contact_->points(spring.side)[static_cast<std::size_t>(spring.point)];
-    const Vec3 x = contact_->position(spring), y = x + spring.reach;
-    const Vec3 out = contact_->outward(spring);  // of b where the point is a's
+        contact_.points(spring.side)[static_cast<std::size_t>(spring.point)];
+    const Vec3 x = contact_.position(spring), y = x + spring.reach;
+    const Vec3 out = contact_.outward(spring);  // of b where the point is a's
     Pair pair;
     const bool is_of_a = spring.side == 0;
     pair.normal = is_of_a ? out : Vec3(-out);
@@ -190,9 +186,9 @@ class DistanceSource final : public SampleSource {
 
   std::unique_ptr<ImageSide> a_, b_;
   std::array<distance::Skin, 2> skins_;
-  std::optional<distance::SkinContact> contact_;  ///< there once the widths are known
+  distance::SkinContact contact_;
   DistanceOptions options_;
-  double thickness_ = 0.0;
+  double thickness_;                         ///< of the thinner side [m]
   std::vector<CoupledNodes::Joint> joints_;  ///< of two soft bodies: what carried the samples at the query
   mutable CoupledNodes coupled_;
   std::optional<std::array<NodeNeighbours, 2>> neighbours_;
@@ -205,9 +201,18 @@ class DistanceSource final : public SampleSource {
 distance::Skin skin_of(const NodeSurface& surface, const Points& rest) {
   const TriMesh mesh{rest, surface.faces};
   const bool is_embedded = surface.node_of_vertex.empty();
-  return is_embedded
-             ? distance::make_skin(mesh, surface.embedding, surface.tets, surface.tets.maxCoeff() + 1)
-             : distance::make_skin(mesh);
+  return is_embedded ? distance::make_skin(mesh, surface.embedding, surface.tets, surface.tets.maxCoeff() + 1)
+                     : distance::make_skin(mesh);
+}
+
+/// @param mesh_a, mesh_b  at rest
+std::unique_ptr<SampleSource> make(std::unique_ptr<ImageSide> a, distance::Skin skin_a, const TriMesh& mesh_a,
+                                   std::unique_ptr<ImageSide> b, distance::Skin skin_b, const TriMesh& mesh_b,
+                                   const DistanceOptions& options) {
+  const CharacteristicLengths of_a = lengths_of(mesh_a), of_b = lengths_of(mesh_b);
+  return std::make_unique<DistanceSource>(std::move(a), std::move(skin_a), std::move(b), std::move(skin_b),
+                                          point_spacing(of_a, of_b, options.quadrature_error),
+                                          std::min(of_a.width, of_b.width), options);
 }
 
 }  // namespace
@@ -215,19 +220,19 @@ distance::Skin skin_of(const NodeSurface& surface, const Points& rest) {
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface a, const Points& rest_a, NodeSurface b,
                                                    const Points& rest_b, const DistanceOptions& options) {
   distance::Skin skin_a = skin_of(a, rest_a), skin_b = skin_of(b, rest_b);
-  return std::make_unique<DistanceSource>(soft_side(std::move(a)), std::move(skin_a),
-                                          proxy::least_width(rest_a), soft_side(std::move(b)),
-                                          std::move(skin_b), proxy::least_width(rest_b), options);
+  const TriMesh mesh_a{rest_a, a.faces}, mesh_b{rest_b, b.faces};
+  return make(soft_side(std::move(a)), std::move(skin_a), mesh_a, soft_side(std::move(b)), std::move(skin_b),
+              mesh_b, options);
 }
 
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest, TriMesh rigid,
                                                    int frame, std::shared_ptr<MovingFrame> motion,
                                                    const DistanceOptions& options) {
   distance::Skin skin = skin_of(surface, rest), rigid_skin = distance::make_skin(rigid);
-  const double rigid_width = proxy::least_width(rigid.vertices);
-  return std::make_unique<DistanceSource>(
-      soft_side(std::move(surface)), std::move(skin), proxy::least_width(rest),
-      rigid_side(std::move(rigid), frame, std::move(motion)), std::move(rigid_skin), rigid_width, options);
+  const TriMesh mesh{rest, surface.faces}, rigid_mesh = rigid;
+  return make(soft_side(std::move(surface)), std::move(skin), mesh,
+              rigid_side(std::move(rigid), frame, std::move(motion)), std::move(rigid_skin), rigid_mesh,
+              options);
 }
 
 }  // namespace palpate::contact

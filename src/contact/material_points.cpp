@@ -1,34 +1,43 @@
 #include "contact/material_points.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <set>
+#include <vector>
 
 #include "palpate/contact/sources.h"
 #include "palpate/core/error.h"
 #include "palpate/distance/points.h"
+#include "palpate/mesh/curvature.h"
+#include "palpate/proxy/region.h"
 
-// How far apart.  Two bodies as thick as balls of radii r and s touch as a ball of R = r s/(r + s) and a
-// plane do (Hertz); pressed in by d = R/8, in a circle of radius a, a^2 = 2 R d, hence a = R/2.  Points that
-// stand for h^2 each err, in the sum of the depth over such a circle, by
+// How far apart.  Two bodies of radii r and s touch as a ball of R = r s/(r + s) and a plane do (Hertz);
+// pressed in by d, in a circle of radius a, a^2 = 2 R d.  Here d is an eighth of R, or of half the width of
+// what is thinner than it is round, a plate.  Points that stand for h^2 each err, in the sum of the depth
+// over such a circle, by
 //     c (h/a)^(5/2) of it,    c = 0.1,
 // as a standard error over all places of the points: 0.102 is that of a square grid (quadrature.cpp), and
 // tests/contact/material_points_test.cpp holds that of our points to it.  Triangles of edge e have 3/2 points
 // each, h^2 = sqrt(3)/6 e^2, so that
-//     e = (12)^(1/4) h = 1.86 (R/2) (wanted/c)^(2/5).
+//     e = (12)^(1/4) h = 1.86 a (wanted/c)^(2/5).
 // A contact that is less deep has a smaller circle, and errs by more of a smaller force: the run says by how
 // much.
 
 namespace palpate::contact {
 
-double point_spacing(double width_a, double width_b, double wanted_error) {
-  constexpr double kStandardError = 0.1;
+CharacteristicLengths lengths_of(const TriMesh& closed) {
+  return {proxy::least_width(closed.vertices), mesh::mean_radius(closed)};
+}
+
+double point_spacing(const CharacteristicLengths& a, const CharacteristicLengths& b, double wanted_error) {
+  constexpr double kStandardError = 0.1, kDepth = 1.0 / 8.0;
   if (!(wanted_error > 0.0))
     fail("contact points: a quadrature error of {} asks for points without an end; it must be positive",
          wanted_error);
-  const double R = 0.5 / (1.0 / width_a + 1.0 / width_b);
-  return std::pow(12.0, 0.25) * 0.5 * R * std::pow(wanted_error / kStandardError, 0.4);
+  const double R = 1.0 / (1.0 / a.radius + 1.0 / b.radius),
+               depth = kDepth * std::min(R, 0.5 * std::min(a.width, b.width));
+  return std::pow(12.0, 0.25) * std::sqrt(2.0 * R * depth) * std::pow(wanted_error / kStandardError, 0.4);
 }
 
 namespace {
@@ -144,9 +153,7 @@ Vec3 MaterialPointState::position(int point, const Points& nodes, const Mat3& R,
   return x;
 }
 
-Vec3 MaterialPointState::position(int point) const {
-  return position(point, nodes_, R_, pose_.translation);
-}
+Vec3 MaterialPointState::position(int point) const { return position(point, nodes_, R_, pose_.translation); }
 
 Vec3 MaterialPointState::kept_position(int point) const {
   return position(point, kept_nodes_, kept_R_, kept_pose_.translation);
@@ -192,19 +199,26 @@ SurfacePoint MaterialPointState::vertex_point(int point) const {
   return out;
 }
 
+double MaterialPointState::farthest_from(const Vec3& x) const {
+  if (is_rigid()) return (pose_.translation - x).norm() + radius_;
+  return weight_sum_ * std::sqrt((nodes_.colwise() - x).colwise().squaredNorm().maxCoeff());
+}
+
 double MaterialPointState::mean_edge() const {
   return vertex_count() > 0 ? std::sqrt(points_.area.sum() / vertex_count()) : 0.0;
 }
 
 void MaterialPointState::add_vertex_pattern(dynamics::PatternBuilder& pattern) const {
   if (is_rigid()) return;
-  std::set<std::array<int, 4>> seen;
+  std::vector<std::array<int, 4>> carriers;
   for (const SurfacePoint& point : points_.at) {
-    std::array<int, 4> nodes{-1, -1, -1, -1};
+    carriers.push_back({-1, -1, -1, -1});
     for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k)
-      nodes[k] = node_offset_ + point.node[k];
-    if (seen.insert(nodes).second) pattern.add_clique(nodes.data(), point.count);
+      carriers.back()[k] = node_offset_ + point.node[k];
   }
+  std::sort(carriers.begin(), carriers.end());
+  carriers.erase(std::unique(carriers.begin(), carriers.end()), carriers.end());
+  for (const std::array<int, 4>& nodes : carriers) pattern.add_clique(nodes.data(), nodes[3] < 0 ? 3 : 4);
 }
 
 }  // namespace palpate::contact

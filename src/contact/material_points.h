@@ -20,10 +20,12 @@ class MaterialPointState {
   Vec3 velocity(int point, const dynamics::StateView& state) const;
   double fastest(const dynamics::StateView& state) const;  ///< bound on any point's speed [m/s]
 
+  double farthest_from(const Vec3& x) const;  ///< bound on any point's distance from x [m]
+
   // The way since the points were last kept.
-  void keep();                           ///< as they are now
-  double way() const;                    ///< bound on any point's displacement [m]; infinite before keep()
-  Vec3 kept_position(int point) const;   ///< @pre kept
+  void keep();                          ///< as they are now
+  double way() const;                   ///< bound on any point's displacement [m]; infinite before keep()
+  Vec3 kept_position(int point) const;  ///< @pre kept
   /// Its nodes are counted over all node blocks.
   SurfacePoint vertex_point(int point) const;
   double rest_area(int point) const { return points_.area[point]; }      ///< [m^2]

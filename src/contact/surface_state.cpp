@@ -149,7 +149,8 @@ constexpr double kFlatTetrahedron = 1e-6;  // volume over the cube of the longes
 Mat4 coordinates_in(const Mat34& x) {
   const Mat3 edges = x.rightCols<3>();
   const double size = edges.colwise().norm().maxCoeff();
-  if (!(std::abs(edges.determinant()) > kFlatTetrahedron * size * size * size)) return Mat4::Constant(kNoNumber);
+  if (!(std::abs(edges.determinant()) > kFlatTetrahedron * size * size * size))
+    return Mat4::Constant(kNoNumber);
   Mat4 out = Mat4::Zero();
   out.bottomLeftCorner<3, 3>() = edges.inverse();
   out.row(0) = Vec4(0.0, 0.0, 0.0, 1.0).transpose() - out.bottomRows<3>().colwise().sum();

@@ -109,18 +109,10 @@ Resultant SkinContact::resultant() const {
   return out;
 }
 
-// F = 3/4 F_centroids + 1/4 F_corners, so that F_corners - F_centroids = 4 (F - F_centroids).
-ForceSum SkinContact::force_sum() const {
-  ForceSum out;
-  Vec3 difference = Vec3::Zero();
-  for (const Spring& s : springs_) {
-    if (s.gap >= 0.0) continue;
-    const double force = s.stiffness * s.reach.norm();
-    out.sum += force;
-    out.largest_term = std::max(out.largest_term, force);
-    difference += (s.side == 0 ? s.stiffness - s.coarse : s.coarse - s.stiffness) * s.reach;
-  }
-  out.error = 4.0 * difference.norm();
+EmbeddedSum SkinContact::force_sum() const {
+  EmbeddedSum out;
+  for (const Spring& s : springs_)
+    if (s.gap < 0.0) out.add(s.side == 0 ? s.reach : Vec3(-s.reach), s.stiffness, s.coarse);
   return out;
 }
 

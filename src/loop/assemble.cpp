@@ -15,6 +15,7 @@
 #include "palpate/mesh/checks.h"
 #include "palpate/mesh/spatial_order.h"
 #include "palpate/proxy/proxy_set.h"
+#include "palpate/scene/contact_sides.h"
 #include "palpate/scene/hands.h"
 #include "palpate/scene/load.h"
 #include "palpate/store/mesh_file.h"
@@ -100,7 +101,9 @@ std::shared_ptr<proxy::ProxySet> proxies_of(const LayeredModel& model, const std
 /// Loads a body's tetrahedra, and the skin and proxies that the scene names; returns the regions of its file.
 /// From a model file the tetrahedra alone are read where the scene names neither; else the file is read and
 /// checked as a whole, and what is not named is dropped.
-std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) {
+/// @param with_proxies  whether a contact asks for those that the scene names
+std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::string& folder, bool with_proxies,
+                                      Body& body) {
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
   if (spec.skin || spec.skeleton) {
     LayeredModel model = store::read_model(path).model;
@@ -113,7 +116,7 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
     counters::count("loop.skin");
     model.skin.vertices *= spec.mesh.factor();
     std::shared_ptr<proxy::ProxySet> proxies;
-    if (spec.proxies) {
+    if (spec.proxies && with_proxies) {
       if (model.proxies.empty())
         fail("body \"{}\": proxies = true, but {} has none; `palpate model` writes files that have them",
              spec.name, path);
@@ -147,7 +150,8 @@ VecX initial_velocities(const SoftBodySpec& spec, const Points& placed, const Ve
 Body place_body(World& world, const SoftBodySpec& spec, fem::Materials& materials) {
   Body body;
   body.name = spec.name;
-  std::vector<MaterialRegion> regions = load_mesh(spec, world.folder, body);
+  std::vector<MaterialRegion> regions =
+      load_mesh(spec, world.folder, scene::is_in_images(world.description, spec.name), body);
   const Pose pose{quaternion_of(spec.rotation_vector_rad), spec.position_m};
   body.placed.resize(3, body.rest.nodes.cols());
   for (Eigen::Index i = 0; i < body.placed.cols(); ++i)

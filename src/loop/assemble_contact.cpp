@@ -110,6 +110,15 @@ std::unique_ptr<contact::SampleSource> distance_source(Pair pair, Other... other
   } catch (const Error& error) { refuse_distance(pair.spec, error); }
 }
 
+/// A soft body's points, on a shape of these lengths.
+contact::MaterialPoints points_on(const Pair& pair, const contact::CharacteristicLengths& lengths) {
+  try {
+    const auto own = contact::lengths_of({pair.rest, pair.surface.faces});
+    return contact::material_points(pair.surface, pair.rest, pair.body,
+                                    contact::point_spacing(own, lengths, pair.spec.quadrature_error));
+  } catch (const Error& error) { refuse_distance(pair.spec, error); }
+}
+
 /// Contact of two soft bodies.
 std::unique_ptr<contact::SampleSource> pair_source(Pair a, Pair b) {
   if (a.spec.method == "distance") return distance_source(std::move(a), std::move(b.surface), b.rest);
@@ -178,9 +187,13 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side,
   const ToolSpec& tool = *side.spec;
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
   const bool sphere = tool.shape == "sphere";
+  if (pair.spec.method == "distance" && sphere)
+    return contact::make_sphere_source(points_on(pair, {2.0 * tool.radius_m, tool.radius_m}),
+                                       side.frame_index, motion, Vec3::Zero(), tool.radius_m,
+                                       pair.candidate_gap, pair.look_ahead);
   if (pair.spec.method == "distance")
     return distance_source(std::move(pair), tool_surface(tool, world.folder), side.frame_index, motion);
-  if (pair.spec.method != "analytic" && !(pair.spec.method == "auto" && sphere && !pair.proxies))
+  if (pair.spec.method != "analytic")
     return image_source(std::move(pair), tool_surface(tool, world.folder), side.proxies, side.frame_index,
                         motion);
   if (!sphere)
@@ -204,8 +217,8 @@ bool steps_are_linearised(const World& world) {
 std::unique_ptr<contact::SampleSource> obstacle_source(contact::ContactForce& force, const ContactSpec& spec,
                                                        contact::ContactSide side, double candidate_gap,
                                                        double look_ahead, const ObstacleSpec& obstacle) {
-  if (spec.method != "analytic" && spec.method != "auto" && spec.method != "distance")
-    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"analytic\"", spec.first,
+  if (scene::is_in_images(spec))
+    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"auto\"", spec.first,
          obstacle.name, obstacle.type);
   const contact::ObstacleEntry& entry = contact::obstacle_entry(obstacle);
   auto motion = contact::fixed_frame();
@@ -214,20 +227,15 @@ std::unique_ptr<contact::SampleSource> obstacle_source(contact::ContactForce& fo
                            candidate_gap, look_ahead);
 }
 
-/// How far apart the points of a surface stand on an obstacle.
-double spacing_on(const ObstacleSpec& obstacle, const Points& rest, double wanted_error) {
-  const double thickness = contact::obstacle_entry(obstacle).thickness(contact::obstacle_shape(obstacle));
-  return contact::point_spacing(proxy::least_width(rest), thickness, wanted_error);
+contact::CharacteristicLengths lengths_of(const ObstacleSpec& obstacle) {
+  return contact::obstacle_entry(obstacle).lengths(contact::obstacle_shape(obstacle));
 }
 
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
                                                        const ObstacleSpec& obstacle) {
   contact::ContactSide side = [&]() -> contact::ContactSide {
     if (pair.spec.method != "distance") return std::move(pair.surface);
-    try {
-      return contact::material_points(pair.surface, pair.rest, pair.body,
-                                      spacing_on(obstacle, pair.rest, pair.spec.quadrature_error));
-    } catch (const Error& error) { refuse_distance(pair.spec, error); }
+    return points_on(pair, lengths_of(obstacle));
   }();
   return obstacle_source(*world.contact, pair.spec, std::move(side), pair.candidate_gap, pair.look_ahead,
                          obstacle);
@@ -254,8 +262,9 @@ std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, cons
     contact::FrameSurface surface{tool_surface(tool, world.folder), in.frame, in.motion};
     if (!nearest_points) return surface;
     try {
-      return contact::material_points(surface,
-                                      spacing_on(obstacle, surface.mesh.vertices, spec.quadrature_error));
+      return contact::material_points(
+          surface, contact::point_spacing(contact::lengths_of(surface.mesh), lengths_of(obstacle),
+                                          spec.quadrature_error));
     } catch (const Error& error) { refuse_distance(spec, error); }
   }();
   return obstacle_source(in.force, spec, std::move(side), spec.candidate_gap_m, in.look_ahead, obstacle);
@@ -335,6 +344,7 @@ void set_friction_speed(World& world, ContactSpec& contact) {
 
 void add_contact(World& world, ContactSpec& given) {
   scene::order_sides(world.description, given);
+  given.method = scene::contact_method(world.description, given);
   set_friction_speed(world, given);
   ContactSpec spec = given;
   // In a step of one linear solve the secant is needed, though what is left out of a tool's rows besides

@@ -25,4 +25,33 @@ void order_sides(const Description& description, ContactSpec& contact) {
     std::swap(contact.first, contact.second);
 }
 
+bool is_in_images(const Description& description, const std::string& body) {
+  return std::any_of(description.contacts.begin(), description.contacts.end(), [&](ContactSpec contact) {
+    if (contact.first != body && contact.second != body) return false;
+    order_sides(description, contact);
+    contact.method = contact_method(description, contact);
+    return is_in_images(contact);
+  });
+}
+
+void set_method(ContactSpec& contact, const std::string& method) {
+  if (method == "distance" && contact.method != "distance") contact.quadrature_error = kPointsError;
+  contact.method = method;
+  if (method != "analytic") contact.gaps = method == "distance" ? "exact" : "linear";
+}
+
+std::string contact_method(const Description& description, const ContactSpec& contact) {
+  if (contact.method != "auto") return contact.method;
+  const auto is_named = [](const std::string& name) {
+    return [&name](const auto& one) { return one.name == name; };
+  };
+  if (std::any_of(description.obstacles.begin(), description.obstacles.end(), is_named(contact.second)))
+    return "analytic";
+  const ToolSpec* tool = tool_named(description, contact.second);
+  const auto body =
+      std::find_if(description.bodies.begin(), description.bodies.end(), is_named(contact.first));
+  const bool is_pruned = body != description.bodies.end() && body->proxies;
+  return tool && tool->shape == "sphere" && !is_pruned ? "analytic" : "auto";
+}
+
 }  // namespace palpate::scene

@@ -35,9 +35,11 @@ void add_body_needs(const Description& d, const std::string& linear_solver, std:
   out.push_back(
       {"skin", skins > 0,
        skins > 0 ? fmt::format("{} [[body]] with skin = true", skins) : "no [[body]] with skin = true"});
-  const int proxies = count_if(d.bodies, [](const auto& b) { return b.proxies; });
+  const int named = count_if(d.bodies, [](const auto& b) { return b.proxies; });
+  const int proxies = count_if(d.bodies, [&](const auto& b) { return b.proxies && is_in_images(d, b.name); });
   out.push_back({"proxies", proxies > 0,
                  proxies > 0 ? fmt::format("{} [[body]] with proxies = true: contact in regions", proxies)
+                 : named > 0 ? "no contact in image space of a [[body]] with proxies = true"
                              : "no [[body]] with proxies = true"});
   out.push_back(
       {"gravity", weight, weight ? "gravity_m_s2 is not zero" : "gravity_m_s2 is zero, or there is no body"});

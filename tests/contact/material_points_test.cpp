@@ -11,6 +11,7 @@ using namespace contact_tests;
 namespace {
 
 constexpr double kRadius = 0.05, kDepth = kRadius / 8.0;
+constexpr contact::CharacteristicLengths kHalfSpace{HUGE_VAL, HUGE_VAL};
 
 /// A flat block of nodes, its triangles much larger than a ball.
 TriMesh block() { return mesh::box_surface({1.0, 1.0, 0.5}, {10, 8, 4}); }
@@ -78,7 +79,7 @@ Errors errors_at(double spacing) {
 // 0.6 of what was asked for at each: the power 5/2 holds, and 0.1 is on the safe side.
 TEST(MaterialPoints, ErrByWhatWasAskedFor) {
   for (const double wanted : {3e-2, 1e-2, 3e-3}) {
-    const Errors errors = errors_at(contact::point_spacing(2.0 * kRadius, HUGE_VAL, wanted));
+    const Errors errors = errors_at(contact::point_spacing({2.0 * kRadius, kRadius}, kHalfSpace, wanted));
     EXPECT_LT(errors.standard, wanted);
     EXPECT_GT(errors.standard, 0.3 * wanted) << "more points than that takes";
     EXPECT_GE(errors.bounded, 95);
@@ -88,11 +89,14 @@ TEST(MaterialPoints, ErrByWhatWasAskedFor) {
 // By dimension: two equal balls are as one of half the radius on a plane, and an error a tenth as large wants
 // 10^0.4 times finer points.
 TEST(MaterialPoints, SpacingFollowsWidthsAndError) {
-  const double one = contact::point_spacing(0.1, HUGE_VAL, 1e-2);
-  EXPECT_NEAR(contact::point_spacing(0.2, 0.2, 1e-2), one, 1e-15);
-  EXPECT_NEAR(contact::point_spacing(HUGE_VAL, 0.1, 1e-2), one, 1e-15);
-  EXPECT_NEAR(contact::point_spacing(0.1, HUGE_VAL, 1e-3), one * std::pow(10.0, -0.4), 1e-12);
-  expectations::expect_contains(expectations::message_of([] { contact::point_spacing(0.1, 0.1, 0.0); }),
+  const contact::CharacteristicLengths ball{0.1, 0.05}, large{0.2, 0.1}, plate{0.1, 10.0};
+  const double one = contact::point_spacing(ball, kHalfSpace, 1e-2);
+  EXPECT_NEAR(contact::point_spacing(large, large, 1e-2), one, 1e-15);
+  EXPECT_NEAR(contact::point_spacing(kHalfSpace, ball, 1e-2), one, 1e-15);
+  EXPECT_NEAR(contact::point_spacing(ball, kHalfSpace, 1e-3), one * std::pow(10.0, -0.4), 1e-12);
+  // a plate as thick as the ball is flat: as deep in it, a circle is sqrt(200) times as wide
+  EXPECT_NEAR(contact::point_spacing(plate, kHalfSpace, 1e-2), one * std::sqrt(200.0), 1e-12);
+  expectations::expect_contains(expectations::message_of([&] { contact::point_spacing(ball, ball, 0.0); }),
                                 "it must be positive");
 }
 
@@ -173,7 +177,7 @@ TEST(MaterialPoints, ABallFeelsItsOwnSurface) {
 
 TEST(MaterialPoints, SeeWhatIsSmallerThanATriangle) {
   const Vec3 between(0.1, 0.03, kRadius - kDepth);
-  OnBlock on(contact::point_spacing(2.0 * kRadius, HUGE_VAL, 1e-2));
+  OnBlock on(contact::point_spacing({2.0 * kRadius, kRadius}, kHalfSpace, 1e-2));
   on.place(between, 0.0);
   EXPECT_NEAR(on.force().norm() / exact_force(), 1.0, 0.03);
   contact::NodeSurface surface = on.world.surface;
@@ -188,7 +192,8 @@ TEST(MaterialPoints, SeeWhatIsSmallerThanATriangle) {
 TEST(MaterialPoints, ABoxOfLargeTrianglesFeelsItsCornersAndEdges) {
   const dynamics::State state;
   const Vec3 size(0.03, 0.02, 0.02);
-  const double spacing = contact::point_spacing(size.minCoeff(), HUGE_VAL, 1e-2);
+  const double spacing =
+      contact::point_spacing(contact::lengths_of(mesh::box_surface(size, {1, 1, 1})), kHalfSpace, 1e-2);
   for (const Vec3& turn : {Vec3(0.4, 0.3, 0.2), Vec3(0.6, 0.0, 0.0), Vec3(0.5, -0.7, 0.0)}) {
     const auto force = [&](const std::array<int, 3>& cells, double points) {
       const TriMesh box = mesh::box_surface(size, cells);
@@ -209,6 +214,79 @@ TEST(MaterialPoints, ABoxOfLargeTrianglesFeelsItsCornersAndEdges) {
     EXPECT_NEAR(coarse / exact, 1.0, 0.02) << turn.transpose();
     EXPECT_LT(std::abs(coarse / exact - 1.0), bound);
   }
+}
+
+// The points on a punch's lower edges stand for skin of its sides as well, h/8 of it a length with h the cut
+// edges: too stiff by h/(2 L), and the bound knows.
+TEST(MaterialPoints, AFlatPunchIsTooStiffByItsEdges) {
+  const dynamics::State state;
+  constexpr double kSize = 0.04, kDown = 1e-5;
+  for (const int n : {4, 8, 16}) {
+    const auto source = contact::make_plane_source(
+        contact::material_points(
+            contact::FrameSurface{mesh::box_surface(Vec3::Constant(kSize), {1, 1, 1}), 0,
+                                  contact::fixed_frame({Quat::Identity(), Vec3(0, 0, 0.5 * kSize - kDown)})},
+            std::numbers::sqrt2 * kSize / n),
+        1, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 1e-3);
+    std::vector<contact::ContactSample> samples;
+    source->query(state.view(), samples);
+    double sum = 0.0;
+    for (const auto& s : samples) sum += s.area * std::max(0.0, -s.gap);
+    const double over = sum / (kSize * kSize * kDown) - 1.0;
+    EXPECT_NEAR(over, 0.5 / n, 1e-9);
+    EXPECT_GT(source->sum_error()->last_relative(), over);
+  }
+}
+
+namespace {
+
+class Placed final : public contact::MovingFrame {
+ public:
+  Pose at;
+  Twist going;
+  Pose pose(const dynamics::StateView&) const override { return at; }
+  Twist twist(const dynamics::StateView&) const override { return going; }
+};
+
+}  // namespace
+
+// A source that has seen a ball roll, turn and jump finds what one finds that has seen nothing, whatever it
+// has left out meanwhile.
+TEST(MaterialPoints, AQueryIsTheSameWhateverWasAskedBefore) {
+  const TriMesh rest = block();
+  SurfaceWorld world{block()};
+  const contact::MaterialPoints points = contact::material_points(world.surface, rest.vertices, {}, 0.03);
+  const auto frame = std::make_shared<Placed>();
+  constexpr double kLookAhead = 0.01, kGap = 0.005;
+  const Vec3 centre(0.02, 0.0, 0.01);  // in the frame: it moves as the frame turns
+  const auto ball = [&] {
+    return contact::make_sphere_source(points, 0, frame, centre, kRadius, kGap, kLookAhead);
+  };
+  const auto used = ball();
+  std::mt19937 random(7);
+  int touched = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double step = i % 20 == 0 ? 0.4 : 0.01;
+    frame->at.translation += step * Vec3(uniform(random), uniform(random), 0.3 * uniform(random));
+    frame->at.translation =
+        frame->at.translation.cwiseMax(Vec3(-0.5, -0.5, 0.25)).cwiseMin(Vec3(0.5, 0.5, 0.4));
+    frame->at.rotation = quaternion_of(Vec3(0.1 * i, 0.0, 0.3 * uniform(random)));
+    frame->going = {Vec3(uniform(random), 0, 0), 2.0 * Vec3(uniform(random), 0.0, uniform(random))};
+    world.state.q().tail(rest.vertices.size()) =
+        (rest.vertices.colwise() + 0.01 * Vec3(uniform(random), 0, uniform(random))).reshaped();
+    std::vector<contact::ContactSample> of_used, of_fresh;
+    const auto fresh = ball();
+    used->query(world.state.view(), of_used);
+    fresh->query(world.state.view(), of_fresh);
+    ASSERT_EQ(of_used.size(), of_fresh.size()) << i;
+    for (std::size_t s = 0; s < of_used.size(); ++s) {
+      EXPECT_EQ(of_used[s].gap, of_fresh[s].gap);
+      EXPECT_EQ(of_used[s].a.node, of_fresh[s].a.node);
+    }
+    EXPECT_EQ(std::min(used->safe_time(), kLookAhead), std::min(fresh->safe_time(), kLookAhead)) << i;
+    touched += of_used.size() > 3;
+  }
+  EXPECT_GT(touched, 30);
 }
 
 TEST(MaterialPoints, SumsErrorsLargestOnesGoOn) {

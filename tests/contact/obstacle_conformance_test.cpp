@@ -1,6 +1,7 @@
 // What every obstacle of the registry must do.  Shapes are made from the entries' own keys, at random.
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
+#include "palpate/mesh/curvature.h"
 #include "surfaces.h"
 
 using namespace palpate;
@@ -57,11 +58,24 @@ class Obstacle : public testing::TestWithParam<std::string> {
 TEST_P(Obstacle, ThicknessIsTheLeastWayThrough) {
   for (int i = 0; i < 20; ++i) {
     renew();
-    const double half = 0.5 * entry.thickness(shape);
+    const double half = 0.5 * entry.lengths(shape).width;
     ASSERT_GT(half, 0.0);
     for (int k = 0; k < 50; ++k) EXPECT_GE(nearest(near_by()).gap, -half - 1e-12);
     if (!std::isfinite(half)) continue;
     EXPECT_NEAR(nearest(centre).gap, -half, 1e-12);
+  }
+}
+
+// As that of its picture; of what has no end there is none.
+TEST_P(Obstacle, RadiusIsThatOfItsMeanCurvature) {
+  for (int i = 0; i < 20; ++i) {
+    renew();
+    const double radius = entry.lengths(shape).radius;
+    if (!std::isfinite(entry.lengths(shape).width)) {
+      EXPECT_TRUE(std::isinf(radius));
+      continue;
+    }
+    EXPECT_NEAR(mesh::mean_radius(entry.picture(shape, {}).surface) / radius, 1.0, 0.03);
   }
 }
 

@@ -72,7 +72,7 @@ TEST(SkinContact, PrintedQuadratureErrorBoundsTheTrueOne) {
     ASSERT_GT(exact.norm(), 0.0);
     const double error = (once.resultant().force - exact).norm();
     EXPECT_LT(error, 0.05 * exact.norm());
-    bounded += error <= once.force_sum().error;
+    bounded += error <= once.force_sum().error();
     ++all;
   }
   EXPECT_GE(bounded, 95 * all / 100);

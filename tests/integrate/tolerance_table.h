@@ -78,7 +78,7 @@ inline double spare_of(const std::string& method) {
   return 1.0;
 }
 
-/// What no error may exceed: 10, but for what is known (docs/tolerances.md).
+/// Upper bound on each error over the wanted one: 10, but for what is known (docs/tolerances.md).
 inline double largest_of(const std::string& method, const std::string& scene, double rtol) {
   const auto is = [&](const char* of, double at) {
     return method == of && scene == "spinning top" && std::abs(rtol / at - 1.0) < 0.01;
@@ -89,7 +89,7 @@ inline double largest_of(const std::string& method, const std::string& scene, do
   return 10.0;
 }
 
-/// What the errors of a row may not fall below in their geometric mean, or work is wasted: 0.1, but for what
+/// Lower bound on the geometric mean of a row's errors, below which work is wasted: 0.1, but for what
 /// is known (docs/tolerances.md).  One error may: it is the sum of many steps' errors, which may cancel.
 inline double least_mean_of(const std::string& method, const std::string& scene) {
   struct Exception {

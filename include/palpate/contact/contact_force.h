@@ -87,7 +87,7 @@ class SampleSource {
   virtual long normals_kept() const { return 0; }
   /// What was left out before the image, of a source that has proxies; else null.
   virtual const proxy::PruneCounts* pruning() const { return nullptr; }
-  /// Of a source that estimates the error of its sums; else null.
+  /// Quadrature error of its forces; null of a source that has no estimate.
   virtual const SumError* sum_error() const { return nullptr; }
   /// Of a source in image space; else null.
   virtual const QueryStages* stages() const { return nullptr; }

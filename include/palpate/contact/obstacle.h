@@ -24,6 +24,14 @@ struct Nearest {
   double radius = 0.0;
 };
 
+/// How thick a body is and how curved on average, which the number of contact points is chosen by.
+struct CharacteristicLengths {
+  double width;  ///< least way through it [m]; infinite of a half-space
+  /// A / integral of H dA with the mean curvature H: the radius of a ball; infinite where flat and hollow
+  /// parts outweigh the round ones [m]
+  double radius;
+};
+
 /// What a picture is of: its middle and its size.
 struct View {
   Vec3 centre = Vec3::Zero();  ///< what the picture looks at [m]
@@ -48,8 +56,7 @@ struct ObstacleEntry {
   std::string name, summary;       ///< as a scene's `obstacle.type`; one line about it
   std::vector<PartKey> keys;       ///< what its shape is made of
   MakeObstacleSource make_source;  ///< its contact
-  /// least way through it [m]; infinite of a half-space
-  double (*thickness)(const Settings& shape);
+  CharacteristicLengths (*lengths)(const Settings& shape);  ///< thickness and roundness of the shape
   /// the surface's point nearest to x, in world axes, where the shape does not move
   Nearest (*nearest)(const Settings& shape, const Vec3& x);
   /// its surface, for pictures

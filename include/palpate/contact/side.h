@@ -20,7 +20,7 @@ struct FrameSurface {
 struct MaterialPoints {
   std::vector<SurfacePoint> at;           ///< of nodes, counted inside the block; or of a frame
   VecX area;                              ///< [m^2]
-  VecX coarse;                            ///< in the embedded rule, which their sum's error is told by [m^2]
+  VecX coarse;                            ///< in the embedded rule, for an estimate of the error [m^2]
   int block_id = -1;                      ///< the node block that carries them; -1: a frame does
   std::shared_ptr<MovingFrame> motion{};  ///< moves the frame
 };

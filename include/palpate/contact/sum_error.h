@@ -3,22 +3,22 @@
 
 namespace palpate::contact {
 
-/// What a sum over points or pixels, which stands for the integral of the depth over a contact, says about
-/// itself: its own estimate of its error, and how large a part of it one point is.  Force is stiffness times
-/// this sum.  Of a run both are told relative to its largest sum: a contact that only begins has few points,
-/// hence large relative errors of small forces.
+/// Quadrature error of the sum over points or pixels that approximates the integral of the depth over a
+/// contact, and the share of its largest term.  Force is stiffness times this sum.  Over a run both are given
+/// relative to the largest sum: a contact that only begins has few points, hence large relative errors of
+/// small forces.
 class SumError {
  public:
   /// The sum of one query.
   struct Query {
     double sum = 0.0;           ///< of depth times area over all points [m^3]; 0 where nothing overlaps
     double error = 0.0;         ///< estimate of its error [m^3]
-    double largest_term = 0.0;  ///< of one point [m^3]; 0 where points are not told apart
+    double largest_term = 0.0;  ///< of one point [m^3]; 0 of pixels
   };
-  /// Takes what a query has found.
+  /// Records the sum of a query.
   void take(const Query& query);
 
-  const Query& last() const { return last_; }  ///< what was taken last
+  const Query& last() const { return last_; }  ///< of the last query
   /// Error of the last sum, relative to it [-].
   double last_relative() const { return last_.sum > 0.0 ? last_.error / last_.sum : 0.0; }
   /// Largest error over the largest sum [-].

@@ -9,6 +9,7 @@
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
+#include "palpate/scene/contact_sides.h"
 
 namespace palpate::bench {
 namespace {
@@ -282,7 +283,7 @@ ContinuityRow bench_continuity(scene::Description d, const ContinuityOptions& op
     if (std::any_of(d.obstacles.begin(), d.obstacles.end(),
                     [&](const ObstacleSpec& o) { return o.name == contact.second; }))
       continue;
-    contact.method = options.method;
+    scene::set_method(contact, options.method);
     contact.quadrature_error = options.quadrature_error;
     any = true;
   }

@@ -10,6 +10,7 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #include "palpate/proxy/pruner.h"
+#include "palpate/scene/contact_sides.h"
 
 namespace palpate::bench {
 namespace {
@@ -177,8 +178,8 @@ bool set_variant(scene::Description& d, const ContactBenchVariant& variant) {
     const bool obstacle = std::any_of(d.obstacles.begin(), d.obstacles.end(),
                                       [&](const ObstacleSpec& o) { return o.name == contact.second; });
     if (obstacle) continue;
-    contact.method = variant.method;
-    if (variant.pixels > 0) {
+    scene::set_method(contact, variant.method);
+    if (variant.pixels > 0 && scene::is_in_images(contact)) {
       contact.pixels = variant.pixels;
       contact.quadrature_error = 0.0;
     }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "contact/analytic_source.h"
 #include "contact/obstacles/keys.h"
@@ -46,7 +47,12 @@ class Box {
     for (int i = 0; i < 3; ++i) part.cut(a[i], b[i] - a[i], -half_[i], half_[i]);
     return part.s0 < part.s1;
   }
-  double thickness() const { return 2.0 * half_.minCoeff(); }
+  // Integral of H dA: half of the edges' lengths, 4 (a + b + c), times their angle pi/2.
+  CharacteristicLengths lengths() const {
+    const Vec3 size = 2.0 * half_;
+    const double area = 2.0 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
+    return {size.minCoeff(), area / (std::numbers::pi * size.sum())};
+  }
 
  private:
   bool outside(const Vec3& x) const { return ((x.cwiseAbs() - half_).array() > 0.0).any(); }
@@ -88,7 +94,7 @@ const ObstacleEntry& box_obstacle() {
         return make_box_source(std::move(side), frame, std::move(motion), pose_of(shape), size_of(shape), gap,
                                look_ahead);
       },
-      [](const Settings& shape) { return Box(pose_of(shape), size_of(shape)).thickness(); },
+      [](const Settings& shape) { return Box(pose_of(shape), size_of(shape)).lengths(); },
       [](const Settings& shape, const Vec3& x) { return nearest_to(Box(pose_of(shape), size_of(shape)), x); },
       picture,
   };

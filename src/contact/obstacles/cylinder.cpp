@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "contact/analytic_source.h"
 #include "contact/obstacles/keys.h"
@@ -45,7 +46,11 @@ class Cylinder {
     cut_round(a, d, part);
     return part.s0 < part.s1;
   }
-  double thickness() const { return 2.0 * std::min(radius_, half_); }
+  // Integral of H dA: of the side 2 pi r l / (2 r), of both rims, edges of 90 degrees, 2 pi r pi/2 in all.
+  CharacteristicLengths lengths() const {
+    return {2.0 * std::min(radius_, half_),
+            2.0 * radius_ * (2.0 * half_ + radius_) / (2.0 * half_ + std::numbers::pi * radius_)};
+  }
 
  private:
   // |a + s d|^2 <= r^2 in x and y: A s^2 + 2 B s + C <= 0.
@@ -100,7 +105,7 @@ const ObstacleEntry& cylinder_obstacle() {
                                     radius_of(shape), length_of(shape), gap, look_ahead);
       },
       [](const Settings& shape) {
-        return Cylinder(pose_of(shape), radius_of(shape), length_of(shape)).thickness();
+        return Cylinder(pose_of(shape), radius_of(shape), length_of(shape)).lengths();
       },
       [](const Settings& shape, const Vec3& x) {
         return nearest_to(Cylinder(pose_of(shape), radius_of(shape), length_of(shape)), x);

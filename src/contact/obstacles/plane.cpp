@@ -24,7 +24,7 @@ class Plane {
                        : -std::numeric_limits<double>::infinity();
   }
   bool is_crossed(const Vec3&, const Vec3&) const { return false; }  // whatever is through is inside
-  double thickness() const { return HUGE_VAL; }
+  CharacteristicLengths lengths() const { return {HUGE_VAL, HUGE_VAL}; }
 
  private:
   Vec3 point_, normal_;
@@ -79,7 +79,9 @@ const ObstacleEntry& plane_obstacle() {
         return make_plane_source(std::move(side), frame, std::move(motion), position_of(shape),
                                  normal_of(shape), gap, look_ahead);
       },
-      [](const Settings&) { return double{HUGE_VAL}; },
+      [](const Settings&) {
+        return CharacteristicLengths{HUGE_VAL, HUGE_VAL};
+      },
       [](const Settings& shape, const Vec3& x) {
         return nearest_to(Plane(position_of(shape), normal_of(shape)), x);
       },

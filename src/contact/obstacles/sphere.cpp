@@ -36,7 +36,7 @@ class Sphere {
     return from_a.squaredNorm() > r2 && (centre_ - b).squaredNorm() > r2 &&
            (from_a - s * d).squaredNorm() < r2;
   }
-  double thickness() const { return 2.0 * radius_; }
+  CharacteristicLengths lengths() const { return {2.0 * radius_, radius_}; }
 
  private:
   Vec3 centre_;
@@ -70,7 +70,7 @@ const ObstacleEntry& sphere_obstacle() {
         return make_sphere_source(std::move(side), frame, std::move(motion), position_of(shape),
                                   radius_of(shape), gap, look_ahead);
       },
-      [](const Settings& shape) { return Sphere(position_of(shape), radius_of(shape)).thickness(); },
+      [](const Settings& shape) { return Sphere(position_of(shape), radius_of(shape)).lengths(); },
       [](const Settings& shape, const Vec3& x) {
         return nearest_to(Sphere(position_of(shape), radius_of(shape)), x);
       },

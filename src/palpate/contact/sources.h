@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "palpate/contact/contact_force.h"
+#include "palpate/contact/obstacle.h"
 #include "palpate/contact/side.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/proxy/proxy_set.h"
@@ -118,11 +119,12 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<p
 std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
                                                 const Points& rest_nodes, const ImageOptions& options);
 
+/// Returns those of a closed surface.
+CharacteristicLengths lengths_of(const TriMesh& closed);
 /// Returns how far apart contact points stand: the longest edge of the triangles that they belong to [m]
 /// (src/contact/material_points.cpp).
-/// @param width_a, width_b  least widths of the two bodies [m]; infinite of a half-space
 /// @param wanted_error  standard error of the force of a contact an eighth as deep as its radius [-]
-double point_spacing(double width_a, double width_b, double wanted_error);
+double point_spacing(const CharacteristicLengths& a, const CharacteristicLengths& b, double wanted_error);
 /// Returns material points of a soft surface, against an exact shape.
 /// @param rest  its vertices at rest [m]  @param body  at rest: what a skin hangs on, else unused
 /// @param spacing  as point_spacing() has it [m]

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "palpate/distance/skin.h"
@@ -14,6 +15,24 @@ struct ContactPoint {
   Vec3 weights;         ///< of the face's corners; sum 1
   double area = 0.0;    ///< [m^2]
   double coarse = 0.0;  ///< area in the embedded rule of lower order [m^2]
+};
+
+/// Sum of the forces at some points, with its embedded estimate of the quadrature error: centroids alone and
+/// corners alone are rules of degree 1, F = 3/4 F_centroids + 1/4 F_corners, and the estimate is their
+/// difference, |F_corners - F_centroids| = 4 |F - F_centroids|.
+struct EmbeddedSum {
+  double sum = 0.0;           ///< of the forces' norms [N]
+  double largest_term = 0.0;  ///< largest force of one point [N]
+  Vec3 fine_less_coarse = Vec3::Zero();
+
+  /// @param pressure  at a point, outward or inward [N/m^2]  @param area, coarse  as of ContactPoint [m^2]
+  void add(const Vec3& pressure, double area, double coarse) {
+    const double force = area * pressure.norm();
+    sum += force;
+    largest_term = std::max(largest_term, force);
+    fine_less_coarse += (area - coarse) * pressure;
+  }
+  double error() const { return 4.0 * fine_less_coarse.norm(); }  ///< [N]
 };
 
 /// Returns the number n of parts of a face's edges, such that none is longer than `spacing` at rest; 1 where

@@ -39,16 +39,6 @@ struct Resultant {
   Vec3 moment = Vec3::Zero();  ///< about the origin [N m]
 };
 
-/// What the springs' forces say of their own sum.
-struct ForceSum {
-  double sum = 0.0;  ///< of the forces' norms [N]
-  /// Embedded estimate of the quadrature error of the resultant [N]: the centroids alone and the corners
-  /// alone are rules of degree 1, and this is their difference, |F_corners - F_centroids|.
-  double error = 0.0;
-  /// largest force of one spring [N], which bounds what a foot changes that finds another place nearest
-  double largest_term = 0.0;
-};
-
 /// Contact of two closed skins as an energy of distances.  With x the material points of a skin that lie
 /// inside the other one, y(x) the nearest point of that one, a the rest area of a point and k in [Pa/m],
 ///
@@ -98,7 +88,7 @@ class SkinContact {
   double deepest() const;                            ///< largest |x - y| [m]
   void add_force(double* nodes_a, double* nodes_b);  ///< adds -dU/dq to x y z of each node [N]
   Resultant resultant() const;
-  ForceSum force_sum() const;
+  EmbeddedSum force_sum() const;  ///< of the force on the first skin
 
   /// The Gauss-Newton matrix K = sum of k a J' H J, J = dx/dq - dy/dq with the foot's weights held: H = n n'
   /// on a face, I - t t' along an edge t, I at a vertex.  Symmetric, positive semi-definite.  It leaves out

@@ -17,7 +17,7 @@ struct MemoryEstimate {
   double program = 0.0;   ///< code, libraries, tables
   double elements = 0.0;  ///< meshes, elements, the step's matrix, vectors
   double touch = 0.0;     ///< what a tool that is exchanged at points asks for: matrix and solver of its own
-  double skins = 0.0;     ///< with their embedding and proxies
+  double skins = 0.0;     ///< with their embedding, proxies and contact points
   double factor = 0.0;    ///< of a direct solver
   /// What libraries take of addresses and hardly fill, beside all of it: the buffer of the BLAS where
   /// something is factored, stacks of threads.  Only limits of addresses and of data (ulimit -v, -d) count

@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "palpate/scene/description.h"
 
 namespace palpate::scene {
@@ -11,9 +13,19 @@ void order_sides(const Description& description, ContactSpec& contact);
 /// stiffness know less well.
 inline constexpr double kPointsError = 1e-2;
 
-/// Whether a contact is seen in images: by all methods but those with exact gaps.
+/// Returns the method of a contact, with "auto" resolved: exact gaps where there are any, else an image, of
+/// which "auto" stays: it is the GPU's where the machine has one.
+/// @pre the names are in their order
+std::string contact_method(const Description& description, const ContactSpec& contact);
+
+/// Sets a contact's method, and gaps and quadrature error that go with it.
+void set_method(ContactSpec& contact, const std::string& method);
+
+/// Whether a contact is found in images.  @pre its method is resolved
 inline bool is_in_images(const ContactSpec& contact) {
   return contact.method != "analytic" && contact.method != "distance";
 }
+/// Whether a contact of this body is.
+bool is_in_images(const Description& description, const std::string& body);
 
 }  // namespace palpate::scene

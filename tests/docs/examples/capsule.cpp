@@ -41,7 +41,10 @@ class Capsule {
     const Vec3 a = inverse_ * a_frame, b = inverse_ * b_frame;
     return gap(a) > 0.0 && gap(b) > 0.0 && gap(a + lowest(a, b - a, 0.0, 1.0) * (b - a)) < 0.0;
   }
-  double thickness() const { return 2.0 * radius_; }
+  // The mean curvature's integral is pi (length + 4 radius).
+  CharacteristicLengths lengths() const {
+    return {2.0 * radius_, 4.0 * radius_ * (half_ + radius_) / (2.0 * half_ + 4.0 * radius_)};
+  }
 
  private:
   Vec3 from_axis(const Vec3& x) const { return x - Vec3(0.0, 0.0, std::clamp(x.z(), -half_, half_)); }
@@ -84,7 +87,7 @@ const ObstacleEntry& capsule_obstacle() {
         return make_analytic_source(std::move(side), frame, std::move(motion), capsule_of(shape), gap,
                                     look_ahead);
       },
-      [](const Settings& shape) { return capsule_of(shape).thickness(); },
+      [](const Settings& shape) { return capsule_of(shape).lengths(); },
       [](const Settings& shape, const Vec3& x) { return nearest_to(capsule_of(shape), x); },
       picture,
   };
