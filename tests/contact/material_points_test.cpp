@@ -289,6 +289,29 @@ TEST(MaterialPoints, AQueryIsTheSameWhateverWasAskedBefore) {
   EXPECT_GT(touched, 30);
 }
 
+// Straight down and without a turn, so that nothing but the way itself uses a clearance up.
+TEST(MaterialPoints, AJumpStraightDownMissesNothing) {
+  const TriMesh rest = block();
+  const SurfaceWorld world{block()};
+  const auto frame = std::make_shared<Placed>();
+  const auto source =
+      contact::make_sphere_source(contact::material_points(world.surface, rest.vertices, {}, 0.03), 0, frame,
+                                  Vec3::Zero(), kRadius, 1e-4, 0.01);
+  for (const double from : {0.05, 0.1, 0.5})
+    for (const double depth : {1e-6, 1e-3}) {
+      std::vector<contact::ContactSample> samples;
+      frame->at.translation = Vec3(0, 0, 0.25 + kRadius + from);  // above a vertex
+      source->query(world.state.view(), samples);
+      EXPECT_TRUE(samples.empty());
+      frame->at.translation.z() -= from + depth;
+      source->query(world.state.view(), samples);
+      ASSERT_FALSE(samples.empty()) << from;
+      double deepest = 0.0;
+      for (const auto& s : samples) deepest = std::min(deepest, s.gap);
+      EXPECT_NEAR(deepest, -depth, 1e-12);
+    }
+}
+
 TEST(MaterialPoints, SumsErrorsLargestOnesGoOn) {
   contact::SumError kept;
   kept.take({4.0, 0.2, 0.5});

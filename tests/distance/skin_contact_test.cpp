@@ -237,6 +237,33 @@ TEST(SkinContact, AnApproachFromFarMissesNothing) {
   EXPECT_GT(springs, 50u);
 }
 
+// Springs that were found 2 mm apart follow an approach along their own line: as soon as the first of them
+// can be inside it is, and those that are left out are outside.
+TEST(SkinContact, SpringsThatFollowAnApproachMissNothing) {
+  const Body a = shell(mesh::sphere(0.1, 24));
+  Body b = a;
+  const SkinContactSpec spec{.stiffness_pa_m = kStiffness};
+  const Vec3 line = a.rest.col(0).normalized();  // a vertex of a comes down on its own image
+  const double low = std::abs((a.rest.transpose() * line).minCoeff());
+  const auto place = [&](double gap) { b.place(Vec3(line * (0.1 + low + gap))); };
+  for (const double depth : {1e-5, 1e-4, 1e-3}) {
+    SkinContact follows(a.skin, b.skin, spec);
+    place(2e-3);
+    follows.find(a.at(), b.at(), 0.01);
+    ASSERT_EQ(follows.energy(), 0.0);
+    const auto near = follows.springs().size();
+    place(-depth);
+    SkinContact fresh(a.skin, b.skin, spec);
+    fresh.find(a.at(), b.at());
+    follows.follow(a.at(), b.at());
+    ASSERT_GT(fresh.energy(), 0.0);
+    EXPECT_EQ(follows.energy(), fresh.energy()) << depth;
+    std::size_t clear = 0;
+    for (const Spring& spring : follows.springs()) clear += follows.is_clear(spring);
+    EXPECT_GT(clear, near / 4) << "of " << near;
+  }
+}
+
 // The packets' single precision picks a face; the foot is then that of the reference, but where two places
 // are as near to within rounding.
 TEST(SkinContact, FindEqualsTheReference) {
