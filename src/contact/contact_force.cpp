@@ -25,7 +25,7 @@ void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
 // Force, tangent and events of one state ask one after the other; the shape is asked once.  Time alone does
 // not tell a moving frame's pose: what is known of its path may have grown.
 void ContactForce::Impl::follow(const dynamics::StateView& state) {
-  if (std::none_of(pairs.begin(), pairs.end(), [](const Pair& pair) { return pair.follows; })) return;
+  if (!has_followers()) return;
   if (!state.q.allFinite()) return;  // an integrator's failed trial: the force says so by itself
   bool same = followed.query == queries && followed.time == state.time &&
               followed.q.size() == state.q.size() && followed.q == state.q &&
@@ -42,6 +42,10 @@ void ContactForce::Impl::follow(const dynamics::StateView& state) {
     if (pair.law.per_point)
       for (ContactSample& sample : own) count_as_point(sample);
   }
+}
+
+bool ContactForce::Impl::has_followers() const {
+  return std::any_of(pairs.begin(), pairs.end(), [](const Pair& pair) { return pair.follows; });
 }
 
 void ContactForce::Impl::note_followed(const dynamics::StateView& state) {

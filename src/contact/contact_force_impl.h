@@ -106,6 +106,7 @@ struct ContactForce::Impl {
   /// Frames, and with them the samples that follow, at the state of an evaluation.
   void place_frames(const dynamics::StateView& state);
   void follow(const dynamics::StateView& state);
+  bool has_followers() const;  ///< whether a pair's samples follow the state
   void note_followed(const dynamics::StateView& state);
   /// What the samples that follow depend on, as it was when they were last evaluated.
   struct Followed {

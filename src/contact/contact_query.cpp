@@ -96,7 +96,7 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   std::swap(samples, next_samples);
   std::swap(cells, next_cells);
   all_made = false;
-  note_followed(state);  // what was found now is nearest now
+  if (has_followers()) note_followed(state);  // what was found now is nearest now
   group_samples();
   if (events_to_compare) ++events_version;  // nobody asked between two queries: no comparison is needed
   events_to_compare = true;

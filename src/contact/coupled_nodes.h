@@ -39,7 +39,7 @@ class NodeNeighbours {
 /// only notes what its samples hang on, and the pattern is made when somebody asks.
 class CoupledNodes {
  public:
-  /// What carries both points of some samples.
+  /// Carriers of both points of a sample.
   struct Joint {
     std::uint64_t key = 0;  ///< both carriers' numbers
     int count_a = 0, count_b = 0;

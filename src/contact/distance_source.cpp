@@ -108,7 +108,7 @@ class DistanceSource final : public SampleSource {
     a_->update(state);
     b_->update(state);
   }
-  /// What the skin's vertices hang on: nodes, or themselves.
+  /// Positions of the nodes of a side's distance::Skin: the body's nodes, or the vertices.
   static const double* carrying(ImageSide& side) {
     return (side.soft() ? side.points() : side.positions()).data();
   }

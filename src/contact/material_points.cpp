@@ -166,8 +166,8 @@ void MaterialPointState::keep() {
   kept_R_ = R_;
 }
 
-// Of nodes: sum w_i dx_i, at most sum |w_i| times the largest |dx_i|.  Of a frame: dt + dR o, and a rotation
-// by theta moves o by 2 |o| sin(theta/2) at most.
+// A point of nodes moves by sum w_i dx_i, at most sum |w_i| times the largest |dx_i|; one of a frame by dt +
+// dR o, and a rotation by theta moves o by 2 |o| sin(theta/2) at most.
 double MaterialPointState::way() const {
   if (!is_kept_) return HUGE_VAL;
   if (is_rigid()) {

@@ -355,6 +355,7 @@ class Memory(Case):
         self.good("model", "ball", "--skin-vertices", "200000", "-o", "fine.h5", "-q")
         (self.folder / "fine.toml").write_text(SKINNED)
         self.assertGreater(self.compare("fine.toml"), 70)  # of which without its skin 41
+        self.assertGreater(self.compare("fine.toml", "--set", 'contact.0.method="distance"'), 200)
 
     def test_the_estimate_is_within_a_factor_of_two(self):
         scenes = (["press-ball", "--set", "body.0.mesh.element_size_m=0.003"],

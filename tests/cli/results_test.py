@@ -242,14 +242,16 @@ class Results(Cli):
 
     def test_nearest_points_press_as_images_do(self):
         """The same force to a percent, and smoother: error control takes fewer steps."""
-        force, steps = {}, {}
+        force, torque, steps = {}, {}, {}
         for method in ("cpu", "distance"):
             said = self.good("run", "press-ball", "--duration-s", "0.3", "--set",
                              f"contact.1.method={method}", "-o", method)
             self.assertRegex(said, r"contact quadrature: ball - tool \S+ % of the largest force \(" + {
                 "cpu": "standard error of its pixels", "distance": r"bound; one point has \S+ %"}[method])
             with (self.folder / method / "force.csv").open(newline="") as file:
-                force[method] = max(float(row["force_z_n"]) for row in csv.DictReader(file))
+                rows = list(csv.DictReader(file))
+            force[method] = max(float(row["force_z_n"]) for row in rows)
+            torque[method] = max(abs(float(row[f"torque_{axis}_n_m"])) for row in rows for axis in "xyz")
             summary = json.loads((self.folder / method / "summary.json").read_text())
             steps[method] = summary["figures"]["counts"]["steps"]
             self.assertLess(summary["figures"]["contact"]["ball - tool: largest_quadrature_error"],
@@ -259,6 +261,8 @@ class Results(Cli):
         self.assertGreater(force["cpu"], 0.4)
         self.assertAlmostEqual(force["distance"] / force["cpu"], 1.0, delta=0.01)
         self.assertLess(steps["distance"], steps["cpu"])
+        self.assertLess(torque["distance"], 1e-15)  # the tool is a ball to it, not a mesh of one
+        self.assertGreater(torque["cpu"], 1e-6)
 
     def test_nearest_points_keep_the_energy_of_a_ball_that_bounces(self):
         """Undamped, contact looked for each 5 ms: with gaps linear in between it gains some percent."""

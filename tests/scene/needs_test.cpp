@@ -52,6 +52,8 @@ TEST(Needs, PressBall) {
   auto near = used("press-ball", {"contact.1.method=distance"});
   EXPECT_TRUE(near.at("nearest points"));
   EXPECT_FALSE(near.at("contact plane") || near.at("gl"));
+  EXPECT_TRUE(used("touch-head").at("proxies"));
+  EXPECT_FALSE(used("touch-head", {"contact.0.method=distance"}).at("proxies"));
   auto quiet = used("press-ball", {"record.states=false", "record.forces=false"});
   EXPECT_FALSE(quiet.at("run file") || quiet.at("force file"));
 }
