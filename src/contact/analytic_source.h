@@ -1,8 +1,11 @@
 #pragma once
 #include <algorithm>
+#include <optional>
+#include <type_traits>
 
 #include "contact/ball_source.h"
 #include "contact/frame_vertices.h"
+#include "contact/material_gaps.h"
 #include "contact/material_points.h"
 #include "contact/safe_time.h"
 #include "contact/surface_state.h"
@@ -11,13 +14,14 @@
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
-#include "palpate/distance/points.h"
 
 namespace palpate::contact {
 
 /// Vertices of a surface, a SurfaceState or FrameVertices, or material points, a MaterialPointState, against
 /// an exact shape.  Vertices stand for their area as it is now, seen along the normal; material points for
-/// their area at rest, so that with a pressure k |gap| their force is the gradient of sum k/2 area gap^2.
+/// the integrals of their hats (MaterialGaps), so that with a pressure k |gap| their force is the gradient of
+/// an energy: a sample has the area A' of the hat that overlaps and the gap -V/A', V the integral of overlap
+/// times hat.
 /// A Shape has
 ///   kName                    for messages and counters
 ///   move_to(pose of its frame), before each query
@@ -25,6 +29,7 @@ namespace palpate::contact {
 ///   is_crossed(a, b)         whether the way from a to b, in the frame, passes through it from outside to
 ///   outside
 ///   lengths()                its CharacteristicLengths
+///   curvature()              mean curvature where it is the same all over, else 0 [1/m]
 /// and, for balls (ball_source.h),
 ///   kRound                   whether it looks the same all around a normal
 ///   height(x, n)             how far along the unit vector n from x the line leaves it, -infinity where the
@@ -40,7 +45,9 @@ class AnalyticSource final : public SampleSource {
         shape_(shape),
         thickness_(shape.lengths().width),
         candidate_gap_(candidate_gap),
-        look_ahead_(look_ahead) {}
+        look_ahead_(look_ahead) {
+    if constexpr (kMaterial) gaps_.emplace(surface_.points(), shape_.curvature());
+  }
 
   std::string_view name() const override { return Shape::kName; }
   long tunnelled() const override { return tunnelled_; }
@@ -59,14 +66,19 @@ class AnalyticSource final : public SampleSource {
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     surface_.update(state);
     if (candidate_gap_ == 0.0) candidate_gap_ = surface_.mean_edge();
+    if constexpr (kMaterial) near_ = candidate_gap_ + gaps_->largest_lowering();
     const Pose pose = motion_->pose(state), inverse = pose.inverse();
     shape_.move_to(pose);
     if constexpr (kMaterial) open_runs(state, pose);
     find_tunnelled(inverse, state.time);
     kept_.clear();
-    distance::EmbeddedSum sum;
-    if (find_candidates(state, pose)) take_samples(inverse, samples, sum);
-    if constexpr (kMaterial) sum_error_.take({sum.sum, sum.error(), sum.largest_term});
+    const bool any = find_candidates(state, pose);
+    if constexpr (kMaterial) {
+      if (any) take_points(inverse, samples);
+      sum_error_.take(any ? gaps_->sum_error(places_, nearest_) : SumError::Query{});
+    } else if (any) {
+      take_samples(inverse, samples);
+    }
   }
 
   bool start_following() override { return follows_ = true; }
@@ -77,30 +89,59 @@ class AnalyticSource final : public SampleSource {
     surface_.update(state);
     const Pose pose = motion_->pose(state), inverse = pose.inverse();
     shape_.move_to(pose);
-    find_areas();
+    if constexpr (kMaterial)
+      place_points();
+    else
+      surface_.area_vectors(wanted_, areas_);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const int source = samples[i].source;
-      samples[i] = sample_at(kept_[i], inverse);
+      if constexpr (kMaterial)
+        samples[i] = sample_of_point(i, inverse);
+      else
+        samples[i] = sample_at(kept_[i], inverse);
       samples[i].source = source;
     }
   }
 
  private:
-  static constexpr bool kMaterial = requires(const Surface& s) { s.rest_area(0); };
+  static constexpr bool kMaterial = std::is_same_v<Surface, MaterialPointState>;
 
-  void take_samples(const Pose& inverse, std::vector<ContactSample>& samples, distance::EmbeddedSum& of) {
-    find_areas();
-    for_each_near([&](int v) {
-      if (!wanted_[static_cast<std::size_t>(v)]) return;
+  void take_samples(const Pose& inverse, std::vector<ContactSample>& samples) {
+    surface_.area_vectors(wanted_, areas_);
+    for (int v = 0; v < surface_.vertex_count(); ++v) {
+      if (!wanted_[static_cast<std::size_t>(v)]) continue;
       const ContactSample sample = sample_at(v, inverse);
       // a vertex that follows may come to face the shape later, by as little as that
-      if (sample.area <= 0.0 && !follows_) return;
+      if (sample.area <= 0.0 && !follows_) continue;
       samples.push_back(sample);
       if (follows_) kept_.push_back(v);
-      if constexpr (kMaterial) {
-        if (sample.gap < 0.0) of.add(-sample.gap * sample.normal, sample.area, surface_.coarse_area(v));
-      }
-    });
+    }
+  }
+
+  void take_points(const Pose& inverse, std::vector<ContactSample>& samples) {
+    gaps_->start(wanted_);
+    kept_ = gaps_->points();
+    place_points();
+    for (std::size_t i = 0; i < kept_.size(); ++i) samples.push_back(sample_of_point(i, inverse));
+  }
+  void place_points() {
+    places_.clear();
+    nearest_.clear();
+    for (const int v : kept_) {
+      places_.push_back(surface_.position(v));
+      nearest_.push_back(shape_.at(places_.back()));
+    }
+    gaps_->integrate(nearest_);
+  }
+  /// @param i  of those kept
+  ContactSample sample_of_point(std::size_t i, const Pose& inverse) const {
+    const double area = gaps_->area(i);
+    if (gaps_->overlap(i) == 0.0)
+      return sample_of(kept_[i], places_[i], nearest_[i], area, nearest_[i].gap, inverse);
+    ContactSample sample =
+        sample_of(kept_[i], places_[i], nearest_[i], area, -gaps_->overlap(i) / area, inverse);
+    sample.stored = gaps_->stored(i);
+    return sample;
   }
 
   // Material points stand in runs of neighbours.  A signed distance is 1-Lipschitz, so a run whose least one
@@ -126,8 +167,8 @@ class AnalyticSource final : public SampleSource {
       gone_ += way;
     }
     const Twist twist = motion_->twist(state);
-    const double near = candidate_gap_ + look_ahead_ * (surface_.fastest(state) + twist.linear.norm() +
-                                                        twist.angular.norm() * farthest);
+    const double near = near_ + look_ahead_ * (surface_.fastest(state) + twist.linear.norm() +
+                                               twist.angular.norm() * farthest);
     open_.clear();
     for (std::size_t r = 0; r < count; ++r)
       if (!(clear_[r] > gone_ + near)) open_.push_back(static_cast<int>(r));
@@ -143,26 +184,21 @@ class AnalyticSource final : public SampleSource {
     }
   }
 
-  void find_areas() {
-    if constexpr (!kMaterial) surface_.area_vectors(wanted_, areas_);
-  }
   /// A vertex that faces away has no area: pressure there would pull.
-  double area_of(int v, const Vec3& normal) const {
-    if constexpr (kMaterial)
-      return surface_.rest_area(v);
-    else
-      return std::max(0.0, -normal.dot(areas_.col(v)));
-  }
   ContactSample sample_at(int v, const Pose& inverse) const {
     const Vec3 x = surface_.position(v);
     const Nearest nearest = shape_.at(x);
+    return sample_of(v, x, nearest, std::max(0.0, -nearest.normal.dot(areas_.col(v))), nearest.gap, inverse);
+  }
+  ContactSample sample_of(int v, const Vec3& x, const Nearest& at, double area, double gap,
+                          const Pose& inverse) const {
     ContactSample sample;
     sample.a = surface_.vertex_point(v);
-    sample.b = frame_point(frame_, inverse, x - (nearest.gap + nearest.radius) * nearest.normal);
-    sample.b.slide = nearest.radius * nearest.normal;
-    sample.normal = nearest.normal;
-    sample.area = area_of(v, nearest.normal);
-    sample.gap = nearest.gap;
+    sample.b = frame_point(frame_, inverse, x - (at.gap + at.radius) * at.normal);
+    sample.b.slide = (at.radius + (at.gap - gap)) * at.normal;
+    sample.normal = at.normal;
+    sample.area = area;
+    sample.gap = gap;
     return sample;
   }
 
@@ -185,7 +221,7 @@ class AnalyticSource final : public SampleSource {
       const double rate = nearest.normal.dot(surface_.velocity(v, state) -
                                              twist.at(x - nearest.gap * nearest.normal - pose.translation));
       safe_time_ = std::min(safe_time_, time_to_middle(nearest.gap, rate, thickness_));
-      if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < candidate_gap_) {
+      if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < (kMaterial ? near_ : candidate_gap_)) {
         wanted_[static_cast<std::size_t>(v)] = 1;
         any = true;
       }
@@ -226,6 +262,7 @@ class AnalyticSource final : public SampleSource {
   std::shared_ptr<MovingFrame> motion_;
   Shape shape_;
   double thickness_, candidate_gap_, look_ahead_;
+  double near_ = 0.0;  ///< candidate_gap_, of material points with what their gaps are lowered by
   std::vector<char> wanted_;
   Points areas_;
   Points seen_;                ///< vertices at the last query, in the frame
@@ -234,7 +271,10 @@ class AnalyticSource final : public SampleSource {
   std::vector<int> open_;      ///< runs that may be near
   double gone_ = 0.0;          ///< bound on the points' way [m]
   Pose shape_pose_;
-  std::vector<int> kept_;  ///< vertices of the last query's samples, where these follow
+  std::vector<int> kept_;  ///< vertices of the last query's samples, where these follow; all its points
+  std::optional<MaterialGaps> gaps_;  ///< of material points
+  std::vector<Vec3> places_;          ///< of those kept
+  std::vector<Nearest> nearest_;
   bool follows_ = false;
   bool seen_before_ = false, warned_ = false;
   long tunnelled_ = 0, fast_ = 0;

@@ -204,7 +204,7 @@ double ContactForce::energy(const dynamics::StateView& state) {
   double sum = m.groups.energy(state, m.frame_states) + m.bonds.energy(state, m.frame_states);
   m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-                   sum += s.area * pressure(law, motion.gap, motion.rate).energy_density;
+                   sum += s.stored * s.area * pressure(law, motion.gap, motion.rate).energy_density;
                  });
   return sum;
 }

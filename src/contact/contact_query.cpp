@@ -197,7 +197,8 @@ void ContactForce::Impl::group_samples() {
   for (Pair& pair : pairs) {
     const auto own = std::span(samples).subspan(pair.begin, pair.end - pair.begin);
     pair.grouped = pair.law.friction == 0.0 && !pair.follows &&
-                   std::all_of(own.begin(), own.end(), [](const ContactSample& s) { return s.a.frame < 0; });
+                   std::all_of(own.begin(), own.end(),
+                               [](const ContactSample& s) { return s.a.frame < 0 && s.stored == 1.0; });
     pair.given = !own.empty() && std::all_of(own.begin(), own.end(), [&](const ContactSample& s) {
       const auto is_given = [&](const SurfacePoint& p) {
         return p.frame >= 0 && !frames[static_cast<std::size_t>(p.frame)]->in_state();

@@ -1,14 +1,11 @@
 // Contact by nearest points: material points of both skins, each tied to the nearest point of the other one.
 //
-// With x the points of a skin, y(x) their nearest points on the other and a their areas at rest, the samples
-// are the pairs (x, y): gap the signed distance of x, normal along x - y.  For a pressure k |gap| their
-// forces are those of the energy
-//
-//     U = 1/2 sum_A k/2 a |x - y|^2 + 1/2 sum_B k/2 a |x - y|^2        (over the points inside),
-//
-// exactly, for |x - y|^2 is least at y and its derivative leaves y's weights alone; force and opposite force
-// have one line.  What the nodes get of them is exact where vertices are nodes; on a skin in tetrahedra a
-// point hangs on one tetrahedron (surface_state.cpp).
+// The samples are the springs of distance::SkinContact: x a point of a skin, y(x) the nearest point of the
+// other one, normal along x - y.  With A' the area of the point's hat that overlaps and V the integral of
+// overlap times hat, the sample has area A' and the gap -V/A': for a pressure k |gap| its force is the exact
+// gradient of the contact's energy.  Where nothing overlaps it has all of its hat, and its own gap.  Force
+// and opposite force have one line.  What the nodes get of them is exact where vertices are nodes; on a skin
+// in tetrahedra a point hangs on one tetrahedron (surface_state.cpp).
 //
 // Samples follow the state with gaps = "exact": the query only says which points can be near.
 #include <algorithm>
@@ -31,11 +28,12 @@ namespace {
 class DistanceSource final : public SampleSource {
  public:
   DistanceSource(std::unique_ptr<ImageSide> a, distance::Skin skin_a, std::unique_ptr<ImageSide> b,
-                 distance::Skin skin_b, double spacing, double thickness, const DistanceOptions& options)
+                 distance::Skin skin_b, const std::array<double, 2>& spacing, double thickness,
+                 const DistanceOptions& options)
       : a_(std::move(a)),
         b_(std::move(b)),
         skins_{std::move(skin_a), std::move(skin_b)},
-        contact_(skins_[0], skins_[1], {.stiffness_pa_m = 1.0, .spacing_m = {spacing, spacing}}),
+        contact_(skins_[0], skins_[1], {.stiffness_pa_m = 1.0, .spacing_m = spacing}),
         options_(options),
         thickness_(thickness) {
     counters::count("contact.distance_source");
@@ -55,12 +53,11 @@ class DistanceSource final : public SampleSource {
       const Pair pair = pair_of(spring);
       samples.push_back(sample_of(spring, pair));
       if (is_coupled()) joints_.push_back(joint_of(pair));
-      safe_time_ = std::min(safe_time_, time_to_middle(spring.gap, -speed, thickness_));
+      if (spring.is_placed) safe_time_ = std::min(safe_time_, time_to_middle(spring.gap, -speed, thickness_));
     }
     if (is_coupled()) couple();
     fast_ += safe_time_ < options_.look_ahead;
-    const distance::EmbeddedSum of = contact_.force_sum();
-    sum_error_.take({of.sum, of.error(), of.largest_term});
+    sum_error_.take({contact_.force_sum(), contact_.quadrature_error(), contact_.largest_force()});
   }
   const SumError* sum_error() const override { return &sum_error_; }
 
@@ -73,7 +70,7 @@ class DistanceSource final : public SampleSource {
     update(state);
     contact_.follow(carrying(*a_), carrying(*b_));
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (contact_.is_clear(springs[i])) {
+      if (!springs[i].is_placed) {
         samples[i].area = 0.0;  // its points are not where they were nearest: no force, whatever they do
         continue;
       }
@@ -145,13 +142,22 @@ class DistanceSource final : public SampleSource {
     (is_of_a ? pair.b : pair.a) = carried(1 - spring.side, spring.face, spring.weights, y);
     return pair;
   }
-  static ContactSample sample_of(const distance::Spring& spring, const Pair& pair) {
+  ContactSample sample_of(const distance::Spring& spring, const Pair& pair) const {
     ContactSample out;
     out.a = pair.a.point;
     out.b = pair.b.point;
     out.normal = pair.normal;
-    out.area = spring.stiffness;  // of 1 Pa/m: half of the point's area
+    out.area = spring.is_placed ? spring.stiffness : 0.0;  // of 1 Pa/m: half of the hat's area
     out.gap = spring.gap;
+    if (spring.force > 0.0) {
+      out.gap = -spring.force / spring.stiffness;
+      out.stored = spring.gap / out.gap;
+      const Vec3 end = pair.at_a - out.gap * pair.normal;  // on the same line
+      if (b_->soft())
+        out.b.offset += end - pair.at_b;
+      else
+        out.b = b_->carried(0, Vec3::Zero(), end, pair.normal).point;
+    }
     return out;
   }
 
@@ -210,9 +216,10 @@ std::unique_ptr<SampleSource> make(std::unique_ptr<ImageSide> a, distance::Skin 
                                    std::unique_ptr<ImageSide> b, distance::Skin skin_b, const TriMesh& mesh_b,
                                    const DistanceOptions& options) {
   const CharacteristicLengths of_a = lengths_of(mesh_a), of_b = lengths_of(mesh_b);
+  const std::array<double, 2> spacing = {point_spacing(of_a, of_b, options.quadrature_error),
+                                         point_spacing(of_b, of_a, options.quadrature_error)};
   return std::make_unique<DistanceSource>(std::move(a), std::move(skin_a), std::move(b), std::move(skin_b),
-                                          point_spacing(of_a, of_b, options.quadrature_error),
-                                          std::min(of_a.width, of_b.width), options);
+                                          spacing, std::min(of_a.width, of_b.width), options);
 }
 
 }  // namespace

@@ -13,63 +13,71 @@
 #include "palpate/proxy/region.h"
 
 // How far apart.  Two bodies of radii r and s touch as a ball of R = r s/(r + s) and a plane do (Hertz);
-// pressed in by d, in a circle of radius a, a^2 = 2 R d.  Here d is an eighth of R, or of half the width of
-// what is thinner than it is round, a plate.  Points that stand for h^2 each err, in the sum of the depth
-// over such a circle, by
-//     c (h/a)^(5/2) of it,    c = 0.1,
-// as a standard error over all places of the points: 0.102 is that of a square grid (quadrature.cpp), and
-// tests/contact/material_points_test.cpp holds that of our points to it.  Triangles of edge e have 3/2 points
-// each, h^2 = sqrt(3)/6 e^2, so that
-//     e = (12)^(1/4) h = 1.86 a (wanted/c)^(2/5).
+// pressed in by d, in a circle of radius a, a^2 = 2 R d, with the mean depth d/2.  The gap to a surface of
+// mean curvature H is above its linear interpolation on triangles of edge e by H e^2/8 in the mean, which is
+//     H R/2 (e/a)^2 of the force.
+// Where H is known and taken into account (a sphere's), what is left is of second order as well: the normals
+// are interpolated, |n_j - n_i|^2/8 = (e/r)^2/8, and so much is H off deeper inside and, the other way, where
+// the triangles are not square to the normal; where the circle is half as wide as the sphere (e/r)^2/8 is
+// 1/32 (e/a)^2, and tests/contact/material_points_test.cpp finds 0.035 (e/a)^2.  With d an eighth of R, a =
+// R/2,
+//     e = R/2 sqrt(wanted/(0.036 + H R/2)).
 // A contact that is less deep has a smaller circle, and errs by more of a smaller force: the run says by how
 // much.
 
 namespace palpate::contact {
 
 CharacteristicLengths lengths_of(const TriMesh& closed) {
-  return {proxy::least_width(closed.vertices), mesh::mean_radius(closed)};
+  const double radius = mesh::mean_radius(closed);
+  return {proxy::least_width(closed.vertices), radius, 1.0 / radius};
 }
 
-double point_spacing(const CharacteristicLengths& a, const CharacteristicLengths& b, double wanted_error) {
-  constexpr double kStandardError = 0.1, kDepth = 1.0 / 8.0;
+double point_spacing(const CharacteristicLengths& own, const CharacteristicLengths& other,
+                     double wanted_error) {
+  constexpr double kKnown = 0.036;
   if (!(wanted_error > 0.0))
     fail("contact points: a quadrature error of {} asks for points without an end; it must be positive",
          wanted_error);
-  const double R = 1.0 / (1.0 / a.radius + 1.0 / b.radius),
-               depth = kDepth * std::min(R, 0.5 * std::min(a.width, b.width));
-  return std::pow(12.0, 0.25) * std::sqrt(2.0 * R * depth) * std::pow(wanted_error / kStandardError, 0.4);
+  const double R = 1.0 / (1.0 / own.radius + 1.0 / other.radius);
+  return 0.5 * R * std::sqrt(wanted_error / (kKnown + 0.5 * other.bend * R));
 }
 
 namespace {
 
-/// Points on faces, and what they stand for, still without what carries them.
+/// Points on faces, still without what carries them.
 struct PlacedPoints {
+  MaterialPoints out;
   std::vector<distance::ContactPoint> points;
   distance::Skin skin;
   Points at;  ///< at rest [m]
 };
 PlacedPoints place_points(const TriMesh& rest, double spacing) {
-  PlacedPoints out;
-  out.skin = distance::make_skin(rest);
-  out.points = distance::contact_points(out.skin, spacing);
-  out.at.setZero(3, static_cast<Eigen::Index>(out.points.size()));
-  for (std::size_t i = 0; i < out.points.size(); ++i)
+  PlacedPoints placed;
+  placed.skin = distance::make_skin(rest);
+  MaterialPoints& out = placed.out;
+  distance::ContactMesh mesh = distance::contact_mesh(placed.skin, spacing);
+  const auto count = static_cast<Eigen::Index>(mesh.points.size()),
+             triangles = static_cast<Eigen::Index>(mesh.triangles.size());
+  out.at.resize(mesh.points.size());
+  placed.at.setZero(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const distance::ContactPoint& point = mesh.points[static_cast<std::size_t>(i)];
     for (int k = 0; k < 3; ++k)
-      out.at.col(static_cast<Eigen::Index>(i)) +=
-          out.points[i].weights[k] * rest.vertices.col(out.skin.faces(k, out.points[i].face));
-  return out;
-}
-
-MaterialPoints with_areas(const PlacedPoints& placed) {
-  MaterialPoints out;
-  out.at.resize(placed.points.size());
-  out.area.resize(placed.at.cols());
-  out.coarse.resize(placed.at.cols());
-  for (std::size_t i = 0; i < placed.points.size(); ++i) {
-    out.area[static_cast<Eigen::Index>(i)] = placed.points[i].area;
-    out.coarse[static_cast<Eigen::Index>(i)] = placed.points[i].coarse;
+      placed.at.col(i) += point.weights[k] * rest.vertices.col(placed.skin.faces(k, point.face));
   }
-  return out;
+  out.triangles.resize(3, triangles);
+  out.area.resize(triangles);
+  out.edges2.resize(triangles);
+  for (Eigen::Index t = 0; t < triangles; ++t) {
+    const distance::ContactTriangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+    out.triangles.col(t) = Eigen::Map<const Eigen::Vector3i>(triangle.points.data());
+    out.area[t] = triangle.area;
+    const Mat3 x = placed.at(Eigen::all, triangle.points);
+    out.edges2[t] = (x.col(0) - x.col(1)).squaredNorm() + (x.col(1) - x.col(2)).squaredNorm() +
+                    (x.col(2) - x.col(0)).squaredNorm();
+  }
+  placed.points = std::move(mesh.points);
+  return placed;
 }
 
 }  // namespace
@@ -78,8 +86,8 @@ MaterialPoints with_areas(const PlacedPoints& placed) {
 // exactly, where the three vertices of its face would hang it on twelve.
 MaterialPoints material_points(const NodeSurface& surface, const Points& rest, const TetMesh& body,
                                double spacing) {
-  const PlacedPoints placed = place_points({rest, surface.faces}, spacing);
-  MaterialPoints out = with_areas(placed);
+  PlacedPoints placed = place_points({rest, surface.faces}, spacing);
+  MaterialPoints& out = placed.out;
   out.block_id = surface.block_id;
   const bool is_skin = surface.node_of_vertex.empty();
   const mesh::Embedding embedding = is_skin ? mesh::embed(body, placed.at) : mesh::Embedding{};
@@ -99,23 +107,24 @@ MaterialPoints material_points(const NodeSurface& surface, const Points& rest, c
       }
     }
   }
-  return out;
+  return std::move(out);
 }
 
 MaterialPoints material_points(const FrameSurface& surface, double spacing) {
-  const PlacedPoints placed = place_points(surface.mesh, spacing);
-  MaterialPoints out = with_areas(placed);
+  PlacedPoints placed = place_points(surface.mesh, spacing);
+  MaterialPoints& out = placed.out;
   out.motion = surface.motion;
   for (std::size_t i = 0; i < out.at.size(); ++i) {
     out.at[i].frame = surface.frame;
     out.at[i].offset = placed.at.col(static_cast<Eigen::Index>(i));
   }
-  return out;
+  return std::move(out);
 }
 
 MaterialPointState::MaterialPointState(MaterialPoints points) : points_(std::move(points)) {
-  PALPATE_CHECK(points_.area.size() == vertex_count() && points_.coarse.size() == vertex_count(),
-                "material points: {} points, {} areas", vertex_count(), points_.area.size());
+  PALPATE_CHECK(
+      points_.area.size() == points_.triangles.cols() && points_.edges2.size() == points_.area.size(),
+      "material points: {} triangles, {} areas", points_.triangles.cols(), points_.area.size());
   PALPATE_CHECK(is_rigid() || points_.block_id >= 0, "material points of no block and no frame");
   for (const SurfacePoint& point : points_.at) {
     double sum = 0.0;

@@ -6,10 +6,10 @@
 namespace palpate::contact {
 
 /// MaterialPoints at a state: what SurfaceState and FrameVertices are for the vertices of a surface, with the
-/// same names, so that AnalyticSource takes any of the three.  A point stands for its area at rest.
+/// same names, so that AnalyticSource takes any of the three.
 class MaterialPointState {
  public:
-  /// @throws InternalError where areas and points differ in number, or points of nodes have no block
+  /// @throws InternalError where areas and triangles differ in number, or points of nodes have no block
   explicit MaterialPointState(MaterialPoints points);
 
   void update(const dynamics::StateView& state);
@@ -28,8 +28,7 @@ class MaterialPointState {
   Vec3 kept_position(int point) const;  ///< @pre kept
   /// Its nodes are counted over all node blocks.
   SurfacePoint vertex_point(int point) const;
-  double rest_area(int point) const { return points_.area[point]; }      ///< [m^2]
-  double coarse_area(int point) const { return points_.coarse[point]; }  ///< in the embedded rule [m^2]
+  const MaterialPoints& points() const { return points_; }
   double mean_edge() const;  ///< of squares of the points' mean area [m]
 
   void add_vertex_pattern(dynamics::PatternBuilder& pattern) const;

@@ -9,6 +9,7 @@ namespace palpate::distance {
 /// Packets of the points of one cluster.
 struct SkinContact::Scratch {
   std::vector<Packet> packets;
+  std::vector<int> open;  ///< packets of the cluster that may have points near
 };
 
 }  // namespace palpate::distance

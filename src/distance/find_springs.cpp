@@ -6,6 +6,7 @@
 // other.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "distance/contact_scratch.h"
 
@@ -49,6 +50,28 @@ void SkinContact::find(const double* nodes_a, const double* nodes_b, double near
     searches_[1 - side]->begin(both.center(), both);
     find_side(side, near);
   }
+  find_triangles();
+  place_missing();
+  integrate();
+}
+
+/// Places the corners of triangles that overlap, where they are not yet.
+void SkinContact::place_missing() {
+  for (const Triangle& t : triangles_) {
+    bool is_inside = false;
+    for (const int i : t.spring) {
+      const Spring& s = springs_[static_cast<std::size_t>(i)];
+      is_inside |= s.is_placed && s.gap < 0.0;
+    }
+    if (!is_inside) continue;
+    for (const int i : t.spring) {
+      Spring& s = springs_[static_cast<std::size_t>(i)];
+      if (s.is_placed) continue;
+      const Foot foot = surfaces_[1 - s.side].nearest(position(s), s.face);
+      if (foot.face < 0) continue;  // its position is not finite
+      set_foot(s, foot, surfaces_[1 - s.side].is_inside(foot));
+    }
+  }
 }
 
 void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
@@ -57,12 +80,13 @@ void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
   const Eigen::AlignedBox3d both = surfaces_[0].box().merged(surfaces_[1].box());
   for (LaneSearch* search : {searches_[0].get(), searches_[1].get()}) search->begin(both.center(), both);
   const auto cluster = [&](const Spring& s) {
-    return points_[s.side][static_cast<std::size_t>(s.point)].face / kClusterFaces;
+    return points(s.side)[static_cast<std::size_t>(s.point)].face / kClusterFaces;
   };
   packet_.clear();
   for (std::size_t i = 0; i < springs_.size(); ++i) {
-    const Spring& spring = springs_[i];
-    if (is_clear(spring)) continue;
+    Spring& spring = springs_[i];
+    spring.is_placed = false;
+    if (travelled_ < spring.clear && spring.force == 0.0) continue;
     if (!packet_.empty()) {
       const Spring& head = springs_[packet_.front()];
       if (packet_.size() == kPacket || head.side != spring.side || cluster(head) != cluster(spring)) {
@@ -73,6 +97,8 @@ void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
     packet_.push_back(i);
   }
   if (!packet_.empty()) follow_packet(packet_);
+  place_missing();
+  integrate();
 }
 
 /// @param springs  of points of one cluster, at most a packet
@@ -159,35 +185,49 @@ void SkinContact::find_cluster(int side, int cluster, int start, double near) {
   const auto c = static_cast<std::size_t>(cluster);
   const int begin = cluster_points_[side][c], end = cluster_points_[side][c + 1];
   std::vector<Packet>& packets = scratch_->packets;
-  const int count = (end - begin + kPacket - 1) / kPacket;
-  for (int p = 0; p < count; ++p) {
-    Packet& packet = packets[static_cast<std::size_t>(p)];
+  std::vector<int>& open = scratch_->open;
+  open.clear();
+  for (int p = 0; begin + kPacket * p < end; ++p) {
+    if (packets_clear_[side][static_cast<std::size_t>(first_packet_[side][c] + p)] > travelled_ + near)
+      continue;
+    Packet& packet = packets[open.size()];
+    open.push_back(p);
     const int used = std::min(kPacket, end - begin - kPacket * p);
     for (int lane = 0; lane < used; ++lane)
       search.set_point(packet, lane,
-                       position(side, points_[side][static_cast<std::size_t>(begin + kPacket * p + lane)]));
+                       position(side, points(side)[static_cast<std::size_t>(begin + kPacket * p + lane)]));
     search.finish(packet, used);
     int faces[kPacket + 1] = {start};
     const auto& feet = feet_[side][static_cast<std::size_t>(first_packet_[side][c] + p)];
     std::copy(feet.begin(), feet.end(), faces + 1);
     search.start(packet, faces, kPacket + 1);
   }
-  search.search(packets.data(), count);
-  for (int p = 0; p < count; ++p) {
-    const Packet& packet = packets[static_cast<std::size_t>(p)];
-    keep_faces(packet, feet_[side][static_cast<std::size_t>(first_packet_[side][c] + p)]);
+  search.search(packets.data(), static_cast<int>(open.size()));
+  for (std::size_t o = 0; o < open.size(); ++o) {
+    const Packet& packet = packets[o];
+    const int p = open[o];
+    const auto number = static_cast<std::size_t>(first_packet_[side][c] + p);
+    keep_faces(packet, feet_[side][number]);
+    double least = std::numeric_limits<double>::infinity();  // of the points' distances outside
     for (int lane = 0; lane < std::min(kPacket, end - begin - kPacket * p); ++lane) {
-      if (packet.face[lane] < 0) continue;
+      const double distance = std::sqrt(static_cast<double>(packet.distance2[lane])) - 2.0 * search.slack();
       const bool is_in_front = packet.height[lane] > search.slack();  // of its face
-      if (is_in_front && !(std::sqrt(static_cast<double>(packet.distance2[lane])) < near + search.slack()))
+      if (packet.face[lane] < 0 || (is_in_front && distance >= near)) {
+        least = std::min(least, packet.face[lane] < 0 ? 0.0 : distance);
         continue;
+      }
       const int point = begin + kPacket * p + lane;
-      const Foot foot = other.nearest_around(position(side, points_[side][static_cast<std::size_t>(point)]),
+      const Foot foot = other.nearest_around(position(side, points(side)[static_cast<std::size_t>(point)]),
                                              packet.face[lane]);
       const bool is_inside = other.is_inside(foot);
+      least = std::min(least, is_inside ? 0.0 : std::sqrt(foot.at.distance2));
       if (is_inside || foot.at.distance2 < near * near) add_spring(side, point, foot, is_inside);
     }
+    packets_clear_[side][number] = least > 0.0 ? travelled_ + least * (1.0 - kRounding) : -1.0;
   }
+  clear_[side][c] = std::numeric_limits<double>::infinity();  // it may have no points of its own
+  for (int p = first_packet_[side][c]; p < first_packet_[side][c + 1]; ++p)
+    clear_[side][c] = std::min(clear_[side][c], packets_clear_[side][static_cast<std::size_t>(p)]);
 }
 
 void SkinContact::find_by_reference(const double* nodes_a, const double* nodes_b) {
@@ -195,6 +235,9 @@ void SkinContact::find_by_reference(const double* nodes_a, const double* nodes_b
   springs_.clear();
   find_side_by_reference(0);
   if (spec_.two_sided) find_side_by_reference(1);
+  find_triangles();
+  place_missing();
+  integrate();
 }
 
 void SkinContact::find_side_by_reference(int side) {
@@ -210,7 +253,7 @@ void SkinContact::find_side_by_reference(int side) {
     int start = middle.face;
     const auto cluster = static_cast<std::size_t>(node.begin);
     for (int p = cluster_points_[side][cluster]; p < cluster_points_[side][cluster + 1]; ++p) {
-      const Foot foot = other.nearest(position(side, points_[side][static_cast<std::size_t>(p)]), start);
+      const Foot foot = other.nearest(position(side, points(side)[static_cast<std::size_t>(p)]), start);
       start = foot.face;
       if (other.is_inside(foot)) add_spring(side, p, foot, true);
     }

@@ -2,51 +2,72 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 
 #include "palpate/core/error.h"
 
 namespace palpate::distance {
 namespace {
 
-/// Corners of the similar triangles, at i, j and k = n - i - j parts from the face's edges.  One inside the
-/// face belongs to six triangles; one on an edge to three of this face, and to three beyond it where that
-/// face is cut alike; a vertex to one per face.
+/// Numbers of the triangles' corners: one at a vertex of the skin, one at each division of an edge by a
+/// number of parts, one inside a face.
 class Corners {
  public:
-  Corners(const Skin& skin, const std::vector<int>& cuts, std::vector<ContactPoint>& out)
-      : skin_(skin), cuts_(cuts), out_(out) {}
+  Corners(const Skin& skin, std::vector<ContactPoint>& out)
+      : skin_(skin), out_(out), at_vertex_(static_cast<std::size_t>(skin.vertex_count()), -1) {}
 
-  void add(int face, int i, int j) const {
-    const int n = cuts_[static_cast<std::size_t>(face)], k = n - i - j;
-    const int zeros = (i == 0) + (j == 0) + (k == 0);
-    double area = 6.0 * share(face);
-    if (zeros == 1) {
-      const int beyond = skin_.across(i == 0 ? 0 : j == 0 ? 1 : 2, face);
-      const bool alike = cuts_[static_cast<std::size_t>(beyond)] == n;
-      if (alike && beyond < face) return;
-      area = 3.0 * (share(face) + (alike ? share(beyond) : 0.0));
-    } else if (zeros == 2) {
-      const auto v = static_cast<std::size_t>(skin_.faces(i ? 0 : j ? 1 : 2, face));
-      const auto begin = skin_.fan.begin() + skin_.fan_begin[v],
-                 end = skin_.fan.begin() + skin_.fan_begin[v + 1];
-      if (*begin != face) return;
-      area = 0.0;
-      for (auto f = begin; f != end; ++f) area += share(*f);
+  /// @param i, j  parts of n from the edges opposite to the face's corners 0 and 1
+  int number(int face, int n, int i, int j) {
+    const std::array<int, 3> parts = {i, j, n - i - j};
+    const auto zeros = std::count(parts.begin(), parts.end(), 0);
+    if (zeros == 2) {
+      const int corner = i ? 0 : j ? 1 : 2;
+      int& known = at_vertex_[static_cast<std::size_t>(skin_.faces(corner, face))];
+      return known < 0 ? known = add(face, n, parts) : known;
     }
-    out_.push_back({face, Vec3(i, j, k) / n, area, 0.0});
+    if (zeros == 0) {
+      if (face != within_) inside_.fill(-1);
+      within_ = face;
+      int& known = inside_[static_cast<std::size_t>(kMostCuts * i + j)];
+      return known < 0 ? known = add(face, n, parts) : known;
+    }
+    const int opposite = i == 0 ? 0 : j == 0 ? 1 : 2;
+    int from = (opposite + 1) % 3, to = (opposite + 2) % 3;
+    if (skin_.faces(from, face) > skin_.faces(to, face)) std::swap(from, to);
+    const std::array<int, 4> key = {skin_.faces(from, face), skin_.faces(to, face), n,
+                                    parts[static_cast<std::size_t>(to)]};
+    const auto [known, is_new] = on_edge_.try_emplace(key, -1);
+    if (is_new) known->second = add(face, n, parts);
+    return known->second;
   }
 
  private:
-  /// A twelfth of one triangle.
-  double share(int face) const {
-    const int n = cuts_[static_cast<std::size_t>(face)];
-    return skin_.area[face] / (12.0 * n * n);
+  int add(int face, int n, const std::array<int, 3>& parts) {
+    out_.push_back({face, Vec3(parts[0], parts[1], parts[2]) / n, 0.0});
+    return static_cast<int>(out_.size()) - 1;
   }
 
   const Skin& skin_;
-  const std::vector<int>& cuts_;
   std::vector<ContactPoint>& out_;
+  std::vector<int> at_vertex_;
+  int within_ = -1;                                  ///< the face of those inside
+  std::array<int, kMostCuts * kMostCuts> inside_{};  ///< by i and j
+  std::map<std::array<int, 4>, int>
+      on_edge_;  ///< lower vertex, higher one, parts of the edge, from the lower
 };
+
+void collect_fans(ContactMesh& mesh) {
+  mesh.fan_begin.assign(mesh.points.size() + 1, 0);
+  for (const ContactTriangle& t : mesh.triangles)
+    for (const int p : t.points) ++mesh.fan_begin[static_cast<std::size_t>(p) + 1];
+  std::partial_sum(mesh.fan_begin.begin(), mesh.fan_begin.end(), mesh.fan_begin.begin());
+  std::vector<int> next(mesh.fan_begin.begin(), mesh.fan_begin.end() - 1);
+  mesh.fan.resize(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const int p : mesh.triangles[t].points)
+      mesh.fan[static_cast<std::size_t>(next[static_cast<std::size_t>(p)]++)] = static_cast<int>(t);
+}
 
 }  // namespace
 
@@ -57,27 +78,27 @@ int cuts_of(const Skin& skin, int face, double spacing) {
       std::clamp(std::ceil(skin.longest_edge[face] / spacing - kRounding), 1.0, double{kMostCuts}));
 }
 
-std::vector<ContactPoint> contact_points(const Skin& skin, double spacing) {
+ContactMesh contact_mesh(const Skin& skin, double spacing) {
   if (!(spacing > 0.0)) fail("contact points: a spacing of {} m; it must be positive", spacing);
-  std::vector<int> cuts;
-  for (int face = 0; face < skin.face_count(); ++face) cuts.push_back(cuts_of(skin, face, spacing));
-  std::vector<ContactPoint> out;
-  const Corners corners(skin, cuts, out);
+  ContactMesh out;
+  Corners corners(skin, out.points);
   for (int face = 0; face < skin.face_count(); ++face) {
-    const int n = cuts[static_cast<std::size_t>(face)];
-    const double area = skin.area[face] / (n * n);
-    // A triangle that points as the face does has its centroid a third of a part from each side, one that
-    // points the other way two thirds.
+    const int n = cuts_of(skin, face, spacing);
+    const auto add = [&](const std::array<std::array<int, 2>, 3>& at) {
+      ContactTriangle triangle{.area = skin.area[face] / (n * n)};
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle.points[k] = corners.number(face, n, at[k][0], at[k][1]);
+        out.points[static_cast<std::size_t>(triangle.points[k])].area += triangle.area / 3.0;
+      }
+      out.triangles.push_back(triangle);
+    };
     for (int i = 0; i < n; ++i)
-      for (int j = 0; i + j < n; ++j)
-        for (int flipped = 0; flipped < (i + j + 1 < n ? 2 : 1); ++flipped) {
-          const double third = (1.0 + flipped) / 3.0;
-          const Vec3 at((i + third) / n, (j + third) / n, 0.0);
-          out.push_back({face, Vec3(at[0], at[1], 1.0 - at[0] - at[1]), 0.75 * area, area});
-        }
-    for (int i = 0; i <= n; ++i)
-      for (int j = 0; i + j <= n; ++j) corners.add(face, i, j);
+      for (int j = 0; i + j < n; ++j) {
+        add({{{i + 1, j}, {i, j + 1}, {i, j}}});
+        if (i + j + 1 < n) add({{{i, j + 1}, {i + 1, j}, {i + 1, j + 1}}});
+      }
   }
+  collect_fans(out);
   return out;
 }
 

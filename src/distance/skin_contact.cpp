@@ -5,6 +5,7 @@
 
 #include "distance/contact_scratch.h"
 #include "palpate/core/error.h"
+#include "palpate/distance/linear_gap.h"
 
 namespace palpate::distance {
 
@@ -12,14 +13,14 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& sp
     : spec_(spec), surfaces_{Surface(a), Surface(b)}, scratch_(std::make_unique<Scratch>()) {
   if (!(spec.stiffness_pa_m > 0.0))
     fail("contact stiffness is {} Pa/m; it must be positive", spec.stiffness_pa_m);
-  std::size_t count = 0, most_packets = 1;
+  std::size_t count = 0, triangles = 0, most_packets = 1;
   for (int side = 0; side < 2; ++side) {
     const Skin& skin = surfaces_[side].skin();
     const auto clusters = static_cast<std::size_t>(skin.cluster_count());
     if (side == 0 || spec.two_sided)
-      points_[side] = contact_points(skin, spec.spacing_m[static_cast<std::size_t>(side)]);
+      meshes_[side] = contact_mesh(skin, spec.spacing_m[static_cast<std::size_t>(side)]);
     cluster_points_[side].assign(clusters + 1, 0);
-    for (const ContactPoint& p : points_[side])
+    for (const ContactPoint& p : points(side))
       ++cluster_points_[side][static_cast<std::size_t>(p.face / kClusterFaces) + 1];
     first_packet_[side] = {0};
     for (std::size_t c = 1; c <= clusters; ++c) {
@@ -33,8 +34,12 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& sp
     feet_[side].assign(static_cast<std::size_t>(first_packet_[side].back()), none);
     starts_[side].assign(clusters, -1);
     clear_[side].assign(clusters, -1.0);
+    packets_clear_[side].assign(static_cast<std::size_t>(first_packet_[side].back()), -1.0);
     searches_[side] = std::make_unique<LaneSearch>(surfaces_[side]);
-    count += points_[side].size();
+    count += points(side).size();
+    triangles += meshes_[side].triangles.size();
+    spring_of_[side].assign(points(side).size(), -1);
+    is_near_[side].assign(meshes_[side].triangles.size(), 0);
     candidates_.reserve(std::max(candidates_.capacity(), clusters));
     VertexForces& at = vertex_forces_[side];
     at.sum.setZero(3, skin.vertex_count());
@@ -42,8 +47,10 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& sp
     at.touched.reserve(static_cast<std::size_t>(skin.vertex_count()));
   }
   springs_.reserve(count);
+  triangles_.reserve(triangles);
   packet_.reserve(kPacket);
   scratch_->packets.resize(most_packets);
+  scratch_->open.reserve(most_packets);
 }
 
 SkinContact::~SkinContact() = default;
@@ -53,7 +60,7 @@ Vec3 SkinContact::position(int side, const ContactPoint& point) const {
 }
 
 Vec3 SkinContact::position(const Spring& spring) const {
-  return position(spring.side, points_[spring.side][static_cast<std::size_t>(spring.point)]);
+  return position(spring.side, points(spring.side)[static_cast<std::size_t>(spring.point)]);
 }
 
 void SkinContact::set_foot(Spring& spring, const Foot& foot, bool is_inside) const {
@@ -63,14 +70,88 @@ void SkinContact::set_foot(Spring& spring, const Foot& foot, bool is_inside) con
   spring.reach = -foot.at.away;
   spring.gap = is_inside ? -distance : distance;
   spring.clear = is_inside ? 0.0 : travelled_ + distance;
+  spring.is_placed = true;
 }
 
 void SkinContact::add_spring(int side, int point, const Foot& foot, bool is_inside) {
-  const ContactPoint& p = points_[side][static_cast<std::size_t>(point)];
-  const double factor = spec_.two_sided ? 0.5 * spec_.stiffness_pa_m : spec_.stiffness_pa_m;
-  springs_.push_back(
-      {.side = side, .point = point, .stiffness = factor * p.area, .coarse = factor * p.coarse});
+  spring_of_[side][static_cast<std::size_t>(point)] = static_cast<int>(springs_.size());
+  springs_.push_back({.side = side, .point = point});
   set_foot(springs_.back(), foot, is_inside);
+}
+
+// Every triangle with a spring, and a spring at each of its corners, those that lie too far outside to have
+// been found not placed: both in the order of their numbers, whatever the springs were found by.
+void SkinContact::find_triangles() {
+  triangles_.clear();
+  const std::size_t found = springs_.size();
+  for (std::size_t i = 0; i < found; ++i) {
+    const Spring s = springs_[i];
+    const ContactMesh& mesh = meshes_[s.side];
+    for (int f = mesh.fan_begin[static_cast<std::size_t>(s.point)];
+         f < mesh.fan_begin[static_cast<std::size_t>(s.point) + 1]; ++f) {
+      const int t = mesh.fan[static_cast<std::size_t>(f)];
+      char& is_near = is_near_[s.side][static_cast<std::size_t>(t)];
+      if (is_near) continue;
+      is_near = 1;
+      triangles_.push_back({.side = s.side, .number = t});
+      for (const int p : mesh.triangles[static_cast<std::size_t>(t)].points) {
+        int& spring = spring_of_[s.side][static_cast<std::size_t>(p)];
+        if (spring >= 0) continue;
+        spring = 0;
+        springs_.push_back({.side = s.side,
+                            .point = p,
+                            .face = s.face,
+                            .weights = Vec3::Constant(1.0 / 3.0),
+                            .clear = std::numeric_limits<double>::infinity()});
+      }
+    }
+  }
+  std::sort(springs_.begin(), springs_.end(), [](const Spring& a, const Spring& b) {
+    return std::pair(a.side, a.point) < std::pair(b.side, b.point);
+  });
+  std::sort(triangles_.begin(), triangles_.end(), [](const Triangle& a, const Triangle& b) {
+    return std::pair(a.side, a.number) < std::pair(b.side, b.number);
+  });
+  for (std::size_t i = 0; i < springs_.size(); ++i)
+    spring_of_[springs_[i].side][static_cast<std::size_t>(springs_[i].point)] = static_cast<int>(i);
+  for (Triangle& t : triangles_) {
+    is_near_[t.side][static_cast<std::size_t>(t.number)] = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      t.spring[k] = spring_of_[t.side][static_cast<std::size_t>(
+          meshes_[t.side].triangles[static_cast<std::size_t>(t.number)].points[k])];
+  }
+  for (const Spring& s : springs_) spring_of_[s.side][static_cast<std::size_t>(s.point)] = -1;
+}
+
+/// visit(triangle, overlap at its corners) where one of them overlaps.
+template <class Visit>
+void SkinContact::for_each_overlap(const Visit& visit) const {
+  for (const Triangle& t : triangles_) {
+    Vec3 overlap;
+    bool any = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Spring& s = springs_[static_cast<std::size_t>(t.spring[k])];
+      overlap[static_cast<int>(k)] = -s.gap;
+      any |= s.is_placed && s.gap < 0.0;
+    }
+    if (any) visit(t, overlap);
+  }
+}
+
+void SkinContact::integrate() {
+  for (Spring& s : springs_) s.stiffness = s.force = 0.0;
+  const double k = spec_.two_sided ? 0.5 * spec_.stiffness_pa_m : spec_.stiffness_pa_m;
+  for_each_overlap([&](const Triangle& t, const Vec3& overlap) {
+    const HatIntegrals integrals = integrate_hats(overlap);
+    const double factor = k * meshes_[t.side].triangles[static_cast<std::size_t>(t.number)].area;
+    for (std::size_t c = 0; c < 3; ++c) {
+      Spring& s = springs_[static_cast<std::size_t>(t.spring[c])];
+      s.force += factor * integrals.overlap[static_cast<int>(c)];
+      s.stiffness += factor * integrals.area[static_cast<int>(c)];
+    }
+  });
+  for (Spring& s : springs_)
+    if (s.force == 0.0) s.stiffness = k * points(s.side)[static_cast<std::size_t>(s.point)].area;
 }
 
 // A direction between two points is rounded by the unit in the last place of their coordinates over their
@@ -85,69 +166,63 @@ Vec3 SkinContact::outward(const Spring& spring) const {
   return other.outward({spring.face, {.weights = spring.weights}}).normalized();
 }
 
+// U is homogeneous of degree 2 in the overlaps: half of their product with its gradient.
 double SkinContact::energy() const {
   double sum = 0.0;
-  for (const Spring& s : springs_)
-    if (s.gap < 0.0) sum += 0.5 * s.stiffness * s.reach.squaredNorm();
+  for (const Spring& s : springs_) sum -= 0.5 * s.force * s.gap;
   return sum;
 }
 
 double SkinContact::deepest() const {
   double most = 0.0;
-  for (const Spring& s : springs_) most = std::max(most, -s.gap);
+  for (const Spring& s : springs_)
+    if (s.is_placed) most = std::max(most, -s.gap);
   return most;
 }
 
 Resultant SkinContact::resultant() const {
   Resultant out;
   for (const Spring& s : springs_) {
-    if (s.gap >= 0.0) continue;
-    const Vec3 force = (s.side == 0 ? s.stiffness : -s.stiffness) * s.reach;
+    if (s.force == 0.0) continue;
+    const Vec3 force = (s.side == 0 ? s.force : -s.force) * outward(s);
     out.force += force;
     out.moment += position(s).cross(force);
   }
   return out;
 }
 
-EmbeddedSum SkinContact::force_sum() const {
-  EmbeddedSum out;
-  for (const Spring& s : springs_)
-    if (s.gap < 0.0) out.add(s.side == 0 ? s.reach : Vec3(-s.reach), s.stiffness, s.coarse);
-  return out;
+double SkinContact::force_sum() const {
+  double sum = 0.0;
+  for (const Spring& s : springs_) sum += s.force;
+  return sum;
 }
 
-Mat3 SkinContact::spring_matrix(const Spring& spring) const {
-  const Vec3& w = spring.weights;
-  const int zeros = (w[0] == 0.0) + (w[1] == 0.0) + (w[2] == 0.0);
-  if (zeros == 2) return spring.stiffness * Mat3::Identity();
-  const Surface& other = surfaces_[1 - spring.side];
-  if (zeros == 1) {
-    const int k = w[0] == 0.0 ? 0 : w[1] == 0.0 ? 1 : 2;
-    const Vec3 t =
-        (other.corner(spring.face, (k + 2) % 3) - other.corner(spring.face, (k + 1) % 3)).normalized();
-    return spring.stiffness * (Mat3::Identity() - t * t.transpose());
-  }
-  const Vec3 n = (other.corner(spring.face, 1) - other.corner(spring.face, 0))
-                     .cross(other.corner(spring.face, 2) - other.corner(spring.face, 0))
-                     .normalized();
-  return spring.stiffness * n * n.transpose();
+double SkinContact::largest_force() const {
+  double most = 0.0;
+  for (const Spring& s : springs_) most = std::max(most, s.force);
+  return most;
 }
 
-/// x - y of values at vertices.
-template <class Of>
-Vec3 SkinContact::difference(const Spring& spring, const Of& vertex_value) const {
-  const ContactPoint& point = points_[spring.side][static_cast<std::size_t>(spring.point)];
-  const Skin& own = surfaces_[spring.side].skin();
-  const Skin& other = surfaces_[1 - spring.side].skin();
-  Vec3 out = Vec3::Zero();
-  for (int k = 0; k < 3; ++k)
-    out += point.weights[k] * vertex_value(spring.side, own.faces(k, point.face)) -
-           spring.weights[k] * vertex_value(1 - spring.side, other.faces(k, spring.face));
-  return out;
+double SkinContact::quadrature_error() const {
+  const double k = spec_.two_sided ? 0.5 * spec_.stiffness_pa_m : spec_.stiffness_pa_m;
+  double error = 0.0;
+  for_each_overlap([&](const Triangle& t, const Vec3& overlap) {
+    Mat3 x, normal;
+    for (int c = 0; c < 3; ++c) {
+      const Spring& s = springs_[static_cast<std::size_t>(t.spring[static_cast<std::size_t>(c)])];
+      x.col(c) = position(s);
+      normal.col(c) = outward(s);
+    }
+    const HatIntegrals integrals = integrate_hats(overlap);
+    const Missed missed = missed_by_linear(x, normal);
+    error += k * meshes_[t.side].triangles[static_cast<std::size_t>(t.number)].area *
+             std::abs(integrals.area.sum() * missed.gap + integrals.overlap.sum() * missed.normal);
+  });
+  return error;
 }
 
 void SkinContact::add_to_vertices(const Spring& spring, const Vec3& force) {
-  const ContactPoint& point = points_[spring.side][static_cast<std::size_t>(spring.point)];
+  const ContactPoint& point = points(spring.side)[static_cast<std::size_t>(spring.point)];
   for (int end = 0; end < 2; ++end) {
     const int side = end == 0 ? spring.side : 1 - spring.side;
     const Vec3& weights = end == 0 ? point.weights : spring.weights;
@@ -180,22 +255,8 @@ void SkinContact::add_to_nodes(double* nodes_a, double* nodes_b) {
 
 void SkinContact::add_force(double* nodes_a, double* nodes_b) {
   for (const Spring& s : springs_)
-    if (s.gap < 0.0) add_to_vertices(s, s.stiffness * s.reach);
+    if (s.force > 0.0) add_to_vertices(s, s.force * outward(s));
   add_to_nodes(nodes_a, nodes_b);
-}
-
-void SkinContact::apply_stiffness(const double* v_a, const double* v_b, double* y_a, double* y_b) {
-  const double* of[2] = {v_a, v_b};
-  const auto vertex_value = [&](int side, int v) {
-    const Skin& skin = surfaces_[side].skin();
-    Vec3 out = Vec3::Zero();
-    for (int k = 0; k < 4; ++k)
-      out += skin.weights(k, v) * Eigen::Map<const Vec3>(of[side] + 3 * skin.nodes(k, v));
-    return out;
-  };
-  for (const Spring& s : springs_)
-    if (s.gap < 0.0) add_to_vertices(s, spring_matrix(s) * difference(s, vertex_value));
-  add_to_nodes(y_a, y_b);
 }
 
 }  // namespace palpate::distance

@@ -188,7 +188,7 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side,
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
   const bool sphere = tool.shape == "sphere";
   if (pair.spec.method == "distance" && sphere)
-    return contact::make_sphere_source(points_on(pair, {2.0 * tool.radius_m, tool.radius_m}),
+    return contact::make_sphere_source(points_on(pair, {2.0 * tool.radius_m, tool.radius_m, 0.0}),
                                        side.frame_index, motion, Vec3::Zero(), tool.radius_m,
                                        pair.candidate_gap, pair.look_ahead);
   if (pair.spec.method == "distance")

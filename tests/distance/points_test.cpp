@@ -1,60 +1,72 @@
-// The quadrature's points against integrals of polynomials over triangles.
+// The triangles between contact points: they are the skin, cut, and hang together.
+#include "palpate/distance/points.h"
 #include "bodies.h"
 
 using namespace distance_tests;
 
 namespace {
 
-/// Integral of a quadratic over the skin by the midpoints of edges, which is exact on each triangle.
-template <class Function>
-double exact(const Skin& skin, const Points& x, const Function& f) {
-  double sum = 0.0;
-  for (int face = 0; face < skin.face_count(); ++face)
-    for (int k = 0; k < 3; ++k)
-      sum += skin.area[face] / 3 *
-             f(Vec3(0.5 * (x.col(skin.faces(k, face)) + x.col(skin.faces((k + 1) % 3, face)))));
-  return sum;
+Vec3 place(const TriMesh& mesh, const Skin& skin, const ContactPoint& point) {
+  Vec3 x = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) x += point.weights[k] * mesh.vertices.col(skin.faces(k, point.face));
+  return x;
 }
 
 }  // namespace
 
-// Cut to equal parts or to parts that differ from face to face.
-TEST(ContactPoints, IntegrateQuadraticsAndTheCoarseRuleLinearOnes) {
+// Each as large as it says, turned as its face is; a hat's area is a third of its triangles'.
+TEST(ContactMesh, CutsTheSkin) {
   const TriMesh mesh = bumpy_sphere(1.0, 4, 0.2);
   const Skin skin = make_skin(mesh);
-  const auto quadratic = [](const Vec3& x) { return x.x() * x.x() + 0.3 * x.y() * x.z() - x.z() + 0.7; };
-  const auto linear = [](const Vec3& x) { return x.x() - 2 * x.y() + 0.5 * x.z() + 1; };
   for (const double spacing : {HUGE_VAL, 0.9 * skin.longest_edge.mean(), 0.3 * skin.longest_edge.mean()}) {
-    const auto points = contact_points(skin, spacing);
-    double fine = 0.0, fine_linear = 0.0, coarse = 0.0, coarse_quadratic = 0.0;
-    for (const ContactPoint& p : points) {
-      EXPECT_GT(p.area, 0.0);
+    const ContactMesh cut = contact_mesh(skin, spacing);
+    double hats = 0.0, volume = 0.0, whole = 0.0;
+    for (const ContactPoint& p : cut.points) {
       EXPECT_NEAR(p.weights.sum(), 1.0, 1e-15);
-      Vec3 x = Vec3::Zero();
-      for (int k = 0; k < 3; ++k) x += p.weights[k] * mesh.vertices.col(skin.faces(k, p.face));
-      fine += p.area * quadratic(x);
-      fine_linear += p.area * linear(x);
-      coarse += p.coarse * linear(x);
-      coarse_quadratic += p.coarse * quadratic(x);
+      EXPECT_GE(p.weights.minCoeff(), 0.0);
+      hats += p.area;
     }
-    EXPECT_NEAR(fine, exact(skin, mesh.vertices, quadratic), 1e-12);
-    EXPECT_NEAR(fine_linear, exact(skin, mesh.vertices, linear), 1e-12);
-    EXPECT_NEAR(coarse, exact(skin, mesh.vertices, linear), 1e-12);
-    EXPECT_GT(std::abs(coarse_quadratic - fine), 1e-5);  // of lower degree, so that they can be compared
+    EXPECT_NEAR(hats, skin.area.sum(), 1e-12);
+    for (const ContactTriangle& t : cut.triangles) {
+      Vec3 x[3];
+      for (std::size_t k = 0; k < 3; ++k)
+        x[k] = place(mesh, skin, cut.points[static_cast<std::size_t>(t.points[k])]);
+      EXPECT_NEAR(0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm(), t.area, 1e-14);
+      volume += x[0].dot(x[1].cross(x[2])) / 6.0;
+    }
+    for (int f = 0; f < skin.face_count(); ++f)
+      whole += mesh.vertices.col(skin.faces(0, f))
+                   .dot(Vec3(mesh.vertices.col(skin.faces(1, f)))
+                            .cross(Vec3(mesh.vertices.col(skin.faces(2, f))))) /
+               6.0;
+    EXPECT_NEAR(volume, whole, 1e-12);
   }
 }
 
-// Euler: 3/2 points per triangle, and the two that a sphere has more.
-TEST(ContactPoints, AreSharedByFacesThatAreCutAlike) {
+// Euler: half a point per triangle, and the two that a sphere has more.
+TEST(ContactMesh, SharesPointsBetweenFacesThatAreCutAlike) {
   const Skin skin = make_skin(mesh::sphere(1.0, 1));
   ASSERT_LT(skin.longest_edge.maxCoeff() / skin.longest_edge.minCoeff(), 1.0 + 1e-12);
   for (const int n : {1, 2, 3, 16}) {
-    EXPECT_EQ(static_cast<int>(contact_points(skin, skin.longest_edge[0] / n).size()),
-              skin.face_count() * n * n * 3 / 2 + 2);
+    const ContactMesh cut = contact_mesh(skin, skin.longest_edge[0] / n);
+    EXPECT_EQ(static_cast<int>(cut.triangles.size()), skin.face_count() * n * n);
+    EXPECT_EQ(static_cast<int>(cut.points.size()), skin.face_count() * n * n / 2 + 2);
   }
 }
 
-TEST(ContactPoints, StandNoFartherApartThanAsked) {
+TEST(ContactMesh, KnowsTheTrianglesAroundAPoint) {
+  const ContactMesh cut = contact_mesh(make_skin(bumpy_sphere(1.0, 3, 0.2)), 0.2);
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < cut.points.size(); ++p)
+    for (int i = cut.fan_begin[p]; i < cut.fan_begin[p + 1]; ++i, ++count) {
+      const auto& corners =
+          cut.triangles[static_cast<std::size_t>(cut.fan[static_cast<std::size_t>(i)])].points;
+      EXPECT_EQ(std::count(corners.begin(), corners.end(), static_cast<int>(p)), 1);
+    }
+  EXPECT_EQ(count, 3 * cut.triangles.size());
+}
+
+TEST(ContactMesh, StandsNoFartherApartThanAsked) {
   const Skin skin = make_skin(bumpy_sphere(1.0, 4, 0.2));
   const double spacing = 0.4 * skin.longest_edge.mean();
   int least = kMostCuts, most = 1;
@@ -69,13 +81,13 @@ TEST(ContactPoints, StandNoFartherApartThanAsked) {
   EXPECT_EQ(cuts_of(skin, 0, 1e-9), kMostCuts);
 }
 
-TEST(ContactPoints, AreOrderedByFace) {
-  const auto points = contact_points(make_skin(mesh::sphere(1.0, 3)), 0.3);
-  for (std::size_t i = 1; i < points.size(); ++i) EXPECT_LE(points[i - 1].face, points[i].face);
+TEST(ContactMesh, IsOrderedByFace) {
+  const ContactMesh cut = contact_mesh(make_skin(mesh::sphere(1.0, 3)), 0.3);
+  for (std::size_t i = 1; i < cut.points.size(); ++i) EXPECT_LE(cut.points[i - 1].face, cut.points[i].face);
 }
 
-TEST(ContactPoints, RejectASpacingThatIsNone) {
+TEST(ContactMesh, RejectsASpacingThatIsNone) {
   const Skin skin = make_skin(mesh::sphere(1.0, 2));
-  expect_message([&] { contact_points(skin, 0.0); }, {"a spacing of 0 m"});
-  expect_message([&] { contact_points(skin, std::nan("")); }, {"it must be positive"});
+  expect_message([&] { contact_mesh(skin, 0.0); }, {"a spacing of 0 m"});
+  expect_message([&] { contact_mesh(skin, std::nan("")); }, {"it must be positive"});
 }

@@ -33,7 +33,7 @@ double ratio_to_law(const Body& sphere, const Body& box, bool two_sided, bool of
 // 1/(1 - delta/(3 R)) times k and the volume.
 TEST(SkinContact, SphereOnPlane) {
   const Body sphere = shell(mesh::sphere(kRadius, 48));
-  const Body box = shell(mesh::box_surface({0.2, 0.2, 0.2}, {64, 64, 1}));
+  const Body box = shell(mesh::box_surface({0.2, 0.2, 0.2}, {128, 128, 1}));
   for (const double depth : {0.005, 0.01}) {
     EXPECT_NEAR(ratio_to_law(sphere, box, false, false, depth), 1.0, 0.01);
     EXPECT_NEAR(ratio_to_law(sphere, box, false, true, depth), 1.0 - depth / kRadius, 0.01);
@@ -72,7 +72,7 @@ TEST(SkinContact, PrintedQuadratureErrorBoundsTheTrueOne) {
     ASSERT_GT(exact.norm(), 0.0);
     const double error = (once.resultant().force - exact).norm();
     EXPECT_LT(error, 0.05 * exact.norm());
-    bounded += error <= once.force_sum().error();
+    bounded += error <= once.quadrature_error();
     ++all;
   }
   EXPECT_GE(bounded, 95 * all / 100);
@@ -129,7 +129,10 @@ TEST(SkinContact, ForcesAndMomentsBalanceToRounding) {
 TEST(SkinContact, SpheresFeelNoTorque) {
   const Body a = shell(mesh::sphere(0.05, 40));
   Body b = shell(mesh::sphere(0.04, 40));
-  SkinContact contact(a.skin, b.skin, {.stiffness_pa_m = kStiffness});
+  const SkinContactSpec spec{
+      .stiffness_pa_m = kStiffness,
+      .spacing_m = {0.5 * a.skin.longest_edge.maxCoeff(), 0.5 * b.skin.longest_edge.maxCoeff()}};
+  SkinContact contact(a.skin, b.skin, spec);
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 5; ++i) {
@@ -258,9 +261,9 @@ TEST(SkinContact, SpringsThatFollowAnApproachMissNothing) {
     follows.follow(a.at(), b.at());
     ASSERT_GT(fresh.energy(), 0.0);
     EXPECT_EQ(follows.energy(), fresh.energy()) << depth;
-    std::size_t clear = 0;
-    for (const Spring& spring : follows.springs()) clear += follows.is_clear(spring);
-    EXPECT_GT(clear, near / 4) << "of " << near;
+    std::size_t left_out = 0;
+    for (const Spring& spring : follows.springs()) left_out += !spring.is_placed;
+    EXPECT_GT(left_out, near / 4) << "of " << near;
   }
 }
 
@@ -310,48 +313,6 @@ TEST(SkinContact, FindEqualsTheReference) {
   compare(around, within, {0.03, 0.01, -0.02}, 1.0, 1);
 }
 
-TEST(SkinContact, GaussNewtonMatrixIsSymmetricAndNearTheDerivative) {
-  Pair pair;
-  SkinContact contact(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
-  Points fa, fb;
-  contact_force(contact, pair.a, pair.b, fa, fb);
-  std::mt19937 random(17);
-  std::normal_distribution<double> normal;
-  const auto random_points = [&](const Points& like) {
-    Points out = like;
-    for (double& x : out.reshaped()) x = normal(random);
-    return out;
-  };
-  const auto product = [&](const Points& va, const Points& vb) {
-    std::pair<Points, Points> y{Points::Zero(3, va.cols()), Points::Zero(3, vb.cols())};
-    contact.apply_stiffness(va.data(), vb.data(), y.first.data(), y.second.data());
-    return y;
-  };
-  const auto dot = [](const std::pair<Points, Points>& y, const Points& a, const Points& b) {
-    return y.first.cwiseProduct(a).sum() + y.second.cwiseProduct(b).sum();
-  };
-  const Points ua = random_points(fa), ub = random_points(fb), va = random_points(fa), vb = random_points(fb);
-  const auto ku = product(ua, ub), kv = product(va, vb);
-  EXPECT_NEAR(dot(ku, va, vb), dot(kv, ua, ub), 1e-12 * std::abs(dot(ku, ua, ub)));
-  EXPECT_GT(dot(ku, ua, ub), 0.0);
-  EXPECT_GT(dot(kv, va, vb), 0.0);
-  // A common shift is in its kernel.
-  const Points same_a = Points::Ones(3, fa.cols()), same_b = Points::Ones(3, fb.cols());
-  EXPECT_LT(product(same_a, same_b).first.norm(), 1e-12 * ku.first.norm());
-  // Along the force the resultant changes as the matrix tells, but for what it leaves out: k w d/R, the depth
-  // over the skins' radii of curvature, 8 mm over 40 mm.
-  const Vec3 way = fa.rowwise().sum().normalized();
-  const Points shift_a = way.replicate(1, fa.cols()), none_b = Points::Zero(3, fb.cols());
-  const double told = way.dot(product(shift_a, none_b).first.rowwise().sum());
-  const double h = 1e-6;
-  Body a = pair.a;
-  a.nodes += h * shift_a;
-  Points ga, gb;
-  contact_force(contact, a, pair.b, ga, gb);
-  const double changed = -way.dot((ga - fa).rowwise().sum()) / h;
-  EXPECT_NEAR(changed / told, 1.0, 0.2);
-}
-
 TEST(SkinContactMemory, NothingIsAllocatedAfterConstruction) {
 #if !PALPATE_CAN_COUNT
   GTEST_SKIP() << "a sanitizer brings its own malloc";
@@ -364,7 +325,7 @@ TEST(SkinContactMemory, NothingIsAllocatedAfterConstruction) {
     const long before = malloc_calls;
     contact.find(pair.a.at(), pair.b.at());
     contact.add_force(fa.data(), fb.data());
-    contact.apply_stiffness(pair.a.at(), pair.b.at(), fa.data(), fb.data());
+    contact.follow(pair.a.at(), pair.b.at());
     EXPECT_EQ(malloc_calls - before, 0);
   }
   EXPECT_GT(contact.springs().size(), 100u);

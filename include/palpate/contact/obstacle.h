@@ -30,6 +30,9 @@ struct CharacteristicLengths {
   /// A / integral of H dA with the mean curvature H: the radius of a ball; infinite where flat and hollow
   /// parts outweigh the round ones [m]
   double radius;
+  /// Mean curvature that linear gaps do not know of: 0 of planes and boxes, where they are exact, and of
+  /// spheres, whose curvature is known [1/m]
+  double bend;
 };
 
 /// What a picture is of: its middle and its size.

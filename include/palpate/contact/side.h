@@ -16,11 +16,12 @@ struct FrameSurface {
   std::shared_ptr<MovingFrame> motion{};  ///< moves the frame
 };
 
-/// Material points of a surface, each with the area that it stands for at rest.
+/// Material points of a surface, and the triangles between them over which a gap is linear.
 struct MaterialPoints {
   std::vector<SurfacePoint> at;           ///< of nodes, counted inside the block; or of a frame
-  VecX area;                              ///< [m^2]
-  VecX coarse;                            ///< in the embedded rule, for an estimate of the error [m^2]
+  Faces triangles;                        ///< their corners
+  VecX area;                              ///< of each triangle, at rest [m^2]
+  VecX edges2;                            ///< of each: sum of its edges' squares, at rest [m^2]
   int block_id = -1;                      ///< the node block that carries them; -1: a frame does
   std::shared_ptr<MovingFrame> motion{};  ///< moves the frame
 };

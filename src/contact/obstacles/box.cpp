@@ -51,8 +51,9 @@ class Box {
   CharacteristicLengths lengths() const {
     const Vec3 size = 2.0 * half_;
     const double area = 2.0 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
-    return {size.minCoeff(), area / (std::numbers::pi * size.sum())};
+    return {size.minCoeff(), area / (std::numbers::pi * size.sum()), 0.0};
   }
+  double curvature() const { return 0.0; }
 
  private:
   bool outside(const Vec3& x) const { return ((x.cwiseAbs() - half_).array() > 0.0).any(); }

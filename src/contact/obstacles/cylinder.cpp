@@ -49,8 +49,10 @@ class Cylinder {
   // Integral of H dA: of the side 2 pi r l / (2 r), of both rims, edges of 90 degrees, 2 pi r pi/2 in all.
   CharacteristicLengths lengths() const {
     return {2.0 * std::min(radius_, half_),
-            2.0 * radius_ * (2.0 * half_ + radius_) / (2.0 * half_ + std::numbers::pi * radius_)};
+            2.0 * radius_ * (2.0 * half_ + radius_) / (2.0 * half_ + std::numbers::pi * radius_),
+            0.5 / radius_};
   }
+  double curvature() const { return 0.0; }  // of its ends
 
  private:
   // |a + s d|^2 <= r^2 in x and y: A s^2 + 2 B s + C <= 0.

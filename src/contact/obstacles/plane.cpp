@@ -24,7 +24,8 @@ class Plane {
                        : -std::numeric_limits<double>::infinity();
   }
   bool is_crossed(const Vec3&, const Vec3&) const { return false; }  // whatever is through is inside
-  CharacteristicLengths lengths() const { return {HUGE_VAL, HUGE_VAL}; }
+  CharacteristicLengths lengths() const { return {HUGE_VAL, HUGE_VAL, 0.0}; }
+  double curvature() const { return 0.0; }
 
  private:
   Vec3 point_, normal_;
@@ -80,7 +81,7 @@ const ObstacleEntry& plane_obstacle() {
                                  normal_of(shape), gap, look_ahead);
       },
       [](const Settings&) {
-        return CharacteristicLengths{HUGE_VAL, HUGE_VAL};
+        return CharacteristicLengths{HUGE_VAL, HUGE_VAL, 0.0};
       },
       [](const Settings& shape, const Vec3& x) {
         return nearest_to(Plane(position_of(shape), normal_of(shape)), x);

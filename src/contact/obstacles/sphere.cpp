@@ -36,7 +36,8 @@ class Sphere {
     return from_a.squaredNorm() > r2 && (centre_ - b).squaredNorm() > r2 &&
            (from_a - s * d).squaredNorm() < r2;
   }
-  CharacteristicLengths lengths() const { return {2.0 * radius_, radius_}; }
+  CharacteristicLengths lengths() const { return {2.0 * radius_, radius_, 0.0}; }
+  double curvature() const { return 1.0 / radius_; }
 
  private:
   Vec3 centre_;

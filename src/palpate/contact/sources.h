@@ -121,10 +121,11 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared
 
 /// Returns those of a closed surface.
 CharacteristicLengths lengths_of(const TriMesh& closed);
-/// Returns how far apart contact points stand: the longest edge of the triangles that they belong to [m]
-/// (src/contact/material_points.cpp).
-/// @param wanted_error  standard error of the force of a contact an eighth as deep as its radius [-]
-double point_spacing(const CharacteristicLengths& a, const CharacteristicLengths& b, double wanted_error);
+/// Returns how far apart a body's contact points stand against another: the longest edge of the triangles
+/// that they are the corners of [m] (src/contact/material_points.cpp).
+/// @param wanted_error  of the force of a contact an eighth as deep as its radius [-]
+double point_spacing(const CharacteristicLengths& own, const CharacteristicLengths& other,
+                     double wanted_error);
 /// Returns material points of a soft surface, against an exact shape.
 /// @param rest  its vertices at rest [m]  @param body  at rest: what a skin hangs on, else unused
 /// @param spacing  as point_spacing() has it [m]

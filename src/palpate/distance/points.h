@@ -1,38 +1,34 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "palpate/distance/skin.h"
 
 namespace palpate::distance {
 
-/// Largest number of parts of a face's edges: 384 points per face.
+/// Largest number of parts of a face's edges: 256 triangles per face.
 inline constexpr int kMostCuts = 16;
 
-/// A material point of a skin and the rest area that it stands for.
+/// A material point of a skin.
 struct ContactPoint {
-  int face = 0;         ///< that carries it
-  Vec3 weights;         ///< of the face's corners; sum 1
-  double area = 0.0;    ///< [m^2]
-  double coarse = 0.0;  ///< area in the embedded rule of lower order [m^2]
+  int face = 0;       ///< that carries it
+  Vec3 weights;       ///< of the face's corners; sum 1
+  double area = 0.0;  ///< integral of its hat: a third of its triangles' area at rest [m^2]
 };
 
-/// Sum of the forces at some points, with its embedded estimate of the quadrature error: centroids alone and
-/// corners alone are rules of degree 1, F = 3/4 F_centroids + 1/4 F_corners, and the estimate is their
-/// difference, |F_corners - F_centroids| = 4 |F - F_centroids|.
-struct EmbeddedSum {
-  double sum = 0.0;           ///< of the forces' norms [N]
-  double largest_term = 0.0;  ///< largest force of one point [N]
-  Vec3 fine_less_coarse = Vec3::Zero();
+/// A part of a face, between three contact points.
+struct ContactTriangle {
+  std::array<int, 3> points{};  ///< in the face's order
+  double area = 0.0;            ///< at rest [m^2]
+};
 
-  /// @param pressure  at a point, outward or inward [N/m^2]  @param area, coarse  as of ContactPoint [m^2]
-  void add(const Vec3& pressure, double area, double coarse) {
-    const double force = area * pressure.norm();
-    sum += force;
-    largest_term = std::max(largest_term, force);
-    fine_less_coarse += (area - coarse) * pressure;
-  }
-  double error() const { return 4.0 * fine_less_coarse.norm(); }  ///< [N]
+/// The triangles over which a contact takes the gap as linear, and their corners.
+struct ContactMesh {
+  std::vector<ContactPoint> points;        ///< ordered by face
+  std::vector<ContactTriangle> triangles;  ///< ordered by face
+  std::vector<int> fan_begin;              ///< of each point, in `fan`, and the end
+  std::vector<int> fan;                    ///< triangles around each point
 };
 
 /// Returns the number n of parts of a face's edges, such that none is longer than `spacing` at rest; 1 where
@@ -40,18 +36,11 @@ struct EmbeddedSum {
 /// @param spacing  [m]; infinite: every face as it is
 int cuts_of(const Skin& skin, int face, double spacing);
 
-/// Points of a quadrature of the skin at rest: each face is cut into n^2 similar triangles, n of cuts_of();
-/// three quarters of a triangle's area stand at its centroid and a twelfth at each corner.
-///
-/// That rule is exact for polynomials of degree 2 on each triangle with positive weights (of the second
-/// moments about the centroid, which the corners alone overestimate fourfold, a quarter of the corners' share
-/// is exact). Corners are shared by about six triangles, so it takes 3/2 points per triangle where rules with
-/// interior points take three; those on an edge between faces of different n are not shared.  The centroids
-/// alone, of degree 1, are the embedded rule.
-///
-/// Points are ordered by face, those of a face's corners with the first face that has them.
+/// Cuts each face into n^2 similar triangles, n of cuts_of().  Their corners are shared by faces that are cut
+/// alike, half a point per triangle; on an edge between faces of different n each has its own.  A point
+/// belongs to the first face that has it.
 /// @param spacing  longest edge of the triangles [m], as for cuts_of()
 /// @throws Error where the spacing is not positive
-std::vector<ContactPoint> contact_points(const Skin& skin, double spacing);
+ContactMesh contact_mesh(const Skin& skin, double spacing);
 
 }  // namespace palpate::distance

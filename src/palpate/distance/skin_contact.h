@@ -20,7 +20,8 @@ struct SkinContactSpec {
   bool two_sided = true;  ///< points of both skins, with half of the stiffness each; else of the first alone
 };
 
-/// A point of one skin, tied to its nearest point on the other; it has a force while it lies inside.
+/// A point of one skin, tied to its nearest point on the other.  It has a force while one of its triangles
+/// overlaps the other skin.
 struct Spring {
   int side = 0;                 ///< skin that the point belongs to
   int point = 0;                ///< number of the point
@@ -28,9 +29,10 @@ struct Spring {
   Vec3 weights = Vec3::Zero();  ///< of the face's corners
   Vec3 reach = Vec3::Zero();    ///< from the point to its foot, y - x [m]
   double gap = 0.0;             ///< signed distance of the point: -|y - x| inside, |y - x| outside [m]
-  double stiffness = 0.0;       ///< [N/m]
-  double coarse = 0.0;          ///< stiffness in the embedded rule [N/m]
-  double clear = 0.0;           ///< way of the skins up to which the point lies outside [m]
+  double stiffness = 0.0;  ///< k times the area of its hat that overlaps; of all of it where none does [N/m]
+  double force = 0.0;      ///< k times the integral of overlap times hat [N]
+  double clear = 0.0;      ///< way of the skins up to which the point lies outside [m]
+  bool is_placed = false;  ///< its foot is where it is nearest now; else nothing overlaps here
 };
 
 /// Resultant of all springs on the first skin.
@@ -39,16 +41,23 @@ struct Resultant {
   Vec3 moment = Vec3::Zero();  ///< about the origin [N m]
 };
 
-/// Contact of two closed skins as an energy of distances.  With x the material points of a skin that lie
-/// inside the other one, y(x) the nearest point of that one, a the rest area of a point and k in [Pa/m],
+/// Contact of two closed skins as an energy of distances.  With x the material points of a skin, y(x) the
+/// nearest point of the other one, d(x) = -|x - y| inside it and |x - y| outside, and I d the function that
+/// is linear on each triangle between the points and equal to d at them,
 ///
-///     U = 1/2 sum_A k/2 a |x - y|^2 + 1/2 sum_B k/2 a |x - y|^2        (two-sided; one-sided: sum_A k/2 a |x
-///     - y|^2).
+///     U = 1/2 integral_A k/2 ((-I d)+)^2 dA + 1/2 integral_B k/2 ((-I d)+)^2 dA      (two-sided; else A's
+///     whole),
 ///
-/// |x - y|^2 is a minimum over y, so its derivative leaves y's weights alone (envelope theorem) and the force
-/// is the exact gradient: k a (y - x) on the point, the opposite on the foot's three corners, one line
-/// through both.  A sphere of radius R pressed by delta into a half-space gives k pi R delta^2 to first order
-/// in delta/R (Sherman, Seth, Delp 2011, whose elastic foundation this is, per area).
+/// over the area at rest, exactly (linear_gap.h): where the other surface is a plane U is exact, however
+/// coarse the triangles, at edges and corners too.  y minimises |x - y|, so that d's derivative leaves y's
+/// weights alone (envelope theorem) and the force is the exact gradient: along the line through x and y, k
+/// times the integral of overlap times the point's hat; the opposite on the foot's three corners.  It is
+/// continuous, and changes its slope continuously where triangles come to overlap.  A sphere of radius R
+/// pressed by delta into a half-space gives k pi R delta^2 to first order in delta/R (Sherman, Seth, Delp
+/// 2011, whose elastic foundation this is, per area).
+///
+/// On triangles with edges e, against a surface of mean curvature H, I d is above d by H sum e^2/24 in the
+/// mean: quadrature_error() says what that makes.
 ///
 /// Everything is a function of the positions in the last find(), bitwise, whatever was found before; sums are
 /// taken in a fixed order; nothing is allocated after construction.
@@ -60,21 +69,20 @@ class SkinContact {
   SkinContact(const SkinContact&) = delete;
   SkinContact& operator=(const SkinContact&) = delete;
 
-  /// Finds the springs: of all points inside, and of those outside that are nearer than `near`.
+  /// Finds the springs: of all points inside, of those outside that are nearer than `near`, and of all that
+  /// share a triangle with one of these.
   /// @param nodes_a, nodes_b  x y z of each node [m]  @param near  [m]
   void find(const double* nodes_a, const double* nodes_b, double near = 0.0);
   /// Moves the springs' feet to where they are nearest at other positions: what find() would give for these
   /// points.  No spring comes or goes, but gaps may change their sign.  A point that cannot have come inside
-  /// yet is not looked at, and its spring stays as it was: see is_clear().
+  /// yet, for it was farther outside than the skins have moved against each other since, is looked at only
+  /// where a triangle of it overlaps: see Spring::is_placed.
   void follow(const double* nodes_a, const double* nodes_b);
-  /// Whether a spring's point lies outside for sure, because it was farther outside when it was last looked
-  /// at than the skins have moved against each other since.
-  bool is_clear(const Spring& spring) const { return travelled_ < spring.clear; }
   /// Finds them by Surface::nearest alone, point by point in double precision: what find() is tested against.
   void find_by_reference(const double* nodes_a, const double* nodes_b);
 
   const std::vector<Spring>& springs() const { return springs_; }
-  const std::vector<ContactPoint>& points(int side) const { return points_[side]; }
+  const std::vector<ContactPoint>& points(int side) const { return meshes_[side].points; }
   Vec3 position(const Spring& spring) const;  ///< of its point [m]
   /// The direction that leads out of the other skin at the spring's foot, unit: away from the nearest point
   /// outside and towards it inside, and the pseudonormal of Surface::outward() where the two coincide.
@@ -88,19 +96,21 @@ class SkinContact {
   double deepest() const;                            ///< largest |x - y| [m]
   void add_force(double* nodes_a, double* nodes_b);  ///< adds -dU/dq to x y z of each node [N]
   Resultant resultant() const;
-  EmbeddedSum force_sum() const;  ///< of the force on the first skin
-
-  /// The Gauss-Newton matrix K = sum of k a J' H J, J = dx/dq - dy/dq with the foot's weights held: H = n n'
-  /// on a face, I - t t' along an edge t, I at a vertex.  Symmetric, positive semi-definite.  It leaves out
-  /// that the foot slides, that the normal turns and that the skin is curved.
-  Mat3 spring_matrix(const Spring& spring) const;
-  /// y += K v.
-  void apply_stiffness(const double* v_a, const double* v_b, double* y_a, double* y_b);
+  double force_sum() const;      ///< of all springs' forces [N]
+  double largest_force() const;  ///< of one spring [N]
+  /// Estimates by how much the forces are off because gaps and normals are taken as linear on triangles: the
+  /// sum over all that overlap of what each misses (missed_by_linear()), whatever its direction [N].
+  double quadrature_error() const;
 
  private:
   static constexpr int kPacket = 16;  ///< points that are searched for together
 
   void move(const double* nodes_a, const double* nodes_b);
+  void find_triangles();
+  void place_missing();
+  void integrate();
+  template <class Visit>
+  void for_each_overlap(const Visit& visit) const;
   void find_side(int side, double near);
   void follow_packet(const std::vector<std::size_t>& springs);
   void find_side_by_reference(int side);
@@ -109,24 +119,31 @@ class SkinContact {
   void add_spring(int side, int point, const Foot& foot, bool is_inside);
   void set_foot(Spring& spring, const Foot& foot, bool is_inside) const;
   Vec3 position(int side, const ContactPoint& point) const;
-  template <class Of>
-  Vec3 difference(const Spring& spring, const Of& vertex_value) const;
   void add_to_vertices(const Spring& spring, const Vec3& force);
   void add_to_nodes(double* nodes_a, double* nodes_b);
 
   SkinContactSpec spec_;
   Surface surfaces_[2];
-  std::vector<ContactPoint> points_[2];
+  ContactMesh meshes_[2];
   std::vector<int> cluster_points_[2];  ///< first point of each cluster's faces, and the number of all
   std::vector<Spring> springs_;
+  /// Triangles with a spring at each corner.
+  struct Triangle {
+    int side = 0, number = 0;
+    std::array<int, 3> spring{};
+  };
+  std::vector<Triangle> triangles_;  ///< by side and number
+  std::vector<int> spring_of_[2];    ///< of each point; -1: none
+  std::vector<char> is_near_[2];     ///< triangles of `triangles_`
 
   // Bounds on the search, which change its time and no result.
   std::unique_ptr<LaneSearch> searches_[2];        ///< for nearest points of each skin
   std::vector<int> starts_[2];                     ///< face that was nearest to each cluster's middle
   std::vector<std::array<int, kPacket>> feet_[2];  ///< faces that were nearest to each packet, -1 at the end
   std::vector<int> first_packet_[2];               ///< of each cluster
-  double travelled_ = 0.0;        ///< bound on how far the skins have moved against each other [m]
-  std::vector<double> clear_[2];  ///< value of `travelled_` up to which each cluster lies outside
+  double travelled_ = 0.0;                ///< bound on how far the skins have moved against each other [m]
+  std::vector<double> clear_[2];          ///< value of `travelled_` up to which each cluster lies outside
+  std::vector<double> packets_clear_[2];  ///< and each packet
   struct Candidate {
     int cluster, tree_node;
   };

@@ -43,8 +43,10 @@ class Capsule {
   }
   // The mean curvature's integral is pi (length + 4 radius).
   CharacteristicLengths lengths() const {
-    return {2.0 * radius_, 4.0 * radius_ * (half_ + radius_) / (2.0 * half_ + 4.0 * radius_)};
+    const double radius = 4.0 * radius_ * (half_ + radius_) / (2.0 * half_ + 4.0 * radius_);
+    return {2.0 * radius_, radius, 1.0 / radius};
   }
+  double curvature() const { return 0.0; }  // it is not the same all over
 
  private:
   Vec3 from_axis(const Vec3& x) const { return x - Vec3(0.0, 0.0, std::clamp(x.z(), -half_, half_)); }
