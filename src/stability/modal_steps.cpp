@@ -32,14 +32,6 @@ MatX generator(double y, double z) { return (MatX(2, 2) << 0.0, y, -y, -2.0 * z 
 
 MatX inverse_times(const MatX& A, const MatX& B) { return A.partialPivLu().solve(B); }
 
-const double kFirstStage = 1.0 - 1.0 / std::sqrt(2.0);
-
-/// The first step of bdf2 and generalized-alpha (integrate/fixed_step/implicit_step.h).
-MatX two_stages(const MatX& Z) {
-  const MatX one = MatX::Identity(2, 2), stage = one - kFirstStage * Z;
-  return inverse_times(stage, inverse_times(stage, one + (1.0 - 2.0 * kFirstStage) * Z));
-}
-
 }  // namespace
 
 bool has_modal_steps(const Column& column) { return column.fixed && !is_static(column); }
@@ -74,11 +66,13 @@ void ModalSteps::one_step(const MatX& step) {
 
 void ModalSteps::bdf2(const MatX& Z) {
   const MatX one = MatX::Identity(2, 2);
+  const double s = 1.0 - 1.0 / std::sqrt(2.0);
   start_ = MatX::Zero(4, 2);
   start_.topRows<2>() = one;
   first_ = next_ = MatX::Zero(4, 4);
   first_.bottomLeftCorner<2, 2>() = next_.bottomLeftCorner<2, 2>() = one;
-  first_.topLeftCorner<2, 2>() = two_stages(Z);
+  first_.topLeftCorner<2, 2>() =
+      inverse_times(one - s * Z, inverse_times(one - s * Z, one + (1.0 - 2.0 * s) * Z));
   next_.topLeftCorner<2, 2>() = inverse_times(1.5 * one - Z, 2.0 * one);
   next_.topRightCorner<2, 2>() = inverse_times(1.5 * one - Z, -0.5 * one);
 }
@@ -96,14 +90,9 @@ void ModalSteps::generalized_alpha(double y, double z, double r) {
   right = (right * scale.asDiagonal()).eval();
   left.row(2) /= 1.0 + k;
   right.row(2) /= 1.0 + k;
-  next_ = inverse_times(left, right);
+  first_ = next_ = inverse_times(left, right);
   start_ = MatX::Identity(3, 2);
-  const MatX Z = generator(y, z), one = MatX::Identity(2, 2),
-             middle = inverse_times(one - kFirstStage * Z, one), end = two_stages(Z),
-             force = (MatX(1, 2) << -1.0, -2.0 * z).finished();
-  first_ = MatX::Zero(3, 3);
-  first_.topLeftCorner<2, 2>() = end;
-  first_.bottomLeftCorner<1, 2>() = force * end + (am - af) / (1.0 - kFirstStage) * force * (end - middle);
+  start_.row(2) << -1.0, -2.0 * z;
 }
 
 double ModalSteps::spectral_radius() const { return next_.eigenvalues().cwiseAbs().maxCoeff(); }

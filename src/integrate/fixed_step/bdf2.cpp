@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "integrate/fixed_step/implicit_step.h"
 #include "integrate/make.h"
 
@@ -18,8 +20,11 @@ using namespace dynamics;
 /// Start, after re-initialisation, where sliding began in the step before (u bends there: of the speed v_r
 /// that friction lets through at once the formula would add a third again, a third of that, ..., v_r/2 for
 /// good), and where r > 1 + sqrt(2) (beyond which steps that keep growing are not zero-stable): one step of
-/// two stages (implicit_step.h), so that a restart costs no order, as a backward Euler step at every exchange
-/// would.
+/// the L-stable SDIRK of order 2 (Alexander 1977), s = 1 - 1/sqrt(2),
+///     u_s = u0 + s h a_s,  q_s = q0 (+) s h u_s;     u1 = u0 + (1 - s) h a_s + s h a,  q1 = q0 (+) [(1 - s)
+///     h u_s + s h u1],
+/// two Stages with the matrix M + s h D + (s h)^2 K: so a restart costs no order, as a backward Euler step at
+/// every exchange would.
 ///
 /// Order 2.  Stability: A-stable at constant steps, and L-stable: at z -> infinity both roots of (3/2 - z)
 /// R^2 - 2 R + 1/2 = 0 vanish like z^(-1/2). Stiff order 2: on u' = -l (u - g) + g' with l h >> 1 the error
@@ -35,7 +40,7 @@ class Bdf2 final : public ImplicitStep {
     sticks_ = sticks();
     const bool two_steps =
         theta_before_.size() == layout().u_size && h <= kLargestRatio * h_before_ && sticks_ == stuck_;
-    return two_steps ? step(h, t1) : solve_two_stages(h, t1);
+    return two_steps ? step(h, t1) : start(h, t1);
   }
 
   Attempt step(double h, double t1) {
@@ -47,6 +52,23 @@ class Bdf2 final : public ImplicitStep {
     stage_.theta = c * theta_before_ + g * stage_.u;
     guess();
     return solve_stage();
+  }
+
+  Attempt start(double h, double t1) {
+    static const double s = 1.0 - 1.0 / std::sqrt(2.0);
+    stage_.t1 = state_.time() + s * h;
+    stage_.c_u = s * h;
+    stage_.c_theta = s * h * s * h;
+    stage_.u = state_.u();
+    stage_.theta = s * h * state_.u();
+    guess();
+    const Attempt first = solve_stage();
+    if (first.status != StepStatus::kOk) return first;
+    u_stage_ = stage_.u + s * h * a_;
+    stage_.t1 = t1;
+    stage_.u = state_.u() + (1.0 - s) * h * a_;
+    stage_.theta = (1.0 - s) * h * u_stage_ + s * h * stage_.u;
+    return solve_stage(first);
   }
 
   void accepted(double h) override {
@@ -64,7 +86,7 @@ class Bdf2 final : public ImplicitStep {
   static constexpr double kLargestRatio = 2.4;  // < 1 + sqrt(2)
   double h_before_ = 0.0;
   bool sticks_ = false, stuck_ = false;  ///< at the start of this step, and of the one before
-  VecX u_before_, theta_before_, u_start_;
+  VecX u_before_, theta_before_, u_stage_, u_start_;
 };
 
 }  // namespace

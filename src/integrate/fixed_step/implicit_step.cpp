@@ -31,26 +31,6 @@ bool ImplicitStep::sticks() {
   });
 }
 
-ImplicitStep::Attempt ImplicitStep::solve_two_stages(double h, double t1) {
-  constexpr double s = kFirstStage;
-  stage_.t1 = state_.time() + s * h;
-  stage_.c_u = s * h;
-  stage_.c_theta = s * h * s * h;
-  stage_.c_a = 1.0;
-  stage_.a_c.resize(0);
-  stage_.u = state_.u();
-  stage_.theta = s * h * state_.u();
-  guess();
-  const Attempt first = solve_stage();
-  if (first.status != dynamics::StepStatus::kOk) return first;
-  first_a_ = a_;
-  u_stage_ = stage_.u + s * h * a_;
-  stage_.t1 = t1;
-  stage_.u = state_.u() + (1.0 - s) * h * a_;
-  stage_.theta = (1.0 - s) * h * u_stage_ + s * h * stage_.u;
-  return solve_stage(first);
-}
-
 // At rest friction is zero by its law, and the acceleration there that of a body without friction.  It
 // becomes mu N within the time v_r/(mu g), which no step resolves, and methods that keep the acceleration of
 // the start (the trapezoidal rule: half of it over h) would add h mu g/2 to the velocity for good.  Backward

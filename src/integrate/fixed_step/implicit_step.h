@@ -14,13 +14,6 @@ class ImplicitStep : public FixedStep {
   /// Solves stage_ from the State; its end goes to q1_ and u1_, its unknown to a_.  Adds to what a stage
   /// before it in the same step took.
   Attempt solve_stage(const Attempt& before = {});
-  /// Solves a step of length h to t1 by the L-stable SDIRK of order 2 (Alexander 1977), s = 1 - 1/sqrt(2):
-  ///     u_s = u0 + s h a_s,                    q_s = q0 (+) s h u_s
-  ///     u1 = u0 + (1 - s) h a_s + s h a,       q1 = q0 (+) [(1 - s) h u_s + s h u1]
-  /// two Stages with the matrix M + s h D + (s h)^2 K.  a, at the end, and a_s, at t0 + s h, are changes of
-  /// damped velocities over s h, however stiff the forces are; M^-1 f at the start has no such bound.
-  Attempt solve_two_stages(double h, double t1);
-  static constexpr double kFirstStage = 0.292893218813452476;  ///< s
   /// Whether friction sticks somewhere at the State.
   bool sticks();
   /// u' at the State without its driven entries (no stage reads them); false where it is not finite.  Where
@@ -34,12 +27,11 @@ class ImplicitStep : public FixedStep {
   void collect(dynamics::StepperCounters& counters) const override;
 
   Stage stage_;
-  VecX a_;        ///< of the stage solved last
-  VecX first_a_;  ///< a_s of solve_two_stages
+  VecX a_;  ///< of the stage solved last
 
  private:
   StageNewton newton_;
-  VecX accepted_a_, u_stage_;
+  VecX accepted_a_;
 };
 
 }  // namespace palpate::integrate
