@@ -17,13 +17,12 @@
 // mean curvature H is above its linear interpolation on triangles of edge e by H e^2/8 in the mean, which is
 //     H R/2 (e/a)^2 of the force.
 // Where H is known and taken into account (a sphere's), what is left is of second order as well: the normals
-// are interpolated, |n_j - n_i|^2/8 = (e/r)^2/8, and so much is H off deeper inside and, the other way, where
-// the triangles are not square to the normal; where the circle is half as wide as the sphere (e/r)^2/8 is
-// 1/32 (e/a)^2, and tests/contact/material_points_test.cpp finds 0.035 (e/a)^2.  With d an eighth of R, a =
-// R/2,
-//     e = R/2 sqrt(wanted/(0.036 + H R/2)).
-// A contact that is less deep has a smaller circle, and errs by more of a smaller force: the run says by how
-// much.
+// are interpolated, |n_j - n_i|^2/8 = (e/s)^2/8, and so much is H off deeper inside and, the other way, where
+// the triangles are not square to the normal.  With d an eighth of R, a = R/2, and (e/s)^2/8 = 1/32 (R/s)^2
+// (e/a)^2, of which tests/contact/material_points_test.cpp finds 0.036 for 1/32:
+//     e = R/2 sqrt(wanted/(0.036 (R/s)^2 + H R/2)).
+// On a plane nothing is missed, and triangles stay as they are.  A contact that is less deep has a smaller
+// circle, and errs by more of a smaller force: the run says by how much.
 
 namespace palpate::contact {
 
@@ -38,8 +37,9 @@ double point_spacing(const CharacteristicLengths& own, const CharacteristicLengt
   if (!(wanted_error > 0.0))
     fail("contact points: a quadrature error of {} asks for points without an end; it must be positive",
          wanted_error);
+  if (std::isinf(other.radius)) return HUGE_VAL;
   const double R = 1.0 / (1.0 / own.radius + 1.0 / other.radius);
-  return 0.5 * R * std::sqrt(wanted_error / (kKnown + 0.5 * other.bend * R));
+  return 0.5 * R * std::sqrt(wanted_error / (kKnown * std::pow(R / other.radius, 2) + 0.5 * other.bend * R));
 }
 
 namespace {
@@ -93,18 +93,17 @@ MaterialPoints material_points(const NodeSurface& surface, const Points& rest, c
   const mesh::Embedding embedding = is_skin ? mesh::embed(body, placed.at) : mesh::Embedding{};
   for (std::size_t i = 0; i < out.at.size(); ++i) {
     SurfacePoint& point = out.at[i];
-    point.count = is_skin ? 4 : 3;
+    const auto hang = [&point](int node, double weight) {
+      const auto n = static_cast<std::size_t>(point.count++);
+      point.node[n] = node;
+      point.weight[n] = weight;
+    };
     const auto column = static_cast<Eigen::Index>(i);
-    for (int k = 0; k < point.count; ++k) {
-      const auto n = static_cast<std::size_t>(k);
-      if (is_skin) {
-        point.node[n] = body.tets(k, embedding.tet[i]);
-        point.weight[n] = embedding.weights(k, column);
-      } else {
-        const int vertex = placed.skin.faces(k, placed.points[i].face);
-        point.node[n] = surface.node_of_vertex[static_cast<std::size_t>(vertex)];
-        point.weight[n] = placed.points[i].weights[k];
-      }
+    for (int k = 0; k < 4 && is_skin; ++k) hang(body.tets(k, embedding.tet[i]), embedding.weights(k, column));
+    for (int k = 0; k < 3 && !is_skin; ++k) {
+      const int vertex = placed.skin.faces(k, placed.points[i].face);
+      if (const double weight = placed.points[i].weights[k]; weight > 0.0)
+        hang(surface.node_of_vertex[static_cast<std::size_t>(vertex)], weight);
     }
   }
   return std::move(out);
@@ -227,7 +226,9 @@ void MaterialPointState::add_vertex_pattern(dynamics::PatternBuilder& pattern) c
   }
   std::sort(carriers.begin(), carriers.end());
   carriers.erase(std::unique(carriers.begin(), carriers.end()), carriers.end());
-  for (const std::array<int, 4>& nodes : carriers) pattern.add_clique(nodes.data(), nodes[3] < 0 ? 3 : 4);
+  for (const std::array<int, 4>& nodes : carriers)
+    pattern.add_clique(nodes.data(),
+                       static_cast<int>(std::find(nodes.begin(), nodes.end(), -1) - nodes.begin()));
 }
 
 }  // namespace palpate::contact

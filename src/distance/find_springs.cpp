@@ -40,9 +40,21 @@ void SkinContact::move(const double* nodes_a, const double* nodes_b) {
   if (std::isfinite(step)) travelled_ += step;
 }
 
+/// Whether the fourth powers of coordinates, those of areas' squares, are within single precision, which the
+/// search needs.  Bodies of a million kilometres are those of a method that diverges.
+bool SkinContact::is_searchable() const {
+  constexpr double kLargest = 1e9;  // [m]
+  for (const Surface& s : surfaces_)
+    if (!(s.box().min().cwiseAbs().maxCoeff() < kLargest && s.box().max().cwiseAbs().maxCoeff() < kLargest))
+      return false;
+  return true;
+}
+
 void SkinContact::find(const double* nodes_a, const double* nodes_b, double near) {
   move(nodes_a, nodes_b);
   springs_.clear();
+  triangles_.clear();
+  if (!is_searchable()) return;
   const Eigen::AlignedBox3d both =
       widened(surfaces_[0].box(), near).intersection(widened(surfaces_[1].box(), near));
   if (both.isEmpty()) return;
@@ -77,6 +89,10 @@ void SkinContact::place_missing() {
 void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
   move(nodes_a, nodes_b);
   if (springs_.empty()) return;
+  if (!is_searchable()) {
+    for (Spring& spring : springs_) spring.is_placed = false;
+    return integrate();
+  }
   const Eigen::AlignedBox3d both = surfaces_[0].box().merged(surfaces_[1].box());
   for (LaneSearch* search : {searches_[0].get(), searches_[1].get()}) search->begin(both.center(), both);
   const auto cluster = [&](const Spring& s) {
@@ -202,7 +218,7 @@ void SkinContact::find_cluster(int side, int cluster, int start, double near) {
     std::copy(feet.begin(), feet.end(), faces + 1);
     search.start(packet, faces, kPacket + 1);
   }
-  search.search(packets.data(), static_cast<int>(open.size()));
+  if (!open.empty()) search.search(packets.data(), static_cast<int>(open.size()));
   for (std::size_t o = 0; o < open.size(); ++o) {
     const Packet& packet = packets[o];
     const int p = open[o];

@@ -89,14 +89,16 @@ TEST(MaterialPoints, ErrByWhatWasAskedFor) {
 }
 
 // By dimension, and by the square of the spacing: an error a hundredth as large wants points ten times finer.
-// A surface whose curvature linear gaps do not know of wants finer ones: R/2 sqrt(1e-2/(0.036 + 1/2)).
+// A surface whose curvature linear gaps do not know of wants finer ones: R/2 sqrt(1e-2/(0.036 + 1/2)); a
+// plane, none at all.
 TEST(MaterialPoints, SpacingFollowsRadiiAndError) {
   const contact::CharacteristicLengths ball{0.1, 0.05, 0.0}, large{0.2, 0.1, 0.0}, faceted{0.1, 0.05, 20.0};
-  const double one = contact::point_spacing(ball, kHalfSpace, 1e-2);
+  const double one = contact::point_spacing(kHalfSpace, ball, 1e-2);
   EXPECT_NEAR(one, 0.025 * std::sqrt(1e-2 / 0.036), 1e-15);
-  EXPECT_NEAR(contact::point_spacing(large, large, 1e-2), one, 1e-15);
-  EXPECT_NEAR(contact::point_spacing(kHalfSpace, ball, 1e-2), one, 1e-15);
-  EXPECT_NEAR(contact::point_spacing(ball, kHalfSpace, 1e-4), 0.1 * one, 1e-12);
+  EXPECT_NEAR(contact::point_spacing(large, ball, 1e-2), one, 1e-15);
+  EXPECT_NEAR(contact::point_spacing(ball, large, 1e-2), 2.0 * one, 1e-15);
+  EXPECT_NEAR(contact::point_spacing(kHalfSpace, ball, 1e-4), 0.1 * one, 1e-12);
+  EXPECT_EQ(contact::point_spacing(ball, kHalfSpace, 1e-4), HUGE_VAL);
   EXPECT_NEAR(contact::point_spacing(kHalfSpace, faceted, 1e-2), 0.025 * std::sqrt(1e-2 / 0.536), 1e-12);
   expectations::expect_contains(expectations::message_of([&] { contact::point_spacing(ball, ball, 0.0); }),
                                 "it must be positive");

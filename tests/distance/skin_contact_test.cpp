@@ -313,6 +313,36 @@ TEST(SkinContact, FindEqualsTheReference) {
   compare(around, within, {0.03, 0.01, -0.02}, 1.0, 1);
 }
 
+// A diverging integrator asks at positions beyond single precision, whose squares are beyond double, and at
+// none.
+TEST(SkinContact, AbsurdPositionsDoNoHarm) {
+  Pair pair;
+  SkinContact contact(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (const double size :
+       {1e3, 1e8, 1e9, 1e10, 1e12, 1e15, 1e19, 1e38, 1e76, 1e155, 1e200, 1e308, HUGE_VAL, std::nan("")})
+    for (const double near : {0.0, 0.01, 1e76, HUGE_VAL, std::nan("")})
+      for (const bool one_node : {true, false}) {
+        Body a = pair.a, b = pair.b;
+        for (Body* body : {&a, &b})
+          for (double& x : body->nodes.reshaped())
+            if (!one_node) x *= size * normal(random);
+        a.nodes(0, a.nodes.cols() / 2) *= size;
+        contact.find(a.at(), b.at(), near);
+        contact.follow(a.at(), b.at());
+        Points fa = Points::Zero(3, a.nodes.cols()), fb = Points::Zero(3, b.nodes.cols());
+        contact.add_force(fa.data(), fb.data());
+        contact.quadrature_error();
+      }
+  // and what comes after is what it would have been
+  SkinContact fresh(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
+  contact.find(pair.a.at(), pair.b.at());
+  fresh.find(pair.a.at(), pair.b.at());
+  EXPECT_GT(fresh.energy(), 0.0);
+  EXPECT_EQ(contact.energy(), fresh.energy());
+}
+
 TEST(SkinContactMemory, NothingIsAllocatedAfterConstruction) {
 #if !PALPATE_CAN_COUNT
   GTEST_SKIP() << "a sanitizer brings its own malloc";

@@ -106,6 +106,7 @@ class SkinContact {
   static constexpr int kPacket = 16;  ///< points that are searched for together
 
   void move(const double* nodes_a, const double* nodes_b);
+  bool is_searchable() const;
   void find_triangles();
   void place_missing();
   void integrate();
