@@ -56,6 +56,7 @@ scene::Description block_on_slope(const std::string& integrator, double ratio, d
   ContactSpec contact;
   contact.first = "block";
   contact.second = "slope";
+  contact.method = "analytic";
   contact.stiffness_pa_m = 1e8;
   contact.damping_pa_s_m = 2.0 * std::sqrt(contact.stiffness_pa_m * block.density_kg_m3 * kHeight);
   contact.friction = kFriction;

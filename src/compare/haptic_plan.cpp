@@ -48,13 +48,10 @@ std::string assign(const std::string& key, const std::string& value) { return ke
 
 std::string milliseconds(double s) { return fmt::format("{:.4g} ms", 1e3 * s); }
 
-/// Whether the tool's contact is found in an image: see assemble_contact.
-bool is_image(const Description& d, const ContactSpec& contact) {
-  if (contact.second != "tool" || !scene::is_in_images(contact)) return false;
-  const auto body = std::find_if(d.bodies.begin(), d.bodies.end(),
-                                 [&](const SoftBodySpec& one) { return one.name == contact.first; });
-  const bool pruned = body != d.bodies.end() && body->proxies;
-  return contact.method != "auto" || pruned || d.tool->shape != "sphere";
+/// Whether the tool's contact is found in an image.
+bool is_image(const Description& d, ContactSpec contact) {
+  contact.method = scene::contact_method(d, contact);
+  return contact.second == "tool" && scene::is_in_images(contact);
 }
 
 std::vector<std::size_t> image_contacts(const Description& d) {

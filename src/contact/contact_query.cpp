@@ -33,7 +33,7 @@ void count_as_points(SampleCells& cells, ContactCell& cell) {
 void ContactForce::Impl::measure_depth(Pair& pair) const {
   double least = 0.0;
   for (std::size_t s = pair.begin; s < pair.end; ++s)
-    if (next_samples[s].area > 0.0) least = std::min(least, next_samples[s].gap);
+    if (next_samples[s].area > 0.0) least = std::min(least, next_samples[s].stored * next_samples[s].gap);
   for (std::size_t c = pair.first_cell; c < pair.last_cell; ++c)
     for (int i = next_cells.cells[c].first; i < next_cells.cells[c].last; ++i) {
       if (!(next_cells.area(next_cells.cells[c], i) > 0.0)) continue;

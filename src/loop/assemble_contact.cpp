@@ -74,18 +74,18 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
           look_ahead};
 }
 
-/// Which backend a method in image space is: "auto" takes a GPU where there is one.
+/// Which backend a method in image space is: "image" takes a GPU where there is one.
 contact::ImageOptions options_of(const Pair& pair) {
   const std::string& method = pair.spec.method;
   if (pair.spec.spring == "per_point" && pair.spec.samples != "vertex")
     fail("contact {} - {}: spring = \"per_point\" needs samples = \"vertex\": a pixel is no vertex",
          pair.spec.first, pair.spec.second);
-  const bool gpu = method == "gpu" || (method == "auto" && contact::has_gpu_hardware());
+  const bool gpu = method == "gpu" || (method == "image" && contact::has_gpu_hardware());
   contact::ImageOptions out;
   out.backend = gpu                 ? contact::DepthBackend::kGpu
                 : method == "exact" ? contact::DepthBackend::kExact
                                     : contact::DepthBackend::kCpu;
-  out.or_cpu = method == "auto";
+  out.or_cpu = method == "image";
   out.pixels = pair.spec.pixels;
   out.quadrature_error = pair.spec.quadrature_error;
   if (pair.spec.samples == "vertex") out.samples = contact::SampleRule::kVertex;
@@ -123,7 +123,7 @@ contact::MaterialPoints points_on(const Pair& pair, const contact::Characteristi
 std::unique_ptr<contact::SampleSource> pair_source(Pair a, Pair b) {
   if (a.spec.method == "distance") return distance_source(std::move(a), std::move(b.surface), b.rest);
   if (a.spec.method == "analytic")
-    fail("contact {} - {}: two soft bodies meet in image space; use method = \"auto\"", a.spec.first,
+    fail("contact {} - {}: two soft bodies have no exact gaps; use method = \"auto\"", a.spec.first,
          a.spec.second);
   if (!a.proxies != !b.proxies)
     fail("contact {} - {}: proxies on one side alone; both need them, or neither", a.spec.first,
@@ -344,7 +344,7 @@ void set_friction_speed(World& world, ContactSpec& contact) {
 
 void add_contact(World& world, ContactSpec& given) {
   scene::order_sides(world.description, given);
-  given.method = scene::contact_method(world.description, given);
+  if (given.method == "auto") scene::set_method(given, scene::contact_method(world.description, given));
   set_friction_speed(world, given);
   ContactSpec spec = given;
   // In a step of one linear solve the secant is needed, though what is left out of a tool's rows besides

@@ -70,19 +70,17 @@ void check_method(const Document& doc, const std::string& key, const std::string
                   const Description& d, ContactSpec& c) {
   const ToolSpec *first_tool = tool_named(d, c.first), *second_tool = tool_named(d, c.second);
   const bool obstacle = sides.is_obstacle(c.second),
-             sphere_tool = second_tool && second_tool->shape == "sphere",
-             pruned = std::any_of(d.bodies.begin(), d.bodies.end(),
-                                  [&](const auto&body) { return body.name == c.first && body.proxies; });
-  if (c.method == "auto" && (obstacle || (sphere_tool && !pruned))) {
-    for (const std::string_view image_key : {"pixels", "quadrature_error", "samples", "depths"}) {
+             sphere_tool = second_tool && second_tool->shape == "sphere";
+  if (c.method == "auto") {
+    c.method = contact_method(d, c);
+    for (const std::string_view image_key : {"pixels", "samples", "depths"}) {
       const std::string given_key = fmt::format("{}.{}", key, image_key);
-      if (given(doc, given_key))
+      if (!given(doc, given_key)) continue;
+      if (obstacle)
         refuse(location(doc, given_key), where,
-               fmt::format("{} means nothing here: {} has exact gaps; remove it{}", image_key,
-                           obstacle ? "an obstacle" : "a sphere",
-                           obstacle ? "" : ", or write method = \"cpu\" to see it in an image"));
+               fmt::format("{} means nothing here: an obstacle has exact gaps; remove it", image_key));
+      c.method = "image";
     }
-    c.method = "analytic";
   }
   if (c.method == "distance") {
     if (!given(doc, key + ".gaps")) c.gaps = "exact";
@@ -98,7 +96,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
         location(doc, key + ".gaps"), where,
         sphere_tool
             ? "gaps = \"exact\" needs the formula of the sphere, and an image is made at a query alone: "
-              "write method = \"analytic\" and leave out the body's proxies, or remove it"
+              "write method = \"distance\" or \"analytic\", or remove it"
             : "gaps = \"exact\" is for obstacles and sphere tools, whose gaps have a formula, and for "
               "method = \"distance\"; an image is made at a query alone: remove it, or refresh the contact "
               "more often (contact_refresh_s)");
@@ -130,7 +128,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
   else if (sides.is_body(c.second)) {
     if (c.method == "analytic")
       refuse(location(doc, key + ".method"), where,
-             "two soft bodies meet in image space: leave the method out, or write \"auto\"");
+             "two soft bodies have no exact gaps: leave the method out, or write \"auto\"");
     const auto proxies = [&](const std::string& name) {
       for (const auto& body : d.bodies)
         if (body.name == name) return body.proxies;

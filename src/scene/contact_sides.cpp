@@ -35,23 +35,24 @@ bool is_in_images(const Description& description, const std::string& body) {
 }
 
 void set_method(ContactSpec& contact, const std::string& method) {
-  if (method == "distance" && contact.method != "distance") contact.quadrature_error = kPointsError;
+  if (method == "distance" && contact.quadrature_error == ContactSpec{}.quadrature_error)
+    contact.quadrature_error = kPointsError;
   contact.method = method;
   if (method != "analytic") contact.gaps = method == "distance" ? "exact" : "linear";
 }
 
 std::string contact_method(const Description& description, const ContactSpec& contact) {
   if (contact.method != "auto") return contact.method;
-  const auto is_named = [](const std::string& name) {
-    return [&name](const auto& one) { return one.name == name; };
-  };
-  if (std::any_of(description.obstacles.begin(), description.obstacles.end(), is_named(contact.second)))
-    return "analytic";
+  const ContactSpec none;
+  if (contact.first == contact.second || contact.pixels != none.pixels || contact.samples != none.samples ||
+      contact.depths != none.depths)
+    return "image";
+  if (contact.spring != "per_point") return "distance";
+  const auto is_named = [&](const auto& one) { return one.name == contact.second; };
   const ToolSpec* tool = tool_named(description, contact.second);
-  const auto body =
-      std::find_if(description.bodies.begin(), description.bodies.end(), is_named(contact.first));
-  const bool is_pruned = body != description.bodies.end() && body->proxies;
-  return tool && tool->shape == "sphere" && !is_pruned ? "analytic" : "auto";
+  const bool is_exact = (tool && tool->shape == "sphere") ||
+                        std::any_of(description.obstacles.begin(), description.obstacles.end(), is_named);
+  return is_exact ? "analytic" : "image";
 }
 
 }  // namespace palpate::scene

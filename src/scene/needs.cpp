@@ -95,7 +95,7 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const int image = count_if(d.contacts, [](const ContactSpec&c) { return is_in_images(c); }),
             near = count_if(d.contacts, [](const ContactSpec&c) { return c.method == "distance"; }),
             gpu = count_if(d.contacts, [](const auto&c) { return c.method == "gpu"; }),
-            automatic = count_if(d.contacts, [](const auto&c) { return c.method == "auto"; });
+            automatic = count_if(d.contacts, [](const auto&c) { return c.method == "image"; });
   const int rubbing = count_if(d.contacts, [](const auto& c) { return c.friction > 0.0; });
   const int own = count_if(d.contacts, [](const auto& c) { return c.first == c.second; });
   const std::string no_image = any ? "every contact has exact gaps" : "no [[contact]]";
@@ -122,7 +122,7 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
        image > 1 ? fmt::format("{} pairs in image space", image) : "fewer than two pairs in image space"});
   out.push_back({"gl", gpu > 0,
                  gpu > 0         ? "method \"gpu\" rasterises"
-                 : automatic > 0 ? "method \"auto\" takes it where the machine has a GPU"
+                 : automatic > 0 ? "method \"image\" takes it where the machine has a GPU"
                                  : (image > 0 ? "no contact has method \"gpu\"" : no_image) +
                                        "; pictures only on request"});
 }

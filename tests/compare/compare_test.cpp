@@ -481,6 +481,7 @@ name = "floor"
 type = "plane"
 [[contact]]
 between = ["block", "floor"]
+method = "analytic"
 stiffness_pa_m = 1e7
 [integrator]
 rtol = 1e-4

@@ -244,13 +244,13 @@ TEST(Methods, ThatAreNotThereSayWhatToTake) {
       message("vertex"),
       "contact a - b: method = \"vertex\" is no method; obstacles and spheres are sampled at the vertices by "
       "method = \"analytic\", and for a tool of another shape or a soft body write samples = \"vertex\" "
-      "(known: analytic, auto, distance, cpu, gpu, exact)");
+      "(known: analytic, auto, distance, image, cpu, gpu, exact)");
   EXPECT_EQ(message("pixel"),
             "contact a - b: method = \"pixel\" is no method; write samples = \"pixel\", with any method in "
-            "image space (known: analytic, auto, distance, cpu, gpu, exact)");
-  EXPECT_EQ(
-      message("spheres"),
-      "contact a - b: method = \"spheres\" is not known (known: analytic, auto, distance, cpu, gpu, exact)");
+            "image space (known: analytic, auto, distance, image, cpu, gpu, exact)");
+  EXPECT_EQ(message("spheres"),
+            "contact a - b: method = \"spheres\" is not known (known: analytic, auto, distance, image, cpu, "
+            "gpu, exact)");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ Case sliding_block() {
   d.exchange.contact_refresh_s = 0.002;
   ContactSpec law;
   law.first = "block";
+  law.method = "analytic";
   law.stiffness_pa_m = 1e7;
   law.friction = 0.4;
   law.friction_tangent = "symmetric";
@@ -52,6 +53,9 @@ using Cases = std::map<std::string, Case>;
 Cases make_cases() {
   Cases out;
   out["Sliding"] = sliding_block();
+  out["NearestPoints"] = sliding_block();
+  out["NearestPoints"].scene.contacts[0].method = "distance";
+  out["NearestPoints"].scene.contacts[0].gaps = "exact";
   Case& stiffer = out["MaterialChange"] = falling_body("linearly-implicit-euler");
   stiffer.scene.bodies[0].changes = {{0.005, 2e4, ""}, {0.025, 5e3, ""}};
   stiffer.scene.integrator.linear_solver = "cholmod";

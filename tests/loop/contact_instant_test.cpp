@@ -66,6 +66,7 @@ TEST(ContactInstant, OfAnObstacleItIsTheVerticesOwnGaps) {
   scene::Description d = held_block();
   ContactSpec law;
   law.first = "block";
+  law.method = "analytic";
   law.stiffness_pa_m = 1e7;
   small_scenes::add_floor(d, law);
   d.obstacles[0].shape["position_m"] = Vec3(0, 0, 5e-4);

@@ -60,6 +60,7 @@ TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
     scene::Description d = thrown_block(speed, 0.005);
     d.obstacles[0].type = "box";
     d.obstacles[0].shape["size_m"] = Vec3(0.2, 0.2, 0.001);
+    d.contacts[0].method = "analytic";
     d.contacts[0].stiffness_pa_m = stiffness;
     d.duration_s = 0.03;
     return d;

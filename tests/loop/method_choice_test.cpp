@@ -1,5 +1,5 @@
-// Who makes the images of a contact: method = "auto" takes a GPU where the machine has one, else the
-// processor; a method that is named is what it says.
+// How gaps are found: method = "auto" takes nearest points; who makes images: "image" takes a GPU where the
+// machine has one, else the processor; a method that is named is what it says.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -68,9 +68,15 @@ class MethodChoice : public ::testing::Test {
 
 }  // namespace
 
-TEST_F(MethodChoice, AutoTakesTheGpuWhereThereIsOne) {
+TEST_F(MethodChoice, AutoTakesNearestPoints) {
+  set_hardware(true);
+  EXPECT_EQ(after_a_period("auto")->contact->methods().at(0), "distance");
+  EXPECT_EQ(gpu_images, 0);
+}
+
+TEST_F(MethodChoice, AnImageIsTheGpusWhereThereIsOne) {
   for (const auto& [method, hardware, expected] :
-       {std::tuple{"auto", true, "gpu"}, std::tuple{"auto", false, "cpu"}, std::tuple{"cpu", true, "cpu"},
+       {std::tuple{"image", true, "gpu"}, std::tuple{"image", false, "cpu"}, std::tuple{"cpu", true, "cpu"},
         std::tuple{"gpu", false, "gpu"}, std::tuple{"exact", true, "exact"}}) {
     gpu_images = 0;
     set_hardware(hardware);
@@ -83,10 +89,10 @@ TEST_F(MethodChoice, AutoTakesTheGpuWhereThereIsOne) {
 }
 
 // A GPU that is there and cannot be opened: the run goes on, and its summary says so.
-TEST_F(MethodChoice, AutoFallsBackAndSaysSo) {
+TEST_F(MethodChoice, AnImageFallsBackAndSaysSo) {
   contact::gpu_image_maker() = none;
   set_hardware(true);
-  const auto world = after_a_period("auto");
+  const auto world = after_a_period("image");
   EXPECT_EQ(gpu_images, 1);
   EXPECT_EQ(world->contact->methods().at(0), "cpu");
   store::Summary summary = loop::summarise(*world, result_, 0.0);

@@ -59,6 +59,7 @@ scene::Description under_a_ball(scene::Description d, double depth) {
   ContactSpec contact;
   contact.first = "block";
   contact.second = "ball";
+  contact.method = "analytic";
   contact.stiffness_pa_m = 1e7;
   d.contacts.push_back(contact);
   return d;

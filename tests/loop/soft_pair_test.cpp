@@ -172,7 +172,7 @@ TEST(SoftPair, RefusesWhatItCannotDo) {
   };
   scene::Description d = two_blocks(0.0);
   d.contacts[0].method = "analytic";
-  EXPECT_NE(refusal(d).find("two soft bodies meet in image space"), std::string::npos);
+  EXPECT_NE(refusal(d).find("two soft bodies have no exact gaps"), std::string::npos);
   d = two_blocks(0.0);
   d.contacts[0].second = "blok";
   EXPECT_NE(refusal(d).find("nothing is called \"blok\"; name soft bodies, obstacles or \"tool\""),

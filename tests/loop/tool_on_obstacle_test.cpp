@@ -137,10 +137,11 @@ TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
         EXPECT_NEAR(ticks.back().contact.force.z() / (kMass * kG), 1.0, 1e-3) << what;
         EXPECT_LT(ticks.back().tool_twist.linear.norm(), 1e-4) << what;
         EXPECT_LT(ticks.back().contact.force.head<2>().norm(), 1e-6 * kMass * kG) << what;
-        if (std::string(type) == "plane") {  // at the depth at which k x volume is the weight
+        if (std::string(type) ==
+            "plane") {  // at the depth at which k times the depth's integral is the weight
           const double depth = kR - ticks.back().tool.translation.z(),
-                       force = mesh ? 1e7 * 4.0 * kR * kR * depth
-                                    : 1e8 * std::numbers::pi * depth * depth * (kR - depth / 3.0);
+                       force = mesh ? 1e7 * 4.0 * kR * depth * (kR + depth)  // its sides, too
+                                    : 1e8 * std::numbers::pi * kR * depth * depth;
           EXPECT_NEAR(force / (kMass * kG), 1.0, 2e-3) << what;
         }
         ++checked;
@@ -148,7 +149,7 @@ TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
   EXPECT_EQ(checked, 10);
 }
 
-// k pi (R d^2 - d^3/3) is the gradient of an energy: the ball leaves as fast as it came, with the opposite
+// k pi R d^2 is the gradient of an energy: the ball leaves as fast as it came, with the opposite
 // momentum, and the contact has given it twice that.
 TEST(ToolOnObstacle, WithoutDampingItBouncesBackAsFast) {
   scene::Description d = ball_over("plane", 1e-3);
@@ -172,7 +173,7 @@ TEST(ToolOnObstacle, WithoutDampingItBouncesBackAsFast) {
     deepest = std::max(deepest, kR - tick.tool.translation.z());
   }
   EXPECT_NEAR(impulse / (2.0 * kMass * 0.5), 1.0, 1e-2);
-  const double energy = 1e8 * std::numbers::pi * std::pow(deepest, 3) * (kR / 3.0 - deepest / 12.0);
+  const double energy = 1e8 * std::numbers::pi * std::pow(deepest, 3) * kR / 3.0;
   EXPECT_NEAR(energy / (0.5 * kMass * 0.25), 1.0, 5e-3);
 }
 

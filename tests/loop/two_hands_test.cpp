@@ -193,6 +193,8 @@ TEST(TwoHands, TendToOneSystem) {
     for (KeyframeSpec& frame : whole.hands[0].device.keyframes)  // holds still, touching
       frame.position_m.x() = -(kHalf + kRadius - 1e-3);
     whole.hands[0].tool.position_m = whole.hands[0].device.keyframes[0].position_m;
+    // so many points that what their areas change between exchanges does not show
+    for (ContactSpec& contact : whole.contacts) contact.quadrature_error = 2e-3;
     whole.integrator.name = "cvode-bdf";
     whole.integrator.rtol = 1e-6;
     whole.duration_s = 0.15;

@@ -365,7 +365,8 @@ TEST_P(PressedByATool, IsTheSameInAllUnits) {
         number(3.3 * u.force()), number(1.0 * u.moment()), vec(u.length, above),
         vec(u.length, above - Vec3(0, 0.01, 0.01)));
     t += fmt::format(
-        "[[contact]]\nbetween = [\"body\", \"tool\"]\nstiffness_pa_m = {}\ndamping_pa_s_m = {}\n"
+        "[[contact]]\nbetween = [\"body\", \"tool\"]\nmethod = \"analytic\"\nstiffness_pa_m = "
+        "{}\ndamping_pa_s_m = {}\n"
         "friction = 0.3\nfriction_regularisation_m_s = {}\n",
         number(1e7 * u.stress() / u.length), number(1e3 * u.stress() / u.length), number(0.01 * u.length));
     return t +

@@ -183,7 +183,7 @@ TEST(Kinds, ContactMethods) {
   EXPECT_EQ(
       with({"contact.1.pixels=128", "contact.1.method=analytic"}),
       "--set contact.1.pixels=128: contact between \"ball\" and \"tool\": pixels means nothing to method = "
-      "\"analytic\", which takes gaps; remove it (used by auto, cpu, gpu, exact)");
+      "\"analytic\", which takes gaps; remove it (used by auto, image, cpu, gpu, exact)");
   EXPECT_EQ(with({"contact.0.gaps=exact", "contact.1.gaps=exact"}), "accepted");
   for (const std::string method : {"cpu", "gpu", "exact"})
     EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=" + method}), "accepted");
@@ -191,8 +191,8 @@ TEST(Kinds, ContactMethods) {
       with({"contact.1.method=vertex"}),
       "--set contact.1.method=vertex: contact between \"ball\" and \"tool\": method = \"vertex\" is no "
       "method; obstacles and spheres are sampled at the vertices by method = \"analytic\", and for a tool of "
-      "another shape or a soft body write samples = \"vertex\" (known: analytic, auto, distance, cpu, gpu, "
-      "exact)");
+      "another shape or a soft body write samples = \"vertex\" (known: analytic, auto, distance, image, cpu, "
+      "gpu, exact)");
   EXPECT_NE(with({"contact.1.method=pixel"}).find("is no method; write samples = \"pixel\""),
             std::string::npos);
   EXPECT_EQ(with({"contact.1.method=cpu", "contact.1.samples=vertex", "contact.1.depths=interpolated"}),
@@ -201,9 +201,11 @@ TEST(Kinds, ContactMethods) {
             "--set contact.1.depths=interpolated: contact between \"ball\" and \"tool\": depths = "
             "\"interpolated\" is for vertices: a pixel has a depth of its own; write samples = \"vertex\" as "
             "well, or remove it");
-  EXPECT_NE(with({"contact.1.method=spheres"})
-                .find("method = \"spheres\" is not known (known: analytic, auto, distance, cpu, gpu, exact)"),
-            std::string::npos);
+  EXPECT_NE(
+      with({"contact.1.method=spheres"})
+          .find(
+              "method = \"spheres\" is not known (known: analytic, auto, distance, image, cpu, gpu, exact)"),
+      std::string::npos);
   EXPECT_NE(with({"compare.contact_methods=[\"analytic\", \"vertex\"]"})
                 .find("compare: contact_methods = \"vertex\" is no method; obstacles"),
             std::string::npos);

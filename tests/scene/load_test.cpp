@@ -149,7 +149,7 @@ TEST(Load, RegionsSayWhatDiffersFromTheBody) {
   EXPECT_EQ(d.bodies[0].changes[1].region, "half") << "a region that changes may start as the body is";
 }
 
-TEST(Load, TwoSoftBodiesMeetInImageSpace) {
+TEST(Load, TwoSoftBodiesHaveNoExactGaps) {
   const auto refusal = [](const std::string& more, const std::string& contact) -> std::string {
     try {
       parse(
@@ -166,7 +166,7 @@ TEST(Load, TwoSoftBodiesMeetInImageSpace) {
   EXPECT_EQ(refusal(ball, "method = \"gpu\"\n"), "accepted");
   EXPECT_EQ(refusal(ball, ""), "accepted");
   EXPECT_NE(refusal(ball, "method = \"analytic\"\n")
-                .find("two soft bodies meet in image space: leave the method out, or write \"auto\""),
+                .find("two soft bodies have no exact gaps: leave the method out, or write \"auto\""),
             std::string::npos);
   EXPECT_NE(refusal(ball, "method = \"gpu\"\n[[contact]]\nbetween = [\"b\", \"a\"]\nmethod = \"gpu\"\n")
                 .find("this pair stands here twice"),
@@ -216,17 +216,17 @@ TEST(Load, SidesOfAContactAreInTheirOrder) {
     const auto d = parse(scene_texts::kWhole + bodies, "whole.toml", {"contact.1.between=" + between});
     return d.contacts[1].first + " - " + d.contacts[1].second + ", " + d.contacts[1].method;
   };
-  EXPECT_EQ(sides("[\"tool\", \"floor\"]", ""), "tool - floor, analytic");
-  EXPECT_EQ(sides("[\"floor\", \"tool\"]", ""), "tool - floor, analytic");
-  EXPECT_EQ(sides("[\"tool\", \"ball\"]", ""), "ball - tool, analytic");
+  EXPECT_EQ(sides("[\"tool\", \"floor\"]", ""), "tool - floor, distance");
+  EXPECT_EQ(sides("[\"floor\", \"tool\"]", ""), "tool - floor, distance");
+  EXPECT_EQ(sides("[\"tool\", \"ball\"]", ""), "ball - tool, distance");
   const std::string another = R"(
 [[body]]
 name = "apple"
 youngs_modulus_pa = 1e4
 mesh = { generator = "ball", radius_m = 0.03, element_size_m = 0.01 }
 )";
-  EXPECT_EQ(sides("[\"apple\", \"ball\"]", another), "ball - apple, auto");
-  EXPECT_EQ(sides("[\"ball\", \"apple\"]", another), "ball - apple, auto");
+  EXPECT_EQ(sides("[\"apple\", \"ball\"]", another), "ball - apple, distance");
+  EXPECT_EQ(sides("[\"ball\", \"apple\"]", another), "ball - apple, distance");
 }
 
 /// What two keys of one table ask of each other; the locations are covered by broken_test.
@@ -255,11 +255,10 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
       {{"contact.1.method=distance", "contact.1.pixels=128"},
        "pixels means nothing to method = \"distance\""},
       {{"contact.1.method=distance", "contact.1.spring=per_point"}, "has points that stand for areas"},
-      {{"contact.1.pixels=128"}, "pixels means nothing here: a sphere has exact gaps; remove it, or write"},
       {{"contact.0.pixels=128"}, "pixels means nothing here: an obstacle has exact gaps; remove it"},
       {{"contact.1.method=cpu", "contact.1.gaps=exact"}, "gaps means nothing to method = \"cpu\""},
       {{"tool.shape=mesh", "tool.mesh={generator = \"ball\", radius_m = 0.01, element_size_m = 0.005}",
-        "tool.inertia_kg_m2=[1, 1, 1]", "contact.1.gaps=exact"},
+        "tool.inertia_kg_m2=[1, 1, 1]", "contact.1.pixels=128", "contact.1.gaps=exact"},
        "gaps = \"exact\" is for obstacles and sphere tools"},
       {{"contact.0.gaps=sometimes"}, "gaps = \"sometimes\""},
       {{"contact.0.hunt_crossley_s_m=1.0"},

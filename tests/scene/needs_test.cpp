@@ -46,14 +46,14 @@ TEST(Needs, PressBall) {
     EXPECT_TRUE(press.at(part)) << part;
   EXPECT_FALSE(press.at("gl"));
   EXPECT_FALSE(press.at("gravity"));
-  auto image = used("press-ball", {"contact.1.method=gpu"});
+  auto image = used("press-ball", {"contact.0.method=analytic", "contact.1.method=gpu"});
   EXPECT_TRUE(image.at("gl") && image.at("contact plane"));
   EXPECT_FALSE(image.at("broad phase") || image.at("nearest points"));
-  auto near = used("press-ball", {"contact.1.method=distance"});
+  auto near = used("press-ball", {});
   EXPECT_TRUE(near.at("nearest points"));
   EXPECT_FALSE(near.at("contact plane") || near.at("gl"));
-  EXPECT_TRUE(used("touch-head").at("proxies"));
-  EXPECT_FALSE(used("touch-head", {"contact.0.method=distance"}).at("proxies"));
+  EXPECT_TRUE(used("touch-head", {"contact.0.method=image"}).at("proxies"));
+  EXPECT_FALSE(used("touch-head").at("proxies"));
   auto quiet = used("press-ball", {"record.states=false", "record.forces=false"});
   EXPECT_FALSE(quiet.at("run file") || quiet.at("force file"));
 }

@@ -268,7 +268,8 @@ TEST(ZWidth, puts_flat_tools_in_series_with_soft_bodies) {
 }
 
 #ifdef PALPATE_HAS_TOOL
-// The stiffness that a run has: the slope of the force of a box that is pressed flat on a wall.
+// The stiffness that a run has: the slope of the force of a box that is pressed flat on a wall, without what
+// its sides, of a width of 4 a over a face of a^2, have of it: 4/a times the mean depth.
 TEST(ZWidth, has_the_stiffness_of_a_run) {
   scene::Description d = on_a_wall(box(Vec3(0.02, 0.02, 0.02)));
   d.duration_s = 0.3;
@@ -290,7 +291,8 @@ TEST(ZWidth, has_the_stiffness_of_a_run) {
     force[i] = last.last.contact.force.z();
   }
   EXPECT_GT(depth[1], depth[0]);
-  EXPECT_NEAR((force[1] - force[0]) / (depth[1] - depth[0]) / stiffest(d), 1.0, 1e-3);
+  EXPECT_NEAR((force[1] - force[0]) / (depth[1] - depth[0]) / stiffest(d),
+              1.0 + 4.0 / 0.02 * 0.5 * (depth[0] + depth[1]), 1e-3);
 }
 #endif
 

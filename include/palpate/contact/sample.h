@@ -27,7 +27,8 @@ struct ContactSample {
   Vec3 normal = Vec3::UnitZ();  ///< unit, from b to a: pushes a away
   double area = 0.0;            ///< projected on the contact plane [m^2]; 1 where springs are per point
   double gap = 0.0;             ///< at the query [m]
-  /// energy over that of a spring of this area and gap, where the sample stands for a gap that varies
+  /// Energy over that of a spring of this area and gap, where the sample stands for a gap that varies: the
+  /// point's own gap over the mean one, below 0 of a point outside whose surroundings overlap.
   double stored = 1.0;
   int source = 0;  ///< index of the contact pair that made it
 };

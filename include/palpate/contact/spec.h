@@ -19,8 +19,8 @@ struct ContactSpec {
   /// names of bodies, obstacles or "tool", in any order; one body twice: its bones' regions against each
   /// other (proxies)
   std::string first, second;
-  /// "analytic" (obstacle or a sphere tool), one of the methods in image space (a tool of any shape, another
-  /// soft body), or "auto": the first where it can be and the body has no proxies, else an image
+  /// "distance" (nearest points), "analytic" (at vertices; of an obstacle or a sphere tool), one of the
+  /// methods in image space (a tool of any shape, another soft body), or "auto" (scene/contact_sides.h)
   std::string method = "auto";
   /// "per_area": pressure by depth, times the area that a sample stands for; "per_point": a force by depth at
   /// each colliding vertex (Galoppo et al. 2007), so that twice the vertices push twice as hard
@@ -38,7 +38,7 @@ struct ContactSpec {
   /// "full"; "symmetric": without how friction follows pressure, which is unsymmetric; "secant": so, and
   /// friction is that of a step's end, by repeated solves; "auto": secant where a step is one linear solve
   std::string friction_tangent = "auto";
-  /// between two queries: "linear" in the positions, or "exact" at every evaluation (analytic alone)
+  /// between two queries: "linear" in the positions, or "exact" at every evaluation (not of images)
   std::string gaps = "linear";
   /// samples with a smaller positive gap are kept too; 0: chosen from the mesh
   double candidate_gap_m = 0.0;
