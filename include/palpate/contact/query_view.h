@@ -30,7 +30,7 @@ struct QueryView {
 struct ContactPoint {
   Vec3 a, b;        ///< its points on the two surfaces [m]
   Vec3 normal;      ///< from b to a
-  double gap;       ///< of the point itself [m], negative is penetration
+  double gap;       ///< mean of what the point stands for [m], negative is penetration
   double pressure;  ///< [Pa]; 0 of a candidate that is apart
   double area;      ///< [m^2]
   int pair;         ///< which [[contact]] of the scene
