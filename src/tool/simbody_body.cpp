@@ -1,5 +1,8 @@
 #include "simbody_body.h"
 
+#include <exception>
+#include <limits>
+
 #include "palpate/core/counters.h"
 
 namespace palpate::tool {
@@ -103,8 +106,7 @@ Vec6 SimbodyBody::right_hand_side(double t, const RigidMotion& motion, const Tic
 }
 
 Mat6 SimbodyBody::calc_mass(const RigidMotion& motion) {
-  write(state_, 0.0, motion);
-  system_.realize(state_, SimTK::Stage::Position);
+  if (!is_somewhere(0.0, motion)) return Mat6::Constant(std::numeric_limits<double>::quiet_NaN());
   matter_.calcM(state_, mass_);
   Mat6 M;
   for (int i = 0; i < 6; ++i)
@@ -112,12 +114,20 @@ Mat6 SimbodyBody::calc_mass(const RigidMotion& motion) {
   return M;
 }
 
+// An explicit method that diverges asks at places that are none, where Simbody throws.
+bool SimbodyBody::is_somewhere(double t, const RigidMotion& motion) {
+  write(state_, t, motion);
+  force_->set(state_, {});
+  try {
+    system_.realize(state_, SimTK::Stage::Dynamics);
+  } catch (const std::exception&) { return false; }
+  return true;
+}
+
 // Inverse dynamics gives the residual r = M u' + C(q, u) - f_applied;
 // at u' = 0 the right-hand side of M u' = f is -r.
 Vec6 SimbodyBody::calc_force(double t, const RigidMotion& motion) {
-  write(state_, t, motion);
-  force_->set(state_, {});
-  system_.realize(state_, SimTK::Stage::Dynamics);
+  if (!is_somewhere(t, motion)) return Vec6::Constant(std::numeric_limits<double>::quiet_NaN());
   zero_.resize(6);
   zero_.setToZero();
   matter_.calcResidualForceIgnoringConstraints(
@@ -128,9 +138,7 @@ Vec6 SimbodyBody::calc_force(double t, const RigidMotion& motion) {
 }
 
 double SimbodyBody::calc_potential_energy(const RigidMotion& motion) {
-  write(state_, 0.0, motion);
-  force_->set(state_, {});
-  system_.realize(state_, SimTK::Stage::Dynamics);
+  if (!is_somewhere(0.0, motion)) return std::numeric_limits<double>::quiet_NaN();
   return system_.calcPotentialEnergy(state_);
 }
 

@@ -40,6 +40,7 @@ class SimbodyBody {
   Mat6 mass_matrix(const Pose& pose) const;
 
  private:
+  bool is_somewhere(double t, const RigidMotion& motion);  ///< state_ realised there
   class TickForce;
 
   RigidParameters parameters_;

@@ -1,6 +1,8 @@
 // The tool's own ticks take its forces in closed form; Simbody's forward dynamics is what they must be.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <random>
 
 #include "simbody_body.h"
@@ -36,6 +38,17 @@ TEST(NewtonEuler, IsSimbodysForwardDynamics) {
     const Vec6 ours = body.mass_matrix(motion.pose).ldlt().solve(body.right_hand_side(0.2004, motion, input));
     EXPECT_LT((ours - theirs).norm(), 1e-11 * theirs.norm()) << k;
   }
+}
+
+// Where an explicit method diverges: an answer that says so, not an exception of Simbody's.
+TEST(NewtonEuler, IsNoNumberWhereThereIsNoPlace) {
+  tool::SimbodyBody body(tool::RigidParameters{});
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const tool::RigidMotion turned{{Quat(none, none, 0.0, 0.0), Vec3::Zero()}, {}};
+  EXPECT_FALSE(body.calc_force(0.0, turned).allFinite());
+  EXPECT_TRUE(std::isnan(body.calc_potential_energy(turned)));
+  EXPECT_FALSE(body.calc_mass(turned).allFinite());
+  EXPECT_TRUE(body.calc_force(0.0, {}).allFinite());
 }
 
 }  // namespace
