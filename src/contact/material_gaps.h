@@ -32,7 +32,8 @@ class MaterialGaps {
   double stored(std::size_t i) const { return square_[i] * area_[i] / (overlap_[i] * overlap_[i]); }
   /// Area of its hat where it overlaps; of all of it where it does not [m^2].
   double area(std::size_t i) const { return area_[i]; }
-  /// Of the last integrate().  @param x, at  positions and gaps of the points taken
+  /// Returns the sum of the last integrate(), its error and its largest term.
+  /// @param x, at  positions and gaps of the points taken
   SumError::Query sum_error(std::span<const Vec3> x, std::span<const Nearest> at) const;
 
  private:

@@ -35,8 +35,12 @@ bool is_in_images(const Description& description, const std::string& body) {
 }
 
 void set_method(ContactSpec& contact, const std::string& method) {
-  if (method == "distance" && contact.quadrature_error == ContactSpec{}.quadrature_error)
+  // each kind's default for the other's; a scene's own value stays
+  const double pixels_error = ContactSpec{}.quadrature_error;
+  if (method == "distance" && contact.quadrature_error == pixels_error)
     contact.quadrature_error = kPointsError;
+  else if (method != "distance" && contact.method == "distance" && contact.quadrature_error == kPointsError)
+    contact.quadrature_error = pixels_error;
   contact.method = method;
   if (method != "analytic") contact.gaps = method == "distance" ? "exact" : "linear";
 }

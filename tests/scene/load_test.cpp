@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
+#include "palpate/scene/contact_sides.h"
 #include "palpate/scene/hands.h"
 #include "palpate/scene/needs.h"
 #include "scene/scene_texts.h"
@@ -227,6 +228,22 @@ mesh = { generator = "ball", radius_m = 0.03, element_size_m = 0.01 }
 )";
   EXPECT_EQ(sides("[\"apple\", \"ball\"]", another), "ball - apple, distance");
   EXPECT_EQ(sides("[\"ball\", \"apple\"]", another), "ball - apple, distance");
+}
+
+// Of a comparison that finds a scene's contact by other methods: points and pixels have defaults of their
+// own.
+TEST(Load, AMethodThatIsSetBringsItsQuadratureError) {
+  const auto errors = [](const std::vector<std::string>& overrides) {
+    ContactSpec c = parse(scene_texts::kWhole, "whole.toml", overrides).contacts[1];
+    std::vector<double> out = {c.quadrature_error};
+    for (const char* method : {"cpu", "distance", "analytic", "distance"}) {
+      scene::set_method(c, method);
+      out.push_back(c.quadrature_error);
+    }
+    return out;
+  };
+  EXPECT_EQ(errors({}), (std::vector<double>{1e-2, 1e-3, 1e-2, 1e-3, 1e-2}));
+  EXPECT_EQ(errors({"contact.1.quadrature_error=5e-3"}), std::vector<double>(5, 5e-3));
 }
 
 /// What two keys of one table ask of each other; the locations are covered by broken_test.

@@ -16,8 +16,8 @@ struct HatIntegrals {
 /// @param overlap  at the corners [m]
 HatIntegrals integrate_hats(const Vec3& overlap);
 
-/// What linear functions miss over a triangle, to first order in the curvature of the surface that the gap is
-/// to: exactly that of a quadratic gap.
+/// Means over a triangle of what linear interpolation misses, to first order in the curvature of the surface
+/// to which the gap is; exact for a quadratic gap.
 struct Missed {
   double gap;     ///< mean of the gap's interpolation less the gap [m]
   double normal;  ///< length that the interpolated unit normals lack, in the mean [-]
