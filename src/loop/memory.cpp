@@ -56,9 +56,8 @@ MeshCounts counts_of(const Body& body) {
 
 MemoryEstimate estimate_memory(const scene::Description& description, const std::vector<MeshCounts>& bodies) {
   constexpr double kProgram = 40.0 * kMiB, kTetrahedron = 820.0, kTouched = 640.0, kSkinVertex = 200.0;
-  // a contact point a vertex, of 450 bytes with its triangles (measured, 30,000 points), where faces are not
-  // cut
-  constexpr double kPointsOfVertex = 450.0;
+  // three contact points a vertex of 320 bytes each (measured, 600,000 points), where faces are not cut
+  constexpr double kPointsOfVertex = 3.0 * 320.0;
   constexpr double kBlas = 128.0 * kMiB;  // measured of OpenBLAS 0.3.21, one thread
   const bool at_points = touches_at_points(description);
   MemoryEstimate out{.program = kProgram};
