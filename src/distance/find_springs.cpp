@@ -37,7 +37,16 @@ void SkinContact::move(const double* nodes_a, const double* nodes_b) {
   const double step = (surfaces_[0].stretch() + surfaces_[1].stretch() +
                        (surfaces_[0].shift() - surfaces_[1].shift()).norm()) *
                       (1.0 + kRounding);
-  if (std::isfinite(step)) travelled_ += step;
+  if (std::isfinite(step)) {
+    travelled_ += step;
+    return;
+  }
+  // the first positions, or after some that were not finite: nothing is known of how far they went
+  for (int side = 0; side < 2; ++side) {
+    std::fill(clear_[side].begin(), clear_[side].end(), -1.0);
+    std::fill(packets_clear_[side].begin(), packets_clear_[side].end(), -1.0);
+  }
+  for (Spring& spring : springs_) spring.clear = 0.0;
 }
 
 /// Whether the fourth powers of coordinates, those of areas' squares, are within single precision, which the
@@ -45,7 +54,8 @@ void SkinContact::move(const double* nodes_a, const double* nodes_b) {
 bool SkinContact::is_searchable() const {
   constexpr double kLargest = 1e9;  // [m]
   for (const Surface& s : surfaces_)
-    if (!(s.box().min().cwiseAbs().maxCoeff() < kLargest && s.box().max().cwiseAbs().maxCoeff() < kLargest))
+    if (!(s.bound().min().cwiseAbs().maxCoeff() < kLargest &&
+          s.bound().max().cwiseAbs().maxCoeff() < kLargest))
       return false;
   return true;
 }
@@ -55,12 +65,14 @@ void SkinContact::find(const double* nodes_a, const double* nodes_b, double near
   springs_.clear();
   triangles_.clear();
   if (!is_searchable()) return;
+  const double reach = near + std::max(most_lowered_[0], most_lowered_[1]);
   const Eigen::AlignedBox3d both =
-      widened(surfaces_[0].box(), near).intersection(widened(surfaces_[1].box(), near));
+      widened(surfaces_[0].bound(), reach).intersection(widened(surfaces_[1].bound(), reach));
   if (both.isEmpty()) return;
-  for (int side = 0; side < (spec_.two_sided ? 2 : 1); ++side) {
+  for (int side = 0; side < 2; ++side) {
+    if (points(side).empty()) continue;
     searches_[1 - side]->begin(both.center(), both);
-    find_side(side, near);
+    find_side(side, near + most_lowered_[side]);
   }
   find_triangles();
   place_missing();
@@ -73,7 +85,7 @@ void SkinContact::place_missing() {
     bool is_inside = false;
     for (const int i : t.spring) {
       const Spring& s = springs_[static_cast<std::size_t>(i)];
-      is_inside |= s.is_placed && s.gap < 0.0;
+      is_inside |= s.is_placed && s.gap < triangle(t.side, t.number).lowered;
     }
     if (!is_inside) continue;
     for (const int i : t.spring) {
@@ -93,7 +105,7 @@ void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
     for (Spring& spring : springs_) spring.is_placed = false;
     return integrate();
   }
-  const Eigen::AlignedBox3d both = surfaces_[0].box().merged(surfaces_[1].box());
+  const Eigen::AlignedBox3d both = surfaces_[0].bound().merged(surfaces_[1].bound());
   for (LaneSearch* search : {searches_[0].get(), searches_[1].get()}) search->begin(both.center(), both);
   const auto cluster = [&](const Spring& s) {
     return points(s.side)[static_cast<std::size_t>(s.point)].face / kClusterFaces;
@@ -102,7 +114,7 @@ void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
   for (std::size_t i = 0; i < springs_.size(); ++i) {
     Spring& spring = springs_[i];
     spring.is_placed = false;
-    if (travelled_ < spring.clear && spring.force == 0.0) continue;
+    if (travelled_ + most_lowered_[spring.side] < spring.clear && spring.force == 0.0) continue;
     if (!packet_.empty()) {
       const Spring& head = springs_[packet_.front()];
       if (packet_.size() == kPacket || head.side != spring.side || cluster(head) != cluster(spring)) {
@@ -142,7 +154,7 @@ void SkinContact::follow_packet(const std::vector<std::size_t>& springs) {
 
 void SkinContact::collect_clusters(int side, double near) {
   const Surface& own = surfaces_[side];
-  const Eigen::AlignedBox3d other = widened(surfaces_[1 - side].box(), near);
+  const Eigen::AlignedBox3d other = widened(surfaces_[1 - side].box(0), near);
   const std::vector<ClusterNode>& tree = own.skin().tree;
   candidates_.clear();
   int open[64], depth = 0;
@@ -155,7 +167,8 @@ void SkinContact::collect_clusters(int side, double near) {
       open[depth++] = node.right;
       open[depth++] = i + 1;
     } else if (clear_[side][static_cast<std::size_t>(node.begin)] < travelled_ + near) {
-      candidates_.push_back({node.begin, i});
+      own.place(node.begin);
+      if (own.box(i).intersects(other)) candidates_.push_back({node.begin, i});
     }
   }
 }
@@ -250,28 +263,35 @@ void SkinContact::find_by_reference(const double* nodes_a, const double* nodes_b
   move(nodes_a, nodes_b);
   springs_.clear();
   find_side_by_reference(0);
-  if (spec_.two_sided) find_side_by_reference(1);
+  find_side_by_reference(1);
   find_triangles();
   place_missing();
   integrate();
 }
 
 void SkinContact::find_side_by_reference(int side) {
+  if (points(side).empty()) return;
   const Surface& own = surfaces_[side];
   const Surface& other = surfaces_[1 - side];
   for (std::size_t i = 0; i < own.skin().tree.size(); ++i) {
     const ClusterNode& node = own.skin().tree[i];
+    if (node.right) continue;
+    own.place(node.begin);
     const Eigen::AlignedBox3d& box = own.box(static_cast<int>(i));
-    if (node.right || !box.intersects(other.box())) continue;
+    if (!box.intersects(widened(other.bound(), most_lowered_[side]))) continue;
     const Foot middle = other.nearest(box.center());
     const double radius = 0.5 * box.diagonal().norm();
-    if (std::sqrt(middle.at.distance2) > radius * (1.0 + kRounding) && !other.is_inside(middle)) continue;
+    if (std::sqrt(middle.at.distance2) > (radius + most_lowered_[side]) * (1.0 + kRounding) &&
+        !other.is_inside(middle))
+      continue;
     int start = middle.face;
     const auto cluster = static_cast<std::size_t>(node.begin);
     for (int p = cluster_points_[side][cluster]; p < cluster_points_[side][cluster + 1]; ++p) {
       const Foot foot = other.nearest(position(side, points(side)[static_cast<std::size_t>(p)]), start);
       start = foot.face;
-      if (other.is_inside(foot)) add_spring(side, p, foot, true);
+      const bool is_inside = other.is_inside(foot);
+      if (is_inside || std::sqrt(foot.at.distance2) < most_lowered_[side])
+        add_spring(side, p, foot, is_inside);
     }
   }
 }

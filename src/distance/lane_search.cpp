@@ -32,7 +32,7 @@ void LaneSearch::begin(const Vec3& origin, const Eigen::AlignedBox3d& box) {
   ++query_;
   tested_ = 0;
   origin_ = origin;
-  const Eigen::AlignedBox3d all = box.merged(surface_.box());
+  const Eigen::AlignedBox3d all = box.merged(surface_.bound());
   const double size = std::max((all.max() - origin).maxCoeff(), (origin - all.min()).maxCoeff());
   slack_ = 32.0 * std::numeric_limits<float>::epsilon() * size;
   targets_.slack2 = static_cast<float>(slack_ * slack_);
@@ -55,6 +55,7 @@ void LaneSearch::prepare(int cluster) {
   const auto c = static_cast<std::size_t>(cluster);
   if (prepared_[c] == query_) return;
   prepared_[c] = query_;
+  surface_.place(cluster);
   const int begin = kClusterFaces * cluster;
   kernels_.planes(surface_.vertices(), surface_.skin().faces.data() + 3 * begin,
                   std::min(kClusterFaces, surface_.skin().face_count() - begin), origin_.data(),
@@ -99,6 +100,8 @@ void LaneSearch::collect(const Packet* packets, int count) {
       open[depth++] = i + 1;
       continue;
     }
+    surface_.place(node.begin);
+    if (surface_.box(i).squaredExteriorDistance(box) > reach * reach) continue;
     prepare(node.begin);
     const int at = targets_.cluster_count++;
     clusters_[static_cast<std::size_t>(at)] = node.begin;

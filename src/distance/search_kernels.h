@@ -32,9 +32,10 @@ struct Targets {
 };
 
 struct SearchKernels {
-  /// Vertices from nodes.  @param nodes  four numbers each  @param carriers, weights  four a vertex
-  /// @param out  four numbers each
-  void (*evaluate)(const double* nodes, const int* carriers, const double* weights, int count, double* out);
+  /// Some vertices from nodes.  @param nodes  four numbers each  @param carriers, weights  four a vertex
+  /// @param list  their numbers  @param out  of all vertices, four numbers each
+  void (*evaluate)(const double* nodes, const int* carriers, const double* weights, const int* list,
+                   int count, double* out);
   /// Box of some vertices: low and high, four numbers each.
   void (*bound)(const double* vertices, const int* list, int count, double* low, double* high);
   /// Planes of up to 32 triangles, about `origin`.  @param corners  three vertices a triangle

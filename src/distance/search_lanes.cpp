@@ -63,10 +63,14 @@ PALPATE_INLINE Vectors cross(Vectors a, Vectors b) {
 }
 PALPATE_INLINE Vectors times(Vectors a, Floats s) { return {a.x * s, a.y * s, a.z * s}; }
 
-void evaluate(const double* nodes, const int* carriers, const double* weights, int count, double* out) {
-  for (int i = 0; i < count; ++i, carriers += 4, weights += 4, out += 4)
-    store(out, weights[0] * load(nodes + 4 * carriers[0]) + weights[1] * load(nodes + 4 * carriers[1]) +
-                   weights[2] * load(nodes + 4 * carriers[2]) + weights[3] * load(nodes + 4 * carriers[3]));
+void evaluate(const double* nodes, const int* carriers, const double* weights, const int* list, int count,
+              double* out) {
+  for (int i = 0; i < count; ++i) {
+    const int* c = carriers + 4 * list[i];
+    const double* w = weights + 4 * list[i];
+    store(out + 4 * list[i], w[0] * load(nodes + 4 * c[0]) + w[1] * load(nodes + 4 * c[1]) +
+                                 w[2] * load(nodes + 4 * c[2]) + w[3] * load(nodes + 4 * c[3]));
+  }
 }
 
 void bound(const double* vertices, const int* list, int count, double* low, double* high) {

@@ -92,6 +92,20 @@ void collect_cluster_vertices(Skin& skin) {
   }
 }
 
+/// Sets aside a tenth of the vertices, those with the largest sums of |weights|.
+void set_aside_far(Skin& skin) {
+  const VecX sum = skin.weights.cwiseAbs().colwise().sum().transpose();
+  std::vector<int> order(static_cast<std::size_t>(skin.vertex_count()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return sum[a] > sum[b]; });
+  skin.weight_sum = sum[order[order.size() / 10]];
+  order.resize(order.size() / 10);
+  while (!order.empty() && sum[order.back()] <= skin.weight_sum) order.pop_back();
+  std::sort(order.begin(), order.end());
+  skin.far_nodes = skin.nodes(Eigen::all, order);
+  skin.far_weights = skin.weights(Eigen::all, order);
+}
+
 Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node_count) {
   if (!rest.vertices.allFinite() || !weights.allFinite())
     fail("contact needs a skin of finite positions and weights");
@@ -121,7 +135,7 @@ Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node
   join_across_edges(skin);
   collect_fans(skin);
   collect_cluster_vertices(skin);
-  skin.weight_sum = skin.weights.cwiseAbs().colwise().sum().maxCoeff();
+  set_aside_far(skin);
   return skin;
 }
 
@@ -138,6 +152,22 @@ Skin make_skin(const TriMesh& rest) {
   NodeWeights weights = NodeWeights::Zero(4, count);
   weights.row(0).setOnes();
   return build(rest, std::move(nodes), std::move(weights), static_cast<int>(count));
+}
+
+// The simplex x, y, z >= low, sum of (x - low)/(3 size) <= 1 holds the box: all weights lie in [0, 1].
+Skin make_rigid_skin(const TriMesh& rest, Points& corners) {
+  const Vec3 low = rest.vertices.rowwise().minCoeff(), size = rest.vertices.rowwise().maxCoeff() - low;
+  if (!(size.array() > 0.0).all()) fail("contact needs a surface around a volume");
+  corners.resize(3, 4);
+  corners.colwise() = low;
+  for (int k = 0; k < 3; ++k) corners(k, k + 1) += 3.0 * size[k];
+  const Eigen::Index count = rest.vertices.cols();
+  NodeIndices nodes(4, count);
+  nodes.colwise() = Eigen::Vector4i(0, 1, 2, 3);
+  NodeWeights weights(4, count);
+  weights.bottomRows<3>() = (rest.vertices.colwise() - low).array().colwise() / (3.0 * size).array();
+  weights.row(0) = 1.0 - weights.bottomRows<3>().colwise().sum().array();
+  return build(rest, std::move(nodes), std::move(weights), 4);
 }
 
 }  // namespace palpate::distance

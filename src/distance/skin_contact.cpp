@@ -9,16 +9,32 @@
 
 namespace palpate::distance {
 
+namespace {
+
+std::array<ContactMesh, 2> meshes_of(const Skin& a, const Skin& b, const SkinContactSpec& spec) {
+  std::array<ContactMesh, 2> out{contact_mesh(a, spec.spacing_m[0]), {}};
+  if (spec.two_sided) out[1] = contact_mesh(b, spec.spacing_m[1]);
+  return out;
+}
+
+}  // namespace
+
 SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& spec)
-    : spec_(spec), surfaces_{Surface(a), Surface(b)}, scratch_(std::make_unique<Scratch>()) {
-  if (!(spec.stiffness_pa_m > 0.0))
-    fail("contact stiffness is {} Pa/m; it must be positive", spec.stiffness_pa_m);
+    : SkinContact(a, b, spec.stiffness_pa_m, meshes_of(a, b, spec)) {}
+
+SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::array<ContactMesh, 2> meshes)
+    : stiffness_(meshes[0].points.empty() || meshes[1].points.empty() ? stiffness : 0.5 * stiffness),
+      surfaces_{Surface(a), Surface(b)},
+      meshes_(std::move(meshes)),
+      scratch_(std::make_unique<Scratch>()) {
+  if (!(stiffness > 0.0)) fail("contact stiffness is {} Pa/m; it must be positive", stiffness);
   std::size_t count = 0, triangles = 0, most_packets = 1;
   for (int side = 0; side < 2; ++side) {
     const Skin& skin = surfaces_[side].skin();
     const auto clusters = static_cast<std::size_t>(skin.cluster_count());
-    if (side == 0 || spec.two_sided)
-      meshes_[side] = contact_mesh(skin, spec.spacing_m[static_cast<std::size_t>(side)]);
+    const ContactMesh& mesh = meshes_[static_cast<std::size_t>(side)];
+    for (const ContactTriangle& t : mesh.triangles)
+      most_lowered_[side] = std::max(most_lowered_[side], t.lowered);
     cluster_points_[side].assign(clusters + 1, 0);
     for (const ContactPoint& p : points(side))
       ++cluster_points_[side][static_cast<std::size_t>(p.face / kClusterFaces) + 1];
@@ -37,9 +53,9 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& sp
     packets_clear_[side].assign(static_cast<std::size_t>(first_packet_[side].back()), -1.0);
     searches_[side] = std::make_unique<LaneSearch>(surfaces_[side]);
     count += points(side).size();
-    triangles += meshes_[side].triangles.size();
+    triangles += mesh.triangles.size();
     spring_of_[side].assign(points(side).size(), -1);
-    is_near_[side].assign(meshes_[side].triangles.size(), 0);
+    is_near_[side].assign(mesh.triangles.size(), 0);
     candidates_.reserve(std::max(candidates_.capacity(), clusters));
     VertexForces& at = vertex_forces_[side];
     at.sum.setZero(3, skin.vertex_count());
@@ -86,7 +102,7 @@ void SkinContact::find_triangles() {
   const std::size_t found = springs_.size();
   for (std::size_t i = 0; i < found; ++i) {
     const Spring s = springs_[i];
-    const ContactMesh& mesh = meshes_[s.side];
+    const ContactMesh& mesh = meshes_[static_cast<std::size_t>(s.side)];
     for (int f = mesh.fan_begin[static_cast<std::size_t>(s.point)];
          f < mesh.fan_begin[static_cast<std::size_t>(s.point) + 1]; ++f) {
       const int t = mesh.fan[static_cast<std::size_t>(f)];
@@ -117,8 +133,7 @@ void SkinContact::find_triangles() {
   for (Triangle& t : triangles_) {
     is_near_[t.side][static_cast<std::size_t>(t.number)] = 0;
     for (std::size_t k = 0; k < 3; ++k)
-      t.spring[k] = spring_of_[t.side][static_cast<std::size_t>(
-          meshes_[t.side].triangles[static_cast<std::size_t>(t.number)].points[k])];
+      t.spring[k] = spring_of_[t.side][static_cast<std::size_t>(triangle(t.side, t.number).points[k])];
   }
   for (const Spring& s : springs_) spring_of_[s.side][static_cast<std::size_t>(s.point)] = -1;
 }
@@ -127,31 +142,32 @@ void SkinContact::find_triangles() {
 template <class Visit>
 void SkinContact::for_each_overlap(const Visit& visit) const {
   for (const Triangle& t : triangles_) {
+    const double lowered = triangle(t.side, t.number).lowered;
     Vec3 overlap;
     bool any = false;
     for (std::size_t k = 0; k < 3; ++k) {
       const Spring& s = springs_[static_cast<std::size_t>(t.spring[k])];
-      overlap[static_cast<int>(k)] = -s.gap;
-      any |= s.is_placed && s.gap < 0.0;
+      overlap[static_cast<int>(k)] = lowered - s.gap;
+      any |= s.is_placed && s.gap < lowered;
     }
     if (any) visit(t, overlap);
   }
 }
 
 void SkinContact::integrate() {
-  for (Spring& s : springs_) s.stiffness = s.force = 0.0;
-  const double k = spec_.two_sided ? 0.5 * spec_.stiffness_pa_m : spec_.stiffness_pa_m;
+  for (Spring& s : springs_) s.stiffness = s.force = s.energy = 0.0;
   for_each_overlap([&](const Triangle& t, const Vec3& overlap) {
     const HatIntegrals integrals = integrate_hats(overlap);
-    const double factor = k * meshes_[t.side].triangles[static_cast<std::size_t>(t.number)].area;
+    const double factor = stiffness_ * triangle(t.side, t.number).area;
     for (std::size_t c = 0; c < 3; ++c) {
       Spring& s = springs_[static_cast<std::size_t>(t.spring[c])];
       s.force += factor * integrals.overlap[static_cast<int>(c)];
+      s.energy += 0.5 * factor * integrals.overlap[static_cast<int>(c)] * overlap[static_cast<int>(c)];
       s.stiffness += factor * integrals.area[static_cast<int>(c)];
     }
   });
   for (Spring& s : springs_)
-    if (s.force == 0.0) s.stiffness = k * points(s.side)[static_cast<std::size_t>(s.point)].area;
+    if (s.force == 0.0) s.stiffness = stiffness_ * points(s.side)[static_cast<std::size_t>(s.point)].area;
 }
 
 // A direction between two points is rounded by the unit in the last place of their coordinates over their
@@ -161,15 +177,14 @@ Vec3 SkinContact::outward(const Spring& spring) const {
   constexpr double kCoincide = 1e-9;  // of the coordinates
   const Surface& other = surfaces_[1 - spring.side];
   const double size =
-      std::max(other.box().min().cwiseAbs().maxCoeff(), other.box().max().cwiseAbs().maxCoeff());
+      std::max(other.bound().min().cwiseAbs().maxCoeff(), other.bound().max().cwiseAbs().maxCoeff());
   if (std::abs(spring.gap) > kCoincide * size) return -spring.reach / spring.gap;
   return other.outward({spring.face, {.weights = spring.weights}}).normalized();
 }
 
-// U is homogeneous of degree 2 in the overlaps: half of their product with its gradient.
 double SkinContact::energy() const {
   double sum = 0.0;
-  for (const Spring& s : springs_) sum -= 0.5 * s.force * s.gap;
+  for (const Spring& s : springs_) sum += s.energy;
   return sum;
 }
 
@@ -204,7 +219,6 @@ double SkinContact::largest_force() const {
 }
 
 double SkinContact::quadrature_error() const {
-  const double k = spec_.two_sided ? 0.5 * spec_.stiffness_pa_m : spec_.stiffness_pa_m;
   double error = 0.0;
   for_each_overlap([&](const Triangle& t, const Vec3& overlap) {
     Mat3 x, normal;
@@ -215,7 +229,7 @@ double SkinContact::quadrature_error() const {
     }
     const HatIntegrals integrals = integrate_hats(overlap);
     const Missed missed = missed_by_linear(x, normal);
-    error += k * meshes_[t.side].triangles[static_cast<std::size_t>(t.number)].area *
+    error += stiffness_ * triangle(t.side, t.number).area *
              std::abs(integrals.area.sum() * missed.gap + integrals.overlap.sum() * missed.normal);
   });
   return error;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "distance/search_kernels.h"
 
@@ -66,52 +67,93 @@ TrianglePoint nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, c
 Surface::Surface(const Skin& skin)
     : skin_(skin),
       nodes_(Padded::Zero(4, skin.node_count)),
+      way_(nodes_),
+      far_(Padded::Zero(4, skin.far_nodes.cols())),
+      far_list_(static_cast<std::size_t>(far_.cols())),
+      leaf_(static_cast<std::size_t>(skin.cluster_count())),
+      placed_(leaf_.size(), 0),
       vertices_(Padded::Zero(4, skin.vertex_count())),
-      nodes_of_(nodes_),
-      other_(vertices_),
-      boxes_(skin.tree.size()) {}
+      boxes_(skin.tree.size()) {
+  std::iota(far_list_.begin(), far_list_.end(), 0);
+  for (std::size_t i = 0; i < skin.tree.size(); ++i)
+    if (!skin.tree[i].right) leaf_[static_cast<std::size_t>(skin.tree[i].begin)] = static_cast<int>(i);
+}
 
+void Surface::carry_far(const Padded& of_nodes) const {
+  best_search_kernels().evaluate(of_nodes.data(), skin_.far_nodes.data(), skin_.far_weights.data(),
+                                 far_list_.data(), static_cast<int>(far_list_.size()), far_.data());
+}
+
+// A vertex is sum w x over its nodes, sum w = 1 and W = sum |w|.  So are its velocity and its displacement:
+// they differ from `about` by no more than W times the largest difference of a node.  Few vertices have a
+// large W, and those are evaluated.
+double Surface::farthest(const Padded& of_nodes, const Vec3& about) const {
+  const double of_all = (of_nodes.topRows<3>().colwise() - about).colwise().squaredNorm().maxCoeff();
+  double most2 = skin_.weight_sum * skin_.weight_sum * of_all;
+  carry_far(of_nodes);
+  if (far_.cols() > 0)
+    most2 = std::max(most2, (far_.topRows<3>().colwise() - about).colwise().squaredNorm().maxCoeff());
+  return std::sqrt(most2);
+}
+
+double Surface::spread(const double* node_velocities, const Vec3& about) const {
+  way_.topRows<3>() = Eigen::Map<const Points>(node_velocities, 3, skin_.node_count);
+  return farthest(way_, about);
+}
+
+// Of weights that sum to 1 those below 0 are (W - 1)/2 in all: so far may a vertex lie outside of the nodes'
+// box, in its edges.
 void Surface::move(const double* nodes) {
+  constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
   const Eigen::Map<const Points> now(nodes, 3, skin_.node_count);
-  if (is_placed_) {
-    shift_ = (now - nodes_.topRows<3>()).rowwise().mean();
-    std::swap(vertices_, other_);
-  }
+  const bool is_first = state_++ == 0;
+  way_.topRows<3>() = now - nodes_.topRows<3>();
   nodes_.topRows<3>() = now;
-  const SearchKernels& kernels = best_search_kernels();
-  kernels.evaluate(nodes_.data(), skin_.nodes.data(), skin_.weights.data(), skin_.vertex_count(),
-                   vertices_.data());
-  if (is_placed_) {
-    const auto way = vertices_.topRows<3>() - other_.topRows<3>();
-    stretch_ = std::sqrt((way.colwise() - shift_).colwise().squaredNorm().maxCoeff());
+  if (!is_first) {
+    shift_ = way_.topRows<3>().rowwise().mean();
+    stretch_ = farthest(way_, shift_);
   }
-  is_placed_ = true;
+  bound_ = {now.rowwise().minCoeff(), now.rowwise().maxCoeff()};
+  const double size = std::max(bound_.min().cwiseAbs().maxCoeff(), bound_.max().cwiseAbs().maxCoeff());
+  const Vec3 outside = 0.5 * (skin_.weight_sum - 1.0) * bound_.sizes() + Vec3::Constant(kRounding * size);
+  bound_ = {bound_.min() - outside, bound_.max() + outside};
+  carry_far(nodes_);
+  if (far_.cols() > 0) {
+    bound_.extend(Vec3(far_.topRows<3>().rowwise().minCoeff()));
+    bound_.extend(Vec3(far_.topRows<3>().rowwise().maxCoeff()));
+  }
+  const Vec3 wider = Vec3::Constant(stretch_ + kRounding * size);
+  const bool is_known = !is_first && wider.allFinite();
   for (std::size_t i = skin_.tree.size(); i-- > 0;) {
     const ClusterNode& node = skin_.tree[i];
-    if (node.right) {
+    if (node.right)
       boxes_[i] = boxes_[i + 1].merged(boxes_[static_cast<std::size_t>(node.right)]);
-      continue;
-    }
-    const int begin = skin_.cluster_begin[static_cast<std::size_t>(node.begin)];
-    const int end = skin_.cluster_begin[static_cast<std::size_t>(node.end)];
-    double low[4], high[4];
-    kernels.bound(vertices_.data(), skin_.cluster_vertices.data() + begin, end - begin, low, high);
-    boxes_[i] = {Eigen::Map<const Vec3>(low), Eigen::Map<const Vec3>(high)};
+    else if (is_known)
+      boxes_[i] = {boxes_[i].min() + shift_ - wider, boxes_[i].max() + shift_ + wider};
+    else
+      evaluate(node.begin);
   }
 }
 
-double Surface::spread(const double* node_velocities, const Vec3& about) {
-  nodes_of_.topRows<3>() = Eigen::Map<const Points>(node_velocities, 3, skin_.node_count);
-  best_search_kernels().evaluate(nodes_of_.data(), skin_.nodes.data(), skin_.weights.data(),
-                                 skin_.vertex_count(), other_.data());
-  return std::sqrt((other_.topRows<3>().colwise() - about).colwise().squaredNorm().maxCoeff());
+void Surface::evaluate(int cluster) const {
+  const auto c = static_cast<std::size_t>(cluster);
+  placed_[c] = state_;
+  const int begin = skin_.cluster_begin[c], count = skin_.cluster_begin[c + 1] - begin;
+  const int* const list = skin_.cluster_vertices.data() + begin;
+  const SearchKernels& kernels = best_search_kernels();
+  double low[4], high[4];
+  kernels.evaluate(nodes_.data(), skin_.nodes.data(), skin_.weights.data(), list, count, vertices_.data());
+  kernels.bound(vertices_.data(), list, count, low, high);
+  boxes_[static_cast<std::size_t>(leaf_[c])] = {Eigen::Map<const Vec3>(low), Eigen::Map<const Vec3>(high)};
 }
 
 Vec3 Surface::point(int face, const Vec3& weights) const {
+  place(face / kClusterFaces);
   return weights[0] * corner(face, 0) + weights[1] * corner(face, 1) + weights[2] * corner(face, 2);
 }
 
 TrianglePoint Surface::nearest_on_face(int face, const Vec3& x) const {
+  place(face / kClusterFaces);
   return nearest_on_triangle(corner(face, 0), corner(face, 1), corner(face, 2), x);
 }
 
@@ -129,7 +171,7 @@ Foot Surface::nearest(const Vec3& x, int start) const {
   best.at.distance2 = std::numeric_limits<double>::infinity();
   if (start >= 0) best = {start, nearest_on_face(start, x)};
   ++count_.searches;
-  const double size = std::max(box(0).min().cwiseAbs().maxCoeff(), box(0).max().cwiseAbs().maxCoeff()) +
+  const double size = std::max(bound_.min().cwiseAbs().maxCoeff(), bound_.max().cwiseAbs().maxCoeff()) +
                       x.cwiseAbs().maxCoeff();
   int open[64], depth = 0;  // bisection halves the faces: 64 levels are never reached
   open[depth++] = 0;
@@ -170,6 +212,7 @@ Foot Surface::nearest_around(const Vec3& x, int face) const {
 }
 
 Vec3 Surface::unit_normal(int face) const {
+  place(face / kClusterFaces);
   const Vec3 normal = (corner(face, 1) - corner(face, 0)).cross(corner(face, 2) - corner(face, 0));
   const double size = normal.norm();
   return size > 0.0 ? Vec3(normal / size) : Vec3::Zero();
@@ -189,8 +232,9 @@ Vec3 Surface::outward(const Foot& foot) const {
          i < skin_.fan_begin[static_cast<std::size_t>(v) + 1]; ++i) {
       const int face = skin_.fan[static_cast<std::size_t>(i)];
       const int k = skin_.faces(0, face) == v ? 0 : skin_.faces(1, face) == v ? 1 : 2;
+      const Vec3 n = unit_normal(face);
       const Vec3 e = corner(face, (k + 1) % 3) - vertex(v), g = corner(face, (k + 2) % 3) - vertex(v);
-      normal += std::atan2(e.cross(g).norm(), e.dot(g)) * unit_normal(face);
+      normal += std::atan2(e.cross(g).norm(), e.dot(g)) * n;
     }
   }
   return normal;

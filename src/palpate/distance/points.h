@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "palpate/distance/skin.h"
@@ -21,6 +22,7 @@ struct ContactPoint {
 struct ContactTriangle {
   std::array<int, 3> points{};  ///< in the face's order
   double area = 0.0;            ///< at rest [m^2]
+  double lowered = 0.0;         ///< how far the surface that it stands for lies above it, in the mean [m]
 };
 
 /// The triangles over which a contact takes the gap as linear, and their corners.
@@ -42,5 +44,11 @@ int cuts_of(const Skin& skin, int face, double spacing);
 /// @param spacing  longest edge of the triangles [m], as for cuts_of()
 /// @throws Error where the spacing is not positive
 ContactMesh contact_mesh(const Skin& skin, double spacing);
+
+/// Fits triangles to the curved surface that their corners lie on: their areas, and how far it bulges over
+/// them.
+/// @param at    places of the mesh's points [m]
+/// @param onto  the surface's point nearest to x
+void fit_to_surface(ContactMesh& mesh, const Points& at, const std::function<Vec3(const Vec3&)>& onto);
 
 }  // namespace palpate::distance

@@ -38,7 +38,12 @@ struct Skin {
   VecX longest_edge;                  ///< of each face at rest [m]
   std::vector<int> cluster_begin;     ///< of each cluster in `cluster_vertices`, and its length at the end
   std::vector<int> cluster_vertices;  ///< vertices of each cluster, each once
-  double weight_sum = 0.0;  ///< largest sum of |weights| of a vertex: it moves by at most that times a node
+  /// What carries the vertices far outside of their tetrahedra, a tenth at most: those whose sums of
+  /// |weights| are the largest.
+  NodeIndices far_nodes;
+  NodeWeights far_weights;
+  double weight_sum =
+      0.0;  ///< largest sum of |weights| of the others: they move by at most that times a node
   std::vector<ClusterNode> tree;  ///< parents before children; the root is the first
 
   int vertex_count() const { return static_cast<int>(nodes.cols()); }
@@ -53,7 +58,11 @@ struct Skin {
 ///   area, or where a weight or position is not finite
 Skin make_skin(const TriMesh& rest, const mesh::Embedding& embedding, const Tets& tets, int node_count);
 
-/// A skin whose vertices are its nodes: a rigid mesh, or a shell.  Throws as above.
+/// A skin whose vertices are its nodes.  Throws as above.
 Skin make_skin(const TriMesh& rest);
+
+/// A skin that moves as one, carried by the corners of a tetrahedron around it.  Throws as above.
+/// @param corners  3 x 4, receives them [m], in the mesh's axes
+Skin make_rigid_skin(const TriMesh& rest, Points& corners);
 
 }  // namespace palpate::distance

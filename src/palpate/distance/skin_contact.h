@@ -31,6 +31,9 @@ struct Spring {
   double gap = 0.0;             ///< signed distance of the point: -|y - x| inside, |y - x| outside [m]
   double stiffness = 0.0;  ///< k times the area of its hat that overlaps; of all of it where none does [N/m]
   double force = 0.0;      ///< k times the integral of overlap times hat [N]
+  /// half of the overlap at the point times its force, triangle by triangle: U is their sum, for it is
+  /// homogeneous of degree 2 in the overlaps [J]
+  double energy = 0.0;
   double clear = 0.0;      ///< way of the skins up to which the point lies outside [m]
   bool is_placed = false;  ///< its foot is where it is nearest now; else nothing overlaps here
 };
@@ -56,6 +59,7 @@ struct Resultant {
 /// pressed by delta into a half-space gives k pi R delta^2 to first order in delta/R (Sherman, Seth, Delp
 /// 2011, whose elastic foundation this is, per area).
 ///
+/// Where triangles stand for a curved surface (fit_to_surface()), d is lowered by how far it lies above them.
 /// On triangles with edges e, against a surface of mean curvature H, I d is above d by H sum e^2/24 in the
 /// mean: quadrature_error() says what that makes.
 ///
@@ -65,6 +69,8 @@ class SkinContact {
  public:
   /// @param a, b  outlive the contact
   SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& spec);
+  /// @param meshes  of both skins; with half of the stiffness each, unless one is empty [Pa/m]
+  SkinContact(const Skin& a, const Skin& b, double stiffness, std::array<ContactMesh, 2> meshes);
   ~SkinContact();
   SkinContact(const SkinContact&) = delete;
   SkinContact& operator=(const SkinContact&) = delete;
@@ -82,14 +88,16 @@ class SkinContact {
   void find_by_reference(const double* nodes_a, const double* nodes_b);
 
   const std::vector<Spring>& springs() const { return springs_; }
-  const std::vector<ContactPoint>& points(int side) const { return meshes_[side].points; }
+  const std::vector<ContactPoint>& points(int side) const {
+    return meshes_[static_cast<std::size_t>(side)].points;
+  }
   Vec3 position(const Spring& spring) const;  ///< of its point [m]
   /// The direction that leads out of the other skin at the spring's foot, unit: away from the nearest point
   /// outside and towards it inside, and the pseudonormal of Surface::outward() where the two coincide.
   Vec3 outward(const Spring& spring) const;
   const Surface& surface(int side) const { return surfaces_[side]; }
   /// As Surface::spread(), of one side.
-  double spread(int side, const double* node_velocities, const Vec3& about) {
+  double spread(int side, const double* node_velocities, const Vec3& about) const {
     return surfaces_[side].spread(node_velocities, about);
   }
   double energy() const;                             ///< U [J]
@@ -107,6 +115,9 @@ class SkinContact {
 
   void move(const double* nodes_a, const double* nodes_b);
   bool is_searchable() const;
+  const ContactTriangle& triangle(int side, int number) const {
+    return meshes_[static_cast<std::size_t>(side)].triangles[static_cast<std::size_t>(number)];
+  }
   void find_triangles();
   void place_missing();
   void integrate();
@@ -123,10 +134,11 @@ class SkinContact {
   void add_to_vertices(const Spring& spring, const Vec3& force);
   void add_to_nodes(double* nodes_a, double* nodes_b);
 
-  SkinContactSpec spec_;
+  double stiffness_;  ///< of the points of one side [Pa/m]
   Surface surfaces_[2];
-  ContactMesh meshes_[2];
-  std::vector<int> cluster_points_[2];  ///< first point of each cluster's faces, and the number of all
+  std::array<ContactMesh, 2> meshes_;
+  double most_lowered_[2] = {0.0, 0.0};  ///< of each side's triangles [m]
+  std::vector<int> cluster_points_[2];   ///< first point of each cluster's faces, and the number of all
   std::vector<Spring> springs_;
   /// Triangles with a spring at each corner.
   struct Triangle {

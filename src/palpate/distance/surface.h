@@ -28,6 +28,9 @@ struct SearchCount {
 
 /// A skin where its nodes are now, and exact nearest points of it.
 ///
+/// Vertices are evaluated by clusters, when something asks for them: a state costs the nodes, a tenth of the
+/// skin, and what is near.
+///
 /// The nearest point is the least pair (squared distance, face), where the distance of a face is the one that
 /// nearest_on_triangle() computes.  Whatever bounds the search, a face is left out only where a lower bound
 /// on that value exceeds one that was computed for another face.  So the answer is a function of positions
@@ -37,26 +40,32 @@ class Surface {
   /// @param skin  outlives the surface
   explicit Surface(const Skin& skin);
 
-  /// Evaluates vertices and boxes.  @param nodes  x y z of each node [m]
+  /// Takes the nodes' positions.  @param nodes  x y z of each node [m]
   void move(const double* nodes);
   /// Mean displacement of the nodes in the last move() [m].
   const Vec3& shift() const { return shift_; }
   /// No vertex was displaced by more than that from shift() in the last move() [m]; infinite in the first.
   double stretch() const { return stretch_; }
 
-  /// Returns how far a vertex' velocity is from one, at most, where the nodes have these [m/s].
-  double spread(const double* node_velocities, const Vec3& about);
+  /// Returns a bound on how far a vertex' velocity is from one, where the nodes have these [m/s].
+  double spread(const double* node_velocities, const Vec3& about) const;
 
   const Skin& skin() const { return skin_; }
-  /// Four numbers each, the last one without a meaning.
+  /// Box around all vertices, the same whatever was before.
+  const Eigen::AlignedBox3d& bound() const { return bound_; }
+  /// Box around what is below a node of the skin's tree: the bounding box of a cluster that was placed at
+  /// this state, else one that holds it.
+  const Eigen::AlignedBox3d& box(int tree_node) const { return boxes_[static_cast<std::size_t>(tree_node)]; }
+  /// Evaluates the vertices of a cluster and its box, unless they are.
+  void place(int cluster) const {
+    if (placed_[static_cast<std::size_t>(cluster)] != state_) evaluate(cluster);
+  }
+  /// Four numbers each, the last one without a meaning.  @pre the cluster was placed
   const double* vertices() const { return vertices_.data(); }
   auto vertex(int v) const { return vertices_.col(v).head<3>(); }
   auto corner(int face, int k) const { return vertex(skin_.faces(k, face)); }
   /// Point of a face by weights of its corners.
   Vec3 point(int face, const Vec3& weights) const;
-  /// Bounding box of a node of the skin's tree.
-  const Eigen::AlignedBox3d& box(int tree_node) const { return boxes_[static_cast<std::size_t>(tree_node)]; }
-  const Eigen::AlignedBox3d& box() const { return boxes_[0]; }  ///< of all
 
   TrianglePoint nearest_on_face(int face, const Vec3& x) const;
   /// @param start  a face that is probably near, -1: none.  It bounds the search and changes no result.
@@ -75,18 +84,27 @@ class Surface {
   SearchCount count() const { return count_; }
 
  private:
+  using Padded = Eigen::Matrix<double, 4, Eigen::Dynamic>;
+
+  void carry_far(const Padded& of_nodes) const;
+  double farthest(const Padded& of_nodes, const Vec3& about) const;
+  void evaluate(int cluster) const;
   Vec3 unit_normal(int face) const;
   void search_cluster(int cluster, const Vec3& x, Foot& best) const;
 
-  using Padded = Eigen::Matrix<double, 4, Eigen::Dynamic>;
-
   const Skin& skin_;
-  Padded nodes_, vertices_;
-  Padded nodes_of_, other_;  ///< of velocities, or of the vertices before the last move
+  Padded nodes_;
+  mutable Padded way_;         ///< of the nodes: displacements, or velocities
+  mutable Padded far_;         ///< what the skin's far_nodes carry, of positions, ways or velocities
+  std::vector<int> far_list_;  ///< 0, 1, 2, ...
   Vec3 shift_ = Vec3::Zero();
   double stretch_ = std::numeric_limits<double>::infinity();
-  bool is_placed_ = false;
-  std::vector<Eigen::AlignedBox3d> boxes_;
+  Eigen::AlignedBox3d bound_;
+  std::vector<int> leaf_;            ///< of each cluster in the tree
+  int state_ = 0;                    ///< number of the last move()
+  mutable std::vector<int> placed_;  ///< state in which each cluster was evaluated
+  mutable Padded vertices_;
+  mutable std::vector<Eigen::AlignedBox3d> boxes_;
   mutable SearchCount count_;
 };
 
