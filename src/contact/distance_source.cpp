@@ -7,6 +7,9 @@
 // and opposite force have one line.  What the nodes get of them is exact where vertices are nodes; on a skin
 // in tetrahedra a point hangs on one tetrahedron (surface_state.cpp).
 //
+// Of a shape's own points (ShapePoints) there is one side alone, and those of a ball have no moment about its
+// centre: see on_ball().
+//
 // Samples follow the state with gaps = "exact": the query only says which points can be near.
 #include <algorithm>
 #include <array>
@@ -14,28 +17,39 @@
 #include <optional>
 
 #include "contact/coupled_nodes.h"
-#include "contact/image_side.h"
+#include "contact/look_back.h"
 #include "contact/safe_time.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/distance/skin_contact.h"
 #include "palpate/proxy/reach.h"
+#include "palpate/proxy/region.h"
 
 namespace palpate::contact {
 namespace {
 
+/// One side of the contact.
+struct SkinSide {
+  std::unique_ptr<ImageSide> surface;
+  distance::Skin skin;
+  Points corners;  ///< of a rigid one: of what carries the skin, in its frame [m]; else none
+  TriMesh rest;    ///< [m]
+};
+
 class DistanceSource final : public SampleSource {
  public:
-  DistanceSource(std::unique_ptr<ImageSide> a, distance::Skin skin_a, std::unique_ptr<ImageSide> b,
-                 distance::Skin skin_b, const std::array<double, 2>& spacing, double thickness,
-                 const DistanceOptions& options)
-      : a_(std::move(a)),
-        b_(std::move(b)),
-        skins_{std::move(skin_a), std::move(skin_b)},
-        contact_(skins_[0], skins_[1], {.stiffness_pa_m = 1.0, .spacing_m = spacing}),
+  DistanceSource(SkinSide a, SkinSide b, std::array<distance::ContactMesh, 2> meshes, double thickness,
+                 const DistanceOptions& options, const std::optional<SurfacePoint>& centre = {})
+      : a_(std::move(a.surface)),
+        b_(std::move(b.surface)),
+        skins_{std::move(a.skin), std::move(b.skin)},
+        corners_{std::move(a.corners), std::move(b.corners)},
+        contact_(skins_[0], skins_[1], 1.0, std::move(meshes)),
         options_(options),
-        thickness_(thickness) {
+        thickness_(thickness),
+        centre_(centre) {
+    if (options_.candidate_gap == 0.0) options_.candidate_gap = std::min(mean_edge(0), mean_edge(1));
     counters::count("contact.distance_source");
   }
 
@@ -43,8 +57,15 @@ class DistanceSource final : public SampleSource {
 
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     update(state);
+    look_back_.look(
+        *a_, *b_,
+        [&](LookBack::Met& met) {
+          find_all_met(*a_, *b_, thickness_, met.a, met.b);
+          return thickness_;
+        },
+        {}, state.time);
     const proxy::ProxyMotion of_a = motion(0, state), of_b = motion(1, state);
-    contact_.find(carrying(*a_), carrying(*b_),
+    contact_.find(carrying(0), carrying(1),
                   proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction());
     joints_.clear();
     safe_time_ = HUGE_VAL;
@@ -68,7 +89,7 @@ class DistanceSource final : public SampleSource {
                   samples.size(), springs.size());
     if (samples.empty()) return;
     update(state);
-    contact_.follow(carrying(*a_), carrying(*b_));
+    contact_.follow(carrying(0), carrying(1));
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (!springs[i].is_placed) {
         samples[i].area = 0.0;  // its points are not where they were nearest: no force, whatever they do
@@ -95,7 +116,9 @@ class DistanceSource final : public SampleSource {
   }
   double safe_time() const override { return safe_time_; }
   long fast_regions() const override { return fast_; }
+  long tunnelled() const override { return look_back_.count(); }
   void archive(Archive& a) override {
+    look_back_.archive(a);
     a("fast", fast_);
     a("sum_error", sum_error_);
   }
@@ -105,13 +128,28 @@ class DistanceSource final : public SampleSource {
     a_->update(state);
     b_->update(state);
   }
-  /// Positions of the nodes of a side's distance::Skin: the body's nodes, or the vertices.
-  static const double* carrying(ImageSide& side) {
-    return (side.soft() ? side.points() : side.positions()).data();
+  /// Positions of the nodes of a side's distance::Skin: the body's nodes, its vertices, or the corners of
+  /// what carries a rigid one.
+  const double* carrying(std::size_t side) {
+    ImageSide& surface = side == 0 ? *a_ : *b_;
+    if (surface.soft()) return surface.points().data();
+    const Pose pose = surface.frame();
+    if (side == 1 && centre_)
+      placed_[side] = corners_[side].colwise() - centre_->offset;
+    else
+      placed_[side].noalias() = pose.rotation.toRotationMatrix() * corners_[side];
+    placed_[side].colwise() += side == 1 && centre_ ? pose * centre_->offset : pose.translation;
+    return placed_[side].data();
   }
 
-  /// Velocities of the skin's vertices, which bound those of all its points.
-  proxy::ProxyMotion motion(int side, const dynamics::StateView& state) {
+  /// As MaterialPointState::mean_edge(); infinite of a side without points.
+  double mean_edge(int side) const {
+    double area = 0.0;
+    for (const distance::ContactPoint& point : contact_.points(side)) area += point.area;
+    return area > 0.0 ? std::sqrt(area / static_cast<double>(contact_.points(side).size())) : HUGE_VAL;
+  }
+
+  proxy::ProxyMotion motion(int side, const dynamics::StateView& state) const {
     const ImageSide& of = side == 0 ? *a_ : *b_;
     proxy::ProxyMotion out = of.motion(state);
     if (of.soft() && of.soft()->is_skin())
@@ -134,7 +172,8 @@ class DistanceSource final : public SampleSource {
     pair.normal = is_of_a ? out : Vec3(-out);
     pair.at_a = is_of_a ? x : y;
     pair.at_b = is_of_a ? y : x;
-    const auto carried = [&](int side, int face, const Vec3& weights, const Vec3& at) {
+    const auto carried = [&](int side, int face, const Vec3& weights, const Vec3& at) -> CarriedPoint {
+      if (side == 1 && centre_) return {on_ball(at, pair.normal), 0};
       const int given = skins_[static_cast<std::size_t>(side)].given_face[static_cast<std::size_t>(face)];
       return (side == 0 ? *a_ : *b_).carried(given, weights, at, pair.normal);
     };
@@ -151,14 +190,21 @@ class DistanceSource final : public SampleSource {
     out.gap = spring.gap;
     if (spring.force > 0.0) {
       out.gap = -spring.force / spring.stiffness;
-      out.stored = spring.gap / out.gap;
+      out.stored = 2.0 * spring.energy * spring.stiffness / (spring.force * spring.force);
       const Vec3 end = pair.at_a - out.gap * pair.normal;  // on the same line
       if (b_->soft())
         out.b.offset += end - pair.at_b;
       else
-        out.b = b_->carried(0, Vec3::Zero(), end, pair.normal).point;
+        out.b = centre_ ? on_ball(end, pair.normal) : b_->carried(0, Vec3::Zero(), end, pair.normal).point;
     }
     return out;
+  }
+  // A ball's points keep their axes while it rotates: no force depends on its rotation, so that the gradient
+  // has no moment about its centre.  Each acts along the line through the centre.
+  SurfacePoint on_ball(const Vec3& x, const Vec3& normal) const {
+    SurfacePoint point = *centre_;
+    point.slide = normal.dot(x - b_->frame() * centre_->offset) * normal;
+    return point;
   }
 
   /// Blocks between the nodes of two soft bodies.
@@ -192,54 +238,93 @@ class DistanceSource final : public SampleSource {
 
   std::unique_ptr<ImageSide> a_, b_;
   std::array<distance::Skin, 2> skins_;
+  std::array<Points, 2> corners_, placed_;  ///< of rigid sides, in their frames and in the world [m]
   distance::SkinContact contact_;
   DistanceOptions options_;
   double thickness_;                         ///< of the thinner side [m]
+  std::optional<SurfacePoint> centre_;       ///< of a ball, side b, in its frame
   std::vector<CoupledNodes::Joint> joints_;  ///< of two soft bodies: what carried the samples at the query
   mutable CoupledNodes coupled_;
   std::optional<std::array<NodeNeighbours, 2>> neighbours_;
   std::uint64_t counted_in_ = 0;
   double safe_time_ = HUGE_VAL;
   long fast_ = 0;
+  LookBack look_back_;
   SumError sum_error_;
 };
 
-distance::Skin skin_of(const NodeSurface& surface, const Points& rest) {
-  const TriMesh mesh{rest, surface.faces};
+SkinSide soft(NodeSurface surface, const Points& rest) {
+  SkinSide side;
+  side.rest = {rest, surface.faces};
   const bool is_embedded = surface.node_of_vertex.empty();
-  return is_embedded ? distance::make_skin(mesh, surface.embedding, surface.tets, surface.tets.maxCoeff() + 1)
-                     : distance::make_skin(mesh);
+  side.skin = is_embedded ? distance::make_skin(side.rest, surface.embedding, surface.tets,
+                                                surface.tets.maxCoeff() + 1)
+                          : distance::make_skin(side.rest);
+  side.surface = soft_side(std::move(surface));
+  return side;
 }
 
-/// @param mesh_a, mesh_b  at rest
-std::unique_ptr<SampleSource> make(std::unique_ptr<ImageSide> a, distance::Skin skin_a, const TriMesh& mesh_a,
-                                   std::unique_ptr<ImageSide> b, distance::Skin skin_b, const TriMesh& mesh_b,
-                                   const DistanceOptions& options) {
-  const CharacteristicLengths of_a = lengths_of(mesh_a), of_b = lengths_of(mesh_b);
-  const std::array<double, 2> spacing = {point_spacing(of_a, of_b, options.quadrature_error),
-                                         point_spacing(of_b, of_a, options.quadrature_error)};
-  return std::make_unique<DistanceSource>(std::move(a), std::move(skin_a), std::move(b), std::move(skin_b),
-                                          spacing, std::min(of_a.width, of_b.width), options);
+SkinSide rigid(const FrameSurface& surface) {
+  SkinSide side;
+  side.rest = surface.mesh;
+  side.skin = distance::make_rigid_skin(side.rest, side.corners);
+  side.surface = rigid_side(surface.mesh, surface.frame, surface.motion);
+  return side;
+}
+
+/// Points of both.
+std::unique_ptr<SampleSource> make(SkinSide a, SkinSide b, const DistanceOptions& options) {
+  const CharacteristicLengths of_a = lengths_of(a.rest), of_b = lengths_of(b.rest);
+  std::array<distance::ContactMesh, 2> meshes = {
+      distance::contact_mesh(a.skin, point_spacing(of_a, of_b, options.quadrature_error)),
+      distance::contact_mesh(b.skin, point_spacing(of_b, of_a, options.quadrature_error))};
+  return std::make_unique<DistanceSource>(std::move(a), std::move(b), std::move(meshes),
+                                          std::min(of_a.width, of_b.width), options);
+}
+
+/// Points of the shape alone.
+std::unique_ptr<SampleSource> make(SkinSide other, const ShapePoints& shape, const DistanceOptions& options) {
+  SkinSide own = rigid(shape.surface);
+  distance::ContactMesh mesh = distance::contact_mesh(own.skin, shape.spacing);
+  Points at(3, static_cast<Eigen::Index>(mesh.points.size()));
+  for (Eigen::Index i = 0; i < at.cols(); ++i) {
+    const distance::ContactPoint& point = mesh.points[static_cast<std::size_t>(i)];
+    at.col(i) = own.rest.vertices(Eigen::all, own.skin.faces.col(point.face)) * point.weights;
+  }
+  distance::fit_to_surface(mesh, at, shape.onto);
+  std::optional<SurfacePoint> centre;
+  if (shape.centre) {
+    centre.emplace();
+    centre->frame = shape.surface.frame;
+    centre->offset = *shape.centre;
+  }
+  const double thickness = std::min(lengths_of(other.rest).width, proxy::least_width(own.rest.vertices));
+  return std::make_unique<DistanceSource>(std::move(other), std::move(own),
+                                          std::array{distance::ContactMesh{}, std::move(mesh)}, thickness,
+                                          options, centre);
 }
 
 }  // namespace
 
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface a, const Points& rest_a, NodeSurface b,
                                                    const Points& rest_b, const DistanceOptions& options) {
-  distance::Skin skin_a = skin_of(a, rest_a), skin_b = skin_of(b, rest_b);
-  const TriMesh mesh_a{rest_a, a.faces}, mesh_b{rest_b, b.faces};
-  return make(soft_side(std::move(a)), std::move(skin_a), mesh_a, soft_side(std::move(b)), std::move(skin_b),
-              mesh_b, options);
+  return make(soft(std::move(a), rest_a), soft(std::move(b), rest_b), options);
 }
 
-std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest, TriMesh rigid,
-                                                   int frame, std::shared_ptr<MovingFrame> motion,
+std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest,
+                                                   const FrameSurface& other,
                                                    const DistanceOptions& options) {
-  distance::Skin skin = skin_of(surface, rest), rigid_skin = distance::make_skin(rigid);
-  const TriMesh mesh{rest, surface.faces}, rigid_mesh = rigid;
-  return make(soft_side(std::move(surface)), std::move(skin), mesh,
-              rigid_side(std::move(rigid), frame, std::move(motion)), std::move(rigid_skin), rigid_mesh,
-              options);
+  return make(soft(std::move(surface), rest), rigid(other), options);
+}
+
+std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest,
+                                                   const ShapePoints& shape, const DistanceOptions& options) {
+  return make(soft(std::move(surface), rest), shape, options);
+}
+
+std::unique_ptr<SampleSource> make_distance_source(const FrameSurface& surface, const ShapePoints& shape,
+                                                   const DistanceOptions& options) {
+  return make(rigid(surface), shape, options);
 }
 
 }  // namespace palpate::contact

@@ -58,8 +58,7 @@ std::uint64_t ImageSource::sides_version() const {
          (context_.b->soft() ? context_.b->soft()->pattern_version() : 0);
 }
 void ImageSource::archive(Archive& a) {
-  a("tunnelled", tunnelled_);
-  a("warned", warned_);
+  look_back_.archive(a);
   a("fast", context_.fast_regions);
   a("near", context_.options.candidate_gap);  // of the skin as it was at the first query
   std::string fallback = fallback_;
@@ -97,74 +96,6 @@ ImageRegion& ImageSource::region(std::size_t place) {
   return *regions_[place];
 }
 
-/// Some faces with vertices of their own, seen from the frame of `axes`: what is rigid stands still there.
-SurfaceWays ImageSource::ways_of(const ImageSide& side, const std::vector<int>& faces,
-                                 const ImageSide& axes) const {
-  SurfaceWays out;
-  std::vector<int> taken;
-  for (const int f : faces)
-    for (int k = 0; k < 3; ++k) taken.push_back(side.faces()(k, f));
-  std::sort(taken.begin(), taken.end());
-  taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
-  const auto local = [&](int vertex) {
-    return static_cast<int>(std::lower_bound(taken.begin(), taken.end(), vertex) - taken.begin());
-  };
-  out.of_vertex.resize(taken.size());
-  out.of_face = faces;
-  out.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const int v = local(side.faces()(k, faces[i]));
-      out.faces(k, static_cast<Eigen::Index>(i)) = v;
-      out.of_vertex[static_cast<std::size_t>(v)] = faces[i];
-    }
-  const Pose now = axes.frame().inverse(), then = axes.kept_frame().inverse();
-  out.now.resize(3, static_cast<Eigen::Index>(taken.size()));
-  out.before.resize(3, out.now.cols());
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    out.now.col(static_cast<Eigen::Index>(i)) = now * side.vertex(taken[i]);
-    out.before.col(static_cast<Eigen::Index>(i)) = then * side.kept_vertex(taken[i]);
-  }
-  return out;
-}
-
-void ImageSource::look_back(double t) {
-  constexpr double kPartOfThickness = 0.25;  // what is shorter is an edge that was grazed
-  ImageSide &a = *context_.a, &b = *context_.b;
-  if (kept_) {
-    const ScopedTimer timer(context_.stages.regions_s);
-    const double least_way = kPartOfThickness * find_met(met_a_, met_b_);
-    const auto meet = [&](int f, int g) { return may_meet(f, g); };
-    if (context_.of_one_body()) {  // a part may be on both sides: all of the skin against itself, once
-      met_a_.insert(met_a_.end(), met_b_.begin(), met_b_.end());
-      std::sort(met_a_.begin(), met_a_.end());
-      met_a_.erase(std::unique(met_a_.begin(), met_a_.end()), met_a_.end());
-      const SurfaceWays skin = ways_of(a, met_a_, a);
-      tunnelled_ += passed_.count(skin, skin, least_way, meet);
-    } else if (!met_a_.empty() && !met_b_.empty()) {
-      const SurfaceWays of_a = ways_of(a, met_a_, b), of_b = ways_of(b, met_b_, b);
-      tunnelled_ += passed_.count(of_a, of_b, least_way, meet) + passed_.count(of_b, of_a, least_way, meet);
-    }
-  }
-  a.keep();
-  if (!context_.of_one_body()) b.keep();
-  kept_ = true;
-  if (passed_.given_up() > 0 && !gave_up_) {
-    gave_up_ = true;
-    log::warn(
-        "contact at t = {:.6g} s: the surfaces moved so far between two queries that what went through "
-        "unseen "
-        "is not counted whole; refresh contact more often (exchange.contact_refresh_s)",
-        t);
-  }
-  if (tunnelled_ == 0 || warned_) return;
-  warned_ = true;
-  log::warn(
-      "contact at t = {:.6g} s: {} vertices went through the other body between two queries, unseen; refresh "
-      "contact more often (exchange.contact_refresh_s), or set exchange.tunnelling = \"substep\"",
-      t, tunnelled_);
-}
-
 std::size_t ImageSource::begin(const dynamics::StateView& state) {
   ImageSide &a = *context_.a, &b = *context_.b;
   {
@@ -175,7 +106,12 @@ std::size_t ImageSource::begin(const dynamics::StateView& state) {
   ImageOptions& options = context_.options;
   if (options.candidate_gap == 0.0) options.candidate_gap = 0.25 * a.soft()->mean_edge();
   context_.candidate_gap = options.candidate_gap;
-  look_back(state.time);
+  {
+    const ScopedTimer timer(context_.stages.regions_s);
+    look_back_.look(
+        a, context_.of_one_body() ? a : b, [&](LookBack::Met& met) { return find_met(met.a, met.b); },
+        [&](int f, int g) { return may_meet(f, g); }, state.time);
+  }
   context_.safe_time = HUGE_VAL;
   context_.volume = context_.variance = 0.0;
   if (context_.view) *context_.view = {};

@@ -5,7 +5,7 @@
 
 #include "contact/coupled_nodes.h"
 #include "contact/image_region.h"
-#include "contact/passed_vertices.h"
+#include "contact/look_back.h"
 
 namespace palpate::contact {
 
@@ -28,7 +28,7 @@ class ImageSource : public SampleSource {
   const SumError* sum_error() const final { return &context_.sum_error; }
   void keep_view() final { context_.view.emplace(); }
   const QueryView* view() const final { return context_.view ? &*context_.view : nullptr; }
-  long tunnelled() const final { return tunnelled_; }
+  long tunnelled() const final { return look_back_.count(); }
   double safe_time() const final { return context_.safe_time; }
   long fast_regions() const final { return context_.fast_regions; }
   ImageSource* in_images() final { return this; }
@@ -77,14 +77,9 @@ class ImageSource : public SampleSource {
  private:
   std::size_t begin(const dynamics::StateView& state);
   void end(const SampleCells& samples, std::size_t first_cell);
-  /// Counts what went through since the last query.
-  void look_back(double t);
-  SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const ImageSide& axes) const;
 
-  PassedVertices passed_;
-  std::vector<int> met_a_, met_b_;  ///< scratch: faces
-  long tunnelled_ = 0;
-  bool kept_ = false, warned_ = false, gave_up_ = false, prepared_ = false;
+  LookBack look_back_;
+  bool prepared_ = false;
   std::unique_ptr<DepthImage> image_;
   std::string fallback_;
   SampleCells cells_;  ///< scratch

@@ -31,15 +31,32 @@ CharacteristicLengths lengths_of(const TriMesh& closed) {
   return {proxy::least_width(closed.vertices), radius, 1.0 / radius};
 }
 
-double point_spacing(const CharacteristicLengths& own, const CharacteristicLengths& other,
-                     double wanted_error) {
+namespace {
+
+/// @param turn2  (R/s)^2, of all curvature that is known  @param bend  H of what is not
+double spacing(double R, double turn2, double bend, double wanted_error) {
   constexpr double kKnown = 0.036;
   if (!(wanted_error > 0.0))
     fail("contact points: a quadrature error of {} asks for points without an end; it must be positive",
          wanted_error);
-  if (std::isinf(other.radius)) return HUGE_VAL;
+  return 0.5 * R * std::sqrt(wanted_error / (kKnown * turn2 + 0.5 * bend * R));
+}
+
+}  // namespace
+
+double point_spacing(const CharacteristicLengths& own, const CharacteristicLengths& other,
+                     double wanted_error) {
   const double R = 1.0 / (1.0 / own.radius + 1.0 / other.radius);
-  return 0.5 * R * std::sqrt(wanted_error / (kKnown * std::pow(R / other.radius, 2) + 0.5 * other.bend * R));
+  const double e = spacing(R, std::pow(R / other.radius, 2), other.bend, wanted_error);
+  return std::isinf(other.radius) ? HUGE_VAL : e;
+}
+
+// A shape's own points stand on a surface that bulges over their triangles.  It is known, as a sphere's
+// curvature is above, and what is left of it as well: the normals between the points.
+double shape_spacing(const CharacteristicLengths& shape, const CharacteristicLengths& body,
+                     double wanted_error) {
+  const double R = 1.0 / (1.0 / shape.radius + 1.0 / body.radius);
+  return spacing(R, std::pow(R / body.radius, 2) + std::pow(R / shape.radius, 2), body.bend, wanted_error);
 }
 
 namespace {

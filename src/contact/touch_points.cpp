@@ -155,11 +155,10 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const ModesO
   place /= area;
   moved /= area;
   out.area = presses ? size / -gap : size;
-  if (presses) {
-    moved += (load / size - moved * normal) * normal.transpose();
-    const Vec3 missing = moment - (R * offset + slide).cross(along);
-    offset += R.transpose() * along.cross(missing) / (size * size);
-  }
+  if (presses) moved += (load / size - moved * normal) * normal.transpose();
+  // what does not press yet will do so along the line of an even pressure
+  const Vec3 missing = moment - (R * offset + slide).cross(along);
+  offset += R.transpose() * along.cross(missing) / (size * size);
   // the mean of places need not have the mean of gaps
   place += normal * (normal.dot(origin + R * offset + slide - place) - gap);
   write(normal, out.normal);

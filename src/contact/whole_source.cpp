@@ -111,16 +111,7 @@ class WholeSource final : public ImageSource {
     return plane_.found && plane_.depth >= -gap_ ? 1 : 0;
   }
   double find_met(std::vector<int>& faces_a, std::vector<int>& faces_b) override {
-    constexpr double kPart = 0.25;  // of the thickness, which may have been squeezed: see proxy/pruner.h
-    faces_a.clear();
-    faces_b.clear();
-    const proxy::ProxyMotion of_a = context_.a->way(), of_b = context_.b->way();
-    if (!((of_a.velocity - of_b.velocity).norm() + of_a.spread + of_b.spread > kPart * thickness()))
-      return thickness();
-    faces_a.resize(static_cast<std::size_t>(context_.a->faces().cols()));
-    faces_b.resize(static_cast<std::size_t>(context_.b->faces().cols()));
-    std::iota(faces_a.begin(), faces_a.end(), 0);
-    std::iota(faces_b.begin(), faces_b.end(), 0);
+    find_all_met(*context_.a, *context_.b, thickness(), faces_a, faces_b);
     return thickness();
   }
   std::unique_ptr<ImageRegion> make_region() override {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "assemble_parts.h"
+#include "contact_shapes.h"
 #include "palpate/contact/gpu_available.h"
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
@@ -25,21 +26,6 @@ double mean_edge(const TriMesh& surface) {
       sum += (surface.vertices.col(surface.faces(k, f)) - surface.vertices.col(surface.faces((k + 1) % 3, f)))
                  .norm();
   return sum / static_cast<double>(3 * surface.faces.cols());
-}
-
-/// Longest edge of the box about them [m].
-double length_of(const Points& x) { return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff(); }
-
-// The speed below which friction is viscous, where a scene names none.  What sticks creeps with it, and an
-// error-controlled method follows its time, v_r/(mu g), wherever sliding begins or ends: neither may depend
-// on the units of length that a scene happens to have.  Froude's scaling, by which scenes of one shape move
-// alike, leaves v_r = c sqrt(g L).  A block of 20 m that lands and slides under cvode-bdf takes 23,600 steps
-// a second at c = 1.4e-5, 4,300 at 7e-5, 1,160 at 3e-4 and 1,090 at 1e-3: below 3e-4 the friction's own time
-// decides, above it nothing is gained.
-double friction_speed(const World& world, double length) {
-  constexpr double kShare = 3e-4, kGravity = 9.81;
-  const double g = world.description.gravity_m_s2.norm();
-  return kShare * std::sqrt((g > 0.0 ? g : kGravity) * length);
 }
 
 struct Pair {
@@ -99,15 +85,30 @@ contact::ImageOptions options_of(const Pair& pair) {
   fail("contact {} - {}: method \"distance\": {}", spec.first, spec.second, error.what());
 }
 
+contact::DistanceOptions distance_options(const Pair& pair) {
+  return {.quadrature_error = pair.spec.quadrature_error,
+          .candidate_gap = pair.spec.candidate_gap_m,
+          .look_ahead = pair.look_ahead};
+}
+
 /// Nearest points of a body and another surface, which both have to be closed.
 template <class... Other>
 std::unique_ptr<contact::SampleSource> distance_source(Pair pair, Other... other) {
   try {
     return contact::make_distance_source(std::move(pair.surface), pair.rest, std::move(other)...,
-                                         {.quadrature_error = pair.spec.quadrature_error,
-                                          .candidate_gap = pair.candidate_gap,
-                                          .look_ahead = pair.look_ahead});
+                                         distance_options(pair));
   } catch (const Error& error) { refuse_distance(pair.spec, error); }
+}
+
+/// The points of a surface on a shape, and the shape's own.
+std::unique_ptr<contact::SampleSource> with_own_points(std::unique_ptr<contact::SampleSource> source,
+                                                       const Pair& pair, const Shape& shape) {
+  const auto own =
+      own_points(shape, contact::lengths_of({pair.rest, pair.surface.faces}), pair.spec.quadrature_error);
+  if (!own) return source;
+  return contact::make_half_and_half(
+      std::move(source),
+      contact::make_distance_source(pair.surface, pair.rest, *own, distance_options(pair)));
 }
 
 /// A soft body's points, on a shape of these lengths.
@@ -187,12 +188,16 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side,
   const ToolSpec& tool = *side.spec;
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
   const bool sphere = tool.shape == "sphere";
-  if (pair.spec.method == "distance" && sphere)
-    return contact::make_sphere_source(points_on(pair, {2.0 * tool.radius_m, tool.radius_m, 0.0}),
-                                       side.frame_index, motion, Vec3::Zero(), tool.radius_m,
-                                       pair.candidate_gap, pair.look_ahead);
+  if (pair.spec.method == "distance" && sphere) {
+    const Shape shape = round_tool(tool.radius_m, side.frame_index, motion);
+    return with_own_points(
+        contact::make_sphere_source(points_on(pair, shape.lengths), side.frame_index, motion, Vec3::Zero(),
+                                    tool.radius_m, pair.spec.candidate_gap_m, pair.look_ahead),
+        pair, shape);
+  }
   if (pair.spec.method == "distance")
-    return distance_source(std::move(pair), tool_surface(tool, world.folder), side.frame_index, motion);
+    return distance_source(std::move(pair),
+                           contact::FrameSurface{tool_surface(tool, world.folder), side.frame_index, motion});
   if (pair.spec.method != "analytic")
     return image_source(std::move(pair), tool_surface(tool, world.folder), side.proxies, side.frame_index,
                         motion);
@@ -213,32 +218,26 @@ bool steps_are_linearised(const World& world) {
   return entry != registry.end() && entry->traits.linearised;
 }
 
-/// @param force  takes the obstacle's frame
-std::unique_ptr<contact::SampleSource> obstacle_source(contact::ContactForce& force, const ContactSpec& spec,
+std::unique_ptr<contact::SampleSource> obstacle_source(const Shape& shape, const ContactSpec& spec,
                                                        contact::ContactSide side, double candidate_gap,
                                                        double look_ahead, const ObstacleSpec& obstacle) {
   if (scene::is_in_images(spec))
     fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"auto\"", spec.first,
          obstacle.name, obstacle.type);
-  const contact::ObstacleEntry& entry = contact::obstacle_entry(obstacle);
-  auto motion = contact::fixed_frame();
-  const int frame = force.add_frame(motion);
-  return entry.make_source(std::move(side), frame, std::move(motion), contact::obstacle_shape(obstacle),
-                           candidate_gap, look_ahead);
-}
-
-contact::CharacteristicLengths lengths_of(const ObstacleSpec& obstacle) {
-  return contact::obstacle_entry(obstacle).lengths(contact::obstacle_shape(obstacle));
+  return contact::obstacle_entry(obstacle).make_source(std::move(side), shape.frame, shape.motion,
+                                                       contact::obstacle_shape(obstacle), candidate_gap,
+                                                       look_ahead);
 }
 
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
                                                        const ObstacleSpec& obstacle) {
-  contact::ContactSide side = [&]() -> contact::ContactSide {
-    if (pair.spec.method != "distance") return std::move(pair.surface);
-    return points_on(pair, lengths_of(obstacle));
-  }();
-  return obstacle_source(*world.contact, pair.spec, std::move(side), pair.candidate_gap, pair.look_ahead,
-                         obstacle);
+  const Shape shape = shape_of(*world.contact, obstacle);
+  if (pair.spec.method != "distance")
+    return obstacle_source(shape, pair.spec, std::move(pair.surface), pair.candidate_gap, pair.look_ahead,
+                           obstacle);
+  return with_own_points(obstacle_source(shape, pair.spec, points_on(pair, shape.lengths),
+                                         pair.spec.candidate_gap_m, pair.look_ahead, obstacle),
+                         pair, shape);
 }
 
 /// How the tool stands in a contact.
@@ -255,19 +254,27 @@ std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, cons
   if (tool.shape == "sphere" && spec.spring == "per_point")
     fail("contact {} - {}: spring = \"per_point\" is for vertices, and a sphere has none", spec.first,
          obstacle.name);
-  contact::ContactSide side = [&]() -> contact::ContactSide {
-    const bool nearest_points = spec.method == "distance";
-    if (tool.shape == "sphere")
-      return contact::FrameBall{tool.radius_m, Vec3::Zero(), in.frame, in.motion, nearest_points};
-    contact::FrameSurface surface{tool_surface(tool, world.folder), in.frame, in.motion};
-    if (!nearest_points) return surface;
-    try {
-      return contact::material_points(
-          surface, contact::point_spacing(contact::lengths_of(surface.mesh), lengths_of(obstacle),
-                                          spec.quadrature_error));
-    } catch (const Error& error) { refuse_distance(spec, error); }
-  }();
-  return obstacle_source(in.force, spec, std::move(side), spec.candidate_gap_m, in.look_ahead, obstacle);
+  const Shape shape = shape_of(in.force, obstacle);
+  const auto source = [&](contact::ContactSide side) {
+    return obstacle_source(shape, spec, std::move(side), spec.candidate_gap_m, in.look_ahead, obstacle);
+  };
+  const bool nearest_points = spec.method == "distance";
+  if (tool.shape == "sphere")
+    return source(contact::FrameBall{tool.radius_m, Vec3::Zero(), in.frame, in.motion, nearest_points});
+  const contact::FrameSurface surface{tool_surface(tool, world.folder), in.frame, in.motion};
+  if (!nearest_points) return source(surface);
+  try {
+    const contact::CharacteristicLengths lengths = contact::lengths_of(surface.mesh);
+    auto of_tool = source(contact::material_points(
+        surface, contact::point_spacing(lengths, shape.lengths, spec.quadrature_error)));
+    const auto own = own_points(shape, lengths, spec.quadrature_error);
+    if (!own) return of_tool;
+    const contact::DistanceOptions options{.quadrature_error = spec.quadrature_error,
+                                           .candidate_gap = spec.candidate_gap_m,
+                                           .look_ahead = in.look_ahead};
+    return contact::make_half_and_half(std::move(of_tool),
+                                       contact::make_distance_source(surface, *own, options));
+  } catch (const Error& error) { refuse_distance(spec, error); }
 }
 
 /// Contact of the tool with an obstacle.  A tool of ticks feels one of its own; what the bodies' side knows
@@ -315,31 +322,6 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
   if (world.find_body(spec.second)) return pair_source(std::move(pair), pair_of(world, spec, spec.second));
   fail("contact {} - {}: nothing is called \"{}\"; name soft bodies, obstacles or \"tool\"", spec.first,
        spec.second, spec.second);
-}
-
-}  // namespace
-
-double tool_friction_speed(const World& world, const ToolSpec& tool) {
-  const double length =
-      tool.shape == "sphere" ? 2.0 * tool.radius_m : length_of(tool_surface(tool, world.folder).vertices);
-  return friction_speed(world, length);
-}
-
-namespace {
-
-/// A tool decides for its pairs alone, so that its ticks can be repeated without the bodies.
-void set_friction_speed(World& world, ContactSpec& contact) {
-  if (contact.friction == 0.0 || contact.friction_regularisation_m_s > 0.0) return;
-  double length = HUGE_VAL;
-  for (const std::string& name : {contact.first, contact.second}) {
-    if (const ToolSide* const side = ToolSide::named(world, name)) {
-      contact.friction_regularisation_m_s = tool_friction_speed(world, *side->spec);
-      return;
-    }
-    if (const Body* const body = world.find_body(name))
-      length = std::min(length, length_of(body->rest.nodes));
-  }
-  contact.friction_regularisation_m_s = friction_speed(world, length);
 }
 
 void add_contact(World& world, ContactSpec& given) {

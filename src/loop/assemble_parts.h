@@ -22,8 +22,10 @@ void assemble_bones(World& world);      ///< only with [[bone]]
 void assemble_skeletons(World& world);  ///< bones of model files, where a [body.skeleton] asks for them
 void assemble_tool(World& world, std::size_t hand);  ///< for each of scene::hands_of()
 void assemble_attachments(World& world);             ///< after all that nodes may be attached to
-/// Speed below which friction of that tool is viscous, where a scene names none [m/s].
+/// Returns the speed below which friction of that tool is viscous, where a scene names none [m/s].
 double tool_friction_speed(const World& world, const ToolSpec& tool);
+/// Sets that of a contact, where the scene names none.
+void set_friction_speed(World& world, ContactSpec& contact);
 void assemble_contact(World& world);  ///< only with [[contact]], or where a tool of ticks carries nodes
 
 }  // namespace palpate::loop

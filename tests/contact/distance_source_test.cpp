@@ -47,7 +47,7 @@ struct Balls {
         frame = contact::block_frame(body);
       }
       term.add_frame(frame);
-      term.add_pair(contact::make_distance_source(a.surface, rest_a, rigid, 0, frame,
+      term.add_pair(contact::make_distance_source(a.surface, rest_a, contact::FrameSurface{rigid, 0, frame},
                                                   {.quadrature_error = 0.1, .candidate_gap = 0.1}),
                     law(gaps));
     }
@@ -197,9 +197,10 @@ TEST(DistanceSource, BallInHalfSpace) {
   const auto frame = contact::fixed_frame();
   contact::ContactForce term;
   term.add_frame(frame);
-  term.add_pair(contact::make_distance_source(world.surface, ball.vertices, floor, 0, frame,
-                                              {.quadrature_error = 3e-3}),
-                law());
+  term.add_pair(
+      contact::make_distance_source(world.surface, ball.vertices, contact::FrameSurface{floor, 0, frame},
+                                    {.quadrature_error = 3e-3}),
+      law());
   term.refresh(world.state.view());
   const VecX f = force(term, world.state);
   const Sum sum = sum_of(world.state, f);

@@ -1,6 +1,7 @@
 // What every obstacle of the registry must do.  Shapes are made from the entries' own keys, at random.
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
+#include "palpate/distance/points.h"
 #include "palpate/mesh/curvature.h"
 #include "surfaces.h"
 
@@ -63,6 +64,42 @@ TEST_P(Obstacle, ThicknessIsTheLeastWayThrough) {
     for (int k = 0; k < 50; ++k) EXPECT_GE(nearest(near_by()).gap, -half - 1e-12);
     if (!std::isfinite(half)) continue;
     EXPECT_NEAR(nearest(centre).gap, -half, 1e-12);
+  }
+}
+
+// Corners on the shape, closed; with what the triangles lack of its area and bulge, coarse ones have as much
+// of both as fine ones.  What has no end has no surface.
+TEST_P(Obstacle, SurfaceIsClosedAndFittedToTheShape) {
+  for (int i = 0; i < 5; ++i) {
+    renew();
+    ASSERT_EQ(entry.surface == nullptr, !std::isfinite(entry.lengths(shape).width));
+    if (!entry.surface) return;
+    const auto measure = [&](double spacing) {
+      const TriMesh surface = entry.surface(shape, spacing);
+      for (const auto x : surface.vertices.colwise()) EXPECT_NEAR(nearest(x).gap, 0.0, 1e-12);
+      const distance::Skin skin = distance::make_skin(surface);  // or throws
+      distance::ContactMesh mesh = distance::contact_mesh(skin, HUGE_VAL);
+      Points at(3, static_cast<Eigen::Index>(mesh.points.size()));
+      double volume = 0.0, area = 0.0;
+      for (Eigen::Index p = 0; p < at.cols(); ++p) {
+        const distance::ContactPoint& point = mesh.points[static_cast<std::size_t>(p)];
+        at.col(p) = surface.vertices(Eigen::all, skin.faces.col(point.face)) * point.weights;
+      }
+      distance::fit_to_surface(mesh, at, [&](const Vec3& x) {
+        const Nearest foot = nearest(x);
+        return Vec3(x - foot.gap * foot.normal);
+      });
+      for (const distance::ContactTriangle& t : mesh.triangles) {
+        const Mat3 x = at(Eigen::all, t.points).colwise() - centre;
+        volume += x.determinant() / 6.0 + t.lowered * t.area;
+        area += t.area;
+      }
+      return std::pair(area, volume);
+    };
+    const auto [area, volume] = measure(0.1);
+    const auto [fine_area, fine_volume] = measure(0.0125);
+    EXPECT_NEAR(area / fine_area, 1.0, 4e-3);  // a cylinder's ends are polygons
+    EXPECT_NEAR(volume / fine_volume, 1.0, 4e-3);
   }
 }
 

@@ -22,6 +22,7 @@ struct TouchingKind {
   std::function<Touching()> make;
   bool pruned = true;        ///< by proxies
   bool of_vertices = false;  ///< samples are points of a surface
+  bool of_ball = false;      ///< one side is a ball by its own points, which do not rotate with it
 };
 
 namespace touching {
@@ -122,8 +123,27 @@ inline Touching near_tool(bool in_state) {
   out.state = soft.state;
   const auto frame = add_frame(out, tool_pose(), in_state);
   const TriMesh tool = tool_ball(soft);
-  out.source = contact::make_distance_source(soft.surface, mesh::sphere(1.0, 12).vertices, tool, 0, frame,
-                                             {.candidate_gap = 0.05});
+  out.source = contact::make_distance_source(soft.surface, mesh::sphere(1.0, 12).vertices,
+                                             contact::FrameSurface{tool, 0, frame}, {.candidate_gap = 0.05});
+  return out;
+}
+
+/// Points of a skin on a sphere, and the sphere's own.
+inline Touching half_and_half(bool in_state) {
+  const Soft soft = soft_skin();
+  Touching out;
+  out.state = soft.state;
+  const Vec3 at = soft.bottom - Vec3(0.05, 0.02, 0.45);
+  const auto frame = add_frame(out, Pose{tool_pose().rotation, at}, in_state);
+  constexpr double kRadius = 0.6;
+  const contact::ShapePoints own{{contact::sphere_surface(kRadius, 0.15), 0, frame},
+                                 0.15,
+                                 [=](const Vec3& x) { return Vec3(kRadius * x.normalized()); },
+                                 Vec3::Zero()};
+  out.source = contact::make_half_and_half(
+      contact::make_sphere_source(contact::material_points(soft.surface, soft.rest, soft.body, 0.2), 0, frame,
+                                  Vec3::Zero(), kRadius, 0.05),
+      contact::make_distance_source(soft.surface, soft.rest, own, {.candidate_gap = 0.05}));
   return out;
 }
 
@@ -204,6 +224,8 @@ inline std::vector<TouchingKind> touching_kinds() {
                    vertices});
   }
   out.push_back({"a skin on a tool, nearest points", [] { return touching::near_tool(true); }, false});
+  out.push_back({"a skin and a moving sphere, points of both", [] { return touching::half_and_half(true); },
+                 false, false, true});
   out.push_back({"two skins, nearest points", [] { return touching::two_near(); }, false});
   out.push_back({"a body against itself", [] { return touching::itself(); }});
   return out;

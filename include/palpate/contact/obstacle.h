@@ -64,6 +64,9 @@ struct ObstacleEntry {
   Nearest (*nearest)(const Settings& shape, const Vec3& x);
   /// its surface, for pictures
   ObstaclePicture (*picture)(const Settings& shape, const View& view);
+  /// its closed surface in the world, no edge of a curved part longer than `spacing` [m], corners on the
+  /// shape; null of shapes without an end, whose own points never count
+  TriMesh (*surface)(const Settings& shape, double spacing) = nullptr;
 };
 /// All of them, in the order of `palpate list obstacles`.
 const std::vector<ObstacleEntry>& obstacle_registry();

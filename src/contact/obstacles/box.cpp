@@ -98,6 +98,14 @@ const ObstacleEntry& box_obstacle() {
       [](const Settings& shape) { return Box(pose_of(shape), size_of(shape)).lengths(); },
       [](const Settings& shape, const Vec3& x) { return nearest_to(Box(pose_of(shape), size_of(shape)), x); },
       picture,
+      // flat, so that points are cut into it; an edge has sixteen parts at most
+      [](const Settings& shape, double spacing) {
+        std::array<int, 3> cells;
+        for (int i = 0; i < 3; ++i)
+          cells[static_cast<std::size_t>(i)] =
+              std::max(1, static_cast<int>(std::ceil(1.5 * size_of(shape)[i] / (16.0 * spacing))));
+        return placed(mesh::box_surface(size_of(shape), cells), shape);
+      },
   };
   return entry;
 }

@@ -83,6 +83,35 @@ ObstaclePicture picture(const Settings& shape, const View&) {
   return {placed(std::move(surface), shape), {}};
 }
 
+/// Rings of quadrilaterals, each two triangles, and a fan over either end.
+TriMesh surface(const Settings& shape, double spacing) {
+  const double radius = radius_of(shape), length = length_of(shape), edge = spacing / std::numbers::sqrt2;
+  const int around = std::max(8, static_cast<int>(std::ceil(2.0 * std::numbers::pi * radius / edge))),
+            along = std::max(1, static_cast<int>(std::ceil(length / edge)));
+  TriMesh out{Points(3, around * (along + 1) + 2), Faces(3, 2 * around * (along + 1))};
+  const int low = around * (along + 1), high = low + 1;
+  for (int i = 0; i <= along; ++i)
+    for (int k = 0; k < around; ++k) {
+      const double phi = 2.0 * std::numbers::pi * k / around;
+      out.vertices.col(around * i + k) = Vec3(radius * std::cos(phi), radius * std::sin(phi),
+                                              length * (static_cast<double>(i) / along - 0.5));
+    }
+  out.vertices.col(low) = Vec3(0.0, 0.0, -0.5 * length);
+  out.vertices.col(high) = Vec3(0.0, 0.0, 0.5 * length);
+  int face = 0;
+  for (int k = 0; k < around; ++k) {
+    const int next = (k + 1) % around;
+    for (int i = 0; i < along; ++i) {
+      const int below = around * i, above = below + around;
+      out.faces.col(face++) = Eigen::Vector3i(below + k, below + next, above + next);
+      out.faces.col(face++) = Eigen::Vector3i(below + k, above + next, above + k);
+    }
+    out.faces.col(face++) = Eigen::Vector3i(low, next, k);
+    out.faces.col(face++) = Eigen::Vector3i(high, around * along + k, around * along + next);
+  }
+  return placed(std::move(out), shape);
+}
+
 }  // namespace
 
 std::unique_ptr<SampleSource> make_cylinder_source(ContactSide side, int frame,
@@ -113,6 +142,7 @@ const ObstacleEntry& cylinder_obstacle() {
         return nearest_to(Cylinder(pose_of(shape), radius_of(shape), length_of(shape)), x);
       },
       picture,
+      surface,
   };
   return entry;
 }

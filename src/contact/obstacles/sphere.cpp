@@ -53,6 +53,12 @@ ObstaclePicture picture(const Settings& shape, const View&) {
 
 }  // namespace
 
+// An icosahedron's edges are 1.05 R, and the middles of its faces 0.795 R from its centre, so that what is
+// cut there into n parts is 1.32 R/n on the sphere; elsewhere it is less.
+TriMesh sphere_surface(double radius, double spacing) {
+  return mesh::sphere(radius, std::max(4, static_cast<int>(std::ceil(1.33 * radius / spacing))));
+}
+
 std::unique_ptr<SampleSource> make_sphere_source(ContactSide side, int frame,
                                                  std::shared_ptr<MovingFrame> motion, const Vec3& centre,
                                                  double radius, double candidate_gap, double look_ahead) {
@@ -76,6 +82,11 @@ const ObstacleEntry& sphere_obstacle() {
         return nearest_to(Sphere(position_of(shape), radius_of(shape)), x);
       },
       picture,
+      [](const Settings& shape, double spacing) {
+        TriMesh ball = sphere_surface(radius_of(shape), spacing);
+        ball.vertices.colwise() += position_of(shape);
+        return ball;
+      },
   };
   return entry;
 }

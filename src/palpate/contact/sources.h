@@ -1,5 +1,7 @@
 #pragma once
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "palpate/contact/contact_force.h"
@@ -137,7 +139,9 @@ MaterialPoints material_points(const FrameSurface& surface, double spacing);
 
 struct DistanceOptions {
   double quadrature_error = 1e-2;  ///< wanted, as point_spacing() has it
-  double candidate_gap = 0.0;      ///< points nearer than this are kept as candidates [m]
+  /// Points nearer than this are kept as candidates [m]; 0: as far as they stand from each other, in the
+  /// mean.
+  double candidate_gap = 0.0;
   double look_ahead = 0.0;  ///< [s] to the next query: points that may come near until then are kept, too
 };
 
@@ -148,10 +152,35 @@ struct DistanceOptions {
 /// @throws Error where a surface is not closed, or a face of it has no area
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface a, const Points& rest_a, NodeSurface b,
                                                    const Points& rest_b, const DistanceOptions& options);
-/// A soft surface and a rigid one in a frame.
+/// A soft surface and a rigid one.
 /// @param rest  vertices of the soft one at rest [m]
-std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest, TriMesh rigid,
-                                                   int frame, std::shared_ptr<MovingFrame> motion,
+std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest,
+                                                   const FrameSurface& other, const DistanceOptions& options);
+
+/// Returns the spacing of points of a shape's own surface against a body, as point_spacing() [m].
+double shape_spacing(const CharacteristicLengths& shape, const CharacteristicLengths& body,
+                     double wanted_error);
+/// A sphere's surface in triangles, about its centre: see ObstacleEntry::surface.
+TriMesh sphere_surface(double radius, double spacing);
+
+/// Points of a shape's own surface.
+struct ShapePoints {
+  FrameSurface surface;                          ///< in triangles, their corners on the shape
+  double spacing = 0.0;                          ///< longest edge of the triangles after they are cut [m]
+  std::function<Vec3(const Vec3& x)> onto = {};  ///< the shape's point nearest to x, in the frame's axes
+  std::optional<Vec3> centre = {};               ///< of a ball, in the frame; else none
+};
+/// Points of a shape's surface alone against another surface, as make_distance_source(): the half that an
+/// exact shape's own source, over the other one's points, does not see.
+/// @param rest  vertices of the soft surface at rest [m]
+std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest,
+                                                   const ShapePoints& shape, const DistanceOptions& options);
+/// The same against a rigid surface.
+std::unique_ptr<SampleSource> make_distance_source(const FrameSurface& surface, const ShapePoints& shape,
                                                    const DistanceOptions& options);
+
+/// Half of each of two sources of one pair, which have the same side first.
+std::unique_ptr<SampleSource> make_half_and_half(std::unique_ptr<SampleSource> first,
+                                                 std::unique_ptr<SampleSource> second);
 
 }  // namespace palpate::contact

@@ -1,0 +1,98 @@
+#include "contact/look_back.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "palpate/core/log.h"
+
+namespace palpate::contact {
+namespace {
+
+/// Some faces with vertices of their own, seen from the frame of `axes`: what is rigid stands still there.
+SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const ImageSide& axes) {
+  SurfaceWays out;
+  std::vector<int> taken;
+  for (const int f : faces)
+    for (int k = 0; k < 3; ++k) taken.push_back(side.faces()(k, f));
+  std::sort(taken.begin(), taken.end());
+  taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
+  const auto local = [&](int vertex) {
+    return static_cast<int>(std::lower_bound(taken.begin(), taken.end(), vertex) - taken.begin());
+  };
+  out.of_vertex.resize(taken.size());
+  out.of_face = faces;
+  out.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int v = local(side.faces()(k, faces[i]));
+      out.faces(k, static_cast<Eigen::Index>(i)) = v;
+      out.of_vertex[static_cast<std::size_t>(v)] = faces[i];
+    }
+  const Pose now = axes.frame().inverse(), then = axes.kept_frame().inverse();
+  out.now.resize(3, static_cast<Eigen::Index>(taken.size()));
+  out.before.resize(3, out.now.cols());
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    out.now.col(static_cast<Eigen::Index>(i)) = now * side.vertex(taken[i]);
+    out.before.col(static_cast<Eigen::Index>(i)) = then * side.kept_vertex(taken[i]);
+  }
+  return out;
+}
+
+}  // namespace
+
+void LookBack::look(ImageSide& a, ImageSide& b, const std::function<double(Met&)>& find,
+                    const std::function<bool(int, int)>& may_meet, double t) {
+  constexpr double kPartOfThickness = 0.25;  // what is shorter is an edge that was grazed
+  const bool of_one_body = &a == &b;
+  if (kept_) {
+    const double least_way = kPartOfThickness * find(met_);
+    if (of_one_body) {  // a part may be on both sides: all of the skin against itself, once
+      met_.a.insert(met_.a.end(), met_.b.begin(), met_.b.end());
+      std::sort(met_.a.begin(), met_.a.end());
+      met_.a.erase(std::unique(met_.a.begin(), met_.a.end()), met_.a.end());
+      const SurfaceWays skin = ways_of(a, met_.a, a);
+      count_ += passed_.count(skin, skin, least_way, may_meet);
+    } else if (!met_.a.empty() && !met_.b.empty()) {
+      const SurfaceWays of_a = ways_of(a, met_.a, b), of_b = ways_of(b, met_.b, b);
+      count_ +=
+          passed_.count(of_a, of_b, least_way, may_meet) + passed_.count(of_b, of_a, least_way, may_meet);
+    }
+  }
+  a.keep();
+  if (!of_one_body) b.keep();
+  kept_ = true;
+  if (passed_.given_up() > 0 && !gave_up_) {
+    gave_up_ = true;
+    log::warn(
+        "contact at t = {:.6g} s: the surfaces moved so far between two queries that what went through "
+        "unseen "
+        "is not counted whole; refresh contact more often (exchange.contact_refresh_s)",
+        t);
+  }
+  if (count_ == 0 || warned_) return;
+  warned_ = true;
+  log::warn(
+      "contact at t = {:.6g} s: {} vertices went through the other body between two queries, unseen; refresh "
+      "contact more often (exchange.contact_refresh_s), or set exchange.tunnelling = \"substep\"",
+      t, count_);
+}
+
+void find_all_met(ImageSide& a, ImageSide& b, double thickness, std::vector<int>& faces_a,
+                  std::vector<int>& faces_b) {
+  constexpr double kPart = 0.25;  // of the thickness, which may have been squeezed: see proxy/pruner.h
+  faces_a.clear();
+  faces_b.clear();
+  const proxy::ProxyMotion of_a = a.way(), of_b = b.way();
+  if (!((of_a.velocity - of_b.velocity).norm() + of_a.spread + of_b.spread > kPart * thickness)) return;
+  faces_a.resize(static_cast<std::size_t>(a.faces().cols()));
+  faces_b.resize(static_cast<std::size_t>(b.faces().cols()));
+  std::iota(faces_a.begin(), faces_a.end(), 0);
+  std::iota(faces_b.begin(), faces_b.end(), 0);
+}
+
+void LookBack::archive(Archive& a) {
+  a("tunnelled", count_);
+  a("warned", warned_);
+}
+
+}  // namespace palpate::contact

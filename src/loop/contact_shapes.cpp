@@ -1,0 +1,49 @@
+#include "contact_shapes.h"
+
+#include <cmath>
+
+namespace palpate::loop {
+
+Shape round_tool(double radius, int frame, std::shared_ptr<contact::MovingFrame> motion) {
+  return {{2.0 * radius, radius, 0.0},
+          [radius](double spacing) { return contact::sphere_surface(radius, spacing); },
+          [radius](const Vec3& x) { return Vec3(radius * x.normalized()); },
+          frame,
+          std::move(motion),
+          Vec3::Zero()};
+}
+
+// The points of the other surface alone say what overlaps until a shape is passed through its middle, or lies
+// within the other one as a whole.  Where the shape is the thicker one the other one would have been passed
+// through before that; else its own points count as well, each side with half of the weight: unless they
+// would be more than a hundred thousand, as on a table top that is thinner than what lies on it.
+std::optional<contact::ShapePoints> own_points(const Shape& shape,
+                                               const contact::CharacteristicLengths& other, double error) {
+  constexpr double kMostTriangles = 1e5;
+  if (!shape.surface || shape.lengths.width >= other.width) return {};
+  const double spacing = contact::shape_spacing(shape.lengths, other, error);
+  const TriMesh coarse = shape.surface(HUGE_VAL);
+  double area = 0.0;
+  for (Eigen::Index f = 0; f < coarse.faces.cols(); ++f) {
+    const Mat3 x = coarse.vertices(Eigen::all, coarse.faces.col(f));
+    area += 0.5 * (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm();
+  }
+  if (area > kMostTriangles * 0.43 * spacing * spacing) return {};  // equilateral ones
+  return contact::ShapePoints{
+      {shape.surface(spacing), shape.frame, shape.motion}, spacing, shape.onto, shape.centre};
+}
+
+Shape shape_of(contact::ContactForce& force, const ObstacleSpec& obstacle) {
+  const contact::ObstacleEntry& entry = contact::obstacle_entry(obstacle);
+  const Settings shape = contact::obstacle_shape(obstacle);
+  Shape out{.lengths = entry.lengths(shape), .motion = contact::fixed_frame()};
+  out.frame = force.add_frame(out.motion);
+  out.onto = [&entry, shape](const Vec3& x) {
+    const contact::Nearest at = entry.nearest(shape, x);
+    return Vec3(x - at.gap * at.normal);
+  };
+  if (entry.surface) out.surface = [&entry, shape](double spacing) { return entry.surface(shape, spacing); };
+  return out;
+}
+
+}  // namespace palpate::loop
