@@ -342,7 +342,8 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
     keep_summary(*world, ran, {}, arguments, folder, kUnfinished);
   }
 
-  std::vector<loop::Observer*> observers = {&ran.peak};
+  OverlapWatch overlaps;
+  std::vector<loop::Observer*> observers = {&ran.peak, &overlaps};
   Snapshot snapshot(look.shade);
   if (arguments.picture) observers.push_back(&snapshot);
   ContactSnapshot contact;
@@ -380,7 +381,6 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
                trace->attempts(), trace->rejected());
   }
 
-  warn_of_deep_overlaps(*world);
   ran.remarks = run_remarks(*world, result);
   print_outcome(*world, ran);
   if (checkpoints) print_checkpoints(ran.checkpoints, arguments.checkpoint_every_s);

@@ -93,14 +93,26 @@ void add_port(const loop::PortEnergy& port, Remarks& out) {
 
 }  // namespace
 
-void warn_of_deep_overlaps(const loop::World& world) {
-  for (const loop::Overlap& o : loop::overlaps_of(world))
-    if (o.too_deep())
-      log::warn(
-          "contact {}: penetration reached {:.3g} mm, more than half the thickness of the thinner side "
-          "({:.3g} mm): the two may pass through each other. Increase contact.stiffness_pa_m, decrease "
-          "body.youngs_modulus_pa, or press less deeply",
-          o.pair, 1e3 * o.deepest_m, 2e3 * o.half_width_m);
+// How thick things are is asked when something overlaps.
+void OverlapWatch::look(const loop::World& world, double t) {
+  if (!world.contact) return;
+  const std::vector<double> deepest = world.contact->deepest();
+  if (most_.empty()) most_.assign(deepest.size(), 0.0);
+  for (std::size_t i = 0; i < deepest.size(); ++i) {
+    if (!(deepest[i] > most_[i])) continue;
+    const loop::Overlap o = loop::overlaps_of(world)[i];
+    most_[i] = o.half_width_m;
+    if (!o.too_deep()) continue;
+    most_[i] = HUGE_VAL;
+    log::warn(
+        "contact {} at t = {:.6g} s: penetration reached {:.3g} mm, more than half the thickness of the "
+        "thinner side ({:.3g} mm): {}",
+        o.pair, t, 1e3 * o.deepest_m, 2e3 * o.half_width_m,
+        t == 0.0 ? "what begins within the other is pushed out at the nearest side, with all its force at "
+                   "once. Let the scene begin with the two apart"
+                 : "the two may pass through each other. Increase contact.stiffness_pa_m, decrease "
+                   "body.youngs_modulus_pa, or press less deeply");
+  }
 }
 
 std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result) {
