@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "contender.h"
+#include "palpate/scene/contact_sides.h"
 
 namespace peers {
 namespace {
@@ -15,7 +16,7 @@ class Own final : public Contender {
       : name_(std::move(name)) {
     scene::Description d = motion.description;
     for (ContactSpec& c : d.contacts) {
-      c.method = "cpu";
+      scene::set_method(c, "cpu");
       c.pixels = pixels;
       c.quadrature_error = quadrature_error;
       c.samples = samples;

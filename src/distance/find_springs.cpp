@@ -71,31 +71,31 @@ void SkinContact::find(const double* nodes_a, const double* nodes_b, double near
   if (both.isEmpty()) return;
   for (int side = 0; side < 2; ++side) {
     if (points(side).empty()) continue;
-    searches_[1 - side]->begin(both.center(), both);
+    searches_[1 - side]->begin(both.center(), surfaces_[side].bound());
     find_side(side, near + most_lowered_[side]);
   }
   find_triangles();
-  place_missing();
+  list_missing();
+  follow_packets(missing_);
   integrate();
 }
 
-/// Places the corners of triangles that overlap, where they are not yet.
-void SkinContact::place_missing() {
+/// Lists the corners of triangles that overlap, where they are not placed yet, in ascending order.
+void SkinContact::list_missing() {
+  missing_.clear();
   for (const Triangle& t : triangles_) {
-    bool is_inside = false;
+    const double lowered = triangle(t.side, t.number).lowered;
+    bool overlaps = false;
     for (const int i : t.spring) {
       const Spring& s = springs_[static_cast<std::size_t>(i)];
-      is_inside |= s.is_placed && s.gap < triangle(t.side, t.number).lowered;
+      overlaps |= s.is_placed && s.gap < lowered;
     }
-    if (!is_inside) continue;
-    for (const int i : t.spring) {
-      Spring& s = springs_[static_cast<std::size_t>(i)];
-      if (s.is_placed) continue;
-      const Foot foot = surfaces_[1 - s.side].nearest(position(s), s.face);
-      if (foot.face < 0) continue;  // its position is not finite
-      set_foot(s, foot, surfaces_[1 - s.side].is_inside(foot));
-    }
+    for (const int i : t.spring)
+      if (overlaps && !springs_[static_cast<std::size_t>(i)].is_placed)
+        missing_.push_back(static_cast<std::size_t>(i));
   }
+  std::sort(missing_.begin(), missing_.end());
+  missing_.erase(std::unique(missing_.begin(), missing_.end()), missing_.end());
 }
 
 void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
@@ -107,30 +107,34 @@ void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
   }
   const Eigen::AlignedBox3d both = surfaces_[0].bound().merged(surfaces_[1].bound());
   for (LaneSearch* search : {searches_[0].get(), searches_[1].get()}) search->begin(both.center(), both);
-  const auto cluster = [&](const Spring& s) {
-    return points(s.side)[static_cast<std::size_t>(s.point)].face / kClusterFaces;
-  };
-  packet_.clear();
+  missing_.clear();
   for (std::size_t i = 0; i < springs_.size(); ++i) {
     Spring& spring = springs_[i];
     spring.is_placed = false;
     if (travelled_ + most_lowered_[spring.side] < spring.clear && spring.force == 0.0) continue;
-    if (!packet_.empty()) {
-      const Spring& head = springs_[packet_.front()];
-      if (packet_.size() == kPacket || head.side != spring.side || cluster(head) != cluster(spring)) {
-        follow_packet(packet_);
-        packet_.clear();
-      }
-    }
-    packet_.push_back(i);
+    missing_.push_back(i);
   }
-  if (!packet_.empty()) follow_packet(packet_);
-  place_missing();
+  follow_packets(missing_);
+  list_missing();
+  follow_packets(missing_);
   integrate();
 }
 
+/// Places some springs, in ascending order: packets of points of one cluster.
+void SkinContact::follow_packets(const std::vector<std::size_t>& springs) {
+  const auto cluster = [&](std::size_t i) {
+    const Spring& s = springs_[i];
+    return std::pair(s.side, points(s.side)[static_cast<std::size_t>(s.point)].face / kClusterFaces);
+  };
+  for (std::size_t begin = 0, end = 0; begin < springs.size(); begin = end) {
+    while (end < springs.size() && end - begin < kPacket && cluster(springs[end]) == cluster(springs[begin]))
+      ++end;
+    follow_packet({springs.data() + begin, end - begin});
+  }
+}
+
 /// @param springs  of points of one cluster, at most a packet
-void SkinContact::follow_packet(const std::vector<std::size_t>& springs) {
+void SkinContact::follow_packet(std::span<const std::size_t> springs) {
   const int side = springs_[springs.front()].side;
   const Surface& other = surfaces_[1 - side];
   LaneSearch& search = *searches_[1 - side];
@@ -265,7 +269,12 @@ void SkinContact::find_by_reference(const double* nodes_a, const double* nodes_b
   find_side_by_reference(0);
   find_side_by_reference(1);
   find_triangles();
-  place_missing();
+  list_missing();
+  for (const std::size_t i : missing_) {
+    Spring& s = springs_[i];
+    const Foot foot = surfaces_[1 - s.side].nearest(position(s), s.face);
+    set_foot(s, foot, surfaces_[1 - s.side].is_inside(foot));
+  }
   integrate();
 }
 

@@ -205,12 +205,24 @@ long search(Packet& packet, const Targets& targets) {
         high[d] = q && high[d] > most_x ? high[d] : most_x;
       }
     }
-  // Faces first, then clusters one after the other: one copy of test(), so that a distance has the same bits
-  // wherever it is computed.
+  // Faces first, then the clusters of what was nearest, for they bound all others, then these one after the
+  // other: one copy of test(), so that a distance has the same bits wherever it is computed.
   const int* list = targets.faces;
   int count = targets.face_count, group = -kLanes;
   unsigned open = 0;
   int near_faces[32];
+  int first[kQuarters], first_count = 0, next = 0;
+  const auto is_first = [&](int cluster) {
+    bool known = false;
+    for (int i = 0; i < first_count; ++i) known |= first[i] == cluster;
+    return known;
+  };
+  if (targets.cluster_count > 0)
+    for (int q = 0; q < kQuarters; ++q) {
+      if (packet.face[4 * q] < 0) continue;
+      const int cluster = packet.face[4 * q] >> 5;
+      if (!is_first(cluster)) first[first_count++] = cluster;
+    }
   for (;;) {
     for (int i = 0; i < count; ++i) {
       const int face = list[i];
@@ -219,7 +231,7 @@ long search(Packet& packet, const Targets& targets) {
     }
     tested += count;
     const Floats bound = loosened(best.distance2, targets.slack2);
-    while (!open) {
+    while (!open && next == first_count) {
       group += kLanes;
       if (group >= targets.cluster_count) {
         floats(packet.distance2) = best.distance2;
@@ -237,8 +249,17 @@ long search(Packet& packet, const Targets& targets) {
       open = bits(away2 <= loosened(all(largest(bound)), targets.slack2));
       if (targets.cluster_count - group < kLanes) open &= (1u << (targets.cluster_count - group)) - 1;
     }
-    const int cluster = targets.clusters[group + __builtin_ctz(open)];
-    open &= open - 1;
+    int cluster = 0;
+    if (next < first_count) {
+      cluster = first[next++];
+    } else {
+      cluster = targets.clusters[group + __builtin_ctz(open)];
+      open &= open - 1;
+      if (is_first(cluster)) {
+        count = 0;
+        continue;
+      }
+    }
     const float* plane = targets.planes + static_cast<std::ptrdiff_t>(cluster) * kPlaneFloats;
     float quarter[kQuarters];
     for (int q = 0; q < kQuarters; ++q) {

@@ -63,8 +63,9 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::ar
     at.touched.reserve(static_cast<std::size_t>(skin.vertex_count()));
   }
   springs_.reserve(count);
+  added_.reserve(count);
   triangles_.reserve(triangles);
-  packet_.reserve(kPacket);
+  missing_.reserve(3 * triangles);
   scratch_->packets.resize(most_packets);
   scratch_->open.reserve(most_packets);
 }
@@ -96,46 +97,65 @@ void SkinContact::add_spring(int side, int point, const Foot& foot, bool is_insi
 }
 
 // Every triangle with a spring, and a spring at each of its corners, those that lie too far outside to have
-// been found not placed: both in the order of their numbers, whatever the springs were found by.
+// been found not placed: both in the order of their numbers.  Springs are found in that order, side by side.
 void SkinContact::find_triangles() {
   triangles_.clear();
+  added_.clear();
   const std::size_t found = springs_.size();
-  for (std::size_t i = 0; i < found; ++i) {
-    const Spring s = springs_[i];
-    const ContactMesh& mesh = meshes_[static_cast<std::size_t>(s.side)];
-    for (int f = mesh.fan_begin[static_cast<std::size_t>(s.point)];
-         f < mesh.fan_begin[static_cast<std::size_t>(s.point) + 1]; ++f) {
-      const int t = mesh.fan[static_cast<std::size_t>(f)];
-      char& is_near = is_near_[s.side][static_cast<std::size_t>(t)];
-      if (is_near) continue;
-      is_near = 1;
-      triangles_.push_back({.side = s.side, .number = t});
-      for (const int p : mesh.triangles[static_cast<std::size_t>(t)].points) {
-        int& spring = spring_of_[s.side][static_cast<std::size_t>(p)];
-        if (spring >= 0) continue;
-        spring = 0;
-        springs_.push_back({.side = s.side,
-                            .point = p,
-                            .face = s.face,
-                            .weights = Vec3::Constant(1.0 / 3.0),
-                            .clear = std::numeric_limits<double>::infinity()});
+  for (std::size_t begin = 0, end = 0; begin < found; begin = end) {
+    const int side = springs_[begin].side;
+    const ContactMesh& mesh = meshes_[static_cast<std::size_t>(side)];
+    std::vector<char>& is_near = is_near_[side];
+    int first = static_cast<int>(is_near.size()), last = -1;
+    for (end = begin; end < found && springs_[end].side == side; ++end) {
+      const auto p = static_cast<std::size_t>(springs_[end].point);
+      for (int f = mesh.fan_begin[p]; f < mesh.fan_begin[p + 1]; ++f) {
+        const int t = mesh.fan[static_cast<std::size_t>(f)];
+        is_near[static_cast<std::size_t>(t)] = 1;
+        first = std::min(first, t);
+        last = std::max(last, t);
       }
     }
+    const std::size_t added = added_.size();
+    for (int t = first; t <= last; ++t) {
+      if (!is_near[static_cast<std::size_t>(t)]) continue;
+      is_near[static_cast<std::size_t>(t)] = 0;
+      triangles_.push_back({.side = side, .number = t});
+      int known = -1;
+      for (const int p : triangle(side, t).points) {
+        int& spring = spring_of_[side][static_cast<std::size_t>(p)];
+        if (spring >= 0) known = spring;
+        if (spring != -1) continue;
+        spring = -2;
+        added_.push_back({.side = side, .point = p});
+      }
+      // one of its corners was found, and has a face that is near
+      for (std::size_t i = added; known >= 0 && i < added_.size(); ++i)
+        if (added_[i].face < 0) added_[i].face = springs_[static_cast<std::size_t>(known)].face;
+    }
+    std::sort(added_.begin() + static_cast<std::ptrdiff_t>(added), added_.end(),
+              [](const Spring& a, const Spring& b) { return a.point < b.point; });
   }
-  std::sort(springs_.begin(), springs_.end(), [](const Spring& a, const Spring& b) {
-    return std::pair(a.side, a.point) < std::pair(b.side, b.point);
-  });
-  std::sort(triangles_.begin(), triangles_.end(), [](const Triangle& a, const Triangle& b) {
-    return std::pair(a.side, a.number) < std::pair(b.side, b.number);
-  });
+  merge_added();
   for (std::size_t i = 0; i < springs_.size(); ++i)
     spring_of_[springs_[i].side][static_cast<std::size_t>(springs_[i].point)] = static_cast<int>(i);
-  for (Triangle& t : triangles_) {
-    is_near_[t.side][static_cast<std::size_t>(t.number)] = 0;
+  for (Triangle& t : triangles_)
     for (std::size_t k = 0; k < 3; ++k)
       t.spring[k] = spring_of_[t.side][static_cast<std::size_t>(triangle(t.side, t.number).points[k])];
-  }
   for (const Spring& s : springs_) spring_of_[s.side][static_cast<std::size_t>(s.point)] = -1;
+}
+
+/// Merges them into the springs from the end, in place.
+void SkinContact::merge_added() {
+  const auto is_before = [](const Spring& a, const Spring& b) {
+    return std::pair(a.side, a.point) < std::pair(b.side, b.point);
+  };
+  std::size_t found = springs_.size(), added = added_.size();
+  springs_.resize(found + added);
+  for (std::size_t to = springs_.size(); added > 0;) {
+    const bool takes_found = found > 0 && is_before(added_[added - 1], springs_[found - 1]);
+    springs_[--to] = takes_found ? springs_[--found] : added_[--added];
+  }
 }
 
 /// visit(triangle, overlap at its corners) where one of them overlaps.

@@ -2,6 +2,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "palpate/distance/points.h"
@@ -25,7 +26,7 @@ struct SkinContactSpec {
 struct Spring {
   int side = 0;                 ///< skin that the point belongs to
   int point = 0;                ///< number of the point
-  int face = 0;                 ///< of the other skin
+  int face = -1;                ///< of the other skin
   Vec3 weights = Vec3::Zero();  ///< of the face's corners
   Vec3 reach = Vec3::Zero();    ///< from the point to its foot, y - x [m]
   double gap = 0.0;             ///< signed distance of the point: -|y - x| inside, |y - x| outside [m]
@@ -119,12 +120,14 @@ class SkinContact {
     return meshes_[static_cast<std::size_t>(side)].triangles[static_cast<std::size_t>(number)];
   }
   void find_triangles();
-  void place_missing();
+  void merge_added();
+  void list_missing();
   void integrate();
   template <class Visit>
   void for_each_overlap(const Visit& visit) const;
   void find_side(int side, double near);
-  void follow_packet(const std::vector<std::size_t>& springs);
+  void follow_packets(const std::vector<std::size_t>& springs);
+  void follow_packet(std::span<const std::size_t> springs);
   void find_side_by_reference(int side);
   void collect_clusters(int side, double near);
   void find_cluster(int side, int cluster, int start, double near);
@@ -146,6 +149,7 @@ class SkinContact {
     std::array<int, 3> spring{};
   };
   std::vector<Triangle> triangles_;  ///< by side and number
+  std::vector<Spring> added_;        ///< at corners of triangles whose points were not found
   std::vector<int> spring_of_[2];    ///< of each point; -1: none
   std::vector<char> is_near_[2];     ///< triangles of `triangles_`
 
@@ -161,7 +165,7 @@ class SkinContact {
     int cluster, tree_node;
   };
   std::vector<Candidate> candidates_;  ///< clusters of a side that may have points inside
-  std::vector<std::size_t> packet_;    ///< springs that are followed together
+  std::vector<std::size_t> missing_;   ///< springs that are to be placed
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
 
