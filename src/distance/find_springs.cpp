@@ -156,63 +156,104 @@ void SkinContact::follow_packet(std::span<const std::size_t> springs) {
   }
 }
 
-void SkinContact::collect_clusters(int side, double near) {
+/// Distance of a box from the clusters' boxes of the other skin, or less than `near` where it is that.
+double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near) const {
+  const Surface& other = surfaces_[1 - side];
+  double least2 = std::numeric_limits<double>::infinity();
+  int open[64], depth = 0;
+  open[depth++] = 0;
+  while (depth > 0 && least2 >= near * near) {
+    const int i = open[--depth];
+    if (other.box(i).squaredExteriorDistance(box) >= least2) continue;
+    const ClusterNode& node = other.skin().tree[static_cast<std::size_t>(i)];
+    if (!node.right) {
+      other.place(node.begin);
+      least2 = std::min(least2, other.box(i).squaredExteriorDistance(box));
+      continue;
+    }
+    const bool is_left_nearer =
+        other.box(i + 1).squaredExteriorDistance(box) <= other.box(node.right).squaredExteriorDistance(box);
+    open[depth++] = is_left_nearer ? node.right : i + 1;
+    open[depth++] = is_left_nearer ? i + 1 : node.right;
+  }
+  return std::sqrt(least2) * (1.0 - kRounding);
+}
+
+// No part of the other skin is in a box that has a gap to it: what is in the box lies as a whole inside or
+// outside, and no nearer than that.  Parts of a skin that share a vertex lie on the same side, so that all
+// that hangs together with what is known to be outside is known, too; of the rest one point tells.
+void SkinContact::find_side(int side, double near) {
   const Surface& own = surfaces_[side];
-  const Eigen::AlignedBox3d other = widened(surfaces_[1 - side].box(0), near);
+  const Eigen::AlignedBox3d reach = widened(surfaces_[1 - side].box(0), near);
   const std::vector<ClusterNode>& tree = own.skin().tree;
-  candidates_.clear();
+  std::vector<double>& clear = clear_[side];
+  std::vector<Whereabouts>& where = where_[side];
+  std::fill(where.begin(), where.end(), Whereabouts::kOutside);
+  whole_.clear();
   int open[64], depth = 0;
   open[depth++] = 0;
   while (depth > 0) {
     const int i = open[--depth];
-    if (!own.box(i).intersects(other)) continue;
     const ClusterNode& node = tree[static_cast<std::size_t>(i)];
-    if (node.right) {
+    if (!own.box(i).intersects(reach)) continue;
+    const auto begin = clear.begin() + node.begin, end = clear.begin() + node.end;
+    if (std::all_of(begin, end, [&](double c) { return c >= travelled_ + near; })) continue;
+    if (!node.right) own.place(node.begin);
+    const double gap = gap_of(side, own.box(i), near);
+    if (gap > near) {
+      for (int c = node.begin; c < node.end; ++c) {
+        where[static_cast<std::size_t>(c)] = Whereabouts::kWhole;
+        clear[static_cast<std::size_t>(c)] = std::max(clear[static_cast<std::size_t>(c)], travelled_ + gap);
+        whole_.push_back({c, i});
+      }
+    } else if (node.right) {
       open[depth++] = node.right;
       open[depth++] = i + 1;
-    } else if (clear_[side][static_cast<std::size_t>(node.begin)] < travelled_ + near) {
-      own.place(node.begin);
-      if (own.box(i).intersects(other)) candidates_.push_back({node.begin, i});
+    } else {
+      where[static_cast<std::size_t>(node.begin)] = Whereabouts::kNear;
     }
+  }
+  for (const Part& part : whole_)
+    if (where[static_cast<std::size_t>(part.cluster)] == Whereabouts::kWhole) settle(side, part);
+  int last = 0;
+  for (std::size_t c = 0; c < where.size(); ++c) {
+    if (where[c] == Whereabouts::kOutside) continue;
+    int& start = starts_[side][c];
+    start = last = find_cluster(side, static_cast<int>(c), start < 0 ? last : start, near);
   }
 }
 
-void SkinContact::find_side(int side, double near) {
+/// Says where all clusters are that hang together with one, each as a whole on one side.
+void SkinContact::settle(int side, const Part& part) {
   const Surface& own = surfaces_[side];
   const Surface& other = surfaces_[1 - side];
-  LaneSearch& search = *searches_[1 - side];
-  collect_clusters(side, near);
-  for (std::size_t first = 0; first < candidates_.size(); first += kPacket) {
-    const std::size_t used = std::min<std::size_t>(kPacket, candidates_.size() - first);
-    Packet packet;
-    std::array<int, kPacket> starts{};
-    for (std::size_t lane = 0; lane < used; ++lane) {
-      const Candidate& at = candidates_[first + lane];
-      search.set_point(packet, static_cast<int>(lane), own.box(at.tree_node).center());
-      starts[lane] = starts_[side][static_cast<std::size_t>(at.cluster)];
+  const Skin& skin = own.skin();
+  std::vector<Whereabouts>& where = where_[side];
+  bool is_outside = false;
+  joined_.clear();
+  joined_.push_back(part.cluster);
+  where[static_cast<std::size_t>(part.cluster)] = Whereabouts::kInside;
+  for (std::size_t i = 0; i < joined_.size(); ++i) {
+    const auto c = static_cast<std::size_t>(joined_[i]);
+    for (int k = skin.joined_begin[c]; k < skin.joined_begin[c + 1]; ++k) {
+      Whereabouts& at = where[static_cast<std::size_t>(skin.joined[static_cast<std::size_t>(k)])];
+      is_outside |= at == Whereabouts::kOutside;
+      if (at != Whereabouts::kWhole) continue;
+      at = Whereabouts::kInside;
+      joined_.push_back(skin.joined[static_cast<std::size_t>(k)]);
     }
-    search.finish(packet, static_cast<int>(used));
-    if (starts[0] < 0) starts[0] = 0;
-    search.start(packet, starts.data(), static_cast<int>(used));
-    search.search(&packet, 1);
-    for (std::size_t lane = 0; lane < used; ++lane) {
-      const Candidate& at = candidates_[first + lane];
-      const Eigen::AlignedBox3d& box = own.box(at.tree_node);
-      const auto cluster = static_cast<std::size_t>(at.cluster);
-      const int face = starts_[side][cluster] = packet.face[lane];
-      if (face < 0) continue;  // positions are not finite
-      const double radius = 0.5 * box.diagonal().norm() * (1.0 + kRounding);
-      const double least =
-          std::sqrt(static_cast<double>(packet.distance2[lane])) - 2.0 * search.slack() - radius;
-      if (least > near && !other.is_inside(other.nearest_around(box.center(), face)))
-        clear_[side][cluster] = travelled_ + least;
-      else
-        find_cluster(side, at.cluster, face, near);
-    }
+  }
+  if (!is_outside) is_outside = !other.is_inside(other.nearest(own.box(part.tree_node).center()));
+  for (const int c : joined_) {
+    if (is_outside)
+      where[static_cast<std::size_t>(c)] = Whereabouts::kOutside;
+    else
+      clear_[side][static_cast<std::size_t>(c)] = -1.0;
   }
 }
 
-void SkinContact::find_cluster(int side, int cluster, int start, double near) {
+/// @return  a face that is near it
+int SkinContact::find_cluster(int side, int cluster, int start, double near) {
   const Surface& other = surfaces_[1 - side];
   LaneSearch& search = *searches_[1 - side];
   const auto c = static_cast<std::size_t>(cluster);
@@ -261,6 +302,7 @@ void SkinContact::find_cluster(int side, int cluster, int start, double near) {
   clear_[side][c] = std::numeric_limits<double>::infinity();  // it may have no points of its own
   for (int p = first_packet_[side][c]; p < first_packet_[side][c + 1]; ++p)
     clear_[side][c] = std::min(clear_[side][c], packets_clear_[side][static_cast<std::size_t>(p)]);
+  return open.empty() || packets[0].face[0] < 0 ? start : packets[0].face[0];
 }
 
 void SkinContact::find_by_reference(const double* nodes_a, const double* nodes_b) {

@@ -92,6 +92,24 @@ void collect_cluster_vertices(Skin& skin) {
   }
 }
 
+void join_clusters(Skin& skin) {
+  std::vector<std::vector<int>> joined(static_cast<std::size_t>(skin.cluster_count()));
+  for (std::size_t v = 0; v + 1 < skin.fan_begin.size(); ++v)
+    for (int i = skin.fan_begin[v]; i < skin.fan_begin[v + 1]; ++i)
+      for (int k = skin.fan_begin[v]; k < skin.fan_begin[v + 1]; ++k) {
+        const int a = skin.fan[static_cast<std::size_t>(i)] / kClusterFaces,
+                  b = skin.fan[static_cast<std::size_t>(k)] / kClusterFaces;
+        if (a != b) joined[static_cast<std::size_t>(a)].push_back(b);
+      }
+  skin.joined_begin = {0};
+  for (std::vector<int>& list : joined) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    skin.joined.insert(skin.joined.end(), list.begin(), list.end());
+    skin.joined_begin.push_back(static_cast<int>(skin.joined.size()));
+  }
+}
+
 /// Sets aside a tenth of the vertices, those with the largest sums of |weights|.
 void set_aside_far(Skin& skin) {
   const VecX sum = skin.weights.cwiseAbs().colwise().sum().transpose();
@@ -135,6 +153,7 @@ Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node
   join_across_edges(skin);
   collect_fans(skin);
   collect_cluster_vertices(skin);
+  join_clusters(skin);
   set_aside_far(skin);
   return skin;
 }

@@ -50,13 +50,15 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::ar
     feet_[side].assign(static_cast<std::size_t>(first_packet_[side].back()), none);
     starts_[side].assign(clusters, -1);
     clear_[side].assign(clusters, -1.0);
+    where_[side].assign(clusters, Whereabouts::kOutside);
+    whole_.reserve(std::max(whole_.capacity(), clusters));
+    joined_.reserve(whole_.capacity());
     packets_clear_[side].assign(static_cast<std::size_t>(first_packet_[side].back()), -1.0);
     searches_[side] = std::make_unique<LaneSearch>(surfaces_[side]);
     count += points(side).size();
     triangles += mesh.triangles.size();
     spring_of_[side].assign(points(side).size(), -1);
     is_near_[side].assign(mesh.triangles.size(), 0);
-    candidates_.reserve(std::max(candidates_.capacity(), clusters));
     VertexForces& at = vertex_forces_[side];
     at.sum.setZero(3, skin.vertex_count());
     at.is_touched.assign(static_cast<std::size_t>(skin.vertex_count()), 0);
@@ -116,12 +118,13 @@ void SkinContact::find_triangles() {
         last = std::max(last, t);
       }
     }
-    const std::size_t added = added_.size();
+    const auto begin_added = static_cast<std::ptrdiff_t>(added_.size());
     for (int t = first; t <= last; ++t) {
       if (!is_near[static_cast<std::size_t>(t)]) continue;
       is_near[static_cast<std::size_t>(t)] = 0;
       triangles_.push_back({.side = side, .number = t});
       int known = -1;
+      const std::size_t before = added_.size();
       for (const int p : triangle(side, t).points) {
         int& spring = spring_of_[side][static_cast<std::size_t>(p)];
         if (spring >= 0) known = spring;
@@ -129,11 +132,11 @@ void SkinContact::find_triangles() {
         spring = -2;
         added_.push_back({.side = side, .point = p});
       }
-      // one of its corners was found, and has a face that is near
-      for (std::size_t i = added; known >= 0 && i < added_.size(); ++i)
-        if (added_[i].face < 0) added_[i].face = springs_[static_cast<std::size_t>(known)].face;
+      for (std::size_t i = before; i < added_.size();
+           ++i)  // one corner was found, and has a face that is near
+        added_[i].face = springs_[static_cast<std::size_t>(known)].face;
     }
-    std::sort(added_.begin() + static_cast<std::ptrdiff_t>(added), added_.end(),
+    std::sort(added_.begin() + begin_added, added_.end(),
               [](const Spring& a, const Spring& b) { return a.point < b.point; });
   }
   merge_added();

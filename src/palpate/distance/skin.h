@@ -38,6 +38,8 @@ struct Skin {
   VecX longest_edge;                  ///< of each face at rest [m]
   std::vector<int> cluster_begin;     ///< of each cluster in `cluster_vertices`, and its length at the end
   std::vector<int> cluster_vertices;  ///< vertices of each cluster, each once
+  std::vector<int> joined_begin;      ///< of each cluster in `joined`, and its length at the end
+  std::vector<int> joined;            ///< clusters that share a vertex with each, ascending
   /// What carries the vertices far outside of their tetrahedra, a tenth at most: those whose sums of
   /// |weights| are the largest.
   NodeIndices far_nodes;

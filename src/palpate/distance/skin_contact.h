@@ -129,8 +129,12 @@ class SkinContact {
   void follow_packets(const std::vector<std::size_t>& springs);
   void follow_packet(std::span<const std::size_t> springs);
   void find_side_by_reference(int side);
-  void collect_clusters(int side, double near);
-  void find_cluster(int side, int cluster, int start, double near);
+  struct Part {
+    int cluster, tree_node;
+  };
+  void settle(int side, const Part& part);
+  double gap_of(int side, const Eigen::AlignedBox3d& box, double near) const;
+  int find_cluster(int side, int cluster, int start, double near);
   void add_spring(int side, int point, const Foot& foot, bool is_inside);
   void set_foot(Spring& spring, const Foot& foot, bool is_inside) const;
   Vec3 position(int side, const ContactPoint& point) const;
@@ -155,17 +159,17 @@ class SkinContact {
 
   // Bounds on the search, which change its time and no result.
   std::unique_ptr<LaneSearch> searches_[2];        ///< for nearest points of each skin
-  std::vector<int> starts_[2];                     ///< face that was nearest to each cluster's middle
+  std::vector<int> starts_[2];                     ///< face that was near each cluster
   std::vector<std::array<int, kPacket>> feet_[2];  ///< faces that were nearest to each packet, -1 at the end
   std::vector<int> first_packet_[2];               ///< of each cluster
   double travelled_ = 0.0;                ///< bound on how far the skins have moved against each other [m]
   std::vector<double> clear_[2];          ///< value of `travelled_` up to which each cluster lies outside
   std::vector<double> packets_clear_[2];  ///< and each packet
-  struct Candidate {
-    int cluster, tree_node;
-  };
-  std::vector<Candidate> candidates_;  ///< clusters of a side that may have points inside
-  std::vector<std::size_t> missing_;   ///< springs that are to be placed
+  enum class Whereabouts : char { kOutside, kInside, kWhole, kNear };  ///< kWhole: one of the first two
+  std::vector<Whereabouts> where_[2];                                  ///< of each cluster
+  std::vector<Part> whole_;
+  std::vector<int> joined_;
+  std::vector<std::size_t> missing_;  ///< springs that are to be placed
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
 
