@@ -52,7 +52,7 @@ class Distance final : public Contender {
 }  // namespace
 
 void add_distance(const Motion& motion, Contenders& to) {
-  for (const double error : {1e-2}) to.push_back(std::make_unique<Distance>(motion, error));
+  for (const double error : {1e-2, 1e-3}) to.push_back(std::make_unique<Distance>(motion, error));
 }
 
 }  // namespace peers

@@ -77,11 +77,11 @@ void run(const std::string& scene, const Options& options) {
   Motion motion = record_motion(scene);
   if (options.one_state) motion.states = {motion.states[motion.states.size() / 2]};
   Contenders contenders;
-  if (!getenv("ONLY")) add_own(motion, contenders);
+  add_own(motion, contenders);
   add_distance(motion, contenders);
-  if (!getenv("ONLY")) add_gimpact(motion, contenders);
-  if (!getenv("ONLY")) add_fcl(motion, contenders);
-  if (!getenv("ONLY")) add_cgal(motion, contenders);
+  add_gimpact(motion, contenders);
+  add_fcl(motion, contenders);
+  add_cgal(motion, contenders);
   add_skins_alone(motion, contenders);
   const std::vector<Timed> timed = measure(motion, contenders, options.rounds);
   std::vector<std::vector<std::string>> rows;

@@ -157,18 +157,26 @@ void SkinContact::follow_packet(std::span<const std::size_t> springs) {
 }
 
 /// Distance of a box from the clusters' boxes of the other skin, or less than `near` where it is that.
-double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near) const {
+/// @param near_leaf  in the other tree, what was nearest to the last box, and then to this one
+double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf) const {
   const Surface& other = surfaces_[1 - side];
   double least2 = std::numeric_limits<double>::infinity();
+  const auto take = [&](int leaf) {
+    other.place(other.skin().tree[static_cast<std::size_t>(leaf)].begin);
+    const double distance2 = other.box(leaf).squaredExteriorDistance(box);
+    if (!(distance2 < least2)) return;
+    least2 = distance2;
+    near_leaf = leaf;
+  };
+  if (near_leaf >= 0) take(near_leaf);
   int open[64], depth = 0;
   open[depth++] = 0;
-  while (depth > 0 && least2 >= near * near) {
+  while (depth > 0 && least2 > near * near) {
     const int i = open[--depth];
     if (other.box(i).squaredExteriorDistance(box) >= least2) continue;
     const ClusterNode& node = other.skin().tree[static_cast<std::size_t>(i)];
     if (!node.right) {
-      other.place(node.begin);
-      least2 = std::min(least2, other.box(i).squaredExteriorDistance(box));
+      take(i);
       continue;
     }
     const bool is_left_nearer =
@@ -190,7 +198,7 @@ void SkinContact::find_side(int side, double near) {
   std::vector<Whereabouts>& where = where_[side];
   std::fill(where.begin(), where.end(), Whereabouts::kOutside);
   whole_.clear();
-  int open[64], depth = 0;
+  int near_leaf = -1, open[64], depth = 0;
   open[depth++] = 0;
   while (depth > 0) {
     const int i = open[--depth];
@@ -199,7 +207,7 @@ void SkinContact::find_side(int side, double near) {
     const auto begin = clear.begin() + node.begin, end = clear.begin() + node.end;
     if (std::all_of(begin, end, [&](double c) { return c >= travelled_ + near; })) continue;
     if (!node.right) own.place(node.begin);
-    const double gap = gap_of(side, own.box(i), near);
+    const double gap = gap_of(side, own.box(i), near, near_leaf);
     if (gap > near) {
       for (int c = node.begin; c < node.end; ++c) {
         where[static_cast<std::size_t>(c)] = Whereabouts::kWhole;

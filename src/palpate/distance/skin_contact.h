@@ -133,7 +133,7 @@ class SkinContact {
     int cluster, tree_node;
   };
   void settle(int side, const Part& part);
-  double gap_of(int side, const Eigen::AlignedBox3d& box, double near) const;
+  double gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf) const;
   int find_cluster(int side, int cluster, int start, double near);
   void add_spring(int side, int point, const Foot& foot, bool is_inside);
   void set_foot(Spring& spring, const Foot& foot, bool is_inside) const;
