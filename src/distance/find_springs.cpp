@@ -1,9 +1,8 @@
 // Which points lie inside the other skin, and where their feet are.
 //
-// The signed distance to a closed skin is 1-Lipschitz.  Where the middle of a cluster's box lies outside, at
-// a distance e above the box's half diagonal r, all of the box lies outside, and stays there until the skins
-// have moved against each other by e - r.  No depth is assumed anywhere: points far inside are found as any
-// other.
+// A box of one skin that meets no box of the other's clusters lies as a whole inside or outside.  The signed
+// distance to a closed skin is 1-Lipschitz: what lies outside stays there until the skins have moved against
+// each other by its distance.  No depth is assumed anywhere: points far inside are found as any other.
 #include <algorithm>
 #include <cmath>
 #include <limits>
