@@ -1,4 +1,4 @@
-// palpate's contact as an energy of distances: from positions of nodes to forces on nodes, by exact nearest
+// palpate's contact by nearest points: from positions of nodes to forces on nodes, by exact nearest
 // points.  It is not told how the skins move: it bounds that by what it keeps from query to query.
 #include "contender.h"
 #include "palpate/contact/sources.h"
@@ -32,7 +32,7 @@ class Distance final : public Contender {
     forces_[0].setZero(3 * a_.node_count);
     forces_[1].setZero(3 * b_.node_count);
   }
-  std::string group() const override { return "energy of distances"; }
+  std::string group() const override { return "nearest points"; }
   std::string name() const override { return fmt::format("error {:.0e}", error_); }
   void query(const Snapshot& state) override {
     contact_.find(state.q.data() + offsets_[0], state.q.data() + offsets_[1]);
