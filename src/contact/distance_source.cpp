@@ -57,13 +57,14 @@ class DistanceSource final : public SampleSource {
 
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     update(state);
-    look_back_.look(
-        *a_, *b_,
-        [&](LookBack::Met& met) {
-          find_all_met(*a_, *b_, thickness_, met.a, met.b);
-          return thickness_;
-        },
-        {}, state.time);
+    if (!contact_.points(0).empty())  // else the points of the other surface have looked back
+      look_back_.look(
+          *a_, *b_,
+          [&](LookBack::Met& met) {
+            find_all_met(*a_, *b_, thickness_, met.a, met.b);
+            return thickness_;
+          },
+          {}, state.time);
     const proxy::ProxyMotion of_a = motion(0, state), of_b = motion(1, state);
     contact_.find(carrying(0), carrying(1),
                   proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction());

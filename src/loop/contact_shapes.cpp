@@ -1,5 +1,6 @@
 #include "contact_shapes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate::loop {
@@ -15,20 +16,26 @@ Shape round_tool(double radius, int frame, std::shared_ptr<contact::MovingFrame>
 
 // The points of the other surface alone say what overlaps until a shape is passed through its middle, or lies
 // within the other one as a whole.  Where the shape is the thicker one the other one would have been passed
-// through before that; else its own points count as well, each side with half of the weight: unless they
-// would be more than a hundred thousand, as on a table top that is thinner than what lies on it.
+// through before that; else its own points count as well, each side with half of the weight.
+//
+// A hundred thousand triangles at most, with some tens of MiB: a shape that needs more for the wanted error
+// has larger ones, up to ten times that error; one that would err by more, as a table top that is thinner
+// than what lies on it, has none.  The error goes as the edge's square, and the triangles' number as one over
+// it.
 std::optional<contact::ShapePoints> own_points(const Shape& shape,
                                                const contact::CharacteristicLengths& other, double error) {
-  constexpr double kMostTriangles = 1e5;
+  constexpr double kMostTriangles = 1e5, kMostError = 10.0;
   if (!shape.surface || shape.lengths.width >= other.width) return {};
-  const double spacing = contact::shape_spacing(shape.lengths, other, error);
   const TriMesh coarse = shape.surface(HUGE_VAL);
   double area = 0.0;
   for (Eigen::Index f = 0; f < coarse.faces.cols(); ++f) {
     const Mat3 x = coarse.vertices(Eigen::all, coarse.faces.col(f));
     area += 0.5 * (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm();
   }
-  if (area > kMostTriangles * 0.43 * spacing * spacing) return {};  // equilateral ones
+  const double wanted = contact::shape_spacing(shape.lengths, other, error),
+               least = std::sqrt(area / (0.43 * kMostTriangles));  // 0.43 e^2 of an equilateral triangle
+  if (least * least > kMostError * wanted * wanted) return {};
+  const double spacing = std::max(wanted, least);
   return contact::ShapePoints{
       {shape.surface(spacing), shape.frame, shape.motion}, spacing, shape.onto, shape.centre};
 }

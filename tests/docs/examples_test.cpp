@@ -100,6 +100,8 @@ TEST(Examples, ObstacleIsTheSetOfPointsNearAnAxis) {
     inside += at.gap < 0.0;
   }
   EXPECT_GT(inside, 20);
+  const TriMesh surface = entry.surface(shape, 0.05);
+  for (const auto x : surface.vertices.colwise()) EXPECT_NEAR(entry.nearest(shape, x).gap, 0.0, 1e-12);
   contact::Capsule capsule(pose, 0.2, 0.6);
   capsule.move_to({});
   int left = 0, crossed = 0;

@@ -4,7 +4,6 @@
 
 #include "contact/analytic_source.h"
 #include "contact/obstacles/keys.h"
-#include "palpate/mesh/generators.h"
 
 namespace palpate::contact {
 namespace {
@@ -68,12 +67,16 @@ Capsule capsule_of(const Settings& shape) {
   return {pose_of(shape), radius_of(shape), std::get<double>(shape.at("length_m"))};
 }
 
-ObstaclePicture picture(const Settings& shape, const View&) {
-  TriMesh surface = mesh::sphere(radius_of(shape), 24);
+TriMesh surface(const Settings& shape, double spacing) {
+  TriMesh out = sphere_surface(radius_of(shape), spacing);
   const double half = 0.5 * std::get<double>(shape.at("length_m"));
-  for (Eigen::Index v = 0; v < surface.vertices.cols(); ++v)
-    surface.vertices(2, v) += surface.vertices(2, v) > 0.0 ? half : -half;
-  return {placed(std::move(surface), shape), {}};
+  for (Eigen::Index v = 0; v < out.vertices.cols(); ++v)
+    out.vertices(2, v) += out.vertices(2, v) > 0.0 ? half : -half;
+  return placed(std::move(out), shape);
+}
+
+ObstaclePicture picture(const Settings& shape, const View&) {
+  return {surface(shape, radius_of(shape) / 18.0), {}};
 }
 
 }  // namespace
@@ -92,6 +95,7 @@ const ObstacleEntry& capsule_obstacle() {
       [](const Settings& shape) { return capsule_of(shape).lengths(); },
       [](const Settings& shape, const Vec3& x) { return nearest_to(capsule_of(shape), x); },
       picture,
+      surface,
   };
   return entry;
 }
