@@ -379,7 +379,7 @@ std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state)
   for (const ContactSample& s : m.all()) {
     const SampleMotion motion = sample_motion(s, state, m.frame_states);
     const double p = pressure(m.pairs[static_cast<std::size_t>(s.source)].law, motion.gap, motion.rate).p;
-    out.push_back({motion.a.x, motion.b.x, s.normal, motion.gap, p, s.area, s.source});
+    out.push_back({motion.a.x, motion.b.x, s.normal, motion.gap, s.stored * motion.gap, p, s.area, s.source});
   }
   return out;
 }

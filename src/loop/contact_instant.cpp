@@ -112,9 +112,9 @@ ContactInstant contact_instant(const World& world) {
       }
       const Places places(surfaces[i]);
       for (const contact::ContactPoint& p : points) {
-        if (p.pair != static_cast<int>(pair) || !(p.gap < 0.0)) continue;
+        if (p.pair != static_cast<int>(pair) || !(p.own_gap < 0.0)) continue;
         for (const Vec3& x : {p.a, p.b})
-          if (const int v = places.at(x); v >= 0) deepen(depths[v], -p.gap);
+          if (const int v = places.at(x); v >= 0) deepen(depths[v], -p.own_gap);
       }
     }
   }

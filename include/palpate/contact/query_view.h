@@ -31,6 +31,7 @@ struct ContactPoint {
   Vec3 a, b;        ///< its points on the two surfaces [m]
   Vec3 normal;      ///< from b to a
   double gap;       ///< mean of what the point stands for [m], negative is penetration
+  double own_gap;   ///< at the point itself [m]: above 0 where it lies outside, and some of that overlaps
   double pressure;  ///< [Pa]; 0 of a candidate that is apart
   double area;      ///< [m^2]
   int pair;         ///< which [[contact]] of the scene
