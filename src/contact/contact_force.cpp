@@ -377,6 +377,7 @@ std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state)
   std::vector<ContactPoint> out;
   out.reserve(m.all().size());
   for (const ContactSample& s : m.all()) {
+    if (s.area == 0.0) continue;  // it has no force, wherever it is, and need not be where it is nearest
     const SampleMotion motion = sample_motion(s, state, m.frame_states);
     const double p = pressure(m.pairs[static_cast<std::size_t>(s.source)].law, motion.gap, motion.rate).p;
     out.push_back({motion.a.x, motion.b.x, s.normal, motion.gap, s.stored * motion.gap, p, s.area, s.source});

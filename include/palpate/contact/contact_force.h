@@ -273,7 +273,7 @@ class ContactForce : public dynamics::ForceTerm,
   void keep_views();
   /// What each pair's last query saw; null for a pair without an image, and where nobody asked.
   std::vector<const QueryView*> views() const;
-  /// All samples of the last query, candidates included, at the state given.
+  /// Returns all samples of the last query that have an area, candidates included, at the state given.
   std::vector<ContactPoint> points(const dynamics::StateView& state) const;
   /// Refreshes so far, the first included.
   long queries() const;
