@@ -7,8 +7,8 @@
 // and opposite force have one line.  What the nodes get of them is exact where vertices are nodes; on a skin
 // in tetrahedra a point hangs on one tetrahedron (surface_state.cpp).
 //
-// Of a shape's own points (ShapePoints) there is one side alone, and those of a ball have no moment about its
-// centre: see on_ball().
+// A shape's own points (ShapePoints) are the only ones of their source, and those of a ball have no moment
+// about its centre: see on_ball().
 //
 // Samples follow the state with gaps = "exact": the query only says which points can be near.
 #include <algorithm>

@@ -205,8 +205,8 @@ long search(Packet& packet, const Targets& targets) {
         high[d] = q && high[d] > most_x ? high[d] : most_x;
       }
     }
-  // Faces first, then the clusters of what was nearest, for they bound all others, then these one after the
-  // other: one copy of test(), so that a distance has the same bits wherever it is computed.
+  // Faces first, then the clusters of the nearest faces so far, which bound the rest, then all other
+  // clusters: one copy of test(), so that a distance has the same bits wherever it is computed.
   const int* list = targets.faces;
   int count = targets.face_count, group = -kLanes;
   unsigned open = 0;

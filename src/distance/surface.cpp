@@ -101,8 +101,8 @@ double Surface::spread(const double* node_velocities, const Vec3& about) const {
   return farthest(way_, about);
 }
 
-// Of weights that sum to 1 those below 0 are (W - 1)/2 in all: so far may a vertex lie outside of the nodes'
-// box, in its edges.
+// Weights that sum to 1 have negative ones of -(W - 1)/2 in all: a vertex lies outside the nodes' box by no
+// more than (W - 1)/2 of its edges.
 void Surface::move(const double* nodes) {
   constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
   const Eigen::Map<const Points> now(nodes, 3, skin_.node_count);

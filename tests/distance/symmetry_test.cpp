@@ -1,4 +1,4 @@
-// What a scene's place in space may not change, and what round bodies have by their roundness.
+// Contact of rotated and reflected scenes, and of a ball carried round another one.
 #include "bodies.h"
 
 using namespace distance_tests;

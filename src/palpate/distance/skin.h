@@ -40,8 +40,8 @@ struct Skin {
   std::vector<int> cluster_vertices;  ///< vertices of each cluster, each once
   std::vector<int> joined_begin;      ///< of each cluster in `joined`, and its length at the end
   std::vector<int> joined;            ///< clusters that share a vertex with each, ascending
-  /// What carries the vertices far outside of their tetrahedra, a tenth at most: those whose sums of
-  /// |weights| are the largest.
+  /// Carriers of the vertices far outside their tetrahedra: those with the largest sums of |weights|, at most
+  /// a tenth of all.
   NodeIndices far_nodes;
   NodeWeights far_weights;
   double weight_sum =
