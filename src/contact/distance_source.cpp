@@ -19,6 +19,7 @@
 #include "contact/coupled_nodes.h"
 #include "contact/look_back.h"
 #include "contact/safe_time.h"
+#include "contact/self_contact_filter.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -52,22 +53,45 @@ class DistanceSource final : public SampleSource {
     if (options_.candidate_gap == 0.0) options_.candidate_gap = std::min(mean_edge(0), mean_edge(1));
     counters::count("contact.distance_source");
   }
+  /// Of a skin against itself.
+  DistanceSource(SkinSide side, distance::ContactMesh mesh, double radius, const Points& rest_nodes,
+                 const DistanceOptions& options)
+      : a_(std::move(side.surface)),
+        skins_{std::move(side.skin), {}},
+        own_(std::make_unique<SelfContactFilter>(*a_->soft(), rest_nodes)),
+        contact_(skins_[0], 1.0, std::move(mesh),
+                 {distance::OwnNeighbourhood(skins_[0], side.rest.vertices, radius),
+                  [this](const distance::ContactPoint& point, const Vec3& x, const distance::Foot& foot) {
+                    return own_->in_contact(skin_point(point.face, point.weights, x),
+                                            skin_point(foot.face, foot.at.weights, x - foot.at.away));
+                  }}),
+        options_(options),
+        thickness_(radius) {
+    if (options_.candidate_gap == 0.0) options_.candidate_gap = mean_edge(0);
+    counters::count("contact.distance_source");
+  }
 
   std::string_view name() const override { return "distance"; }
 
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     update(state);
-    if (!contact_.points(0).empty())  // else the points of the other surface have looked back
+    if (!own_ && !contact_.points(0).empty())  // else the points of the other surface have looked back
       look_back_.look(
-          *a_, *b_,
+          *a_, b(),
           [&](LookBack::Met& met) {
-            find_all_met(*a_, *b_, thickness_, met.a, met.b);
+            find_all_met(*a_, b(), thickness_, met.a, met.b);
             return thickness_;
           },
           {}, state.time);
     const proxy::ProxyMotion of_a = motion(0, state), of_b = motion(1, state);
-    contact_.find(carrying(0), carrying(1),
-                  proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction());
+    const double near =
+        proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction();
+    if (own_) {
+      const auto velocities = a_->soft()->node_velocities(state);
+      contact_.find_own(carrying(0), near, {velocities.data(), options_.candidate_gap, options_.look_ahead});
+    } else {
+      contact_.find(carrying(0), carrying(1), near);
+    }
     joints_.clear();
     safe_time_ = HUGE_VAL;
     const double speed = (of_a.velocity - of_b.velocity).norm() + of_a.spread + of_b.spread;
@@ -106,13 +130,13 @@ class DistanceSource final : public SampleSource {
 
   void add_pattern(dynamics::PatternBuilder& pattern) const override {
     for (const ImageSide* side : {a_.get(), b_.get()})
-      if (side->soft()) side->soft()->add_face_pattern(pattern);
+      if (side && side->soft()) side->soft()->add_face_pattern(pattern);
     coupled_.add_pattern(pattern);
   }
   std::uint64_t pattern_version() const override {
     std::uint64_t sum = coupled_.version();
     for (const ImageSide* side : {a_.get(), b_.get()})
-      if (side->soft()) sum += side->soft()->pattern_version();
+      if (side && side->soft()) sum += side->soft()->pattern_version();
     return sum;
   }
   double safe_time() const override { return safe_time_; }
@@ -127,12 +151,12 @@ class DistanceSource final : public SampleSource {
  private:
   void update(const dynamics::StateView& state) {
     a_->update(state);
-    b_->update(state);
+    if (b_) b_->update(state);
   }
   /// Positions of the nodes of a side's distance::Skin: the body's nodes, its vertices, or the corners of
   /// what carries a rigid one.
   const double* carrying(std::size_t side) {
-    ImageSide& surface = side == 0 ? *a_ : *b_;
+    ImageSide& surface = side == 0 ? *a_ : b();
     if (surface.soft()) return surface.points().data();
     const Pose pose = surface.frame();
     if (side == 1 && centre_)
@@ -151,7 +175,7 @@ class DistanceSource final : public SampleSource {
   }
 
   proxy::ProxyMotion motion(int side, const dynamics::StateView& state) const {
-    const ImageSide& of = side == 0 ? *a_ : *b_;
+    const ImageSide& of = side == 0 ? *a_ : b();
     proxy::ProxyMotion out = of.motion(state);
     if (of.soft() && of.soft()->is_skin())
       out.spread = contact_.spread(side, of.soft()->node_velocities(state).data(), out.velocity);
@@ -175,8 +199,8 @@ class DistanceSource final : public SampleSource {
     pair.at_b = is_of_a ? y : x;
     const auto carried = [&](int side, int face, const Vec3& weights, const Vec3& at) -> CarriedPoint {
       if (side == 1 && centre_) return {on_ball(at, pair.normal), 0};
-      const int given = skins_[static_cast<std::size_t>(side)].given_face[static_cast<std::size_t>(face)];
-      return (side == 0 ? *a_ : *b_).carried(given, weights, at, pair.normal);
+      const int given = skin(side).given_face[static_cast<std::size_t>(face)];
+      return (side == 0 ? *a_ : b()).carried(given, weights, at, pair.normal);
     };
     (is_of_a ? pair.a : pair.b) = carried(spring.side, point.face, point.weights, x);
     (is_of_a ? pair.b : pair.a) = carried(1 - spring.side, spring.face, spring.weights, y);
@@ -193,10 +217,10 @@ class DistanceSource final : public SampleSource {
       out.gap = -spring.force / spring.stiffness;
       out.stored = 2.0 * spring.energy * spring.stiffness / (spring.force * spring.force);
       const Vec3 end = pair.at_a - out.gap * pair.normal;  // on the same line
-      if (b_->soft())
+      if (b().soft())
         out.b.offset += end - pair.at_b;
       else
-        out.b = centre_ ? on_ball(end, pair.normal) : b_->carried(0, Vec3::Zero(), end, pair.normal).point;
+        out.b = centre_ ? on_ball(end, pair.normal) : b().carried(0, Vec3::Zero(), end, pair.normal).point;
     }
     return out;
   }
@@ -209,15 +233,15 @@ class DistanceSource final : public SampleSource {
   }
 
   /// Blocks between the nodes of two soft bodies.
-  bool is_coupled() const { return a_->soft() && b_->soft(); }
+  bool is_coupled() const { return a_->soft() && b().soft(); }
   static CoupledNodes::Joint joint_of(const Pair& pair) {
     return {CoupledNodes::key_of(pair.a.number, pair.b.number), pair.a.point.count, pair.b.point.count,
             pair.a.point.node, pair.b.point.node};
   }
   void couple() {
-    const std::uint64_t layout = a_->soft()->pattern_version() + b_->soft()->pattern_version();
+    const std::uint64_t layout = a_->soft()->pattern_version() + b().soft()->pattern_version();
     if (!neighbours_ || layout != counted_in_) {
-      neighbours_ = {a_->soft()->neighbours(), b_->soft()->neighbours()};
+      neighbours_ = {a_->soft()->neighbours(), b().soft()->neighbours()};
       coupled_.start((*neighbours_)[0], (*neighbours_)[1]);
       counted_in_ = layout;
     }
@@ -234,11 +258,18 @@ class DistanceSource final : public SampleSource {
         point = side.carried_by(number, x, now.normal);
     };
     keep(*a_, static_cast<int>(then.key >> 32), then.a, then.count_a, now.at_a, now.a);
-    keep(*b_, static_cast<int>(then.key & 0xffffffffu), then.b, then.count_b, now.at_b, now.b);
+    keep(b(), static_cast<int>(then.key & 0xffffffffu), then.b, then.count_b, now.at_b, now.b);
   }
 
-  std::unique_ptr<ImageSide> a_, b_;
+  ImageSide& b() const { return b_ ? *b_ : *a_; }
+  const distance::Skin& skin(int side) const { return skins_[b_ ? static_cast<std::size_t>(side) : 0]; }
+  SkinPoint skin_point(int face, const Vec3& weights, const Vec3& at) const {
+    return own_->point(skins_[0].given_face[static_cast<std::size_t>(face)], weights, at);
+  }
+
+  std::unique_ptr<ImageSide> a_, b_;  ///< b: none of a skin against itself
   std::array<distance::Skin, 2> skins_;
+  std::unique_ptr<SelfContactFilter> own_;  ///< of a skin against itself
   std::array<Points, 2> corners_, placed_;  ///< of rigid sides, in their frames and in the world [m]
   distance::SkinContact contact_;
   DistanceOptions options_;
@@ -254,12 +285,13 @@ class DistanceSource final : public SampleSource {
   SumError sum_error_;
 };
 
-SkinSide soft(NodeSurface surface, const Points& rest) {
+SkinSide soft(NodeSurface surface, const Points& rest,
+              distance::Clusters clusters = distance::Clusters::kAny) {
   SkinSide side;
   side.rest = {rest, surface.faces};
   const bool is_embedded = surface.node_of_vertex.empty();
   side.skin = is_embedded ? distance::make_skin(side.rest, surface.embedding, surface.tets,
-                                                surface.tets.maxCoeff() + 1)
+                                                surface.tets.maxCoeff() + 1, clusters)
                           : distance::make_skin(side.rest);
   side.surface = soft_side(std::move(surface));
   return side;
@@ -316,6 +348,17 @@ std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Po
                                                    const FrameSurface& other,
                                                    const DistanceOptions& options) {
   return make(soft(std::move(surface), rest), rigid(other), options);
+}
+
+std::unique_ptr<SampleSource> make_own_distance_source(NodeSurface surface, const Points& rest,
+                                                       const Points& rest_nodes,
+                                                       const DistanceOptions& options) {
+  SkinSide side = soft(std::move(surface), rest, distance::Clusters::kConnected);
+  const CharacteristicLengths lengths = lengths_of(side.rest);
+  distance::ContactMesh mesh =
+      distance::contact_mesh(side.skin, point_spacing(lengths, lengths, options.quadrature_error));
+  return std::make_unique<DistanceSource>(std::move(side), std::move(mesh), 0.5 * lengths.radius, rest_nodes,
+                                          options);
 }
 
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest,

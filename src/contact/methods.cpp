@@ -18,16 +18,14 @@ const std::vector<MethodEntry>& method_registry() {
   static const std::vector<MethodEntry> registry = {
       {"analytic", "exact gaps at the vertices: of obstacles, and of tools with shape = \"sphere\"",
        part_keys({"gaps"})},
-      {"auto", "\"distance\"; \"image\" of a body with itself, and where pixels, samples or depths are given",
-       all_keys()},
+      {"auto", "\"distance\"; \"image\" where pixels, samples or depths are given", all_keys()},
       {"distance",
        "material points of skins and their nearest points on what they touch: the gradient of an energy, "
-       "continuous; of soft bodies, tools of any shape and obstacles",
+       "continuous; of soft bodies, themselves too, tools of any shape and obstacles",
        part_keys({"gaps", "quadrature_error"})},
       {"image",
-       "image space: tools of any shape, other soft bodies, a body against itself; on a GPU where the "
-       "machine "
-       "has one, else on the processor",
+       "image space: tools of any shape, other soft bodies, a body's bones against each other; on a GPU "
+       "where the machine has one, else on the processor",
        image_keys()},
       {"cpu", "the same image on the processor", image_keys()},
       {"gpu", "the same image by OpenGL, without a GPU by Mesa's software rasteriser", image_keys()},

@@ -71,12 +71,39 @@ void SkinContact::find(const double* nodes_a, const double* nodes_b, double near
   for (int side = 0; side < 2; ++side) {
     if (points(side).empty()) continue;
     searches_[1 - side]->begin(both.center(), surfaces_[side].bound());
-    find_side(side, near + most_lowered_[side]);
+    if (own_)
+      find_clusters_of_own(std::min(near, own_->depth()));
+    else
+      find_side(side, near + most_lowered_[side]);
   }
   find_triangles();
   list_missing();
   follow_packets(missing_);
   integrate();
+}
+
+void SkinContact::find_own(const double* nodes, double near, const Approach& approach) {
+  approach_ = approach;
+  find(nodes, nodes, near);
+  approach_ = {};
+}
+
+/// Whether a point outside may reach its foot before the next query, or is nearer than what is always kept.
+bool SkinContact::may_come_near(const ContactPoint& point, const Foot& foot) const {
+  if (!approach_.velocities) return true;
+  const Skin& skin = surfaces_[0].skin();
+  const auto velocity = [&](int face, const Vec3& weights) {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const int v = skin.faces(k, face);
+      for (int j = 0; j < 4; ++j)
+        sum += weights[k] * skin.weights(j, v) *
+               Eigen::Map<const Vec3>(approach_.velocities + 3 * std::ptrdiff_t{skin.nodes(j, v)});
+    }
+    return sum;
+  };
+  const Vec3 relative = velocity(point.face, point.weights) - velocity(foot.face, foot.at.weights);
+  return std::sqrt(foot.at.distance2) < approach_.gap_m + approach_.time_s * relative.norm();
 }
 
 /// Lists the corners of triangles that overlap, where they are not placed yet, in ascending order.
@@ -145,22 +172,46 @@ void SkinContact::follow_packet(std::span<const std::size_t> springs) {
     faces[used++] = springs_[i].face;
   }
   search.finish(packet, used);
+  const int own =
+      points(side)[static_cast<std::size_t>(springs_[springs.front()].point)].face / kClusterFaces;
+  if (own_)
+    for (int& face : std::span(faces, static_cast<std::size_t>(used)))
+      if (!own_->neighbours.may_touch(own, face / kClusterFaces)) face = -1;
   search.start(packet, faces, used);
-  search.search(&packet, 1);
+  search.search(&packet, 1, neighbours(), own);
   for (int lane = 0; lane < used; ++lane) {
     Spring& spring = springs_[springs[static_cast<std::size_t>(lane)]];
-    const int face = packet.face[lane];
-    const Foot foot = other.nearest_around(position(spring), face < 0 ? spring.face : face);
-    set_foot(spring, foot, other.is_inside(foot));
+    const int face = packet.face[lane] < 0 ? spring.face : packet.face[lane];
+    const Vec3 x = position(spring);
+    const Foot foot = other.nearest_around(x, face);
+    if (own_ && !own_->neighbours.may_touch(own, foot.face / kClusterFaces)) {
+      set_foot(spring, {face, other.nearest_on_face(face, x)}, false);
+      spring.clear = 0.0;
+      continue;
+    }
+    const bool is_inside = other.is_inside(foot);
+    const ContactPoint& point = points(side)[static_cast<std::size_t>(spring.point)];
+    set_foot(spring, foot, is_inside && overlaps(point, x, foot));
+    if (is_inside) spring.clear = 0.0;
   }
+}
+
+/// Whether a point overlaps that lies behind its foot: always, of another skin.
+bool SkinContact::overlaps(const ContactPoint& point, const Vec3& x, const Foot& foot) const {
+  if (!own_) return true;
+  return foot.at.distance2 < own_->depth() * own_->depth() && own_->is_overlap(point, x, foot);
 }
 
 /// Distance of a box from the clusters' boxes of the other skin, or less than `near` where it is that.
 /// @param near_leaf  in the other tree, what was nearest to the last box, and then to this one
-double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf) const {
+/// @param own        cluster whose box it is, of a skin against itself
+double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf,
+                           int own) const {
   const Surface& other = surfaces_[1 - side];
   double least2 = std::numeric_limits<double>::infinity();
   const auto take = [&](int leaf) {
+    if (own_ && !own_->neighbours.may_touch(own, other.skin().tree[static_cast<std::size_t>(leaf)].begin))
+      return;
     other.place(other.skin().tree[static_cast<std::size_t>(leaf)].begin);
     const double distance2 = other.box(leaf).squaredExteriorDistance(box);
     if (!(distance2 < least2)) return;
@@ -230,6 +281,27 @@ void SkinContact::find_side(int side, double near) {
   }
 }
 
+// Which side of the skin a point lies on is only known where its nearest point is.  What lies at a distance s
+// is known to be outside until the skin has moved by s; where the side is not known, nothing overlaps until
+// it has moved by s less the depth up to which overlaps are found.
+void SkinContact::find_clusters_of_own(double near) {
+  const Surface& own = surfaces_[0];
+  int near_leaf = -1;
+  for (std::size_t i = 0; i < own.skin().tree.size(); ++i) {
+    const ClusterNode& node = own.skin().tree[i];
+    if (node.right) continue;
+    double& clear = clear_[0][static_cast<std::size_t>(node.begin)];
+    if (clear >= travelled_ + near) continue;
+    own.place(node.begin);
+    const double within = own_->depth();
+    const double gap = gap_of(0, own.box(static_cast<int>(i)), within, near_leaf, node.begin);
+    if (gap > within)
+      clear = travelled_ + gap - own_->depth();
+    else
+      find_cluster(0, node.begin, -1, near);
+  }
+}
+
 /// Says where all clusters are that hang together with one, each as a whole on one side.
 void SkinContact::settle(int side, const Part& part) {
   const Surface& own = surfaces_[side];
@@ -277,18 +349,18 @@ int SkinContact::find_cluster(int side, int cluster, int start, double near) {
     for (int lane = 0; lane < used; ++lane)
       search.set_point(packet, lane,
                        position(side, points(side)[static_cast<std::size_t>(begin + kPacket * p + lane)]));
-    search.finish(packet, used);
+    search.finish(packet, used, own_ ? own_->depth() : 1e15);
     int faces[kPacket + 1] = {start};
     const auto& feet = feet_[side][static_cast<std::size_t>(first_packet_[side][c] + p)];
     std::copy(feet.begin(), feet.end(), faces + 1);
     search.start(packet, faces, kPacket + 1);
   }
-  if (!open.empty()) search.search(packets.data(), static_cast<int>(open.size()));
+  if (!open.empty()) search.search(packets.data(), static_cast<int>(open.size()), neighbours(), cluster);
   for (std::size_t o = 0; o < open.size(); ++o) {
     const Packet& packet = packets[o];
     const int p = open[o];
-    const auto number = static_cast<std::size_t>(first_packet_[side][c] + p);
-    keep_faces(packet, feet_[side][number]);
+    const auto place = static_cast<std::size_t>(first_packet_[side][c] + p);
+    keep_faces(packet, feet_[side][place]);
     double least = std::numeric_limits<double>::infinity();  // of the points' distances outside
     for (int lane = 0; lane < std::min(kPacket, end - begin - kPacket * p); ++lane) {
       const double distance = std::sqrt(static_cast<double>(packet.distance2[lane])) - 2.0 * search.slack();
@@ -297,14 +369,20 @@ int SkinContact::find_cluster(int side, int cluster, int start, double near) {
         least = std::min(least, packet.face[lane] < 0 ? 0.0 : distance);
         continue;
       }
-      const int point = begin + kPacket * p + lane;
-      const Foot foot = other.nearest_around(position(side, points(side)[static_cast<std::size_t>(point)]),
-                                             packet.face[lane]);
-      const bool is_inside = other.is_inside(foot);
-      least = std::min(least, is_inside ? 0.0 : std::sqrt(foot.at.distance2));
-      if (is_inside || foot.at.distance2 < near * near) add_spring(side, point, foot, is_inside);
+      const int number = begin + kPacket * p + lane;
+      const ContactPoint& point = points(side)[static_cast<std::size_t>(number)];
+      const Vec3 x = position(side, point);
+      const Foot foot = other.nearest_around(x, packet.face[lane]);
+      const bool is_of_neighbour = own_ && !own_->neighbours.may_touch(cluster, foot.face / kClusterFaces);
+      const bool is_inside = !is_of_neighbour && other.is_inside(foot);
+      const bool is_overlap = is_inside && overlaps(point, x, foot);
+      const double away = is_of_neighbour ? distance : std::sqrt(foot.at.distance2);
+      const bool is_outside = !is_inside && !is_of_neighbour;
+      least = std::min(least, is_outside ? away : 0.0);
+      if (is_overlap || (is_outside && away < near && may_come_near(point, foot)))
+        add_spring(side, number, foot, is_overlap);
     }
-    packets_clear_[side][number] = least > 0.0 ? travelled_ + least * (1.0 - kRounding) : -1.0;
+    packets_clear_[side][place] = least > 0.0 ? travelled_ + least * (1.0 - kRounding) : -1.0;
   }
   clear_[side][c] = std::numeric_limits<double>::infinity();  // it may have no points of its own
   for (int p = first_packet_[side][c]; p < first_packet_[side][c + 1]; ++p)

@@ -42,9 +42,9 @@ void LaneSearch::set_point(Packet& packet, int lane, const Vec3& x) const {
   for (int d = 0; d < 3; ++d) packet.x[d][lane] = static_cast<float>(x[d] - origin_[d]);
 }
 
-void LaneSearch::finish(Packet& packet, int used) const {
+void LaneSearch::finish(Packet& packet, int used, double within) const {
   for (int lane = 0; lane < kLanes; ++lane) {
-    packet.distance2[lane] = 1e30f;
+    packet.distance2[lane] = static_cast<float>(within * within);
     packet.height[lane] = 0.0f;
     packet.face[lane] = -1;
     for (int d = 0; d < 3 && lane >= used; ++d) packet.x[d][lane] = packet.x[d][used - 1];
@@ -76,7 +76,7 @@ void LaneSearch::start(Packet& packet, const int* faces, int count) {
 }
 
 /// Clusters within the packets' bounds of the box around their points.
-void LaneSearch::collect(const Packet* packets, int count) {
+void LaneSearch::collect(const Packet* packets, int count, const OwnNeighbourhood* neighbours, int own) {
   Eigen::AlignedBox3f points;
   float bound2 = 0.0f;
   for (int p = 0; p < count; ++p)
@@ -100,6 +100,7 @@ void LaneSearch::collect(const Packet* packets, int count) {
       open[depth++] = i + 1;
       continue;
     }
+    if (neighbours && !neighbours->may_touch(own, node.begin)) continue;
     surface_.place(node.begin);
     if (surface_.box(i).squaredExteriorDistance(box) > reach * reach) continue;
     prepare(node.begin);
@@ -112,8 +113,8 @@ void LaneSearch::collect(const Packet* packets, int count) {
   }
 }
 
-void LaneSearch::search(Packet* packets, int count) {
-  collect(packets, count);
+void LaneSearch::search(Packet* packets, int count, const OwnNeighbourhood* neighbours, int cluster) {
+  collect(packets, count, neighbours, cluster);
   targets_.face_count = 0;
   for (int p = 0; p < count; ++p) tested_ += kernels_.search(packets[p], targets_);
 }

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "distance/search_kernels.h"
+#include "palpate/distance/own_neighbourhood.h"
 #include "palpate/distance/surface.h"
 
 namespace palpate::distance {
@@ -19,18 +20,20 @@ class LaneSearch {
   /// Takes the surface as it is now.  @param box  of all points that will be asked for
   void begin(const Vec3& origin, const Eigen::AlignedBox3d& box);
   /// Fills lanes `begin` to `end` of a packet's points, and the rest with the last one.
-  void finish(Packet& packet, int used) const;
+  /// @param within  farther faces are not looked for [m]
+  void finish(Packet& packet, int used, double within = 1e15) const;
   void set_point(Packet& packet, int lane, const Vec3& x) const;
   /// Distances to some faces, which bound what follows.  @param faces  at least one; -1 is left out
   void start(Packet& packet, const int* faces, int count);
   /// Nearest faces of some packets that are near each other.  @pre each was started
-  void search(Packet* packets, int count);
+  /// @param neighbours  of the surface: searches what may touch `cluster` alone; null: all of it
+  void search(Packet* packets, int count, const OwnNeighbourhood* neighbours = nullptr, int cluster = -1);
   /// Bound on what rounding adds to a height over a plane [m].
   double slack() const { return slack_; }
   long tested() const { return tested_; }
 
  private:
-  void collect(const Packet* packets, int count);
+  void collect(const Packet* packets, int count, const OwnNeighbourhood* neighbours, int own);
   void prepare(int cluster);
 
   const Surface& surface_;

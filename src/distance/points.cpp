@@ -83,6 +83,7 @@ ContactMesh contact_mesh(const Skin& skin, double spacing) {
   ContactMesh out;
   Corners corners(skin, out.points);
   for (int face = 0; face < skin.face_count(); ++face) {
+    if (skin.area[face] == 0.0) continue;  // a repetition
     const int n = cuts_of(skin, face, spacing);
     const auto add = [&](const std::array<std::array<int, 2>, 3>& at) {
       ContactTriangle triangle{.area = skin.area[face] / (n * n)};

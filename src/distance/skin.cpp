@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "palpate/core/error.h"
 #include "palpate/mesh/spatial_order.h"
@@ -47,10 +48,96 @@ class Bisection {
   std::vector<ClusterNode>& tree_;
 };
 
+/// Parts of some faces that hang together by vertices, each in the order of the faces.
+std::vector<std::vector<int>> connected_parts(std::vector<int> faces, const Faces& corners) {
+  const auto share_vertex = [&](int a, int b) {
+    for (const int v : corners.col(a))
+      if ((corners.col(b).array() == v).any()) return true;
+    return false;
+  };
+  std::vector<std::vector<int>> parts;
+  while (!faces.empty()) {
+    std::vector<int> part{faces.front()}, rest(faces.begin() + 1, faces.end());
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const auto end =
+          std::stable_partition(rest.begin(), rest.end(), [&](int f) { return !share_vertex(part[i], f); });
+      part.insert(part.end(), end, rest.end());
+      rest.erase(end, rest.end());
+    }
+    std::sort(part.begin(), part.end(), [&](int a, int b) {
+      return std::find(faces.begin(), faces.end(), a) < std::find(faces.begin(), faces.end(), b);
+    });
+    parts.push_back(std::move(part));
+    faces = std::move(rest);
+  }
+  return parts;
+}
+
+/// Gives each connected part of a cluster a cluster of its own.
+class ConnectedClusters {
+ public:
+  ConnectedClusters(const Faces& corners, std::vector<int>& order, std::vector<ClusterNode>& tree)
+      : corners_(corners),
+        given_(std::exchange(order, {})),
+        before_(std::exchange(tree, {})),
+        order_(order),
+        tree_(tree) {
+    copy(0);
+  }
+
+ private:
+  int clusters() const { return static_cast<int>(order_.size()) / kClusterFaces; }
+  std::size_t open() {
+    tree_.push_back({clusters(), 0, 0});
+    return tree_.size() - 1;
+  }
+  void copy(std::size_t node) {
+    const ClusterNode& of = before_[node];
+    if (!of.right) {
+      const auto begin = given_.begin() + kClusterFaces * of.begin;
+      const auto count = std::min<std::ptrdiff_t>(kClusterFaces, given_.end() - begin);
+      return add(connected_parts({begin, begin + count}, corners_), 0);
+    }
+    const std::size_t here = open();
+    copy(node + 1);
+    tree_[here].right = static_cast<int>(tree_.size());
+    copy(static_cast<std::size_t>(of.right));
+    tree_[here].end = clusters();
+  }
+  void add(const std::vector<std::vector<int>>& parts, std::size_t first) {
+    const std::size_t here = open();
+    if (first + 1 < parts.size()) {
+      const std::size_t leaf = open();
+      fill(parts[first]);
+      tree_[leaf].end = clusters();
+      tree_[here].right = static_cast<int>(tree_.size());
+      add(parts, first + 1);
+    } else {
+      fill(parts[first]);
+    }
+    tree_[here].end = clusters();
+  }
+  void fill(const std::vector<int>& part) {
+    order_.insert(order_.end(), part.begin(), part.end());
+    order_.resize((order_.size() + kClusterFaces - 1) / kClusterFaces * kClusterFaces, part.back());
+  }
+
+  const Faces& corners_;
+  const std::vector<int> given_;
+  const std::vector<ClusterNode> before_;
+  std::vector<int>& order_;
+  std::vector<ClusterNode>& tree_;
+};
+
+bool is_repetition(const Skin& skin, int face) {
+  const auto f = static_cast<std::size_t>(face);
+  return f > 0 && skin.given_face[f] == skin.given_face[f - 1];
+}
+
 void join_across_edges(Skin& skin) {
   std::map<std::pair<int, int>, int> half_edges;  // from, to -> 3 face + opposite corner
   for (int f = 0; f < skin.face_count(); ++f)
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3 && !is_repetition(skin, f); ++k) {
       const int from = skin.faces((k + 1) % 3, f), to = skin.faces((k + 2) % 3, f);
       if (!half_edges.try_emplace({from, to}, 3 * f + k).second)
         fail(
@@ -66,17 +153,20 @@ void join_across_edges(Skin& skin) {
            edge.first, edge.second);
     skin.across(at % 3, at / 3) = other->second / 3;
   }
+  for (int f = 1; f < skin.face_count(); ++f)
+    if (is_repetition(skin, f)) skin.across.col(f) = skin.across.col(f - 1);
 }
 
 void collect_fans(Skin& skin) {
-  skin.fan_begin.assign(static_cast<std::size_t>(skin.vertex_count()) + 1, 0);
-  for (const int v : skin.faces.reshaped()) ++skin.fan_begin[static_cast<std::size_t>(v) + 1];
-  std::partial_sum(skin.fan_begin.begin(), skin.fan_begin.end(), skin.fan_begin.begin());
-  std::vector<int> next(skin.fan_begin.begin(), skin.fan_begin.end() - 1);
-  skin.fan.resize(static_cast<std::size_t>(skin.faces.size()));
+  std::vector<std::vector<int>> fans(static_cast<std::size_t>(skin.vertex_count()));
   for (int f = 0; f < skin.face_count(); ++f)
-    for (int k = 0; k < 3; ++k)
-      skin.fan[static_cast<std::size_t>(next[static_cast<std::size_t>(skin.faces(k, f))]++)] = f;
+    for (int k = 0; k < 3 && !is_repetition(skin, f); ++k)
+      fans[static_cast<std::size_t>(skin.faces(k, f))].push_back(f);
+  skin.fan_begin = {0};
+  for (const std::vector<int>& fan : fans) {
+    skin.fan.insert(skin.fan.end(), fan.begin(), fan.end());
+    skin.fan_begin.push_back(static_cast<int>(skin.fan.size()));
+  }
 }
 
 void collect_cluster_vertices(Skin& skin) {
@@ -124,7 +214,8 @@ void set_aside_far(Skin& skin) {
   skin.far_weights = skin.weights(Eigen::all, order);
 }
 
-Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node_count) {
+Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node_count,
+           Clusters clusters = Clusters::kAny) {
   if (!rest.vertices.allFinite() || !weights.allFinite())
     fail("contact needs a skin of finite positions and weights");
   Skin skin;
@@ -138,9 +229,10 @@ Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node
   skin.given_face.resize(static_cast<std::size_t>(count));
   std::iota(skin.given_face.begin(), skin.given_face.end(), 0);
   Bisection(centroids, skin.given_face, skin.tree).cut(0, static_cast<int>(count));
+  if (clusters == Clusters::kConnected) ConnectedClusters(rest.faces, skin.given_face, skin.tree);
   skin.faces = rest.faces(Eigen::all, skin.given_face);
-  skin.area.resize(count);
-  skin.longest_edge.resize(count);
+  skin.area.resize(skin.face_count());
+  skin.longest_edge.resize(skin.face_count());
   for (int f = 0; f < skin.face_count(); ++f) {
     const Vec3 a = rest.vertices.col(skin.faces(0, f)), b = rest.vertices.col(skin.faces(1, f)),
                c = rest.vertices.col(skin.faces(2, f));
@@ -149,6 +241,7 @@ Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node
     if (!(skin.area[f] > 0.0))
       fail("contact needs a skin without flat triangles: face {} has no area",
            skin.given_face[static_cast<std::size_t>(f)]);
+    if (is_repetition(skin, f)) skin.area[f] = 0.0;
   }
   join_across_edges(skin);
   collect_fans(skin);
@@ -160,17 +253,18 @@ Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node
 
 }  // namespace
 
-Skin make_skin(const TriMesh& rest, const mesh::Embedding& embedding, const Tets& tets, int node_count) {
-  return build(rest, tets(Eigen::all, embedding.tet), embedding.weights, node_count);
+Skin make_skin(const TriMesh& rest, const mesh::Embedding& embedding, const Tets& tets, int node_count,
+               Clusters clusters) {
+  return build(rest, tets(Eigen::all, embedding.tet), embedding.weights, node_count, clusters);
 }
 
-Skin make_skin(const TriMesh& rest) {
+Skin make_skin(const TriMesh& rest, Clusters clusters) {
   const Eigen::Index count = rest.vertices.cols();
   NodeIndices nodes(4, count);
   for (int i = 0; i < count; ++i) nodes.col(i).setConstant(i);
   NodeWeights weights = NodeWeights::Zero(4, count);
   weights.row(0).setOnes();
-  return build(rest, std::move(nodes), std::move(weights), static_cast<int>(count));
+  return build(rest, std::move(nodes), std::move(weights), static_cast<int>(count), clusters);
 }
 
 // The simplex x, y, z >= low, sum of (x - low)/(3 size) <= 1 holds the box: all weights lie in [0, 1].

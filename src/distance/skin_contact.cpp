@@ -23,7 +23,16 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& sp
     : SkinContact(a, b, spec.stiffness_pa_m, meshes_of(a, b, spec)) {}
 
 SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::array<ContactMesh, 2> meshes)
-    : stiffness_(meshes[0].points.empty() || meshes[1].points.empty() ? stiffness : 0.5 * stiffness),
+    : SkinContact(a, b, stiffness, std::move(meshes), std::nullopt) {}
+
+SkinContact::SkinContact(const Skin& skin, double stiffness, ContactMesh mesh, OwnContact own)
+    : SkinContact(skin, skin, stiffness, {std::move(mesh), {}}, std::move(own)) {}
+
+SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::array<ContactMesh, 2> meshes,
+                         std::optional<OwnContact> own)
+    : own_(std::move(own)),
+      stiffness_(!own_ && (meshes[0].points.empty() || meshes[1].points.empty()) ? stiffness
+                                                                                 : 0.5 * stiffness),
       surfaces_{Surface(a), Surface(b)},
       meshes_(std::move(meshes)),
       scratch_(std::make_unique<Scratch>()) {

@@ -136,15 +136,42 @@ std::unique_ptr<contact::SampleSource> pair_source(Pair a, Pair b) {
   return contact::make_image_source(std::move(a.surface), std::move(b.surface), options);
 }
 
-/// Contact of one soft body with itself: its bones' regions against each other.
+/// A surface made of nodes as a skin in the tetrahedra that have these nodes.
+contact::NodeSurface in_tetrahedra(contact::NodeSurface surface, const TetMesh& body) {
+  if (surface.node_of_vertex.empty()) return surface;
+  std::vector<std::pair<int, int>> place_of(static_cast<std::size_t>(body.nodes.cols()));  // tet, corner
+  for (Eigen::Index t = body.tets.cols(); t-- > 0;)
+    for (int k = 0; k < 4; ++k)
+      place_of[static_cast<std::size_t>(body.tets(k, t))] = {static_cast<int>(t), k};
+  const auto count = static_cast<Eigen::Index>(surface.node_of_vertex.size());
+  surface.embedding.weights.setZero(4, count);
+  for (Eigen::Index v = 0; v < count; ++v) {
+    const int node = surface.node_of_vertex[static_cast<std::size_t>(v)];
+    const auto [tet, corner] = place_of[static_cast<std::size_t>(node)];
+    surface.embedding.tet.push_back(tet);
+    surface.embedding.weights(corner, v) = 1.0;
+  }
+  surface.tets = body.tets;
+  surface.node_of_vertex.clear();
+  return surface;
+}
+
+/// Contact of one soft body with itself: its skin's nearest points, or its bones' regions against each other.
 std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair) {
   const std::string who = fmt::format("contact {} - {}", pair.spec.first, pair.spec.second);
+  if (pair.spec.method == "distance") {
+    try {
+      return contact::make_own_distance_source(in_tetrahedra(std::move(pair.surface), pair.body), pair.rest,
+                                               pair.body.nodes, distance_options(pair));
+    } catch (const Error& error) { refuse_distance(pair.spec, error); }
+  }
   if (!scene::is_in_images(pair.spec))
-    fail("{}: a body meets itself in image space; use method = \"auto\"", who);
+    fail("{}: a body has no exact gaps against itself; use method = \"auto\"", who);
   if (!pair.proxies)
     fail(
-        "{}: which of a body's skin may touch itself is known by its proxies; give the body skin = true and "
-        "proxies = true",
+        "{}: in images, which of a body's skin may touch itself is known by its proxies; give the body skin "
+        "= "
+        "true and proxies = true, or the contact method = \"distance\"",
         who);
   const proxy::ProxySet& set = *pair.proxies;
   bool two_bones = false;

@@ -52,18 +52,19 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
         "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool");
 }
 
-/// One body twice: the regions of its bones.
+/// One body twice: its skin's nearest points, or the regions of its bones.
 void check_own_contact(const Document& doc, const std::string& key, const std::string& where,
                        const Description& d, const ContactSpec& c) {
   const auto body =
       std::find_if(d.bodies.begin(), d.bodies.end(), [&](const auto& b) { return b.name == c.first; });
-  if (!body->proxies)
-    refuse(location(doc, key + ".between"), where,
-           "a body touches itself with the skin of one bone against that of another, by its proxies: give it "
-           "skin = true and proxies = true, or name two things");
+  if (c.method == "distance") return;
   if (!is_in_images(c))
     refuse(location(doc, key + ".method"), where,
-           "a body meets itself in image space: leave the method out, or write \"auto\"");
+           "a body has no exact gaps against itself: leave the method out, or write \"auto\"");
+  if (!body->proxies)
+    refuse(location(doc, key + ".between"), where,
+           "in images a body touches itself with the skin of one bone against that of another, by its "
+           "proxies: give it skin = true and proxies = true, or leave out what asks for an image");
 }
 
 void check_method(const Document& doc, const std::string& key, const std::string& where, const Sides& sides,

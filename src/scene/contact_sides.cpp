@@ -48,8 +48,7 @@ void set_method(ContactSpec& contact, const std::string& method) {
 std::string contact_method(const Description& description, const ContactSpec& contact) {
   if (contact.method != "auto") return contact.method;
   const ContactSpec none;
-  if (contact.first == contact.second || contact.pixels != none.pixels || contact.samples != none.samples ||
-      contact.depths != none.depths)
+  if (contact.pixels != none.pixels || contact.samples != none.samples || contact.depths != none.depths)
     return "image";
   if (contact.spring != "per_point") return "distance";
   const auto is_named = [&](const auto& one) { return one.name == contact.second; };

@@ -107,7 +107,7 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
   out.push_back({"friction", rubbing > 0,
                  rubbing > 0 ? fmt::format("{} [[contact]] with friction > 0", rubbing)
                              : "no contact with friction > 0"});
-  out.push_back({"contact between bones", own > 0,
+  out.push_back({"contact of a body with itself", own > 0,
                  own > 0 ? fmt::format("{} [[contact]] of a body with itself", own)
                  : any   ? "every [[contact]] names two"
                          : "no [[contact]]"});

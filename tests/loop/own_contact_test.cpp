@@ -46,7 +46,7 @@ struct Blocks {
     out.attachments.push_back(floor);
     return out;
   }
-  scene::Description scene(bool as_one) const {
+  scene::Description scene(bool as_one, const std::string& method = "cpu") const {
     scene::Description d;
     d.name = "blocks";
     d.duration_s = 0.03;
@@ -59,7 +59,11 @@ struct Blocks {
     ContactSpec contact;
     contact.first = d.bodies.front().name;
     contact.second = d.bodies.back().name;
-    contact.method = "cpu";
+    contact.method = method;
+    if (method == "distance") {
+      contact.gaps = "exact";
+      contact.quadrature_error = 1.0;  // each vertex is a point, of one body as of two
+    }
     contact.stiffness_pa_m = 1e7;
     contact.damping_pa_s_m = 1e3;
     contact.friction = 0.3;
@@ -78,7 +82,8 @@ struct Blocks {
 struct Fork {
   ModelOnDisk file{bent_bar::model(24, M_PI), "fork.h5"};
 
-  scene::Description scene(const std::string& integrator, bool touching = true) const {
+  scene::Description scene(const std::string& integrator, bool touching = true,
+                           const std::string& method = "cpu") const {
     scene::Description d;
     d.name = "fork";
     d.duration_s = 0.1;
@@ -100,12 +105,13 @@ struct Fork {
     d.bodies.push_back(body);
     ContactSpec contact;
     contact.first = contact.second = "fork";
-    contact.method = "cpu";
+    contact.method = method;
     contact.stiffness_pa_m = 1e6;
     contact.onset_width_m = 5e-3;
-    contact.candidate_gap_m = 0.03;
+    if (method == "cpu") contact.candidate_gap_m = 0.03;
+    if (method == "distance") contact.gaps = "exact";
     if (touching) d.contacts.push_back(contact);
-    d.bodies[0].proxies = touching;
+    d.bodies[0].proxies = touching && method == "cpu";
     d.integrator.name = integrator;
     d.integrator.step_s = 1e-3;
     d.integrator.rtol = 1e-5;
@@ -135,7 +141,8 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
   const Fork fork;
   scene::Description d = fork.scene("linearly-implicit-euler");
   d.contacts[0].method = "analytic";
-  EXPECT_NE(refusal(d).find("a body meets itself in image space; use method = \"auto\""), std::string::npos)
+  EXPECT_NE(refusal(d).find("a body has no exact gaps against itself; use method = \"auto\""),
+            std::string::npos)
       << refusal(d);
   d = fork.scene("linearly-implicit-euler");
   d.bodies[0].proxies = false;
@@ -204,10 +211,41 @@ TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodies) {
   }
 }
 
+// By nearest points as well, without proxies and all the way, but for rounding: a vertex has the same foot.
+TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodiesByNearestPoints) {
+  const Blocks blocks;
+  scene::Description together = blocks.scene(true, "distance"), apart = blocks.scene(false, "distance"),
+                     without = blocks.scene(true);
+  without.contacts.clear();
+  for (scene::Description* d : {&together, &apart, &without})
+    for (SoftBodySpec& body : d->bodies) body.proxies = false;
+  int pressing = 0;
+  const VecX two = end_of(apart), one = end_of(together, &pressing);
+  ASSERT_EQ(two.size(), one.size());
+  EXPECT_GT(pressing, 30);
+  EXPECT_LT((two - one).norm(), 1e-6 * two.norm());
+  EXPECT_GT((end_of(without) - one).norm(), 0.02 * one.norm()) << "contact is what holds it";
+}
+
+// A body without skin or proxies touches itself by default: its boundary, and by nearest points.
+TEST(OwnContactScene, ABoundaryTouchesItself) {
+  const Fork fork;
+  scene::Description d = fork.scene("linearly-implicit-euler", true, "auto");
+  d.bodies[0].skin = d.bodies[0].proxies = false;
+  counters::reset();
+  int pressing = 0;
+  const VecX with = end_of(d, &pressing);
+  EXPECT_GT(pressing, 10);
+  EXPECT_EQ(counters::counter("contact.distance_source"), 1);
+  EXPECT_EQ(counters::counter("proxy.pruner"), 0);
+  d.contacts.clear();
+  EXPECT_GT((with - end_of(d)).cwiseAbs().maxCoeff(), 5e-3) << "the tips are held apart";
+}
+
 // Every linear solver holds blocks between far nodes of one body, or says why not.
 TEST(OwnContactScene, EveryLinearSolverTakesIt) {
   const Fork fork;
-  scene::Description d = fork.scene("linearly-implicit-euler");
+  scene::Description d = fork.scene("linearly-implicit-euler", true, "distance");
   d.integrator.linear_solver = "umfpack";
   const VecX exact = end_of(d);
   int solvers = 0;
@@ -244,6 +282,25 @@ TEST(OwnContactScene, ArmsCloseAlikeByThreeIntegrators) {
   }
   EXPECT_GT(order, 0.8);
   EXPECT_LT(order, 1.2);
+}
+
+// By nearest points feet go over edges, so that an integrator under error control takes small steps: the
+// reference has a tenth of the tolerance.
+TEST(OwnContactScene, ArmsCloseAlikeByNearestPoints) {
+  const Fork fork;
+  scene::Description fine = fork.scene("cvode-bdf", true, "distance");
+  fine.integrator.rtol = 1e-6;
+  int pressing = 0;
+  const VecX reference = end_of(fine, &pressing), free = end_of(fork.scene("cvode-bdf", false));
+  EXPECT_GT(pressing, 50) << "the arms have met";
+  EXPECT_GT((free - reference).cwiseAbs().maxCoeff(), 4e-3) << "and are dented";
+  EXPECT_LT((end_of(fork.scene("cvode-bdf", true, "distance")) - reference).norm(), 1e-3 * reference.norm());
+  scene::Description d = fork.scene("linearly-implicit-euler", true, "distance");
+  for (const double step : {1e-3, 2.5e-4}) {
+    d.integrator.step_s = step;
+    EXPECT_LT((end_of(d) - reference).norm(),
+              0.03 * step / 1e-3 * reference.norm() + 5e-3 * reference.norm());
+  }
 }
 
 // The summary of own contact: one skin, whose handed-on triangles are counted on both sides of the regions;

@@ -51,8 +51,10 @@ const Broken kCases[] = {
      "body \"limb\": skeleton: needs mesh = { file = \"MODEL.h5\" }, a model file with bones; `palpate model "
      "human -o human.h5` makes one"},
     {"contact-with-itself", "9:11",
-     "contact between \"ball\" and \"ball\": a body touches itself with the skin of one bone against that of "
-     "another, by its proxies: give it skin = true and proxies = true, or name two things"},
+     "contact between \"ball\" and \"ball\": in images a body touches itself with the skin of one bone "
+     "against "
+     "that of another, by its proxies: give it skin = true and proxies = true, or leave out what asks for an "
+     "image"},
     {"contact-with-nothing", "12:20",
      "contact between \"ball\" and \"flor\": nothing is called \"flor\" (did you mean \"floor\"?)"},
     {"contact-without-tool", "9:12",

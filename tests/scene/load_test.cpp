@@ -177,7 +177,7 @@ TEST(Load, TwoSoftBodiesHaveNoExactGaps) {
             std::string::npos);
 }
 
-TEST(Load, ABodyMeetsItselfByItsBones) {
+TEST(Load, ABodyTouchesItself) {
   const auto refusal = [](const std::string& keys, const std::string& contact) -> std::string {
     try {
       const Description d = parse(
@@ -187,7 +187,7 @@ TEST(Load, ABodyMeetsItselfByItsBones) {
           "fist.toml", {});
       bool needed = false;
       for (const auto& need : palpate::scene::needs(d, "cholmod"))
-        needed |= need.part == "contact between bones" && need.used;
+        needed |= need.part == "contact of a body with itself" && need.used;
       EXPECT_TRUE(needed);
     } catch (const palpate::Error& e) { return e.what(); }
     return "accepted";
@@ -201,8 +201,9 @@ TEST(Load, ABodyMeetsItselfByItsBones) {
           .find("proxies = true, but no [[contact]] of this body is in image space, which alone uses them"),
       std::string::npos);
   EXPECT_NE(refusal("skin = true\n", itself + gpu)
-                .find("give it skin = true and proxies = true, or name two things"),
+                .find("give it skin = true and proxies = true, or leave out what asks for an image"),
             std::string::npos);
+  EXPECT_EQ(refusal("", itself), "accepted") << "nearest points need neither";
   EXPECT_NE(
       refusal(proxies, itself + gpu + "[[contact]]\n" + itself + gpu).find("this pair stands here twice"),
       std::string::npos);

@@ -26,7 +26,7 @@ TEST(Needs, ASceneWithoutToolLeavesOutAllThatIsHaptic) {
               ball.at("run file"));
   for (const char* part :
        {"tool", "device", "exchange", "exchange thread", "gl", "contact plane", "broad phase", "force file",
-        "friction", "fixed nodes", "compare", "skin", "proxies", "contact between bones"})
+        "friction", "fixed nodes", "compare", "skin", "proxies", "contact of a body with itself"})
     EXPECT_FALSE(ball.at(part)) << part;
   auto bar = used("cantilever");
   EXPECT_TRUE(bar.at("fixed nodes"));

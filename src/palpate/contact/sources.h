@@ -157,6 +157,17 @@ std::unique_ptr<SampleSource> make_distance_source(NodeSurface a, const Points& 
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest,
                                                    const FrameSurface& other, const DistanceOptions& options);
 
+/// One soft body against itself: material points of its skin, each with the nearest point of what lies
+/// farther than half of the body's mean radius from it along the skin.  What overlaps because the body is
+/// thick there is no contact (SelfContactFilter), at rest nothing is.  Overlaps deeper than a quarter of the
+/// mean radius are not seen.
+/// @param surface  a skin in tetrahedra  @param rest  its vertices  @param rest_nodes  the body's nodes, at
+///   rest [m]
+/// @throws Error where the surface is not closed, or a face of it has no area
+std::unique_ptr<SampleSource> make_own_distance_source(NodeSurface surface, const Points& rest,
+                                                       const Points& rest_nodes,
+                                                       const DistanceOptions& options);
+
 /// Returns the spacing of points of a shape's own surface against a body, as point_spacing() [m].
 double shape_spacing(const CharacteristicLengths& shape, const CharacteristicLengths& body,
                      double wanted_error);

@@ -24,17 +24,19 @@ struct ClusterNode {
 /// the position of node nodes(k, i).  Topology and rest areas, fixed at assembly.
 ///
 /// Faces are renumbered along a spatial bisection, so that faces 32 c to 32 c + 31 are cluster c, and runs of
-/// 16, 8 and 4 of them are compact, too.
+/// 16, 8 and 4 of them are compact, too.  Of a skin that touches itself (Clusters::kConnected) the faces of a
+/// cluster hang together: two sheets that lie on each other have clusters of their own, filled up with
+/// repetitions of the last face.
 struct Skin {
   int node_count = 0;
   NodeIndices nodes;
   NodeWeights weights;
   Faces faces;
-  std::vector<int> given_face;        ///< number that each face had in the mesh
+  std::vector<int> given_face;        ///< number that each face had in the mesh; twice: a repetition
   Faces across;                       ///< face beyond the edge opposite to each corner
   std::vector<int> fan_begin;         ///< of each vertex in `fan`, and its length at the end
   std::vector<int> fan;               ///< faces around each vertex, ascending
-  VecX area;                          ///< of each face at rest [m^2]
+  VecX area;                          ///< of each face at rest [m^2]; 0 of a repetition
   VecX longest_edge;                  ///< of each face at rest [m]
   std::vector<int> cluster_begin;     ///< of each cluster in `cluster_vertices`, and its length at the end
   std::vector<int> cluster_vertices;  ///< vertices of each cluster, each once
@@ -53,15 +55,19 @@ struct Skin {
   int cluster_count() const { return (face_count() + kClusterFaces - 1) / kClusterFaces; }
 };
 
+/// Whether the faces of a cluster have to hang together by vertices.
+enum class Clusters { kAny, kConnected };
+
 /// A skin embedded in tetrahedra.
 /// @param rest  closed and oriented outwards, at rest [m]  @param node_count  nodes of the tetrahedral mesh
 /// @throws Error where an edge does not belong to exactly two faces of opposite direction, where a face has
 /// no
 ///   area, or where a weight or position is not finite
-Skin make_skin(const TriMesh& rest, const mesh::Embedding& embedding, const Tets& tets, int node_count);
+Skin make_skin(const TriMesh& rest, const mesh::Embedding& embedding, const Tets& tets, int node_count,
+               Clusters clusters = Clusters::kAny);
 
 /// A skin whose vertices are its nodes.  Throws as above.
-Skin make_skin(const TriMesh& rest);
+Skin make_skin(const TriMesh& rest, Clusters clusters = Clusters::kAny);
 
 /// A skin that moves as one, carried by the corners of a tetrahedron around it.  Throws as above.
 /// @param corners  3 x 4, receives them [m], in the mesh's axes

@@ -1,10 +1,13 @@
 #pragma once
 #include <array>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "palpate/distance/own_neighbourhood.h"
 #include "palpate/distance/points.h"
 #include "palpate/distance/surface.h"
 
@@ -19,6 +22,26 @@ struct SkinContactSpec {
   std::array<double, 2> spacing_m = {std::numeric_limits<double>::infinity(),
                                      std::numeric_limits<double>::infinity()};
   bool two_sided = true;  ///< points of both skins, with half of the stiffness each; else of the first alone
+};
+
+/// How a skin touches itself.
+struct OwnContact {
+  OwnNeighbourhood neighbours;
+  /// Whether the skin has come into tissue at a point x, which lies behind its foot: false where the body
+  /// itself is that thin.
+  std::function<bool(const ContactPoint& point, const Vec3& x, const Foot& foot)> is_overlap;
+  /// Overlaps up to this are found [m].  Parts of the skin that are r apart along it come as near as r/2 to
+  /// each other when the body is squeezed to half: nearer than that is contact.
+  double depth() const { return 0.5 * neighbours.radius(); }
+};
+
+/// How far outside points of a skin against itself are worth keeping: those that may touch within a time at
+/// the speed at which each approaches its foot.  Limbs move at different speeds: one bound for all would keep
+/// all that is near to another part of the skin.
+struct Approach {
+  const double* velocities = nullptr;  ///< x y z of each node [m/s]; null: nothing moves
+  double gap_m = 0.0;                  ///< kept in any case
+  double time_s = 0.0;
 };
 
 /// A point of one skin, tied to its nearest point on the other.  It has a force while one of its triangles
@@ -64,6 +87,9 @@ struct Resultant {
 /// On triangles with edges e, against a surface of mean curvature H, I d is above d by H sum e^2/24 in the
 /// mean: quadrature_error() says what that makes.
 ///
+/// A skin may touch itself: both skins are the same one then, the points are those of the first, with half of
+/// the stiffness, and the nearest point is sought among what is no neighbour of the point (OwnContact).
+///
 /// Everything is a function of the positions in the last find(), bitwise, whatever was found before; sums are
 /// taken in a fixed order; nothing is allocated after construction.
 class SkinContact {
@@ -72,6 +98,8 @@ class SkinContact {
   SkinContact(const Skin& a, const Skin& b, const SkinContactSpec& spec);
   /// @param meshes  of both skins; with half of the stiffness each, unless one is empty [Pa/m]
   SkinContact(const Skin& a, const Skin& b, double stiffness, std::array<ContactMesh, 2> meshes);
+  /// A skin against itself: both positions of nodes are the same.
+  SkinContact(const Skin& skin, double stiffness, ContactMesh mesh, OwnContact own);
   ~SkinContact();
   SkinContact(const SkinContact&) = delete;
   SkinContact& operator=(const SkinContact&) = delete;
@@ -80,6 +108,8 @@ class SkinContact {
   /// share a triangle with one of these.
   /// @param nodes_a, nodes_b  x y z of each node [m]  @param near  [m]
   void find(const double* nodes_a, const double* nodes_b, double near = 0.0);
+  /// Finds those of a skin against itself.  @param near  bound on all that is kept outside [m]
+  void find_own(const double* nodes, double near, const Approach& approach);
   /// Moves the springs' feet to where they are nearest at other positions: what find() would give for these
   /// points.  No spring comes or goes, but gaps may change their sign.  A point that cannot have come inside
   /// yet, for it was farther outside than the skins have moved against each other since, is looked at only
@@ -112,6 +142,8 @@ class SkinContact {
   double quadrature_error() const;
 
  private:
+  SkinContact(const Skin& a, const Skin& b, double stiffness, std::array<ContactMesh, 2> meshes,
+              std::optional<OwnContact> own);
   static constexpr int kPacket = 16;  ///< points that are searched for together
 
   void move(const double* nodes_a, const double* nodes_b);
@@ -126,6 +158,8 @@ class SkinContact {
   template <class Visit>
   void for_each_overlap(const Visit& visit) const;
   void find_side(int side, double near);
+  void find_clusters_of_own(double near);
+  bool may_come_near(const ContactPoint& point, const Foot& foot) const;
   void follow_packets(const std::vector<std::size_t>& springs);
   void follow_packet(std::span<const std::size_t> springs);
   void find_side_by_reference(int side);
@@ -133,7 +167,9 @@ class SkinContact {
     int cluster, tree_node;
   };
   void settle(int side, const Part& part);
-  double gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf) const;
+  double gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf, int own = -1) const;
+  const OwnNeighbourhood* neighbours() const { return own_ ? &own_->neighbours : nullptr; }
+  bool overlaps(const ContactPoint& point, const Vec3& x, const Foot& foot) const;
   int find_cluster(int side, int cluster, int start, double near);
   void add_spring(int side, int point, const Foot& foot, bool is_inside);
   void set_foot(Spring& spring, const Foot& foot, bool is_inside) const;
@@ -141,6 +177,8 @@ class SkinContact {
   void add_to_vertices(const Spring& spring, const Vec3& force);
   void add_to_nodes(double* nodes_a, double* nodes_b);
 
+  std::optional<OwnContact> own_;  ///< of a skin against itself
+  Approach approach_;
   double stiffness_;  ///< of the points of one side [Pa/m]
   Surface surfaces_[2];
   std::array<ContactMesh, 2> meshes_;

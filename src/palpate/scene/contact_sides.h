@@ -13,8 +13,8 @@ void order_sides(const Description& description, ContactSpec& contact);
 /// stiffness know less well.
 inline constexpr double kPointsError = 1e-2;
 
-/// Returns the method of a contact, with "auto" resolved: nearest points; an image of a body with itself, and
-/// where its keys ask for one; with a spring at each vertex exact gaps where there are any, else an image.
+/// Returns the method of a contact, with "auto" resolved: nearest points; an image where its keys ask for
+/// one; with a spring at each vertex exact gaps where there are any, else an image.
 /// @pre the names are in their order
 std::string contact_method(const Description& description, const ContactSpec& contact);
 
