@@ -104,6 +104,15 @@ void OverlapWatch::look(const loop::World& world, double t) {
     most_[i] = o.half_width_m;
     if (!o.too_deep()) continue;
     most_[i] = HUGE_VAL;
+    if (o.of_itself) {
+      log::warn(
+          "contact {} at t = {:.6g} s: penetration reached {:.3g} mm; overlaps of a body with itself are "
+          "found "
+          "up to {:.3g} mm, and what lies deeper is not pushed apart. Increase contact.stiffness_pa_m, or "
+          "press less deeply",
+          o.pair, t, 1e3 * o.deepest_m, 1e3 * o.half_width_m / 0.75);
+      continue;
+    }
     log::warn(
         "contact {} at t = {:.6g} s: penetration reached {:.3g} mm, more than half the thickness of the "
         "thinner side ({:.3g} mm): {}",

@@ -81,6 +81,10 @@ class AnalyticSource final : public SampleSource {
     }
   }
 
+  std::span<const int> material_points() const override {
+    if constexpr (kMaterial) return kept_;
+    return {};
+  }
   bool start_following() override { return follows_ = true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     PALPATE_CHECK(samples.size() == kept_.size(), "{}: {} samples follow, {} vertices were kept",

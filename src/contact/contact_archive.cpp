@@ -52,6 +52,7 @@ void ContactForce::archive(Archive& a, const dynamics::StateView& state) {
   a.each("pair", m.pairs, [&](Impl::Pair& pair) {
     pair.source->archive(a);
     a("deepest", pair.deepest);
+    if (pair.anchors.on()) pair.anchors.archive(a);
   });
   a("bonds", m.bonds);
   a.list("grasp", m.grasps, [&](Impl::Grasp& grasp) {

@@ -10,7 +10,7 @@
 
 namespace palpate::contact {
 
-void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
+void ContactForce::Impl::place_frames_alone(const dynamics::StateView& state) {
   frame_states.resize(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     FrameState& out = frame_states[i];
@@ -19,6 +19,10 @@ void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
     out.twist = frames[i]->twist(state);
     out.u_offset = frames[i]->u_offset(state);
   }
+}
+
+void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
+  place_frames_alone(state);
   follow(state);
 }
 
@@ -39,6 +43,7 @@ void ContactForce::Impl::follow(const dynamics::StateView& state) {
     if (!pair.follows) continue;
     const auto own = std::span(samples).subspan(pair.begin, pair.end - pair.begin);
     pair.source->follow(state, own);
+    if (pair.anchors.on()) pair.anchors.follow(own, state, frame_states);
     if (pair.law.per_point)
       for (ContactSample& sample : own) count_as_point(sample);
   }
@@ -129,6 +134,8 @@ int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSp
         "\"analytic\"); what an image shows is known at a query alone",
         law.first, law.second);
   Impl::Pair pair{.source = std::move(source), .law = pressure_law(law), .follows = follows};
+  if (follows && law.friction > 0.0)
+    pair.anchors = FrictionAnchors(pair.law.retardation, pair.law.regularisation);
   pair.begin = pair.end = impl_->samples.size();
   pair.first_cell = pair.last_cell = impl_->cells.cells.size();
   impl_->pairs.push_back(std::move(pair));

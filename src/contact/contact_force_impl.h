@@ -1,4 +1,5 @@
 #pragma once
+#include "contact/friction_anchors.h"
 #include "contact/friction_cells.h"
 #include "contact/grasp.h"
 #include "contact/resultants.h"
@@ -23,6 +24,7 @@ struct ContactForce::Impl {
     bool grouped = false;                             ///< they are in `groups`
     bool follows = false;                             ///< they are exact at every evaluation
     double deepest = 0.0;                             ///< largest overlap that a query saw [m]
+    FrictionAnchors anchors{};                        ///< of what sticks
     bool given = false;  ///< frames given from outside on both sides: nothing in the State feels them
   };
 
@@ -105,6 +107,7 @@ struct ContactForce::Impl {
   }
   /// Frames, and with them the samples that follow, at the state of an evaluation.
   void place_frames(const dynamics::StateView& state);
+  void place_frames_alone(const dynamics::StateView& state);
   void follow(const dynamics::StateView& state);
   bool has_followers() const;  ///< whether a pair's samples follow the state
   void note_followed(const dynamics::StateView& state);

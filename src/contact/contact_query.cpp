@@ -46,6 +46,8 @@ void ContactForce::Impl::measure_depth(Pair& pair) const {
 // Samples of an image stay in cells; those with friction are also listed one by one.
 void ContactForce::Impl::query(const dynamics::StateView& state) {
   const ScopedTimer timer(query_seconds);
+  if (std::any_of(pairs.begin(), pairs.end(), [](const Pair& pair) { return pair.anchors.on(); }))
+    place_frames_alone(state);
   next_samples.clear();
   next_cells.clear();
   friction_cells.clear();
@@ -75,6 +77,9 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
       pair.source->query(state, next_samples);
     }
     pair.end = next_samples.size();
+    if (pair.anchors.on())
+      pair.anchors.renew(std::span(next_samples).subspan(pair.begin), pair.source->material_points(), state,
+                         frame_states);
     pair.last_cell = next_cells.cells.size();
     pair.last_rubbing = rubbing.cells.size();
     measure_depth(pair);

@@ -93,11 +93,14 @@ class DistanceSource final : public SampleSource {
       contact_.find(carrying(0), carrying(1), near);
     }
     joints_.clear();
+    points_.clear();
     safe_time_ = HUGE_VAL;
     const double speed = (of_a.velocity - of_b.velocity).norm() + of_a.spread + of_b.spread;
     for (const distance::Spring& spring : contact_.springs()) {
       const Pair pair = pair_of(spring);
       samples.push_back(sample_of(spring, pair));
+      points_.push_back(spring.side == 0 ? spring.point
+                                         : spring.point + static_cast<int>(contact_.points(0).size()));
       if (is_coupled()) joints_.push_back(joint_of(pair));
       if (spring.is_placed) safe_time_ = std::min(safe_time_, time_to_middle(spring.gap, -speed, thickness_));
     }
@@ -107,6 +110,7 @@ class DistanceSource final : public SampleSource {
   }
   const SumError* sum_error() const override { return &sum_error_; }
 
+  std::span<const int> material_points() const override { return points_; }
   bool start_following() override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     const std::vector<distance::Spring>& springs = contact_.springs();
@@ -275,6 +279,7 @@ class DistanceSource final : public SampleSource {
   DistanceOptions options_;
   double thickness_;                         ///< of the thinner side [m]
   std::optional<SurfacePoint> centre_;       ///< of a ball, side b, in its frame
+  std::vector<int> points_;                  ///< of the samples of the last query, b's behind a's
   std::vector<CoupledNodes::Joint> joints_;  ///< of two soft bodies: what carried the samples at the query
   mutable CoupledNodes coupled_;
   std::optional<std::array<NodeNeighbours, 2>> neighbours_;
@@ -357,8 +362,8 @@ std::unique_ptr<SampleSource> make_own_distance_source(NodeSurface surface, cons
   const CharacteristicLengths lengths = lengths_of(side.rest);
   distance::ContactMesh mesh =
       distance::contact_mesh(side.skin, point_spacing(lengths, lengths, options.quadrature_error));
-  return std::make_unique<DistanceSource>(std::move(side), std::move(mesh), 0.5 * lengths.radius, rest_nodes,
-                                          options);
+  return std::make_unique<DistanceSource>(std::move(side), std::move(mesh), 2.0 * own_contact_depth(lengths),
+                                          rest_nodes, options);
 }
 
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest,

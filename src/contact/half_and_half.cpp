@@ -18,11 +18,15 @@ class HalfAndHalf final : public SampleSource {
     first_->query(state, samples);
     count_ = samples.size() - begin;
     second_->query(state, samples);
+    const auto a_points = first_->material_points(), b_points = second_->material_points();
+    points_.assign(a_points.begin(), a_points.end());
+    for (const int point : b_points) points_.push_back(kSecond + point);
     halve({samples.data() + begin, samples.size() - begin});
     const SumError::Query a = first_->sum_error()->last(), b = second_->sum_error()->last();
     sum_error_.take(
         {0.5 * (a.sum + b.sum), 0.5 * (a.error + b.error), 0.5 * std::max(a.largest_term, b.largest_term)});
   }
+  std::span<const int> material_points() const override { return points_; }
   bool start_following() override { return first_->start_following() && second_->start_following(); }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     first_->follow(state, samples.first(count_));
@@ -59,6 +63,8 @@ class HalfAndHalf final : public SampleSource {
   }
 
   std::unique_ptr<SampleSource> first_, second_;
+  static constexpr int kSecond = 1 << 24;  ///< more than a side has
+  std::vector<int> points_;
   std::size_t count_ = 0;  ///< of the first one's samples
   SumError sum_error_;
 };

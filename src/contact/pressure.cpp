@@ -57,6 +57,7 @@ PressureLaw pressure_law(const ContactSpec& spec) {
                   spec.friction,
                   spec.friction_regularisation_m_s > 0.0 ? spec.friction_regularisation_m_s
                                                          : PressureLaw().regularisation,
+                  spec.friction_retardation_s,
                   spec.friction_tangent == "symmetric" || spec.friction_tangent == "secant",
                   per_point,
                   spec.friction_tangent == "secant"};

@@ -13,6 +13,7 @@ struct PressureLaw {
   double onset = 0.0;  ///< w [m]
   double friction = 0.0;
   double regularisation = 1e-3;  ///< v_r [m/s]
+  double retardation = 0.0;      ///< tau of what sticks; 0: none [s]
   /// step matrices leave out how friction follows the pressure (sample_math.cpp)
   bool symmetric_tangent = false;
   /// springs of points, not of area: `Pressure::p` is a force [N], and every sample's area is 1

@@ -3,8 +3,14 @@
 #include <algorithm>
 
 namespace palpate::contact {
+namespace {
+
+constexpr double kLongest = 1e-9;  // a spring that is cut to its longest is that long but for rounding
+
+}  // namespace
+
 Vec3 sliding_velocity(const ContactSample& sample, const SampleMotion& motion) {
-  return motion.a.v - motion.b.v - motion.rate * sample.normal;
+  return motion.a.v - motion.b.v - motion.rate * sample.normal + sample.deflection_rate;
 }
 
 PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& state,
@@ -46,9 +52,11 @@ Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const
 //   dF/dv_rel = A (p_rate m n^T - mu p ds/dv_t P),   P = I - n n^T
 //   ds/dv_t   = I / v_r                        for |v_t| <= v_r
 //             = (I - t t^T) / |v_t|, t = s     beyond
-// Of these A p_gap mu s n^T and A p_rate mu s n^T, by which friction follows the pressure, have no transpose
-// partner.  Without them (`symmetric`) both matrices are symmetric and positive semi-definite: friction is
-// that of the pressure at which it was linearised, for one step.
+// Where a spring sticks (friction_anchors.cpp) v_t stands for w = v_t + u/tau, and dF/dx_rel has -A mu p
+// ds/dv_t P/tau besides, as long as the spring is not at its longest. Of these A p_gap mu s n^T and A p_rate
+// mu s n^T, by which friction follows the pressure, have no transpose partner.  Without them (`symmetric`)
+// both matrices are symmetric and positive semi-definite: friction is that of the pressure at which it was
+// linearised, for one step.
 //
 // Along t friction does not change while it slides, and a step of one linear solve then takes it for
 // constant: it changes the velocity by as much as h mu p A/m, m being the mass behind the sample, however
@@ -74,7 +82,11 @@ SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMo
   const bool isotropic = law.secant_friction || speed <= law.regularisation;
   const Mat3 ds = isotropic ? Mat3(P / scale) : Mat3((P - s * s.transpose()) / scale);
   const Mat3 mn = sample.area * (symmetric ? n : m) * n.transpose();
-  return {sample.area * p.p * m, -p.dp_dgap * mn, -p.dp_drate * mn + sample.area * law.friction * p.p * ds};
+  const Mat3 sliding = sample.area * law.friction * p.p * ds;
+  Mat3 K = -p.dp_dgap * mn;
+  if (law.retardation > 0.0 && sample.deflection_rate.norm() < (1.0 - kLongest) * law.regularisation)
+    K += sliding / law.retardation;
+  return {sample.area * p.p * m, K, -p.dp_drate * mn + sliding};
 }
 
 SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
@@ -105,7 +117,7 @@ Vec3 friction_per_pressure(const ContactSample& sample, const SampleMotion& moti
 // missing:
 //   -(A k s delta' - A p delta') = A (p - k s) delta'  =  A d s' delta'^2  or  A 3/2 k c s delta'^2,
 // and where the pressure was cut to zero, -A k s delta' with delta' < 0: all >= 0.  Friction takes A mu p
-// |v_t|^2 / max(|v_t|, v_r).
+// w . v_t / max(|w|, v_r): what its spring stores is counted with it, and given back.
 double damping_power(const PressureLaw& law, double gap, double rate) {
   return (pressure(law, gap, rate).p - law.k * onset(law.onset, -gap).value) * -rate;
 }
@@ -113,9 +125,9 @@ double damping_power(const PressureLaw& law, double gap, double rate) {
 double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
   if (motion.gap >= 0.0) return 0.0;
   const double p = pressure(law, motion.gap, motion.rate).p;
-  const Vec3 v_t = sliding_velocity(sample, motion);
+  const Vec3 w = sliding_velocity(sample, motion), v_t = w - sample.deflection_rate;
   return sample.area * (damping_power(law, motion.gap, motion.rate) +
-                        law.friction * p * v_t.squaredNorm() / std::max(v_t.norm(), law.regularisation));
+                        law.friction * p * w.dot(v_t) / std::max(w.norm(), law.regularisation));
 }
 
 }  // namespace palpate::contact

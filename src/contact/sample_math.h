@@ -44,7 +44,7 @@ Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const
 /// @param symmetric  K and D without the change of friction by pressure: symmetric, positive semi-definite
 SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
                                      const PressureLaw& law, bool symmetric = false);
-/// Tangential part of v_a - v_b [m/s].
+/// Tangential part of v_a - v_b, and what friction's spring adds to it [m/s].
 Vec3 sliding_velocity(const ContactSample& sample, const SampleMotion& motion);
 /// Force and its derivatives with friction as that line gives it at the sample's own velocity; symmetric,
 /// positive semi-definite.
@@ -66,7 +66,7 @@ SampleEnd sample_end(const ContactSample& sample, const SampleMotion& motion, co
 Vec3 friction_per_pressure(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
 /// Power per area that damping takes out of a touching contact [W/m^2], >= 0.
 double damping_power(const PressureLaw& law, double gap, double rate);
-/// Power that damping and friction take out [W], >= 0.
+/// Power that damping and friction take out [W]; >= 0 but for what friction's springs give back.
 double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
 
 }  // namespace palpate::contact

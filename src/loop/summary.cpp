@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "palpate/contact/gpu_available.h"
+#include "palpate/contact/sources.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/device/profile.h"
@@ -284,6 +285,10 @@ double half_width(const World& world, const std::string& side) {
   return HUGE_VAL;
 }
 
+double depth_within_itself(const Body& body) {
+  return contact::own_contact_depth(contact::lengths_of(body.skin ? body.skin->rest : body.boundary.surface));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand) {
@@ -309,12 +314,15 @@ std::vector<Overlap> overlaps_of(const World& world) {
   const std::vector<const contact::SumError*> errors = world.contact->sum_errors();
   for (std::size_t i = 0; i < deepest.size(); ++i) {
     const ContactSpec& contact = world.description.contacts[i];
-    Overlap one{fmt::format("{} - {}", contact.first, contact.second), deepest[i], HUGE_VAL};
+    Overlap one{fmt::format("{} - {}", contact.first, contact.second), deepest[i], HUGE_VAL,
+                contact.first == contact.second};
     if (errors[i]) {
       one.quadrature_error = errors[i]->largest();
       one.largest_share = errors[i]->largest_share();
     }
-    if (one.deepest_m > 0.0 && contact.first != contact.second)
+    if (one.deepest_m > 0.0 && one.of_itself && contact.method == "distance")
+      one.half_width_m = 0.75 * depth_within_itself(*world.find_body(contact.first));
+    else if (one.deepest_m > 0.0 && !one.of_itself)
       one.half_width_m = std::min(half_width(world, contact.first), half_width(world, contact.second));
     out.push_back(one);
   }

@@ -68,6 +68,8 @@ const KeyTable<ContactSpec>& contact_keys() {
       unless("3e-4 sqrt(g L), L the tool's length, else the smaller body's; g 9.81 without gravity",
              number("friction_regularisation_m_s", &ContactSpec::friction_regularisation_m_s,
                     Ranges::friction_regularisation_m_s, "sliding speed below which friction is viscous")),
+      boolean("friction_anchors", &ContactSpec::friction_anchors,
+              "what sticks is held by springs between material points (not by a tool); false: it creeps"),
       text("friction_tangent", &ContactSpec::friction_tangent, {"auto", "full", "secant", "symmetric"},
            "symmetric, secant: without its change by pressure; secant: of a step's end, by repeated solves"),
       text("gaps", &ContactSpec::gaps, {"linear", "exact"},

@@ -367,3 +367,49 @@ TEST(MaterialPoints, RefuseASurfaceThatIsOpen) {
       }),
       "closed");
 }
+
+// What sticks is a spring: the force's derivative by positions across the normal, as long as the spring is
+// not at its longest; then there is none.  Pressure that friction follows is left out along the normal.
+TEST(MaterialPoints, WhatSticksHasItsTangent) {
+  const TriMesh rest = block();
+  SurfaceWorld world{rest};
+  ContactSpec law;
+  law.stiffness_pa_m = 1e6;
+  law.friction = 0.4;
+  law.friction_regularisation_m_s = 1e-2;
+  law.friction_retardation_s = 1e-2;  // its longest is 0.1 mm
+  law.gaps = "exact";
+  for (const bool at_longest : {false, true}) {
+    contact::ContactForce term;
+    term.add_frame(contact::fixed_frame());
+    term.add_pair(
+        contact::make_plane_source(contact::material_points(world.surface, rest.vertices, {}, 1.0), 0,
+                                   contact::fixed_frame(), Vec3(0, 0, -0.249), Vec3::UnitZ(), 0.01),
+        law);
+    world.state.q().tail(rest.vertices.size()) = rest.vertices.reshaped();
+    term.refresh(world.state.view());
+    EXPECT_EQ(force(term, world.state).head<2>().norm(), 0.0);
+    const int size = world.state.layout().u_size;
+    VecX along = VecX::Zero(size);
+    for (Eigen::Index i = 0; i < rest.vertices.cols(); ++i)
+      along.tail(rest.vertices.size()).segment<3>(3 * i) = Vec3(0.6, 0.8, 0.0);
+    world.state.q() += (at_longest ? 3e-4 : 5e-5) * along;
+    const VecX f = force(term, world.state);
+    double pressed = 0.0;
+    for (Eigen::Index i = 2; i < f.size(); i += 3) pressed += f[i];
+    const double share = -f.dot(along) / (0.4 * pressed);
+    EXPECT_GT(pressed, 1e3);
+    EXPECT_NEAR(share, at_longest ? 1.0 : 0.5, 1e-9);
+    VecX K = VecX::Zero(size);
+    term.apply_tangent(world.state.view(), 1.0, 0.0, along, K);
+    if (at_longest)
+      EXPECT_LT(K.norm(), 1e-9 * f.norm() / 1e-4);
+    else
+      expect_derivative([&](double h) { return force(term, moved(world.state, along, h)); }, -K, 1e-6,
+                        "along the surface");
+    const dynamics::BorderedMatrix A = step_matrix(term, world.state, 1.0, 0.0);
+    VecX assembled;
+    A.multiply(along, assembled);
+    EXPECT_LT((assembled - K).norm(), 1e-12 * f.norm() / 1e-4);
+  }
+}

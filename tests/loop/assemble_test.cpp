@@ -112,7 +112,7 @@ TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
   d = pressed_block(0.0);
   d.contacts[0].second = "block";
   d.contacts[0].method = "analytic";
-  expect_refused(d, {"a body meets itself", "use method = \"auto\""});
+  expect_refused(d, {"no exact gaps against itself", "use method = \"auto\""});
 }
 #endif
 

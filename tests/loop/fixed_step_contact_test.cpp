@@ -14,8 +14,8 @@ using namespace palpate;
 
 namespace {
 
-/// A cube that just touches an incline below the angle of friction; k = 1e7 Pa/m under a quarter of its face
-/// and an eighth of its mass make w H = 6.
+/// A cube that just touches an incline below the angle of friction, without what would hold it there; k = 1e7
+/// Pa/m under a quarter of its face and an eighth of its mass make w H = 6.
 scene::Description on_an_incline(const std::string& integrator) {
   constexpr double kSlope = 0.2;
   scene::Description d;
@@ -37,6 +37,7 @@ scene::Description on_an_incline(const std::string& integrator) {
   contact.damping_pa_s_m = 1e5;
   contact.friction = 0.5;
   contact.friction_regularisation_m_s = 0.05;
+  contact.friction_anchors = false;
   small_scenes::add_floor(d, contact);
   d.exchange.contact_refresh_s = 0.01;
   d.integrator.name = integrator;
@@ -104,7 +105,7 @@ TEST(FixedStepContact, SlidingEndsAtRestWhereAStepIsOneSolve) {
   }
 }
 
-/// A block on an incline of tan a = ratio times mu, whose regularisation is the scene's choice.
+/// A block on an incline of tan a = ratio times mu, whose regularisation is the scene's choice; it sticks.
 scene::Description block_on_an_incline(const std::string& integrator, double ratio, double step_s) {
   constexpr double kFriction = 0.5;
   const double slope = ratio * kFriction;
@@ -118,6 +119,7 @@ scene::Description block_on_an_incline(const std::string& integrator, double rat
   d.contacts[0].damping_pa_s_m = 0.0;
   d.contacts[0].friction = kFriction;
   d.contacts[0].friction_regularisation_m_s = 0.0;
+  d.contacts[0].friction_anchors = true;
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
   d.integrator.step_s = step_s;
   return d;
@@ -182,11 +184,12 @@ TEST(FixedStepContact, BackwardDifferencesForgetWhatWasBeforeSliding) {
     EXPECT_NEAR(way_over_exact("bdf2", step_s, 0.0), 1.0, 0.01) << step_s;
 }
 
-// Below the angle of friction it creeps at v_r tan a/mu, v_r = 3e-4 sqrt(g L) of a block of 6 cm, and so does
-// one a hundred times as large, a tenth as fast as its speeds are.
+// Below the angle of friction it creeps without anchors at v_r tan a/mu, v_r = 3e-4 sqrt(g L) of a block of 6
+// cm, and so does one a hundred times as large, a tenth as fast as its speeds are.
 TEST(FixedStepContact, TheSpeedOfTheRegularisationFollowsTheScene) {
   for (const double scale : {1.0, 100.0}) {
     scene::Description d = block_on_an_incline("linearly-implicit-euler", 0.9, 0.01 * std::sqrt(scale));
+    d.contacts[0].friction_anchors = false;
     d.bodies[0].mesh.size_m *= scale;
     d.bodies[0].mesh.element_size_m *= scale;
     d.bodies[0].position_m *= scale;

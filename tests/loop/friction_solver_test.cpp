@@ -30,6 +30,7 @@ scene::Description sliding(const std::string& integrator, double friction, doubl
   contact.stiffness_pa_m = stiffness_pa_m;
   contact.friction = friction;
   contact.friction_regularisation_m_s = 0.05;
+  contact.friction_anchors = false;
   small_scenes::add_floor(d, contact);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
   d.integrator.name = integrator;

@@ -7,6 +7,7 @@
 #include "contact/together.h"
 #include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
+#include "palpate/contact/sources.h"
 #include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
@@ -212,13 +213,16 @@ TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodies) {
 }
 
 // By nearest points as well, without proxies and all the way, but for rounding: a vertex has the same foot.
+// (Deflections of what sticks go with the foot of a body's own points, and with the second of two bodies.)
 TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodiesByNearestPoints) {
   const Blocks blocks;
   scene::Description together = blocks.scene(true, "distance"), apart = blocks.scene(false, "distance"),
                      without = blocks.scene(true);
   without.contacts.clear();
-  for (scene::Description* d : {&together, &apart, &without})
+  for (scene::Description* d : {&together, &apart, &without}) {
     for (SoftBodySpec& body : d->bodies) body.proxies = false;
+    for (ContactSpec& contact : d->contacts) contact.friction_anchors = false;
+  }
   int pressing = 0;
   const VecX two = end_of(apart), one = end_of(together, &pressing);
   ASSERT_EQ(two.size(), one.size());
@@ -300,6 +304,25 @@ TEST(OwnContactScene, ArmsCloseAlikeByNearestPoints) {
     d.integrator.step_s = step;
     EXPECT_LT((end_of(d) - reference).norm(),
               0.03 * step / 1e-3 * reference.norm() + 5e-3 * reference.norm());
+  }
+}
+
+// What comes near the depth beyond which nothing is pushed apart is said to be too deep.
+TEST(OwnContactScene, DeepOverlapsAreTold) {
+  const Fork fork;
+  for (const bool is_deep : {false, true}) {
+    scene::Description d = fork.scene("linearly-implicit-euler", true, "distance");
+    if (is_deep)
+      for (JointSpec& joint : d.bodies[0].skeleton->joints) joint.keyframes[1].rotation_vector_rad *= 1.5;
+    const auto world = loop::assemble(d);
+    EXPECT_FALSE(loop::overlaps_of(*world)[0].too_deep());
+    EXPECT_TRUE(loop::run(*world, {}).status.ok());
+    const loop::Overlap overlap = loop::overlaps_of(*world)[0];
+    const TriMesh& skin = world->bodies[0].skin->rest;
+    EXPECT_TRUE(overlap.of_itself);
+    EXPECT_NEAR(overlap.half_width_m, 0.75 * 0.25 * contact::lengths_of(skin).radius, 1e-12);
+    EXPECT_GT(overlap.deepest_m, 1e-3);
+    EXPECT_EQ(overlap.too_deep(), is_deep) << overlap.deepest_m;
   }
 }
 

@@ -68,6 +68,9 @@ class SampleSource {
   virtual bool start_following() { return false; }
   /// The samples of the last query at another state, in their order: exact gaps, normals, points and areas.
   virtual void follow(const dynamics::StateView&, std::span<ContactSample>) {}
+  /// Numbers of the material points that the last query's samples stand for, ascending, the same at
+  /// every query; empty where a sample stands for no such point.
+  virtual std::span<const int> material_points() const { return {}; }
   /// Node pairs its samples may couple (faces of each surface; of two soft bodies also across).
   virtual void add_pattern(dynamics::PatternBuilder& pattern) const = 0;
   /// Grows whenever add_pattern() would add other pairs.

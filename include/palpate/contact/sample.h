@@ -30,6 +30,9 @@ struct ContactSample {
   /// Energy over that of a spring of this area and gap, where the sample stands for a gap that varies: the
   /// point's own gap over the mean one, below 0 of a point outside whose surroundings overlap.
   double stored = 1.0;
+  /// Deflection of friction's spring over its retardation time [m/s]: sliding is the material's velocity and
+  /// this (src/contact/friction_anchors.cpp).
+  Vec3 deflection_rate = Vec3::Zero();
   int source = 0;  ///< index of the contact pair that made it
 };
 

@@ -16,8 +16,7 @@ struct ObstacleSpec {
 
 /// One pair that may touch.  The `[[contact]]` tables of a scene.
 struct ContactSpec {
-  /// names of bodies, obstacles or "tool", in any order; one body twice: its bones' regions against each
-  /// other (proxies)
+  /// names of bodies, obstacles or "tool", in any order; one body twice: against itself
   std::string first, second;
   /// "distance" (nearest points), "analytic" (at vertices; of an obstacle or a sphere tool), one of the
   /// methods in image space (a tool of any shape, another soft body), or "auto" (scene/contact_sides.h)
@@ -35,6 +34,11 @@ struct ContactSpec {
   double onset_width_m = 0.0;
   double friction = 0.0;                     ///< mu, regularised Coulomb
   double friction_regularisation_m_s = 0.0;  ///< v_r; 0: of a scene by its size and gravity, else 1 mm/s
+  /// whether what sticks is held by springs between material points; else it creeps, at less than v_r
+  bool friction_anchors = true;
+  /// tau: the damping of these springs over their stiffness, of a scene the time between two queries; 0:
+  /// there are none [s]
+  double friction_retardation_s = 0.0;
   /// "full"; "symmetric": without how friction follows pressure, which is unsymmetric; "secant": so, and
   /// friction is that of a step's end, by repeated solves; "auto": secant where a step is one linear solve
   std::string friction_tangent = "auto";

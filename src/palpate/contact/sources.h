@@ -157,10 +157,11 @@ std::unique_ptr<SampleSource> make_distance_source(NodeSurface a, const Points& 
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest,
                                                    const FrameSurface& other, const DistanceOptions& options);
 
+/// Returns the depth up to which overlaps of a body with itself are found: a quarter of its mean radius [m].
+inline double own_contact_depth(const CharacteristicLengths& body) { return 0.25 * body.radius; }
 /// One soft body against itself: material points of its skin, each with the nearest point of what lies
-/// farther than half of the body's mean radius from it along the skin.  What overlaps because the body is
-/// thick there is no contact (SelfContactFilter), at rest nothing is.  Overlaps deeper than a quarter of the
-/// mean radius are not seen.
+/// farther than half of the body's mean radius from it, along the skin and through tissue.  What overlaps
+/// because the body is thick there is no contact (SelfContactFilter), at rest nothing is.
 /// @param surface  a skin in tetrahedra  @param rest  its vertices  @param rest_nodes  the body's nodes, at
 ///   rest [m]
 /// @throws Error where the surface is not closed, or a face of it has no area

@@ -17,9 +17,10 @@ struct Overlap {
   std::string pair;        ///< "head - tool"
   double deepest_m = 0.0;  ///< the largest overlap that a query saw; 0: they never touched
   /// half of the smaller extent of the boxes around either side: what lies deeper is pushed out at the far
-  /// side, or nowhere; infinite where they never touched, of obstacles, and of a body
-  /// against itself
+  /// side, or nowhere; infinite where they never touched, and in images of a body against itself.  By nearest
+  /// points of a body against itself three quarters of the depth up to which its overlaps are found
   double half_width_m = 0.0;
+  bool of_itself = false;         ///< of a body
   double quadrature_error = 0.0;  ///< relative, as contact::SumError::largest(); 0: not estimated
   double largest_share = 0.0;     ///< of one point; 0 of pixels
   bool too_deep() const { return deepest_m > half_width_m; }

@@ -1,0 +1,127 @@
+// Regularised friction alone, -L v/max(|v|, v_r), is a damper below v_r: what sticks creeps, at v_r times the
+// share of L that it has to hold.  A spring beside the damper ends that.  With u the deflection since the
+// points met, and tau the spring's retardation time, the damping over its stiffness, friction is
+//
+//     -L w/max(|w|, v_r),   w = v + u/tau,   |u| <= tau v_r:
+//
+// a Kelvin-Voigt element within the cone (Coulomb's law with bristles: Dahl 1968; Haessig, Friedland 1991).
+// At rest u = tau v_r times that share, 1e-6 m for v_r = 2e-4 m/s and tau = 5 ms, and nothing moves.  Where
+// the points slide the anchor goes along, so that u is never longer, and w has the direction of v but for
+// v_r/|v|.
+//
+// u is a function of the state between two queries: the tangential part of the way that the two material
+// points, those of the last query, have gone against each other, added to the deflection then; cut to its
+// longest at every evaluation.  A query moves the anchors to the new points, with the deflections that are
+// there, and changes no force.  What is missed is the anchor's motion between two queries: points that slide
+// one way, stop and turn round within one feel up to L too late by the way that they had slid.
+//
+// Deflections are carried along by what has the second point, as the axes of its frame rotate, or of the
+// triangle of its nodes.
+//
+// A step of one linear solve holds u for its length h.  Its spring is slower than its damper by tau: u is
+// multiplied by no less than 1 - h/tau, so that tau, the time between two queries, is never too short.
+#include "contact/friction_anchors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/core/error.h"
+
+namespace palpate::contact {
+namespace {
+
+/// Axes that go along with what has a point.
+Mat3 axes_of(const SurfacePoint& point, const dynamics::StateView& state,
+             const std::vector<FrameState>& frames) {
+  if (point.frame >= 0) return frames[static_cast<std::size_t>(point.frame)].R;
+  if (point.count < 3) return Mat3::Identity();
+  const Vec3 origin = state.position(point.node[0]);
+  const Vec3 first = state.position(point.node[1]) - origin, second = state.position(point.node[2]) - origin;
+  const Vec3 across = first.cross(second);
+  const double size = across.norm();
+  if (!(size > 0.0)) return Mat3::Identity();
+  Mat3 axes;
+  axes.col(0) = first.normalized();
+  axes.col(2) = across / size;
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+Vec3 tangential(const Vec3& x, const Vec3& normal) { return x - normal.dot(x) * normal; }
+
+}  // namespace
+
+FrictionAnchors::Carried FrictionAnchors::carried(const SurfacePoint& point, const dynamics::StateView& state,
+                                                  const std::vector<FrameState>& frames) {
+  Carried out{point, Vec3::Zero()};
+  const Vec3 beside = point.frame >= 0 ? point_motion(point, state, frames).arm : point.offset;
+  out.local = axes_of(point, state, frames).transpose() * beside;
+  return out;
+}
+
+Vec3 FrictionAnchors::shortened(const Vec3& u) const {
+  const double length = u.norm();
+  return length > longest_ ? Vec3(longest_ / length * u) : u;
+}
+
+Vec3 FrictionAnchors::deflection(const Anchor& anchor, const Vec3& normal, const dynamics::StateView& state,
+                                 const std::vector<FrameState>& frames) const {
+  const auto place = [&](const Carried& carried, const Mat3& axes) {
+    Vec3 x = axes * carried.local;
+    if (carried.point.frame >= 0)
+      return Vec3(x + frames[static_cast<std::size_t>(carried.point.frame)].pose.translation);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(carried.point.count); ++k)
+      x += carried.point.weight[k] * state.position(carried.point.node[k]);
+    return x;
+  };
+  const Mat3 of_b = axes_of(anchor.b.point, state, frames);
+  const Vec3 way = place(anchor.a, axes_of(anchor.a.point, state, frames)) - place(anchor.b, of_b);
+  return shortened(tangential(of_b * anchor.deflection + way, normal));
+}
+
+void FrictionAnchors::renew(std::span<ContactSample> samples, std::span<const int> points,
+                            const dynamics::StateView& state, const std::vector<FrameState>& frames) {
+  std::swap(anchors_, before_);
+  anchors_.clear();
+  if (samples.size() != points.size()) return;  // they stand for no material points: nothing sticks
+  auto last = before_.begin();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    ContactSample& s = samples[i];
+    while (last != before_.end() && last->point < points[i]) ++last;
+    Vec3 u = Vec3::Zero();
+    if (s.gap < 0.0 && last != before_.end() && last->point == points[i])
+      u = last->is_fresh ? deflection(*last, s.normal, state, frames) : last->deflection_at_query;
+    anchors_.push_back({points[i], true, carried(s.a, state, frames), carried(s.b, state, frames),
+                        axes_of(s.b, state, frames).transpose() * u, u});
+    s.deflection_rate = u / tau_;
+  }
+}
+
+void FrictionAnchors::follow(std::span<ContactSample> samples, const dynamics::StateView& state,
+                             const std::vector<FrameState>& frames) const {
+  if (anchors_.empty()) return;
+  PALPATE_CHECK(samples.size() == anchors_.size(), "friction: {} samples follow, {} have anchors",
+                samples.size(), anchors_.size());
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i].deflection_rate = samples[i].gap < 0.0 && samples[i].area > 0.0
+                                     ? Vec3(deflection(anchors_[i], samples[i].normal, state, frames) / tau_)
+                                     : Vec3::Zero();
+}
+
+void FrictionAnchors::archive(Archive& a) {
+  std::vector<Anchor> deflected;
+  for (const Anchor& anchor : anchors_)
+    if (!anchor.deflection_at_query.isZero(0.0)) deflected.push_back(anchor);
+  std::size_t count = deflected.size();
+  a("anchors", count);
+  deflected.resize(count);
+  a.rows("anchor", deflected, [](const auto& visit, Anchor& anchor) {
+    visit(anchor.point);
+    visit(anchor.deflection_at_query);
+  });
+  if (!a.gives_back()) return;
+  for (Anchor& anchor : deflected) anchor.is_fresh = false;
+  anchors_ = std::move(deflected);
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,87 @@
+// What sticks stays: friction below its limit is a spring between material points, and friction at its limit
+// is Coulomb's.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "loop/small_scenes.h"
+#include "palpate/loop/run.h"
+#include "palpate/loop/world.h"
+
+using namespace palpate;
+
+namespace {
+
+constexpr double kFriction = 0.5;
+
+/// A block of 6 cm on an incline of tan a = ratio times mu.
+scene::Description block_on_an_incline(const std::string& integrator, double ratio) {
+  const double slope = ratio * kFriction;
+  scene::Description d;
+  d.name = "incline";
+  d.gravity_m_s2 = 9.81 / std::sqrt(1.0 + slope * slope) * Vec3(slope, 0, -1);
+  SoftBodySpec block;
+  block.name = "block";
+  block.mesh.generator = "box";
+  block.mesh.size_m = Vec3(0.06, 0.05, 0.02);
+  block.mesh.element_size_m = 0.02;
+  block.position_m = Vec3(0, 0, 0.00999804);  // in balance
+  block.youngs_modulus_pa = 1e6;
+  block.stiffness_damping_s = 1e-3;
+  d.bodies.push_back(block);
+  ContactSpec contact;
+  contact.first = "block";
+  contact.stiffness_pa_m = 1e8;
+  contact.damping_pa_s_m = 1e5;
+  contact.friction = kFriction;
+  small_scenes::add_floor(d, contact);
+  d.contacts[0].method = "auto";
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
+  d.integrator.name = integrator;
+  d.integrator.step_s = 0.01;
+  return d;
+}
+
+/// Mean of the nodes along the slope, after a time [m].
+double place(const scene::Description& d, double duration_s) {
+  const auto world = loop::assemble(d);
+  loop::RunOptions options;
+  options.duration_s = duration_s;
+  const loop::RunResult result = loop::run(*world, options);
+  EXPECT_TRUE(result.status.ok()) << d.integrator.name << ": " << result.status.message;
+  return Eigen::Map<const Points>(world->state.q().data(), 3, world->state.q().size() / 3).row(0).mean();
+}
+
+}  // namespace
+
+// Without anchors it creeps at v_r tan a/mu, v_r = 3e-4 sqrt(g L): 2.2 mm in 19 s.
+TEST(Sticking, ABlockStaysWhereItCameToRest) {
+  for (const auto& [integrator, end_s] :
+       {std::pair{"linearly-implicit-euler", 20.0}, std::pair{"backward-euler", 3.0},
+        std::pair{"implicit-midpoint", 3.0}, std::pair{"bdf2", 3.0}, std::pair{"newmark", 3.0},
+        std::pair{"generalized-alpha", 3.0}, std::pair{"cvode-bdf", 3.0},
+        std::pair{"ark-dirk-esdirk436", 3.0}}) {
+    scene::Description d = block_on_an_incline(integrator, 0.5);
+    const double crept = place(d, end_s) - place(d, 1.0);
+    EXPECT_LT(std::abs(crept), 1e-7) << integrator;
+  }
+  scene::Description d = block_on_an_incline("linearly-implicit-euler", 0.5);
+  d.contacts[0].friction_anchors = false;
+  EXPECT_NEAR(place(d, 20.0) - place(d, 1.0), 19.0 * 0.5 * 3e-4 * std::sqrt(9.81 * 0.06), 2e-5);
+}
+
+// Between two soft bodies as well; of the lower block the mean is taken.
+TEST(Sticking, ABlockOnABlockIsHeld) {
+  scene::Description d = block_on_an_incline("linearly-implicit-euler", 0.5);
+  SoftBodySpec upper = d.bodies[0];
+  upper.name = "upper";
+  upper.position_m.z() += 0.02 - 1e-6;
+  d.bodies.push_back(upper);
+  ContactSpec between = d.contacts[0];
+  between.first = "block";
+  between.second = "upper";
+  d.contacts.push_back(between);
+  EXPECT_LT(std::abs(place(d, 3.0) - place(d, 1.0)), 1e-7);
+  d.contacts[1].friction_anchors = false;
+  EXPECT_GT(place(d, 3.0) - place(d, 1.0), 5e-5) << "the upper one creeps";
+}
