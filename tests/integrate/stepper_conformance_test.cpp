@@ -135,6 +135,27 @@ TEST_P(Steppers, StayAtRest) {
   EXPECT_EQ((chain.state.q() - rest).cwiseAbs().maxCoeff(), 0.0);
 }
 
+// Of later steps what an interpolant takes from the step before counts as well.
+TEST_P(Steppers, InterpolateWithinLaterSteps) {
+  Chain chain;
+  chain.start_in_mode(0.1);
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  VecX q, u;
+  const auto error = [&](double at, const VecX& x) {
+    return (x - chain.term->q0 - 0.1 * std::cos(at * chain.omega()) * chain.mode()).norm();
+  };
+  double before = 0.0;
+  for (int i = 1; i <= 8; ++i) {
+    const double end = 0.4 * i;
+    const StepResult result = stepper->advance_to(end);
+    ASSERT_TRUE(result.ok());
+    const double t = end - 0.5 * result.h, now = error(end, chain.state.q());
+    ASSERT_TRUE(stepper->dense_output(t, q, u));
+    EXPECT_LT(error(t, q), std::max(1e-3 * 0.1, 1.1 * std::max(before, now))) << t;
+    before = now;
+  }
+}
+
 TEST_P(Steppers, InterpolateWithinTheLastStep) {
   Chain chain;
   chain.start_in_mode(0.1);

@@ -78,6 +78,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   /// To be called first, so that nothing is ever printed.
   void report_errors(Solver solver, void* memory) { context_->attach(solver, memory); }
   N_Vector y() const { return y_; }
+  N_Vector scratch() const { return scratch_; }
   /// Takes `rtol` in the place of the spec's (error_test.h).
   void use_tolerance(double rtol) { weight_scale_ = spec_.rtol / rtol; }
   void keep_state();  ///< y(), at the start of a step that may be tried again

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "integrate/error_test.h"
 #include "integrate/make.h"
@@ -119,6 +120,7 @@ class Mri final : public Adapter {
       check(MRIStepSetFixedStep(slow_, parts_.next(now_, t_end)), "MRIStepSetFixedStep", now_, 0.0);
       allow_leaps(parts_.halved());
       begin_part(parts_.halvings());
+      at_start_ = true;
       const int flag = MRIStepEvolve(slow_, t_end, y(), &t, ARK_ONE_STEP);
       fast_context_->log_warnings();
       if (flag >= 0) now_ = t;
@@ -178,6 +180,7 @@ class Mri final : public Adapter {
   static Mri& self(void* data) { return static_cast<Mri&>(*static_cast<Adapter*>(data)); }
   static int slow_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     Mri& me = self(data);
+    if (std::exchange(me.at_start_, false) && t == me.now_) evaluate_start(me.slow_, t, me.scratch());
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kSlow);
     me.see_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
@@ -203,6 +206,7 @@ class Mri final : public Adapter {
 
   const MultirateMethod& method_;
   double now_ = 0.0;
+  bool at_start_ = false;  ///< of a step: nothing was evaluated yet
   StepInParts parts_{spec().step_s};
   std::optional<Context> fast_context_;  ///< its errors are told apart from those of the slow side
   std::string fast_message_;

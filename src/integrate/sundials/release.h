@@ -69,6 +69,22 @@ inline int set_tables(void* memory, ARKODE_DIRKTableID implicit, ARKODE_ERKTable
   return ARKStepSetTableNum(memory, implicit, explicit_);
 }
 
+/// Gives MRIStep's interpolant, of dense output and of root finding, the right-hand side that the step under
+/// way starts from.  To be called by its first evaluation of the slow side.
+///
+/// 7.0 and 7.1 evaluate the slow side there and take the memory for the sum of both sides for current, in
+/// which nothing stands yet, or what stood there a step ago (mended in 7.2): a method of order 4 interpolates
+/// with it (findings/sundials-7.1-mristep-interpolates-unset-memory.sh).  While it is not current an
+/// interpolation evaluates it; a derivative of a higher order than the interpolant has does no more than
+/// that.
+/// @param t  start of the step
+inline void evaluate_start([[maybe_unused]] void* memory, [[maybe_unused]] double t,
+                           [[maybe_unused]] N_Vector scratch) {
+#if PALPATE_SUNDIALS_7 && SUNDIALS_VERSION_MAJOR == 7 && SUNDIALS_VERSION_MINOR < 2
+  MRIStepGetDky(memory, t, ARK_INTERP_MAX_DEGREE + 1, scratch);
+#endif
+}
+
 enum class Solver { kCvode, kArkStep, kMriStep, kIda, kKinsol };
 
 /// A SUNContext without MPI.  Errors of the solvers that are attached to it go to a handler, warnings to
