@@ -204,14 +204,10 @@ bool SkinContact::overlaps(const ContactPoint& point, const Vec3& x, const Foot&
 
 /// Distance of a box from the clusters' boxes of the other skin, or less than `near` where it is that.
 /// @param near_leaf  in the other tree, what was nearest to the last box, and then to this one
-/// @param own        cluster whose box it is, of a skin against itself
-double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf,
-                           int own) const {
+double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf) const {
   const Surface& other = surfaces_[1 - side];
   double least2 = std::numeric_limits<double>::infinity();
   const auto take = [&](int leaf) {
-    if (own_ && !own_->neighbours.may_touch(own, other.skin().tree[static_cast<std::size_t>(leaf)].begin))
-      return;
     other.place(other.skin().tree[static_cast<std::size_t>(leaf)].begin);
     const double distance2 = other.box(leaf).squaredExteriorDistance(box);
     if (!(distance2 < least2)) return;
@@ -281,24 +277,52 @@ void SkinContact::find_side(int side, double near) {
   }
 }
 
-// Which side of the skin a point lies on is only known where its nearest point is.  What lies at a distance s
-// is known to be outside until the skin has moved by s; where the side is not known, nothing overlaps until
-// it has moved by s less the depth up to which overlaps are found.
+// Which side of the skin a point lies on is only known where its nearest point is near enough.  What is known
+// to be outside needs no look until the skin has moved that far; all else is looked at whenever it is near.
 void SkinContact::find_clusters_of_own(double near) {
+  mark_near_itself();
+  const std::vector<Whereabouts>& where = where_[0];
+  for (std::size_t c = 0; c < where.size(); ++c)
+    if (where[c] == Whereabouts::kNear && clear_[0][c] < travelled_ + near)
+      find_cluster(0, static_cast<int>(c), -1, near);
+}
+
+/// Finds the clusters of a skin that have another one, which they may touch, within the depth of overlaps:
+/// all pairs of boxes from the root of the tree.
+void SkinContact::mark_near_itself() {
   const Surface& own = surfaces_[0];
-  int near_leaf = -1;
-  for (std::size_t i = 0; i < own.skin().tree.size(); ++i) {
-    const ClusterNode& node = own.skin().tree[i];
-    if (node.right) continue;
-    double& clear = clear_[0][static_cast<std::size_t>(node.begin)];
-    if (clear >= travelled_ + near) continue;
-    own.place(node.begin);
-    const double within = own_->depth();
-    const double gap = gap_of(0, own.box(static_cast<int>(i)), within, near_leaf, node.begin);
-    if (gap > within)
-      clear = travelled_ + gap - own_->depth();
-    else
-      find_cluster(0, node.begin, -1, near);
+  const std::vector<ClusterNode>& tree = own.skin().tree;
+  std::vector<Whereabouts>& where = where_[0];
+  std::fill(where.begin(), where.end(), Whereabouts::kOutside);
+  const double within2 = own_->depth() * own_->depth();
+  const auto apart2 = [&](int i, int j) { return own.box(i).squaredExteriorDistance(own.box(j)); };
+  // each pop adds three at most, and goes down in one of two trees of less than 64 levels
+  std::array<std::pair<int, int>, 3 * 2 * 64> open;
+  std::size_t count = 0;
+  open[count++] = {0, 0};
+  while (count > 0) {
+    const auto [i, j] = open[--count];
+    const ClusterNode &a = tree[static_cast<std::size_t>(i)], &b = tree[static_cast<std::size_t>(j)];
+    if (i == j) {
+      if (!a.right) continue;
+      open[count++] = {i + 1, i + 1};
+      open[count++] = {a.right, a.right};
+      open[count++] = {i + 1, a.right};
+    } else if (apart2(i, j) > within2) {
+      continue;
+    } else if (a.right && (!b.right || a.end - a.begin >= b.end - b.begin)) {
+      open[count++] = {i + 1, j};
+      open[count++] = {a.right, j};
+    } else if (b.right) {
+      open[count++] = {i, j + 1};
+      open[count++] = {i, b.right};
+    } else if (own_->neighbours.may_touch(a.begin, b.begin)) {
+      own.place(a.begin);
+      own.place(b.begin);
+      if (apart2(i, j) > within2) continue;
+      where[static_cast<std::size_t>(a.begin)] = where[static_cast<std::size_t>(b.begin)] =
+          Whereabouts::kNear;
+    }
   }
 }
 

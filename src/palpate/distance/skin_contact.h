@@ -159,6 +159,7 @@ class SkinContact {
   void for_each_overlap(const Visit& visit) const;
   void find_side(int side, double near);
   void find_clusters_of_own(double near);
+  void mark_near_itself();
   bool may_come_near(const ContactPoint& point, const Foot& foot) const;
   void follow_packets(const std::vector<std::size_t>& springs);
   void follow_packet(std::span<const std::size_t> springs);
@@ -167,7 +168,7 @@ class SkinContact {
     int cluster, tree_node;
   };
   void settle(int side, const Part& part);
-  double gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf, int own = -1) const;
+  double gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf) const;
   const OwnNeighbourhood* neighbours() const { return own_ ? &own_->neighbours : nullptr; }
   bool overlaps(const ContactPoint& point, const Vec3& x, const Foot& foot) const;
   int find_cluster(int side, int cluster, int start, double near);
