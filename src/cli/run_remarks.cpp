@@ -107,10 +107,9 @@ void OverlapWatch::look(const loop::World& world, double t) {
     if (o.of_itself) {
       log::warn(
           "contact {} at t = {:.6g} s: penetration reached {:.3g} mm; overlaps of a body with itself are "
-          "found "
-          "up to {:.3g} mm, and what lies deeper is not pushed apart. Increase contact.stiffness_pa_m, or "
-          "press less deeply",
-          o.pair, t, 1e3 * o.deepest_m, 1e3 * o.half_width_m / 0.75);
+          "found up to {:.3g} mm, and what lies deeper is not pushed apart. Increase "
+          "contact.stiffness_pa_m, or press less deeply",
+          o.pair, t, 1e3 * o.deepest_m, 1e3 * o.half_width_m / loop::Overlap::kOwnShare);
       continue;
     }
     log::warn(

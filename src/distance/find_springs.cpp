@@ -82,30 +82,6 @@ void SkinContact::find(const double* nodes_a, const double* nodes_b, double near
   integrate();
 }
 
-void SkinContact::find_own(const double* nodes, double near, const Approach& approach) {
-  approach_ = approach;
-  find(nodes, nodes, near);
-  approach_ = {};
-}
-
-/// Whether a point outside may reach its foot before the next query, or is nearer than what is always kept.
-bool SkinContact::may_come_near(const ContactPoint& point, const Foot& foot) const {
-  if (!approach_.velocities) return true;
-  const Skin& skin = surfaces_[0].skin();
-  const auto velocity = [&](int face, const Vec3& weights) {
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) {
-      const int v = skin.faces(k, face);
-      for (int j = 0; j < 4; ++j)
-        sum += weights[k] * skin.weights(j, v) *
-               Eigen::Map<const Vec3>(approach_.velocities + 3 * std::ptrdiff_t{skin.nodes(j, v)});
-    }
-    return sum;
-  };
-  const Vec3 relative = velocity(point.face, point.weights) - velocity(foot.face, foot.at.weights);
-  return std::sqrt(foot.at.distance2) < approach_.gap_m + approach_.time_s * relative.norm();
-}
-
 /// Lists the corners of triangles that overlap, where they are not placed yet, in ascending order.
 void SkinContact::list_missing() {
   missing_.clear();
@@ -196,12 +172,6 @@ void SkinContact::follow_packet(std::span<const std::size_t> springs) {
   }
 }
 
-/// Whether a point overlaps that lies behind its foot: always, of another skin.
-bool SkinContact::overlaps(const ContactPoint& point, const Vec3& x, const Foot& foot) const {
-  if (!own_) return true;
-  return foot.at.distance2 < own_->depth() * own_->depth() && own_->is_overlap(point, x, foot);
-}
-
 /// Distance of a box from the clusters' boxes of the other skin, or less than `near` where it is that.
 /// @param near_leaf  in the other tree, what was nearest to the last box, and then to this one
 double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf) const {
@@ -277,55 +247,6 @@ void SkinContact::find_side(int side, double near) {
   }
 }
 
-// Which side of the skin a point lies on is only known where its nearest point is near enough.  What is known
-// to be outside needs no look until the skin has moved that far; all else is looked at whenever it is near.
-void SkinContact::find_clusters_of_own(double near) {
-  mark_near_itself();
-  const std::vector<Whereabouts>& where = where_[0];
-  for (std::size_t c = 0; c < where.size(); ++c)
-    if (where[c] == Whereabouts::kNear && clear_[0][c] < travelled_ + near)
-      find_cluster(0, static_cast<int>(c), -1, near);
-}
-
-/// Finds the clusters of a skin that have another one, which they may touch, within the depth of overlaps:
-/// all pairs of boxes from the root of the tree.
-void SkinContact::mark_near_itself() {
-  const Surface& own = surfaces_[0];
-  const std::vector<ClusterNode>& tree = own.skin().tree;
-  std::vector<Whereabouts>& where = where_[0];
-  std::fill(where.begin(), where.end(), Whereabouts::kOutside);
-  const double within2 = own_->depth() * own_->depth();
-  const auto apart2 = [&](int i, int j) { return own.box(i).squaredExteriorDistance(own.box(j)); };
-  // each pop adds three at most, and goes down in one of two trees of less than 64 levels
-  std::array<std::pair<int, int>, 3 * 2 * 64> open;
-  std::size_t count = 0;
-  open[count++] = {0, 0};
-  while (count > 0) {
-    const auto [i, j] = open[--count];
-    const ClusterNode &a = tree[static_cast<std::size_t>(i)], &b = tree[static_cast<std::size_t>(j)];
-    if (i == j) {
-      if (!a.right) continue;
-      open[count++] = {i + 1, i + 1};
-      open[count++] = {a.right, a.right};
-      open[count++] = {i + 1, a.right};
-    } else if (apart2(i, j) > within2) {
-      continue;
-    } else if (a.right && (!b.right || a.end - a.begin >= b.end - b.begin)) {
-      open[count++] = {i + 1, j};
-      open[count++] = {a.right, j};
-    } else if (b.right) {
-      open[count++] = {i, j + 1};
-      open[count++] = {i, b.right};
-    } else if (own_->neighbours.may_touch(a.begin, b.begin)) {
-      own.place(a.begin);
-      own.place(b.begin);
-      if (apart2(i, j) > within2) continue;
-      where[static_cast<std::size_t>(a.begin)] = where[static_cast<std::size_t>(b.begin)] =
-          Whereabouts::kNear;
-    }
-  }
-}
-
 /// Says where all clusters are that hang together with one, each as a whole on one side.
 void SkinContact::settle(int side, const Part& part) {
   const Surface& own = surfaces_[side];
@@ -373,7 +294,7 @@ int SkinContact::find_cluster(int side, int cluster, int start, double near) {
     for (int lane = 0; lane < used; ++lane)
       search.set_point(packet, lane,
                        position(side, points(side)[static_cast<std::size_t>(begin + kPacket * p + lane)]));
-    search.finish(packet, used, own_ ? own_->depth() : 1e15);
+    search.finish(packet, used, own_ ? own_->depth() : LaneSearch::kAnywhere);
     int faces[kPacket + 1] = {start};
     const auto& feet = feet_[side][static_cast<std::size_t>(first_packet_[side][c] + p)];
     std::copy(feet.begin(), feet.end(), faces + 1);

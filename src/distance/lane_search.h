@@ -14,6 +14,7 @@ namespace palpate::distance {
 /// changes no bit: see SearchKernels::search.
 class LaneSearch {
  public:
+  static constexpr double kAnywhere = 1e15;  ///< a distance whose square single precision has [m]
   /// @param surface  outlives the search
   explicit LaneSearch(const Surface& surface);
 
@@ -21,7 +22,7 @@ class LaneSearch {
   void begin(const Vec3& origin, const Eigen::AlignedBox3d& box);
   /// Fills lanes `begin` to `end` of a packet's points, and the rest with the last one.
   /// @param within  farther faces are not looked for [m]
-  void finish(Packet& packet, int used, double within = 1e15) const;
+  void finish(Packet& packet, int used, double within = kAnywhere) const;
   void set_point(Packet& packet, int lane, const Vec3& x) const;
   /// Distances to some faces, which bound what follows.  @param faces  at least one; -1 is left out
   void start(Packet& packet, const int* faces, int count);

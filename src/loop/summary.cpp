@@ -321,7 +321,7 @@ std::vector<Overlap> overlaps_of(const World& world) {
       one.largest_share = errors[i]->largest_share();
     }
     if (one.deepest_m > 0.0 && one.of_itself && contact.method == "distance")
-      one.half_width_m = 0.75 * depth_within_itself(*world.find_body(contact.first));
+      one.half_width_m = Overlap::kOwnShare * depth_within_itself(*world.find_body(contact.first));
     else if (one.deepest_m > 0.0 && !one.of_itself)
       one.half_width_m = std::min(half_width(world, contact.first), half_width(world, contact.second));
     out.push_back(one);

@@ -20,7 +20,10 @@ struct Overlap {
   /// side, or nowhere; infinite where they never touched, and in images of a body against itself.  By nearest
   /// points of a body against itself three quarters of the depth up to which its overlaps are found
   double half_width_m = 0.0;
-  bool of_itself = false;         ///< of a body
+  bool of_itself = false;  ///< of a body
+  /// part of the depth up to which overlaps of a body with itself are found, at which they are too deep: so
+  /// that a run says so before they are lost
+  static constexpr double kOwnShare = 0.75;
   double quadrature_error = 0.0;  ///< relative, as contact::SumError::largest(); 0: not estimated
   double largest_share = 0.0;     ///< of one point; 0 of pixels
   bool too_deep() const { return deepest_m > half_width_m; }
