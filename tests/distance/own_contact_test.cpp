@@ -169,6 +169,14 @@ TEST(OwnSkinContact, SheetsOnEachOtherHaveClustersOfTheirOwn) {
   }
   EXPECT_GT(lower, 100);
   EXPECT_GT(upper, 100);
+
+  // apart, but nearer than what is asked for
+  x = sheets.vertices;
+  x.rightCols(half).row(2).array() += 0.01;
+  own.find(x, 0.02);
+  EXPECT_GT(near_ones(own.contact, 0.0125).size(), 300u);
+  own.find(x, 0.0);
+  EXPECT_TRUE(near_ones(own.contact, 1.0).empty());
 }
 
 // Clusters that are known to be clear stay out of the search: limbs that come out of each other, from deeper
