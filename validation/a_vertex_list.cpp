@@ -3,7 +3,7 @@
 
 #include "b_bodies.h"
 #include "cases.h"
-#include "image_backends.h"
+#include "images.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
 
@@ -13,10 +13,6 @@
 // vertex.
 //
 // A vertex whose depth is less than what the overlap's border rises over one pixel may be in either list.
-//
-// With depths = "interpolated" the depth is read between four pixels.  A vertex is a corner of its own
-// surface, so the depth has creases there, and the reading errs by the change of slope times the pixel: order
-// 1, reported beside the triangles' depths.
 
 namespace palpate::validation {
 namespace {
@@ -64,14 +60,10 @@ struct ListError {
   int missed = 0, extra = 0, compared = 0;
 };
 
-ListError compare(const Pair& pair, contact::DepthBackend backend, int pixels, contact::DepthReading depths,
-                  const std::string& fault) {
+ListError compare(const Pair& pair, int pixels, const std::string& fault) {
   SurfaceBody body(pair.a);
   contact::ImageOptions options;
-  options.backend = backend;
   options.pixels = pixels;
-  options.samples = contact::SampleRule::kVertex;
-  options.depths = depths;
   options.candidate_gap = 1e-2;
   const auto source =
       spoiled(contact::make_image_source(body.surface, pair.b, 0, contact::fixed_frame(), options),
@@ -114,34 +106,20 @@ ListError compare(const Pair& pair, contact::DepthBackend backend, int pixels, c
 }
 
 std::vector<Measurement> run(const std::string& fault) {
-  using contact::DepthReading;
   const Pair pair;
   std::vector<Measurement> out;
-  for (const contact::DepthBackend backend : image_backends(fault)) {
-    const std::string name(contact::backend_name(backend));
-    const ListError list = compare(pair, backend, 256, DepthReading::kTriangles, fault);
-    out.push_back({.quantity = name + ": depths of the colliding vertices, largest difference/R",
+  if (images_work()) {
+    const ListError list = compare(pair, 256, fault);
+    out.push_back({.quantity = "depths of the colliding vertices, largest difference/R",
                    .computed = list.largest,
                    .error = list.compared > 200 ? list.largest : std::nan(""),
-                   .bar = backend == contact::DepthBackend::kExact ? 1e-6 : 1e-5,
+                   .bar = 1e-5,
                    .note = fmt::format("{} vertices", list.compared)});
-    out.push_back({.quantity = name + ": vertices missed or extra, more than a pixel from the border [count]",
+    out.push_back({.quantity = "vertices missed or extra, more than a pixel from the border [count]",
                    .computed = static_cast<double>(list.missed + list.extra),
                    .error = static_cast<double>(list.missed + list.extra),
                    .bar = 0.0,
                    .note = fmt::format("{} missed, {} extra", list.missed, list.extra)});
-    std::vector<double> h, error;
-    for (const int pixels : {64, 128, 256}) {
-      h.push_back(1.0 / pixels);
-      error.push_back(compare(pair, backend, pixels, DepthReading::kInterpolated, fault).largest);
-    }
-    out.push_back({.quantity = name + ": the same by interpolated depths, 256 pixels, largest difference/R",
-                   .computed = error.back(),
-                   .error = error.back(),
-                   .bar = std::numeric_limits<double>::infinity(),
-                   .order = fitted_order(h, error),
-                   .note = "the paper's reading: reported, not barred",
-                   .refinement = {"pixel / edge of the image", h, error}});
   }
   say_what_is_skipped(out);
   return out;
@@ -150,16 +128,13 @@ std::vector<Measurement> run(const std::string& fault) {
 }  // namespace
 
 ValidationCase vertex_list() {
-  return {
-      .name = "vertex-list",
-      .section = "A",
-      .summary = "the colliding vertices of two spheres and their depths, on each backend",
-      .why =
-          "a vertex that is missed is a spring that is missing (line and triangle, in double); the paper's "
-          "interpolated depths stand beside it",
-      .quick = true,
-      .run = run,
-      .faults = {{"neighbours-depth", "depths of the colliding"}, {"lost-samples", "missed or extra"}}};
+  return {.name = "vertex-list",
+          .section = "A",
+          .summary = "the colliding vertices of two spheres and their depths",
+          .why = "a vertex that is missed is a spring that is missing (line and triangle, in double)",
+          .quick = true,
+          .run = run,
+          .faults = {{"neighbours-depth", "depths of the colliding"}, {"lost-samples", "missed or extra"}}};
 }
 
 }  // namespace palpate::validation

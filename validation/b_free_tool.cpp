@@ -6,7 +6,7 @@
 
 namespace palpate::validation {
 
-scene::Description free_tool_scene(contact::DepthBackend backend, double length, double width) {
+scene::Description free_tool_scene(double length, double width, double element_size) {
   constexpr double kThickness = 0.01;
   scene::Description d;
   d.name = "free-tool";
@@ -14,7 +14,7 @@ scene::Description free_tool_scene(contact::DepthBackend backend, double length,
   block.name = "block";
   block.mesh.generator = "box";
   block.mesh.size_m = Vec3(length, width, kThickness);
-  block.mesh.element_size_m = 0.02;
+  block.mesh.element_size_m = element_size;
   block.position_m = Vec3(0, 0, -0.5 * kThickness);
   AttachmentSpec all;
   all.box_min_m = Vec3::Constant(-10.0);
@@ -24,9 +24,8 @@ scene::Description free_tool_scene(contact::DepthBackend backend, double length,
   ContactSpec contact;
   contact.first = "block";
   contact.second = "tool";
-  contact.method = contact::backend_name(backend);
-  contact.pixels = 128;
-  contact.quadrature_error = 0.0;
+  contact.method = "distance";
+  contact.gaps = "exact";
   d.contacts = {contact};
   d.tool.emplace();
   d.tool->shape = "mesh";

@@ -4,7 +4,7 @@
 #include "b_bodies.h"
 #include "cases.h"
 #include "faults.h"
-#include "image_backends.h"
+#include "images.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/integrate/integrators.h"

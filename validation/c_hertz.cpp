@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "cases.h"
-#include "image_backends.h"
+#include "images.h"
 #include "palpate/core/error.h"
-#include "palpate/mesh/generators.h"
+#include "palpate/mesh/boundary.h"
 #include "pressed_block.h"
 
 // A rigid, smooth sphere of radius R pressed by delta << R into an elastic half-space, E* = E/(1 - nu^2)
@@ -33,28 +33,24 @@ BlockMesh block(int per_doubling, int doublings) {
   return {20.0 * kContact / std::sinh(kMiddle * std::log(2.0)), per_doubling, doublings};
 }
 
-/// @param backend  null: exact gaps at the vertices
-double force(const contact::DepthBackend* backend, const BlockMesh& mesh, double depth,
-             const std::string& fault) {
+/// The sphere's exact gaps at the block's vertices, or by its material points.
+enum class Way { kVertices, kPoints };
+
+double force(Way way, const BlockMesh& mesh, double depth, const std::string& fault) {
   fem::Material material;
   material.youngs_modulus = kYoung;
   material.poissons_ratio = kPoisson;
   const auto indenter = [&](contact::NodeSurface soft, int frame,
                             std::shared_ptr<contact::MovingFrame> motion) {
     constexpr double kCandidates = 0.01 * kContact;
-    std::unique_ptr<contact::SampleSource> source;
-    if (backend) {
-      TriMesh ball = mesh::sphere(kRadius, 200);
-      ball.vertices.row(2).array() += kRadius - depth;
-      contact::ImageOptions options;
-      options.backend = *backend;
-      options.candidate_gap = kCandidates;
-      source =
-          contact::make_image_source(std::move(soft), std::move(ball), frame, std::move(motion), options);
-    } else {
-      source = contact::make_sphere_source(std::move(soft), frame, std::move(motion),
-                                           Vec3(0, 0, kRadius - depth), kRadius, kCandidates);
+    contact::ContactSide side = soft;
+    if (way == Way::kPoints) {
+      const TetMesh rest = mesh.tets();
+      side = contact::material_points(soft, mesh::boundary(rest).surface.vertices, rest,
+                                      2.0 * mesh.half_width());
     }
+    std::unique_ptr<contact::SampleSource> source = contact::make_sphere_source(
+        std::move(side), frame, std::move(motion), Vec3(0, 0, kRadius - depth), kRadius, kCandidates);
     if (fault == "rim-not-seen")
       return spoiled(std::move(source), [](auto& samples) {
         std::erase_if(samples, [](const auto& s) {
@@ -72,21 +68,19 @@ double force(const contact::DepthBackend* backend, const BlockMesh& mesh, double
 
 double theory(double depth) { return 4.0 / 3.0 * kReduced * std::sqrt(kRadius) * std::pow(depth, 1.5); }
 
-std::string way_of(const contact::DepthBackend* backend) {
-  return backend ? std::string(contact::backend_name(*backend)) : "analytic";
-}
+std::string name_of(Way way) { return way == Way::kPoints ? "material points" : "vertices"; }
 
 /// Force of the half-space, from a family of blocks.
-Measurement measure(const contact::DepthBackend* backend, double depth, const std::string& fault) {
+Measurement measure(Way way, double depth, const std::string& fault) {
   std::vector<double> h, by_size, far, by_block;
   for (const int m : {2, 3, 4}) {
     h.push_back(block(m, kMiddle).smallest_cell() / kContact);
-    by_size.push_back(force(backend, block(m, kMiddle), depth, fault));
+    by_size.push_back(force(way, block(m, kMiddle), depth, fault));
   }
   for (const int doublings : {kMiddle - 1, kMiddle, kMiddle + 1}) {
     const BlockMesh mesh = block(2, doublings);
     far.push_back(kContact / mesh.half_width());
-    by_block.push_back(doublings == kMiddle ? by_size.front() : force(backend, mesh, depth, fault));
+    by_block.push_back(doublings == kMiddle ? by_size.front() : force(way, mesh, depth, fault));
   }
   const Limit limit = limit_of(h, by_size);
   const double exact = theory(depth), found = limit.value * at_zero(far, by_block) / by_block[1];
@@ -94,7 +88,7 @@ Measurement measure(const contact::DepthBackend* backend, double depth, const st
   for (const double one : by_size) errors.push_back(std::abs(one / limit.value - 1.0));
   std::string note = "at L = 10, 20, 40 a:";
   for (const double one : by_block) note += fmt::format(" {:+.1f} %", 100.0 * (one / exact - 1.0));
-  return {.quantity = way_of(backend) + ": force of the half-space [N]",
+  return {.quantity = name_of(way) + ": force of the half-space [N]",
           .computed = found,
           .exact = exact,
           .error = std::abs(found / exact - 1.0),
@@ -107,25 +101,21 @@ Measurement measure(const contact::DepthBackend* backend, double depth, const st
 }
 
 std::vector<Measurement> run(const std::string& fault) {
-  std::vector<Measurement> out = {measure(nullptr, kDepth, fault)};
+  std::vector<Measurement> out = {measure(Way::kVertices, kDepth, fault)};
   if (!fault.empty()) return out;
-  for (const contact::DepthBackend& backend : image_backends(fault)) {
-    out.push_back(measure(&backend, kDepth, fault));
-    if (backend != contact::DepthBackend::kCpu) continue;
-    std::vector<double> depth = {kDepth}, force = {out.back().computed};
-    for (const double part : {1.4, 2.0}) {
-      depth.push_back(part * kDepth);
-      force.push_back(measure(&backend, depth.back(), fault).computed);
-    }
-    const double exponent = fitted_order(depth, force);
-    out.push_back({.quantity = "cpu: exponent of the depth (error: absolute)",
-                   .computed = exponent,
-                   .exact = 1.5,
-                   .error = std::abs(exponent - 1.5),
-                   .bar = 0.03,
-                   .note = "over depths of 1, 1.4 and 2: a/R up to 0.07"});
+  out.push_back(measure(Way::kPoints, kDepth, fault));
+  std::vector<double> depth = {kDepth}, force = {out.back().computed};
+  for (const double part : {1.4, 2.0}) {
+    depth.push_back(part * kDepth);
+    force.push_back(measure(Way::kPoints, depth.back(), fault).computed);
   }
-  say_what_is_skipped(out);
+  const double exponent = fitted_order(depth, force);
+  out.push_back({.quantity = "material points: exponent of the depth (error: absolute)",
+                 .computed = exponent,
+                 .exact = 1.5,
+                 .error = std::abs(exponent - 1.5),
+                 .bar = 0.03,
+                 .note = "over depths of 1, 1.4 and 2: a/R up to 0.07"});
   return out;
 }
 

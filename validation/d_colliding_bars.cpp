@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "cases.h"
-#include "image_backends.h"
+#include "images.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/soft_body.h"
@@ -24,6 +24,9 @@
 // grows as h^(2/3) (elements carry a wave of number q with c (1 - (q h)^2/24): the front is an Airy function
 // of the width (h^2 c t/8)^(1/3)).  Up to 100 elements the first is the greater part, beyond it is the
 // second, so that the order falls from 1 towards 2/3 there.
+//
+// Points on the rim of an end lie as near to the other's side as to its end, and triangles at the rim carry
+// less: the contact's spring is softer by 2 e/w, e the points' spacing and w the width, a tenth.
 //
 // The steps are a sixteenth of h/c, so that time adds no error beside h.
 
@@ -55,7 +58,7 @@ Bar add_bar(dynamics::State& state, dynamics::System& system, int elements, doub
   material.youngs_modulus = kYoung;
   material.poissons_ratio = 0.0;
   material.density = kDensity;
-  bar.masses = fem::lumped_masses(bar.rest, kDensity);
+  bar.masses = fem::lumped_masses(bar.rest, material.density);
   system.add(
       std::make_shared<fem::SoftBody>(nodes.name, bar.rest, material, fem::SoftBodyOptions{}, bar.block_id));
   system.add(fem::make_lumped_mass(bar.rest, material, bar.block_id));
@@ -76,17 +79,15 @@ double mean_velocity(const Bar& bar, const dynamics::StateView& state) {
   return sum / bar.masses.sum();
 }
 
-Collision collide(contact::DepthBackend backend, int elements, const std::string& fault) {
+Collision collide(int elements, const std::string& fault) {
   dynamics::State state;
   dynamics::System system;
   const double h = kLength / elements;
   const Bar left = add_bar(state, system, elements, -0.5 * kLength, 0.5 * kSpeed),
             right = add_bar(state, system, elements, 0.5 * kLength, -0.5 * kSpeed);
-  contact::ImageOptions options;
-  options.backend = backend;
-  options.pixels = 16;
-  options.candidate_gap = 0.02 * kLength;  // the ends are flat: between two queries the gaps stay exact
-  auto source = contact::make_image_source(left.surface, right.surface, options);
+  const auto at_rest = [](const Bar& bar) { return mesh::boundary(bar.rest).surface.vertices; };
+  auto source = contact::make_distance_source(left.surface, at_rest(left), right.surface, at_rest(right),
+                                              {.candidate_gap = 0.02 * kLength, .spacing = 0.05 * kWidth});
   if (fault == "force-on-one-side")
     source = spoiled(std::move(source), [](auto& samples) {
       for (auto& s : samples)
@@ -97,6 +98,7 @@ Collision collide(contact::DepthBackend backend, int elements, const std::string
   const auto contact = std::make_shared<contact::ContactForce>();
   ContactSpec law;
   law.stiffness_pa_m = kYoung / (2.0 * h);
+  law.gaps = fault.empty() ? "exact" : "linear";  // a broken source cannot follow; velocities stay
   contact->add_pair(std::move(source), law);
   system.add(std::static_pointer_cast<dynamics::ForceTerm>(contact));
   contact->refresh(state.view());
@@ -125,18 +127,17 @@ std::vector<double> last_three(const std::vector<double>& all) { return {all.end
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   const double exact = 2.0 * kLength / kWave;
-  for (const contact::DepthBackend backend : image_backends(fault)) {
+  {
     std::vector<double> h, time, velocity;
     Collision one;
     for (const int elements : {13, 25, 50, 100, 200}) {
-      one = collide(backend, elements, fault);
+      one = collide(elements, fault);
       h.push_back(kLength / elements);
       time.push_back(std::abs(one.lasts / exact - 1.0));
       velocity.push_back(
           std::max(std::abs(one.left / (-0.5 * kSpeed) - 1.0), std::abs(one.right / (0.5 * kSpeed) - 1.0)));
     }
-    const std::string name(contact::backend_name(backend));
-    out.push_back({.quantity = name + ": contact lasts, 200 elements [s]",
+    out.push_back({.quantity = "contact lasts, 200 elements [s]",
                    .computed = one.lasts,
                    .exact = exact,
                    .error = std::max(time[3], time[4]),
@@ -145,7 +146,7 @@ std::vector<Measurement> run(const std::string& fault) {
                    .order_low = 0.8,
                    .note = "error: the larger of 100 and 200 elements; order over 13 to 200",
                    .refinement = {"element size [m]", h, time}});
-    out.push_back({.quantity = name + ": mean velocity of the left bar after it, 200 elements [m/s]",
+    out.push_back({.quantity = "mean velocity of the left bar after it, 200 elements [m/s]",
                    .computed = one.left,
                    .exact = -0.5 * kSpeed,
                    .error = std::max(velocity[3], velocity[4]),
@@ -155,7 +156,6 @@ std::vector<Measurement> run(const std::string& fault) {
                    .note = "error: the larger of both bars, of 100 and 200 elements; order over 50 to 200",
                    .refinement = {"element size [m]", h, velocity}});
   }
-  say_what_is_skipped(out);
   return out;
 }
 
@@ -170,7 +170,7 @@ ValidationCase colliding_bars() {
               "contact give 2 L/c and the exchange of velocities (d'Alembert; St Venant 1867)",
           .quick = true,
           .run = run,
-          .faults = {{"force-on-one-side", "mean velocity"}, {"few-samples", "contact lasts"}}};
+          .faults = {{"force-on-one-side", "mean velocity"}, {"few-samples", "mean velocity"}}};
 }
 
 }  // namespace palpate::validation

@@ -5,7 +5,7 @@
 
 #include "b_bodies.h"
 #include "cases.h"
-#include "image_backends.h"
+#include "images.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/soft_body.h"

@@ -101,11 +101,11 @@ void run(const std::string& scene, const Options& options) {
   fmt::print(
       "{}: two skins of {} vertices and {} triangles in all, {} states in contact, up to {} rounds\n{}\n",
       motion.description.name, motion.vertices(), motion.triangles(), motion.states.size(), options.rounds,
-      report::format_table({"", "", "query: least / median / p99 [ms]", "times palpate's 256 pixels",
-                            "contacts", "deepest [m]"},
-                           rows));
+      report::format_table(
+          {"", "", "query: least / median / p99 [ms]", "times palpate by images", "contacts", "deepest [m]"},
+          rows));
   for (const auto& [group, ratio] : fastest)
-    fmt::print("  {}: its fastest way takes {:.1f} times as long as palpate with 256 pixels\n", group, ratio);
+    fmt::print("  {}: its fastest way takes {:.1f} times as long as palpate by images\n", group, ratio);
   fmt::print("\n");
   std::fflush(stdout);
 }

@@ -1,6 +1,6 @@
-// palpate: the scene's own contact, from positions of nodes to forces on nodes, by the image on the
-// processor.  A query is ContactForce::refresh, which finds the samples and compares the forces before and
-// after, and one evaluation of the forces.
+// palpate: the scene's own contact, from positions of nodes to forces on nodes, by images.  A query is
+// ContactForce::refresh, which finds the samples and compares the forces before and after, and one evaluation
+// of the forces.
 #include <algorithm>
 
 #include "contender.h"
@@ -11,20 +11,13 @@ namespace {
 
 class Own final : public Contender {
  public:
-  /// @param quadrature_error  0: `pixels` along the longer edge of every image, always
-  Own(const Motion& motion, std::string name, double quadrature_error, int pixels, std::string samples)
-      : name_(std::move(name)) {
+  explicit Own(const Motion& motion) {
     scene::Description d = motion.description;
-    for (ContactSpec& c : d.contacts) {
-      scene::set_method(c, "cpu");
-      c.pixels = pixels;
-      c.quadrature_error = quadrature_error;
-      c.samples = samples;
-    }
+    for (ContactSpec& c : d.contacts) scene::set_method(c, "image");
     world_ = loop::assemble(d);
   }
   std::string group() const override { return "palpate"; }
-  std::string name() const override { return name_; }
+  std::string name() const override { return "image"; }
   void query(const Snapshot& state) override {
     const dynamics::StateView view =
         make_view(world_->state.layout(), state.time, state.q.data(), state.u.data());
@@ -42,7 +35,6 @@ class Own final : public Contender {
   }
 
  private:
-  std::string name_;
   std::unique_ptr<loop::World> world_;
   VecX force_;
 };
@@ -64,11 +56,7 @@ class SkinsAlone final : public Contender {
 
 }  // namespace
 
-void add_own(const Motion& motion, Contenders& to) {
-  to.push_back(std::make_unique<Own>(motion, "256 pixels", 0.0, 256, "pixel"));
-  to.push_back(std::make_unique<Own>(motion, "error 1e-3", 1e-3, 256, "pixel"));
-  to.push_back(std::make_unique<Own>(motion, "vertices", 1e-3, 256, "vertex"));
-}
+void add_own(const Motion& motion, Contenders& to) { to.push_back(std::make_unique<Own>(motion)); }
 
 void add_skins_alone(const Motion& motion, Contenders& to) {
   to.push_back(std::make_unique<SkinsAlone>(motion));

@@ -1,14 +1,12 @@
 #version 430 core
 // Pixels of all tiles of the atlas where both surfaces are visible, as one compact list (tile and pixel, face
-// of a, face of b); the highest bit of a's tells that one of them has layers there.  A work group is a block
-// of one tile.  The order is that of the atomic counter: the reader sorts.
+// of a, face of b).  A work group is a block of one tile.  The order is that of the atomic counter: the
+// reader sorts.
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(binding = 0) uniform usampler2D faces_a;
 layout(binding = 1) uniform usampler2D faces_b;
 layout(binding = 2) uniform sampler2D depth_a;
 layout(binding = 3) uniform sampler2D depth_b;
-layout(binding = 4) uniform usampler2D layers_a;
-layout(binding = 5) uniform usampler2D layers_b;
 
 struct Tile {
   uint x, y, width, height;  // in the atlas [pixels]
@@ -32,9 +30,8 @@ void main() {
   uint b = texelFetch(faces_b, at, 0).x;
   if (a == 0u || b == 0u) return;
   if (texelFetch(depth_a, at, 0).x - texelFetch(depth_b, at, 0).x > tile.largest_gap) return;
-  bool layered = texelFetch(layers_a, at, 0).x > 1u || texelFetch(layers_b, at, 0).x > 1u;
   uint k = 3u * atomicAdd(count, 1u);
   pairs[k] = (number << 24) | (pixel.y * tile.width + pixel.x);
-  pairs[k + 1u] = (a - 1u) | (layered ? 0x80000000u : 0u);
+  pairs[k + 1u] = a - 1u;
   pairs[k + 2u] = b - 1u;
 }

@@ -111,7 +111,7 @@ scene::Description with_image_contact_out_of_reach(const scene::Description& d) 
   ContactSpec contact;
   contact.first = d.bodies.front().name;
   contact.second = "tool";
-  scene::set_method(contact, "cpu");
+  scene::set_method(contact, "image");
   out.contacts.push_back(contact);
   return out;
 }

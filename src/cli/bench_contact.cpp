@@ -6,7 +6,6 @@
 
 #include "bench_contact_ratios.h"
 #include "palpate/bench/contact.h"
-#include "palpate/bench/fem.h"
 #include "palpate/core/error.h"
 #include "palpate/report/table.h"
 #include "palpate/store/atomic_file.h"
@@ -27,41 +26,23 @@ const char* const kInARow = "two-pumpkins";
 constexpr int kRow = 9;
 constexpr double kSpacing = 0.28;
 
-/// Bandwidths of the machine, measured when they are first asked for.
-class Machine {
- public:
-  double copy_gb_s(int threads) {
-    const auto [at, is_new] = copy_.try_emplace(threads, 0.0);
-    if (is_new) at->second = bench::measure_limits(threads).large_copy_gb_s;
-    return at->second;
-  }
-  const std::map<int, double>& measured() const { return copy_; }
-
- private:
-  std::map<int, double> copy_;
-};
-
 std::string ms(double value) { return fmt::format("{:.2f}", value); }
 std::string ms(const bench::Spread& s) {
   return fmt::format("{:.2f} / {:.2f} / {:.2f}", s.least, s.median, s.p99);
 }
 
 Row variant_of(const bench::ContactBenchRow& r) {
-  return {r.variant.method, r.variant.pixels > 0 ? fmt::format("{}", r.variant.pixels) : "wanted",
-          fmt::format("{}", r.variant.threads)};
+  return {r.variant.method, fmt::format("{}", r.variant.threads)};
 }
 
-Row row_of(const bench::ContactBenchRow& r, const bench::ContactBenchRow* cpu, double copy_gb_s) {
+Row row_of(const bench::ContactBenchRow& r, const bench::ContactBenchRow* points) {
   Row out = variant_of(r);
-  const bool is_beside = cpu && cpu != &r && cpu->query.median > 0.0;
-  out.insert(
-      out.end(),
-      {fmt::format("{}", r.samples), fmt::format("{:.1f}", r.regions), ms(r.query),
-       is_beside ? ms(r.query.median / cpu->query.median) : "-",
-       r.query_bytes > 0.0 ? fmt::format("{:.1f}", 1e-4 * r.query_bytes / copy_gb_s / r.query.median) : "-",
-       ms(r.linearise_ms), ms(r.solve_ms),
-       fmt::format("{:.1f} / {:.1f} / {:.1f}", r.period.least, r.period.median, r.period.p99),
-       ms(r.real_time_factor())});
+  const bool is_beside = points && points != &r && points->query.median > 0.0;
+  out.insert(out.end(),
+             {fmt::format("{}", r.samples), fmt::format("{:.1f}", r.regions), ms(r.query),
+              is_beside ? ms(r.query.median / points->query.median) : "-", ms(r.linearise_ms), ms(r.solve_ms),
+              fmt::format("{:.1f} / {:.1f} / {:.1f}", r.period.least, r.period.median, r.period.p99),
+              ms(r.real_time_factor())});
   return out;
 }
 
@@ -72,13 +53,12 @@ Row stages_of(const bench::ContactBenchRow& r, bool all) {
   return out;
 }
 
-void print_scene(const bench::ContactBenchReport::Scene& scene, bool all, Machine& machine) {
+void print_scene(const bench::ContactBenchReport::Scene& scene, bool all) {
   if (scene.rows.empty()) return;
   std::vector<Row> rows, stages;
   std::map<std::string, std::string> devices;
   for (const bench::ContactBenchRow& r : scene.rows) {
-    rows.push_back(row_of(r, scene.find("cpu", r.variant.pixels, r.variant.threads),
-                          machine.copy_gb_s(r.variant.threads)));
+    rows.push_back(row_of(r, scene.find("distance", r.variant.threads)));
     stages.push_back(stages_of(r, all));
     devices[r.variant.method] = r.device + (r.device_is_software ? ": a rasteriser on the processor" : "");
   }
@@ -87,11 +67,11 @@ void print_scene(const bench::ContactBenchReport::Scene& scene, bool all, Machin
              scene.name, last.tetrahedra, last.skin_vertices, last.periods, 1e3 * last.period_s,
              last.touches ? "in which something touches" : "(nothing touches)");
   for (const auto& [method, device] : devices) fmt::print("  {}: {}\n", method, device);
-  fmt::print("{}\n", report::format_table({"method", "pixels", "threads", "samples", "regions",
-                                           "query: least / median / p99", "/ cpu", "copy [%]", "linearise",
-                                           "solve", "period: least / median / p99", "real time"},
-                                          rows));
-  Row header = {"method", "pixels", "threads"};
+  fmt::print("{}\n", report::format_table(
+                         {"method", "threads", "samples", "regions", "query: least / median / p99",
+                          "/ distance", "linearise", "solve", "period: least / median / p99", "real time"},
+                         rows));
+  Row header = {"method", "threads"};
   for (int s = 0; s < bench::kContactStages; ++s)
     header.emplace_back(name_of(static_cast<bench::ContactStage>(s)));
   fmt::print("  stages, {}\n{}\n", all ? "least / median / p99" : "medians",
@@ -101,64 +81,55 @@ void print_scene(const bench::ContactBenchReport::Scene& scene, bool all, Machin
 bench::ContactBenchReport::Scene run_scene(const scene::Description& description,
                                            const std::vector<std::string>& methods,
                                            const BenchArguments& arguments) {
-  const std::vector<int> pixels = !arguments.pixels.empty() ? arguments.pixels
-                                  : arguments.all ? std::vector<int>{0, 64, 128, bench::kBarPixels, 512, 1024}
-                                                  : std::vector<int>{0, bench::kBarPixels},
-                         threads = arguments.threads.empty() ? std::vector<int>{1, 2} : arguments.threads;
+  const std::vector<int> threads = arguments.threads.empty() ? std::vector<int>{1, 2} : arguments.threads;
   bench::ContactBenchReport::Scene out{description.name, {}};
   for (const std::string& method : methods)
-    for (const int edge : pixels)
-      for (const int count : threads) {
-        if (stop_flag()) return out;
-        if (method == "distance" && edge != pixels.front()) continue;  // it has points
-        out.rows.push_back(bench::bench_contact(description, {method, edge, count}, &stop_flag()));
-      }
+    for (const int count : threads) {
+      if (stop_flag()) return out;
+      out.rows.push_back(bench::bench_contact(description, {method, count}, &stop_flag()));
+    }
   return out;
 }
 
-/// Those asked for, or the processor and, where it opens, the GPU; with --all exact lines as well.
-std::vector<std::string> methods_of(const BenchArguments& arguments, std::string& no_gpu) {
+/// Those asked for, or nearest points and, where OpenGL opens, images.
+std::vector<std::string> methods_of(const BenchArguments& arguments, std::string& no_image) {
   if (!arguments.methods.empty()) return arguments.methods;
-  std::vector<std::string> out = {"cpu"};
+  std::vector<std::string> out = {"distance"};
   try {
-    bench::device_of("gpu");
-    out.emplace_back("gpu");
+    bench::device_of("image");
+    out.emplace_back("image");
   } catch (const Error& error) {
-    no_gpu = error.what();
-    fmt::print("gpu is left out: {}\n\n", no_gpu);
+    no_image = error.what();
+    fmt::print("image is left out: {}\n\n", no_image);
   }
-  if (arguments.all) out.emplace_back("exact");
   return out;
 }
 
-void print_legend(const Machine& machine) {
+void print_legend() {
   fmt::print(
-      "A query is the sum of the stages from skins to groups; forces and tangent are the contact's own, "
-      "once.\n"
-      "skins: positions from nodes; regions: bounds and pruning; faces: in axes of their region; upload, "
-      "passes,\ngather and readback: the images, passes and gather of gpu by its own clock; gaps: in double, "
-      "and samples;\ngroups: samples by their nodes, and checks.  / cpu: beside the same query on the "
-      "processor.\nlinearise: contact for the tool's ticks; solve: factorisation and solution of a period's "
-      "steps; real time:\nsimulated over run time.  copy: the time that a query's bytes, each once, take at "
-      "the bandwidth of copying,\nas a share of its time;");
-  for (const auto& [threads, gb_s] : machine.measured())
-    fmt::print(" {:.1f} GB/s with {} thread{}", gb_s, threads, threads > 1 ? "s," : ",");
-  fmt::print(" arrays of 67 MB.\n\n");
+      "A query is the sum of the stages from skins to rest; forces and tangent are the contact's own, once.\n"
+      "Of images: skins: positions from nodes; regions: bounds and pruning; faces: in axes of their region; "
+      "upload, passes,\ngather and readback: the images, passes and gather by the GPU's own clock; gaps: in "
+      "double, and samples.\nNearest points: all of the query is rest.  / distance: beside the same query by "
+      "nearest points.  linearise: contact for the tool's\nticks; solve: factorisation and solution of a "
+      "period's steps; real time: simulated over run time.\n\n");
 }
 
 void run_scenes(const BenchArguments& arguments, bench::ContactBenchReport& report) {
-  Machine machine;
   std::vector<scene::Description> descriptions;
   for (const std::string& scene : arguments.scenes.empty() ? kScenes : arguments.scenes)
     descriptions.push_back(scene_of({scene, {}, ""}));
   if (arguments.scenes.empty()) descriptions.push_back(bench::against_itself(scene_of({kAtRest, {}, ""})));
-  const std::vector<std::string> methods = methods_of(arguments, report.no_gpu);
+  const std::vector<std::string> methods = methods_of(arguments, report.no_image);
   for (const scene::Description& description : descriptions) {
     if (stop_flag()) return;
-    report.scenes.push_back(run_scene(description, methods, arguments));
-    print_scene(report.scenes.back(), arguments.all, machine);
+    const ContactSpec& first = description.contacts.front();
+    const bool own = first.first == first.second;  // a body has no image of itself
+    report.scenes.push_back(
+        run_scene(description, own ? std::vector<std::string>{"distance"} : methods, arguments));
+    print_scene(report.scenes.back(), arguments.all);
   }
-  print_legend(machine);
+  print_legend();
   if (arguments.scenes.empty())
     descriptions.push_back(bench::row_of_bodies(scene_of({kInARow, {}, ""}), kRow, kSpacing));
   for (const scene::Description& description : descriptions) {

@@ -16,24 +16,18 @@ std::string over(double ms, double other_ms) {
 }
 std::string percent(double share) { return fmt::format("{:.3g}", 100.0 * share); }
 
-std::string pixels_of(int pixels) { return pixels > 0 ? fmt::format("{}", pixels) : "wanted"; }
-
 void add_rows(const bench::ContactPrice& p, Rows& rows, Rows& solves, Rows& tangents) {
-  for (const bench::ContactPrice::Contact& contact : p.contacts) {
-    const bench::ContactBenchRow& c = contact.row;
-    const bench::FrictionPrice& f = contact.friction;
-    const std::string pixels = pixels_of(c.variant.pixels),
-                      of = fmt::format("{} / {:.1f}", c.samples, c.regions);
-    rows.push_back({p.scene, pixels, of, fmt::format("{:.2f}", c.elements_ms),
-                    over(c.assembly_ms, c.elements_ms), fmt::format("{:.2f}", p.one_body_ms),
-                    over(c.to_forces.median, p.one_body_ms)});
-    solves.push_back({p.scene, pixels, of, fmt::format("{:.2f}", p.bodies_ms),
-                      fmt::format("{:.2f}", p.contact_free_ms), over(c.step.median, p.bodies_ms),
-                      over(c.step.median, p.contact_free_ms), over(f.symmetric_ms, c.step.median)});
-    if (f.full_ms > 0.0)
-      tangents.push_back({p.scene, pixels, fmt::format("{:.2f}", f.symmetric_ms),
-                          over(f.full_ms, f.symmetric_ms), percent(f.left_out), percent(f.force_change)});
-  }
+  const bench::ContactBenchRow& c = p.row;
+  const bench::FrictionPrice& f = p.friction;
+  const std::string samples = fmt::format("{}", c.samples);
+  rows.push_back({p.scene, samples, fmt::format("{:.2f}", c.elements_ms), over(c.assembly_ms, c.elements_ms),
+                  fmt::format("{:.2f}", p.one_body_ms), over(c.to_forces.median, p.one_body_ms)});
+  solves.push_back({p.scene, samples, fmt::format("{:.2f}", p.bodies_ms),
+                    fmt::format("{:.2f}", p.contact_free_ms), over(c.step.median, p.bodies_ms),
+                    over(c.step.median, p.contact_free_ms), over(f.symmetric_ms, c.step.median)});
+  if (f.full_ms > 0.0)
+    tangents.push_back({p.scene, fmt::format("{:.2f}", f.symmetric_ms), over(f.full_ms, f.symmetric_ms),
+                        percent(f.left_out), percent(f.force_change)});
 }
 
 }  // namespace
@@ -42,26 +36,21 @@ void print_contact_prices(const std::vector<bench::ContactPrice>& prices) {
   Rows rows, solves, tangents;
   for (const bench::ContactPrice& p : prices) add_rows(p, rows, solves, tangents);
   fmt::print(
-      "Contact beside the rest of a step: cpu, one thread, medians [ms]\n"
-      "  pixels: as many as the scene wants for its error, or all of {} along the longer edge, which the "
-      "bars "
-      "are stated at\n"
+      "Contact beside the rest of a step: nearest points, one thread, medians [ms]\n"
       "  elements: forces and matrix over the first body's elements in one pass; samples: those of the "
       "contact, and over the elements'\n"
       "  step: a step of the first body without contact, 1e-3; query: the contact's, to forces on nodes, and "
       "over that step\n{}\n",
-      bench::kBarPixels,
-      report::format_table(
-          {"scene", "pixels", "samples / regions", "elements", "samples (ratio)", "step", "query (ratio)"},
-          rows));
+      report::format_table({"scene", "samples", "elements", "samples (ratio)", "step", "query (ratio)"},
+                           rows));
   fmt::print(
       "A step without its query, medians [ms]\n"
       "  apart: the sum of steps of each body by itself, without contact; free: a step of all bodies "
       "together, without contact;\n"
       "  contact: the scene's own step, over apart and over free; friction: with friction 0.3, over contact\n"
       "  without contact the bodies fall under their weight: at rest there is nothing to solve\n{}\n",
-      report::format_table({"scene", "pixels", "samples / regions", "apart", "free", "contact (/ apart)",
-                            "contact (/ free)", "friction (/ contact)"},
+      report::format_table({"scene", "samples", "apart", "free", "contact (/ apart)", "contact (/ free)",
+                            "friction (/ contact)"},
                            solves));
   if (tangents.empty()) return;
   fmt::print(
@@ -71,18 +60,15 @@ void print_contact_prices(const std::vector<bench::ContactPrice>& prices) {
       "  left out: largest friction that a step left out, of the largest friction; force: largest difference "
       "of the contact force\n"
       "  between both runs at the same time, of the largest force [%]\n{}\n",
-      report::format_table(
-          {"scene", "pixels", "symmetric", "full (/ symmetric)", "left out [%]", "force [%]"}, tangents));
+      report::format_table({"scene", "symmetric", "full (/ symmetric)", "left out [%]", "force [%]"},
+                           tangents));
 }
 
 std::vector<bench::ContactGrowth> run_contact_growth() {
   constexpr int kSkin = 100000, kSteps = 6;
   constexpr double kFactor = 30.0;
-  return {{"skin", bench::kBarPixels,
-           bench::bench_skin_growth({10000, 30000, 100000, 300000, 1000000}, &stop_flag())},
-          {"area", 0, bench::bench_patch_growth(kSkin, kFactor, kSteps, 0, &stop_flag())},
-          {"area", bench::kBarPixels,
-           bench::bench_patch_growth(kSkin, kFactor, kSteps, bench::kBarPixels, &stop_flag())}};
+  return {{"skin", bench::bench_skin_growth({10000, 30000, 100000, 300000, 1000000}, &stop_flag())},
+          {"area", bench::bench_patch_growth(kSkin, kFactor, kSteps, &stop_flag())}};
 }
 
 void print_contact_growth(const std::vector<bench::ContactGrowth>& growth) {
@@ -93,9 +79,8 @@ void print_contact_growth(const std::vector<bench::ContactGrowth>& growth) {
                       fmt::format("{}", r.samples),
                       fmt::format("{:.2f} / {:.2f} / {:.2f}", r.query.least, r.query.median, r.query.p99)});
     const bool area = g.with == "area";
-    fmt::print("{}, {}\n{}\n  the query's time grows with {} to the power {:.2f}\n\n",
+    fmt::print("{}\n{}\n  the query's time grows with {} to the power {:.2f}\n\n",
                area ? "Larger and larger regions of one skin" : "A contact region on larger and larger skins",
-               g.pixels > 0 ? fmt::format("{} pixels", g.pixels) : "pixels for an error of 1e-3",
                report::format_table(
                    {"vertices", "region [cm^2]", "samples", "query: least / median / p99 [ms]"}, rows),
                area ? "the region's area" : "the skin's vertices", g.exponent());
@@ -111,9 +96,9 @@ bool print_contact_bars(const std::vector<bench::ContactBar>& bars) {
                     fmt::format("{} {:.3g}", b.at_least ? ">=" : "<=", b.bar),
                     b.is_met() ? "met" : "missed"});
   }
-  fmt::print("Bars: cpu, one thread, {} pixels where nothing else is said\n{}\n{} of {} bars met\n",
-             bench::kBarPixels, report::format_table({"scene", "figure", "measured", "bar", ""}, rows),
-             bars.size() - missed, bars.size());
+  fmt::print("Bars: nearest points, one thread where nothing else is said\n{}\n{} of {} bars met\n",
+             report::format_table({"scene", "figure", "measured", "bar", ""}, rows), bars.size() - missed,
+             bars.size());
   return missed == 0;
 }
 

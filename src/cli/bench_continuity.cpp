@@ -13,7 +13,6 @@
 namespace palpate::cli {
 namespace {
 
-constexpr double kJump = 0.02;     // what is counted as one
 constexpr double kPieces = 12800;  // of a path: the length that halvings end at
 
 std::string quantile(std::vector<double> values, double share) {
@@ -35,10 +34,8 @@ std::vector<std::string> row_of(const std::string& scene, const bench::Continuit
                                quantile(r.worst_of_path, 0.99),
                                quantile(r.worst_of_path, 1.0),
                                fmt::format("{:.3f}", moment)};
-  for (int i = 0; i < bench::kJumpCauses; ++i) {
-    const auto cause = static_cast<bench::JumpCause>(i);
-    row.push_back(fmt::format("{} / {:.3f}", r.count(cause, kJump), r.largest(cause)));
-  }
+  row.push_back(fmt::format("{}", std::count_if(r.jumps.begin(), r.jumps.end(),
+                                                [](const bench::ForceJump& j) { return j.by_history; })));
   return row;
 }
 
@@ -64,20 +61,18 @@ void bench_continuity(const BenchArguments& arguments) {
     const auto worst = std::max_element(row.jumps.begin(), row.jumps.end(),
                                         [](const auto& p, const auto& q) { return p.force < q.force; });
     if (worst != row.jumps.end())
-      fmt::print("{}: the largest jump, {:.3f} ({}), is on path {} at {:.5f} of its length\n",
-                 short_name(description), worst->force, bench::name_of(worst->cause), worst->path, worst->at);
+      fmt::print("{}: the largest jump, {:.3f}, is on path {} at {:.5f} of its length\n",
+                 short_name(description), worst->force, worst->path, worst->at);
   }
-  std::vector<std::string> head{"scene", "paths", "steps", "halved", "force [N]",
-                                "p50",   "p99",   "max",   "moment"};
-  for (int i = 0; i < bench::kJumpCauses; ++i)
-    head.emplace_back(bench::name_of(static_cast<bench::JumpCause>(i)));
+  const std::vector<std::string> head{"scene", "paths", "steps", "halved", "force [N]",
+                                      "p50",   "p99",   "max",   "moment", "by history"};
   fmt::print(
       "\n{}\nOne body moves past the other along random smooth paths of {} steps; a step across which the "
       "force "
       "changes by\nmore than {:g} of itself is halved {} times.  p50, p99, max: what is left then, each "
-      "path's largest, over the\nforce; moment: the same of the moment; causes: jumps above {:g} / the "
-      "largest.\n",
-      report::format_table(head, rows), options.steps, options.threshold, options.halvings, kJump);
+      "path's largest, over the\nforce; moment: the same of the moment; by history: jumps of one pose "
+      "that was reached in two ways.\n",
+      report::format_table(head, rows), options.steps, options.threshold, options.halvings);
 }
 
 }  // namespace palpate::cli

@@ -180,15 +180,14 @@ struct BenchArguments {
   std::string what;  ///< "fem", "contact", "continuity" or "leave-out"
   /// of leave-out; empty: falling-ball and cantilever; of contact and continuity; empty: those of the paper
   std::vector<std::string> scenes;
-  /// of contact; empty: the processor and, where it opens, the GPU; the first of continuity, else "cpu"
+  /// of contact; empty: "distance" and, where OpenGL opens, "image"; the first of continuity, else "distance"
   std::vector<std::string> methods;
-  std::vector<int> pixels;  ///< of contact; empty: as the scene wants, and 256
-  bool all = false;         ///< of contact: every backend, 64 to 1024 pixels, spreads
-  bool growth = false;      ///< of contact: growth with skin and region instead
-  bool check = false;       ///< of contact: compare what was measured with its bars
-  int steps = 20;           ///< of fem
-  int cells = 0;            ///< of fem, along one beam by way of a scene; 0: the sizes below
-  double step_s = 0.01;     ///< of fem with cells
+  bool all = false;      ///< of contact: spreads of the stages
+  bool growth = false;   ///< of contact: growth with skin and region instead
+  bool check = false;    ///< of contact: compare what was measured with its bars
+  int steps = 20;        ///< of fem
+  int cells = 0;         ///< of fem, along one beam by way of a scene; 0: the sizes below
+  double step_s = 0.01;  ///< of fem with cells
   std::vector<std::string> linear_solvers = {"auto"};
   std::vector<std::string> sizes;        ///< of fem; empty: S and M
   std::vector<int> threads;              ///< of fem and contact; empty: 1 and 2

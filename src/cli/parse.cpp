@@ -732,19 +732,12 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   command
       ->add_option(
           "--method", arguments->methods,
-          "contact, continuity: see `palpate list contact-methods`; default of contact cpu and, where "
-          "OpenGL opens, gpu; of continuity cpu")
+          "contact, continuity: distance, image; default of contact distance and, where OpenGL opens, "
+          "image; of continuity distance")
       ->type_name("NAME")
       ->delimiter(',')
-      ->check(CLI::IsMember({"cpu", "gpu", "exact", "distance"}));
-  command
-      ->add_option("--pixels", arguments->pixels,
-                   "contact: longer edge of the images; 0: as the scene wants; default 0,256")
-      ->delimiter(',')
-      ->check(CLI::Range(0, 4096));
-  command->add_flag("--all", arguments->all,
-                    "contact: every backend, 64 to 1024 pixels, each stage with its least time and 99th "
-                    "percentile");
+      ->check(CLI::IsMember({"distance", "image"}));
+  command->add_flag("--all", arguments->all, "contact: each stage with its least time and 99th percentile");
   command->add_flag("--growth", arguments->growth,
                     "contact: how a query grows with the skin's vertices and the region's area instead");
   command->add_flag("--check", arguments->check,
@@ -790,8 +783,8 @@ void add_bench(CLI::App& app, Invocation& invocation) {
       ->capture_default_str();
   command
       ->add_option("--quadrature-error", arguments->quadrature_error,
-                   "continuity: what the pixels may err in the force; 0: all pixels always")
-      ->check(CLI::Range(0.0, 0.1))
+                   "continuity: what nearest points may err in the force")
+      ->check(CLI::Range(1e-6, 0.1))
       ->capture_default_str();
   command->footer(R"(Examples:
   palpate bench fem                              3,700 and 11,172 nodes, steps of 10 and 1 ms

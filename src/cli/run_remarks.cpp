@@ -55,11 +55,9 @@ void add_quadrature(const loop::World& world, Remarks& out) {
   std::string text;
   for (const loop::Overlap& o : loop::overlaps_of(world)) {
     if (o.quadrature_error == 0.0) continue;
-    text += fmt::format("{}{} {:.2g} % of the largest force ({})", text.empty() ? "" : ", ", o.pair,
-                        100.0 * o.quadrature_error,
-                        o.largest_share > 0.0
-                            ? fmt::format("bound; one point has {:.2g} %", 100.0 * o.largest_share)
-                            : "standard error of its pixels");
+    text +=
+        fmt::format("{}{} {:.2g} % of the largest force (bound; one point has {:.2g} %)",
+                    text.empty() ? "" : ", ", o.pair, 100.0 * o.quadrature_error, 100.0 * o.largest_share);
   }
   if (!text.empty()) out.push_back(fmt::format("contact quadrature: {}", text));
 }

@@ -109,11 +109,8 @@ std::vector<std::string> monolithic_overrides(const Description& d, double coars
   return out;
 }
 
-/// Errors of linear solver and pixels that no key of [compare.haptic] names.
+/// The error of the linear solver, which no key of [compare.haptic] names.
 Description as_tight_as_the_reference(const Description& d, std::vector<std::string> overrides) {
-  for (const std::size_t i : image_contacts(d))
-    if (const double error = d.contacts[i].quadrature_error; error > 0.0)
-      overrides.push_back(assign(fmt::format("contact.{}.quadrature_error", i), 0.1 * error));
   Description out = with_overrides(d, overrides);
   if (out.integrator.linear_rtol <= kLinearRtol) return out;
   overrides.push_back(assign("integrator.linear_rtol", kLinearRtol));
@@ -192,10 +189,8 @@ void add_resolution(Plan& plan, const Description& d) {
         kPixels, h.pixels, 0.0, false, [](double v) { return fmt::format("{:g}", v); },
         [&](double v) {
           std::vector<std::string> out;
-          for (const std::size_t i : images) {
+          for (const std::size_t i : images)
             out.push_back(fmt::format("contact.{}.pixels={}", i, std::lround(v)));
-            out.push_back(fmt::format("contact.{}.quadrature_error=0.0", i));
-          }
           return out;
         });
   std::vector<std::size_t> meshed;

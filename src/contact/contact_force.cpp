@@ -67,9 +67,8 @@ const std::vector<int>& ContactForce::Impl::rows_of_frames() {
   return frame_rows;
 }
 
-void ContactForce::Impl::add_single_forces(const dynamics::StateView& state, VecX& f) {
+void ContactForce::Impl::add_forces(const dynamics::StateView& state, VecX& f) {
   if (!bonds.empty()) bonds.add_force(state, frame_states, rows_of_frames(), f);
-  if (step_friction.on) friction_cells.add_step_force(f);
   const auto row = [&](const SurfacePoint& p) {
     return p.frame >= 0 ? frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1;
   };
@@ -81,10 +80,9 @@ void ContactForce::Impl::add_single_forces(const dynamics::StateView& state, Vec
                });
 }
 
-void ContactForce::Impl::apply_single_tangents(const dynamics::StateView& state, double k_scale,
-                                               double d_scale, const VecX& x, VecX& y) {
+void ContactForce::Impl::apply_tangents(const dynamics::StateView& state, double k_scale, double d_scale,
+                                        const VecX& x, VecX& y) {
   bonds.apply_tangent(state, frame_states, k_scale, d_scale, x, y);
-  if (step_friction.on) friction_cells.apply_tangent(k_scale, d_scale, x, y);
   visit_active(state, Which::kOfState,
                [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                  const SampleForce force = tangent_of(s, motion, law, law.symmetric_tangent);
@@ -100,15 +98,13 @@ void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f, s
   place_frames(state);
   frame_rows.resize(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) frame_rows[i] = nodal + 6 * static_cast<int>(i);
-  groups.add_force(state, frame_states, frame_rows, f, &on_a);
-  friction_cells.add_force(state, frame_states, frame_rows, f, on_a);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const Vec3 force = sample_force(s, motion, law);
     add_point_force(s.a, motion.a.arm, force, nodal + 6 * s.a.frame, f);
     add_point_force(s.b, motion.b.arm, -force, nodal + 6 * s.b.frame, f);
     on_a[static_cast<std::size_t>(s.source)] += Wrench{motion.a.x.cross(force), force};
   };
-  visit_active(state, Which::kAlone, add);
+  visit_active(state, Which::kEvery, add);
   bonds.add_force(state, frame_states, frame_rows, f);
   bonds.add_resultants(state, frame_states, on_a);
 }
@@ -130,14 +126,13 @@ int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSp
   const bool follows = law.gaps == "exact";
   if (follows && !source->start_following())
     fail(
-        "contact \"{}\" with \"{}\": gaps = \"exact\" is for obstacles and sphere tools (method = "
-        "\"analytic\"); what an image shows is known at a query alone",
+        "contact \"{}\" with \"{}\": gaps = \"exact\" is for methods \"distance\" and \"analytic\"; what an "
+        "image shows is known at a query alone",
         law.first, law.second);
   Impl::Pair pair{.source = std::move(source), .law = pressure_law(law), .follows = follows};
   if (follows && law.friction > 0.0)
     pair.anchors = FrictionAnchors(pair.law.retardation, pair.law.regularisation);
   pair.begin = pair.end = impl_->samples.size();
-  pair.first_cell = pair.last_cell = impl_->cells.cells.size();
   impl_->pairs.push_back(std::move(pair));
   return static_cast<int>(impl_->pairs.size()) - 1;
 }
@@ -176,16 +171,13 @@ std::uint64_t ContactForce::pattern_version() const {
 void ContactForce::add_force(const dynamics::StateView& state, VecX& f) {
   Impl& m = *impl_;
   m.place_frames(state);
-  m.groups.add_force(state, m.frame_states, m.rows_of_frames(), f);
-  m.add_single_forces(state, f);
+  m.add_forces(state, f);
 }
 
 void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
                                dynamics::BorderedMatrix& A) {
   Impl& m = *impl_;
   m.place_frames(state);
-  m.groups.add_tangent(state, m.frame_states, k_scale, d_scale, A);
-  if (m.step_friction.on) m.friction_cells.add_tangent(k_scale, d_scale, A);
   m.linearise_friction(state);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const SampleForce force = m.tangent_of(s, motion, law, law.symmetric_tangent);
@@ -201,14 +193,13 @@ void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scal
                                  const VecX& x, VecX& y) {
   Impl& m = *impl_;
   m.place_frames(state);
-  m.groups.apply_tangent(state, m.frame_states, k_scale, d_scale, x, y);
-  m.apply_single_tangents(state, k_scale, d_scale, x, y);
+  m.apply_tangents(state, k_scale, d_scale, x, y);
 }
 
 double ContactForce::energy(const dynamics::StateView& state) {
   Impl& m = *impl_;
   m.place_frames(state);
-  double sum = m.groups.energy(state, m.frame_states) + m.bonds.energy(state, m.frame_states);
+  double sum = m.bonds.energy(state, m.frame_states);
   m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                    sum += s.stored * s.area * pressure(law, motion.gap, motion.rate).energy_density;
@@ -219,7 +210,7 @@ double ContactForce::energy(const dynamics::StateView& state) {
 double ContactForce::dissipated_power(const dynamics::StateView& state) {
   Impl& m = *impl_;
   m.place_frames(state);
-  double sum = m.groups.dissipation(state, m.frame_states) + m.bonds.dissipation(state, m.frame_states);
+  double sum = m.bonds.dissipation(state, m.frame_states);
   m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                    sum += sample_dissipation(s, motion, law);
@@ -290,15 +281,14 @@ bool ContactForce::refresh(const dynamics::StateView& state) {
   m.check_samples(state);
   const bool grasped = m.take_grasps(state);
   m.all_forces(state, m.force_after, m.resultants.after);
-  // next_samples, next_cells: those of before
-  m.resultants.compare({m.next_samples, m.next_cells}, {m.samples, m.cells}, state, m.frames);
+  m.resultants.compare(m.next_samples, m.samples, state, m.frames);  // next_samples: those of before
   return grasped || m.force_after != m.force_before;
 }
 
 int ContactForce::event_count() const {
   int count = 0;
   for (const auto& pair : impl_->pairs)
-    if (Impl::has_events(pair)) count += impl_->count_of(pair);
+    if (Impl::has_events(pair)) count += static_cast<int>(pair.end - pair.begin);
   return count;
 }
 
@@ -312,7 +302,7 @@ std::uint64_t ContactForce::events_version() const {
 void ContactForce::events(const dynamics::StateView& state, double* g) {
   Impl& m = *impl_;
   m.place_frames(state);
-  for (const ContactSample& s : m.all()) {
+  for (const ContactSample& s : m.samples) {
     const Impl::Pair& pair = m.pairs[static_cast<std::size_t>(s.source)];
     if (!Impl::has_events(pair)) continue;
     const SampleMotion motion = sample_motion(s, state, m.frame_states);
@@ -382,8 +372,8 @@ std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state)
   Impl& m = *impl_;
   m.place_frames(state);
   std::vector<ContactPoint> out;
-  out.reserve(m.all().size());
-  for (const ContactSample& s : m.all()) {
+  out.reserve(m.samples.size());
+  for (const ContactSample& s : m.samples) {
     if (s.area == 0.0) continue;  // it has no force, wherever it is, and need not be where it is nearest
     const SampleMotion motion = sample_motion(s, state, m.frame_states);
     const double p = pressure(m.pairs[static_cast<std::size_t>(s.source)].law, motion.gap, motion.rate).p;
@@ -392,20 +382,12 @@ std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state)
   return out;
 }
 
-const std::vector<ContactSample>& ContactForce::samples() const { return impl_->all(); }
-int ContactForce::sample_count() const {
-  return static_cast<int>(impl_->samples.size()) + impl_->cells.count();
-}
+const std::vector<ContactSample>& ContactForce::samples() const { return impl_->samples; }
+int ContactForce::sample_count() const { return static_cast<int>(impl_->samples.size()); }
 
 std::vector<std::string> ContactForce::methods() const {
   std::vector<std::string> out;
   for (const auto& pair : impl_->pairs) out.emplace_back(pair.source->name());
-  return out;
-}
-
-std::vector<std::string> ContactForce::fallbacks() const {
-  std::vector<std::string> out;
-  for (const auto& pair : impl_->pairs) out.push_back(pair.source->fallback());
   return out;
 }
 

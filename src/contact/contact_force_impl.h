@@ -1,9 +1,7 @@
 #pragma once
 #include "contact/friction_anchors.h"
-#include "contact/friction_cells.h"
 #include "contact/grasp.h"
 #include "contact/resultants.h"
-#include "contact/sample_groups.h"
 #include "contact/sample_math.h"
 #include "contact/tangent.h"
 #include "palpate/contact/contact_force.h"
@@ -17,14 +15,10 @@ struct ContactForce::Impl {
   struct Pair {
     std::unique_ptr<SampleSource> source;
     PressureLaw law;
-    std::size_t begin = 0, end = 0;                   ///< its samples, one by one
-    std::size_t first_cell = 0, last_cell = 0;        ///< or its cells, without friction
-    std::size_t first_rubbing = 0, last_rubbing = 0;  ///< or both, with friction of a step's end
-    bool in_cells = false;                            ///< they are in `friction_cells`
-    bool grouped = false;                             ///< they are in `groups`
-    bool follows = false;                             ///< they are exact at every evaluation
-    double deepest = 0.0;                             ///< largest overlap that a query saw [m]
-    FrictionAnchors anchors{};                        ///< of what sticks
+    std::size_t begin = 0, end = 0;  ///< its samples
+    bool follows = false;            ///< they are exact at every evaluation
+    double deepest = 0.0;            ///< largest overlap that a query saw [m]
+    FrictionAnchors anchors{};       ///< of what sticks
     bool given = false;  ///< frames given from outside on both sides: nothing in the State feels them
   };
 
@@ -32,12 +26,6 @@ struct ContactForce::Impl {
   std::vector<Pair> pairs;
   std::vector<PressureLaw> laws_kept;  ///< the pairs' own, while SecantTangents lives
   std::vector<ContactSample> samples, next_samples;
-  SampleCells cells, next_cells;         ///< of image sources without friction
-  SampleCells rubbing;                   ///< of image sources with friction of a step's end
-  SampleCells apart;                     ///< scratch of a query
-  std::vector<ImageSource*> together;    ///< scratch of a query
-  SampleGroups groups;                   ///< of all pairs without friction
-  FrictionCells friction_cells;          ///< of those with friction of a step's end
   std::vector<FrameState> frame_states;  ///< at the state of the evaluation under way
   std::vector<int> frame_rows;           ///< scratch
   VecX force_before, force_after;        ///< scratch of refresh
@@ -46,11 +34,6 @@ struct ContactForce::Impl {
   /// the last query's samples were not compared yet with those before, which are in next_samples
   bool events_to_compare = false;
   void compare_events();
-  /// All samples one by one, in the pairs' order: made when somebody asks for them.
-  const std::vector<ContactSample>& all();
-  std::vector<ContactSample> all_samples;
-  bool all_made = false;
-  int count_of(const Pair& pair) const;
   double query_seconds = 0.0;
   Resultants resultants;
 
@@ -83,8 +66,6 @@ struct ContactForce::Impl {
     std::vector<FrictionGuess> guesses;    ///< by sample
     double left_out = 0.0, largest = 0.0;  ///< of the last solve, of the pairs' sums [N]
   } step_friction;
-  /// Whether its friction within the step under way is summed by cells.
-  bool rubs_in_cells(const Pair& pair) const { return step_friction.on && pair.in_cells; }
   bool has_step_friction(const PressureLaw& law) const {
     return step_friction.on && law.secant_friction && law.friction > 0.0;
   }
@@ -119,38 +100,34 @@ struct ContactForce::Impl {
     std::vector<Pose> poses;
   } followed;
   void query(const dynamics::StateView& state);
-  void measure_depth(Pair& pair) const;  ///< of its next samples and cells
+  void measure_depth(Pair& pair) const;  ///< of its next samples
   void check_samples(const dynamics::StateView& state) const;
   const std::vector<int>& rows_of_frames();  ///< in the State
-  /// Of samples that are not in `groups`.  @pre frames are placed
-  void add_single_forces(const dynamics::StateView& state, VecX& f);
-  void apply_single_tangents(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x,
-                             VecX& y);
+  /// @pre frames are placed
+  void add_forces(const dynamics::StateView& state, VecX& f);
+  void apply_tangents(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x,
+                      VecX& y);
   /// Forces on the nodes and on every frame (six rows each, given ones too): what a refresh must not change
   /// unseen.
   /// @param on_a  one entry a pair: its resultant is added
   void all_forces(const dynamics::StateView& state, VecX& f, std::vector<Wrench>& on_a);
 
-  void group_samples();
-  bool can_rub_in_cells(const Pair& pair) const;
-  VecX product;  ///< scratch of a step
+  void find_given();  ///< Pair::given
+  VecX product;       ///< scratch of a step
 
   /// Whether its samples open and close with a kink that the State feels.
   static bool has_events(const Pair& pair) {
     return pair.law.onset == 0.0 && !pair.given && pair.source->has_events();
   }
   enum class Which {
-    kEvery,    ///< sample that is not in `groups`, nor in a step's sums of `friction_cells`
-    kOfState,  ///< and of these, each that acts on the State
-    kAlone     ///< each that is in no cell
+    kEvery,
+    kOfState  ///< each that acts on the State
   };
   /// visit(sample, motion, law) for each sample in penetration, in order.  @pre frames are placed
   template <class Visit>
   void visit_active(const dynamics::StateView& state, Which which, const Visit& visit) {
     for (const Pair& pair : pairs) {
-      if (pair.grouped || rubs_in_cells(pair) || (which == Which::kOfState && pair.given) ||
-          (which == Which::kAlone && pair.in_cells))
-        continue;
+      if (which == Which::kOfState && pair.given) continue;
       for (std::size_t i = pair.begin; i < pair.end; ++i) {
         const SampleMotion motion = sample_motion(samples[i], state, frame_states);
         if (motion.gap < 0.0) visit(samples[i], motion, pair.law);

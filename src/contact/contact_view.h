@@ -49,9 +49,7 @@ struct Patch {
   Points uvw;  ///< vertices
   const Faces* faces = nullptr;
   std::vector<int> visible;    ///< faces
-  std::vector<AxisBox> boxes;  ///< theirs; empty where a region's pieces fill the patch
-  /// faces that are turned away from the camera, where none of them is in `visible`; else null
-  const std::vector<int>* away = nullptr;
+  std::vector<AxisBox> boxes;  ///< theirs
 };
 
 inline AxisBox box_of(const Patch& patch, int face) {

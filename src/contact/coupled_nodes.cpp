@@ -71,16 +71,6 @@ void CoupledNodes::widen() {
   dynamics::sort_unique(wide_, node_count(wide_));
 }
 
-void CoupledNodes::take(const SampleCells& samples, std::size_t first) {
-  joints_.clear();
-  for (std::size_t c = first; c < samples.cells.size(); ++c) {
-    const Carrier &a = samples.carriers[static_cast<std::size_t>(samples.cells[c].a)],
-                  &b = samples.carriers[static_cast<std::size_t>(samples.cells[c].b)];
-    joints_.push_back({key_of(a.number, b.number), a.count, b.count, a.node, b.node});
-  }
-  behind_ = true;
-}
-
 void CoupledNodes::take(std::span<const Joint> joints) {
   joints_.assign(joints.begin(), joints.end());
   behind_ = true;

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "contact/sample_cells.h"
+#include "contact/carrier.h"
 #include "palpate/dynamics/matrix.h"
 
 namespace palpate::contact {
@@ -49,10 +49,12 @@ class CoupledNodes {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(carrier_a)) << 32 |
            static_cast<std::uint32_t>(carrier_b);
   }
+  /// That of two points.
+  static Joint joint_of(const CarriedPoint& a, const CarriedPoint& b) {
+    return {key_of(a.number, b.number), a.point.count, b.point.count, a.point.node, b.point.node};
+  }
   /// The nodes are counted otherwise from now on.  @pre both are there as long as this is
   void start(const NodeNeighbours& a, const NodeNeighbours& b);
-  /// @param first  of the cells that these bodies have made
-  void take(const SampleCells& samples, std::size_t first);
   void take(std::span<const Joint> joints);
   void add_pattern(dynamics::PatternBuilder& pattern);
   std::uint64_t version();  ///< grows with every change
@@ -69,7 +71,7 @@ class CoupledNodes {
   std::vector<Joint> joints_;                // of the last query
   bool behind_ = false;                      // these were not looked at
   Pairs pairs_, met_, wide_, both_;          // ascending
-  std::unordered_set<std::uint64_t> known_;  // cells, by their carriers, whose pairs are there
+  std::unordered_set<std::uint64_t> known_;  // joints, by their keys, whose pairs are there
   std::uint64_t version_ = 0;
 };
 

@@ -82,7 +82,7 @@ class DistanceSource final : public SampleSource {
             find_all_met(*a_, b(), thickness_, met.a, met.b);
             return thickness_;
           },
-          {}, state.time);
+          state.time);
     const proxy::ProxyMotion of_a = motion(0, state), of_b = motion(1, state);
     const double near =
         proxy::Reach(options_.candidate_gap, options_.look_ahead, of_a, of_b).in_any_direction();
@@ -101,7 +101,7 @@ class DistanceSource final : public SampleSource {
       samples.push_back(sample_of(spring, pair));
       points_.push_back(spring.side == 0 ? spring.point
                                          : spring.point + static_cast<int>(contact_.points(0).size()));
-      if (is_coupled()) joints_.push_back(joint_of(pair));
+      if (is_coupled()) joints_.push_back(CoupledNodes::joint_of(pair.a, pair.b));
       if (spring.is_placed) safe_time_ = std::min(safe_time_, time_to_middle(spring.gap, -speed, thickness_));
     }
     if (is_coupled()) couple();
@@ -238,10 +238,6 @@ class DistanceSource final : public SampleSource {
 
   /// Blocks between the nodes of two soft bodies.
   bool is_coupled() const { return a_->soft() && b().soft(); }
-  static CoupledNodes::Joint joint_of(const Pair& pair) {
-    return {CoupledNodes::key_of(pair.a.number, pair.b.number), pair.a.point.count, pair.b.point.count,
-            pair.a.point.node, pair.b.point.node};
-  }
   void couple() {
     const std::uint64_t layout = a_->soft()->pattern_version() + b().soft()->pattern_version();
     if (!neighbours_ || layout != counted_in_) {
@@ -313,9 +309,11 @@ SkinSide rigid(const FrameSurface& surface) {
 /// Points of both.
 std::unique_ptr<SampleSource> make(SkinSide a, SkinSide b, const DistanceOptions& options) {
   const CharacteristicLengths of_a = lengths_of(a.rest), of_b = lengths_of(b.rest);
-  std::array<distance::ContactMesh, 2> meshes = {
-      distance::contact_mesh(a.skin, point_spacing(of_a, of_b, options.quadrature_error)),
-      distance::contact_mesh(b.skin, point_spacing(of_b, of_a, options.quadrature_error))};
+  const auto spacing = [&](const CharacteristicLengths& own, const CharacteristicLengths& other) {
+    return options.spacing > 0.0 ? options.spacing : point_spacing(own, other, options.quadrature_error);
+  };
+  std::array<distance::ContactMesh, 2> meshes = {distance::contact_mesh(a.skin, spacing(of_a, of_b)),
+                                                 distance::contact_mesh(b.skin, spacing(of_b, of_a))};
   return std::make_unique<DistanceSource>(std::move(a), std::move(b), std::move(meshes),
                                           std::min(of_a.width, of_b.width), options);
 }

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "palpate/core/counters.h"
-
 namespace palpate::contact {
 
 void FacePlanes::start(const Patch& patch) {
@@ -20,40 +18,23 @@ FacePlanes::Kind FacePlanes::prepare(Plane& plane, int face) const {
   const Vec3 d1 = corner(1) - corner(0), d2 = corner(2) - corner(0);
   const double area = d1.x() * d2.y() - d1.y() * d2.x();
   if (std::abs(area) <= kFlat * (d1.squaredNorm() + d2.squaredNorm())) return Kind::kEdgeOn;
-  constexpr double kSteep = 5.0;  // slope: 79 degrees
   const Vec3 p0 = corner(0);
   plane = {p0.x(),        p0.y(), d2.y() / area, -d2.x() / area, -d1.y() / area,
            d1.x() / area, p0.z(), d1.z(),        d2.z()};
-  const double along_u = plane.u1 * plane.w1 + plane.u2 * plane.w2,
-               along_v = plane.v1 * plane.w1 + plane.v2 * plane.w2;
-  return along_u * along_u + along_v * along_v > kSteep * kSteep ? Kind::kWall : Kind::kPlain;
+  return Kind::kPlain;
 }
-
-FacePlanes::Kind FacePlanes::kind(int visible) {
-  const auto at = static_cast<std::size_t>(visible);
-  if (kinds_[at] == Kind::kUnknown) kinds_[at] = prepare(planes_[at], patch_->visible[at]);
-  return kinds_[at];
-}
-
-bool FacePlanes::is_wall(int visible) { return kind(visible) != Kind::kPlain; }
 
 bool FacePlanes::at(int visible, double u, double v, Vec3& weights, double& w) {
   constexpr double kOutside = -0.25;
-  if (kind(visible) == Kind::kEdgeOn) return false;
-  const Plane& plane = planes_[static_cast<std::size_t>(visible)];
+  const auto index = static_cast<std::size_t>(visible);
+  if (kinds_[index] == Kind::kUnknown) kinds_[index] = prepare(planes_[index], patch_->visible[index]);
+  if (kinds_[index] == Kind::kEdgeOn) return false;
+  const Plane& plane = planes_[index];
   const double du = u - plane.u0, dv = v - plane.v0;
   const double first = plane.u1 * du + plane.v1 * dv, second = plane.u2 * du + plane.v2 * dv;
   weights = Vec3(1.0 - first - second, first, second);
   w = plane.w0 + first * plane.w1 + second * plane.w2;
   return weights.minCoeff() >= kOutside;
-}
-
-bool facing_at(const FacePair& pair, FacePlanes& a, FacePlanes& b, Facing& out) {
-  if (a.at(static_cast<int>(pair.a), out.u, out.v, out.weights_a, out.w_a) &&
-      b.at(static_cast<int>(pair.b), out.u, out.v, out.weights_b, out.w_b))
-    return true;
-  counters::count("contact.edge_on");
-  return false;
 }
 
 }  // namespace palpate::contact

@@ -1,14 +1,13 @@
 #pragma once
 #include <vector>
 
-#include "contact/depth_image.h"
-#include "contact/image_side.h"
+#include "contact/contact_view.h"
 
 namespace palpate::contact {
 
-/// Two triangles on a line along the normal.
+/// Two points of triangles, one above the other along the normal.
 struct Facing {
-  double u, v, w_a, w_b;      ///< [m]; beside the triangles where a depth was read from an image
+  double u, v, w_a, w_b;      ///< [m]
   Vec3 weights_a, weights_b;  ///< of their corners
   double gap() const { return w_a - w_b; }
 };
@@ -18,11 +17,9 @@ class FacePlanes {
  public:
   void start(const Patch& patch);  ///< forgets what was prepared
   /// Weights of the corners and height w of triangle `visible` at (u, v).  False where it is seen edge-on, or
-  /// where (u, v) lies outside by more than the rasteriser's sub-pixel grid explains (a quarter of the
-  /// triangle): the plane would be extrapolated too far.
+  /// where (u, v) lies outside by more than a quarter of the triangle: the plane would be extrapolated too
+  /// far.
   bool at(int visible, double u, double v, Vec3& weights, double& w);
-  /// So steep that single precision in (u, v) is not enough: a wall.
-  bool is_wall(int visible);
 
  private:
   struct Plane {
@@ -30,17 +27,12 @@ class FacePlanes {
     double u1, v1, u2, v2;  ///< gradients of the weights of corners 1 and 2
     double w0, w1, w2;      ///< heights: of corner 0, of the others against it
   };
-  enum class Kind : unsigned char { kUnknown, kEdgeOn, kPlain, kWall };
-  Kind kind(int visible);
+  enum class Kind : unsigned char { kUnknown, kEdgeOn, kPlain };
   Kind prepare(Plane& plane, int face) const;
 
   const Patch* patch_ = nullptr;
   std::vector<Plane> planes_;
   std::vector<Kind> kinds_;  ///< apart from the planes: it alone is written for faces that nobody asks for
 };
-
-/// The image said which triangles; the gap is theirs at (out.u, out.v), in double.  False where one of them
-/// is seen edge-on there.
-bool facing_at(const FacePair& pair, FacePlanes& a, FacePlanes& b, Facing& out);
 
 }  // namespace palpate::contact

@@ -31,10 +31,9 @@ namespace palpate::contact {
 namespace {
 
 /// @return the contribution of a sample to s(a) [W]
-template <class Vec>
-double slope(const FrictionGuessOf<Vec>& g, double a) {
+double slope(const FrictionGuess& g, double a) {
   if (!g.solved) return 0.0;
-  const Vec d = g.v_end - g.v, v = g.v + a * d;
+  const Vec3 d = g.v_end - g.v, v = g.v + a * d;
   return d.dot((1.0 - a) * g.force + a * g.force_end - friction_force(g.limit_end, v, g.v_r));
 }
 
@@ -60,8 +59,7 @@ double step_length(const Sum& s) {
   return high;
 }
 
-template <class Vec>
-void move(FrictionGuessOf<Vec>& g, double a) {
+void move(FrictionGuess& g, double a) {
   if (!g.solved) return;
   g.v += a * (g.v_end - g.v);
   g.force += a * (g.force_end - g.force);
@@ -71,16 +69,14 @@ void move(FrictionGuessOf<Vec>& g, double a) {
 
 }  // namespace
 
-void move_guesses(std::span<FrictionGuess> guesses, std::span<FrictionGuess2> in_planes, int solves) {
+void move_guesses(std::span<FrictionGuess> guesses, int solves) {
   const auto s = [&](double a) {
     double sum = 0.0;
     for (const FrictionGuess& g : guesses) sum += slope(g, a);
-    for (const FrictionGuess2& g : in_planes) sum += slope(g, a);
     return sum;
   };
   const double a = solves > 1 ? step_length(s) : 1.0;
   for (FrictionGuess& g : guesses) move(g, a);
-  for (FrictionGuess2& g : in_planes) move(g, a);
 }
 
 }  // namespace palpate::contact

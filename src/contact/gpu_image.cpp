@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstring>
 
-#include "palpate/contact/gpu_available.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/gl/commands.h"
@@ -15,15 +14,15 @@ namespace palpate::contact {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-constexpr int kUsualEdge = 512;               // of an atlas: targets are no smaller [pixels]
-constexpr std::uint32_t kLayered = 1u << 31;  // as in pair.comp
+constexpr int kUsualEdge = 512;  // of an atlas: targets are no smaller [pixels]
 constexpr std::size_t kListOffset = gl::MappedBuffer::kStorageAlignment;  // behind the count
 
 const char* opened(const char* name) {
   const gl::Context& context = gl::Context::shared();  // before any member is made
   if (gl::vertex_storage_blocks() < 1)
     fail(
-        "contact on the GPU needs storage buffers in vertex shaders, which {} has not; take method = \"cpu\"",
+        "contact on the GPU needs storage buffers in vertex shaders, which {} has not; take method = "
+        "\"distance\"",
         context.info().renderer);
   return name;
 }
@@ -69,10 +68,7 @@ void GpuImage::answer(std::span<DepthRequest* const> requests) {
 }
 
 void GpuImage::answer_tiles(std::span<DepthRequest* const> requests) {
-  for (DepthRequest* request : requests) {
-    request->pairs.clear();
-    request->layered.clear();
-  }
+  for (DepthRequest* request : requests) request->pairs.clear();
   if (atlas_.pixels() == 0) return;
   const double start = wall_seconds();
   send(requests);
@@ -144,12 +140,12 @@ void GpuImage::draw(std::span<DepthRequest* const> requests, bool of_a) {
               height = std::max(atlas_.height(), target ? target->height() : kUsualEdge);
     target.reset();
     target = std::make_unique<gl::Framebuffer>(width, height, std::vector{gl::Format::kR32ui},
-                                               gl::DepthBuffer::kDepthAndStencil);
+                                               gl::DepthBuffer::kDepth);
   }
   target->bind();
   gl::set_plain_state(atlas_.width(), atlas_.height(),
                       of_a ? gl::Keep::kLeastDepth : gl::Keep::kGreatestDepth);
-  gl::cull_and_count(of_a);  // of a those that face up
+  gl::cull(of_a);  // of a those that face up
   gl::set_window(0, 0, atlas_.width(), atlas_.height());
   target->clear(0, std::uint32_t{0});
   target->clear_depth(of_a ? 1.0f : 0.0f);
@@ -191,8 +187,6 @@ void GpuImage::append_pairs() {
   target_b_->colour(0).bind_unit(1);
   target_a_->depth().bind_unit(2);
   target_b_->depth().bind_unit(3);
-  target_a_->stencil().bind_unit(4);
-  target_b_->stencil().bind_unit(5);
   const std::size_t tile_bytes = atlas_.tiles().size_bytes();
   tiles_sent_.bind_storage(1, 0, tile_bytes);
   tiles_sent_.bind_storage(2, aligned(tile_bytes), atlas_.blocks().size_bytes());
@@ -210,7 +204,7 @@ namespace {
 void invert(const Patch& patch, const PatchSource& source, std::vector<std::int32_t>& out) {
   out.assign(source.faces.size(), -1);
   for (std::size_t i = 0; i < patch.visible.size(); ++i)
-    out[static_cast<std::size_t>(source.number(patch.visible[i]))] = static_cast<std::int32_t>(i);
+    out[static_cast<std::size_t>(patch.visible[i])] = static_cast<std::int32_t>(i);
 }
 
 }  // namespace
@@ -241,18 +235,13 @@ void GpuImage::hand_out(std::span<DepthRequest* const> requests) {
     for (const std::uint32_t k : found_at_) {
       if (k == kNone) continue;
       const Found& pair = list[k];
-      const std::int32_t a = visible_a_[pair.a & ~kLayered], b = visible_b_[pair.b];
-      // a face that stands on its edge in double precision, or just outside of the slab: lines decide
-      const bool unknown = a < 0 || b < 0;
-      if (unknown || (pair.a & kLayered) != 0) request.layered.push_back(pair.at);
-      request.pairs.push_back(
-          {pair.at, static_cast<std::uint32_t>(std::max(a, 0)), static_cast<std::uint32_t>(std::max(b, 0))});
+      const std::int32_t a = visible_a_[pair.a], b = visible_b_[pair.b];
+      if (a < 0 || b < 0) continue;  // outside of the window in double precision
+      request.pairs.push_back({pair.at, static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
     }
   }
 }
 
-bool gpu_available() { return true; }
-
-std::unique_ptr<DepthImage> make_gpu_image() { return std::make_unique<GpuImage>(); }
+std::unique_ptr<DepthImage> make_depth_image() { return std::make_unique<GpuImage>(); }
 
 }  // namespace palpate::contact

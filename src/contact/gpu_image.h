@@ -18,8 +18,7 @@ namespace palpate::contact {
 /// with its faces' numbers as colours: of a the least depth is kept, of b the greatest (an orthographic depth
 /// is linear in w).  One compute pass compares the two and appends the pixels where both are seen, nearer
 /// than the candidate gap, to one compact list, in memory that the processor sees.  One fence, and it is
-/// read: sorted by request and pixel, so the order of atomic appends leaves no trace.  The stencil counts the
-/// layers of each pixel, kept or not; the rasteriser gives a pixel on a common edge to one triangle alone.
+/// read: sorted by request and pixel, so the order of atomic appends leaves no trace.
 /// Coordinates are single precision about the body's origin: they decide who faces whom, never how deep.
 class GpuImage final : public DepthImage {
  public:

@@ -29,8 +29,7 @@ struct GpuSurface {
   GpuPoints* points = nullptr;
 };
 
-/// The surfaces of all sides that a backend has met.  A body that is in several pairs is there once, and a
-/// query sends its nodes once, and nothing else of it.
+/// The surfaces of all sides that a device has met.  A query sends its nodes once, and nothing else of it.
 class GpuSurfaces {
  public:
   void start_query() { ++query_; }

@@ -46,8 +46,7 @@ void add_frame_block(const Side& frame, const SampleForce& s, FrameLinearisation
 Wrench ContactForce::frame_wrench(const dynamics::StateView& state, int frame) const {
   Impl& m = *impl_;
   m.place_frames(state);
-  Wrench sum = m.groups.wrench(state, m.frame_states, frame);
-  sum += m.bonds.wrench(state, m.frame_states, frame);
+  Wrench sum = m.bonds.wrench(state, m.frame_states, frame);
   m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                    if (s.a.frame != frame && s.b.frame != frame) return;
@@ -65,10 +64,7 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
                 m.frames.size());
   reset(out, partners == Partners::kFrames ? 0 : state.layout->nodal_size);
   m.place_frames(state);
-  if (partners != Partners::kFrames) {
-    m.groups.linearise(state, m.frame_states, frame, out);
-    m.bonds.linearise(state, m.frame_states, frame, out);
-  }
+  if (partners != Partners::kFrames) m.bonds.linearise(state, m.frame_states, frame, out);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     if (s.a.frame != frame && s.b.frame != frame) return;
     PALPATE_CHECK(s.a.frame != s.b.frame, "a contact sample has frame {} on both sides", frame);

@@ -19,15 +19,9 @@ SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const 
   const auto local = [&](int vertex) {
     return static_cast<int>(std::lower_bound(taken.begin(), taken.end(), vertex) - taken.begin());
   };
-  out.of_vertex.resize(taken.size());
-  out.of_face = faces;
   out.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
   for (std::size_t i = 0; i < faces.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const int v = local(side.faces()(k, faces[i]));
-      out.faces(k, static_cast<Eigen::Index>(i)) = v;
-      out.of_vertex[static_cast<std::size_t>(v)] = faces[i];
-    }
+    for (int k = 0; k < 3; ++k) out.faces(k, static_cast<Eigen::Index>(i)) = local(side.faces()(k, faces[i]));
   const Pose now = axes.frame().inverse(), then = axes.kept_frame().inverse();
   out.now.resize(3, static_cast<Eigen::Index>(taken.size()));
   out.before.resize(3, out.now.cols());
@@ -40,26 +34,17 @@ SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const 
 
 }  // namespace
 
-void LookBack::look(ImageSide& a, ImageSide& b, const std::function<double(Met&)>& find,
-                    const std::function<bool(int, int)>& may_meet, double t) {
+void LookBack::look(ImageSide& a, ImageSide& b, const std::function<double(Met&)>& find, double t) {
   constexpr double kPartOfThickness = 0.25;  // what is shorter is an edge that was grazed
-  const bool of_one_body = &a == &b;
   if (kept_) {
     const double least_way = kPartOfThickness * find(met_);
-    if (of_one_body) {  // a part may be on both sides: all of the skin against itself, once
-      met_.a.insert(met_.a.end(), met_.b.begin(), met_.b.end());
-      std::sort(met_.a.begin(), met_.a.end());
-      met_.a.erase(std::unique(met_.a.begin(), met_.a.end()), met_.a.end());
-      const SurfaceWays skin = ways_of(a, met_.a, a);
-      count_ += passed_.count(skin, skin, least_way, may_meet);
-    } else if (!met_.a.empty() && !met_.b.empty()) {
+    if (!met_.a.empty() && !met_.b.empty()) {
       const SurfaceWays of_a = ways_of(a, met_.a, b), of_b = ways_of(b, met_.b, b);
-      count_ +=
-          passed_.count(of_a, of_b, least_way, may_meet) + passed_.count(of_b, of_a, least_way, may_meet);
+      count_ += passed_.count(of_a, of_b, least_way) + passed_.count(of_b, of_a, least_way);
     }
   }
   a.keep();
-  if (!of_one_body) b.keep();
+  b.keep();
   kept_ = true;
   if (passed_.given_up() > 0 && !gave_up_) {
     gave_up_ = true;

@@ -16,10 +16,8 @@ class LookBack {
     std::vector<int> a, b;
   };
   /// Looks back from a query to the one before, where there was one, and keeps the surfaces for the next.
-  /// @param b  the same as `a` where a body meets itself  @param may_meet  of two faces; null: all do
   /// @param t  [s], for messages
-  void look(ImageSide& a, ImageSide& b, const std::function<double(Met&)>& find,
-            const std::function<bool(int, int)>& may_meet, double t);
+  void look(ImageSide& a, ImageSide& b, const std::function<double(Met&)>& find, double t);
   bool has_kept() const { return kept_; }
   long count() const { return count_; }  ///< so far
   void archive(Archive& a);

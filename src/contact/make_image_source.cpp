@@ -11,11 +11,6 @@ void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const
     fail("contact in image space: candidate gap = {} must not be negative", options.candidate_gap);
   if (!(options.look_ahead >= 0.0))
     fail("contact in image space: look-ahead = {} must not be negative", options.look_ahead);
-  if (!ContactRanges::quadrature_error.holds(options.quadrature_error))
-    fail("contact in image space: quadrature error = {} {}", options.quadrature_error,
-         ContactRanges::quadrature_error.demand());
-  if (options.depths == DepthReading::kInterpolated && options.samples != SampleRule::kVertex)
-    fail("contact in image space: depths are interpolated at vertices alone; a pixel has its own");
   for (const double shift : {options.shift_u, options.shift_v})
     if (!(shift >= 0.0 && shift < 1.0))
       fail("contact in image space: grid shift = {} must lie in [0, 1)", shift);
@@ -84,13 +79,6 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<p
   check_proxies(b, proxies_b);
   return make_pruned_source(soft_side(std::move(a)), std::move(proxies_a), soft_side(std::move(b)),
                             std::move(proxies_b), options);
-}
-
-std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
-                                                const Points& rest_nodes, const ImageOptions& options) {
-  check_arguments(surface, surface.faces.cols(), options);
-  check_proxies(surface, proxies);
-  return make_pruned_source(soft_side(std::move(surface)), std::move(proxies), rest_nodes, options);
 }
 
 }  // namespace palpate::contact

@@ -123,8 +123,7 @@ constexpr long kLooksAVertex = 1000, kPriceOfMeeting = 50;
 
 }  // namespace
 
-long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way,
-                           const std::function<bool(int, int)>& may_meet) {
+long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way) {
   if (vertices.now.cols() == 0 || faces.faces.cols() == 0) return 0;
   const FastVertices fast(faces, least_way);
   const auto is_fast = [&](Eigen::Index v) { return fast.has(vertices.now.col(v) - vertices.before.col(v)); };
@@ -181,9 +180,6 @@ long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces
     for (; box != boxes_.end() && box->low[axis] <= x_high[axis]; ++box) {
       --left;
       if ((box->low.array() > x_high.array()).any() || (box->high.array() < x_low.array()).any()) continue;
-      if (may_meet && !may_meet(vertices.of_vertex[static_cast<std::size_t>(v)],
-                                faces.of_face[static_cast<std::size_t>(box->face)]))
-        continue;
       meet(x, faces, box->face, meetings);
       left -= kPriceOfMeeting;
     }

@@ -1,6 +1,4 @@
 #pragma once
-#include <functional>
-#include <span>
 #include <vector>
 
 #include "palpate/core/types.h"
@@ -10,10 +8,8 @@ namespace palpate::contact {
 
 /// Some faces of a closed surface at two times, in the same axes; vertices go straight on between them.
 struct SurfaceWays {
-  Faces faces;                 ///< of these vertices, outward
-  Points before, now;          ///< [m]
-  std::vector<int> of_vertex;  ///< a number for `may_meet` of each vertex
-  std::vector<int> of_face;
+  Faces faces;         ///< of these vertices, outward
+  Points before, now;  ///< [m]
 };
 
 /// Counts the vertices of one surface that went through another: outside before and now, inside on the way,
@@ -34,9 +30,7 @@ class PassedVertices {
   /// looked at by then is not counted: a query's price stays within a bound, and a scene that has blown up
   /// goes on.
   /// @param least_way  inside, seen from where it entered [m]
-  /// @param may_meet   of a vertex' and a face's number; null: all do
-  long count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way,
-             const std::function<bool(int vertex, int face)>& may_meet = {});
+  long count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way);
 
   /// How often count() gave up.
   long given_up() const { return given_up_; }

@@ -12,12 +12,10 @@ void ContactForce::add_step(const dynamics::StateView& state, const VecX& shift,
                             double d_scale, VecX& f, PointStiffness& C) {
   Impl& m = *impl_;
   m.place_frames(state);
-  m.groups.add_step(state, m.frame_states, m.rows_of_frames(), shift, k_scale, d_scale, f, C);
-  m.add_single_forces(state, f);
+  m.add_forces(state, f);
   m.product.setZero(f.size());
-  m.apply_single_tangents(state, 1.0, 0.0, shift, m.product);
+  m.apply_tangents(state, 1.0, 0.0, shift, m.product);
   f -= m.product;
-  if (m.step_friction.on) m.friction_cells.add_stiffness(k_scale, d_scale, C);
   m.linearise_friction(state);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const SampleForce force = m.tangent_of(s, motion, law, law.symmetric_tangent);
@@ -43,11 +41,10 @@ void ContactForce::add_step_force(const dynamics::StateView& state, const VecX& 
                                   VecX& f) {
   Impl& m = *impl_;
   m.place_frames(state);
-  m.groups.add_step_force(state, m.frame_states, m.rows_of_frames(), shift, change, f);
-  m.add_single_forces(state, f);
+  m.add_forces(state, f);
   m.product.setZero(f.size());
-  m.apply_single_tangents(state, 1.0, 0.0, shift, m.product);
-  m.apply_single_tangents(state, 0.0, 1.0, change, m.product);
+  m.apply_tangents(state, 1.0, 0.0, shift, m.product);
+  m.apply_tangents(state, 0.0, 1.0, change, m.product);
   f -= m.product;
   m.linearise_friction(state);
 }

@@ -28,28 +28,22 @@ void Resultants::find_bodies(const Samples& samples, const dynamics::StateView& 
                              const std::vector<std::shared_ptr<MovingFrame>>& frames) {
   std::size_t unknown = 0;
   for (const Bodies& bodies : bodies_) unknown += !bodies.known;
-  const auto take = [&](int pair, const auto& a, const auto& b) {
-    Bodies& bodies = bodies_[static_cast<std::size_t>(pair)];
-    if (bodies.known) return;
+  for (const ContactSample& s : samples) {
+    if (unknown == 0) return;
+    Bodies& bodies = bodies_[static_cast<std::size_t>(s.source)];
+    if (bodies.known) continue;
     bodies.known = true;
     --unknown;
-    const auto add = [&](const auto& side) {
+    const auto add = [&](const SurfacePoint& side) {
       if (side.frame < 0) {
         bodies.centres.push_back(centre_of_block(side.node[0], state));
       } else if (const MovingFrame& frame = *frames[static_cast<std::size_t>(side.frame)]; frame.moves()) {
         bodies.centres.push_back(frame.pose(state).translation);
       }
     };
-    add(a);
-    add(b);
-  };
-  for (const ContactSample& s : samples.single) {
-    if (unknown == 0) return;
-    take(s.source, s.a, s.b);
+    add(s.a);
+    add(s.b);
   }
-  for (const ContactCell& cell : samples.cells.cells)
-    take(cell.pair, samples.cells.carriers[static_cast<std::size_t>(cell.a)],
-         samples.cells.carriers[static_cast<std::size_t>(cell.b)]);
 }
 
 // With the moment M about the world's origin, that about c is M - c x F.  Side b has the opposite of both.

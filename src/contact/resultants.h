@@ -1,7 +1,6 @@
 #pragma once
 #include <vector>
 
-#include "contact/sample_cells.h"
 #include "palpate/contact/contact_force.h"
 
 namespace palpate::contact {
@@ -22,10 +21,7 @@ class Resultants {
   /// body of the pair: about the mean of its nodes, or about the origin of its frame.  What does not move
   /// feels none.
   /// @param before, after  samples of the queries, of which the pairs' bodies are known
-  struct Samples {
-    const std::vector<ContactSample>& single;
-    const SampleCells& cells;
-  };
+  using Samples = std::vector<ContactSample>;
   void compare(const Samples& samples_before, const Samples& samples_after, const dynamics::StateView& state,
                const std::vector<std::shared_ptr<MovingFrame>>& frames);
 

@@ -37,8 +37,8 @@ SampleStep of_state(const SurfacePoint& point, const PointMotion& motion,
 bool ContactForce::bends_at(const dynamics::StateView& state) {
   Impl& m = *impl_;
   m.place_frames(state);
-  bool sticks = m.friction_cells.sticks(state, m.frame_states);
-  m.visit_active(state, Impl::Which::kAlone,
+  bool sticks = false;
+  m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                    const Impl::Pair& pair = m.pairs[static_cast<std::size_t>(s.source)];
                    sticks = sticks || (!pair.given && law.friction > 0.0 &&
@@ -55,11 +55,8 @@ bool ContactForce::begin_step(const dynamics::StateView& state) {
   if (!m.step_friction.on) return false;
   m.step_friction.solves = 0;
   m.place_frames(state);
-  bool any = m.friction_cells.begin_step(state, m.frame_states);
-  const bool alone = std::any_of(m.pairs.begin(), m.pairs.end(), [&](const Impl::Pair& pair) {
-    return !pair.in_cells && m.has_step_friction(pair.law);
-  });
-  m.step_friction.guesses.assign(alone ? m.samples.size() : 0, {});
+  bool any = false;
+  m.step_friction.guesses.assign(m.samples.size(), {});
   m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                    if (!m.has_step_friction(law)) return;
@@ -97,13 +94,12 @@ bool ContactForce::Impl::improve_friction(const dynamics::StateView& state, cons
   ++step.solves;
   step.left_out = step.largest = 0.0;
   m.friction_errors.assign(m.pairs.size(), {});
-  m.friction_cells.end_solve(moved, change, given, m.frame_states, m.friction_errors);
   double worst = 0.0;
   for (std::size_t p = 0; p < m.pairs.size(); ++p) {
     const Impl::Pair& pair = m.pairs[p];
-    if (pair.grouped || !m.has_step_friction(pair.law)) continue;
+    if (!m.has_step_friction(pair.law)) continue;
     FrictionError& error = m.friction_errors[p];
-    for (std::size_t i = pair.begin; i < pair.end && !pair.in_cells; ++i) {
+    for (std::size_t i = pair.begin; i < pair.end; ++i) {
       const ContactSample& s = m.samples[i];
       const bool elsewhere = s.a.frame != given.frame && s.b.frame != given.frame;  // as all of a pair
       if (given.frame >= 0 && elsewhere) break;
@@ -123,8 +119,7 @@ bool ContactForce::Impl::improve_friction(const dynamics::StateView& state, cons
     step.largest = std::max(step.largest, error.friction.norm());
   }
   if (worst <= tolerance || step.solves >= kFrictionSolves) return true;
-  move_guesses(step.guesses, m.friction_cells.guesses(), step.solves);
-  m.friction_cells.forget_sums();
+  move_guesses(step.guesses, step.solves);
   return false;
 }
 

@@ -259,6 +259,7 @@ CarriedPoint SurfaceState::carried(int face, const Vec3& weights, const Vec3& x,
       return out;
     }
   }
+  counters::count("contact.squashed_tetrahedron");
   const ContactAxes axes(x, normal);
   for (int choice = 1; choice < carrier_choices(); ++choice) {
     out.number = carrier_choice(face, static_cast<int>(corner), choice);

@@ -11,7 +11,7 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
                 m.frames.size());
   m.place_frames(state);
   std::vector<TouchSample> out;
-  const std::size_t most = m.all().size();
+  const std::size_t most = m.samples.size();
   out.reserve(most);
   if (tangents) {
     tangents->clear();
@@ -45,20 +45,13 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
                    .force = presses ? Vec3(sign * at.force) : Vec3(Vec3::Zero())});
     if (tangents) tangents->push_back({at.K, at.D});
   };
-  const std::vector<ContactSample>& all = m.all();
-  std::size_t at = 0;
-  std::vector<FrictionLine> in_cells;
-  for (std::size_t p = 0; p < m.pairs.size(); ++p) {
-    const Impl::Pair& pair = m.pairs[p];
-    const std::size_t end = at + static_cast<std::size_t>(m.count_of(pair));
-    const bool has_lines = m.has_step_friction(pair.law);
-    if (has_lines && pair.in_cells) in_cells = m.friction_cells.lines_of(static_cast<int>(p));
+  for (const Impl::Pair& pair : m.pairs) {
+    const bool has_line = m.has_step_friction(pair.law);
     FrictionLine line;
-    for (std::size_t i = pair.begin; i < pair.end; ++i, ++at) {
-      if (has_lines) line = pair.in_cells ? in_cells[i - pair.begin] : m.line_of(m.samples[i]);
-      append(m.samples[i], has_lines ? &line : nullptr);
+    for (std::size_t i = pair.begin; i < pair.end; ++i) {
+      if (has_line) line = m.line_of(m.samples[i]);
+      append(m.samples[i], has_line ? &line : nullptr);
     }
-    for (; at < end; ++at) append(all[at], nullptr);
   }
   m.bonds.append_touch_samples(state, m.frame_states, frame, out, tangents);
   return out;

@@ -1,52 +1,19 @@
 #include "contact/vertex_rule.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
 namespace palpate::contact {
-namespace {
 
-/// The pixel that holds a point; false where that is outside.
-bool pixel_of(const ContactCamera& camera, double u, double v, int& column, int& row) {
-  const double x = std::floor((u - camera.u0) / camera.pixel), y = std::floor((v - camera.v0) / camera.pixel);
-  if (!(x >= 0.0 && y >= 0.0 && x < camera.width && y < camera.height)) return false;
-  column = static_cast<int>(x);
-  row = static_cast<int>(y);
-  return true;
-}
-
-/// A vertex, moved into a face that it is a corner of by less than any edge that is seen: at the vertex
-/// itself rounding says whether a line meets the face, and at the rim of a patch there is no other.
-Eigen::Vector2d inside_of_face(const Patch& patch, int visible, Eigen::Index vertex) {
-  constexpr double kMoved = 1e-9;  // of the way to the face's middle
-  const auto corner = patch.faces->col(patch.visible[static_cast<std::size_t>(visible)]);
-  const Eigen::Vector2d middle =
-      (patch.uvw.col(corner[0]) + patch.uvw.col(corner[1]) + patch.uvw.col(corner[2])).head<2>() / 3.0;
-  return (1.0 - kMoved) * patch.uvw.col(vertex).head<2>() + kMoved * middle;
-}
-
-}  // namespace
-
-void VertexRule::find(const Region& region, std::span<const FacePair> pairs,
-                      std::span<const std::uint32_t> doubtful, std::span<const Hit> pixels, ExactLines& lines,
-                      std::vector<Hit>& out) {
-  const auto size =
-      static_cast<std::size_t>(region.camera.width) * static_cast<std::size_t>(region.camera.height);
-  pair_at_.assign(size, -1);
-  doubtful_.assign(size, 0);
+void VertexRule::find(const Region& region, std::span<const FacePair> pairs, std::vector<Hit>& out) {
+  pair_at_.assign(
+      static_cast<std::size_t>(region.camera.width) * static_cast<std::size_t>(region.camera.height), -1);
   for (std::size_t i = 0; i < pairs.size(); ++i) pair_at_[pairs[i].at] = static_cast<std::int32_t>(i);
-  for (const std::uint32_t pixel : doubtful) doubtful_[pixel] = 1;
-  if (region.depths == DepthReading::kInterpolated) {
-    gap_at_.assign(size, std::numeric_limits<double>::quiet_NaN());
-    for (const Hit& hit : pixels) gap_at_[hit.pixel] = hit.at.gap();
-  }
-  hits_.clear();
-  find_on_side(region, true, pairs, lines, hits_);
-  if (region.both_sides) find_on_side(region, false, pairs, lines, hits_);
-  out.swap(hits_);
+  out.clear();
+  find_on_side(region, true, pairs, out);
+  if (region.both_sides) find_on_side(region, false, pairs, out);
 }
 
 void VertexRule::collect(const Patch& patch, double side, double share) {
@@ -60,7 +27,6 @@ void VertexRule::collect(const Patch& patch, double side, double share) {
     for (int k = 0; k < 3; ++k) {
       Vertex& vertex = vertices_[static_cast<std::size_t>(corner[k])];
       vertex.area += share * area / 3.0;
-      // On a wall that rounding turns this way, the weights would be a quotient of two roundings.
       if (area <= vertex.largest) continue;
       vertex.largest = area;
       vertex.visible = static_cast<int>(i);
@@ -70,136 +36,70 @@ void VertexRule::collect(const Patch& patch, double side, double share) {
 }
 
 void VertexRule::find_on_side(const Region& region, bool of_a, std::span<const FacePair> pairs,
-                              ExactLines& lines, std::vector<Hit>& out) {
-  const Patch& own = of_a ? region.a : region.b;
+                              std::vector<Hit>& out) {
+  const Patch &own = of_a ? region.a : region.b, &other = of_a ? region.b : region.a;
   collect(own, of_a ? -1.0 : 1.0, region.both_sides ? 0.5 : 1.0);
-  const std::size_t first = out.size();
-  asking_.clear();
-  points_.clear();
+  const auto first = static_cast<std::ptrdiff_t>(out.size());
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    if (vertices_[i].visible < 0) continue;
-    const auto vertex = static_cast<Eigen::Index>(i);
-    const double u = own.uvw(0, vertex), v = own.uvw(1, vertex);
-    int column = 0, row = 0;
-    if (!pixel_of(region.camera, u, v, column, row)) continue;
-    const auto pixel = static_cast<std::uint32_t>(row * region.camera.width + column);
+    const Vertex& vertex = vertices_[i];
+    if (vertex.visible < 0) continue;
+    const int face = opposite(region, of_a, static_cast<int>(i), pairs);
+    if (face < 0) continue;
+    const Vec3 x = own.uvw.col(static_cast<Eigen::Index>(i));
     Hit hit;
-    hit.pixel = pixel;
-    int other = -1;
-    const Opposite opposite = region.lines_only || is_doubtful(region.camera, column, row)
-                                  ? Opposite::kAskLine
-                                  : look_up(region, of_a, static_cast<int>(i), column, row, pairs, other);
-    if (opposite == Opposite::kAskLine) {
-      asking_.push_back({static_cast<int>(i), pixel});
-      points_.push_back(inside_of_face(own, vertices_[i].visible, vertex));
-    } else if (opposite == Opposite::kFound && take(region, of_a, static_cast<int>(i), other, hit)) {
-      out.push_back(hit);
-    }
+    hit.at.u = x.x();
+    hit.at.v = x.y();
+    (of_a ? hit.at.w_a : hit.at.w_b) = x.z();
+    (of_a ? hit.at.weights_a : hit.at.weights_b) = Vec3::Unit(vertex.corner);
+    (of_a ? region.planes_b : region.planes_a)
+        .at(face, x.x(), x.y(), of_a ? hit.at.weights_b : hit.at.weights_a, of_a ? hit.at.w_b : hit.at.w_a);
+    if (!(hit.at.gap() < region.candidate_gap)) continue;
+    const int own_face = own.visible[static_cast<std::size_t>(vertex.visible)],
+              other_face = other.visible[static_cast<std::size_t>(face)];
+    hit.face_a = of_a ? own_face : other_face;
+    hit.face_b = of_a ? other_face : own_face;
+    hit.area = vertex.area;
+    out.push_back(hit);
   }
-  // A line meets all layers; the vertex's own is the one that starts at the vertex.
-  lines.through(points_, region.a, region.b, region.camera, region.candidate_gap, found_);
-  const double same = 1e-9 * (region.camera.far - region.camera.near);
-  for (const FacePair& pair : found_) {
-    const auto [vertex, pixel] = asking_[pair.at];
-    const auto at = own.uvw.col(vertex).head<2>();
-    Hit hit;
-    hit.pixel = pixel;
-    Vec3 weights;
-    double w;
-    FacePlanes& planes = of_a ? region.planes_a : region.planes_b;
-    if (!planes.at(static_cast<int>(of_a ? pair.a : pair.b), at.x(), at.y(), weights, w)) continue;
-    if (std::abs(w - own.uvw(2, vertex)) > same) continue;
-    if (take(region, of_a, vertex, static_cast<int>(of_a ? pair.b : pair.a), hit)) out.push_back(hit);
-  }
-  // neighbours in the plane stand one behind the other, whichever way they were found
-  std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), [](const Hit& p, const Hit& q) {
-    return std::tie(p.pixel, p.at.u, p.at.v, p.at.w_a, p.at.w_b) <
-           std::tie(q.pixel, q.at.u, q.at.v, q.at.w_a, q.at.w_b);
+  // by their places: in whichever order a mesh lists its triangles
+  std::sort(out.begin() + first, out.end(), [](const Hit& p, const Hit& q) {
+    return std::tie(p.at.v, p.at.u, p.at.w_a, p.at.w_b) < std::tie(q.at.v, q.at.u, q.at.w_a, q.at.w_b);
   });
 }
 
-/// Fills a hit of the vertex and the other body's triangle `other` (index into its `visible`), but for the
-/// pixel.  False where they are farther apart than the candidate gap.
-bool VertexRule::take(const Region& region, bool of_a, int vertex, int other, Hit& hit) const {
-  const Patch &own = of_a ? region.a : region.b, &opposite = of_a ? region.b : region.a;
-  const Vertex& v = vertices_[static_cast<std::size_t>(vertex)];
-  const Vec3 x = own.uvw.col(vertex);
-  Facing& at = hit.at;
-  at.u = x.x();
-  at.v = x.y();
-  FacePlanes& planes = of_a ? region.planes_b : region.planes_a;
-  if (!planes.at(other, at.u, at.v, of_a ? at.weights_b : at.weights_a, of_a ? at.w_b : at.w_a)) return false;
-  (of_a ? at.w_a : at.w_b) = x.z();
-  (of_a ? at.weights_a : at.weights_b) = Vec3::Unit(v.corner);
-  const int own_face = own.visible[static_cast<std::size_t>(v.visible)],
-            other_face = opposite.visible[static_cast<std::size_t>(other)];
-  hit.face_a = of_a ? own_face : other_face;
-  hit.face_b = of_a ? other_face : own_face;
-  hit.area = v.area;
-  if (region.depths == DepthReading::kInterpolated && !interpolate(region, of_a, hit)) return false;
-  return at.gap() < region.candidate_gap;
-}
-
-/// Whether a pixel or one of its neighbours has layers or walls.
-bool VertexRule::is_doubtful(const ContactCamera& camera, int column, int row) const {
-  for (int y = std::max(0, row - 1); y <= std::min(camera.height - 1, row + 1); ++y)
-    for (int x = std::max(0, column - 1); x <= std::min(camera.width - 1, column + 1); ++x)
-      if (doubtful_[static_cast<std::size_t>(y * camera.width + x)]) return true;
-  return false;
-}
-
-/// The triangle that holds the vertex, among those that the image shows around it.  Where it shows others
-/// alone (triangles smaller than pixels, a rim), a line has to tell; where it shows none, nothing is near.
-VertexRule::Opposite VertexRule::look_up(const Region& region, bool of_a, int vertex, int column, int row,
-                                         std::span<const FacePair> pairs, int& other) const {
-  static constexpr std::array<std::array<int, 2>, 9> kAround = {
-      {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
-  constexpr double kOnEdge = -1e-12;
+/// The other body's triangle on the line through a vertex, by the pixels around it where its own skin is what
+/// the image shows: a face of the vertex, or one at its height, up to what a pixel cannot resolve.
+/// @return index into the other patch's `visible`; -1: the image shows none, or not the vertex
+int VertexRule::opposite(const Region& region, bool of_a, int vertex, std::span<const FacePair> pairs) const {
+  const ContactCamera& camera = region.camera;
   const Patch& own = of_a ? region.a : region.b;
-  FacePlanes& planes = of_a ? region.planes_b : region.planes_a;
-  const ContactCamera& camera = region.camera;
-  Opposite found = Opposite::kNone;
-  for (const auto& [right, up] : kAround) {
-    const int x = column + right, y = row + up;
-    if (x < 0 || y < 0 || x >= camera.width || y >= camera.height) continue;
-    const std::int32_t pair = pair_at_[static_cast<std::size_t>(y * camera.width + x)];
-    if (pair < 0) continue;
-    found = Opposite::kAskLine;
-    const FacePair& faces = pairs[static_cast<std::size_t>(pair)];
-    other = static_cast<int>(of_a ? faces.b : faces.a);
-    Vec3 weights;
-    double w;
-    if (planes.at(other, own.uvw(0, vertex), own.uvw(1, vertex), weights, w) && weights.minCoeff() >= kOnEdge)
-      return Opposite::kFound;
-  }
+  FacePlanes &of_own = of_a ? region.planes_a : region.planes_b,
+             &of_other = of_a ? region.planes_b : region.planes_a;
+  const Vec3 at = own.uvw.col(vertex);
+  const double x = std::floor((at.x() - camera.u0) / camera.pixel),
+               y = std::floor((at.y() - camera.v0) / camera.pixel);
+  if (!(x >= 0.0 && y >= 0.0 && x < camera.width && y < camera.height)) return -1;
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  int found = -1;
+  double least_outside = -std::numeric_limits<double>::infinity();
+  for (int j = std::max(0, row - 1); j <= std::min(camera.height - 1, row + 1); ++j)
+    for (int i = std::max(0, column - 1); i <= std::min(camera.width - 1, column + 1); ++i) {
+      const std::int32_t pair = pair_at_[static_cast<std::size_t>(j * camera.width + i)];
+      if (pair < 0) continue;
+      const FacePair& faces = pairs[static_cast<std::size_t>(pair)];
+      const int seen = static_cast<int>(of_a ? faces.a : faces.b),
+                face = static_cast<int>(of_a ? faces.b : faces.a);
+      Vec3 weights;
+      double w = 0.0;
+      const auto corners = own.faces->col(own.visible[static_cast<std::size_t>(seen)]);
+      const bool is_own = (corners.array() == vertex).any();
+      if (!is_own && !(of_own.at(seen, at.x(), at.y(), weights, w) && std::abs(w - at.z()) < camera.pixel))
+        continue;
+      if (!of_other.at(face, at.x(), at.y(), weights, w) || weights.minCoeff() <= least_outside) continue;
+      least_outside = weights.minCoeff();
+      found = face;
+    }
   return found;
-}
-
-// The difference of the two images between the middles of four pixels, bilinear: for a smooth gap g with
-// pixels of edge h the error is at most h^2/8 (|g_uu| + |g_vv|).  Where some of the four show nothing, the
-// others' weights are divided by their sum, which costs an order, at the patch's border.  The opposite point
-// is moved along the normal by what is read more or less than its triangle has.
-bool VertexRule::interpolate(const Region& region, bool of_a, Hit& hit) const {
-  const ContactCamera& camera = region.camera;
-  const double x = (hit.at.u - camera.u0) / camera.pixel - 0.5,
-               y = (hit.at.v - camera.v0) / camera.pixel - 0.5;
-  const double column = std::floor(x), row = std::floor(y);
-  double sum = 0.0, weight = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    const double right = i % 2, up = i / 2;
-    const double c = column + right, r = row + up;
-    if (!(c >= 0.0 && r >= 0.0 && c < camera.width && r < camera.height)) continue;
-    const double gap = gap_at_[static_cast<std::size_t>(r) * static_cast<std::size_t>(camera.width) +
-                               static_cast<std::size_t>(c)];
-    if (std::isnan(gap)) continue;
-    const double share = (1.0 - std::abs(x - c)) * (1.0 - std::abs(y - r));
-    sum += share * gap;
-    weight += share;
-  }
-  if (!(weight > 0.0)) return false;
-  const double more = sum / weight - hit.at.gap();
-  (of_a ? hit.at.w_b : hit.at.w_a) += of_a ? -more : more;
-  return true;
 }
 
 }  // namespace palpate::contact

@@ -27,14 +27,10 @@ void set_plain_state(int width, int height, Keep keep) {
   }
 }
 
-void cull_and_count(bool leave_out_counter_clockwise) {
+void cull(bool leave_out_counter_clockwise) {
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CCW);
   glCullFace(leave_out_counter_clockwise ? GL_FRONT : GL_BACK);
-  glEnable(GL_STENCIL_TEST);
-  glStencilMask(0xffu);
-  glStencilFunc(GL_ALWAYS, 0, 0xffu);
-  glStencilOp(GL_INCR, GL_INCR, GL_INCR);
 }
 
 void draw_triangles(const VertexArray& vertices, std::size_t index_count) {

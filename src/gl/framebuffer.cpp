@@ -21,8 +21,6 @@ FormatInfo info(Format format) {
     case Format::kR32f: return {GL_R32F, GL_RED, GL_FLOAT};
     case Format::kRgba32f: return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
     case Format::kDepth32f: return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT};
-    case Format::kDepth32fStencil8:
-      return {GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV};
   }
   PALPATE_CHECK(false, "unknown texture format {}", static_cast<int>(format));
   return {};
@@ -48,20 +46,6 @@ Texture::Texture(int width, int height, Format format) : width_(width), height_(
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   set_linear(false);
-}
-
-Texture Texture::stencil_of(const Texture& depth_and_stencil) {
-  PALPATE_CHECK(depth_and_stencil.format_ == Format::kDepth32fStencil8, "a texture without a stencil");
-  Texture view;
-  view.width_ = depth_and_stencil.width_;
-  view.height_ = depth_and_stencil.height_;
-  view.format_ = depth_and_stencil.format_;
-  glGenTextures(1, &view.id_);
-  glTextureView(view.id_, GL_TEXTURE_2D, depth_and_stencil.id_, info(view.format_).internal, 0, 1, 0, 1);
-  glBindTexture(GL_TEXTURE_2D, view.id_);
-  glTexParameteri(GL_TEXTURE_2D, GL_DEPTH_STENCIL_TEXTURE_MODE, GL_STENCIL_INDEX);
-  view.set_linear(false);
-  return view;
 }
 
 Texture::~Texture() {
@@ -103,10 +87,7 @@ void Texture::set_linear(bool linear) {
 Framebuffer::Framebuffer(int width, int height, const std::vector<Format>& colours, DepthBuffer depth)
     : width_(width), height_(height) {
   for (const Format format : colours) colours_.emplace_back(width, height, format);
-  const bool with_stencil = depth == DepthBuffer::kDepthAndStencil;
-  if (depth != DepthBuffer::kNone)
-    depth_.emplace_back(width, height, with_stencil ? Format::kDepth32fStencil8 : Format::kDepth32f);
-  if (with_stencil) stencil_.push_back(Texture::stencil_of(depth_[0]));
+  if (depth != DepthBuffer::kNone) depth_.emplace_back(width, height, Format::kDepth32f);
   glGenFramebuffers(1, &id_);
   glBindFramebuffer(GL_FRAMEBUFFER, id_);
   std::vector<GLenum> targets;
@@ -115,8 +96,7 @@ Framebuffer::Framebuffer(int width, int height, const std::vector<Format>& colou
     glFramebufferTexture2D(GL_FRAMEBUFFER, targets.back(), GL_TEXTURE_2D, texture.id(), 0);
   }
   if (!depth_.empty())
-    glFramebufferTexture2D(GL_FRAMEBUFFER, with_stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT,
-                           GL_TEXTURE_2D, depth_[0].id(), 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_[0].id(), 0);
   glDrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
   PALPATE_CHECK(status == GL_FRAMEBUFFER_COMPLETE, "framebuffer of {} x {} is incomplete, status {:#x}",
@@ -132,8 +112,7 @@ Framebuffer::Framebuffer(Framebuffer&& other) noexcept
       width_(other.width_),
       height_(other.height_),
       colours_(std::move(other.colours_)),
-      depth_(std::move(other.depth_)),
-      stencil_(std::move(other.stencil_)) {}
+      depth_(std::move(other.depth_)) {}
 
 Framebuffer& Framebuffer::operator=(Framebuffer&& other) noexcept {
   std::swap(id_, other.id_);
@@ -141,7 +120,6 @@ Framebuffer& Framebuffer::operator=(Framebuffer&& other) noexcept {
   std::swap(height_, other.height_);
   std::swap(colours_, other.colours_);
   std::swap(depth_, other.depth_);
-  std::swap(stencil_, other.stencil_);
   return *this;
 }
 
@@ -164,22 +142,12 @@ void Framebuffer::clear(int attachment, std::uint32_t value) {
 void Framebuffer::clear_depth(float depth) {
   glBindFramebuffer(GL_FRAMEBUFFER, id_);
   glDepthMask(GL_TRUE);  // a clear obeys the mask
-  if (stencil_.empty()) {
-    glClearBufferfv(GL_DEPTH, 0, &depth);
-  } else {
-    glStencilMask(0xffu);
-    glClearBufferfi(GL_DEPTH_STENCIL, 0, depth, 0);
-  }
+  glClearBufferfv(GL_DEPTH, 0, &depth);
 }
 
 const Texture& Framebuffer::depth() const {
   PALPATE_CHECK(!depth_.empty(), "this framebuffer was made without depth");
   return depth_[0];
-}
-
-const Texture& Framebuffer::stencil() const {
-  PALPATE_CHECK(!stencil_.empty(), "this framebuffer was made without a stencil");
-  return stencil_[0];
 }
 
 void Framebuffer::read_pixels(int attachment, unsigned format, unsigned type, void* out) const {

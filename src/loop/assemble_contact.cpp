@@ -3,7 +3,6 @@
 
 #include "assemble_parts.h"
 #include "contact_shapes.h"
-#include "palpate/contact/gpu_available.h"
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/contact/sources.h"
@@ -60,25 +59,8 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
           look_ahead};
 }
 
-/// Which backend a method in image space is: "image" takes a GPU where there is one.
-contact::ImageOptions options_of(const Pair& pair) {
-  const std::string& method = pair.spec.method;
-  if (pair.spec.spring == "per_point" && pair.spec.samples != "vertex")
-    fail("contact {} - {}: spring = \"per_point\" needs samples = \"vertex\": a pixel is no vertex",
-         pair.spec.first, pair.spec.second);
-  const bool gpu = method == "gpu" || (method == "image" && contact::has_gpu_hardware());
-  contact::ImageOptions out;
-  out.backend = gpu                 ? contact::DepthBackend::kGpu
-                : method == "exact" ? contact::DepthBackend::kExact
-                                    : contact::DepthBackend::kCpu;
-  out.or_cpu = method == "image";
-  out.pixels = pair.spec.pixels;
-  out.quadrature_error = pair.spec.quadrature_error;
-  if (pair.spec.samples == "vertex") out.samples = contact::SampleRule::kVertex;
-  if (pair.spec.depths == "interpolated") out.depths = contact::DepthReading::kInterpolated;
-  out.candidate_gap = pair.candidate_gap;
-  out.look_ahead = pair.look_ahead;
-  return out;
+contact::ImageOptions image_options(const Pair& pair) {
+  return {.pixels = pair.spec.pixels, .candidate_gap = pair.candidate_gap, .look_ahead = pair.look_ahead};
 }
 
 [[noreturn]] void refuse_distance(const ContactSpec& spec, const Error& error) {
@@ -129,7 +111,7 @@ std::unique_ptr<contact::SampleSource> pair_source(Pair a, Pair b) {
   if (!a.proxies != !b.proxies)
     fail("contact {} - {}: proxies on one side alone; both need them, or neither", a.spec.first,
          a.spec.second);
-  const contact::ImageOptions options = options_of(a);
+  const contact::ImageOptions options = image_options(a);
   if (a.proxies)
     return contact::make_image_source(std::move(a.surface), std::move(a.proxies), std::move(b.surface),
                                       std::move(b.proxies), options);
@@ -156,34 +138,15 @@ contact::NodeSurface in_tetrahedra(contact::NodeSurface surface, const TetMesh& 
   return surface;
 }
 
-/// Contact of one soft body with itself: its skin's nearest points, or its bones' regions against each other.
-std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair) {
-  const std::string who = fmt::format("contact {} - {}", pair.spec.first, pair.spec.second);
-  if (pair.spec.method == "distance") {
-    try {
-      return contact::make_own_distance_source(in_tetrahedra(std::move(pair.surface), pair.body), pair.rest,
-                                               pair.body.nodes, distance_options(pair));
-    } catch (const Error& error) { refuse_distance(pair.spec, error); }
-  }
-  if (!scene::is_in_images(pair.spec))
-    fail("{}: a body has no exact gaps against itself; use method = \"auto\"", who);
-  if (!pair.proxies)
-    fail(
-        "{}: in images, which of a body's skin may touch itself is known by its proxies; give the body skin "
-        "= "
-        "true and proxies = true, or the contact method = \"distance\"",
-        who);
-  const proxy::ProxySet& set = *pair.proxies;
-  bool two_bones = false;
-  for (int p = 1; p < set.size(); ++p) two_bones = two_bones || set.bone(p) != set.bone(0);
-  if (!two_bones)
-    fail(
-        "{}: the skin of one bone against that of another may touch, but the body's model has {}; `palpate "
-        "model human` writes one with 19 bones",
-        who, set.bone(0) < 0 ? "none: its proxies go with no bone" : "one bone alone");
-  const contact::ImageOptions options = options_of(pair);
-  return contact::make_image_source(std::move(pair.surface), std::move(pair.proxies),
-                                    world.find_body(pair.spec.first)->rest.nodes, options);
+/// Contact of one soft body with itself.
+std::unique_ptr<contact::SampleSource> own_source(Pair pair) {
+  if (pair.spec.method != "distance")
+    fail("contact {} - {}: a body touches itself by nearest points; use method = \"auto\"", pair.spec.first,
+         pair.spec.second);
+  try {
+    return contact::make_own_distance_source(in_tetrahedra(std::move(pair.surface), pair.body), pair.rest,
+                                             pair.body.nodes, distance_options(pair));
+  } catch (const Error& error) { refuse_distance(pair.spec, error); }
 }
 
 /// Contact of a soft body with a rigid surface in a frame.
@@ -191,7 +154,7 @@ std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair)
 std::unique_ptr<contact::SampleSource> image_source(Pair pair, TriMesh rigid,
                                                     std::shared_ptr<proxy::ProxySet>& rigid_proxies,
                                                     int frame, std::shared_ptr<contact::MovingFrame> motion) {
-  const contact::ImageOptions options = options_of(pair);
+  const contact::ImageOptions options = image_options(pair);
   if (!pair.proxies)
     return contact::make_image_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion),
                                       options);
@@ -345,7 +308,7 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
   if (ToolSide* const side = ToolSide::named(world, spec.second))
     return tool_source(world, *side, std::move(pair));
   if (obstacle != obstacles.end()) return obstacle_source(world, std::move(pair), *obstacle);
-  if (spec.second == spec.first) return own_source(world, std::move(pair));
+  if (spec.second == spec.first) return own_source(std::move(pair));
   if (world.find_body(spec.second)) return pair_source(std::move(pair), pair_of(world, spec, spec.second));
   fail("contact {} - {}: nothing is called \"{}\"; name soft bodies, obstacles or \"tool\"", spec.first,
        spec.second, spec.second);

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "palpate/contact/gpu_available.h"
+#include "palpate/contact/gpu_device.h"
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/device/device.h"
@@ -58,8 +58,7 @@ std::vector<Choice> part_choices() {
           ? "compiled in"
           : "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev)";
   return {{"bodies", "soft bodies of linear tetrahedra: always there"},
-          {"contact",
-           "penalty contact with analytic obstacles, and in image space on the processor: always there"},
+          {"contact", "penalty contact by nearest points, and with analytic obstacles: always there"},
           {"proxies", "convex proxies of skins, broad and narrow phase (libccd): always there"},
           {"tool", "rigid tool under a virtual coupling (Simbody): " + tool},
           {"gl", "contact images by OpenGL, and pictures (EGL): " + gl}};

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "palpate/contact/gpu_available.h"
+#include "palpate/contact/gpu_device.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
@@ -116,20 +116,14 @@ void add_jumps(store::Summary& summary, const World& world) {
     if (overlap.largest_share > 0.0)
       s.values.emplace_back(overlap.pair + ": largest_share_of_a_point", overlap.largest_share);
   }
-  long lines = 0, pairs = 0, unaligned = 0;
+  long pairs = 0;
   bool images = false;
   for (const contact::QueryStages* stages : world.contact->stages())
     if (stages) {
       images = true;
-      lines += stages->lines;
       pairs += stages->pairs;
-      unaligned += stages->unaligned;
     }
-  if (images) {
-    s.values.emplace_back("pixels_seen", static_cast<long long>(pairs));
-    s.values.emplace_back("pixels_left_to_exact_lines", static_cast<long long>(lines));
-    s.values.emplace_back("regions_not_aligned_with_their_overlap", static_cast<long long>(unaligned));
-  }
+  if (images) s.values.emplace_back("pixels_seen", static_cast<long long>(pairs));
   if (const double friction = world.contact->largest_lagged_friction(); friction > 0.0) {
     s.values.emplace_back("largest_friction_n", friction);
     s.values.emplace_back("largest_friction_left_out_of_a_step_n", world.contact->largest_friction_lag());
@@ -158,22 +152,20 @@ void add_grasps(store::Summary& summary, const World& world) {
                                       {"area_at_the_end_m2", counts.area}};
 }
 
-/// What made the images of each contact, and on which device.
+/// Which contacts have images, and what device makes them.
 void add_images(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   const auto stages = world.contact->stages();
-  const auto methods = world.contact->methods(), fallbacks = world.contact->fallbacks();
-  bool gpu = false;
+  const auto methods = world.contact->methods();
   for (std::size_t i = 0; i < stages.size(); ++i) {
     if (!stages[i]) continue;
     const ContactSpec& contact = world.description.contacts[i];
     const std::string who = fmt::format("{} - {}", contact.first, contact.second);
-    store::SummarySection& s = summary.section("images");
-    s.values.emplace_back(who, methods[i]);
-    if (!fallbacks[i].empty()) s.values.emplace_back(who + ": why not by the GPU", fallbacks[i]);
-    gpu = gpu || methods[i] == "gpu";
+    summary.section("images").values.emplace_back(who, methods[i]);
   }
-  if (const contact::GpuDevice device = contact::gpu_device(); gpu && !device.name.empty()) {
+  if (const contact::GpuDevice device = contact::gpu_device();
+      !device.name.empty() &&
+      std::any_of(stages.begin(), stages.end(), [](auto* s) { return s != nullptr; })) {
     store::SummarySection& s = summary.section("images");
     s.values.emplace_back("device", device.name);
     s.values.emplace_back("driver", device.driver);

@@ -197,21 +197,6 @@ bool ProxySet::neighbours(int p, int q) const {
   return impl_->adjacent[static_cast<std::size_t>(p * impl_->count + q)] != 0;
 }
 
-bool ProxySet::grown_together(int p, int q) const {
-  if (neighbours(p, q) || !impl_->soft) return neighbours(p, q);
-  const auto nodes = [&](int proxy) {  // ascending
-    const Cloud& cloud = impl_->own[static_cast<std::size_t>(proxy)];
-    return std::span(impl_->node)
-        .subspan(static_cast<std::size_t>(cloud.first), static_cast<std::size_t>(cloud.count));
-  };
-  const auto of_p = nodes(p), of_q = nodes(q);
-  for (auto i = of_p.begin(), j = of_q.begin(); i != of_p.end() && j != of_q.end();) {
-    if (*i == *j) return true;
-    ++(*i < *j ? i : j);
-  }
-  return false;
-}
-
 void ProxySet::copy_corners(int proxy, Eigen::Ref<Points> out) const {
   impl_->ready(proxy);
   const Columns from = impl_->corners.read(impl_->first_corner[static_cast<std::size_t>(proxy)]);

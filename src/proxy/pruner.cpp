@@ -26,10 +26,8 @@
 //
 // Jumps.  A patch that comes or goes is farther away than the gap: no force comes or goes with it.  What
 // jumps as patches come and go, and as regions merge and split, is the normal: by the angle phi, which
-// `rotation` and `largest_rotation` report.  It is therefore only where an image is first looked at along;
-// the normal of the force is a smooth function of the overlap itself (contact/region_planes.cpp).  Regions
-// merge when the directions that their skins face differ by less than the merge angle: how many images are
-// made.
+// `rotation` and `largest_rotation` report.  Regions merge when the directions that their skins face differ
+// by less than the merge angle: how many images are made.
 //
 // Which proxies share a plane.  The resultant of a uniform pressure on the part of a's skin inside b is minus
 // its area vector, which by the divergence theorem is the area vector of b's skin inside a: both say which
@@ -42,20 +40,6 @@
 // query, the side that the bodies came from; and where they never met before, it is libccd's for the hull of
 // all the region's proxies together, in which the walls between a body's own proxies are no surfaces.  A
 // region whose hulls are proven apart along its normal ends.
-//
-// Between the bones of one body.  Both sides are the same skin: a proxy may be on side a against one bone and
-// on side b against another, so each pair of proxies is allowed once, that of the lower bone as a's;
-// is_pair() gives the allowed pairs to the code that pairs triangles in a region's image, since a region
-// holds all proxies of its pairs.  Connected proxies are no pair: their hulls always overlap, and only the
-// body's tissue lies between them.  Two other proxies may also have nothing but tissue between their skins
-// (the hull of a concave shape extends across the cavity); the self-contact filter decides that by triangle.
-//
-// Limbs meet side by side and in narrow gaps, where skin that faces elsewhere is within the gap too, and |D|
-// is less than 2 although neither body is enclosed; its direction is still that of the contact, since the
-// contributions that face elsewhere cancel.  The hulls are less informative: those of a region's proxies lie
-// around joints, and their common hull fills the space of the contact.  So between bones a D of an eighth of
-// its full length counts as a direction, and is used where two bodies would use their hulls or the last
-// query.  Where D is clear, two parts of a body are treated like two bodies.
 #include "palpate/proxy/pruner.h"
 
 #include <algorithm>
@@ -101,7 +85,6 @@ void Pruner::Impl::visit(int x, int y) {
 }
 
 void Pruner::Impl::test_pair(int p, int q) {
-  if (!allowed(p, q)) return;
   const ProxyState &hull_a = a.set.state(p), &hull_b = b.set.state(q);
   const Reach within = reach(p, q);
   if (boxes_apart(hull_a.low, hull_a.high, hull_b.low, hull_b.high, within)) return;
@@ -175,16 +158,7 @@ Pruner::Pruner(const ProxySet& a, const ProxySet& b, const PruneOptions& options
   counters::count("proxy.pruner");
   if (!(options.merge_angle_rad >= 0.0 && options.merge_angle_rad <= 3.2))
     fail("contact regions: merge angle = {} rad must lie between 0 and pi", options.merge_angle_rad);
-  PALPATE_CHECK(!options.between_bones || &a == &b,
-                "contact between the bones of one body has that body on both sides");
-  if (options.between_bones) {
-    impl_->may_touch.reserve(impl_->separating.size());
-    for (int p = 0; p < a.size(); ++p)
-      for (int q = 0; q < a.size(); ++q)
-        impl_->may_touch.push_back(a.bone(p) < a.bone(q) && !a.grown_together(p, q));
-  }
-  for (int p = 0; p < a.size(); ++p)
-    for (int q = 0; q < b.size(); ++q) impl_->counts.pairs += impl_->allowed(p, q);
+  impl_->counts.pairs = static_cast<long>(a.size()) * b.size();
 }
 Pruner::~Pruner() = default;
 Pruner::Pruner(Pruner&&) noexcept = default;
@@ -283,7 +257,6 @@ void Pruner::archive(Archive& a) {
   a.rows("last_query", s.last_query, [](auto&& f, long& query) { f(query); });
 }
 
-bool Pruner::is_pair(int p, int q) const { return impl_->allowed(p, q); }
 const PruneCounts& Pruner::counts() const { return impl_->counts; }
 const RegionCounts& Pruner::region_counts() const { return impl_->finder.counts(); }
 

@@ -32,7 +32,6 @@ inline Vec3 facing(const Facing& a, const Facing& b) {
 }
 /// |D| of skins that face each other is 2, of enclosed skin 0; above this it is a direction
 inline constexpr double kClear = 1.0;
-inline constexpr double kClearOwn = 0.25;  ///< the same between the bones of one body: see pruner.cpp
 
 /// One body of the query: its patches as far as they were tested.
 struct Side {
@@ -85,9 +84,8 @@ struct Pruner::Impl {
   RegionFinder finder;
   Side a, b;
   double gap = 0.0, time = 0.0;
-  Reach whole_reach;            // of any proxy of a against any of b
-  long pass = 0;                // counts queries and looks back; what `measured_at` and the like refer to
-  std::vector<char> may_touch;  // by pair, of one body's bones; else empty
+  Reach whole_reach;  // of any proxy of a against any of b
+  long pass = 0;      // counts queries and looks back; what `measured_at` and the like refer to
   // by pair: the last direction that its proxies were found apart along,
   // or that the search ended with; zero for none
   std::vector<Vec3> separating;
@@ -124,12 +122,6 @@ struct Pruner::Impl {
     return Points::Zero(3, count);
   }
 
-  bool allowed(int p, int q) const {
-    return !options.between_bones ||
-           may_touch[static_cast<std::size_t>(p) * static_cast<std::size_t>(b.set.size()) +
-                     static_cast<std::size_t>(q)] != 0;
-  }
-  double clear() const { return options.between_bones ? kClearOwn : kClear; }
   Reach reach(int p, int q) const { return {gap, time, a.set.motion(p), b.set.motion(q)}; }
   void find_pairs(double new_gap, double new_time);
   void visit(int x, int y);

@@ -29,7 +29,7 @@ void Pruner::Impl::grow(std::size_t seed, int region) {
   const Vec3 direction = active[seed].direction();
   const auto agrees = [&](const Active& other) {
     const Vec3 d = other.direction();
-    return d.norm() < clear() || direction.norm() < clear() ||
+    return d.norm() < kClear || direction.norm() < kClear ||
            d.dot(direction) >= std::cos(options.merge_angle_rad) * d.norm() * direction.norm();
   };
   active[seed].region = region;
@@ -115,10 +115,10 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   region.facing = facing(facing_a, facing_b);
   faces_a = facing_a.directed();
   faces_b = facing_b.directed();
-  const bool is_clear = region.facing.norm() >= clear();
+  const bool is_clear = region.facing.norm() >= kClear;
   if (is_clear) turn_to(region.region, region.facing.normalized(), RegionMethod::kAreas);
   // else the hulls know nothing that is sharper
-  if (!is_clear || (region.region.depth > inexact && region.facing.norm() >= kClear)) {
+  if (!is_clear || region.region.depth > inexact) {
     double margin = gap;
     for (const auto& [p, q] : region.pairs) margin = std::max(margin, reach(p, q).in_any_direction());
     const Region by_hulls =
@@ -171,15 +171,7 @@ void Pruner::Impl::add_facing_patches(Side& from, const std::vector<int>& from_p
     return sign * place.z() + radius < lowest || ((place.head<2>() - high).array() > radius).any() ||
            ((low - place.head<2>()).array() > radius).any();
   };
-  // a proxy of one body is shown to those alone that it makes a pair with
-  const auto faces_one = [&](int q) {
-    return !options.between_bones ||
-           (sign > 0.0
-                ? std::any_of(proxies_a.begin(), proxies_a.end(), [&](int p) { return allowed(p, q); })
-                : std::any_of(proxies_b.begin(), proxies_b.end(), [&](int p) { return allowed(q, p); }));
-  };
   for (int q = 0; q < to.set.size(); ++q) {
-    if (!faces_one(q)) continue;
     const ProxyState& hull = to.set.state(q);
     if (misses(0.5 * (hull.low + hull.high), 0.5 * (hull.high - hull.low).norm())) continue;
     for (int s = to.first(q); s < to.first(q) + static_cast<int>(to.set.patches(q).size()); ++s) {

@@ -52,19 +52,15 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
         "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool");
 }
 
-/// One body twice: its skin's nearest points, or the regions of its bones.
+/// One body twice: the nearest points of its own skin.
 void check_own_contact(const Document& doc, const std::string& key, const std::string& where,
-                       const Description& d, const ContactSpec& c) {
-  const auto body =
-      std::find_if(d.bodies.begin(), d.bodies.end(), [&](const auto& b) { return b.name == c.first; });
+                       const ContactSpec& c) {
   if (c.method == "distance") return;
-  if (!is_in_images(c))
-    refuse(location(doc, key + ".method"), where,
-           "a body has no exact gaps against itself: leave the method out, or write \"auto\"");
-  if (!body->proxies)
-    refuse(location(doc, key + ".between"), where,
-           "in images a body touches itself with the skin of one bone against that of another, by its "
-           "proxies: give it skin = true and proxies = true, or leave out what asks for an image");
+  const std::string method = key + ".method";
+  refuse(location(doc, given(doc, method) ? method : key + ".between"), where,
+         fmt::format("a body touches itself by nearest points; method = \"{}\" has none: leave out what asks "
+                     "for it, or write \"distance\"",
+                     c.method));
 }
 
 void check_method(const Document& doc, const std::string& key, const std::string& where, const Sides& sides,
@@ -74,24 +70,14 @@ void check_method(const Document& doc, const std::string& key, const std::string
              sphere_tool = second_tool && second_tool->shape == "sphere";
   if (c.method == "auto") {
     c.method = contact_method(d, c);
-    for (const std::string_view image_key : {"pixels", "samples", "depths"}) {
-      const std::string given_key = fmt::format("{}.{}", key, image_key);
-      if (!given(doc, given_key)) continue;
+    if (const std::string pixels = key + ".pixels"; given(doc, pixels)) {
       if (obstacle)
-        refuse(location(doc, given_key), where,
-               fmt::format("{} means nothing here: an obstacle has exact gaps; remove it", image_key));
+        refuse(location(doc, pixels), where,
+               "pixels means nothing here: an obstacle has exact gaps; remove it");
       c.method = "image";
     }
   }
-  if (c.method == "distance") {
-    if (!given(doc, key + ".gaps")) c.gaps = "exact";
-    if (!given(doc, key + ".quadrature_error")) c.quadrature_error = kPointsError;
-    if (c.quadrature_error == 0.0)
-      refuse(
-          location(doc, key + ".quadrature_error"), where,
-          "quadrature_error = 0 takes all pixels of an image, and method = \"distance\" has points instead, "
-          "more of them the smaller the error: write a positive one");
-  }
+  if (c.method == "distance" && !given(doc, key + ".gaps")) c.gaps = "exact";
   if (c.gaps == "exact" && is_in_images(c))
     refuse(
         location(doc, key + ".gaps"), where,
@@ -101,19 +87,11 @@ void check_method(const Document& doc, const std::string& key, const std::string
             : "gaps = \"exact\" is for obstacles and sphere tools, whose gaps have a formula, and for "
               "method = \"distance\"; an image is made at a query alone: remove it, or refresh the contact "
               "more often (contact_refresh_s)");
-  if (c.depths == "interpolated" && c.samples != "vertex")
-    refuse(location(doc, key + ".depths"), where,
-           "depths = \"interpolated\" is for vertices: a pixel has a depth of its own; write samples = "
-           "\"vertex\" as well, or remove it");
   if (c.spring == "per_point" && c.method == "distance")
     refuse(
         location(doc, key + ".spring"), where,
         "spring = \"per_point\" is a spring at each colliding vertex, and method = \"distance\" has points "
         "that stand for areas; remove it");
-  if (c.spring == "per_point" && is_in_images(c) && c.samples != "vertex")
-    refuse(location(doc, key + ".spring"), where,
-           "spring = \"per_point\" is a spring at each colliding vertex, and samples = \"pixel\" has none; "
-           "write samples = \"vertex\" as well, or remove it");
   if (c.spring == "per_point" && first_tool && first_tool->shape == "sphere")
     refuse(
         location(doc, key + ".spring"), where,
@@ -125,7 +103,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
                        "\"analytic\" or \"distance\"",
                        c.method));
   if (c.first == c.second)
-    check_own_contact(doc, key, where, d, c);
+    check_own_contact(doc, key, where, c);
   else if (sides.is_body(c.second)) {
     if (c.method == "analytic")
       refuse(location(doc, key + ".method"), where,

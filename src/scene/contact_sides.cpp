@@ -35,12 +35,6 @@ bool is_in_images(const Description& description, const std::string& body) {
 }
 
 void set_method(ContactSpec& contact, const std::string& method) {
-  // each kind's default for the other's; a scene's own value stays
-  const double pixels_error = ContactSpec{}.quadrature_error;
-  if (method == "distance" && contact.quadrature_error == pixels_error)
-    contact.quadrature_error = kPointsError;
-  else if (method != "distance" && contact.method == "distance" && contact.quadrature_error == kPointsError)
-    contact.quadrature_error = pixels_error;
   contact.method = method;
   if (method != "analytic") contact.gaps = method == "distance" ? "exact" : "linear";
 }
@@ -48,8 +42,7 @@ void set_method(ContactSpec& contact, const std::string& method) {
 std::string contact_method(const Description& description, const ContactSpec& contact) {
   if (contact.method != "auto") return contact.method;
   const ContactSpec none;
-  if (contact.pixels != none.pixels || contact.samples != none.samples || contact.depths != none.depths)
-    return "image";
+  if (contact.pixels != none.pixels) return "image";
   if (contact.spring != "per_point") return "distance";
   const auto is_named = [&](const auto& one) { return one.name == contact.second; };
   const ToolSpec* tool = tool_named(description, contact.second);

@@ -77,13 +77,9 @@ const KeyTable<ContactSpec>& contact_keys() {
            "distance)"),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, Ranges::candidate_gap_m,
              "samples with a smaller positive gap are kept as well; 0: chosen from the mesh"),
-      integer("pixels", &ContactSpec::pixels, Ranges::pixels, "longer edge of the image, at most"),
+      integer("pixels", &ContactSpec::pixels, Ranges::pixels, "longer edge of the image"),
       number("quadrature_error", &ContactSpec::quadrature_error, Ranges::quadrature_error,
-             "what pixels may err in a region's force, relative (0: all pixels); points, by default 0.01"),
-      text("samples", &ContactSpec::samples, {"pixel", "vertex"},
-           "in image space: one a pixel of the overlap, or one a vertex of the soft skins"),
-      text("depths", &ContactSpec::depths, {"triangles", "interpolated"},
-           "of vertex samples: to the triangle opposite, or read between the image's pixels"),
+             "of nearest points: what they may err in the force, relative; chooses how many there are"),
   };
   return keys;
 }
@@ -266,7 +262,7 @@ const KeyTable<HapticCompareSpec>& haptic_compare_keys() {
       numbers("exchange_periods_s", &Spec::exchange_periods_s, positive(), "exchange periods to compare"),
       numbers("ticks_s", &Spec::ticks_s, ToolRanges::tick_s, "ticks of the tool to compare"),
       numbers("pixels", &Spec::pixels, ContactRanges::pixels,
-              "of the images of the tool's contacts, where it has any; all of them always"),
+              "of the images of the tool's contacts, where it has any"),
       numbers("element_sizes_m", &Spec::element_sizes_m, positive(),
               "of every body that a generator meshes; another mesh is another body"),
       texts("integrators", &Spec::integrators, "of the bodies, at the scene's own tolerance or step"),

@@ -93,9 +93,7 @@ bool tools_carry(const Description& d) {
 void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const bool any = !d.contacts.empty();
   const int image = count_if(d.contacts, [](const ContactSpec&c) { return is_in_images(c); }),
-            near = count_if(d.contacts, [](const ContactSpec&c) { return c.method == "distance"; }),
-            gpu = count_if(d.contacts, [](const auto&c) { return c.method == "gpu"; }),
-            automatic = count_if(d.contacts, [](const auto&c) { return c.method == "image"; });
+            near = count_if(d.contacts, [](const ContactSpec&c) { return c.method == "distance"; });
   const int rubbing = count_if(d.contacts, [](const auto& c) { return c.friction > 0.0; });
   const int own = count_if(d.contacts, [](const auto& c) { return c.first == c.second; });
   const std::string no_image = any ? "every contact has exact gaps" : "no [[contact]]";
@@ -118,13 +116,7 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
   out.push_back({"contact plane", image > 0,
                  image > 0 ? fmt::format("{} contact in image space needs its plane", image) : no_image});
   out.push_back(
-      {"broad phase", image > 1,
-       image > 1 ? fmt::format("{} pairs in image space", image) : "fewer than two pairs in image space"});
-  out.push_back({"gl", gpu > 0,
-                 gpu > 0         ? "method \"gpu\" rasterises"
-                 : automatic > 0 ? "method \"image\" takes it where the machine has a GPU"
-                                 : (image > 0 ? "no contact has method \"gpu\"" : no_image) +
-                                       "; pictures only on request"});
+      {"gl", image > 0, image > 0 ? "method \"image\" rasterises" : no_image + "; pictures only on request"});
 }
 
 void add_haptic_needs(const Description& d, std::vector<Need>& out) {

@@ -10,9 +10,9 @@
 namespace palpate::bench {
 namespace {
 
-ContactBenchRow row(const std::string& method, int pixels, int threads, double query_ms) {
+ContactBenchRow row(const std::string& method, int threads, double query_ms) {
   ContactBenchRow out;
-  out.variant = {method, pixels, threads};
+  out.variant = {method, threads};
   out.query = out.to_forces = {query_ms, query_ms, query_ms};
   out.touches = true;
   return out;
@@ -25,19 +25,16 @@ ContactPrice price(const std::string& scene, double query_ms) {
   out.pairs = 1;
   out.one_body_ms = 3.0;
   out.bodies_ms = 10.0;
-  out.contacts.resize(2);
-  out.contacts[0].row = row("cpu", 0, 1, 100.0);
-  out.contacts[1].row = row("cpu", kBarPixels, 1, query_ms);
-  ContactPrice::Contact& at_bar = out.contacts[1];
-  at_bar.row.assembly_ms = at_bar.row.elements_ms = 1.0;
-  at_bar.row.step.median = 16.0;
-  at_bar.friction.symmetric_ms = 24.0;
+  out.row = row("distance", 1, query_ms);
+  out.row.assembly_ms = out.row.elements_ms = 1.0;
+  out.row.step.median = 13.0;
+  out.friction.symmetric_ms = 19.5;
   return out;
 }
 
 /// Skins or areas from 10 to 1,000 with times that grow by the power `exponent`.
 ContactGrowth growth(const std::string& with, double exponent) {
-  ContactGrowth out{with, kBarPixels, {}};
+  ContactGrowth out{with, {}};
   for (const double size : {10.0, 100.0, 1000.0}) {
     ContactGrowthRow r;
     r.skin_vertices = with == "skin" ? static_cast<int>(size) : 7;
@@ -55,24 +52,17 @@ ContactBenchReport on_the_bars() {
   ContactBenchReport out;
   for (const char* name : {"touch-head", "gears"}) {
     ContactBenchReport::Scene scene{name, {}};
-    ContactBenchRow wanted = row("cpu", 0, 2, 1.0);
-    wanted.period_s = 0.01;
-    wanted.period.median = 10.0 * (name == std::string("gears") ? 5.0 : kJustBelow);
-    ContactBenchRow software = row("gpu", kBarPixels, 1, 10.0 * kJustBelow),
-                    hardware = row("gpu", kBarPixels, 1, 0.3);
+    ContactBenchRow points = row("distance", 2, 1.0);
+    points.period_s = 0.01;
+    points.period.median = 10.0 * (name == std::string("gears") ? 5.0 : kJustBelow);
+    ContactBenchRow software = row("image", 1, 10.0), hardware = row("image", 1, 0.3);
     software.device_is_software = true;
-    scene.rows = {wanted, row("cpu", kBarPixels, 1, 2.0), row("cpu", kBarPixels, 2, 1.0),
-                  name == std::string("gears") ? hardware : software};
+    scene.rows = {points, row("distance", 1, 2.0), name == std::string("gears") ? hardware : software};
     out.scenes.push_back(scene);
   }
-  out.prices = {price("touch-head", kJustBelow), price("two-pumpkins", 3.0), price("two-heads", 3.0)};
-  out.prices[2].contacts[1].row.step.median = 1e3;  // of two pumpkins alone it is asked
-  ContactPrice many = price("nine", 3.0);
-  many.pairs = 8;
-  many.contacts[0].row.samples = 5000;
-  many.contacts[0].row.regions = 8.0;
-  out.prices.push_back(many);
-  out.growth = {growth("skin", 0.3 * kJustBelow), growth("area", 1.1 * kJustBelow)};
+  out.prices = {price("touch-head", 0.15 * kJustBelow), price("two-pumpkins", 3.0), price("two-heads", 3.0)};
+  out.prices[2].row.step.median = 1e3;  // of two pumpkins alone it is asked
+  out.growth = {growth("skin", 0.2 * kJustBelow), growth("area", 1.1 * kJustBelow)};
   return out;
 }
 
@@ -86,31 +76,25 @@ std::vector<std::string> missed(const ContactBenchReport& report) {
 TEST(ContactBars, AreMetBySoMuchAndMissedByMore) {
   const ContactBenchReport good = on_the_bars();
   EXPECT_EQ(missed(good), std::vector<std::string>{});
-  // real time of one scene; GPUs of two; of four prices samples and queries; two more of the pumpkins, and
-  // two of the row; two growths
-  EXPECT_EQ(contact_bars(good).size(), 1u + 2u + 2u * 4u + 2u + 2u + 2u);
+  // real time of one scene; an image on hardware; of three prices samples and queries; two more of the
+  // pumpkins; two growths
+  EXPECT_EQ(contact_bars(good).size(), 1u + 1u + 2u * 3u + 2u + 2u);
   const std::vector<std::pair<std::string, std::function<void(ContactBenchReport&)>>> faults = {
       {"touch-head: simulated over run time, 2 threads",
        [](auto& r) { r.scenes[0].rows[0].period.median = 10.0 * kJustAbove; }},
-      {"touch-head: gpu / cpu: query", [](auto& r) { r.scenes[0].rows[3].query.median = 10.0 * kJustAbove; }},
-      {"gears: gpu: query [ms]", [](auto& r) { r.scenes[1].rows[3].query.median = 0.3 * kJustAbove; }},
-      {"touch-head: query / step",
-       [](auto& r) { r.prices[0].contacts[1].row.to_forces.median = kJustAbove; }},
-      {"two-heads: query / step",
-       [](auto& r) { r.prices[2].contacts[1].row.to_forces.median = 3.0 * kJustAbove; }},
-      {"two-heads: samples / elements",
-       [](auto& r) { r.prices[2].contacts[1].row.assembly_ms = kJustAbove; }},
+      {"gears: image: query [ms]", [](auto& r) { r.scenes[1].rows[2].query.median = 0.3 * kJustAbove; }},
+      {"touch-head: query / step", [](auto& r) { r.prices[0].row.to_forces.median = 0.15 * kJustAbove; }},
+      {"two-heads: query / step", [](auto& r) { r.prices[2].row.to_forces.median = 3.0 * kJustAbove; }},
+      {"two-heads: samples / elements", [](auto& r) { r.prices[2].row.assembly_ms = kJustAbove; }},
       {"two-pumpkins: contact / apart",
        [](auto& r) {
-         r.prices[1].contacts[1].row.step.median = 16.0 * kJustAbove;
-         r.prices[1].contacts[1].friction.symmetric_ms = 20.0;
+         r.prices[1].row.step.median = 13.0 * kJustAbove;
+         r.prices[1].friction.symmetric_ms = 16.0;
        }},
       {"two-pumpkins: friction / contact",
-       [](auto& r) { r.prices[1].contacts[1].friction.symmetric_ms = 24.0 * kJustAbove; }},
-      {"nine: samples in one solve", [](auto& r) { r.prices[3].contacts[0].row.samples = 4999; }},
-      {"nine: regions in one solve", [](auto& r) { r.prices[3].contacts[0].row.regions = 7.9; }},
-      {": growth with skin, 256 pixels: exponent", [](auto& r) { r.growth[0] = growth("skin", 0.301); }},
-      {": growth with area, 256 pixels: exponent", [](auto& r) { r.growth[1] = growth("area", 1.101); }}};
+       [](auto& r) { r.prices[1].friction.symmetric_ms = 19.5 * kJustAbove; }},
+      {": growth with skin: exponent", [](auto& r) { r.growth[0] = growth("skin", 0.201); }},
+      {": growth with area: exponent", [](auto& r) { r.growth[1] = growth("area", 1.101); }}};
   for (const auto& [what, fault] : faults) {
     ContactBenchReport bad = good;
     fault(bad);
@@ -133,21 +117,20 @@ TEST(ContactBars, StandInTheFileWithDevicesAndStages) {
   ContactBenchRow& r = report.scenes[0].rows[1];
   r.device = "a processor, avx2";
   r.stages[static_cast<std::size_t>(ContactStage::kPasses)] = {1.0, 2.0, 3.0};
-  report.prices[1].contacts[1].friction.full_ms = 36.0;
-  report.prices[1].contacts[1].friction.force_change = 0.01;
+  report.prices[1].friction.full_ms = 36.0;
+  report.prices[1].friction.force_change = 0.01;
   report.growth[0].rows.resize(1);  // no exponent
-  report.no_gpu = "no EGL device";
+  report.no_image = "no EGL device";
   const auto json = nlohmann::json::parse(to_json(report));
   EXPECT_FALSE(json.at("processor").get<std::string>().empty());
-  EXPECT_EQ(json.at("gpu_left_out"), "no EGL device");
+  EXPECT_EQ(json.at("image_left_out"), "no EGL device");
   const auto& scene = json.at("scenes").at(0);
   EXPECT_EQ(scene.at("scene"), "touch-head");
   EXPECT_EQ(scene.at("rows").at(1).at("device"), "a processor, avx2");
   EXPECT_EQ(scene.at("rows").at(1).at("stages_ms").size(), static_cast<std::size_t>(kContactStages));
   EXPECT_EQ(scene.at("rows").at(1).at("stages_ms").at("passes").at("p99"), 3.0);
-  EXPECT_TRUE(scene.at("rows").at(3).at("device_is_software"));
-  const auto& pumpkins = json.at("prices").at(1).at("contacts").at(1);
-  EXPECT_EQ(pumpkins.at("pixels"), kBarPixels);
+  EXPECT_TRUE(scene.at("rows").at(2).at("device_is_software"));
+  const auto& pumpkins = json.at("prices").at(1).at("contact");
   EXPECT_EQ(pumpkins.at("friction_full_tangent_step_ms"), 36.0);
   EXPECT_EQ(pumpkins.at("force_change_by_symmetric_tangent"), 0.01);
   EXPECT_TRUE(json.at("growth").at(0).at("exponent").is_null());

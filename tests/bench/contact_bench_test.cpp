@@ -26,7 +26,7 @@ TEST(ContactBench, TheSameRegionOnAnySkin) {
   ASSERT_EQ(rows.size(), 2u);
   for (const ContactGrowthRow& r : rows) {
     EXPECT_NEAR(r.area_m2, M_PI * 0.05 * 0.05, 0.04 * M_PI * 0.05 * 0.05) << r.skin_vertices;
-    EXPECT_GT(r.samples, 10000);
+    EXPECT_GT(r.samples, 50);
     EXPECT_GT(r.query.least, 0.0);
     EXPECT_LE(r.query.least, r.query.median);
     EXPECT_LE(r.query.median, r.query.p99);
@@ -35,12 +35,12 @@ TEST(ContactBench, TheSameRegionOnAnySkin) {
 }
 
 TEST(ContactBench, RegionsGrowByTheFactor) {
-  const auto rows = bench_patch_growth(8000, 4.0, 3, 64);
+  const auto rows = bench_patch_growth(8000, 4.0, 3);
   ASSERT_EQ(rows.size(), 3u);
   for (std::size_t k = 1; k < 3; ++k) EXPECT_NEAR(rows[k].area_m2 / rows[k - 1].area_m2, 2.0, 0.06);
   EXPECT_EQ(rows[2].skin_vertices, rows[0].skin_vertices);
-  EXPECT_THROW(bench_patch_growth(2000, 1.0, 3, 64), Error);
-  EXPECT_THROW(bench_patch_growth(2000, 4.0, 1, 64), Error);
+  EXPECT_THROW(bench_patch_growth(2000, 1.0, 3), Error);
+  EXPECT_THROW(bench_patch_growth(2000, 4.0, 1), Error);
 }
 
 TEST(ContactBench, ABodyAgainstItselfIsAlone) {

@@ -199,10 +199,10 @@ class Incomplete(Cli):
     def test_chart_that_cannot_be_made_and_is_made_again_where_it_can(self):
         compare = ["compare", "press-ball", *self.QUICK, "-o", "cmp"]
         last = self.incomplete(*compare, **NO_EGL)
-        self.assertIn('chart of the contact method "gpu" of press-ball (', last)
+        self.assertIn('chart of the contact method "image" of press-ball (', last)
         text = self.good(*compare)
         self.assertIn("contact found by", text)
-        self.assertRegex(text, r"(?m)^gpu ")
+        self.assertRegex(text, r"(?m)^image ")
 
     def test_reference_that_cannot_be_checked(self):
         last = self.incomplete("compare", "cantilever", *QUICK_COMPARISON, "--reference-limit-s", "0.001",

@@ -90,45 +90,43 @@ class Judgements(Cli):
         self.assertIn("E 100000 Pa, 10 ms, 0.001, cholmod, 1 thread", plot)
 
     def test_bench_contact_prints_its_stages(self):
-        text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64", "-o", "out")
+        text = self.good("bench", "contact", "press-ball", "--threads", "1", "-o", "out")
         spread = r"\d+\.\d+ / \d+\.\d+ / \d+\.\d+"
-        self.assertRegex(text, rf"(?m)^cpu +64 +1 +[1-9]\d* +0\.0 +{spread} +- +\d")
-        self.assertRegex(text, rf"(?m)^gpu +64 +1 +[1-9]\d* +0\.0 +{spread} +\d+\.\d\d +- ")  # over cpu
+        self.assertRegex(text, rf"(?m)^distance +1 +[1-9]\d* +0\.0 +{spread} +- +\d")
+        self.assertRegex(text, rf"(?m)^image +1 +[1-9]\d* +0\.0 +{spread} +\d+\.\d\d +")  # over distance
         self.assertRegex(text, r"(?m)^method .* skins +regions +faces +upload +passes +gather +readback "
-                               r"+gaps +groups +forces +tangent *$")
-        self.assertRegex(text, r"(?m)^cpu +64 +1( +\d+\.\d\d){11} *$")
-        for pixels in "wanted", "256":  # prices
-            self.assertRegex(text, rf"(?m)^press-ball +{pixels} ")
+                               r"+gaps +rest +forces +tangent *$")
+        self.assertRegex(text, r"(?m)^image +1( +\d+\.\d\d){11} *$")
+        self.assertRegex(text, r"(?m)^press-ball ")  # prices
         written = json.loads((self.folder / "out/bench-contact.json").read_text())
-        cpu, gpu = written["scenes"][0]["rows"]
-        self.assertEqual((cpu["method"], gpu["method"]), ("cpu", "gpu"))
-        self.assertRegex(cpu["device"], r"^.+, (baseline|avx2|avx512)$")
-        self.assertIn("4.", gpu["device"])
-        for row in cpu, gpu:
+        points, image = written["scenes"][0]["rows"]
+        self.assertEqual((points["method"], image["method"]), ("distance", "image"))
+        self.assertRegex(points["device"], r"^.+, (baseline|avx2|avx512)$")
+        self.assertIn("4.", image["device"])
+        for row in points, image:
             self.assertIn(f"\n  {row['method']}: {row['device']}", text)
-        self.assertIn("nothing to see in an image", self.refused("bench", "contact", "falling-ball"))
+        self.assertIn("has no contact with a tool or between bodies",
+                      self.refused("bench", "contact", "falling-ball"))
 
     def test_bench_contact_gives_each_stage_its_spread(self):
-        text = self.good("bench", "contact", "press-ball", "--method", "exact", "--threads", "1", "--all",
-                         "--pixels", "64")
-        self.assertRegex(text, r"(?m)^exact +64 +1( +\d+\.\d+ / \d+\.\d+ / \d+\.\d+){11} *$")
+        text = self.good("bench", "contact", "press-ball", "--method", "distance", "--threads", "1", "--all")
+        self.assertRegex(text, r"(?m)^distance +1( +\d+\.\d+ / \d+\.\d+ / \d+\.\d+){11} *$")
 
-    def test_bench_contact_without_a_gpu_says_so(self):
-        done = self.call("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64",
+    def test_bench_contact_without_opengl_says_so(self):
+        done = self.call("bench", "contact", "press-ball", "--threads", "1",
                          __EGL_VENDOR_LIBRARY_FILENAMES="/nowhere")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"(?m)^gpu is left out: .*install ")
-        self.assertNotRegex(done.stdout, r"(?m)^gpu +64 ")
+        self.assertRegex(done.stdout, r"(?m)^image is left out: .*install ")
+        self.assertNotRegex(done.stdout, r"(?m)^image +1 ")
 
     def test_bench_contact_checks_its_bars(self):
         scene = (PROGRAM.parent / "../share/palpate/scenes/press-ball.toml").read_text()
         scene = scene.split("\n[compare]")[0]
-        # in one linear solve 300 nodes are stepped faster than 256 pixels along an edge are looked at
         quick = scene.replace('name = "cvode-bdf"\nrtol = 1e-3',
                               'name = "linearly-implicit-euler"\nstep_s = 0.01')
         self.assertNotEqual(quick, scene)
         (self.folder / "quick.toml").write_text(quick)
-        done = self.call("bench", "contact", "quick.toml", "--method", "cpu", "--threads", "1", "--check")
+        done = self.call("bench", "contact", "quick.toml", "--method", "distance", "--threads", "1", "--check")
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assertEqual(done.stderr, "")
         self.assertRegex(done.stdout, r"(?m)^press-ball +query / step +\S+ +<= 1 +missed *$")
@@ -137,7 +135,7 @@ class Judgements(Cli):
         # before they touch there is little to look at: in one try of several, however busy the machine is
         (self.folder / "apart.toml").write_text(scene.replace("duration_s = 0.4", "duration_s = 0.05"))
         for _ in range(10):
-            done = self.call("bench", "contact", "apart.toml", "--method", "cpu", "--threads", "1", "--check")
+            done = self.call("bench", "contact", "apart.toml", "--method", "distance", "--threads", "1", "--check")
             met = 1 if done.returncode == 0 else 0
             self.assertTrue(done.stdout.endswith(f"\n{met} of 1 bars met\n"), done.stdout + done.stderr)
             if met:

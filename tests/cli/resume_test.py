@@ -39,7 +39,7 @@ RUNS = {
     "tool in exchange, condensed": ("press-ball", 0.05, [
         *TOUCHING, "--set", "exchange.linearisation=condensed"]),
     "tool and body as one system": ("press-ball", 0.05, [*TOUCHING, "--set", "exchange.scheme=monolithic"]),
-    "contact in images": ("press-ball", 0.05, [*TOUCHING, "--set", "contact.1.method=cpu"]),
+    "contact in images": ("press-ball", 0.05, [*TOUCHING, "--set", "contact.1.method=image"]),
     "contact by nearest points": ("press-ball", 0.05, [
         *TOUCHING, "--set", "contact.0.method=distance", "--set", "contact.1.method=distance"]),
     "simulated hand, passivity": ("press-ball", 0.05, [

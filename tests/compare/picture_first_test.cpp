@@ -44,7 +44,7 @@ position_m = [0.001, 0.002, 0.034]
 [exchange]
 exchange_period_s = 0.01
 [compare]
-contact_methods = ["analytic", "gpu"]
+contact_methods = ["analytic", "image"]
 reference_rtol = 1e-4
 reference_check = "cvode-bdf"
 reference_check_rtol = 1e-4
@@ -62,7 +62,7 @@ TEST(Compare, ProcessesDrawAfterAPictureWasDrawn) {
   const compare::SceneComparison c = compare::run({loop::parse(kTouch, "touch.toml")}, options).scenes[0];
   for (const compare::MissingChart& chart : c.missing_charts) ADD_FAILURE() << chart.text();
   ASSERT_EQ(c.methods.size(), 2u);
-  EXPECT_EQ(c.methods[1].method, "gpu");
+  EXPECT_EQ(c.methods[1].method, "image");
   EXPECT_GT(c.methods[1].peak_force_n, 0.0);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "backends.h"
 #include "grid_proxies.h"
+#include "images.h"
 #include "palpate/proxy/decompose.h"
 #include "surfaces.h"
 

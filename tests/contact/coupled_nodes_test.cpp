@@ -18,20 +18,14 @@ NodeNeighbours chain(int first) {
   return {edges, first};
 }
 
-/// A cell whose samples hang on this node of the one chain and on the same of the other.
-SampleCells cell_at(int node) {
-  SampleCells out;
-  out.carriers.resize(2);
-  for (Carrier& carrier : out.carriers) {
-    carrier.count = 1;
-    carrier.number = node;
-  }
-  out.carriers[0].node[0] = node;
-  out.carriers[1].node[0] = kFirst + node;
-  out.cells.resize(1);
-  out.cells[0].a = 0;
-  out.cells[0].b = 1;
-  return out;
+/// Samples that hang on this node of the one chain and on the same of the other.
+std::vector<CoupledNodes::Joint> joint_at(int node) {
+  CarriedPoint a, b;
+  a.number = b.number = node;
+  a.point.count = b.point.count = 1;
+  a.point.node[0] = node;
+  b.point.node[0] = kFirst + node;
+  return {CoupledNodes::joint_of(a, b)};
 }
 
 std::set<std::pair<int, int>> pairs_of(CoupledNodes& coupled) {
@@ -56,14 +50,14 @@ TEST(CoupledNodes, WaitForContactThatSlidesByAnElement) {
   const NodeNeighbours a = chain(0), b = chain(kFirst);
   CoupledNodes coupled;
   coupled.start(a, b);
-  coupled.take(cell_at(10), 0);
+  coupled.take(joint_at(10));
   EXPECT_EQ(pairs_of(coupled).size(), 9u) << "each of three with each of three";
   const auto version = coupled.version();
   for (const int node : {9, 11, 10}) {
-    coupled.take(cell_at(node), 0);
+    coupled.take(joint_at(node));
     EXPECT_EQ(coupled.version(), version);
   }
-  coupled.take(cell_at(12), 0);
+  coupled.take(joint_at(12));
   EXPECT_GT(coupled.version(), version);
   EXPECT_TRUE(pairs_of(coupled).contains({9, 9})) << "what was met stays for a while";
   EXPECT_TRUE(pairs_of(coupled).contains({13, 13}));
@@ -76,13 +70,13 @@ TEST(CoupledNodes, StartAnewWhereMostIsPast) {
   coupled.start(a, b);
   for (int node = 2; node < 36; node += 3)
     for (int again = 0; again < 2; ++again) {
-      coupled.take(cell_at(node), 0);
+      coupled.take(joint_at(node));
       coupled.version();
     }
   EXPECT_LE(pairs_of(coupled).size(), 18u);
   EXPECT_TRUE(pairs_of(coupled).contains({35, 35}));
   EXPECT_FALSE(pairs_of(coupled).contains({2, 2}));
-  coupled.take(cell_at(2), 0);
+  coupled.take(joint_at(2));
   EXPECT_TRUE(pairs_of(coupled).contains({2, 2})) << "was known, and forgotten";
   const auto version = coupled.version();
   coupled.start(a, b);
@@ -94,11 +88,11 @@ TEST(CoupledNodes, AreMadeOfTheLastQueryWhenSomebodyAsks) {
   const NodeNeighbours a = chain(0), b = chain(kFirst);
   CoupledNodes coupled;
   coupled.start(a, b);
-  for (const int node : {5, 10, 30}) coupled.take(cell_at(node), 0);
+  for (const int node : {5, 10, 30}) coupled.take(joint_at(node));
   EXPECT_EQ(pairs_of(coupled).size(), 9u) << "nobody asked for the first two";
   EXPECT_TRUE(pairs_of(coupled).contains({30, 30}));
   const auto version = coupled.version();
   EXPECT_GT(version, 0u);
-  coupled.take(cell_at(12), 0);
+  coupled.take(joint_at(12));
   EXPECT_GT(coupled.version(), version) << "the version alone is an answer, too";
 }

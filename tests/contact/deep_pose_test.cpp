@@ -5,11 +5,9 @@
 using namespace contact_tests;
 using namespace contact_tests::ball_and_slab;
 
-ON_EACH_BACKEND(DeepPose);
-
 // Without proxies: a ball pushed into a slab, deeper than to its middle and out of its other side, is pushed
 // back to where it came from as long as they touch.  The hulls' shortest way out is the other way by then.
-TEST_P(DeepPose, ADeepPoseKeepsItsNormal) {
+TEST(DeepPose, ADeepPoseKeepsItsNormal) {
   for (const bool soft : {false, true}) {
     Pair pair;
     const auto source = pair.source(soft, false, 0.0);

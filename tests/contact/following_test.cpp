@@ -173,7 +173,7 @@ TEST(Following, WhatHasNoFormulaIsRefused) {
     } catch (const Error& e) { return std::string(e.what()); }
     return std::string("accepted");
   };
-  EXPECT_NE(refusal().find("contact \"ball\" with \"stone\": gaps = \"exact\" is for obstacles"),
+  EXPECT_NE(refusal().find("contact \"ball\" with \"stone\": gaps = \"exact\" is for methods"),
             std::string::npos)
       << refusal();
   law.gaps = "exakt";

@@ -13,14 +13,14 @@ namespace {
 constexpr double kTau = 0.01, kSpeed = 1e-3, kLongest = kTau * kSpeed;  // [s], [m/s], [m]
 
 /// Two frames that touch at the origin, the normal along z, and a triangle of nodes there.
-struct Touch {
+struct Anchored {
   std::vector<FrameState> frames{2};
   dynamics::State state;
   std::vector<ContactSample> samples{1};
   std::vector<int> points{7};
   FrictionAnchors anchors{kTau, kSpeed};
 
-  Touch() {
+  Anchored() {
     samples[0].a.frame = 0;
     samples[0].b.frame = 1;
     samples[0].gap = -1e-3;
@@ -61,7 +61,7 @@ struct Touch {
 
 // A query moves the anchors and changes no deflection; what slides is cut to the longest.
 TEST(FrictionAnchors, AreTheWayOfTheMaterialWithinTheCone) {
-  Touch touch;
+  Anchored touch;
   EXPECT_EQ(touch.renewed(), Vec3(0, 0, 0));
   const Vec3 way(3e-6, 4e-6, 0);
   touch.place(0, {Quat::Identity(), way + Vec3(0, 0, -1e-4)});  // the way along the normal is none
@@ -83,7 +83,7 @@ TEST(FrictionAnchors, RotateWithWhatTouches) {
   const Vec3 way(5e-6, 0, 0);
   const Quat turn(Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ()));
   for (const bool on_nodes : {false, true}) {
-    Touch touch;
+    Anchored touch;
     if (on_nodes) {
       SurfacePoint& b = touch.samples[0].b;
       b = {};
@@ -96,7 +96,7 @@ TEST(FrictionAnchors, RotateWithWhatTouches) {
     EXPECT_LT((touch.followed() - way).norm(), 1e-16) << on_nodes;
     for (const bool is_renewed : {false, true}) {
       if (is_renewed) touch.renewed();
-      Touch turned = touch;
+      Anchored turned = touch;
       turned.place(0, {turn, turn * way});
       turned.place(1, {turn, Vec3::Zero()});
       for (int i = 0; i < 3; ++i)
@@ -110,7 +110,7 @@ TEST(FrictionAnchors, RotateWithWhatTouches) {
 // on the spot does.
 TEST(FrictionAnchors, RollingIsNoSliding) {
   constexpr double kRadius = 0.05, kAngle = 1e-4;
-  Touch touch;
+  Anchored touch;
   SurfacePoint& b = touch.samples[0].b;
   b.slide = Vec3(0, 0, -kRadius);
   touch.place(1, {Quat::Identity(), Vec3(0, 0, kRadius)});
@@ -124,7 +124,7 @@ TEST(FrictionAnchors, RollingIsNoSliding) {
 
 // Points that part, or are no longer there, begin anew; of others each keeps its own.
 TEST(FrictionAnchors, EndWhereItsPointsPart) {
-  Touch touch;
+  Anchored touch;
   touch.samples.assign(3, touch.samples[0]);
   touch.points = {2, 5, 9};
   touch.renewed();
@@ -148,16 +148,16 @@ TEST(FrictionAnchors, EndWhereItsPointsPart) {
 }
 
 TEST(FrictionAnchors, AreKeptAndGivenBackToTheLastBit) {
-  Touch touch;
+  Anchored touch;
   touch.renewed();
   touch.place(0, {Quat(Eigen::AngleAxisd(0.1, Vec3(1, 2, 3).normalized())), Vec3(3e-6, 1e-6, 0)});
   const Vec3 kept = touch.renewed();
   EXPECT_GT(kept.norm(), 1e-6);
   Archive out;
   touch.anchors.archive(out);
-  Touch again = touch;
+  Anchored again = touch;
   again.anchors = FrictionAnchors(kTau, kSpeed);
-  EXPECT_EQ(Touch(again).renewed(), Vec3(0, 0, 0)) << "without the archive";
+  EXPECT_EQ(Anchored(again).renewed(), Vec3(0, 0, 0)) << "without the archive";
   Archive in(out.values(), "test");
   again.anchors.archive(in);
   EXPECT_EQ(again.renewed(), kept);

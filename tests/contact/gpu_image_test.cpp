@@ -1,166 +1,116 @@
-// What a query sends to the GPU, and that it sees there what the processor sees.
+// What a query sends to the GPU, and where it sees it.
 #include "contact/gpu_image.h"
 
-#include <algorithm>
-#include <map>
+#include <numeric>
 
-#include "contact/image_source.h"
+#include "contact/image_region.h"
 #include "two_balls.h"
 
 using namespace contact_tests;
 
 namespace {
 
-class GpuImages : public ::testing::Test {
- protected:
-  void SetUp() override {
-    backend() = contact::DepthBackend::kGpu;
-    gpu_was_used() = true;
+std::vector<int> all_faces(const contact::ImageSide& side) {
+  std::vector<int> out(static_cast<std::size_t>(side.faces().cols()));
+  std::iota(out.begin(), out.end(), 0);
+  return out;
+}
+
+/// Two sides that are looked at by one image along the line between two points.
+struct Look {
+  contact::RegionContext context;
+  contact::ImageRegion region{context};
+  std::vector<int> faces_a, faces_b;
+
+  Look(std::shared_ptr<contact::ImageSide> a, std::shared_ptr<contact::ImageSide> b)
+      : faces_a(all_faces(*a)), faces_b(all_faces(*b)) {
+    context.a = std::move(a);
+    context.b = std::move(b);
+    context.options = image_options(96, 0.02);
+  }
+  void update(const dynamics::State& state) {
+    context.a->update(state.view());
+    context.b->update(state.view());
+  }
+  std::size_t pairs_in(contact::DepthImage& image, const Vec3& origin, const Vec3& normal) {
+    region.start({origin, normal.normalized(), 0.02, &faces_a, &faces_b});
+    contact::DepthRequest* request = region.wanted();
+    if (!request) return 0;
+    image.answer({&request, 1});
+    return request->pairs.size();
   }
 };
 
-std::vector<contact::ContactSample> samples_of(contact::SampleSource& source, const dynamics::State& state) {
-  std::vector<contact::ContactSample> out;
-  source.query(state.view(), out);
-  return out;
-}
-
-/// How many samples of one list are not in the other, to the last bit of gap and area: a pixel that both see
-/// has the same triangles, evaluated in double precision.
-std::size_t differing(const std::vector<contact::ContactSample>& p,
-                      const std::vector<contact::ContactSample>& q) {
-  std::map<std::pair<double, double>, int> count;
-  for (const auto& s : p) ++count[{s.gap, s.area}];
-  for (const auto& s : q) --count[{s.gap, s.area}];
-  std::size_t out = 0;
-  for (const auto& [key, n] : count) out += static_cast<std::size_t>(std::abs(n));
-  return out;
-}
+std::size_t bytes(Eigen::Index points) { return 16 * static_cast<std::size_t>(points); }
 
 }  // namespace
 
-/// Keeps what makes images, and the image that was made last.
-class WatchedMaker {
- public:
-  WatchedMaker() : before_(contact::gpu_image_maker()) {
-    image() = nullptr;
-    contact::gpu_image_maker() = [] {
-      auto made = std::make_unique<contact::GpuImage>();
-      image() = made.get();
-      return std::unique_ptr<contact::DepthImage>(std::move(made));
-    };
-  }
-  ~WatchedMaker() { contact::gpu_image_maker() = before_; }
-  static contact::GpuImage*& image() {
-    static contact::GpuImage* last = nullptr;
-    return last;
-  }
-
- private:
-  contact::MakeImage before_;
-};
-
-// Skins never travel: a query sends the nodes of each soft body, once for all pairs and rounds, and a rigid
-// surface is sent once for good.
-TEST_F(GpuImages, AQuerySendsNodesAlone) {
+// Skins never travel: a query sends the nodes of each soft body, once for all pairs, and a rigid surface is
+// sent once for good.
+TEST(GpuImages, AQuerySendsNodesAlone) {
   TwoBalls balls;
   const TriMesh tool = sphere(Vec3(-0.3, 0.6, 1.2), 0.5, 20);
-  contact::ContactForce term;
-  const auto frame = contact::fixed_frame();
-  term.add_frame(frame);
-  contact::ImageOptions options = balls.options();
-  options.quadrature_error = 1e-3;
-  term.add_pair(
-      contact::make_image_source(balls.a.surface, balls.a.proxies, balls.b.surface, balls.b.proxies, options),
-      ContactSpec{});
-  term.add_pair(
-      contact::make_image_source(balls.b.surface, balls.b.proxies, balls.a.surface, balls.a.proxies, options),
-      ContactSpec{});
-  auto last = contact::make_image_source(balls.a.surface, tool, 0, frame, options);
-  term.add_pair(std::move(last), ContactSpec{});
-  // the first pair's image answers all
-  const WatchedMaker maker;
-  term.refresh(balls.state.view());
-  contact::GpuImage* const image = maker.image();
-  ASSERT_TRUE(image);
+  const auto a = std::shared_ptr(contact::soft_side(balls.a.surface)),
+             b = std::shared_ptr(contact::soft_side(balls.b.surface)),
+             c = std::shared_ptr(contact::rigid_side(tool, 0, contact::fixed_frame()));
+  Look soft(a, b), rigid(a, c);
+  contact::GpuImage image;
+  const auto query = [&] {
+    soft.update(balls.state);
+    rigid.update(balls.state);
+    image.start_query();
+    EXPECT_GT(soft.pairs_in(image, Vec3(0.17, -0.1, -0.9), Vec3(-0.35, 0.2, 1.95)), 500u);
+    EXPECT_GT(rigid.pairs_in(image, Vec3(-0.2, 0.4, 0.8), Vec3(0.3, -0.6, -1.2)), 100u);
+  };
+  soft.update(balls.state);
+  rigid.update(balls.state);
+  image.prepare(*a, *b);
+  image.prepare(*a, *c);
+  query();
   EXPECT_FALSE(contact::gpu_device().name.empty());
   EXPECT_NE(contact::gpu_device().driver.find("4."), std::string::npos);
-  const auto bytes = [](Eigen::Index points) { return 16 * static_cast<std::size_t>(points); };
   const std::size_t nodes = bytes(balls.a.model.tets.nodes.cols() + balls.b.model.tets.nodes.cols()),
-                    first = image->surfaces().sent_bytes();
-  // once to prepare, once in the query; again where the tool made their buffer grow
-  EXPECT_GE(first, 2 * nodes + bytes(tool.vertices.cols()));
-  EXPECT_LE(first, 3 * nodes + bytes(tool.vertices.cols()));
-  EXPECT_GE(term.stages()[0]->images, 2);  // more than one round
-  term.refresh(balls.state.view());
-  EXPECT_EQ(image->surfaces().sent_bytes() - first, nodes);
+                    first = image.surfaces().sent_bytes();
+  EXPECT_GE(first, 2 * nodes + bytes(tool.vertices.cols())) << "once to prepare, once in the query";
+  query();
+  EXPECT_EQ(image.surfaces().sent_bytes() - first, nodes);
+  EXPECT_EQ(image.surfaces().size(), 3u);
 }
 
-// What the first touch needs is made by the first query, in which nothing touches: the context, its programs,
+// What the first touch needs is made before, in a query in which nothing touches: the context, its programs,
 // both surfaces.  Made at first touch it would be a hitch of a tenth of a second there.
-TEST_F(GpuImages, FirstTouchFindsAllMade) {
+TEST(GpuImages, TheFirstQueryMakesAllThatFirstTouchNeeds) {
   TwoBalls balls;
   const VecX touching = balls.state.q();
-  const Eigen::Index of_a = 3 * balls.a.model.tets.nodes.cols();
-  balls.state.q().head(of_a).array() += 10.0;
-  contact::ContactForce term;
-  term.add_pair(contact::make_image_source(balls.a.surface, balls.a.proxies, balls.b.surface, balls.b.proxies,
-                                           balls.options()),
-                ContactSpec{});
-  const WatchedMaker maker;
-  term.refresh(balls.state.view());
-  contact::GpuImage* const image = maker.image();
-  ASSERT_TRUE(image);
-  EXPECT_EQ(term.stages()[0]->images, 0);
-  EXPECT_EQ(image->surfaces().size(), 2u);
-  const std::size_t sent = image->surfaces().sent_bytes();
+  balls.state.q().head(3 * balls.a.model.tets.nodes.cols()).array() += 10.0;
+  const auto source = balls.source(true);
+  std::vector<contact::ContactSample> samples;
+  source->query(balls.state.view(), samples);
+  EXPECT_EQ(source->stages()->images, 0);
+  const double prepared = source->stages()->images_s;
+  EXPECT_GT(prepared, 0.0);
+  EXPECT_FALSE(contact::gpu_device().name.empty());
   balls.state.q() = touching;
-  term.refresh(balls.state.view());
-  EXPECT_EQ(maker.image(), image);
-  EXPECT_GT(term.stages()[0]->images, 0);
-  EXPECT_EQ(image->surfaces().size(), 2u);
-  EXPECT_EQ(image->surfaces().sent_bytes() - sent, 16 * static_cast<std::size_t>(balls.state.q().size() / 3));
+  source->query(balls.state.view(), samples);
+  EXPECT_GT(source->stages()->images, 0);
+  EXPECT_GT(samples.size(), 40u);
 }
 
-// The same samples as by the processor but for pixels at the border of the overlap, wherever the bodies are:
-// single precision counts from the body, not from the world's origin.  Where a first image aligns the normal,
-// its border turns the normal a little, and with it all samples.
-TEST_F(GpuImages, SeeWhatTheProcessorSees) {
-  std::map<std::string, long> lines;  // pixels that single precision gave to the wrong triangle, among others
-  for (const double away : {0.0, 1e5}) {
-    SCOPED_TRACE(away);
-    TwoBalls balls;
-    balls.state.q().array() += away;
-    const Pose pose{quaternion_of(Vec3(0.5, 1.1, -0.4)), Vec3(-0.2, 0.5, 1.1).array() + away};
-    const TriMesh tool = sphere(Vec3(-0.1, 0.1, 0.1), 0.6, 20);
-    const auto compare = [&](const char* what, bool aligned, auto make) {
-      SCOPED_TRACE(what);
-      contact::ImageOptions options = balls.options();
-      options.backend = contact::DepthBackend::kCpu;
-      const auto by_cpu = samples_of(*make(options), balls.state);
-      options.backend = contact::DepthBackend::kGpu;
-      const auto source = make(options);
-      const auto by_gpu = samples_of(*source, balls.state), again = samples_of(*source, balls.state);
-      ASSERT_GT(by_cpu.size(), 400u);
-      const double count = static_cast<double>(by_cpu.size()), border = 4.0 * std::sqrt(count);
-      if (!aligned) { EXPECT_LT(static_cast<double>(differing(by_cpu, by_gpu)), border); }
-      EXPECT_NEAR(static_cast<double>(by_gpu.size()), count, border);
-      if (away == 0.0) lines[what] = source->stages()->lines;
-      EXPECT_NEAR(static_cast<double>(source->stages()->lines), static_cast<double>(lines[what]), border);
-      EXPECT_EQ(by_gpu.size(), again.size());
-      EXPECT_EQ(differing(by_gpu, again), 0u);
-      const Total cpu = total(by_cpu, balls.state.view()), gpu = total(by_gpu, balls.state.view());
-      EXPECT_LT((cpu.force - gpu.force).norm(), 1e-4 * cpu.force.norm());
-    };
-    compare("two skins, proxies", true, [&](const contact::ImageOptions& options) {
-      return contact::make_image_source(balls.a.surface, balls.a.proxies, balls.b.surface, balls.b.proxies,
-                                        options);
-    });
-    compare("two skins", false, [&](const contact::ImageOptions& options) {
-      return contact::make_image_source(balls.a.surface, balls.b.surface, options);
-    });
-    compare("a tool", false, [&](const contact::ImageOptions& options) {
-      return contact::make_image_source(balls.a.surface, tool, 0, contact::fixed_frame(pose), options);
-    });
+// Single precision counts from the body, not from the world's origin: wherever the bodies are, the same
+// vertices have the same gaps, to the rounding of positions.
+TEST(GpuImages, SeeTheSameFarFromTheOrigin) {
+  for (const bool pruned : {false, true}) {
+    std::vector<contact::ContactSample> near, far;
+    for (const double away : {0.0, 1e5}) {
+      TwoBalls balls;
+      balls.state.q().array() += away;
+      balls.source(pruned)->query(balls.state.view(), away == 0.0 ? near : far);
+    }
+    ASSERT_GT(near.size(), 40u);
+    ASSERT_EQ(far.size(), near.size());
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      EXPECT_NEAR(far[i].gap, near[i].gap, 1e-8) << i;
+      EXPECT_EQ(far[i].a.node, near[i].a.node) << i;
+    }
   }
 }

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "backends.h"
-#include "palpate/contact/gpu_available.h"
+#include "images.h"
+#include "palpate/contact/gpu_device.h"
 #include "palpate/core/counters.h"
 #include "surfaces.h"
 
@@ -55,32 +55,26 @@ TriMesh deformed(const SurfaceWorld& world) {
 
 }  // namespace
 
-ON_EACH_BACKEND(ImageSource);
-
-// The GPU is opened by the first query, whether anything touches or not: at first touch it would hold up the
-// loop.  No other backend opens it, and to make a source does not.
-TEST_P(ImageSource, OpensAContextInItsFirstQueryOnTheGpuAlone) {
+// The context is opened by the first query, whether anything touches or not: at first touch it would hold up
+// the loop.  To make a source does not open it.
+TEST(ImageSource, OpensAContextInItsFirstQuery) {
   const long before = counters::counter("gl.context").load();
   Pair pair;
   pair.soft.state.q().tail(pair.soft.state.q().size() - 6).array() += 50.0;  // far away
   EXPECT_EQ(counters::counter("gl.context").load(), before);
   EXPECT_TRUE(pair.samples(64, 0.05).empty());
-  if (GetParam() == contact::DepthBackend::kGpu) {
-    EXPECT_FALSE(contact::gpu_device().name.empty());
-  } else {
-    EXPECT_EQ(counters::counter("gl.context").load(), before);
-  }
+  EXPECT_FALSE(contact::gpu_device().name.empty());
 }
 
 // Every gap against a ray through all the triangles in double; every weight and point consistent.
-TEST_P(ImageSource, GapsAreThoseOfTheFacets) {
+TEST(ImageSource, GapsAreThoseOfTheFacets) {
   Pair pair;
   const auto samples = pair.samples(128, 0.03);
-  ASSERT_GT(samples.size(), 3000u);
+  ASSERT_GT(samples.size(), 100u);
   const TriMesh soft = deformed(pair.soft);
   int pressed = 0, candidates = 0;
   double worst = 0.0;
-  for (std::size_t i = 0; i < samples.size(); i += 29) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto& s = samples[i];
     const Vec3 xa = position(s.a, pair.soft.state), xb = pair.pose * s.b.offset;
     EXPECT_NEAR(s.a.weight[0] + s.a.weight[1] + s.a.weight[2], 1.0, 1e-13);
@@ -97,10 +91,10 @@ TEST_P(ImageSource, GapsAreThoseOfTheFacets) {
   EXPECT_GT(samples[0].normal.dot(pair.axis), 0.99);  // from the rigid sphere to the soft one
 }
 
-TEST_P(ImageSource, SamplesDoNotDependOnTheOrderOfTriangles) {
+TEST(ImageSource, SamplesDoNotDependOnTheOrderOfTriangles) {
   Pair pair;
   const auto first = pair.samples(96, 0.02);
-  EXPECT_GT(first.size(), 1000u);
+  EXPECT_GT(first.size(), 100u);
   std::mt19937 random(4);
   for (Faces* faces : {&pair.soft.surface.faces, &pair.rigid.faces}) {
     std::vector<int> order(static_cast<std::size_t>(faces->cols()));
@@ -119,7 +113,7 @@ TEST_P(ImageSource, SamplesDoNotDependOnTheOrderOfTriangles) {
 
 // Force and moment of real samples, oblique and far from the origin: about the tool's origin, over force x
 // body size.
-TEST_P(ImageSource, ForceAndMomentBalance) {
+TEST(ImageSource, ForceAndMomentBalance) {
   Pair pair;
   contact::ContactForce term;
   const auto frame = contact::fixed_frame(pair.pose);
@@ -145,7 +139,7 @@ TEST_P(ImageSource, ForceAndMomentBalance) {
 
 // A skin pressed by a ball: each sample lies where the image saw it, so that the contact is that of nodes in
 // the skin's places, and force and moment balance.
-TEST_P(ImageSource, ASkinIsSeenWhereItIs) {
+TEST(ImageSource, ASkinIsSeenWhereItIs) {
   SkinWorld skin;
   SurfaceWorld nodes({skin.vertices, skin.skin.faces});
   const TriMesh rigid = sphere(Vec3(0, 0, skin.vertices.row(2).maxCoeff() + 0.4), 0.5, 30);
@@ -157,7 +151,7 @@ TEST_P(ImageSource, ASkinIsSeenWhereItIs) {
   };
   const auto of_skin = query(skin.surface, skin.state), of_nodes = query(nodes.surface, nodes.state);
   ASSERT_EQ(of_skin.size(), of_nodes.size());
-  EXPECT_GT(of_skin.size(), 100u);
+  EXPECT_GT(of_skin.size(), 20u);
   for (const contact::ContactSample& s : of_skin) {  // in the order of what carries them
     const auto same = std::min_element(of_nodes.begin(), of_nodes.end(), [&](const auto& p, const auto& q) {
       return (p.b.offset - s.b.offset).norm() < (q.b.offset - s.b.offset).norm();
@@ -173,7 +167,7 @@ TEST_P(ImageSource, ASkinIsSeenWhereItIs) {
 
 // Where the tetrahedron is squashed flat its barycentric coordinates say nothing: the corner's weights and an
 // offset place the sample.
-TEST_P(ImageSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
+TEST(ImageSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
   SkinWorld skin;
   // all nodes in the plane z = 0
   for (Eigen::Index i = 8; i < skin.state.q().size(); i += 3) skin.state.q()[i] = 0.0;
@@ -181,14 +175,14 @@ TEST_P(ImageSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
   contact::make_image_source(skin.surface, sphere(Vec3(0, 0, 0.45), 0.5, 30), 0, contact::fixed_frame(),
                              image_options(64, 0.02))
       ->query(skin.state.view(), samples);
-  EXPECT_GT(samples.size(), 50u);
+  EXPECT_GT(samples.size(), 15u);
   for (const auto& s : samples) {
     EXPECT_TRUE(std::isfinite(s.gap));
     EXPECT_NEAR(s.gap, s.normal.dot(point_on_nodes(s.a, skin.state.view()) - s.b.offset), 1e-12);
   }
 }
 
-TEST_P(ImageSource, RefusesBadOptions) {
+TEST(ImageSource, RefusesBadOptions) {
   Pair pair;
   const auto message = [&](TriMesh rigid, contact::ImageOptions with) {
     try {
@@ -200,10 +194,6 @@ TEST_P(ImageSource, RefusesBadOptions) {
             std::string::npos);
   EXPECT_NE(message(pair.rigid, image_options(64, -0.1)).find("candidate gap = -0.1"), std::string::npos);
   EXPECT_NE(message(TriMesh{}, image_options(64, 0.1)).find("two surfaces with faces"), std::string::npos);
-  contact::ImageOptions exact = image_options(64, 0.1);
-  exact.quadrature_error = 0.5;
-  EXPECT_NE(message(pair.rigid, exact).find("quadrature error = 0.5 must lie in [0, 0.1]"),
-            std::string::npos);
   contact::ImageOptions behind = image_options(64, 0.1);
   behind.look_ahead = -1.0;
   EXPECT_NE(message(pair.rigid, behind).find("look-ahead = -1 must not be negative"), std::string::npos);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "backends.h"
 #include "grid_proxies.h"
+#include "images.h"
 #include "surfaces.h"
 
 using namespace contact_tests;
@@ -25,9 +25,7 @@ Vec3 world(const contact::RegionView& region, int column, int row, double w) {
 
 }  // namespace
 
-ON_EACH_BACKEND(QueryView);
-
-TEST_P(QueryView, IsKeptOnlyWhereItWasAskedFor) {
+TEST(QueryView, IsKeptOnlyWhereItWasAskedFor) {
   Lens lens;
   const auto source = contact::make_image_source(lens.soft.surface, lens.rigid, 0, contact::fixed_frame(),
                                                  image_options(64, 0.05));
@@ -45,8 +43,9 @@ TEST_P(QueryView, IsKeptOnlyWhereItWasAskedFor) {
   EXPECT_TRUE(source->view()->regions.empty());
 }
 
-// On both spheres a pixel of the grid lies where its height says, and the grid is the samples'.
-TEST_P(QueryView, PixelsLieOnTheSurfacesAndAreTheSamples) {
+// On both spheres a pixel of the grid lies where its height says; its volume is that of the lens, and about
+// that of the samples at vertices.
+TEST(QueryView, PixelsLieOnTheSurfaces) {
   Lens lens;
   const auto source = contact::make_image_source(lens.soft.surface, lens.rigid, 0, contact::fixed_frame(),
                                                  image_options(128, 0.05));
@@ -73,13 +72,16 @@ TEST_P(QueryView, PixelsLieOnTheSurfacesAndAreTheSamples) {
       volume += std::max(0.0, -gap) * region.pixel * region.pixel;
     }
   EXPECT_NEAR(deepest, -kDepth, 4e-3);
-  EXPECT_EQ(seen, samples.size());
-  double expected = 0.0;
-  for (const auto& s : samples) expected += std::max(0.0, -s.gap) * s.area;
-  EXPECT_NEAR(volume, expected, 1e-12 * expected);
+  EXPECT_GT(seen, 5000u);
+  const double D = 1.8 - kDepth, h = kDepth,
+               lens_volume = M_PI * h * h * (D * D + 2.0 * D * 1.8 - 3.0 * 0.04) / (12.0 * D);
+  EXPECT_NEAR(volume, lens_volume, 0.03 * lens_volume) << "facets";
+  double by_vertices = 0.0;
+  for (const auto& s : samples) by_vertices += std::max(0.0, -s.gap) * s.area;
+  EXPECT_NEAR(by_vertices, volume, 0.05 * volume);
 }
 
-TEST_P(QueryView, HullsAreThoseOfProxiesThatPress) {
+TEST(QueryView, HullsAreThoseOfProxiesThatPress) {
   SkinWorld skin;
   const Vec3 centre(0.1, 0.05, skin.vertices.row(2).maxCoeff() + 0.35);
   const TriMesh rigid = sphere(centre, 0.5, 30);
@@ -106,22 +108,17 @@ TEST_P(QueryView, HullsAreThoseOfProxiesThatPress) {
   for (const Points& hull : view.proxies_a) EXPECT_LT(box_distance(hull), 0.5 + 0.02 + inflation);
 }
 
-// Vertices that interpolate are no grid: what they are stands in the points.
-TEST_P(QueryView, VerticesHaveNoGrid) {
+// Points of the contact are its samples, with the law's pressure.
+TEST(QueryView, PointsAreTheSamples) {
   Lens lens;
-  contact::ImageOptions options = image_options(64, 0.05);
-  options.samples = contact::SampleRule::kVertex;
+  const contact::ImageOptions options = image_options(64, 0.05);
   contact::ContactForce term;
   term.add_frame(contact::fixed_frame());
   ContactSpec law;
   law.stiffness_pa_m = 2e4;
   term.add_pair(contact::make_image_source(lens.soft.surface, lens.rigid, 0, contact::fixed_frame(), options),
                 law);
-  term.keep_views();
   term.refresh(lens.soft.state.view());
-  ASSERT_EQ(term.views().size(), 1u);
-  ASSERT_NE(term.views()[0], nullptr);
-  EXPECT_TRUE(term.views()[0]->regions.empty());
   const auto points = term.points(lens.soft.state.view());
   ASSERT_EQ(points.size(), term.samples().size());
   int pressed = 0;

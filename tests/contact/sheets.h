@@ -56,7 +56,6 @@ struct Sheet {
 struct Seen {
   std::vector<FacePair> pairs;
   ContactCamera camera;
-  std::vector<std::uint32_t> layered;
 };
 
 inline Seen seen_in(DepthImage& image, const Patch& a, const Patch& b, const ContactCamera& camera,
@@ -80,21 +79,14 @@ inline Seen seen_in(DepthImage& image, const Patch& a, const Patch& b, const Con
   DepthRequest* const one = &request;
   image.start_query();
   image.answer({&one, 1});
-  return {request.pairs, request.camera, request.layered};
+  return {request.pairs, request.camera};
 }
 
 inline std::vector<FacePair> pairs_of(DepthImage& image, Patch& a, Patch& b, double gap, int pixels,
-                                      ContactCamera* camera = nullptr,
-                                      std::vector<std::uint32_t>* layered = nullptr) {
+                                      ContactCamera* camera = nullptr) {
   Seen seen = seen_in(image, a, b, fit_camera(a, b, gap, pixels, {0.0, 0.0}), gap);
   if (camera) *camera = seen.camera;
-  if (layered) *layered = seen.layered;
   return seen.pairs;
-}
-
-inline std::unique_ptr<DepthImage> image_of(DepthBackend backend) {
-  if (backend == DepthBackend::kGpu) return make_gpu_image();
-  return backend == DepthBackend::kCpu ? make_cpu_image() : make_exact_image();
 }
 
 }  // namespace contact_tests

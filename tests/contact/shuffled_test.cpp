@@ -12,17 +12,14 @@ struct Felt {
   std::vector<contact::ContactSample> samples;
 };
 
-Felt felt_by(unsigned order, contact::SampleRule rule, double error, double friction) {
+Felt felt_by(unsigned order, double friction) {
   TwoBalls balls({.order = order});
-  balls.samples = rule;
-  contact::ImageOptions options = balls.options();
-  options.quadrature_error = error;
   ContactSpec law;
   law.stiffness_pa_m = 1e6;
   law.damping_pa_s_m = 1e4;
   law.friction = friction;
   contact::ContactForce term;
-  term.add_pair(balls.source(true, options), law);
+  term.add_pair(balls.source(true), law);
   term.refresh(balls.state.view());
   Felt out{VecX::Zero(balls.state.view().u.size()), {}};
   out.samples.assign(term.samples().begin(), term.samples().end());
@@ -32,33 +29,29 @@ Felt felt_by(unsigned order, contact::SampleRule rule, double error, double fric
 
 }  // namespace
 
-ON_EACH_BACKEND(Shuffled);
-
 // Two soft bodies through proxies: the same samples and the same forces, bit by bit.  Patches, regions,
 // planes and sums go by what the triangles are, not by their numbers.
-TEST_P(Shuffled, SamplesAndForcesStayBitByBit) {
-  for (const auto rule : {contact::SampleRule::kPixel, contact::SampleRule::kVertex})
-    for (const auto& [error, friction] : {std::pair(0.0, 0.3), std::pair(1e-3, 0.3), std::pair(1e-3, 0.0)}) {
-      const Felt plain = felt_by(0, rule, error, friction);
-      ASSERT_GT(plain.samples.size(), rule == contact::SampleRule::kPixel ? 1000u : 100u);
-      ASSERT_GT(plain.force.norm(), 100.0);
-      for (const unsigned order : {1u, 2u, 3u}) {
-        SCOPED_TRACE(testing::Message() << "rule " << static_cast<int>(rule) << ", error " << error
-                                        << ", friction " << friction << ", order " << order);
-        const Felt other = felt_by(order, rule, error, friction);
-        ASSERT_EQ(other.samples.size(), plain.samples.size());
-        for (std::size_t i = 0; i < plain.samples.size(); ++i) {
-          const contact::ContactSample &s = plain.samples[i], &t = other.samples[i];
-          ASSERT_EQ(s.gap, t.gap) << i;
-          ASSERT_EQ(s.area, t.area) << i;
-          ASSERT_EQ(s.normal, t.normal) << i;
-          for (const auto& [p, q] : {std::pair(&s.a, &t.a), std::pair(&s.b, &t.b)}) {
-            ASSERT_EQ(p->node, q->node) << i;
-            ASSERT_EQ(p->weight, q->weight) << i;
-            ASSERT_EQ(p->offset, q->offset) << i;
-          }
+TEST(Shuffled, SamplesAndForcesStayBitByBit) {
+  for (const double friction : {0.3, 0.0}) {
+    const Felt plain = felt_by(0, friction);
+    ASSERT_GT(plain.samples.size(), 50u);
+    ASSERT_GT(plain.force.norm(), 100.0);
+    for (const unsigned order : {1u, 2u, 3u}) {
+      SCOPED_TRACE(testing::Message() << "friction " << friction << ", order " << order);
+      const Felt other = felt_by(order, friction);
+      ASSERT_EQ(other.samples.size(), plain.samples.size());
+      for (std::size_t i = 0; i < plain.samples.size(); ++i) {
+        const contact::ContactSample &s = plain.samples[i], &t = other.samples[i];
+        ASSERT_EQ(s.gap, t.gap) << i;
+        ASSERT_EQ(s.area, t.area) << i;
+        ASSERT_EQ(s.normal, t.normal) << i;
+        for (const auto& [p, q] : {std::pair(&s.a, &t.a), std::pair(&s.b, &t.b)}) {
+          ASSERT_EQ(p->node, q->node) << i;
+          ASSERT_EQ(p->weight, q->weight) << i;
+          ASSERT_EQ(p->offset, q->offset) << i;
         }
-        EXPECT_EQ(other.force, plain.force);
       }
+      EXPECT_EQ(other.force, plain.force);
     }
+  }
 }

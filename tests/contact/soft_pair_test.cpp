@@ -13,39 +13,30 @@ ContactSpec law() {
 
 }  // namespace
 
-ON_EACH_BACKEND(SoftPair);
-
-// Vertices of both skins: a sample's gap is that between its two points, however its depth was read, and the
-// force does not depend on which body is named first.
-TEST_P(SoftPair, VerticesOfBothSkins) {
+// Vertices of both skins: a sample's gap is that between its two points, and the force does not depend on
+// which body is named first.
+TEST(SoftPair, VerticesOfBothSkins) {
   TwoBalls balls;
-  double force[2][2];
-  balls.samples = contact::SampleRule::kVertex;
-  for (const bool interpolated : {false, true}) {
-    balls.depths = interpolated ? contact::DepthReading::kInterpolated : contact::DepthReading::kTriangles;
-    for (const bool swapped : {false, true}) {
-      std::vector<contact::ContactSample> samples;
-      (swapped ? balls.swapped() : balls.source(true))->query(balls.state.view(), samples);
-      Vec3 sum = Vec3::Zero();
-      for (const auto& s : samples) {
-        const Vec3 xa = point_on_nodes(s.a, balls.state.view()), xb = point_on_nodes(s.b, balls.state.view());
-        EXPECT_NEAR(s.normal.dot(xa - xb), s.gap, 1e-12);
-        EXPECT_LT((xa - xb).cross(s.normal).norm(), 1e-12);
-        if (s.gap < 0.0) sum -= s.gap * s.area * s.normal;
-      }
-      EXPECT_GT(samples.size(), 40u);
-      force[interpolated][swapped] = sum.norm();
+  double force[2];
+  for (const bool swapped : {false, true}) {
+    std::vector<contact::ContactSample> samples;
+    (swapped ? balls.swapped() : balls.source(true))->query(balls.state.view(), samples);
+    Vec3 sum = Vec3::Zero();
+    for (const auto& s : samples) {
+      const Vec3 xa = point_on_nodes(s.a, balls.state.view()), xb = point_on_nodes(s.b, balls.state.view());
+      EXPECT_NEAR(s.normal.dot(xa - xb), s.gap, 1e-12);
+      EXPECT_LT((xa - xb).cross(s.normal).norm(), 1e-12);
+      if (s.gap < 0.0) sum -= s.gap * s.area * s.normal;
     }
-    EXPECT_NEAR(force[interpolated][1], force[interpolated][0], 1e-3 * force[interpolated][0])
-        << interpolated;
+    EXPECT_GT(samples.size(), 40u);
+    force[swapped] = sum.norm();
   }
-  EXPECT_NEAR(force[1][0], force[0][0], 0.05 * force[0][0]);
-  EXPECT_GT(std::abs(force[1][0] - force[0][0]), 1e-6 * force[0][0]);
+  EXPECT_EQ(force[1], force[0]);
 }
 
 // Third law: resultant and moment of both bodies' forces vanish to rounding, each alone does not; the force
 // pushes a up, off b.
-TEST_P(SoftPair, ActionIsReaction) {
+TEST(SoftPair, ActionIsReaction) {
   TwoBalls balls;
   Vec3 whole = Vec3::Zero();
   for (const bool pruned : {false, true}) {
@@ -75,7 +66,7 @@ TEST_P(SoftPair, ActionIsReaction) {
       arm = std::max(arm, -s.gap);
       ++sliding;
     }
-    EXPECT_GT(sliding, 500);
+    EXPECT_GT(sliding, 40);
     EXPECT_LT(moment.norm(), with_all.friction * arm * on_a.norm() + 1e-11 * on_a.norm());
     if (pruned)
       EXPECT_LT((on_a - whole).norm(), 0.1 * whole.norm());  // planes of their own: 96 pixels, coarse skins
@@ -95,13 +86,12 @@ TEST_P(SoftPair, ActionIsReaction) {
 
 // With the smooth onset the force is C1, so that the Taylor residual falls with slope 2; the assembled
 // tangent is the applied one, and symmetric.
-TEST_P(SoftPair, TheTangentCouplesBothBodies) {
+TEST(SoftPair, TheTangentCouplesBothBodies) {
   for (const bool per_point : {false, true}) {
     SCOPED_TRACE(per_point ? "per point" : "per area");
     TwoBalls balls;
     ContactSpec smooth = law();
     if (per_point) {
-      balls.samples = contact::SampleRule::kVertex;
       smooth.spring = "per_point";
       smooth.stiffness_n_m = 1e4;
     }
@@ -149,7 +139,7 @@ TEST_P(SoftPair, TheTangentCouplesBothBodies) {
 
 // What a fused step adds beside its pattern is the assembled tangent, with and without friction; and its
 // force is that of the term, less what the tangent makes of the step's shift.
-TEST_P(SoftPair, PointStiffnessIsTheTangent) {
+TEST(SoftPair, PointStiffnessIsTheTangent) {
   for (const double friction : {0.0, 0.4}) {
     TwoBalls balls;
     contact::ContactForce term;
@@ -171,8 +161,7 @@ TEST_P(SoftPair, PointStiffnessIsTheTangent) {
     dynamics::PointStiffness C;
     VecX f = VecX::Zero(size), g = VecX::Zero(size);
     term.add_step(balls.state.view(), shift, kK, kD, f, C);
-    EXPECT_EQ(C.points.empty(), friction == 0.0);
-    EXPECT_EQ(C.along.empty(), friction > 0.0);
+    EXPECT_FALSE(C.points.empty());
     MatX dense = MatX::Zero(size, size);
     const auto add = [&](const dynamics::PointStiffness::Nodes& nodes, auto block) {
       EXPECT_TRUE(nodes.relative);
@@ -181,8 +170,6 @@ TEST_P(SoftPair, PointStiffnessIsTheTangent) {
           dense.block<3, 3>(3 * nodes.node[static_cast<std::size_t>(i)],
                             3 * nodes.node[static_cast<std::size_t>(j)]) += block(i, j);
     };
-    for (const auto& a : C.along)
-      add(a.nodes, [&](int i, int j) { return Mat3(a.G(i, j) * a.normal * a.normal.transpose()); });
     for (const auto& a : C.points)
       add(a.nodes, [&](int i, int j) { return Mat3(a.weight[i] * a.weight[j] * a.C); });
     const MatX exact = step_matrix(term, balls.state, kK, kD).to_dense();
@@ -201,7 +188,7 @@ TEST_P(SoftPair, PointStiffnessIsTheTangent) {
 // The pattern holds what the contact has met and may meet next: it rests while nothing new is met, and
 // announces all that the tangent couples as one ball rolls off the other (coupled_nodes_test.cpp has its
 // rules).
-TEST_P(SoftPair, ThePatternHoldsTheContact) {
+TEST(SoftPair, ThePatternHoldsTheContact) {
   TwoBalls balls;
   contact::ContactForce term;
   term.add_pair(balls.source(true), law());
@@ -221,7 +208,7 @@ TEST_P(SoftPair, ThePatternHoldsTheContact) {
   EXPECT_GT(pressed, 2) << "or there is nothing to announce";
 }
 
-TEST_P(SoftPair, RefusesOneBodyTwice) {
+TEST(SoftPair, RefusesOneBodyTwice) {
   TwoBalls balls;
   EXPECT_THROW(contact::make_image_source(balls.a.surface, balls.a.surface, balls.options()), InternalError);
   EXPECT_THROW(

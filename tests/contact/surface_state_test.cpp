@@ -1,6 +1,6 @@
 #include "contact/surface_state.h"
+#include "contact/image_side.h"
 
-#include "contact/cell_builder.h"
 #include "palpate/core/counters.h"
 #include "surfaces.h"
 
@@ -51,19 +51,6 @@ struct SquashedWorld : SkinWorld {
   }
 };
 
-/// The point x of a face, with these weights of its corners, as a side of a sample with this normal.
-contact::SurfacePoint carried_point(const contact::ImageSide& side, int face, const Vec3& weights,
-                                    const Vec3& x, const Vec3& normal) {
-  const contact::ContactAxes axes(Vec3(0.1, -0.2, 0.3), normal);
-  const Vec3 at = axes.in_axes(x);
-  contact::CellBuilder builder;
-  contact::SampleCells cells;
-  builder.start(axes, side, side, 1.0, cells);
-  builder.add({at.x(), at.y(), at.z(), at.z(), weights, weights}, face, face);
-  builder.finish();
-  return cells.sample(cells.cells.at(0), 0).a;
-}
-
 }  // namespace
 
 // However low a tetrahedron is, its nodes carry a point of the skin by weights no larger than those of an
@@ -90,7 +77,7 @@ TEST(SurfaceState, ASquashedTetrahedronAmplifiesNoForce) {
         const Vec3 area = (surface.position(corner[1]) - surface.position(corner[0]))
                               .cross(surface.position(corner[2]) - surface.position(corner[0]));
         const Vec3 n = (area.normalized() + 0.3 * vector(random)).normalized();
-        const contact::SurfacePoint point = carried_point(*side, f, weights, x, n);
+        const contact::SurfacePoint point = side->carried(f, weights, x, n).point;
         ASSERT_EQ(point.count, 4);
         double sum = 0.0, size = 0.0;
         Vec3 carried = Vec3::Zero();

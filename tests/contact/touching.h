@@ -23,6 +23,7 @@ struct TouchingKind {
   bool pruned = true;        ///< by proxies
   bool of_vertices = false;  ///< samples are points of a surface
   bool of_ball = false;      ///< one side is a ball by its own points, which do not rotate with it
+  bool image = false;        ///< in image space: a query asks OpenGL
 };
 
 namespace touching {
@@ -102,14 +103,13 @@ inline TriMesh tool_ball(const Soft& soft) {
 }
 
 /// It in image space.
-inline Touching on_tool(contact::SampleRule samples, bool pruned, bool in_state) {
+inline Touching on_tool(bool pruned, bool in_state) {
   const Soft soft = soft_skin();
   Touching out;
   out.state = soft.state;
   const auto frame = add_frame(out, tool_pose(), in_state);
   const TriMesh tool = tool_ball(soft);
-  contact::ImageOptions options = image_options(24, 0.05);
-  options.samples = samples;
+  const contact::ImageOptions options = image_options(24, 0.05);
   out.source = pruned ? contact::make_image_source(soft.surface, soft.proxies, tool, proxies_of(tool), 0,
                                                    frame, options)
                       : contact::make_image_source(soft.surface, tool, 0, frame, options);
@@ -156,9 +156,8 @@ inline Touching two_near() {
   return out;
 }
 
-inline Touching two_soft(contact::SampleRule samples, bool pruned) {
+inline Touching two_soft(bool pruned) {
   TwoBalls balls;
-  balls.samples = samples;
   balls.pixels = 24;
   Touching out;
   out.source = balls.source(pruned);
@@ -171,14 +170,13 @@ inline Touching itself() {
   const TwoBalls balls;
   const LayeredModel both = [&] {
     LayeredModel a = balls.a.model, b = balls.b.model;
-    for (LayeredModel* model : {&a, &b}) {
-      model->embedding = mesh::embed(model->tets, model->skin.vertices);
-      model->proxies = grid_proxies(model->skin, 3);
-    }
+    for (LayeredModel* model : {&a, &b}) model->embedding = mesh::embed(model->tets, model->skin.vertices);
     return together(a, b);
   }();
-  Points rest = both.tets.nodes;  // what overlaps at rest is no contact: there they stand apart
+  // what overlaps at rest is no contact: there they stand apart
+  Points rest = both.tets.nodes, rest_skin = both.skin.vertices;
   rest.rightCols(balls.b.model.tets.nodes.cols()).row(2).array() -= 1.0;
+  rest_skin.rightCols(balls.b.model.skin.vertices.cols()).row(2).array() -= 1.0;
   Touching out;
   contact::NodeSurface surface;
   dynamics::BlockSpec nodes;
@@ -189,8 +187,7 @@ inline Touching itself() {
   surface.faces = both.skin.faces;
   surface.embedding = both.embedding;
   surface.tets = both.tets.tets;
-  out.source = contact::make_image_source(surface, std::make_shared<proxy::ProxySet>(both), rest,
-                                          image_options(24, 0.02));
+  out.source = contact::make_own_distance_source(surface, rest_skin, rest, {.candidate_gap = 0.02});
   return out;
 }
 
@@ -198,7 +195,6 @@ inline Touching itself() {
 
 /// Every kind of pair, each with nodes and skins, frames that stand still and such of the State.
 inline std::vector<TouchingKind> touching_kinds() {
-  using contact::SampleRule;
   std::vector<TouchingKind> out;
   for (const char* shape : {"plane", "sphere", "box", "cylinder"}) {
     const std::string name = shape;
@@ -211,23 +207,20 @@ inline std::vector<TouchingKind> touching_kinds() {
                  [] { return touching::on_shape("cylinder", false, false, true); }, false});
   out.push_back({"points of a skin on a moving sphere",
                  [] { return touching::on_shape("sphere", true, true, true); }, false});
-  for (const auto& [rule, name] : {std::pair{SampleRule::kPixel, std::string("pixels")},
-                                   std::pair{SampleRule::kVertex, std::string("vertices")}}) {
-    const SampleRule samples = rule;
-    const bool vertices = rule == SampleRule::kVertex;
-    out.push_back({"a skin on a tool, " + name, [=] { return touching::on_tool(samples, true, true); }, true,
-                   vertices});
-    out.push_back({"a skin on a tool, unpruned, " + name,
-                   [=] { return touching::on_tool(samples, false, true); }, false, vertices});
-    out.push_back({"two skins, " + name, [=] { return touching::two_soft(samples, true); }, true, vertices});
-    out.push_back({"two skins, unpruned, " + name, [=] { return touching::two_soft(samples, false); }, false,
-                   vertices});
+  if (contact::gpu_available()) {
+    out.push_back(
+        {"a skin on a tool, image", [] { return touching::on_tool(true, true); }, true, true, false, true});
+    out.push_back({"a skin on a tool, image, unpruned", [] { return touching::on_tool(false, true); }, false,
+                   true, false, true});
+    out.push_back({"two skins, image", [] { return touching::two_soft(true); }, true, true, false, true});
+    out.push_back(
+        {"two skins, image, unpruned", [] { return touching::two_soft(false); }, false, true, false, true});
   }
   out.push_back({"a skin on a tool, nearest points", [] { return touching::near_tool(true); }, false});
   out.push_back({"a skin and a moving sphere, points of both", [] { return touching::half_and_half(true); },
                  false, false, true});
   out.push_back({"two skins, nearest points", [] { return touching::two_near(); }, false});
-  out.push_back({"a body against itself", [] { return touching::itself(); }});
+  out.push_back({"a body against itself", [] { return touching::itself(); }, false});
   return out;
 }
 

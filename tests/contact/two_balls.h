@@ -1,6 +1,6 @@
 #pragma once
-#include "backends.h"
 #include "grid_proxies.h"
+#include "images.h"
 #include "surfaces.h"
 
 namespace contact_tests {
@@ -54,14 +54,7 @@ struct TwoBalls {
   }
 
   int pixels = 96;
-  contact::SampleRule samples = contact::SampleRule::kPixel;
-  contact::DepthReading depths = contact::DepthReading::kTriangles;
-  contact::ImageOptions options() const {
-    contact::ImageOptions out = image_options(pixels, 0.02);
-    out.samples = samples;
-    out.depths = depths;
-    return out;
-  }
+  contact::ImageOptions options() const { return image_options(pixels, 0.02); }
   std::unique_ptr<contact::SampleSource> swapped() const {
     return contact::make_image_source(b.surface, b.proxies, a.surface, a.proxies, options());
   }

@@ -1,6 +1,6 @@
 // Samples at vertices, from scenes' point of view: sources on whole bodies.
-#include "backends.h"
 #include "grid_proxies.h"
+#include "images.h"
 #include "surfaces.h"
 
 using namespace contact_tests;
@@ -22,11 +22,9 @@ struct OnSlab {
         5, 7, 3, 2, 1, 5, 7, 3, 6, 2, 3, 7,            //
         7, 6, 1, 3, 5, 4, 6, 7, 4, 6, 7, 5;
   }
-  std::vector<contact::ContactSample> samples(int pixels, contact::SampleRule rule) {
-    contact::ImageOptions options = image_options(pixels, 0.02);
-    options.samples = rule;
-    const auto source =
-        contact::make_image_source(soft.surface, slab, 0, contact::fixed_frame(pose), options);
+  std::vector<contact::ContactSample> samples(int pixels) {
+    const auto source = contact::make_image_source(soft.surface, slab, 0, contact::fixed_frame(pose),
+                                                   image_options(pixels, 0.02));
     std::vector<contact::ContactSample> out;
     source->query(soft.state.view(), out);
     return out;
@@ -35,15 +33,13 @@ struct OnSlab {
 
 }  // namespace
 
-ON_EACH_BACKEND(VertexSamples);
-
 // Every vertex below the slab's face, none missed and none extra, each as deep as it is, for a third of its
 // triangles' projected area.
-TEST_P(VertexSamples, AreTheVerticesBelowAFace) {
+TEST(VertexSamples, AreTheVerticesBelowAFace) {
   OnSlab scene(40);
   const Pose inverse = scene.pose.inverse();
   for (const int pixels : {64, 256}) {
-    const auto samples = scene.samples(pixels, contact::SampleRule::kVertex);
+    const auto samples = scene.samples(pixels);
     ASSERT_FALSE(samples.empty());
     const Vec3 n = samples[0].normal;
     const auto view = scene.soft.state.view();
@@ -83,14 +79,13 @@ TEST_P(VertexSamples, AreTheVerticesBelowAFace) {
 }
 
 // The sum of depth x area tends to the overlap's volume, pi d^2 (3 - d)/3.
-TEST_P(VertexSamples, SumToTheOverlapVolume) {
+TEST(VertexSamples, SumToTheOverlapVolume) {
   const double volume = kPi * 0.01 * (3.0 - 0.1) / 3.0;
   std::vector<double> errors;
   for (const int rings : {20, 40, 80}) {
     OnSlab scene(rings);
     double sum = 0.0;
-    for (const auto& s : scene.samples(256, contact::SampleRule::kVertex))
-      sum -= std::min(s.gap, 0.0) * s.area;
+    for (const auto& s : scene.samples(256)) sum -= std::min(s.gap, 0.0) * s.area;
     errors.push_back(std::abs(sum / volume - 1.0));
   }
   EXPECT_LT(errors[0], 0.2);
@@ -100,7 +95,7 @@ TEST_P(VertexSamples, SumToTheOverlapVolume) {
 
 // A box flat on a slab, its walls along the normal but for rounding: the vertices at its rim are corners of
 // walls, and a line through one may pass beside the box.  Each is a sample, and hangs on the face below.
-TEST_P(VertexSamples, OfABoxHangOnTheFaceThatIsSeen) {
+TEST(VertexSamples, OfABoxHangOnTheFaceThatIsSeen) {
   constexpr int kCellsX = 5, kCellsY = 4;
   for (int turn = 0; turn < 16; ++turn) {
     const Pose pose{quaternion_of(Vec3(0.3 + 0.7 * turn, 1.1, -0.4)), Vec3(2, -1, 0.3 * turn)};
@@ -109,10 +104,8 @@ TEST_P(VertexSamples, OfABoxHangOnTheFaceThatIsSeen) {
     for (auto x : box.vertices.colwise()) x = pose * Vec3(x + Vec3(0.05, -0.02, 0.3 + 0.5 - 0.01));
     if (turn % 2 == 1) box.faces = box.faces.rowwise().reverse().eval();  // walls come after the face below
     SurfaceWorld soft(box);
-    contact::ImageOptions options = image_options(128, 0.02);
-    options.samples = contact::SampleRule::kVertex;
     std::vector<contact::ContactSample> samples;
-    contact::make_image_source(soft.surface, slab, 0, contact::fixed_frame(pose), options)
+    contact::make_image_source(soft.surface, slab, 0, contact::fixed_frame(pose), image_options(128, 0.02))
         ->query(soft.state.view(), samples);
     EXPECT_EQ(samples.size(), static_cast<std::size_t>((kCellsX + 1) * (kCellsY + 1))) << turn;
     double area = 0.0;

@@ -211,7 +211,7 @@ class FromThePages(unittest.TestCase):
                 self.assertIn(fault, found[0])
 
     def test_what_exists_is_not_found(self):
-        text = ("`palpate run press-ball --set contact.1.method=cpu -o out/x` `--realtime` "
+        text = ("`palpate run press-ball --set contact.1.method=image -o out/x` `--realtime` "
                 "`exchange.scheme` `rtol = 1e-3` `force.csv` `ark-dirk-*` `[[body.region]]` "
                 "`./palpate --asan test --part mesh`\n"
                 "```toml\n[[hand]]\nname = 'left'\n[hand.tool.coupling]\nstiffness_n_m = 3.0\n```\n")

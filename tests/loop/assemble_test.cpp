@@ -99,9 +99,9 @@ TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
   expect_refused(d, {"blok"});
   d = pressed_block(0.0);
   d.contacts[0].method = "vertex";
-  expect_refused(d, {"vertex", "method = \"analytic\", and for a tool"});
+  expect_refused(d, {"vertex", "is no method"});
   d.contacts[0].method = "pixel";
-  expect_refused(d, {"pixel", "write samples = \"pixel\""});
+  expect_refused(d, {"pixel", "write \"image\""});
   d = pressed_block(0.0);
   d.tool->shape = "mesh";
   d.tool->mesh.generator = "ball";
@@ -112,7 +112,7 @@ TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
   d = pressed_block(0.0);
   d.contacts[0].second = "block";
   d.contacts[0].method = "analytic";
-  expect_refused(d, {"no exact gaps against itself", "use method = \"auto\""});
+  expect_refused(d, {"touches itself by nearest points", "use method = \"auto\""});
 }
 #endif
 

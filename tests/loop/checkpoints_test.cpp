@@ -113,7 +113,6 @@ Outcome outcome_of(const loop::World& world, const loop::RunResult& result, cons
       if (s) {
         out.counts["images"] += static_cast<double>(s->images);
         out.counts["pairs"] += static_cast<double>(s->pairs);
-        out.counts["lines"] += static_cast<double>(s->lines);
       }
     for (const contact::SumError* e : c.sum_errors())
       if (e) {

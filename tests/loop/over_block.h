@@ -3,8 +3,7 @@
 
 namespace palpate::small_scenes {
 
-/// A second body over the held block, that is not held, and contact of both in images once a hundredth of a
-/// second.
+/// A second body over the held block, that is not held, and contact of both once a hundredth of a second.
 inline void put_over_block(scene::Description& d, SoftBodySpec upper) {
   upper.name = "upper";
   upper.attachments.clear();
@@ -12,7 +11,8 @@ inline void put_over_block(scene::Description& d, SoftBodySpec upper) {
   ContactSpec contact;
   contact.first = "block";
   contact.second = "upper";
-  contact.method = "cpu";
+  contact.method = "distance";
+  contact.gaps = "exact";
   contact.stiffness_pa_m = 1e6;
   d.contacts.push_back(contact);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;

@@ -5,6 +5,7 @@
 #include "loop/small_scenes.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
+#include "palpate/scene/contact_sides.h"
 
 /// How deep a round tool of 15 mm lay in a block 20 mm high, as a run says it afterwards.
 namespace {
@@ -12,9 +13,9 @@ namespace {
 using namespace palpate;
 
 /// @param depth  of the tool at the first query, when nothing has given way yet
-loop::Overlap overlap_of(double depth, const std::string& method = "cpu") {
+loop::Overlap overlap_of(double depth, const std::string& method = "distance") {
   scene::Description d = small_scenes::pressed_block(depth);
-  d.contacts[0].method = method;
+  scene::set_method(d.contacts[0], method);
   const auto world = loop::assemble(d);
   EXPECT_TRUE(loop::run(*world, {}).status.ok());
   const std::vector<loop::Overlap> all = loop::overlaps_of(*world);
@@ -24,11 +25,11 @@ loop::Overlap overlap_of(double depth, const std::string& method = "cpu") {
 
 // The block gives way from then on, and the overlap gets smaller.
 TEST(Overlap, IsThatOfTheDeepestQuery) {
-  const loop::Overlap of_image = overlap_of(0.003);
-  EXPECT_EQ(of_image.pair, "block - tool");
-  EXPECT_NEAR(of_image.deepest_m, 0.003, 0.02 * 0.003);
-  EXPECT_NEAR(of_image.half_width_m, 0.01, 1e-12);
-  EXPECT_FALSE(of_image.too_deep());
+  const loop::Overlap of_points = overlap_of(0.003);
+  EXPECT_EQ(of_points.pair, "block - tool");
+  EXPECT_NEAR(of_points.deepest_m, 0.003, 0.02 * 0.003);
+  EXPECT_NEAR(of_points.half_width_m, 0.01, 1e-12);
+  EXPECT_FALSE(of_points.too_deep());
   // of vertices, the one nearest to the axis is 1 mm and 2 mm beside it
   EXPECT_NEAR(overlap_of(0.003, "analytic").deepest_m, 0.015 - std::hypot(0.001, 0.002, 0.012), 1e-9);
 }

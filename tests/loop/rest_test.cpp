@@ -72,20 +72,21 @@ TEST_P(RestingContact, HasTheForceOfTheMonolithicSolution) {
   EXPECT_LE(rest.range, 1e-6 * truth.force.norm());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RestingContact,
-                         ::testing::Values(RestCase{"sphere", "auto", "points", "linearly-implicit-euler"},
-                                           RestCase{"sphere", "cpu", "points", "linearly-implicit-euler"},
-                                           RestCase{"mesh", "cpu", "points", "linearly-implicit-euler"},
-                                           RestCase{"mesh", "cpu", "condensed", "linearly-implicit-euler"},
-                                           RestCase{"mesh", "cpu", "frozen", "linearly-implicit-euler"},
-                                           RestCase{"sphere", "cpu", "points", "cvode-bdf"},
-                                           RestCase{"sphere", "cpu", "frozen", "cvode-bdf"}),
-                         [](const auto& one) {
-                           std::string name = std::string(one.param.shape) + "_" + one.param.method + "_" +
-                                              one.param.linearisation + "_" + one.param.integrator;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    All, RestingContact,
+    ::testing::Values(RestCase{"sphere", "auto", "points", "linearly-implicit-euler"},
+                      RestCase{"sphere", "distance", "points", "linearly-implicit-euler"},
+                      RestCase{"mesh", "distance", "points", "linearly-implicit-euler"},
+                      RestCase{"mesh", "distance", "condensed", "linearly-implicit-euler"},
+                      RestCase{"mesh", "distance", "frozen", "linearly-implicit-euler"},
+                      RestCase{"sphere", "distance", "points", "cvode-bdf"},
+                      RestCase{"sphere", "distance", "frozen", "cvode-bdf"}),
+    [](const auto& one) {
+      std::string name = std::string(one.param.shape) + "_" + one.param.method + "_" +
+                         one.param.linearisation + "_" + one.param.integrator;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
 
 }  // namespace
 }  // namespace palpate

@@ -34,7 +34,8 @@ scene::Description touching_blocks(int threads) {
   ContactSpec contact;
   contact.first = "block";
   contact.second = "upper";
-  contact.method = "cpu";
+  contact.method = "distance";
+  contact.gaps = "exact";
   contact.stiffness_pa_m = 1e6;
   contact.friction = 0.3;
   d.contacts.push_back(contact);

@@ -27,7 +27,7 @@ scene::Description thrown(double speed) {
   ContactSpec contact;
   contact.first = "block";
   contact.second = "plate";
-  contact.method = "cpu";
+  contact.method = "image";
   contact.pixels = 64;
   contact.stiffness_pa_m = 20.0 * speed * speed / (3e-3 * 3e-3);
   d.contacts.push_back(contact);
@@ -108,7 +108,7 @@ std::vector<Target> targets() {
 template <class Visit>
 void for_each_target(const Visit& visit) {
   for (const Target target : targets())
-    for (const char* method : {"cpu", "distance"})
+    for (const char* method : {"image", "distance"})
       for (const double speed : {0.1, 1.0, 10.0, 100.0}) {
         scene::Description d = target(speed);
         scene::set_method(d.contacts[0], method);

@@ -250,63 +250,6 @@ TEST(Pruner, SwallowedSkinLooksThroughItself) {
   }
 }
 
-// A bent bar on two bones touches itself end to end; bones side by side are neighbours and no contact.
-TEST(Pruner, BonesOfOneBodyMayTouch) {
-  LayeredModel bar = bar_on_bones({16, 3, 2});
-  Bone middle = bar.skeleton.bones[0];
-  bar.skeleton.bones[0].tail = Vec3(-0.4, 0, 0);
-  middle = {"middle", 0, Vec3(-0.4, 0, 0), Vec3(0.4, 0, 0), 0.15, 0.15};
-  Bone right{"right", 1, Vec3(0.4, 0, 0), Vec3(1, 0, 0), 0.15, 0.15};
-  bar.skeleton.bones = {bar.skeleton.bones[0], middle, right};
-  bar = cut(bar, 24);
-  Placed one(bar);
-  Pruner pruner(one.set, one.set, {.between_bones = true});
-  EXPECT_GT(pruner.counts().pairs, 30);
-  EXPECT_LT(pruner.counts().pairs, 24 * 23 / 2);
-  for (const auto& region : pruner.query(0.0))
-    for (const auto& [p, q] : region.pairs) {
-      EXPECT_LT(one.set.bone(p), one.set.bone(q));
-      EXPECT_FALSE(one.set.neighbours(p, q));
-    }
-  // rolled up to a ring around y whose ends overlap: radius r with 2 pi r a little less than the length
-  Points nodes = bar.tets.nodes;
-  const double r = 1.9 / (2 * M_PI);
-  for (Eigen::Index n = 0; n < nodes.cols(); ++n) {
-    const Vec3 x = nodes.col(n);
-    nodes.col(n) = Vec3((r + x.z()) * std::sin(x.x() / r), x.y(), (r + x.z()) * std::cos(x.x() / r));
-  }
-  one.set.update(nodes);
-  const auto regions = pruner.query(0.0);
-  bool ends = false;
-  for (const auto& region : regions)
-    for (const auto& [p, q] : region.pairs) ends |= one.set.bone(p) == 0 && one.set.bone(q) == 2;
-  EXPECT_TRUE(ends);
-  // Each pair once, and none whose proxies have a node in common: around a joint these are all, on whichever
-  // sides of the bar.
-  const auto owner = [&](int p) {
-    std::set<int> own;
-    for (const int v : bar.proxies[static_cast<std::size_t>(p)].members)
-      for (int k = 0; k < 4; ++k)
-        own.insert(bar.tets.tets(k, bar.embedding.tet[static_cast<std::size_t>(v)]));
-    return own;
-  };
-  int allowed = 0, grown = 0;
-  for (int p = 0; p < one.set.size(); ++p)
-    for (int q = 0; q < one.set.size(); ++q) {
-      const auto of_p = owner(p), of_q = owner(q);
-      const bool share = std::any_of(of_p.begin(), of_p.end(), [&](int n) { return of_q.contains(n); });
-      EXPECT_TRUE(!share || one.set.grown_together(p, q));
-      EXPECT_EQ(one.set.grown_together(p, q), one.set.grown_together(q, p));
-      EXPECT_EQ(pruner.is_pair(p, q), one.set.bone(p) < one.set.bone(q) && !one.set.grown_together(p, q));
-      allowed += pruner.is_pair(p, q);
-      grown += one.set.grown_together(p, q) && !one.set.neighbours(p, q);
-    }
-  EXPECT_EQ(pruner.counts().pairs, allowed);
-  EXPECT_GT(grown, 0);
-  const Placed other(bar);
-  EXPECT_THROW(Pruner(one.set, other.set, {.between_bones = true}), InternalError);
-}
-
 TEST(Pruner, RefusesBadArguments) {
   const LayeredModel ball = cut(bumpy_ball(1.0, 0.4, 6), 4);
   ProxySet set(ball);

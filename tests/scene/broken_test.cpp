@@ -50,11 +50,9 @@ const Broken kCases[] = {
     {"skeleton-without-model", "8:1",
      "body \"limb\": skeleton: needs mesh = { file = \"MODEL.h5\" }, a model file with bones; `palpate model "
      "human -o human.h5` makes one"},
-    {"contact-with-itself", "9:11",
-     "contact between \"ball\" and \"ball\": in images a body touches itself with the skin of one bone "
-     "against "
-     "that of another, by its proxies: give it skin = true and proxies = true, or leave out what asks for an "
-     "image"},
+    {"contact-with-itself", "10:10",
+     "contact between \"ball\" and \"ball\": a body touches itself by nearest points; method = \"image\" has "
+     "none: leave out what asks for it, or write \"distance\""},
     {"contact-with-nothing", "12:20",
      "contact between \"ball\" and \"flor\": nothing is called \"flor\" (did you mean \"floor\"?)"},
     {"contact-without-tool", "9:12",

@@ -183,31 +183,22 @@ TEST(Kinds, ContactMethods) {
   EXPECT_EQ(
       with({"contact.1.pixels=128", "contact.1.method=analytic"}),
       "--set contact.1.pixels=128: contact between \"ball\" and \"tool\": pixels means nothing to method = "
-      "\"analytic\", which takes gaps; remove it (used by auto, image, cpu, gpu, exact)");
+      "\"analytic\", which takes gaps; remove it (used by auto, image)");
   EXPECT_EQ(with({"contact.0.gaps=exact", "contact.1.gaps=exact"}), "accepted");
-  for (const std::string method : {"cpu", "gpu", "exact"})
-    EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=" + method}), "accepted");
+  EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=image"}), "accepted");
+  EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=gpu"}),
+            "--set contact.1.method=gpu: contact between \"ball\" and \"tool\": method = \"gpu\" is now "
+            "\"image\" (known: analytic, auto, distance, image)");
   EXPECT_EQ(
       with({"contact.1.method=vertex"}),
       "--set contact.1.method=vertex: contact between \"ball\" and \"tool\": method = \"vertex\" is no "
-      "method; obstacles and spheres are sampled at the vertices by method = \"analytic\", and for a tool of "
-      "another shape or a soft body write samples = \"vertex\" (known: analytic, auto, distance, image, cpu, "
-      "gpu, exact)");
-  EXPECT_NE(with({"contact.1.method=pixel"}).find("is no method; write samples = \"pixel\""),
+      "method; \"analytic\" and \"image\" have their samples at vertices (known: analytic, auto, distance, "
+      "image)");
+  EXPECT_NE(with({"contact.1.method=spheres"})
+                .find("method = \"spheres\" is not known (known: analytic, auto, distance, image)"),
             std::string::npos);
-  EXPECT_EQ(with({"contact.1.method=cpu", "contact.1.samples=vertex", "contact.1.depths=interpolated"}),
-            "accepted");
-  EXPECT_EQ(with({"contact.1.method=cpu", "contact.1.depths=interpolated"}),
-            "--set contact.1.depths=interpolated: contact between \"ball\" and \"tool\": depths = "
-            "\"interpolated\" is for vertices: a pixel has a depth of its own; write samples = \"vertex\" as "
-            "well, or remove it");
-  EXPECT_NE(
-      with({"contact.1.method=spheres"})
-          .find(
-              "method = \"spheres\" is not known (known: analytic, auto, distance, image, cpu, gpu, exact)"),
-      std::string::npos);
   EXPECT_NE(with({"compare.contact_methods=[\"analytic\", \"vertex\"]"})
-                .find("compare: contact_methods = \"vertex\" is no method; obstacles"),
+                .find("compare: contact_methods = \"vertex\" is no method; "),
             std::string::npos);
 }
 
@@ -240,13 +231,7 @@ TEST(Kinds, SpringsOfAreaAndOfPoints) {
             std::string::npos);
   // the tool is a sphere, with exact gaps at the vertices; an image has to be asked for them
   EXPECT_EQ(with({"contact.1.spring=per_point"}), "accepted");
-  EXPECT_EQ(
-      with({"contact.1.spring=per_point", "contact.1.method=cpu"}),
-      "--set contact.1.spring=per_point: contact between \"ball\" and \"tool\": spring = \"per_point\" is "
-      "a spring at each colliding vertex, and samples = \"pixel\" has none; write samples = \"vertex\" as "
-      "well, or remove it");
-  EXPECT_EQ(with({"contact.1.spring=per_point", "contact.1.method=cpu", "contact.1.samples=vertex"}),
-            "accepted");
+  EXPECT_EQ(with({"contact.1.spring=per_point", "contact.1.method=image"}), "accepted");
 }
 
 TEST(Kinds, AFrictionTangentBelongsToFriction) {
@@ -303,7 +288,7 @@ TEST(Kinds, Meshes) {
                 .find("generator = \"file\" is not known (known: box, ball, cylinder, tet)"),
             std::string::npos)
       << "a file is named by its own key";
-  const Overrides tool = {"tool.shape=mesh", "tool.inertia_kg_m2=[1,1,1]", "contact.1.method=gpu"};
+  const Overrides tool = {"tool.shape=mesh", "tool.inertia_kg_m2=[1,1,1]", "contact.1.method=image"};
   const auto tool_with = [&](const std::string& mesh) {
     Overrides all = tool;
     all.push_back("tool.mesh={" + mesh + "}");

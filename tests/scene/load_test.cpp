@@ -164,15 +164,15 @@ TEST(Load, TwoSoftBodiesHaveNoExactGaps) {
   };
   const std::string ball = "mesh = { generator = \"ball\", radius_m = 0.1, element_size_m = 0.05 }\n",
                     model = "mesh = { file = \"b.h5\" }\nskin = true\nproxies = true\n";
-  EXPECT_EQ(refusal(ball, "method = \"gpu\"\n"), "accepted");
+  EXPECT_EQ(refusal(ball, "method = \"image\"\n"), "accepted");
   EXPECT_EQ(refusal(ball, ""), "accepted");
   EXPECT_NE(refusal(ball, "method = \"analytic\"\n")
                 .find("two soft bodies have no exact gaps: leave the method out, or write \"auto\""),
             std::string::npos);
-  EXPECT_NE(refusal(ball, "method = \"gpu\"\n[[contact]]\nbetween = [\"b\", \"a\"]\nmethod = \"gpu\"\n")
+  EXPECT_NE(refusal(ball, "method = \"image\"\n[[contact]]\nbetween = [\"b\", \"a\"]\nmethod = \"image\"\n")
                 .find("this pair stands here twice"),
             std::string::npos);
-  EXPECT_NE(refusal(model, "method = \"gpu\"\n")
+  EXPECT_NE(refusal(model, "method = \"image\"\n")
                 .find("proxies = true stands in \"b\" alone; both need it, or neither"),
             std::string::npos);
 }
@@ -192,21 +192,18 @@ TEST(Load, ABodyTouchesItself) {
     } catch (const palpate::Error& e) { return e.what(); }
     return "accepted";
   };
-  const std::string proxies = "skin = true\nproxies = true\n", itself = "between = [\"hand\", \"hand\"]\n",
-                    gpu = "method = \"gpu\"\n";
-  EXPECT_EQ(refusal(proxies, itself + gpu), "accepted");
-  EXPECT_EQ(refusal(proxies, itself), "accepted");
-  EXPECT_NE(
-      refusal(proxies, itself + "method = \"analytic\"\n")
-          .find("proxies = true, but no [[contact]] of this body is in image space, which alone uses them"),
-      std::string::npos);
-  EXPECT_NE(refusal("skin = true\n", itself + gpu)
-                .find("give it skin = true and proxies = true, or leave out what asks for an image"),
+  const std::string itself = "between = [\"hand\", \"hand\"]\n";
+  EXPECT_EQ(refusal("", itself), "accepted");
+  EXPECT_EQ(refusal("skin = true\n", itself), "accepted");
+  for (const std::string method : {"analytic", "image"})
+    EXPECT_NE(refusal("", itself + "method = \"" + method + "\"\n")
+                  .find("a body touches itself by nearest points; method = \"" + method + "\" has none"),
+              std::string::npos)
+        << refusal("", itself + "method = \"" + method + "\"\n");
+  EXPECT_NE(refusal("", itself + "pixels = 128\n").find("a body touches itself by nearest points"),
             std::string::npos);
-  EXPECT_EQ(refusal("", itself), "accepted") << "nearest points need neither";
-  EXPECT_NE(
-      refusal(proxies, itself + gpu + "[[contact]]\n" + itself + gpu).find("this pair stands here twice"),
-      std::string::npos);
+  EXPECT_NE(refusal("", itself + "[[contact]]\n" + itself).find("this pair stands here twice"),
+            std::string::npos);
   EXPECT_NE(
       refusal("", "between = [\"floor\", \"floor\"]\n").find("only a soft body may touch itself; name two"),
       std::string::npos);
@@ -231,22 +228,6 @@ mesh = { generator = "ball", radius_m = 0.03, element_size_m = 0.01 }
   EXPECT_EQ(sides("[\"ball\", \"apple\"]", another), "ball - apple, distance");
 }
 
-// Of a comparison that finds a scene's contact by other methods: points and pixels have defaults of their
-// own.
-TEST(Load, AMethodThatIsSetBringsItsQuadratureError) {
-  const auto errors = [](const std::vector<std::string>& overrides) {
-    ContactSpec c = parse(scene_texts::kWhole, "whole.toml", overrides).contacts[1];
-    std::vector<double> out = {c.quadrature_error};
-    for (const char* method : {"cpu", "distance", "analytic", "distance"}) {
-      scene::set_method(c, method);
-      out.push_back(c.quadrature_error);
-    }
-    return out;
-  };
-  EXPECT_EQ(errors({}), (std::vector<double>{1e-2, 1e-3, 1e-2, 1e-3, 1e-2}));
-  EXPECT_EQ(errors({"contact.1.quadrature_error=5e-3"}), std::vector<double>(5, 5e-3));
-}
-
 /// What two keys of one table ask of each other; the locations are covered by broken_test.
 TEST(Load, KeysThatExcludeOrNeedEachOther) {
   const auto refusal = [](const std::vector<std::string>& overrides) -> std::string {
@@ -266,15 +247,15 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
       {{"obstacle.0.normal=[0,0,0]"}, "has no direction"},
       {{"obstacle.0.name=tool"}, "name \"tool\" is kept for the tool"},
       {{"body.0.name=\"a/b\""}, "must not contain slashes"},
-      {{"contact.0.method=gpu"}, "an obstacle has exact gaps"},
+      {{"contact.0.method=image"}, "an obstacle has exact gaps"},
       {{"contact.0.method=distance", "contact.0.pixels=128"},
        "pixels means nothing to method = \"distance\""},
-      {{"contact.1.method=distance", "contact.1.quadrature_error=0.0"}, "takes all pixels of an image"},
+      {{"contact.1.quadrature_error=0.0"}, "quadrature_error = 0 must lie in [1e-06, 0.1]"},
       {{"contact.1.method=distance", "contact.1.pixels=128"},
        "pixels means nothing to method = \"distance\""},
       {{"contact.1.method=distance", "contact.1.spring=per_point"}, "has points that stand for areas"},
       {{"contact.0.pixels=128"}, "pixels means nothing here: an obstacle has exact gaps; remove it"},
-      {{"contact.1.method=cpu", "contact.1.gaps=exact"}, "gaps means nothing to method = \"cpu\""},
+      {{"contact.1.method=image", "contact.1.gaps=exact"}, "gaps means nothing to method = \"image\""},
       {{"tool.shape=mesh", "tool.mesh={generator = \"ball\", radius_m = 0.01, element_size_m = 0.005}",
         "tool.inertia_kg_m2=[1, 1, 1]", "contact.1.pixels=128", "contact.1.gaps=exact"},
        "gaps = \"exact\" is for obstacles and sphere tools"},
@@ -286,7 +267,7 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
        "damping_pa_s_m means nothing to law = \"hunt_crossley\", which takes hunt_crossley_s_m; remove it "
        "(used by kelvin_voigt)"},
       {{"contact.1.between=[\"floor\", \"ball\"]"}, "this pair stands here twice"},
-      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.method=cpu"}, "an obstacle has exact gaps"},
+      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.method=image"}, "an obstacle has exact gaps"},
       {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.pixels=128"}, "an obstacle has exact gaps"},
       {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.spring=per_point"},
        "a tool with shape = \"sphere\" has none"},

@@ -35,25 +35,20 @@ struct NodeSurface {
 
 /// Wall time of the queries of a source in image space, by stage, since it was made [s].
 struct QueryStages {
-  double positions_s = 0.0;  ///< skins from nodes, rigid surfaces from frames, as far as regions need them
-  double regions_s = 0.0;    ///< which skin may touch, and along which normal
-  double patches_s = 0.0;    ///< faces of a region in its axes, and its camera
-  double images_s = 0.0;     ///< which triangles face each other; of that:
-  double upload_s = 0.0;     ///< what was made, or sent, of the surfaces for the backend
-  double passes_s = 0.0;     ///< both surfaces drawn; of exact lines all that they take
-  double gather_s = 0.0;     ///< both compared, and the pairs brought into one list
-  double readback_s = 0.0;   ///< on the GPU all else of the images: commands, fence, and the list handed out
-  double gaps_s = 0.0;       ///< gaps in double, and samples
-  long images = 0, pairs = 0;    ///< images taken, and pairs of triangles in them
-  long pixels = 0;               ///< of all images
+  double positions_s = 0.0;    ///< skins from nodes, rigid surfaces from frames, as far as regions need them
+  double regions_s = 0.0;      ///< which skin may touch, and along which normal
+  double patches_s = 0.0;      ///< faces of a region in its axes, and its camera
+  double images_s = 0.0;       ///< which triangles face each other; of that:
+  double upload_s = 0.0;       ///< what was made, or sent, of the surfaces for the GPU
+  double passes_s = 0.0;       ///< both surfaces drawn
+  double gather_s = 0.0;       ///< both compared, and the pairs brought into one list
+  double readback_s = 0.0;     ///< all else of the images: commands, fence, and the list handed out
+  double gaps_s = 0.0;         ///< gaps in double, and samples
+  long images = 0, pairs = 0;  ///< images taken, and pairs of triangles in them
+  long pixels = 0;             ///< of all images
   long vertices = 0, faces = 0;  ///< in axes of all images, of both sides; faces that these images show
-  long hits = 0;                 ///< pairs that are near enough, of all images
-  /// regions whose normal the last look still turned by over 0.02 rad, or in which it saw several planes
-  long unaligned = 0;
-  long lines = 0;  ///< pixels with layers or walls, or on a triangle's rim: an image left them to exact lines
+  long hits = 0;                 ///< samples
 };
-
-class ImageSource;
 
 /// Makes the samples of one pair from the current state: the slow query between which gaps are linear.
 class SampleSource {
@@ -94,10 +89,6 @@ class SampleSource {
   virtual const SumError* sum_error() const { return nullptr; }
   /// Of a source in image space; else null.
   virtual const QueryStages* stages() const { return nullptr; }
-  /// A source in image space; else null.
-  virtual ImageSource* in_images() { return nullptr; }
-  /// Why the processor has taken over from the GPU; empty: it has not.
-  virtual std::string fallback() const { return {}; }
   /// From the next query on, keep what pictures show of it; nothing is kept, or paid for, before.
   virtual void keep_view() {}
   /// Of the last query, of a source in image space that keeps it; else null.
@@ -225,13 +216,10 @@ class ContactForce : public dynamics::ForceTerm,
   GraspCounts grasp_counts() const;
   /// Ties nodes to a frame, for good (src/contact/grasp.cpp).
   void tie(int frame, const std::vector<Tie>& ties);
-  /// Of the last query, one by one: made when they are asked for, at the price of a copy.
-  const std::vector<ContactSample>& samples() const;
   /// Of the last query, candidates included.
-  int sample_count() const;
-  /// What the samples of the last query are kept in: places, cells, carriers, and the groups that their sums
-  /// are made by [bytes].
-  double sample_bytes() const;
+  const std::vector<ContactSample>& samples() const;
+  int sample_count() const;     ///< of these
+  double sample_bytes() const;  ///< what they are kept in [bytes]
   /// On a frame, about its origin, world axes [N m, N].
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
   /// Contact of a frame at a state, with its derivatives; `out` is resized.
@@ -268,10 +256,8 @@ class ContactForce : public dynamics::ForceTerm,
   std::vector<const SumError*> sum_errors() const;
   /// Where the time of each pair's queries went; null for a pair without an image.
   std::vector<const QueryStages*> stages() const;
-  /// The name of each pair's source ("cpu", "plane"), and why it is another than the scene asked for.
+  /// The name of each pair's source ("distance", "plane").
   std::vector<std::string> methods() const;
-  /// Empty for a pair whose source is the one that was asked for.
-  std::vector<std::string> fallbacks() const;
   /// Asks every source to keep what pictures show of its queries, from the next one on.
   void keep_views();
   /// What each pair's last query saw; null for a pair without an image, and where nobody asked.

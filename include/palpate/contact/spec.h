@@ -18,8 +18,9 @@ struct ObstacleSpec {
 struct ContactSpec {
   /// names of bodies, obstacles or "tool", in any order; one body twice: against itself
   std::string first, second;
-  /// "distance" (nearest points), "analytic" (at vertices; of an obstacle or a sphere tool), one of the
-  /// methods in image space (a tool of any shape, another soft body), or "auto" (scene/contact_sides.h)
+  /// "distance" (nearest points), "analytic" (at vertices; of an obstacle or a sphere tool), "image" (in
+  /// image space, at vertices; of a tool of any shape or another soft body), or "auto"
+  /// (scene/contact_sides.h)
   std::string method = "auto";
   /// "per_area": pressure by depth, times the area that a sample stands for; "per_point": a force by depth at
   /// each colliding vertex (Galoppo et al. 2007), so that twice the vertices push twice as hard
@@ -46,14 +47,10 @@ struct ContactSpec {
   std::string gaps = "linear";
   /// samples with a smaller positive gap are kept too; 0: chosen from the mesh
   double candidate_gap_m = 0.0;
-  int pixels = 256;  ///< in image space: the image's longer edge, at most
-  /// what pixels may err in a region's force, relative (0: `pixels` always), or points, of which it chooses
-  /// the number
-  double quadrature_error = 1e-3;
-  /// in image space: "pixel", or "vertex": at the soft skins' vertices
-  std::string samples = "pixel";
-  /// of vertices: "triangles", or "interpolated": between the image's pixels
-  std::string depths = "triangles";
+  int pixels = 64;  ///< in image space: the image's longer edge
+  /// of nearest points: what their number may err in the force, relative, of a contact an eighth as deep as
+  /// its radius
+  double quadrature_error = 1e-2;
 };
 
 /// What they may be: checked by the loader of scenes and by the pressure law.
@@ -77,8 +74,8 @@ struct ContactRanges {
   /// [m]
   static constexpr Range candidate_gap_m = Range::at_least(0.0, "0 lets the mesh choose");
   static constexpr Range pixels = Range::closed(16, 4096);  ///< along an image's longer edge
-  /// relative, of a region's force
-  static constexpr Range quadrature_error = Range::closed(0.0, 0.1, "0 takes all the pixels always");
+  /// relative, of a contact's force: a spacing of points goes with its root
+  static constexpr Range quadrature_error = Range::closed(1e-6, 0.1, "1e-2 is the default");
 };
 
 }  // namespace palpate

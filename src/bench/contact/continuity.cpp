@@ -14,21 +14,14 @@
 namespace palpate::bench {
 namespace {
 
-constexpr double kTurn = 0.2;          // of the body before a path [rad]
-constexpr double kFloor = 0.1;         // of the path's largest force: what a change is measured by at least
-constexpr double kSignificant = 0.01;  // of the overlap volume: less is no plane of its own
+constexpr double kTurn = 0.2;   // of the body before a path [rad]
+constexpr double kFloor = 0.1;  // of the path's largest force: what a change is measured by at least
 
-/// What presses along one normal.
-struct Plane {
-  Vec3 normal, centre;
-  double volume = 0.0;  // [m^3]
-};
-
-/// The contact at one pose: the wrench on the moved body about the pivot, and its planes, largest first.
+/// The contact at one pose: the wrench on the moved body about the pivot, and where it presses.
 struct Contact {
   Wrench wrench;
-  std::vector<Plane> planes;
-  double volume = 0.0;
+  double volume = 0.0;         // of what overlaps [m^3]
+  Vec3 centre = Vec3::Zero();  // its middle [m]
 };
 
 /// A World whose last body is moved as a whole.
@@ -62,30 +55,22 @@ class Probe {
       out.wrench.force += f;
       out.wrench.moment += (Vec3(q.segment<3>(3 * i)) - pivot).cross(f);
     }
-    collect_planes(state, out);
+    measure(state, out);
     return out;
   }
 
  private:
-  void collect_planes(const dynamics::StateView& state, Contact& out) const {
+  void measure(const dynamics::StateView& state, Contact& out) const {
     for (const contact::ContactSample& s : world_->contact->samples()) {
       if (s.gap >= 0.0) continue;
       const double volume = -s.gap * s.area;
-      const auto same = std::find_if(out.planes.begin(), out.planes.end(),
-                                     [&](const Plane& p) { return p.normal == s.normal; });
-      Plane& plane =
-          same != out.planes.end() ? *same : out.planes.emplace_back(Plane{s.normal, Vec3::Zero(), 0.0});
       const contact::SurfacePoint& soft = s.a.frame < 0 ? s.a : s.b;
       for (int i = 0; i < soft.count; ++i)
-        plane.centre += volume * soft.weight[static_cast<std::size_t>(i)] *
-                        state.position(soft.node[static_cast<std::size_t>(i)]);
-      plane.volume += volume;
+        out.centre += volume * soft.weight[static_cast<std::size_t>(i)] *
+                      state.position(soft.node[static_cast<std::size_t>(i)]);
       out.volume += volume;
     }
-    for (Plane& plane : out.planes) plane.centre /= plane.volume;
-    std::sort(out.planes.begin(), out.planes.end(),
-              [](const Plane& p, const Plane& q) { return p.volume > q.volume; });
-    while (!out.planes.empty() && out.planes.back().volume < kSignificant * out.volume) out.planes.pop_back();
+    if (out.volume > 0.0) out.centre /= out.volume;
   }
 
   std::unique_ptr<loop::World> world_;
@@ -118,12 +103,12 @@ class Approach {
       m.start.translation += s * reach_ * m.away;
     }
     Contact touch = probe_.at(m.start, middle);
-    for (int i = 0; i < kDeeper && touch.planes.empty(); ++i) {  // a pixel's touch may have been chance
+    for (int i = 0; i < kDeeper && touch.volume == 0.0; ++i) {
       m.start.translation -= 0.1 * kStep * reach_ * m.away;
       touch = probe_.at(m.start, middle);
     }
-    if (touch.planes.empty()) return std::nullopt;
-    m.pivot = touch.planes.front().centre;
+    if (touch.volume == 0.0) return std::nullopt;
+    m.pivot = touch.centre;
     return m;
   }
 
@@ -168,21 +153,6 @@ struct Scale {
   }
 };
 
-JumpCause cause_of(const Contact& p, const Contact& q, const Change& change) {
-  const double volume = std::max(p.volume, q.volume);
-  if (std::abs(q.volume - p.volume) > 0.5 * change.force * volume) return JumpCause::kSkin;
-  if (q.planes.size() < p.planes.size()) return JumpCause::kMerged;
-  if (q.planes.size() > p.planes.size()) return JumpCause::kSplit;
-  for (const Plane& before : p.planes) {
-    const auto after =
-        std::min_element(q.planes.begin(), q.planes.end(), [&](const Plane& x, const Plane& y) {
-          return (x.centre - before.centre).norm() < (y.centre - before.centre).norm();
-        });
-    if (after->normal.dot(before.normal) < 0.0) return JumpCause::kSide;
-  }
-  return JumpCause::kTurned;
-}
-
 class Walk {
  public:
   Walk(Probe& probe, const ContinuityOptions& options, ContinuityRow& row)
@@ -221,11 +191,7 @@ class Walk {
     for (int i = std::max(0, step - 2); i <= step; ++i) before = at(time(i));
     const Contact& first = contacts_[static_cast<std::size_t>(step)];
     if (const Change c = scale_.change(first, before); c.force > options_.threshold)
-      return {.at = time(step),
-              .force = c.force,
-              .moment = c.moment,
-              .size_n = c.size,
-              .cause = JumpCause::kHistory};
+      return {.at = time(step), .force = c.force, .moment = c.moment, .size_n = c.size, .by_history = true};
     Contact after = contacts_[static_cast<std::size_t>(step) + 1];
     double low = time(step), high = time(step + 1);
     for (int i = 0; i < options_.halvings; ++i) {
@@ -240,11 +206,7 @@ class Walk {
       }
     }
     const Change c = scale_.change(before, after);
-    return {.at = low,
-            .force = c.force,
-            .moment = c.moment,
-            .size_n = c.size,
-            .cause = cause_of(before, after, c)};
+    return {.at = low, .force = c.force, .moment = c.moment, .size_n = c.size};
   }
 
   Probe& probe_;
@@ -258,24 +220,6 @@ class Walk {
 
 }  // namespace
 
-std::string_view name_of(JumpCause cause) {
-  constexpr std::array<std::string_view, kJumpCauses> kNames{"skin",   "merged", "split",
-                                                             "turned", "side",   "history"};
-  return kNames[static_cast<std::size_t>(cause)];
-}
-
-long ContinuityRow::count(JumpCause cause, double more_than) const {
-  return std::count_if(jumps.begin(), jumps.end(),
-                       [&](const ForceJump& j) { return j.cause == cause && j.force > more_than; });
-}
-
-double ContinuityRow::largest(JumpCause cause) const {
-  double most = 0.0;
-  for (const ForceJump& j : jumps)
-    if (j.cause == cause) most = std::max(most, j.force);
-  return most;
-}
-
 ContinuityRow bench_continuity(scene::Description d, const ContinuityOptions& options,
                                const std::atomic<bool>* stop) {
   bool any = false;
@@ -287,11 +231,7 @@ ContinuityRow bench_continuity(scene::Description d, const ContinuityOptions& op
     contact.quadrature_error = options.quadrature_error;
     any = true;
   }
-  if (!any)
-    fail(
-        "bench continuity: scene \"{}\" has nothing to see in an image: no contact with a tool or between "
-        "bodies",
-        d.name);
+  if (!any) fail("bench continuity: scene \"{}\" has no contact with a tool or between bodies", d.name);
   d.record.reset();
   Probe probe(d);
   Approach approach(probe);

@@ -1,14 +1,14 @@
 #include <fmt/format.h>
 
 #include "palpate/bench/contact.h"
-#include "palpate/contact/gpu_available.h"
+#include "palpate/contact/gpu_device.h"
 #include "palpate/core/instructions.h"
 #include "palpate/store/provenance.h"
 
 namespace palpate::bench {
 
 ContactDevice device_of(const std::string& method) {
-  if (method == "gpu") {
+  if (method == "image") {
     const contact::GpuDevice device = contact::open_gpu();
     return {fmt::format("{}, {}", device.name, device.driver), device.software};
   }

@@ -14,8 +14,6 @@
 #include "palpate/core/error.h"
 #include "palpate/dynamics/state.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/proxy/decompose.h"
-#include "palpate/proxy/decompose_solid.h"
 
 namespace palpate::bench {
 namespace {
@@ -44,7 +42,6 @@ LayeredModel ball_of(int skin_vertices) {
   model.tets = mesh::ball(radius, radius / kCells);
   model.skin = mesh::sphere(radius, subdivisions);
   model.embedding = mesh::embed(model.tets, model.skin.vertices);
-  model.proxies = proxy::decompose(model, {.count = 60});
   return model;
 }
 
@@ -54,12 +51,9 @@ struct Touched {
   double radius;
   dynamics::State state;
   int block;
-  std::shared_ptr<proxy::ProxySet> proxies;
 
   explicit Touched(int skin_vertices)
-      : model(ball_of(skin_vertices)),
-        radius(model.skin.vertices.col(0).norm()),
-        proxies(std::make_shared<proxy::ProxySet>(model)) {
+      : model(ball_of(skin_vertices)), radius(model.skin.vertices.col(0).norm()) {
     const VecX q = model.tets.nodes.reshaped();
     const int size = static_cast<int>(q.size());
     block = state.insert({.name = "ball", .q_size = size, .u_size = size}, q, VecX::Zero(size));
@@ -72,26 +66,23 @@ struct Touched {
 /// Where the tool's sphere meets the ball: no node of the icosahedron, and nothing along an axis.
 const Vec3 kWhere = Vec3(0.36, 0.48, 0.8);
 
-ContactGrowthRow touch(Touched& ball, double region, int pixels) {
+ContactGrowthRow touch(Touched& ball, double region) {
   const double r = kToolOverRegion * region, R = ball.radius,
                apart = std::sqrt(r * r - region * region) + std::sqrt(R * R - region * region);
   TriMesh tool = mesh::sphere(r, kToolSubdivisions);
-  auto tool_proxies = std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(tool));
   contact::ContactForce contact;
   const auto frame = std::make_shared<PutFrame>();
-  contact::ImageOptions options;
-  options.candidate_gap = kEdge;
-  options.pixels = pixels > 0 ? pixels : 1024;
-  options.quadrature_error = pixels > 0 ? 0.0 : 1e-3;
-  contact.add_pair(contact::make_image_source(ball.surface(), ball.proxies, std::move(tool), tool_proxies,
-                                              contact.add_frame(frame), frame, options),
-                   {.first = "ball", .second = "tool"});
+  const int at = contact.add_frame(frame);
+  contact.add_pair(contact::make_distance_source(ball.surface(), ball.model.skin.vertices,
+                                                 contact::FrameSurface{std::move(tool), at, frame},
+                                                 {.candidate_gap = kEdge}),
+                   {.first = "ball", .second = "tool", .gaps = "exact"});
   ContactGrowthRow out;
   out.skin_vertices = static_cast<int>(ball.model.skin.vertices.cols());
   VecX force;
   std::vector<double> ms, areas, samples;
   for (int k = 0; k < kUntimed + kQueries; ++k) {
-    // The tool goes round by an edge or so: no two queries see the same pixels.
+    // The tool goes round by an edge or so: no two queries find the same nearest points.
     const double angle = 2.0 * M_PI * k / kQueries;
     const Vec3 aside = kEdge * (std::cos(angle) * Vec3(0.8, -0.6, 0.0) + std::sin(angle) * Vec3(0, 0, 1));
     frame->at.translation = apart * (R * kWhere + aside).normalized();
@@ -125,19 +116,19 @@ std::vector<ContactGrowthRow> bench_skin_growth(const std::vector<int>& skin_ver
   for (const int vertices : skin_vertices) {
     if (stopped(stop)) break;
     Touched ball(vertices);
-    out.push_back(touch(ball, kRegion, 256));
+    out.push_back(touch(ball, kRegion));
   }
   return out;
 }
 
-std::vector<ContactGrowthRow> bench_patch_growth(int skin_vertices, double factor, int count, int pixels,
+std::vector<ContactGrowthRow> bench_patch_growth(int skin_vertices, double factor, int count,
                                                  const std::atomic<bool>* stop) {
   if (!(factor > 1.0) || count < 2)
     fail("bench contact: regions that grow by {} in {} steps; more than 1 and at least 2", factor, count);
   std::vector<ContactGrowthRow> out;
   Touched ball(skin_vertices);
   for (int k = 0; k < count && !stopped(stop); ++k)
-    out.push_back(touch(ball, kRegion * std::pow(factor, 0.5 * k / (count - 1)), pixels));
+    out.push_back(touch(ball, kRegion * std::pow(factor, 0.5 * k / (count - 1))));
   return out;
 }
 

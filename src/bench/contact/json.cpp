@@ -25,7 +25,6 @@ ordered_json json_of(const ContactBenchRow& r) {
   return {{"method", r.variant.method},
           {"device", r.device},
           {"device_is_software", r.device_is_software},
-          {"pixels", r.variant.pixels},
           {"threads", r.variant.threads},
           {"tetrahedra", r.tetrahedra},
           {"skin_vertices", r.skin_vertices},
@@ -43,25 +42,20 @@ ordered_json json_of(const ContactBenchRow& r) {
           {"solve_ms", r.solve_ms},
           {"samples_assembly_ms", r.assembly_ms},
           {"elements_assembly_ms", r.elements_ms},
-          {"query_bytes", r.query_bytes},
           {"real_time_factor", r.real_time_factor()}};
 }
 
 ordered_json json_of(const ContactPrice& p) {
-  ordered_json contacts = ordered_json::array();
-  for (const ContactPrice::Contact& c : p.contacts) {
-    ordered_json contact = json_of(c.row);
-    contact["friction_step_ms"] = c.friction.symmetric_ms;
-    contact["friction_full_tangent_step_ms"] = c.friction.full_ms;
-    contact["friction_left_out_of_a_step"] = c.friction.left_out;
-    contact["force_change_by_symmetric_tangent"] = c.friction.force_change;
-    contacts.push_back(contact);
-  }
+  ordered_json contact = json_of(p.row);
+  contact["friction_step_ms"] = p.friction.symmetric_ms;
+  contact["friction_full_tangent_step_ms"] = p.friction.full_ms;
+  contact["friction_left_out_of_a_step"] = p.friction.left_out;
+  contact["force_change_by_symmetric_tangent"] = p.friction.force_change;
   return {{"scene", p.scene},
           {"one_body_step_ms", p.one_body_ms},
           {"bodies_apart_step_ms", p.bodies_ms},
           {"contact_free_step_ms", p.contact_free_ms},
-          {"contacts", contacts}};
+          {"contact", contact}};
 }
 
 ordered_json json_of(const ContactGrowth& g) {
@@ -71,7 +65,7 @@ ordered_json json_of(const ContactGrowth& g) {
                     {"area_m2", r.area_m2},
                     {"samples", r.samples},
                     {"query_ms", json_of(r.query)}});
-  return {{"with", g.with}, {"pixels", g.pixels}, {"exponent", number(g.exponent())}, {"rows", rows}};
+  return {{"with", g.with}, {"exponent", number(g.exponent())}, {"rows", rows}};
 }
 
 ordered_json json_of(const ContactBar& b) {
@@ -102,7 +96,7 @@ std::string to_json(const ContactBenchReport& report) {
   ordered_json out{{"version", p.version},        {"commit", p.commit}, {"compiler", p.compiler},
                    {"build_type", p.build_type},  {"processor", p.cpu}, {"cores", p.cores},
                    {"started_utc", p.started_utc}};
-  if (!report.no_gpu.empty()) out["gpu_left_out"] = report.no_gpu;
+  if (!report.no_image.empty()) out["image_left_out"] = report.no_image;
   out["scenes"] = list_of(report.scenes);
   out["prices"] = list_of(report.prices);
   out["growth"] = list_of(report.growth);

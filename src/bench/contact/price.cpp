@@ -65,14 +65,13 @@ double largest_change(const std::vector<Vec3>& symmetric, const std::vector<Vec3
   return size > 0.0 ? change / size : 0.0;
 }
 
-FrictionPrice friction_price(scene::Description d, const ContactBenchVariant& variant,
-                             const std::atomic<bool>* stop) {
+FrictionPrice friction_price(scene::Description d, const std::atomic<bool>* stop) {
   const auto run = [&](const char* tangent) {
     for (ContactSpec& contact : d.contacts) {
       contact.friction = kFriction;
       contact.friction_tangent = tangent;
     }
-    return bench_contact(d, variant, stop);
+    return bench_contact(d, {}, stop);
   };
   const ContactBenchRow symmetric = run("secant"), full = run("full");
   FrictionPrice out{.symmetric_ms = symmetric.step.median, .full_ms = full.step.median};
@@ -87,12 +86,8 @@ ContactPrice bench_contact_price(const scene::Description& d, const std::atomic<
   ContactPrice out;
   out.scene = d.name;
   out.pairs = static_cast<int>(d.contacts.size());
-  for (const int pixels : {0, kBarPixels}) {
-    const ContactBenchVariant variant{.method = "cpu", .pixels = pixels};
-    ContactPrice::Contact& contact = out.contacts.emplace_back();
-    contact.row = bench_contact(d, variant, stop);
-    if (!d.tool && contact.row.touches) contact.friction = friction_price(d, variant, stop);
-  }
+  out.row = bench_contact(d, {}, stop);
+  if (!d.tool && out.row.touches) out.friction = friction_price(d, stop);
   out.contact_free_ms = bodies_alone_ms(d, stop);
   for (const SoftBodySpec& body : d.bodies) {
     scene::Description alone = d;

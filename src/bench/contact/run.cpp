@@ -5,7 +5,6 @@
 #include "bench/contact/statistics.h"
 #include "palpate/bench/contact.h"
 #include "palpate/contact/contact_force.h"
-#include "palpate/contact/query_bytes.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
@@ -20,21 +19,18 @@ struct Times {
   double wall = 0.0, query = 0.0, solve = 0.0;
   std::array<double, kQueryStages> stages{};
   long images = 0, regions = 0;
-  contact::QueryCounts counts;
 };
 
 /// Of the periods, one entry each; times in [ms].
 struct Periods {
-  std::vector<double> query, to_forces, solve, whole, step, samples, images, regions, bytes, assembly,
-      elements;
+  std::vector<double> query, to_forces, solve, whole, step, samples, images, regions, assembly, elements;
   std::array<std::vector<double>, kContactStages> stages;
 };
 
 /// What each period took; what the observer does itself is not counted.
 class Watch : public loop::Observer {
  public:
-  Watch(loop::World& world, const std::string& method) : method_(method), assembly_(world) {
-    for (const loop::Body& body : world.bodies) nodes_ += static_cast<double>(body.rest.nodes.cols());
+  explicit Watch(loop::World& world) : assembly_(world) {
     first_body_ = *world.state.layout().find(world.bodies.front().block_id);
   }
 
@@ -81,38 +77,15 @@ class Watch : public loop::Observer {
       add(ContactStage::kReadback, s->readback_s);
       add(ContactStage::kGaps, s->gaps_s);
       t.images += s->images;
-      t.counts.image_vertices += static_cast<double>(s->vertices);
-      t.counts.image_faces += static_cast<double>(s->faces);
-      t.counts.pixels += static_cast<double>(s->pixels);
-      t.counts.pairs += static_cast<double>(s->pairs);
-      t.counts.hits += static_cast<double>(s->hits);
     }
-    for (const proxy::PruneCounts* p : world.contact->pruning()) {
-      if (!p) continue;
-      t.regions += p->regions;
-      t.counts.faces += static_cast<double>(p->faces_a + p->faces_b);
-    }
+    for (const proxy::PruneCounts* p : world.contact->pruning())
+      if (p) t.regions += p->regions;
     double known = 0.0;
     for (const double seconds : t.stages) known += seconds;
-    add(ContactStage::kGroups, t.query - known);
+    add(ContactStage::kRest, t.query - known);
     const dynamics::StepperCounters& c = world.stepper->counters();
     t.solve = c.solver.factor_s + c.solver.symbolic_s + c.solver.solve_s;
     return t;
-  }
-
-  /// Of the period that ends now.
-  double bytes(const Times& now, double sample_bytes) const {
-    contact::QueryCounts c = now.counts;
-    const contact::QueryCounts& before = before_.counts;
-    for (double contact::QueryCounts::*of :
-         {&contact::QueryCounts::faces, &contact::QueryCounts::image_vertices,
-          &contact::QueryCounts::image_faces, &contact::QueryCounts::pixels, &contact::QueryCounts::pairs,
-          &contact::QueryCounts::hits})
-      c.*of -= before.*of;
-    c.nodes = nodes_;
-    if (method_ == "exact") c.pixels = 0.0;  // lines, and no image
-    c.sample_bytes = sample_bytes;
-    return contact::query_bytes(c);
   }
 
   void keep(loop::World& world, const Times& now, double force_s, Periods& to) {
@@ -128,7 +101,6 @@ class Watch : public loop::Observer {
     to.samples.push_back(static_cast<double>(world.contact->sample_count()));
     to.images.push_back(static_cast<double>(now.images - before_.images));
     to.regions.push_back(static_cast<double>(now.regions - before_.regions));
-    to.bytes.push_back(bytes(now, world.contact->sample_bytes()));
     to.assembly.push_back(assembly_.contact_ms());
     to.elements.push_back(assembly_.elements_ms());
     const dynamics::StateView state = world.state.view();
@@ -141,9 +113,7 @@ class Watch : public loop::Observer {
     to.stages[static_cast<std::size_t>(ContactStage::kTangent)].push_back(1e3 * (wall_seconds() - start));
   }
 
-  std::string method_;
   bool started_ = false;
-  double nodes_ = 0.0;
   dynamics::Block first_body_;
   Times before_;
   VecX force_;
@@ -162,8 +132,6 @@ void fill(ContactBenchRow& out, const Periods& of) {
   out.solve_ms = median(of.solve);
   out.assembly_ms = median(of.assembly);
   out.elements_ms = median(of.elements);
-  // of images in memory of its own the processor's bandwidth is no measure
-  if (out.variant.method != "gpu") out.query_bytes = median(of.bytes);
   out.samples = static_cast<long>(median(of.samples));
   out.images = static_cast<long>(median(of.images));
   // the sum first: of n times 8/n there would be rounding, and 8 would not be 8
@@ -171,18 +139,14 @@ void fill(ContactBenchRow& out, const Periods& of) {
   out.regions /= static_cast<double>(std::max<std::size_t>(1, of.regions.size()));
 }
 
-/// Sets how the gaps of all contacts in image space are found; whether there is one.
+/// Sets how the gaps of all contacts but those with obstacles are found; whether there is one.
 bool set_variant(scene::Description& d, const ContactBenchVariant& variant) {
   bool any = false;
   for (ContactSpec& contact : d.contacts) {
     const bool obstacle = std::any_of(d.obstacles.begin(), d.obstacles.end(),
                                       [&](const ObstacleSpec& o) { return o.name == contact.second; });
-    if (obstacle) continue;
+    if (obstacle || (variant.method == "image" && contact.first == contact.second)) continue;
     scene::set_method(contact, variant.method);
-    if (variant.pixels > 0 && scene::is_in_images(contact)) {
-      contact.pixels = variant.pixels;
-      contact.quadrature_error = 0.0;
-    }
     any = true;
   }
   return any;
@@ -193,10 +157,7 @@ bool set_variant(scene::Description& d, const ContactBenchVariant& variant) {
 ContactBenchRow bench_contact(scene::Description d, const ContactBenchVariant& variant,
                               const std::atomic<bool>* stop) {
   if (!set_variant(d, variant))
-    fail(
-        "bench contact: scene \"{}\" has nothing to see in an image: no contact with a tool or between "
-        "bodies",
-        d.name);
+    fail("bench contact: scene \"{}\" has no contact with a tool or between bodies", d.name);
   d.integrator.threads = variant.threads;
   d.record.reset();
   const auto world = loop::assemble(d);
@@ -208,7 +169,7 @@ ContactBenchRow bench_contact(scene::Description d, const ContactBenchVariant& v
     out.skin_vertices +=
         static_cast<int>(body.skin ? body.skin->rest.vertices.cols() : body.boundary.surface.vertices.cols());
   }
-  Watch watch(*world, variant.method);
+  Watch watch(*world);
   loop::RunOptions options;
   options.observers = {&watch};
   options.stop = stop;

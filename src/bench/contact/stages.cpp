@@ -5,7 +5,7 @@ namespace palpate::bench {
 std::string_view name_of(ContactStage stage) {
   constexpr std::array<std::string_view, kContactStages> kNames{"skins",  "regions", "faces",    "upload",
                                                                 "passes", "gather",  "readback", "gaps",
-                                                                "groups", "forces",  "tangent"};
+                                                                "rest",   "forces",  "tangent"};
   return kNames[static_cast<std::size_t>(stage)];
 }
 

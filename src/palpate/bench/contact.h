@@ -12,8 +12,7 @@ namespace palpate::bench {
 
 /// One way to find the gaps of a scene.
 struct ContactBenchVariant {
-  std::string method;  ///< of all contacts but those with obstacles: "cpu", "gpu", "exact"
-  int pixels = 0;      ///< along the longer edge of each image; 0: as the scene wants them
+  std::string method = "distance";  ///< of all contacts but those with obstacles; or "image"
   int threads = 1;
 };
 
@@ -22,18 +21,18 @@ struct Spread {
   double least = 0.0, median = 0.0, p99 = 0.0;
 };
 
-/// What a period spends on contact, in its order.  Of the images the first three are timed on the processor
-/// that does them: of "gpu" by the GPU's own clock.
+/// What a period spends on contact, in its order; all but the last three are of images.  Passes and gather
+/// are timed by the GPU's own clock.
 enum class ContactStage {
   kSkins,     ///< positions of skins, and of rigid surfaces, as far as regions need them
   kRegions,   ///< bounds and pruning: which skin may touch, along which normal
   kFaces,     ///< faces in axes of their region, and its camera
-  kUpload,    ///< what was made, or sent, of the surfaces for the backend
-  kPasses,    ///< both surfaces drawn; of exact lines all that they take
+  kUpload,    ///< what was made, or sent, of the surfaces for the GPU
+  kPasses,    ///< both surfaces drawn
   kGather,    ///< both compared, and the pairs brought into one list
-  kReadback,  ///< on the GPU all else of the images: commands, fence, and the list handed out by region
+  kReadback,  ///< all else of the images: commands, fence, and the list handed out by region
   kGaps,      ///< gaps in double, and samples
-  kGroups,    ///< the rest of the query: samples by the nodes that they share, checks
+  kRest,      ///< the rest of the query; of nearest points all of it
   kForces,    ///< of all samples, once, at the end of the period
   kTangent    ///< likewise
 };
@@ -46,7 +45,7 @@ std::string_view name_of(ContactStage stage);
 struct ContactBenchRow {
   ContactBenchVariant variant;
   std::string device;               ///< what made the images (device_of)
-  bool device_is_software = false;  ///< "gpu" by a rasteriser on the processor
+  bool device_is_software = false;  ///< images by a rasteriser on the processor
   int skin_vertices = 0, tetrahedra = 0;
   /// that were timed: those in which something touched, or all where nothing ever did
   int periods = 0;
@@ -66,7 +65,6 @@ struct ContactBenchRow {
   /// stands beside the pattern
   double assembly_ms = 0.0;
   double elements_ms = 0.0;  ///< fused assembly over the elements of the first body at the same states
-  double query_bytes = 0.0;  ///< what a query reads and writes (contact/query_bytes.h); 0: not known
   /// With friction, of the pairs whose tangent is symmetric, largest of the run: the friction that a step
   /// left out, and the friction [N].
   double left_out_n = 0.0, friction_n = 0.0;
@@ -77,18 +75,18 @@ struct ContactBenchRow {
   double real_time_factor() const { return period.median > 0.0 ? 1e3 * period_s / period.median : 0.0; }
 };
 
-/// What finds the gaps of a method: "processor, instruction set", or of "gpu" the GPU and its driver, by the
-/// driver's own words.
+/// What finds the gaps of a method: "processor, instruction set", or of "image" the GPU and its driver, by
+/// the driver's own words.
 struct ContactDevice {
   std::string name;
-  bool software = false;  ///< of "gpu": a rasteriser on the processor
+  bool software = false;  ///< of "image": a rasteriser on the processor
 };
-/// @throws Error for "gpu" where it cannot be opened, saying why
+/// @throws Error for "image" where it cannot be opened, saying why
 ContactDevice device_of(const std::string& method);
 
 /// Runs the scene for its duration, one exchange period after the other.
 /// @param stop  true: ends early, with what there is
-/// @throws Error where the scene has no contact in image space
+/// @throws Error where the scene has no contact but with obstacles
 ContactBenchRow bench_contact(scene::Description description, const ContactBenchVariant& variant,
                               const std::atomic<bool>* stop = nullptr);
 
@@ -109,8 +107,8 @@ struct FrictionPrice {
   double force_change = 0.0;
 };
 
-/// Contact beside the rest of a step, as ratios of one run: medians of periods, one thread, the processor's
-/// image [ms].
+/// Contact by nearest points beside the rest of a step, as ratios of one run: medians of periods, one thread
+/// [ms].
 struct ContactPrice {
   std::string scene;
   int pairs = 0;  ///< contacts that the scene names
@@ -119,18 +117,13 @@ struct ContactPrice {
   double one_body_ms = 0.0;
   /// With the scene's tolerance: the sum of such steps of each body by itself, and a step of all together.
   double bodies_ms = 0.0, contact_free_ms = 0.0;
-  struct Contact {
-    ContactBenchRow row;
-    FrictionPrice friction;  ///< zeros of a scene with a tool, and where nothing touches
-  };
-  std::vector<Contact> contacts;  ///< with as many pixels as the scene wants, and with kBarPixels
+  ContactBenchRow row;
+  FrictionPrice friction;  ///< zeros of a scene with a tool, and where nothing touches
 };
-/// The pixels that the bars on speed are stated at.
-inline constexpr int kBarPixels = 256;
 ContactPrice bench_contact_price(const scene::Description& description,
                                  const std::atomic<bool>* stop = nullptr);
 
-/// A rigid sphere pressed into a ball under a fine skin, as one query sees it.
+/// A rigid sphere pressed into a ball under a fine skin, as one query by nearest points sees it.
 struct ContactGrowthRow {
   int skin_vertices = 0;
   double area_m2 = 0.0;  ///< of the contact region, from the samples: sum of areas where they overlap
@@ -142,14 +135,12 @@ struct ContactGrowthRow {
 std::vector<ContactGrowthRow> bench_skin_growth(const std::vector<int>& skin_vertices,
                                                 const std::atomic<bool>* stop = nullptr);
 /// One skin and contact regions of an area that grows by `factor` in `count` steps.
-/// @param pixels  along the longer edge of the image; 0: as many as an error of 1e-3 wants
-std::vector<ContactGrowthRow> bench_patch_growth(int skin_vertices, double factor, int count, int pixels,
+std::vector<ContactGrowthRow> bench_patch_growth(int skin_vertices, double factor, int count,
                                                  const std::atomic<bool>* stop = nullptr);
 
 /// How the query's time grows with what `rows` differ in: a power.
 struct ContactGrowth {
   std::string with;  ///< "skin" or "area"
-  int pixels = 0;    ///< 0: as an error of 1e-3 wants
   std::vector<ContactGrowthRow> rows;
   double exponent() const;  ///< NaN for fewer than two rows
 };
@@ -160,12 +151,12 @@ struct ContactBenchReport {
     std::string name;
     std::vector<ContactBenchRow> rows;
     /// Null where there is none.
-    const ContactBenchRow* find(const std::string& method, int pixels, int threads) const;
+    const ContactBenchRow* find(const std::string& method, int threads) const;
   };
   std::vector<Scene> scenes;
   std::vector<ContactPrice> prices;
   std::vector<ContactGrowth> growth;
-  std::string no_gpu;  ///< why "gpu" was left out; empty: it was not
+  std::string no_image;  ///< why "image" was left out; empty: it was not
 };
 
 /// What a figure of the report must keep.

@@ -1,9 +1,7 @@
 #pragma once
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "palpate/scene/description.h"
@@ -17,21 +15,9 @@ struct ContinuityOptions {
   int halvings = 7;  ///< of a step across which the force changes by more than `threshold`
   double threshold = 0.02;
   std::uint32_t seed = 1;
-  std::string method = "cpu";      ///< of all contacts but those with obstacles
-  double quadrature_error = 1e-3;  ///< what the pixels may err; a force changes by that as its images move
+  std::string method = "distance";  ///< of all contacts but those with obstacles; or "image"
+  double quadrature_error = 1e-3;   ///< of nearest points
 };
-
-/// What two queries on either side of a jump differ by.
-enum class JumpCause {
-  kSkin,    ///< the overlap volume: skin that is seen from one side alone, or paired with other skin
-  kMerged,  ///< fewer normals
-  kSplit,   ///< more normals
-  kTurned,  ///< a normal
-  kSide,    ///< a normal, by more than a right angle
-  kHistory  ///< the path that led there: the same pose has two forces
-};
-inline constexpr int kJumpCauses = 6;
-std::string_view name_of(JumpCause cause);
 
 /// What is left of a step after its halvings.  A smooth force has changed by 2^-halvings of the step's change
 /// then; a jump stays.
@@ -41,7 +27,7 @@ struct ForceJump {
   double force = 0.0;   ///< change of the force over its size, or a tenth of the path's largest where less
   double moment = 0.0;  ///< the same of the moment about the first point of touch, over force times arm
   double size_n = 0.0;  ///< what `force` is measured by [N]
-  JumpCause cause = JumpCause::kTurned;
+  bool by_history = false;  ///< by the path that led there: the same pose has two forces
 };
 
 struct ContinuityRow {
@@ -51,15 +37,12 @@ struct ContinuityRow {
   double force = 0.0;                 ///< largest [N]
   std::vector<ForceJump> jumps;       ///< of all steps that were halved, in the paths' order
   std::vector<double> worst_of_path;  ///< largest force jump of each path with contact; 0: no step was halved
-
-  long count(JumpCause cause, double more_than) const;
-  double largest(JumpCause cause) const;
 };
 
 /// The force on the scene's last body as a function of its pose.  It is moved as a whole: nothing deforms,
 /// nothing has a velocity, and each pose gets a query of its own that knows those before, as in a run.
 /// @param stop  true: ends early, with what there is
-/// @throws Error where the scene has no contact in image space with its last body
+/// @throws Error where the scene has no contact with its last body but with obstacles
 ContinuityRow bench_continuity(scene::Description description, const ContinuityOptions& options,
                                const std::atomic<bool>* stop = nullptr);
 

@@ -46,36 +46,10 @@ std::unique_ptr<SampleSource> make_cylinder_source(ContactSide side, int frame,
                                                    double radius, double length, double candidate_gap,
                                                    double look_ahead = 0.0);
 
-/// What finds the triangles that face each other (docs/design.md 4.3).
-enum class DepthBackend {
-  kGpu,   ///< rasterised by OpenGL
-  kCpu,   ///< rasterised in the processor's vector lanes; both images ask exact lines at walls and layers
-  kExact  ///< a line through each pixel's middle, in double, with every layer that it meets
-};
-std::string_view backend_name(DepthBackend backend);  ///< as scenes call it
-
-/// What a region's samples stand at.
-enum class SampleRule {
-  kPixel,  ///< each pixel where both surfaces are seen: the sum of depth x area is the overlap volume
-  kVertex  ///< each vertex of the soft skins, for a third of its triangles' projected area (of two: for half)
-};
-/// How deep a vertex is.
-enum class DepthReading {
-  kTriangles,    ///< the gap to the opposite triangle, in double
-  kInterpolated  ///< between the depths of four pixels, as Galoppo et al. (2007) read their images
-};
-
+/// How a contact in image space is looked at.
 struct ImageOptions {
-  DepthBackend backend = DepthBackend::kCpu;
-  /// where the GPU cannot be opened or is lost: the processor takes over, with a warning; else Error
-  bool or_cpu = false;
-  int pixels = 256;  ///< longer edge of the image, at most where an error is wanted
-  /// wanted standard error of a region's overlap volume, which its force is made of, relative: chooses the
-  /// pixels; 0: `pixels` always (docs/design.md 4.3)
-  double quadrature_error = 0.0;
-  SampleRule samples = SampleRule::kPixel;
-  DepthReading depths = DepthReading::kTriangles;  ///< of vertices
-  double candidate_gap = 0.0;                      ///< [m]; 0: a quarter of the soft surface's mean edge
+  int pixels = 64;             ///< longer edge of the image
+  double candidate_gap = 0.0;  ///< [m]; 0: a quarter of the soft surface's mean edge
   /// [s] to the next query: a region's candidate gap is at least what its surfaces may come nearer in this
   /// time at their present velocities
   double look_ahead = 0.0;
@@ -84,11 +58,11 @@ struct ImageOptions {
   double shift_v = 0.0;
 };
 
-/// Image space (docs/design.md 4.3): one region with its plane from libccd, both surfaces
-/// rasterised along its normal, one `pixel` sample for each pixel where both are covered; the gap in double
-/// on the two triangles that the image paired.  The image is made when something is to be seen; on the GPU
-/// that opens the GL context.  @throws Error when no EGL device can be opened, with the package that brings
-/// it.
+/// Image space (Galoppo et al. 2007, docs/design.md 4.3): one region with its plane from libccd, both
+/// surfaces rasterised along its normal by OpenGL, a sample at each vertex of the soft skins that the image
+/// shows, for a third of its triangles' projected area (of two soft bodies for half of that); the gap in
+/// double to the triangle that the image shows opposite.  The first query opens the GL context.
+/// @throws Error (the first query) where no EGL device can be opened, with the package that brings it
 std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, TriMesh rigid, int frame,
                                                 std::shared_ptr<MovingFrame> motion,
                                                 const ImageOptions& options);
@@ -113,14 +87,6 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<p
                                                 NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
                                                 const ImageOptions& options);
 
-/// One soft body against itself: the skin of each bone's proxies against that of every other bone's, but for
-/// proxies that are grown together (they share skin or nodes), so that a limb's tissue may slide into itself
-/// where it is creased, next to the joint.  What overlaps because the body is thick there is no contact, at
-/// rest nothing is.  Parts that are both thinner than they overlap are not seen.
-/// @param rest_nodes  of the surface's tetrahedra [m], in any axes
-std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
-                                                const Points& rest_nodes, const ImageOptions& options);
-
 /// Returns those of a closed surface.
 CharacteristicLengths lengths_of(const TriMesh& closed);
 /// Returns how far apart a body's contact points stand against another: the longest edge of the triangles
@@ -143,6 +109,7 @@ struct DistanceOptions {
   /// mean.
   double candidate_gap = 0.0;
   double look_ahead = 0.0;  ///< [s] to the next query: points that may come near until then are kept, too
+  double spacing = 0.0;     ///< of both sides' points, for studies of it; 0: by the wanted error [m]
 };
 
 /// Nearest points (src/contact/distance_source.cpp): material points of both skins, fixed at assembly, each

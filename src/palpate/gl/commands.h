@@ -17,8 +17,8 @@ enum class Keep { kAll, kLeastDepth, kGreatestDepth };
 void set_plain_state(int width, int height, Keep keep);
 
 /// After set_plain_state: leaves out triangles whose corners run counter-clockwise on the screen (or
-/// clockwise), and counts in the stencil every fragment of the others, kept or not.
-void cull_and_count(bool leave_out_counter_clockwise);
+/// clockwise).
+void cull(bool leave_out_counter_clockwise);
 
 /// Draws index_count / 3 triangles of a vertex array that has indices,
 /// with the program in use, into the bound framebuffer.

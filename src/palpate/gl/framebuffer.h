@@ -4,15 +4,12 @@
 
 namespace palpate::gl {
 
-enum class Format { kRgba8, kR32ui, kR32f, kRgba32f, kDepth32f, kDepth32fStencil8 };
+enum class Format { kRgba8, kR32ui, kR32f, kRgba32f, kDepth32f };
 
 /// A 2-D texture with one level and nearest sampling.  Pixel (0, 0) is the lower left one.
 class Texture {
  public:
   Texture(int width, int height, Format format);
-  /// The stencil of a kDepth32fStencil8 texture as one of its own, for a sampler of unsigned integers; the
-  /// other goes on being its depth.
-  static Texture stencil_of(const Texture& depth_and_stencil);
   ~Texture();
   Texture(Texture&& other) noexcept;
   Texture& operator=(Texture&& other) noexcept;
@@ -32,9 +29,9 @@ class Texture {
   Format format_ = Format::kRgba8;
 };
 
-enum class DepthBuffer { kNone, kDepth, kDepthAndStencil };
+enum class DepthBuffer { kNone, kDepth };
 
-/// Colour textures and, when asked, a depth texture to draw into, with a stencil.
+/// Colour textures and, when asked, a depth texture to draw into.
 class Framebuffer {
  public:
   Framebuffer(int width, int height, const std::vector<Format>& colours, DepthBuffer depth);
@@ -46,13 +43,12 @@ class Framebuffer {
   void bind() const;
   void clear(int attachment, const float rgba[4]);
   void clear(int attachment, std::uint32_t value);
-  void clear_depth(float depth);  ///< and the stencil, to 0
+  void clear_depth(float depth);
 
   int width() const { return width_; }
   int height() const { return height_; }
   const Texture& colour(int attachment) const { return colours_.at(static_cast<std::size_t>(attachment)); }
-  const Texture& depth() const;    ///< precondition: made with depth
-  const Texture& stencil() const;  ///< precondition: made with a stencil
+  const Texture& depth() const;  ///< precondition: made with depth
 
   /// Pixels of one attachment, rows from below.
   std::vector<std::uint8_t> read_rgba8(int attachment = 0) const;  ///< 4 bytes a pixel
@@ -65,7 +61,7 @@ class Framebuffer {
   unsigned id_ = 0;
   int width_ = 0, height_ = 0;
   std::vector<Texture> colours_;
-  std::vector<Texture> depth_, stencil_;  // none or one
+  std::vector<Texture> depth_;  // none or one
 };
 
 }  // namespace palpate::gl

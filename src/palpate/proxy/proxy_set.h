@@ -105,8 +105,6 @@ class ProxySet {
   double rest_thickness() const;        ///< of the thinnest [m]
   const Vec3& centre(int proxy) const;  ///< mean of the corners
   bool neighbours(int p, int q) const;  ///< they share a vertex of the skin, or are the same
-  /// they are neighbours, or share a node: of the tetrahedra that they own or that their skin hangs on
-  bool grown_together(int p, int q) const;
   std::span<const SkinPatch> patches(int proxy) const;
   std::span<const SkinPatch> patches() const;  ///< all, proxy by proxy
   /// around its faces now, by the bound of its own nodes where that is much less than the proxy's

@@ -13,9 +13,6 @@ namespace palpate::proxy {
 struct PruneOptions {
   /// neighbouring contacts whose skins face each other along directions nearer than this share a plane
   double merge_angle_rad = 1.05;
-  /// both sets are one body's: only pairs of different bones that are not grown together, each once, that of
-  /// the lower bone as a's
-  bool between_bones = false;
 };
 
 /// One contact region of two bodies: the plane that its image is taken along,
@@ -44,7 +41,7 @@ struct ContactRegion {
 /// Counts of tested and excluded pairs since the pruner was made.
 struct PruneCounts {
   long queries = 0;
-  long pairs = 0;            ///< of proxies, all that are allowed
+  long pairs = 0;            ///< of proxies
   long boxes_tested = 0;     ///< pairs of branches
   long after_boxes = 0;      ///< pairs of proxies whose boxes meet
   long apart_by_memory = 0;  ///< of those, proven apart by the direction that did it last time
@@ -65,7 +62,7 @@ struct PruneCounts {
 ///
 /// Every face of a of which a point is nearer than `gap` to body b, or inside, or may come to touch it within
 /// `time` at the present velocities (ProxySet::set_motion), is in exactly one region; every such face of b in
-/// each region that holds a face of a which its pair of proxies lets it meet.
+/// each region that holds a face of a which it may meet.
 /// Directions and normals of the last query are kept, so the answer depends on the past where a normal is not
 /// unique (deep overlap); the faces do not.
 class Pruner {
@@ -84,8 +81,6 @@ class Pruner {
   /// pair of proxies moved by more than a quarter of the thinner one's thickness at rest: nothing has gone
   /// through.
   void met_on_the_way(std::vector<int>& faces_a, std::vector<int>& faces_b);
-  /// Whether proxy p of a is tested against proxy q of b.
-  bool is_pair(int p, int q) const;
   const PruneCounts& counts() const;
   /// Normals and counts of the queries so far.
   void archive(Archive& a);

@@ -9,22 +9,16 @@ namespace palpate::scene {
 /// obstacles.  So the result does not depend on which is named first, to the last bit.
 void order_sides(const Description& description, ContactSpec& contact);
 
-/// Default of quadrature_error where points are summed up, not pixels: one per cent, of a force that mesh and
-/// stiffness know less well.
-inline constexpr double kPointsError = 1e-2;
-
 /// Returns the method of a contact, with "auto" resolved: nearest points; an image where its keys ask for
 /// one; with a spring at each vertex exact gaps where there are any, else an image.
 /// @pre the names are in their order
 std::string contact_method(const Description& description, const ContactSpec& contact);
 
-/// Sets a contact's method, and gaps and quadrature error that go with it.
+/// Sets a contact's method, and the gaps that go with it.
 void set_method(ContactSpec& contact, const std::string& method);
 
 /// Whether a contact is found in images.  @pre its method is resolved
-inline bool is_in_images(const ContactSpec& contact) {
-  return contact.method != "analytic" && contact.method != "distance";
-}
+inline bool is_in_images(const ContactSpec& contact) { return contact.method == "image"; }
 /// Whether a contact of this body is.
 bool is_in_images(const Description& description, const std::string& body);
 

@@ -3,14 +3,10 @@
 
 namespace palpate::contact {
 
-/// Whether this build has contact images on the GPU (PALPATE_WITH_GL); without it method "gpu" throws Error.
+/// Whether this build has contact images (PALPATE_WITH_GL); without it method "image" throws Error.
 bool gpu_available();
 
-/// Whether there is a GPU, not only Mesa's software rasteriser.  Nothing is opened where the machine shows no
-/// device; else the GL context is.
-bool has_gpu_hardware();
-
-/// What draws the images of this process on the GPU, by its driver's own words.
+/// What draws the images of this process, by its driver's own words.
 struct GpuDevice {
   std::string name, driver;
   bool software = false;  ///< a rasteriser on the processor
