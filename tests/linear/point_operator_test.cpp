@@ -37,38 +37,24 @@ PointStiffness random_points(int nodes, int count, double size, unsigned seed) {
       return w;
     };
     const Vec3 n = Vec3(uniform(random), uniform(random), uniform(random)).normalized();
-    if (k % 3 == 0) {
-      PointStiffness::OfPoint point{of, weights(), size * (n * n.transpose() + 0.1 * Mat3::Identity())};
-      out.points.push_back(point);
-    } else {
-      PointStiffness::AlongNormal along{of, n, {}};
-      along.G.setZero();
-      for (int s = 0; s < 5; ++s) {
-        const PointStiffness::Weights w = weights();
-        along.G += 0.2 * size * w * w.transpose();
-      }
-      out.along.push_back(along);
-    }
+    const Mat3 C = n * n.transpose() + (k % 3 == 0 ? 0.1 : 0.0) * Mat3::Identity();
+    for (int s = 0; s < (k % 3 == 0 ? 1 : 5); ++s) out.points.push_back({of, weights(), 0.2 * size * C});
   }
   return out;
 }
 
-/// With others on the same nodes, or on all but one: along the same normal, along another one, and points
-/// beside sums.
+/// With others on the same nodes, or on all but one.
 PointStiffness on_the_same_nodes(const PointStiffness& C, double size) {
   PointStiffness out = C;
-  for (const auto& one : C.along) {
-    out.along.push_back({one.nodes, one.normal, size * one.G});
-    out.along.push_back({one.nodes, Vec3(one.normal.y(), one.normal.z(), one.normal.x()), one.G});
-    out.along.push_back({one.nodes, one.normal, one.G});
+  for (const auto& one : C.points) {
+    out.points.push_back({one.nodes, one.weight, size * one.C});
     if (!one.nodes.relative) {  // on all of these nodes but the last
-      PointStiffness::AlongNormal fewer = out.along.back();
+      PointStiffness::OfPoint fewer = one;
       const int last = --fewer.nodes.count;
       fewer.nodes.node[static_cast<std::size_t>(last)] = 0;
-      fewer.G.row(last).setZero();
-      fewer.G.col(last).setZero();
-      out.along.push_back(fewer);
-      out.along.push_back({one.nodes, one.normal, one.G});
+      fewer.weight[last] = 0.0;
+      out.points.push_back(fewer);
+      out.points.push_back(one);
     }
     PointStiffness::Weights w = PointStiffness::Weights::Zero();
     w.head(one.nodes.count).setConstant(0.25);
@@ -82,11 +68,6 @@ PointStiffness on_the_same_nodes(const PointStiffness& C, double size) {
 /// visit(i, j, block) of the definition.
 template <class Visit>
 void for_each_block(const PointStiffness& C, Visit visit) {
-  for (const auto& a : C.along)
-    for (int i = 0; i < a.nodes.count; ++i)
-      for (int j = 0; j < a.nodes.count; ++j)
-        visit(a.nodes.node[static_cast<std::size_t>(i)], a.nodes.node[static_cast<std::size_t>(j)],
-              Mat3(a.G(i, j) * a.normal * a.normal.transpose()));
   for (const auto& a : C.points)
     for (int i = 0; i < a.nodes.count; ++i)
       for (int j = 0; j < a.nodes.count; ++j)
@@ -204,9 +185,7 @@ TEST(PointOperator, RelativeSumsFeelNoTranslation) {
   constexpr int kNodes = 30;
   const Order order(kNodes);
   PointStiffness C = random_points(kNodes, 40, 1e12, 1);
-  std::erase_if(C.along, [](const auto& a) { return !a.nodes.relative; });
   std::erase_if(C.points, [](const auto& a) { return !a.nodes.relative; });
-  ASSERT_GT(C.along.size(), 5u);
   ASSERT_GT(C.points.size(), 5u);
   linear::PointOperator op;
   op.take(C, order.place, order.order, 1.0);
@@ -382,8 +361,7 @@ TEST_P(PointSolvers, NodesMayBeHeldAlongOneAxis) {
       dofs.push_back(3 * node);
     }
   };
-  for (int k = 0; k < 4; ++k) hold(C.along[static_cast<std::size_t>(k)].nodes);
-  hold(C.points[0].nodes);
+  for (std::size_t k = 0; k < 13; ++k) hold(C.points[k].nodes);
   ASSERT_GT(dofs.size(), 12u);
   const auto is_held = [&](int dof) { return std::find(dofs.begin(), dofs.end(), dof) != dofs.end(); };
   for (int i = 0; i < all.body.block_rows(); ++i)

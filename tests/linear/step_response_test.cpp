@@ -43,12 +43,12 @@ struct Touched {
   PointStiffness springs(double stiffness) const {
     PointStiffness out;
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-      PointStiffness::AlongNormal one;
+      PointStiffness::OfPoint one;
       one.nodes.count = 1;
       one.nodes.node[0] = nodes[k];
-      one.normal = Vec3::UnitZ();
-      one.G(0, 0) = share(k) * stiffness;
-      out.along.push_back(one);
+      one.weight[0] = 1.0;
+      one.C(2, 2) = share(k) * stiffness;
+      out.points.push_back(one);
     }
     return out;
   }

@@ -23,29 +23,18 @@ struct PointStiffness {
     bool relative = false;               ///< row sums are zero: rigid translations feel nothing
     std::array<int, kMostNodes> node{};  ///< over all node blocks; one may stand there twice
   };
-  /// The motions along one normal: block (i, j) is G_ij n n^T.
-  struct AlongNormal {
-    Nodes nodes;                 ///< which are coupled
-    Vec3 normal = Vec3::Zero();  ///< n, of unit length
-    /// zero beyond nodes.count
-    Eigen::Matrix<double, kMostNodes, kMostNodes> G = Eigen::Matrix<double, kMostNodes, kMostNodes>::Zero();
-  };
   /// The motion of one point, sum w_i x_i: block (i, j) is w_i w_j C.
   struct OfPoint {
     Nodes nodes;                       ///< that carry the point
     Weights weight = Weights::Zero();  ///< w_i, of each node
     Mat3 C = Mat3::Zero();             ///< symmetric, positive semi-definite [N/m]
   };
-  std::vector<AlongNormal> along;  ///< stiffness along normals
-  std::vector<OfPoint> points;     ///< stiffness of points
+  std::vector<OfPoint> points;  ///< the sums
 
   /// Whether there are no sums.
-  bool empty() const { return along.empty() && points.empty(); }
+  bool empty() const { return points.empty(); }
   /// Takes all sums out; memory is kept.
-  void clear() {
-    along.clear();
-    points.clear();
-  }
+  void clear() { points.clear(); }
 };
 
 }  // namespace palpate::dynamics

@@ -39,19 +39,8 @@ PointBlocks::Set& PointBlocks::set_of(const Nodes& nodes) {
   if (set_count_ == sets_.size()) sets_.emplace_back();
   Set& out = sets_[last_ = set_count_++];
   out.nodes = nodes;
-  out.normal.setZero();
-  out.G.setZero();
   out.C.fill(Six::Zero());
   return out;
-}
-
-/// G goes into the blocks.
-void PointBlocks::spread(Set& set) {
-  const Six nn = of(set.normal);
-  for (int i = 0; i < set.nodes.count; ++i)
-    for (int j = i; j < set.nodes.count; ++j)
-      set.C[static_cast<std::size_t>(kMost * i + j)] += set.G(i, j) * nn;
-  set.G.setZero();
 }
 
 void PointBlocks::find_rows(const std::vector<int>& place_of_node) {
@@ -85,15 +74,7 @@ PointBlocks::Six& PointBlocks::pair(int i, int j) {
 
 void PointBlocks::sum(const dynamics::PointStiffness& points, const std::vector<int>& place_of_node) {
   set_count_ = 0;
-  table_.assign(table_size(points.along.size() + points.points.size()), -1);
-  for (const auto& one : points.along) {
-    Set& set = set_of(one.nodes);
-    if (set.normal != one.normal) {
-      spread(set);
-      set.normal = one.normal;
-    }
-    set.G += one.G;
-  }
+  table_.assign(table_size(points.points.size()), -1);
   for (const auto& one : points.points) {
     Set& set = set_of(one.nodes);
     const Six C = of(one.C);
@@ -112,7 +93,6 @@ void PointBlocks::sum(const dynamics::PointStiffness& points, const std::vector<
   row_sums_.assign(places_.size(), Six::Zero());
   for (std::size_t s = 0; s < set_count_; ++s) {
     Set& set = sets_[s];
-    spread(set);
     const Nodes& nodes = set.nodes;
     for (int i = 0; i < nodes.count; ++i) {
       const int row = row_[static_cast<std::size_t>(nodes.node[static_cast<std::size_t>(i)])];

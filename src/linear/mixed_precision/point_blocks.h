@@ -10,8 +10,7 @@ namespace palpate::linear {
 /// The blocks C_ij of a PointStiffness, each pair of nodes once, as symmetric 3x3 matrices of six numbers.
 ///
 /// A contact has some thousand sums on some hundred nodes: nearly all of them share their nodes with others.
-/// Those on the same nodes are summed first, those along one normal as numbers G_ij, then the blocks of each
-/// set of nodes over all pairs.
+/// Those on the same nodes are summed first, then the blocks of each set of nodes over all pairs.
 ///
 /// A block row is (C x)_i = M_i x_i + sum_{j != i} C_ij (x_j - x_i) with M_i = sum_j C_ij, which `relative`
 /// sums have no part in: a translation costs them nothing, not by rounding either, as in
@@ -29,9 +28,6 @@ class PointBlocks {
   const std::vector<int>& places() const { return places_; }  ///< of the rows, ascending
   const std::vector<Pair>& pairs() const { return pairs_; }
   const std::vector<Six>& row_sums() const { return row_sums_; }  ///< M, by row
-  static Six of(const Vec3& n) {
-    return {n.x() * n.x(), n.y() * n.y(), n.z() * n.z(), n.y() * n.z(), n.z() * n.x(), n.x() * n.y()};
-  }
   static Six of(const Mat3& C) { return {C(0, 0), C(1, 1), C(2, 2), C(1, 2), C(0, 2), C(0, 1)}; }
   static Mat3 matrix(const Six& c) {
     Mat3 out;
@@ -45,12 +41,9 @@ class PointBlocks {
   /// All sums on the same nodes in the same order.
   struct Set {
     Nodes nodes;
-    Vec3 normal = Vec3::Zero();  ///< that G_ goes along; its blocks lack it
-    Eigen::Matrix<double, kMost, kMost> G;
     std::array<Six, kMost * kMost> C;  ///< block (i, j), i <= j, at kMost i + j
   };
   Set& set_of(const Nodes& nodes);
-  static void spread(Set& set);
   void find_rows(const std::vector<int>& place_of_node);
   Six& pair(int i, int j);
 
