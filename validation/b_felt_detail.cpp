@@ -108,7 +108,6 @@ scene::Description drag(const std::string& model, bool skin, const std::string& 
   contact.first = "block";
   contact.second = "tool";
   contact.method = "distance";
-  contact.gaps = "exact";
   contact.quadrature_error = 1e-4;
   contact.stiffness_pa_m = kStiffness;
   contact.candidate_gap_m = 5e-5;

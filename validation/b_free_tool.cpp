@@ -25,7 +25,6 @@ scene::Description free_tool_scene(double length, double width, double element_s
   contact.first = "block";
   contact.second = "tool";
   contact.method = "distance";
-  contact.gaps = "exact";
   d.contacts = {contact};
   d.tool.emplace();
   d.tool->shape = "mesh";

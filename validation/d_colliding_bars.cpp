@@ -98,7 +98,6 @@ Collision collide(int elements, const std::string& fault) {
   const auto contact = std::make_shared<contact::ContactForce>();
   ContactSpec law;
   law.stiffness_pa_m = kYoung / (2.0 * h);
-  law.gaps = fault.empty() ? "exact" : "linear";  // a broken source cannot follow; velocities stay
   contact->add_pair(std::move(source), law);
   system.add(std::static_pointer_cast<dynamics::ForceTerm>(contact));
   contact->refresh(state.view());

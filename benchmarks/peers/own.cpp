@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "contender.h"
-#include "palpate/scene/contact_sides.h"
 
 namespace peers {
 namespace {
@@ -13,7 +12,7 @@ class Own final : public Contender {
  public:
   explicit Own(const Motion& motion) {
     scene::Description d = motion.description;
-    for (ContactSpec& c : d.contacts) scene::set_method(c, "image");
+    for (ContactSpec& c : d.contacts) c.method = "image";
     world_ = loop::assemble(d);
   }
   std::string group() const override { return "palpate"; }

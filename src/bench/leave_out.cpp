@@ -13,7 +13,6 @@
 #include "palpate/core/program.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
-#include "palpate/scene/contact_sides.h"
 #include "palpate/tool/tool.h"
 
 namespace palpate::bench {
@@ -111,7 +110,7 @@ scene::Description with_image_contact_out_of_reach(const scene::Description& d) 
   ContactSpec contact;
   contact.first = d.bodies.front().name;
   contact.second = "tool";
-  scene::set_method(contact, "image");
+  contact.method = "image";
   out.contacts.push_back(contact);
   return out;
 }

@@ -2,7 +2,6 @@
 
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
-#include "palpate/scene/contact_sides.h"
 
 namespace palpate::compare {
 namespace {
@@ -10,7 +9,7 @@ namespace {
 scene::Description with_method(scene::Description d, const std::string& method) {
   for (ContactSpec& contact : d.contacts) {
     if (contact.second != "tool") continue;
-    scene::set_method(contact, method);
+    contact.method = method;
   }
   return d;
 }

@@ -85,7 +85,7 @@ class AnalyticSource final : public SampleSource {
     if constexpr (kMaterial) return kept_;
     return {};
   }
-  bool start_following() override { return follows_ = true; }
+  bool follows() const override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     PALPATE_CHECK(samples.size() == kept_.size(), "{}: {} samples follow, {} vertices were kept",
                   Shape::kName, samples.size(), kept_.size());
@@ -114,11 +114,8 @@ class AnalyticSource final : public SampleSource {
     surface_.area_vectors(wanted_, areas_);
     for (int v = 0; v < surface_.vertex_count(); ++v) {
       if (!wanted_[static_cast<std::size_t>(v)]) continue;
-      const ContactSample sample = sample_at(v, inverse);
-      // a vertex that follows may come to face the shape later, by as little as that
-      if (sample.area <= 0.0 && !follows_) continue;
-      samples.push_back(sample);
-      if (follows_) kept_.push_back(v);
+      samples.push_back(sample_at(v, inverse));  // of no area where it does not face the shape yet
+      kept_.push_back(v);
     }
   }
 
@@ -275,11 +272,10 @@ class AnalyticSource final : public SampleSource {
   std::vector<int> open_;      ///< runs that may be near
   double gone_ = 0.0;          ///< bound on the points' way [m]
   Pose shape_pose_;
-  std::vector<int> kept_;  ///< vertices of the last query's samples, where these follow; all its points
+  std::vector<int> kept_;             ///< vertices, or points, of the last query's samples
   std::optional<MaterialGaps> gaps_;  ///< of material points
   std::vector<Vec3> places_;          ///< of those kept
   std::vector<Nearest> nearest_;
-  bool follows_ = false;
   bool seen_before_ = false, warned_ = false;
   long tunnelled_ = 0, fast_ = 0;
   double safe_time_ = HUGE_VAL;  ///< as SampleSource::safe_time

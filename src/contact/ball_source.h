@@ -21,10 +21,8 @@ namespace palpate::contact {
 //
 // Rings of equal area around the axis are samples, each with the mean of the ball's heights in it,
 //     mean of sqrt(R^2 - rho^2) = 2/3 (p^2 + p q + q^2)/(p + q),    p, q = sqrt(R^2 - rho^2) at its two rims,
-// so that a ring pressed as a whole has its volume exactly.  The N rings within the patch that is pressed at
-// the query have equal areas; once the ball has moved, the ring that the rim crosses makes an error of up to
-// 1/(4 N^2) of the force.  Beyond the patch, rings get finer towards its rim, so that a contact that begins
-// is resolved.
+// so that a ring pressed as a whole has its volume exactly.  The rings within the patch that is pressed have
+// equal areas, at every state.
 //
 // By its own surface (FrameBall::by_surface), as material points have it, a ring between p and q has the area
 // 2 pi R (p - q) and the mean height (p + q)/2, both exactly; on a plane that is pi R depth^2.
@@ -76,15 +74,15 @@ class BallSource final : public SampleSource {
                  margin = candidate_gap_ - look_ahead_ * std::min(rate, 0.0);
     safe_time_ = time_to_middle(gap, rate, shape_.lengths().width);
     fast_ += safe_time_ < look_ahead_;
-    if (gap < margin) sample(gap, margin, samples);
+    if (gap < margin) sample(gap, samples);
   }
 
-  bool start_following() override { return follows_ = true; }
+  bool follows() const override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     if (samples.empty()) return;
     place(state);
     followed_.clear();
-    sample(nearest_.gap - ball_.radius, 0.0, followed_);
+    sample(nearest_.gap - ball_.radius, followed_);
     PALPATE_CHECK(samples.size() == followed_.size(), "ball on {}: {} samples follow, the query made {}",
                   Shape::kName, followed_.size(), samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) followed_[i].source = samples[i].source;
@@ -92,6 +90,8 @@ class BallSource final : public SampleSource {
   }
 
  private:
+  static constexpr int kSectors = Shape::kRound ? 1 : 40;  ///< parts of a ring
+
   /// Ball and shape at a state, and the speed at which their nearest points part [m/s].
   double place(const dynamics::StateView& state) {
     const Pose own = ball_.motion->pose(state), shape_pose = motion_->pose(state);
@@ -112,65 +112,45 @@ class BallSource final : public SampleSource {
     return shape_.height(c_ + std::sqrt(a) * (std::cos(phi) * e + std::sin(phi) * f), n_);
   }
 
-  /// A convex shape that is as high all around as in the middle is flat between.
-  bool is_flat(double a) const {
-    const double middle = height(0.0, 0.0);
-    for (int k = 0; k < 16; ++k)
-      if (!(std::abs(height(a, std::numbers::pi * k / 8.0) - middle) < 1e-12 * ball_.radius)) return false;
-    return true;
-  }
-
-  /// How far from the axis, squared, the gap is less than `gap`.  It grows with the distance: the shape is
+  /// How far from the axis, squared, the ball is pressed.  The gap grows with the distance: the shape is
   /// convex, and lies below the plane through its highest point that n stands on.
-  double rim(double phi, double gap) const {
+  double rim(double phi) const {
     const double R2 = ball_.radius * ball_.radius;
     double low = 0.0, high = R2;
     for (int i = 0; i < 50; ++i) {
       const double a = 0.5 * (low + high);
-      (-std::sqrt(R2 - a) - height(a, phi) < gap ? low : high) = a;
+      (-std::sqrt(R2 - a) - height(a, phi) < 0.0 ? low : high) = a;
     }
     return low;
   }
 
-  /// Rings of equal area within the patch, and finer ones at its rim beyond it; on a shape that does not look
-  /// the same all around, in sectors with rims of their own.  Samples that follow are those of the patch,
-  /// always as many: without a patch they have no area.
-  void sample(double gap, double margin, std::vector<ContactSample>& samples) {
-    const double R = ball_.radius, curvature = Shape::kRound ? nearest_.radius : 0.0;
-    const double flat_reach = patch_radius2(R, curvature, margin - gap);
-    const bool round = Shape::kRound || (!follows_ && is_flat(flat_reach));
-    const int rings = round ? 48 : 24;
-    sectors_ = round ? 1 : 40;
-    for (int k = 0; k < sectors_; ++k) {
-      const double phi = 2.0 * std::numbers::pi * (k + 0.5) / sectors_;
-      const double pressed = gap >= 0.0 ? 0.0 : round ? patch_radius2(R, curvature, -gap) : rim(phi, 0.0);
-      for (int i = 0; i < rings; ++i)
-        add_cell(pressed * i / rings, pressed * (i + 1) / rings, phi, margin, samples);
-      if (follows_) continue;
-      const double reach = round ? flat_reach : rim(phi, margin);
-      const auto beyond = [&](int i) {
-        const double s = static_cast<double>(i) / rings;
-        return pressed + s * s * (reach - pressed);
-      };
-      for (int i = 0; i < rings; ++i) add_cell(beyond(i), beyond(i + 1), phi, margin, samples);
+  /// Rings of equal area within the patch; on a shape that does not look the same all around, in sectors with
+  /// rims of their own.  Always as many: without a patch they have no area.
+  void sample(double gap, std::vector<ContactSample>& samples) {
+    constexpr int kRings = Shape::kRound ? 48 : 24;
+    for (int k = 0; k < kSectors; ++k) {
+      const double phi = 2.0 * std::numbers::pi * (k + 0.5) / kSectors;
+      const double pressed = gap >= 0.0      ? 0.0
+                             : Shape::kRound ? patch_radius2(ball_.radius, nearest_.radius, -gap)
+                                             : rim(phi);
+      for (int i = 0; i < kRings; ++i)
+        add_cell(pressed * i / kRings, pressed * (i + 1) / kRings, phi, samples);
     }
   }
 
   /// A sector of the ring between the squared distances a0 and a1 from the axis.
-  void add_cell(double a0, double a1, double phi, double margin, std::vector<ContactSample>& samples) {
-    if (!follows_ && !(a1 > a0)) return;
+  void add_cell(double a0, double a1, double phi, std::vector<ContactSample>& samples) {
     const double R2 = ball_.radius * ball_.radius, p = std::sqrt(std::max(R2 - a0, 0.0)),
                  q = std::sqrt(std::max(R2 - a1, 0.0)),
                  below = ball_.by_surface ? 0.5 * (p + q) : 2.0 / 3.0 * (p * p + p * q + q * q) / (p + q),
                  top = height(0.5 * (a0 + a1), phi), gap = -below - top;
-    if (!follows_ && !(gap < margin)) return;
     ContactSample sample;
     sample.a.frame = ball_.frame;
     sample.a.offset = ball_.centre;
     sample.a.slide = -below * n_;
     sample.b = frame_point(frame_, inverse_, c_ + top * n_);
     sample.normal = n_;
-    sample.area = std::numbers::pi / sectors_ * (ball_.by_surface ? 2.0 * ball_.radius * (p - q) : a1 - a0);
+    sample.area = std::numbers::pi / kSectors * (ball_.by_surface ? 2.0 * ball_.radius * (p - q) : a1 - a0);
     sample.gap = gap;
     samples.push_back(sample);
   }
@@ -193,11 +173,9 @@ class BallSource final : public SampleSource {
   std::shared_ptr<MovingFrame> motion_;
   Shape shape_;
   double candidate_gap_, look_ahead_;
-  Nearest nearest_{};  ///< to the centre, at the state of the query or evaluation under way
-  Vec3 c_, n_;         ///< the centre then, and the shape's normal nearest to it
-  Pose inverse_;       ///< of the shape's frame then
-  int sectors_ = 1;    ///< parts of a ring
-  bool follows_ = false;
+  Nearest nearest_{};                    ///< to the centre, at the state of the query or evaluation under way
+  Vec3 c_, n_;                           ///< the centre then, and the shape's normal nearest to it
+  Pose inverse_;                         ///< of the shape's frame then
   std::vector<ContactSample> followed_;  ///< scratch
   Vec3 seen_ = Vec3::Zero();             ///< the centre at the last query, in the shape's frame
   bool seen_before_ = false;

@@ -120,15 +120,7 @@ int ContactForce::add_frame(std::shared_ptr<MovingFrame> frame) {
 
 int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSpec& law) {
   PALPATE_CHECK(source, "contact \"{}\" with \"{}\" has no source", law.first, law.second);
-  if (law.gaps != "linear" && law.gaps != "exact")
-    fail("contact \"{}\" with \"{}\": unknown gaps \"{}\"{}", law.first, law.second, law.gaps,
-         suggestion(law.gaps, {"linear", "exact"}));
-  const bool follows = law.gaps == "exact";
-  if (follows && !source->start_following())
-    fail(
-        "contact \"{}\" with \"{}\": gaps = \"exact\" is for methods \"distance\" and \"analytic\"; what an "
-        "image shows is known at a query alone",
-        law.first, law.second);
+  const bool follows = source->follows();
   Impl::Pair pair{.source = std::move(source), .law = pressure_law(law), .follows = follows};
   if (follows && law.friction > 0.0)
     pair.anchors = FrictionAnchors(pair.law.retardation, pair.law.regularisation);

@@ -10,7 +10,7 @@
 // A shape's own points (ShapePoints) are the only ones of their source, and those of a ball have no moment
 // about its centre: see on_ball().
 //
-// Samples follow the state with gaps = "exact": the query only says which points can be near.
+// Samples follow the state: the query only says which points can be near.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -111,7 +111,7 @@ class DistanceSource final : public SampleSource {
   const SumError* sum_error() const override { return &sum_error_; }
 
   std::span<const int> material_points() const override { return points_; }
-  bool start_following() override { return true; }
+  bool follows() const override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     const std::vector<distance::Spring>& springs = contact_.springs();
     PALPATE_CHECK(samples.size() == springs.size(), "distance: {} samples follow, {} were found",

@@ -27,7 +27,7 @@ class HalfAndHalf final : public SampleSource {
         {0.5 * (a.sum + b.sum), 0.5 * (a.error + b.error), 0.5 * std::max(a.largest_term, b.largest_term)});
   }
   std::span<const int> material_points() const override { return points_; }
-  bool start_following() override { return first_->start_following() && second_->start_following(); }
+  bool follows() const override { return first_->follows() && second_->follows(); }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     first_->follow(state, samples.first(count_));
     second_->follow(state, samples.subspan(count_));

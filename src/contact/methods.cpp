@@ -6,14 +6,12 @@ namespace palpate::contact {
 
 const std::vector<MethodEntry>& method_registry() {
   static const std::vector<MethodEntry> registry = {
-      {"analytic", "exact gaps at the vertices: of obstacles, and of tools with shape = \"sphere\"",
-       part_keys({"gaps"})},
-      {"auto", "\"distance\"; \"image\" where pixels are given",
-       part_keys({"gaps", "pixels", "quadrature_error"})},
+      {"analytic", "exact gaps at the vertices: of obstacles, and of tools with shape = \"sphere\"", {}},
+      {"auto", "\"distance\"; \"image\" where pixels are given", part_keys({"pixels", "quadrature_error"})},
       {"distance",
        "material points of skins and their nearest points on what they touch: the gradient of an energy, "
        "continuous; of soft bodies, themselves too, tools of any shape and obstacles",
-       part_keys({"gaps", "quadrature_error"})},
+       part_keys({"quadrature_error"})},
       {"image",
        "depths in image space as Galoppo et al. (2007) have them, at the vertices of soft bodies: tools of "
        "any shape, other soft bodies; by OpenGL, without a GPU by Mesa's software rasteriser",

@@ -316,7 +316,7 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
 
 void add_contact(World& world, ContactSpec& given) {
   scene::order_sides(world.description, given);
-  if (given.method == "auto") scene::set_method(given, scene::contact_method(world.description, given));
+  if (given.method == "auto") given.method = scene::contact_method(world.description, given);
   set_friction_speed(world, given);
   ContactSpec spec = given;
   // In a step of one linear solve the secant is needed, though what is left out of a tool's rows besides

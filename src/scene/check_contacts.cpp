@@ -77,16 +77,6 @@ void check_method(const Document& doc, const std::string& key, const std::string
       c.method = "image";
     }
   }
-  if (c.method == "distance" && !given(doc, key + ".gaps")) c.gaps = "exact";
-  if (c.gaps == "exact" && is_in_images(c))
-    refuse(
-        location(doc, key + ".gaps"), where,
-        sphere_tool
-            ? "gaps = \"exact\" needs the formula of the sphere, and an image is made at a query alone: "
-              "write method = \"distance\" or \"analytic\", or remove it"
-            : "gaps = \"exact\" is for obstacles and sphere tools, whose gaps have a formula, and for "
-              "method = \"distance\"; an image is made at a query alone: remove it, or refresh the contact "
-              "more often (contact_refresh_s)");
   if (c.spring == "per_point" && c.method == "distance")
     refuse(
         location(doc, key + ".spring"), where,

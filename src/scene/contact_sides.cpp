@@ -34,11 +34,6 @@ bool is_in_images(const Description& description, const std::string& body) {
   });
 }
 
-void set_method(ContactSpec& contact, const std::string& method) {
-  contact.method = method;
-  if (method != "analytic") contact.gaps = method == "distance" ? "exact" : "linear";
-}
-
 std::string contact_method(const Description& description, const ContactSpec& contact) {
   if (contact.method != "auto") return contact.method;
   const ContactSpec none;

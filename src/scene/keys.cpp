@@ -72,9 +72,6 @@ const KeyTable<ContactSpec>& contact_keys() {
               "what sticks is held by springs between material points (not by a tool); false: it creeps"),
       text("friction_tangent", &ContactSpec::friction_tangent, {"auto", "full", "secant", "symmetric"},
            "symmetric, secant: without its change by pressure; secant: of a step's end, by repeated solves"),
-      text("gaps", &ContactSpec::gaps, {"linear", "exact"},
-           "between two queries: linear, or exact at every evaluation (obstacles, spheres; default of "
-           "distance)"),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, Ranges::candidate_gap_m,
              "samples with a smaller positive gap are kept as well; 0: chosen from the mesh"),
       integer("pixels", &ContactSpec::pixels, Ranges::pixels, "longer edge of the image"),

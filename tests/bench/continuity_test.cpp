@@ -8,7 +8,6 @@
 
 #include "bench/contact/relative_path.h"
 #include "contact/block_model.h"
-#include "palpate/contact/gpu_device.h"
 #include "palpate/loop/load.h"
 
 using namespace palpate;
@@ -66,7 +65,7 @@ struct Blocks {
   scene::Description few_vertices() {
     scene::Description d;
     d.name = "few vertices";
-    const Pose above{Quat::Identity(), Vec3(0.001, -0.002, 0.03)};
+    const Pose above{Quat::Identity(), Vec3(0.0003, -0.0002, 0.03)};
     d.bodies = {body("slab", block({Quat::Identity(), Vec3::Zero()}, Vec3(0.06, 0.06, 0.02), {4, 4, 2}, 1)),
                 body("block", block(above, Vec3(0.03, 0.03, 0.03), {2, 2, 2}, 1))};
     d.contacts = {contact("slab", "block")};
@@ -99,12 +98,11 @@ TEST(Continuity, ABallGoesOverAnEdgeWithoutJumps) { expect_no_jumps(Blocks().bal
 #endif
 TEST(Continuity, TheRidgeOfABlockPressesWithoutJumps) { expect_no_jumps(Blocks().ridge(), 6); }
 
-// in an image a vertex that goes over the other block's rim takes its share of the force with it at once
+// A point that lies as near to the other block's side as to its face turns there, with its share of the
+// force: few points have large ones.
 TEST(Continuity, WhatJumpsIsFound) {
   bench::ContinuityOptions options;
   options.paths = 2;
-  options.method = "image";
-  if (!contact::gpu_available()) GTEST_SKIP() << "without OpenGL there are no images";
   const bench::ContinuityRow row = bench::bench_continuity(Blocks().few_vertices(), options);
   EXPECT_GT(*std::max_element(row.worst_of_path.begin(), row.worst_of_path.end()), 2.0 * kBound);
 }

@@ -126,7 +126,8 @@ class Judgements(Cli):
                               'name = "linearly-implicit-euler"\nstep_s = 0.01')
         self.assertNotEqual(quick, scene)
         (self.folder / "quick.toml").write_text(quick)
-        done = self.call("bench", "contact", "quick.toml", "--method", "distance", "--threads", "1", "--check")
+        done = self.call("bench", "contact", "quick.toml", "--method", "distance", "--threads", "1",
+                         "--check")
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assertEqual(done.stderr, "")
         self.assertRegex(done.stdout, r"(?m)^press-ball +query / step +\S+ +<= 1 +missed *$")
@@ -135,7 +136,8 @@ class Judgements(Cli):
         # before they touch there is little to look at: in one try of several, however busy the machine is
         (self.folder / "apart.toml").write_text(scene.replace("duration_s = 0.4", "duration_s = 0.05"))
         for _ in range(10):
-            done = self.call("bench", "contact", "apart.toml", "--method", "distance", "--threads", "1", "--check")
+            done = self.call("bench", "contact", "apart.toml", "--method", "distance", "--threads", "1",
+                             "--check")
             met = 1 if done.returncode == 0 else 0
             self.assertTrue(done.stdout.endswith(f"\n{met} of 1 bars met\n"), done.stdout + done.stderr)
             if met:

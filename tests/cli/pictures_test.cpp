@@ -85,6 +85,7 @@ class Pictures : public testing::Test {
     SoftBodySpec upper = d.bodies[0];
     upper.position_m = Vec3(0.017, 0.011, 0.03 - depth);
     small_scenes::put_over_block(d, upper);
+    d.contacts[0].method = "image";
     return d;
   }
 

@@ -59,7 +59,6 @@ TEST(ConcaveTool, FeelsTheForceOfTheLaw) {
     term.add_frame(frame);
     ContactSpec law;
     law.stiffness_pa_m = 1.0;
-    law.gaps = "exact";
     term.add_pair(
         contact::make_distance_source(world.surface, ball.vertices, contact::FrameSurface{ring, 0, frame},
                                       {.quadrature_error = 1e-3}),

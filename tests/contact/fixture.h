@@ -43,6 +43,20 @@ class ListSource final : public contact::SampleSource {
   std::vector<contact::ContactSample> samples_;
 };
 
+/// A source whose samples stay those of the query, as an image's do: their tangent is exact.
+class HeldSource final : public contact::SampleSource {
+ public:
+  explicit HeldSource(std::unique_ptr<contact::SampleSource> source) : source_(std::move(source)) {}
+  std::string_view name() const override { return source_->name(); }
+  void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& out) override {
+    source_->query(state, out);
+  }
+  void add_pattern(dynamics::PatternBuilder& pattern) const override { source_->add_pattern(pattern); }
+
+ private:
+  std::unique_ptr<contact::SampleSource> source_;
+};
+
 /// A State moved by h along u-directions, quaternions on their geodesic.
 inline dynamics::State moved(const dynamics::State& state, const VecX& direction, double h) {
   dynamics::State out = state;

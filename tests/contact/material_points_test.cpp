@@ -114,7 +114,6 @@ TEST(MaterialPoints, ForceIsTheGradientOfItsEnergy) {
   term.add_frame(contact::fixed_frame());
   ContactSpec law;
   law.stiffness_pa_m = 1e4;
-  law.gaps = "exact";
   term.add_pair(contact::make_box_source(std::move(points), 0, contact::fixed_frame(),
                                          {quaternion_of(Vec3(0.2, 0.3, 0.1)), Vec3(0.1, 0.1, lowest - 0.2)},
                                          Vec3(0.8, 0.9, 0.7), 0.05),
@@ -238,7 +237,6 @@ TEST(MaterialPoints, ATangentIsTooStiffAgainstTilting) {
     term.add_frame(contact::fixed_frame());
     ContactSpec law;
     law.stiffness_pa_m = 1e7;
-    law.gaps = "exact";
     const contact::FrameSurface box{mesh::box_surface(Vec3::Constant(kSize), {n, n, 1}), 0, frame};
     term.add_pair(contact::make_plane_source(contact::material_points(box, HUGE_VAL), 1,
                                              contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 1e-3),
@@ -378,7 +376,6 @@ TEST(MaterialPoints, WhatSticksHasItsTangent) {
   law.friction = 0.4;
   law.friction_regularisation_m_s = 1e-2;
   law.friction_retardation_s = 1e-2;  // its longest is 0.1 mm
-  law.gaps = "exact";
   for (const bool at_longest : {false, true}) {
     contact::ContactForce term;
     term.add_frame(contact::fixed_frame());

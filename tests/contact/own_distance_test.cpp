@@ -44,7 +44,6 @@ ContactSpec law() {
   ContactSpec out;
   out.first = out.second = "body";
   out.stiffness_pa_m = 1e6;
-  out.gaps = "exact";
   return out;
 }
 

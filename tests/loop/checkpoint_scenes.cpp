@@ -55,7 +55,6 @@ Cases make_cases() {
   out["Sliding"] = sliding_block();
   out["NearestPoints"] = sliding_block();
   out["NearestPoints"].scene.contacts[0].method = "distance";
-  out["NearestPoints"].scene.contacts[0].gaps = "exact";
   Case& stiffer = out["MaterialChange"] = falling_body("linearly-implicit-euler");
   stiffer.scene.bodies[0].changes = {{0.005, 2e4, ""}, {0.025, 5e3, ""}};
   stiffer.scene.integrator.linear_solver = "cholmod";

@@ -12,7 +12,6 @@ inline void put_over_block(scene::Description& d, SoftBodySpec upper) {
   contact.first = "block";
   contact.second = "upper";
   contact.method = "distance";
-  contact.gaps = "exact";
   contact.stiffness_pa_m = 1e6;
   d.contacts.push_back(contact);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;

@@ -5,7 +5,6 @@
 #include "loop/small_scenes.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
-#include "palpate/scene/contact_sides.h"
 
 /// How deep a round tool of 15 mm lay in a block 20 mm high, as a run says it afterwards.
 namespace {
@@ -15,7 +14,7 @@ using namespace palpate;
 /// @param depth  of the tool at the first query, when nothing has given way yet
 loop::Overlap overlap_of(double depth, const std::string& method = "distance") {
   scene::Description d = small_scenes::pressed_block(depth);
-  scene::set_method(d.contacts[0], method);
+  d.contacts[0].method = method;
   const auto world = loop::assemble(d);
   EXPECT_TRUE(loop::run(*world, {}).status.ok());
   const std::vector<loop::Overlap> all = loop::overlaps_of(*world);

@@ -62,7 +62,6 @@ struct Blocks {
     contact.second = d.bodies.back().name;
     contact.method = method;
     if (method == "distance") {
-      contact.gaps = "exact";
       contact.quadrature_error = 1.0;  // each vertex is a point, of one body as of two
     }
     contact.stiffness_pa_m = 1e7;
@@ -109,7 +108,6 @@ struct Fork {
     contact.method = method;
     contact.stiffness_pa_m = 1e6;
     contact.onset_width_m = 5e-3;
-    if (method == "distance") contact.gaps = "exact";
     if (touching) d.contacts.push_back(contact);
     d.bodies[0].proxies = false;
     d.integrator.name = integrator;

@@ -35,7 +35,6 @@ scene::Description touching_blocks(int threads) {
   contact.first = "block";
   contact.second = "upper";
   contact.method = "distance";
-  contact.gaps = "exact";
   contact.stiffness_pa_m = 1e6;
   contact.friction = 0.3;
   d.contacts.push_back(contact);

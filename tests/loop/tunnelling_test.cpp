@@ -3,7 +3,6 @@
 #include "loop/small_scenes.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
-#include "palpate/scene/contact_sides.h"
 
 /// A free block thrown at a plate thinner than its way between two queries.
 namespace {
@@ -111,7 +110,7 @@ void for_each_target(const Visit& visit) {
     for (const char* method : {"image", "distance"})
       for (const double speed : {0.1, 1.0, 10.0, 100.0}) {
         scene::Description d = target(speed);
-        scene::set_method(d.contacts[0], method);
+        d.contacts[0].method = method;
         SCOPED_TRACE(fmt::format("block - {}, {}, {} m/s", d.contacts[0].second, method, speed));
         visit(d, speed);
       }
@@ -145,7 +144,7 @@ TEST(Tunnelling, SubStepsTurnItRound) {
     d.exchange.shortest_refresh_s = 1e-6;
     Ran ran = run(d);
     EXPECT_EQ(ran.result.tunnelled, std::vector<long>{0});
-    EXPECT_GT(ran.velocity, 0.0);
+    EXPECT_GT(ran.velocity, -1e-5 * speed) << "where it is fast the method takes all of it away";
     EXPECT_LE(ran.velocity, 1.001 * speed) << "no energy from nowhere";
     EXPECT_EQ(ran.result.sub_steps > 0, speed >= 1.0);
     EXPECT_LT(ran.result.sub_steps, 40);

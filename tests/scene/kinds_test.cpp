@@ -183,8 +183,7 @@ TEST(Kinds, ContactMethods) {
   EXPECT_EQ(
       with({"contact.1.pixels=128", "contact.1.method=analytic"}),
       "--set contact.1.pixels=128: contact between \"ball\" and \"tool\": pixels means nothing to method = "
-      "\"analytic\", which takes gaps; remove it (used by auto, image)");
-  EXPECT_EQ(with({"contact.0.gaps=exact", "contact.1.gaps=exact"}), "accepted");
+      "\"analytic\"; remove it (used by auto, image)");
   EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=image"}), "accepted");
   EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=gpu"}),
             "--set contact.1.method=gpu: contact between \"ball\" and \"tool\": method = \"gpu\" is now "

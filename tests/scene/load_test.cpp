@@ -255,11 +255,7 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
        "pixels means nothing to method = \"distance\""},
       {{"contact.1.method=distance", "contact.1.spring=per_point"}, "has points that stand for areas"},
       {{"contact.0.pixels=128"}, "pixels means nothing here: an obstacle has exact gaps; remove it"},
-      {{"contact.1.method=image", "contact.1.gaps=exact"}, "gaps means nothing to method = \"image\""},
-      {{"tool.shape=mesh", "tool.mesh={generator = \"ball\", radius_m = 0.01, element_size_m = 0.005}",
-        "tool.inertia_kg_m2=[1, 1, 1]", "contact.1.pixels=128", "contact.1.gaps=exact"},
-       "gaps = \"exact\" is for obstacles and sphere tools"},
-      {{"contact.0.gaps=sometimes"}, "gaps = \"sometimes\""},
+      {{"contact.0.gaps=exact"}, "unknown key \"gaps\""},
       {{"contact.0.hunt_crossley_s_m=1.0"},
        "hunt_crossley_s_m means nothing to law = \"kelvin_voigt\", which takes damping_pa_s_m, "
        "damping_n_s_m; remove it (used by hunt_crossley)"},

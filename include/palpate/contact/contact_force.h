@@ -50,7 +50,7 @@ struct QueryStages {
   long hits = 0;                 ///< samples
 };
 
-/// Makes the samples of one pair from the current state: the slow query between which gaps are linear.
+/// Makes the samples of one pair from the current state: the slow query.
 class SampleSource {
  public:
   virtual ~SampleSource() = default;
@@ -58,9 +58,9 @@ class SampleSource {
   virtual std::string_view name() const = 0;
   /// Appends samples; candidates with a small positive gap included.
   virtual void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) = 0;
-  /// From now on each query's samples can follow the state (gaps = "exact").  False where there is no such
-  /// thing: what an image shows has no formula.
-  virtual bool start_following() { return false; }
+  /// Whether the samples follow the state between two queries.  Else their gaps are linear in the positions
+  /// there: what an image shows has no formula.
+  virtual bool follows() const { return false; }
   /// The samples of the last query at another state, in their order: exact gaps, normals, points and areas.
   virtual void follow(const dynamics::StateView&, std::span<ContactSample>) {}
   /// Numbers of the material points that the last query's samples stand for, ascending, the same at

@@ -43,8 +43,6 @@ struct ContactSpec {
   /// "full"; "symmetric": without how friction follows pressure, which is unsymmetric; "secant": so, and
   /// friction is that of a step's end, by repeated solves; "auto": secant where a step is one linear solve
   std::string friction_tangent = "auto";
-  /// between two queries: "linear" in the positions, or "exact" at every evaluation (not of images)
-  std::string gaps = "linear";
   /// samples with a smaller positive gap are kept too; 0: chosen from the mesh
   double candidate_gap_m = 0.0;
   int pixels = 64;  ///< in image space: the image's longer edge

@@ -9,7 +9,6 @@
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
-#include "palpate/scene/contact_sides.h"
 
 namespace palpate::bench {
 namespace {
@@ -227,7 +226,7 @@ ContinuityRow bench_continuity(scene::Description d, const ContinuityOptions& op
     if (std::any_of(d.obstacles.begin(), d.obstacles.end(),
                     [&](const ObstacleSpec& o) { return o.name == contact.second; }))
       continue;
-    scene::set_method(contact, options.method);
+    contact.method = options.method;
     contact.quadrature_error = options.quadrature_error;
     any = true;
   }

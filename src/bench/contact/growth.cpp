@@ -76,7 +76,7 @@ ContactGrowthRow touch(Touched& ball, double region) {
   contact.add_pair(contact::make_distance_source(ball.surface(), ball.model.skin.vertices,
                                                  contact::FrameSurface{std::move(tool), at, frame},
                                                  {.candidate_gap = kEdge}),
-                   {.first = "ball", .second = "tool", .gaps = "exact"});
+                   {.first = "ball", .second = "tool"});
   ContactGrowthRow out;
   out.skin_vertices = static_cast<int>(ball.model.skin.vertices.cols());
   VecX force;

@@ -9,7 +9,6 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #include "palpate/proxy/pruner.h"
-#include "palpate/scene/contact_sides.h"
 
 namespace palpate::bench {
 namespace {
@@ -146,7 +145,7 @@ bool set_variant(scene::Description& d, const ContactBenchVariant& variant) {
     const bool obstacle = std::any_of(d.obstacles.begin(), d.obstacles.end(),
                                       [&](const ObstacleSpec& o) { return o.name == contact.second; });
     if (obstacle || (variant.method == "image" && contact.first == contact.second)) continue;
-    scene::set_method(contact, variant.method);
+    contact.method = variant.method;
     any = true;
   }
   return any;

@@ -14,9 +14,6 @@ void order_sides(const Description& description, ContactSpec& contact);
 /// @pre the names are in their order
 std::string contact_method(const Description& description, const ContactSpec& contact);
 
-/// Sets a contact's method, and the gaps that go with it.
-void set_method(ContactSpec& contact, const std::string& method);
-
 /// Whether a contact is found in images.  @pre its method is resolved
 inline bool is_in_images(const ContactSpec& contact) { return contact.method == "image"; }
 /// Whether a contact of this body is.
