@@ -122,8 +122,9 @@ Track drag(const IntegratorSpec& spec, double refresh, bool follows, const std::
   law.stiffness_pa_m = 2e7;
   law.onset_width_m = 2e-4;
   const mesh::Boundary boundary = mesh::boundary(rest);
+  const contact::NodeSurface surface{id, boundary.node_of_vertex, boundary.surface.faces};
   auto source =
-      contact::make_sphere_source(contact::NodeSurface{id, boundary.node_of_vertex, boundary.surface.faces},
+      contact::make_sphere_source(contact::material_points(surface, boundary.surface.vertices, rest, kRadius),
                                   0, motion, Vec3::Zero(), kRadius, 2.0 * kRadius);
   if (fault == "samples-stay" && follows) source = std::make_unique<StaleSource>(std::move(source), true);
   if (!follows) source = std::make_unique<StaleSource>(std::move(source), false);

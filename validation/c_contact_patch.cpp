@@ -22,10 +22,14 @@
 // pressure gives, the integral of the shape functions.  By nearest points each side's own points do that to
 // their own nodes, and put the opposite on the other side where their nearest points happen to be: a sum of
 // as many forces as there are points, so that the stress deviates by an error that falls with their spacing
-// e. At the rim points lie as near to the other's side as to its face, and push there: of a strip of the
-// width e half of the pressure is lost.  The mean pressure lacks e/w of each pair of sides, w their distance;
-// a corner's face of a x b, a and b at least 5 mm, e/2 (1/a + 1/b). An image's samples at vertices do the
-// same with the vertices alone: reported beside it, not barred.
+// e.
+//
+// At the rim points lie as near to the other's side as to its face, and push there: of a strip of the width e
+// half of the pressure is lost.  The contact is softer by e/w for each pair of sides, w their distance: 4 %
+// at 0.6 mm, of the 22 % of all compliance that it has, so that the mean pressure lacks 0.9 %.  A corner's
+// face of a x b, a and b at least 5 mm, lacks e/2 (1/a + 1/b).
+//
+// An image's samples at vertices do the same with the vertices alone: reported beside it, not barred.
 
 namespace palpate::validation {
 namespace {

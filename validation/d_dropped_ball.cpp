@@ -20,8 +20,8 @@
 //   rotate): areas are constant, and any energy gained is the integrator's.  Sampled every millisecond, where
 //   the contact is queried anew, as in a scene.
 // - Soft: a ball of tetrahedra: the projected areas of its vertices change with its shape, and are held
-//   between two queries.  The energy gained at each query is the cost of the slow query: reported, with no
-//   bar.
+//   between two queries (method "analytic").  The energy gained at each query is the cost of the slow query:
+//   reported, with no bar.
 // Gains are relative to the energy of the fall, m g h.  Pairs of order 2 are asked for 1e-7, the others
 // for 1e-10, which would take those of order 2 thirty times the steps.
 //

@@ -26,7 +26,8 @@ class Contender {
 
 using Contenders = std::vector<std::unique_ptr<Contender>>;
 
-void add_own(const Motion& motion, Contenders& to);
+/// palpate by images.
+void add_image(const Motion& motion, Contenders& to);
 /// palpate by exact nearest points.
 void add_distance(const Motion& motion, Contenders& to);
 void add_gimpact(const Motion& motion, Contenders& to);

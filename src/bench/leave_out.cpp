@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "palpate/bench/bench.h"
+#include "palpate/contact/gpu_device.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/program.h"
@@ -154,6 +155,7 @@ std::vector<Variant> variants_of(const scene::Description& d) {
   if (!tool::available()) return out;
   out.push_back({"... and a tool out of reach",
                  [quiet] { return palpate_loop(with_tool_out_of_reach(quiet), false); }});
+  if (!contact::gpu_available()) return out;
   out.push_back({"... with contact in image space",
                  [quiet] { return palpate_loop(with_image_contact_out_of_reach(quiet), false); }});
   return out;

@@ -21,7 +21,7 @@ using Row = std::vector<std::string>;
 const std::vector<std::string> kScenes = {"touch-head", "touch-human", "two-pumpkins",
                                           "two-heads",  "gears",       "scrape-pumpkin"};
 const char* const kAtRest = "touch-human";
-/// Nine pumpkins, so near that each overlaps the next: eight regions or more in one solve.
+/// Nine pumpkins, so near that each overlaps the next: eight contacts in one solve.
 const char* const kInARow = "two-pumpkins";
 constexpr int kRow = 9;
 constexpr double kSpacing = 0.28;
@@ -123,8 +123,8 @@ void run_scenes(const BenchArguments& arguments, bench::ContactBenchReport& repo
   const std::vector<std::string> methods = methods_of(arguments, report.no_image);
   for (const scene::Description& description : descriptions) {
     if (stop_flag()) return;
-    const ContactSpec& first = description.contacts.front();
-    const bool own = first.first == first.second;  // a body has no image of itself
+    const bool own = !description.contacts.empty() &&  // a body has no image of itself
+                     description.contacts.front().first == description.contacts.front().second;
     report.scenes.push_back(
         run_scene(description, own ? std::vector<std::string>{"distance"} : methods, arguments));
     print_scene(report.scenes.back(), arguments.all);

@@ -16,7 +16,7 @@ class ContactSnapshot : public loop::Observer {
 
   /// contact.png: the proxies in contact, outlined, beside the patch of skin with the largest overlap, seen
   /// from what touches it, with its penetration and its colliding vertices.  depth.png: the penetration over
-  /// the pixels of the region with the largest overlap, where samples stand at pixels.
+  /// the pixels of the region with the largest overlap, in an image.
   void save(const loop::World& world, const std::string& folder, Undelivered& missing) const;
 
  private:

@@ -792,7 +792,7 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   palpate bench fem --accuracy -o out/bench
   palpate bench fem --cells 16 --step-s 0.001
   palpate bench contact                          the paper's pairs: stages, and contact beside a step
-  palpate bench contact touch-head --method cpu,gpu --pixels 128,256,512
+  palpate bench contact touch-head --method distance,image
   palpate bench contact --growth                 skins of 10,000 to 1,000,000 vertices
   palpate bench contact --check -o out/bench     is each figure what it must be?
   palpate bench continuity gears --paths 100

@@ -228,7 +228,6 @@ MonolithicScene monolithic_scene(const Description& d, double coarser) {
   std::vector<std::string> overrides = monolithic_overrides(d, coarser);
   overrides.push_back(assign("exchange.scheme", std::string("monolithic")));
   if (d.exchange.latency_ticks > 0) overrides.push_back("exchange.latency_ticks=0");
-  // the check, coarser, keeps the scene's own pixels: their error is part of the reference's
   MonolithicScene out{coarser > 1.0 ? with_overrides(d, overrides) : as_tight_as_the_reference(d, overrides),
                       ""};
   const IntegratorSpec& made = out.description.integrator;

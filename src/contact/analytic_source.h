@@ -85,25 +85,22 @@ class AnalyticSource final : public SampleSource {
     if constexpr (kMaterial) return kept_;
     return {};
   }
-  bool follows() const override { return true; }
+  /// At vertices areas are those of the query: at another state they would be the gradient of nothing.
+  bool follows() const override { return kMaterial; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
-    PALPATE_CHECK(samples.size() == kept_.size(), "{}: {} samples follow, {} vertices were kept",
-                  Shape::kName, samples.size(), kept_.size());
-    if (samples.empty()) return;
-    surface_.update(state);
-    const Pose pose = motion_->pose(state), inverse = pose.inverse();
-    shape_.move_to(pose);
-    if constexpr (kMaterial)
+    if constexpr (kMaterial) {
+      PALPATE_CHECK(samples.size() == kept_.size(), "{}: {} samples follow, {} points were kept",
+                    Shape::kName, samples.size(), kept_.size());
+      if (samples.empty()) return;
+      surface_.update(state);
+      const Pose pose = motion_->pose(state), inverse = pose.inverse();
+      shape_.move_to(pose);
       place_points();
-    else
-      surface_.area_vectors(wanted_, areas_);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const int source = samples[i].source;
-      if constexpr (kMaterial)
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        const int source = samples[i].source;
         samples[i] = sample_of_point(i, inverse);
-      else
-        samples[i] = sample_at(kept_[i], inverse);
-      samples[i].source = source;
+        samples[i].source = source;
+      }
     }
   }
 
@@ -114,8 +111,8 @@ class AnalyticSource final : public SampleSource {
     surface_.area_vectors(wanted_, areas_);
     for (int v = 0; v < surface_.vertex_count(); ++v) {
       if (!wanted_[static_cast<std::size_t>(v)]) continue;
-      samples.push_back(sample_at(v, inverse));  // of no area where it does not face the shape yet
-      kept_.push_back(v);
+      const ContactSample sample = sample_at(v, inverse);
+      if (sample.area > 0.0) samples.push_back(sample);
     }
   }
 
@@ -272,7 +269,7 @@ class AnalyticSource final : public SampleSource {
   std::vector<int> open_;      ///< runs that may be near
   double gone_ = 0.0;          ///< bound on the points' way [m]
   Pose shape_pose_;
-  std::vector<int> kept_;             ///< vertices, or points, of the last query's samples
+  std::vector<int> kept_;             ///< material points of the last query's samples
   std::optional<MaterialGaps> gaps_;  ///< of material points
   std::vector<Vec3> places_;          ///< of those kept
   std::vector<Nearest> nearest_;

@@ -122,6 +122,7 @@ int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSp
   PALPATE_CHECK(source, "contact \"{}\" with \"{}\" has no source", law.first, law.second);
   const bool follows = source->follows();
   Impl::Pair pair{.source = std::move(source), .law = pressure_law(law), .follows = follows};
+  if (!follows) pair.law.retardation = 0.0;  // anchors are of material points
   if (follows && law.friction > 0.0)
     pair.anchors = FrictionAnchors(pair.law.retardation, pair.law.regularisation);
   pair.begin = pair.end = impl_->samples.size();

@@ -99,10 +99,6 @@ void ContactForce::tie(int frame, const std::vector<Tie>& ties) {
 
 GraspCounts ContactForce::grasp_counts() const { return impl_->grasp_counts; }
 
-double ContactForce::sample_bytes() const {
-  return static_cast<double>(impl_->samples.size() * sizeof(ContactSample));
-}
-
 void ContactForce::Impl::compare_events() {
   if (!events_to_compare) return;
   events_to_compare = false;

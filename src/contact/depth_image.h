@@ -34,7 +34,7 @@ struct DepthRequest {
   std::vector<FacePair> pairs;
 };
 
-/// Wall time of an answer by what was done, on whichever processor that was [s].
+/// Wall time of an answer by what was done,  [s].
 struct ImageTimes {
   double upload = 0.0;    ///< what was made, or sent, of the surfaces
   double passes = 0.0;    ///< both surfaces drawn

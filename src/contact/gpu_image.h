@@ -11,9 +11,9 @@
 
 namespace palpate::contact {
 
-/// The images of all contact regions of a round at once, on the GPU.
+/// The images of all contact regions of a query at once, on the GPU.
 ///
-/// The surfaces are in its memory (gpu_surface.h): a round sends cameras, and which ranges of faces each
+/// The surfaces are in its memory (gpu_surface.h): a query sends cameras, and which ranges of faces each
 /// region holds.  Each request has a rectangle of one atlas.  There each surface is drawn along the normal
 /// with its faces' numbers as colours: of a the least depth is kept, of b the greatest (an orthographic depth
 /// is linear in w).  One compute pass compares the two and appends the pixels where both are seen, nearer

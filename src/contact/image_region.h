@@ -18,7 +18,6 @@ struct RegionContext {
   ImageOptions options;
   QueryStages stages;
   std::optional<QueryView> view = {};  ///< of the last query, where somebody asked
-  double candidate_gap = 0.0;          ///< what counts as near without any motion [m]
   double safe_time = 0.0;              ///< as SampleSource::safe_time, of the query under way
   long fast_regions = 0;               ///< as SampleSource::fast_regions
 

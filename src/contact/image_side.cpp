@@ -32,11 +32,6 @@ class SoftSide final : public ImageSide {
     proxies.set_motion(way_);
   }
   Vec3 kept_vertex(int vertex) const override { return state_.position(vertex, kept_); }
-  int carrier_count() const override { return state_.carrier_count(); }
-  int carrier_choices() const override { return state_.carrier_choices(); }
-  int carrier_choice(int face, int corner, int choice) const override {
-    return state_.carrier_choice(face, corner, choice);
-  }
   Carrier carrier(int number, const ContactAxes& axes) const override { return state_.carrier(number, axes); }
   CarriedPoint carried(int face, const Vec3& weights, const Vec3& x, const Vec3& normal) const override {
     return state_.carried(face, weights, x, normal);
@@ -119,9 +114,6 @@ class RigidSide final : public ImageSide {
   Vec3 kept_vertex(int vertex) const override { return kept_ * Vec3(surface_.vertices.col(vertex)); }
   Pose frame() const override { return pose_; }
   Pose kept_frame() const override { return kept_; }
-  int carrier_count() const override { return 1; }
-  int carrier_choices() const override { return 1; }
-  int carrier_choice(int, int, int) const override { return 0; }
   /// The point in the frame's axes, R^T (origin + U (u, v, w) - t).
   Carrier carrier(int, const ContactAxes& axes) const override {
     Carrier out;

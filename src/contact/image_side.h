@@ -33,10 +33,7 @@ class ImageSide {
   /// The frame that a rigid surface is in, now and when it was kept; of a soft one the world's.
   virtual Pose frame() const { return {}; }
   virtual Pose kept_frame() const { return {}; }
-  /// What may carry a point of a face near one of its corners, by number: see SurfaceState.
-  virtual int carrier_count() const = 0;
-  virtual int carrier_choices() const = 0;
-  virtual int carrier_choice(int face, int corner, int choice) const = 0;
+  /// What may carry a point, by number: see SurfaceState.
   virtual Carrier carrier(int number, const ContactAxes& axes) const = 0;  ///< @pre updated
   /// The point of a face with these weights of its corners, at x, on what carries it now.
   /// @param normal  along which a carrier may miss it  @pre updated
@@ -48,7 +45,7 @@ class ImageSide {
     return {point_of(by, axes.in_axes(x) - by.at, axes.normal()), number};
   }
 
-  /// For a backend that has surfaces in memory of its own.  Each vertex is a mean of some of these points: a
+  /// For a device that has surfaces in memory of its own.  Each vertex is a mean of some of these points: a
   /// body's nodes, or the vertices themselves.
   virtual const Points& points() const = 0;        ///< [m]; of a soft side as they are now
   virtual Pose points_pose() const { return {}; }  ///< of their axes in the world, now

@@ -63,7 +63,6 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
   }
   ImageOptions& options = context_.options;
   if (options.candidate_gap == 0.0) options.candidate_gap = 0.25 * a.soft()->mean_edge();
-  context_.candidate_gap = options.candidate_gap;
   {
     const ScopedTimer timer(context_.stages.regions_s);
     look_back_.look(

@@ -18,7 +18,6 @@ class LookBack {
   /// Looks back from a query to the one before, where there was one, and keeps the surfaces for the next.
   /// @param t  [s], for messages
   void look(ImageSide& a, ImageSide& b, const std::function<double(Met&)>& find, double t);
-  bool has_kept() const { return kept_; }
   long count() const { return count_; }  ///< so far
   void archive(Archive& a);
 

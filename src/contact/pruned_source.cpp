@@ -41,7 +41,7 @@ class PrunedSource final : public ImageSource {
       context_.a->set_motion(*proxies_a_, state);
       context_.b->set_motion(*proxies_b_, state);
     }
-    found_ = pruner_.query(context_.candidate_gap, time);
+    found_ = pruner_.query(context_.options.candidate_gap, time);
     for (const proxy::ContactRegion& region : found_) {
       context_.take_speed(region.apart, region.approach, region.thickness);
       out.push_back(

@@ -124,10 +124,6 @@ SurfacePoint SurfaceState::vertex_point(int vertex) const {
 // All of these are affine in the place, but for the last, which are constant.  Carriers have numbers: of
 // tetrahedron t 2 t by its coordinates and 2 t + 1 by the least weights, then the vertices by their own; of a
 // surface whose vertices are nodes those of its faces.
-int SurfaceState::carrier_count() const {
-  return is_skin() ? 2 * static_cast<int>(surface_.tets.cols()) + vertex_count() : face_count();
-}
-
 int SurfaceState::carrier_choices() const { return is_skin() ? 9 : 1; }
 
 int SurfaceState::carrier_choice(int face, int corner, int choice) const {

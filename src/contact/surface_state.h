@@ -48,7 +48,6 @@ class SurfaceState {
   SurfacePoint vertex_point(int vertex) const;
   /// What may carry a point of a face near one of its corners, by number (surface_state.cpp): the first
   /// choice whose weights are bounded, the last one in any case.
-  int carrier_count() const;
   int carrier_choices() const;
   int carrier_choice(int face, int corner, int choice) const;
   /// As it stands, for places in these axes; NaN where it can carry none.

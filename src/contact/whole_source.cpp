@@ -44,7 +44,7 @@ class WholeSource final : public ImageSource {
     const double time = context_.options.look_ahead;
     const proxy::ProxyMotion of_a = time > 0.0 ? a.motion(state) : proxy::ProxyMotion{},
                              of_b = time > 0.0 ? b.motion(state) : proxy::ProxyMotion{};
-    const proxy::Reach reach(context_.candidate_gap, time, of_a, of_b);
+    const proxy::Reach reach(context_.options.candidate_gap, time, of_a, of_b);
     proxy::Region plane = finder_.find(a.positions(), b.positions(), reach.in_any_direction());
     if (std::exchange(presses_, false) && plane.depth > 0.0 && plane.normal.dot(normal_) < kSameSide) {
       plane = finder_.along(a.positions(), b.positions(), normal_, reach.in_any_direction());

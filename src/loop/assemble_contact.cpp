@@ -3,6 +3,7 @@
 
 #include "assemble_parts.h"
 #include "contact_shapes.h"
+#include "palpate/contact/gpu_device.h"
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/contact/sources.h"
@@ -60,6 +61,11 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
 }
 
 contact::ImageOptions image_options(const Pair& pair) {
+  if (!contact::gpu_available())
+    fail(
+        "contact {} - {}: method = \"image\" is not built in; take \"distance\", or configure with "
+        "-DPALPATE_WITH_GL=ON (packages libepoxy-dev, libegl-dev)",
+        pair.spec.first, pair.spec.second);
   return {.pixels = pair.spec.pixels, .candidate_gap = pair.candidate_gap, .look_ahead = pair.look_ahead};
 }
 

@@ -90,8 +90,8 @@ void add_models(store::Summary& summary, const scene::Description& d) {
   for (const scene::Hand& hand : scene::hands_of(d)) add(hand.tool->mesh.file);
 }
 
-/// Effect of queries on the resultants that bodies feel: between two queries contact goes on with the pairs
-/// and normals of the last.
+/// Effect of queries on the resultants that bodies feel: in images, between two queries, contact goes on
+/// with the pairs and normals of the last.
 void add_jumps(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   store::SummarySection& s = summary.section("contact");
@@ -247,11 +247,8 @@ void add_pruning(store::Summary& summary, const World& world) {
     add("left by hulls", static_cast<long long>(c.after_hulls));
     add("regions", static_cast<long long>(c.regions));
     add("of them apart, but fast enough to meet", static_cast<long long>(c.regions_ahead));
-    const bool own = contact.first == contact.second;  // one skin, of which each region has two sides
-    const std::vector<std::pair<std::string, long>> sides =
-        own ? std::vector{std::pair(contact.first, c.faces_a + c.faces_b)}
-            : std::vector{std::pair(contact.first, c.faces_a), std::pair(contact.second, c.faces_b)};
-    for (const auto& [name, faces] : sides) {
+    for (const auto& [name, faces] :
+         {std::pair(contact.first, c.faces_a), std::pair(contact.second, c.faces_b)}) {
       add(fmt::format("skin triangles of {} handed on", name).c_str(), static_cast<long long>(faces));
       const Body* body = world.find_body(name);  // else a tool
       if (body && c.queries > 0)
@@ -312,9 +309,9 @@ std::vector<Overlap> overlaps_of(const World& world) {
       one.quadrature_error = errors[i]->largest();
       one.largest_share = errors[i]->largest_share();
     }
-    if (one.deepest_m > 0.0 && one.of_itself && contact.method == "distance")
+    if (one.deepest_m > 0.0 && one.of_itself)
       one.half_width_m = Overlap::kOwnShare * depth_within_itself(*world.find_body(contact.first));
-    else if (one.deepest_m > 0.0 && !one.of_itself)
+    else if (one.deepest_m > 0.0)
       one.half_width_m = std::min(half_width(world, contact.first), half_width(world, contact.second));
     out.push_back(one);
   }

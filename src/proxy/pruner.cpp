@@ -258,6 +258,5 @@ void Pruner::archive(Archive& a) {
 }
 
 const PruneCounts& Pruner::counts() const { return impl_->counts; }
-const RegionCounts& Pruner::region_counts() const { return impl_->finder.counts(); }
 
 }  // namespace palpate::proxy

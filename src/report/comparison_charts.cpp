@@ -92,9 +92,9 @@ void add_methods(Page& page, const Table& methods) {
       "The same touch at the same integrator settings, its contact found in different ways. Differences are "
       "from the first way, in which all other errors on this page were measured: those are of the time "
       "integration, these are of the contact, and no integrator removes them. Each way discretises the same "
-      "law on the same mesh (an exact tool or facets, a sample per vertex or per pixel), so that none of "
-      "them "
-      "is the right one. All approach it, and each other, as elements and pixels become smaller: run the "
+      "law on the same mesh (an exact tool or facets, samples at vertices or at points between them), so "
+      "that "
+      "none of them is the right one. All approach it, and each other, as elements become smaller: run the "
       "scene with half the element size to learn how far this mesh is from it.");
   const std::vector<std::string> columns = {"scene",
                                             "method",

@@ -22,7 +22,6 @@ ContactBenchRow row(const std::string& method, int threads, double query_ms) {
 ContactPrice price(const std::string& scene, double query_ms) {
   ContactPrice out;
   out.scene = scene;
-  out.pairs = 1;
   out.one_body_ms = 3.0;
   out.bodies_ms = 10.0;
   out.row = row("distance", 1, query_ms);

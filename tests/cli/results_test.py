@@ -265,8 +265,8 @@ class Results(Cli):
         self.assertLess(torque["distance"], 1e-15)  # the tool is a ball to it, not a mesh of one
         self.assertGreater(torque["image"], 1e-6)
 
-    def test_a_ball_that_bounces_keeps_its_energy(self):
-        """Undamped, contact looked for each 5 ms: gaps are exact in between, with a kink at each vertex."""
+    def test_nearest_points_keep_the_energy_of_a_ball_that_bounces(self):
+        """Undamped, contact looked for each 5 ms: with gaps linear in between it gains some percent."""
         fall = 0.02  # [m]
         changed = {}
         for name, method in {"points": "distance", "vertices": "analytic"}.items():
@@ -283,8 +283,7 @@ class Results(Cli):
             changed[name] = max(abs(float(row["changed_by_queries_j"]) + float(row["unaccounted_j"]))
                                 for row in rows) / potential
         self.assertLess(changed["points"], 1e-3)
-        self.assertLess(changed["vertices"], 5e-3)
-        self.assertLess(changed["points"], changed["vertices"])
+        self.assertGreater(changed["vertices"], 3e-3)
 
     def test_the_order_of_a_contacts_names_changes_no_byte(self):
         swapped = [f"contact.{i}.between={names}" for i, names in enumerate(

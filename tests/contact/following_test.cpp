@@ -2,25 +2,27 @@
 
 using namespace contact_tests;
 
-/// Between two queries the samples of obstacles and spheres follow the state.
+/// Between two queries the samples of material points follow the state.
 namespace {
 
 constexpr double kFar = 10.0;  // a candidate gap: all vertices
 
 /// A soft sphere over a rigid one of radius 2, whose top is the origin of the frame.
 struct Touch {
-  SurfaceWorld world{sphere(Vec3(0.1, -0.05, 0.9), 1.0, 16)};
+  TriMesh rest = sphere(Vec3(0.1, -0.05, 0.9), 1.0, 16);
+  SurfaceWorld world{rest};
   std::shared_ptr<contact::MovingFrame> frame;
   contact::ContactForce term;
 
-  explicit Touch(std::shared_ptr<contact::MovingFrame> motion = nullptr,
-                 const std::string& spring = "per_area")
+  explicit Touch(std::shared_ptr<contact::MovingFrame> motion = nullptr)
       : frame(motion ? motion : contact::fixed_frame()) {
     term.add_frame(frame);
     ContactSpec law;
     law.stiffness_pa_m = 1e3;
-    law.spring = spring;
-    term.add_pair(contact::make_sphere_source(world.surface, 0, frame, Vec3(0, 0, -2), 2.0, kFar), law);
+    term.add_pair(
+        contact::make_sphere_source(contact::material_points(world.surface, rest.vertices, {}, kFar), 0,
+                                    frame, Vec3(0, 0, -2), 2.0, kFar),
+        law);
   }
   VecX force() {
     VecX f = VecX::Zero(world.state.layout().u_size);
@@ -90,16 +92,6 @@ TEST(Following, EnergyWrenchEventsAndProductsAreOfTheSameState) {
   EXPECT_LT((y - z).norm(), 1e-12 * z.norm());
 }
 
-TEST(Following, SpringsPerPointStayOnePerVertexThatFacesTheShape) {
-  Touch exact(nullptr, "per_point"), fresh(nullptr, "per_point");
-  exact.term.refresh(exact.world.state.view());
-  for (Touch* one : {&exact, &fresh}) one->deform();
-  fresh.term.refresh(fresh.world.state.view());
-  const VecX wanted = fresh.force();
-  ASSERT_GT(wanted.norm(), 0.0);
-  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
-}
-
 TEST(Following, TheShapeMovesWithItsFrame) {
   Touch exact(along(Vec3(0.3, 0, 0.1))), fresh(along(Vec3(0.3, 0, 0.1)));
   exact.term.refresh(exact.world.state.view());
@@ -130,25 +122,6 @@ TEST(Following, ARefreshChangesNoForceSoThatNoMethodRestarts) {
   EXPECT_EQ(exact.term.refresh_jump().force, 0.0);
 }
 
-/// A vertex on the far side at the query, which turns to the shape later.
-TEST(Following, AVertexThatTurnsToTheShapeIsPressed) {
-  Touch exact, fresh;
-  for (Touch* one : {&exact, &fresh}) {  // upside down: every vertex near the shape faces away
-    const int first = one->world.state.layout().find("surface")->q_offset;
-    for (Eigen::Index i = first + 2; i < one->world.state.q().size(); i += 3) one->world.state.q()[i] *= -0.1;
-  }
-  exact.term.refresh(exact.world.state.view());
-  EXPECT_GT(exact.term.samples().size(), 10u);
-  for (Touch* one : {&exact, &fresh}) {
-    const int first = one->world.state.layout().find("surface")->q_offset;
-    for (Eigen::Index i = first + 2; i < one->world.state.q().size(); i += 3) one->world.state.q()[i] *= -1.0;
-  }
-  fresh.term.refresh(fresh.world.state.view());
-  const VecX wanted = fresh.force();
-  ASSERT_GT(wanted.norm(), 0.0);
-  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
-}
-
 TEST(Following, AFailedTrialOfAnIntegratorIsNoError) {
   Touch exact;
   exact.term.refresh(exact.world.state.view());
@@ -156,7 +129,7 @@ TEST(Following, AFailedTrialOfAnIntegratorIsNoError) {
   EXPECT_NO_THROW(exact.force());
 }
 
-/// What an image shows is known at a query alone: gaps are linear in the positions.
+/// Samples at vertices, as images have them: gaps are linear in the positions.
 TEST(Following, WhatDoesNotFollowHasLinearGaps) {
   Touch touch;
   touch.term.refresh(touch.world.state.view());

@@ -3,7 +3,7 @@
 
 using namespace contact_tests;
 
-// The four are parts of what the images take as a whole, which a clock outside of the backend reads. A thread
+// The four are parts of what the images take as a whole, which a clock outside of them reads. A thread
 // may be set aside between two of them, on a busy machine for long, but not in each of a hundred queries.
 TEST(QueryWork, TheTimeOfImagesIsThatOfTheirStages) {
   TwoBalls balls;

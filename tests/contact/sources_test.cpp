@@ -54,13 +54,8 @@ TEST(PlaneSource, VerticesThatFaceAwayDoNotPull) {
   std::vector<contact::ContactSample> samples;
   source->query(world.state.view(), samples);
   EXPECT_GT(samples.size(), 50u);
-  std::size_t facing = 0;
-  for (const auto& s : samples) {
-    EXPECT_GE(s.area, 0.0);
-    facing += s.area > 0.0;
-  }
-  EXPECT_GT(facing, 50u);
-  EXPECT_LT(facing, world.surface.node_of_vertex.size());
+  EXPECT_LT(samples.size(), world.surface.node_of_vertex.size());
+  for (const auto& s : samples) EXPECT_GT(s.area, 0.0);
 }
 
 TEST(SphereSource, GapsNormalsAndAreas) {

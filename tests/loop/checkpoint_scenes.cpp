@@ -101,8 +101,10 @@ Cases make_cases() {
   one.scene.exchange.scheme = "monolithic";
   one.scene.exchange.exchange_period_s = one.scene.exchange.contact_refresh_s = 0.002;
   one.scene.integrator.step_s = 0.001;
+#ifdef PALPATE_HAS_GL
   Case& images = out["Images"] = pressed("points");
   images.scene.contacts[0].method = "image";
+#endif
   Case& two = out["TwoHands"] = pressed("points");
   scene::HandSpec& left = two.scene.hands.emplace_back();
   left.name = "left";

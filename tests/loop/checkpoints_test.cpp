@@ -298,9 +298,7 @@ const std::vector<std::string> kShownNowhere = {
     "bodies.contact.pair..finder.",
     "bodies.contact.pair..normal",
     "bodies.contact.pair..presses",
-    "bodies.contact.pair..was_near",
     "bodies.contact.pair..thickness",
-    "bodies.contact.pair..unaligned",
     // of a clock that stands still, and of poses that do not arrive
     "bodies.hand..limiter.stalled",
     "bodies.hand..limiter.held",
@@ -312,6 +310,8 @@ const std::vector<std::string> kShownNowhere = {
     "bodies.hand..device.switches",
     // largest ones, which these scenes reach later (MaterialPoints.SumsErrorsLargestOnesGoOn has them)
     "bodies.contact.pair..sum_error.largest_",
+    // likewise: only images jump, and what presses deeper jumps more
+    "bodies.contact.largest_jump.",
     // what is near, and no nearer: samples that do not press
     "bodies.contact.pair..near",
     // a largest area that is held still, and a guess that only a controller that acts makes

@@ -126,12 +126,10 @@ TEST(OwnContactScene, OnlyASceneThatNamesItHasIt) {
   loop::assemble(fork.scene("linearly-implicit-euler", false));
   EXPECT_EQ(counters::counter("contact.self_contact_filter"), 0);
   const Blocks blocks;
-#ifdef PALPATE_HAS_GL
   loop::assemble(blocks.scene(false));
   EXPECT_EQ(counters::counter("contact.self_contact_filter"), 0) << "two bodies";
   loop::assemble(fork.scene("linearly-implicit-euler"));
   EXPECT_EQ(counters::counter("contact.self_contact_filter"), 1);
-#endif
 }
 
 TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
@@ -145,7 +143,6 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
   }
 }
 
-#ifdef PALPATE_HAS_GL
 namespace {
 
 /// How far each node has gone, body by body in the order of its file; `pressing`: samples of contact with
@@ -258,6 +255,7 @@ TEST(OwnContactScene, DeepOverlapsAreTold) {
   }
 }
 
+#ifdef PALPATE_HAS_GL
 // The summary of contact in images: what of each skin the proxies have handed on.
 TEST(ImageScene, TheSummarySpeaksOfBothSkins) {
   const Blocks blocks;

@@ -26,8 +26,7 @@ scene::Description thrown(double speed) {
   ContactSpec contact;
   contact.first = "block";
   contact.second = "plate";
-  contact.method = "image";
-  contact.pixels = 64;
+  contact.method = "distance";
   contact.stiffness_pa_m = 20.0 * speed * speed / (3e-3 * 3e-3);
   d.contacts.push_back(contact);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = kPeriod;
@@ -103,11 +102,16 @@ std::vector<Target> targets() {
   return out;
 }
 
-/// visit(description, speed) of each target, by an image and by nearest points.
+#ifdef PALPATE_HAS_GL
+constexpr const char* kMethods[] = {"image", "distance"};
+#else
+constexpr const char* kMethods[] = {"distance"};
+#endif
+/// visit(description, speed) of each target, by each method.
 template <class Visit>
 void for_each_target(const Visit& visit) {
   for (const Target target : targets())
-    for (const char* method : {"image", "distance"})
+    for (const char* method : kMethods)
       for (const double speed : {0.1, 1.0, 10.0, 100.0}) {
         scene::Description d = target(speed);
         d.contacts[0].method = method;
@@ -144,7 +148,7 @@ TEST(Tunnelling, SubStepsTurnItRound) {
     d.exchange.shortest_refresh_s = 1e-6;
     Ran ran = run(d);
     EXPECT_EQ(ran.result.tunnelled, std::vector<long>{0});
-    EXPECT_GT(ran.velocity, -1e-5 * speed) << "where it is fast the method takes all of it away";
+    EXPECT_GT(ran.velocity, speed < 50.0 ? 0.0 : -1e-5 * speed) << "at 100 m/s the steps take all of it away";
     EXPECT_LE(ran.velocity, 1.001 * speed) << "no energy from nowhere";
     EXPECT_EQ(ran.result.sub_steps > 0, speed >= 1.0);
     EXPECT_LT(ran.result.sub_steps, 40);

@@ -58,8 +58,8 @@ class SampleSource {
   virtual std::string_view name() const = 0;
   /// Appends samples; candidates with a small positive gap included.
   virtual void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) = 0;
-  /// Whether the samples follow the state between two queries.  Else their gaps are linear in the positions
-  /// there: what an image shows has no formula.
+  /// Whether the samples follow the state between two queries, as nearest points do.  Those at vertices do
+  /// not: there their gaps are linear in the positions.
   virtual bool follows() const { return false; }
   /// The samples of the last query at another state, in their order: exact gaps, normals, points and areas.
   virtual void follow(const dynamics::StateView&, std::span<ContactSample>) {}
@@ -218,8 +218,7 @@ class ContactForce : public dynamics::ForceTerm,
   void tie(int frame, const std::vector<Tie>& ties);
   /// Of the last query, candidates included.
   const std::vector<ContactSample>& samples() const;
-  int sample_count() const;     ///< of these
-  double sample_bytes() const;  ///< what they are kept in [bytes]
+  int sample_count() const;  ///< of these
   /// On a frame, about its origin, world axes [N m, N].
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
   /// Contact of a frame at a state, with its derivatives; `out` is resized.

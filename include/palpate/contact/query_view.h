@@ -13,7 +13,7 @@ struct RegionView {
   double pixel = 0.0;            ///< edge of a pixel [m]
   int width = 0, height = 0;     ///< [pixels]
   /// One a pixel's middle, row by row upwards; negative is penetration; NaN: one of the surfaces is not
-  /// there, or they are apart by more than the candidate gap [m].  Where there are layers, the deepest.
+  /// there, or they are apart by more than the candidate gap [m].
   std::vector<double> gap;
   /// w of a's surface there [m]; that of b is w - gap.
   std::vector<double> height_a;
@@ -21,7 +21,7 @@ struct RegionView {
 
 /// What pictures show of one pair's last query.
 struct QueryView {
-  std::vector<RegionView> regions;  ///< of samples at pixels; empty where samples are vertices
+  std::vector<RegionView> regions;  ///< of images
   /// Corners of the convex hulls, not inflated, of each proxy in a region where something presses.
   std::vector<Points> proxies_a, proxies_b;
 };

@@ -19,9 +19,8 @@ struct SurfacePoint {
   Vec3 slide = Vec3::Zero();
 };
 
-/// Two surface points on one line along `normal`, and what they stand for.  The same record from an obstacle,
-/// the GPU, the CPU or the exact query. Between queries the gap is linear in the positions: gap = normal .
-/// (x_a - x_b); negative is penetration.  The force on a is p area normal, on b its opposite.
+/// Two surface points on one line along `normal`, and what they stand for.  gap = normal . (x_a - x_b);
+/// negative is penetration.  The force on a is p area normal, on b its opposite.
 struct ContactSample {
   SurfacePoint a, b;            ///< on the two surfaces
   Vec3 normal = Vec3::UnitZ();  ///< unit, from b to a: pushes a away

@@ -3,7 +3,7 @@
 
 namespace palpate::contact {
 
-/// Quadrature error of the sum over points or pixels that approximates the integral of the depth over a
+/// Quadrature error of the sum over points that approximates the integral of the depth over a
 /// contact, and the share of its largest term.  Force is stiffness times this sum.  Over a run both are given
 /// relative to the largest sum: a contact that only begins has few points, hence large relative errors of
 /// small forces.
@@ -13,7 +13,7 @@ class SumError {
   struct Query {
     double sum = 0.0;           ///< of depth times area over all points [m^3]; 0 where nothing overlaps
     double error = 0.0;         ///< estimate of its error [m^3]
-    double largest_term = 0.0;  ///< of one point [m^3]; 0 of pixels
+    double largest_term = 0.0;  ///< of one point [m^3]
   };
   /// Records the sum of a query.
   void take(const Query& query);

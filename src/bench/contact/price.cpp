@@ -85,7 +85,6 @@ FrictionPrice friction_price(scene::Description d, const std::atomic<bool>* stop
 ContactPrice bench_contact_price(const scene::Description& d, const std::atomic<bool>* stop) {
   ContactPrice out;
   out.scene = d.name;
-  out.pairs = static_cast<int>(d.contacts.size());
   out.row = bench_contact(d, {}, stop);
   if (!d.tool && out.row.touches) out.friction = friction_price(d, stop);
   out.contact_free_ms = bodies_alone_ms(d, stop);

@@ -95,7 +95,7 @@ ContactBenchRow bench_contact(scene::Description description, const ContactBench
 scene::Description against_itself(scene::Description description);
 
 /// Copies of the scene's first body in a row along x, each held as it is there and in contact with the next:
-/// many contact regions in one implicit solve.
+/// many contacts in one implicit solve.
 scene::Description row_of_bodies(scene::Description description, int count, double spacing_m);
 
 /// What friction 0.3 makes of a step, with the tangent's unsymmetric part left out and with it ("full").
@@ -111,7 +111,6 @@ struct FrictionPrice {
 /// [ms].
 struct ContactPrice {
   std::string scene;
-  int pairs = 0;  ///< contacts that the scene names
   /// A step of the first body without contact or tool, with linear_rtol = 1e-3.  As all that is without
   /// contact it moves under its weight: at rest there is nothing to solve.
   double one_body_ms = 0.0;

@@ -7,7 +7,7 @@
 /// Names that a [[contact]] of a scene knows, with the keys that each uses.
 namespace palpate::contact {
 
-/// How gaps are found, and with it where: at the vertices, or at the pixels of an image.
+/// How gaps are found, and with it where: at vertices, or at material points.
 struct MethodEntry {
   std::string name, summary;
   std::vector<PartKey> keys = {};

@@ -69,7 +69,8 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, TriMesh rig
 
 /// Image space with convex proxies of both sides (docs/design.md 4.2, 4.3): only skin that may be near is
 /// looked at, in regions that have each its own plane and image, so that bodies which are no height field as
-/// a whole are seen from all sides that they are touched on.  Each face of the skin is in one region at most.
+/// a whole are seen from all sides that they are touched on.  Each face of the first skin is in one region
+/// at most.
 /// @param proxies  of `surface`, a skin: the set's faces are the surface's; it may serve several sources
 /// @param proxies_rigid  of `rigid`, in its frame, as proxy::rigid_proxies makes them; it may serve several
 ///   sources

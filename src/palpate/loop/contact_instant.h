@@ -16,11 +16,11 @@ struct ProxyShape {
 struct ContactInstant {
   double force_n = 0.0;  ///< sum of pressure times area over all samples
   /// One a body: how deep each vertex of its surface (Body::surface_points) lies in what it touches [m]; NaN
-  /// where it is outside.  Of samples at pixels it is read between the four pixels around, as Galoppo et al.
-  /// (2007) do; of samples at vertices it is theirs.
+  /// where it is outside.  In an image it is read between the four pixels around, as Galoppo et al. (2007)
+  /// do; else it is the samples' own.
   std::vector<VecX> depths;
   std::vector<ProxyShape> proxies;           ///< in regions where something presses; each pair's own
-  std::vector<contact::RegionView> regions;  ///< of samples at pixels
+  std::vector<contact::RegionView> regions;  ///< of images
 };
 
 /// What the last query saw, at the World's state, which is that of the query inside Observer::queried.

@@ -11,21 +11,20 @@ std::vector<scene::Need> needs(const scene::Description& description);
 /// What the device of a hand has counted (device::Device::tallies).
 std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand);
 
-/// How deep the two sides of a [[contact]] lay in each other, and what the sum over its points or pixels
-/// errs.
+/// How deep the two sides of a [[contact]] lay in each other, and what the sum over its points errs.
 struct Overlap {
   std::string pair;        ///< "head - tool"
   double deepest_m = 0.0;  ///< the largest overlap that a query saw; 0: they never touched
   /// half of the smaller extent of the boxes around either side: what lies deeper is pushed out at the far
-  /// side, or nowhere; infinite where they never touched, and in images of a body against itself.  By nearest
-  /// points of a body against itself three quarters of the depth up to which its overlaps are found
+  /// side, or nowhere; infinite where they never touched.  Of a body against itself three quarters of the
+  /// depth up to which its overlaps are found
   double half_width_m = 0.0;
   bool of_itself = false;  ///< of a body
   /// part of the depth up to which overlaps of a body with itself are found, at which they are too deep: so
   /// that a run says so before they are lost
   static constexpr double kOwnShare = 0.75;
   double quadrature_error = 0.0;  ///< relative, as contact::SumError::largest(); 0: not estimated
-  double largest_share = 0.0;     ///< of one point; 0 of pixels
+  double largest_share = 0.0;     ///< of one point
   bool too_deep() const { return deepest_m > half_width_m; }
 };
 /// One for each [[contact]] of the scene.

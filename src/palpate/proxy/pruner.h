@@ -84,7 +84,6 @@ class Pruner {
   const PruneCounts& counts() const;
   /// Normals and counts of the queries so far.
   void archive(Archive& a);
-  const RegionCounts& region_counts() const;
 
  private:
   struct Impl;

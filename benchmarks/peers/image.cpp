@@ -1,4 +1,4 @@
-// palpate: the scene's own contact, from positions of nodes to forces on nodes, by images.  A query is
+// palpate's contact by images, from positions of nodes to forces on nodes.  A query is
 // ContactForce::refresh, which finds the samples and compares the forces before and after, and one evaluation
 // of the forces.
 #include <algorithm>
@@ -8,9 +8,9 @@
 namespace peers {
 namespace {
 
-class Own final : public Contender {
+class Image final : public Contender {
  public:
-  explicit Own(const Motion& motion) {
+  explicit Image(const Motion& motion) {
     scene::Description d = motion.description;
     for (ContactSpec& c : d.contacts) c.method = "image";
     world_ = loop::assemble(d);
@@ -55,7 +55,7 @@ class SkinsAlone final : public Contender {
 
 }  // namespace
 
-void add_own(const Motion& motion, Contenders& to) { to.push_back(std::make_unique<Own>(motion)); }
+void add_image(const Motion& motion, Contenders& to) { to.push_back(std::make_unique<Image>(motion)); }
 
 void add_skins_alone(const Motion& motion, Contenders& to) {
   to.push_back(std::make_unique<SkinsAlone>(motion));
