@@ -58,39 +58,21 @@ std::vector<Measurement> run(const std::string& fault) {
                area = kReach * kReach / (2.0 * product);
   std::vector<Measurement> out;
   if (images_work()) {
-    std::vector<double> h, of_volume, of_area;
-    Sum last;
-    for (const int pixels : {32, 64, 128, 256}) {
-      double squares_v = 0.0, squares_a = 0.0;
-      for (int i = 0; i < kGridShifts; ++i) {
-        last = sampled(pixels, grid_shift(i), fault);
-        squares_v += std::pow(last.volume / volume - 1.0, 2) / kGridShifts;
-        squares_a += std::pow(last.area / area - 1.0, 2) / kGridShifts;
-      }
-      h.push_back(1.0 / pixels);
-      of_volume.push_back(std::sqrt(squares_v));
-      of_area.push_back(std::sqrt(squares_a));
-    }
-    out.push_back({.quantity = "volume of the corner at 256 pixels, RMS over 20 shifts [m^3]",
-                   .computed = last.volume,
-                   .exact = volume,
-                   .error = of_volume.back(),
-                   .bar = 1e-3,
-                   .order = fitted_order(h, of_volume),
-                   .order_low = 1.9,
-                   .order_high = 3.5,
-                   .note = "order in pixel size over 32 to 256",
-                   .refinement = {"pixel / edge of the image", h, of_volume}});
-    out.push_back({.quantity = "area of the section at 256 pixels, RMS over 20 shifts [m^2]",
-                   .computed = last.area,
-                   .exact = area,
-                   .error = of_area.back(),
-                   .bar = 1e-2,
-                   .order = fitted_order(h, of_area),
-                   .order_low = 0.9,
-                   .order_high = 2.0,
-                   .note = "order in pixel size over 32 to 256",
-                   .refinement = {"pixel / edge of the image", h, of_area}});
+    const std::vector<int> pixels{32, 64, 128, 256};
+    out.push_back(over_pixels(
+        {.quantity = "volume of the corner at 256 pixels, RMS over 20 shifts [m^3]",
+         .exact = volume,
+         .bar = 1e-3,
+         .order_low = 1.9,
+         .order_high = 3.5},
+        pixels, [&](int count, const GridShift& shift) { return sampled(count, shift, fault).volume; }));
+    out.push_back(over_pixels(
+        {.quantity = "area of the section at 256 pixels, RMS over 20 shifts [m^2]",
+         .exact = area,
+         .bar = 1e-2,
+         .order_low = 0.9,
+         .order_high = 2.0},
+        pixels, [&](int count, const GridShift& shift) { return sampled(count, shift, fault).area; }));
   }
   say_what_is_skipped(out);
   return out;

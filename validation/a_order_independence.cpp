@@ -9,9 +9,10 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
 
-// The field of depths is a property of two surfaces, not of how their triangles are listed.  Samples of the
-// same pair are compared bit by bit: once as the generators list the triangles, then shuffled in both bodies.
-// Where two triangles meet at a pixel's middle the image may take either; what is compared is what they say.
+// The field of depths is a property of two surfaces, not of how their triangles are listed.  The pixels of
+// the same pair are compared bit by bit: once as the generators list the triangles, then shuffled in both
+// bodies. Where two triangles meet at a pixel's middle the image may take either; what is compared is what
+// they say.
 //
 // Which of two soft bodies is named first changes nothing either: sides have an order of their own, by the
 // bodies' places in the State.  Samples are compared bit by bit again.
@@ -168,15 +169,16 @@ std::vector<Measurement> run(const std::string& fault) {
 }  // namespace
 
 ValidationCase order_independence() {
-  return {.name = "order-independence",
-          .section = "A",
-          .summary = "the same samples, bit by bit, for shuffled triangles and for swapped sides",
-          .why =
-              "a result that depends on how a mesh file lists its triangles cannot be reproduced, and two "
-              "bodies must agree on how far they overlap",
-          .quick = true,
-          .run = run,
-          .faults = {{"first-come", "shuffled"}, {"as-named", "sides swapped"}}};
+  return {
+      .name = "order-independence",
+      .section = "A",
+      .summary = "bit by bit the same pixels for shuffled triangles, and the same samples for swapped sides",
+      .why =
+          "a result that depends on how a mesh file lists its triangles cannot be reproduced, and two "
+          "bodies must agree on how far they overlap",
+      .quick = true,
+      .run = run,
+      .faults = {{"first-come", "shuffled"}, {"as-named", "sides swapped"}}};
 }
 
 }  // namespace palpate::validation

@@ -55,29 +55,14 @@ std::vector<Measurement> run(const std::string& fault) {
     say_what_is_skipped(out);
     return out;
   }
-  {
-    std::vector<double> h, error;
-    double last = 0.0;
-    for (const int pixels : {64, 128, 256}) {
-      double squares = 0.0;
-      for (int i = 0; i < kGridShifts; ++i) {
-        last = sampled(mesh, pixels, grid_shift(i), fault);
-        squares += std::pow(last / facets - 1.0, 2) / kGridShifts;
-      }
-      h.push_back(1.0 / pixels);
-      error.push_back(std::sqrt(squares));
-    }
-    out.push_back({.quantity = "sum of depth x dA against the facets at 256 pixels, RMS over 20 shifts [m^3]",
-                   .computed = last,
+  out.push_back(
+      over_pixels({.quantity = "sum of depth x dA against the facets at 256 pixels, RMS over 20 shifts [m^3]",
                    .exact = facets,
-                   .error = error.back(),
                    .bar = 1e-4,
-                   .order = fitted_order(h, error),
                    .order_low = 1.9,
-                   .order_high = 3.5,
-                   .note = "order in pixel size over 64 to 256",
-                   .refinement = {"pixel / edge of the image", h, error}});
-  }
+                   .order_high = 3.5},
+                  {64, 128, 256},
+                  [&](int pixels, const GridShift& shift) { return sampled(mesh, pixels, shift, fault); }));
   std::vector<double> h, error;
   double mean = 0.0;
   constexpr int kOrientations = 6;

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "cases.h"
+#include "images.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/error.h"
@@ -48,22 +49,19 @@ class PathFrame final : public contact::MovingFrame {
   }
 };
 
-/// A source that stays where its last query left it.
+/// A source that says that it follows, and stays where its last query left it: the library without following.
 class StaleSource final : public contact::SampleSource {
  public:
-  /// @param follows  what it says of itself: with true, the library without following
-  StaleSource(std::unique_ptr<contact::SampleSource> source, bool follows)
-      : source_(std::move(source)), follows_(follows) {}
+  explicit StaleSource(std::unique_ptr<contact::SampleSource> source) : source_(std::move(source)) {}
   std::string_view name() const override { return source_->name(); }
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {
     source_->query(state, samples);
   }
   void add_pattern(dynamics::PatternBuilder& pattern) const override { source_->add_pattern(pattern); }
-  bool follows() const override { return follows_; }
+  bool follows() const override { return true; }
 
  private:
   std::unique_ptr<contact::SampleSource> source_;
-  bool follows_;
 };
 
 /// A source that gives the samples of its first query for ever.
@@ -126,8 +124,8 @@ Track drag(const IntegratorSpec& spec, double refresh, bool follows, const std::
   auto source =
       contact::make_sphere_source(contact::material_points(surface, boundary.surface.vertices, rest, kRadius),
                                   0, motion, Vec3::Zero(), kRadius, 2.0 * kRadius);
-  if (fault == "samples-stay" && follows) source = std::make_unique<StaleSource>(std::move(source), true);
-  if (!follows) source = std::make_unique<StaleSource>(std::move(source), false);
+  if (fault == "samples-stay" && follows) source = std::make_unique<StaleSource>(std::move(source));
+  if (!follows) source = validation::held(std::move(source));
   if (fault == "one-query") source = std::make_unique<OnceSource>(std::move(source));
   contact->add_pair(std::move(source), law);
   system.add(std::static_pointer_cast<dynamics::ForceTerm>(contact));

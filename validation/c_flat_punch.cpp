@@ -82,9 +82,10 @@ double force(Way way, double kappa, const BlockMesh& mesh, const std::string& fa
       side = contact::material_points(soft, mesh::boundary(rest).surface.vertices, rest,
                                       2.0 * mesh.half_width());
     }
-    std::unique_ptr<contact::SampleSource> source = contact::make_cylinder_source(
+    // held: the tangent of points that follow leaves out how they move, and Newton's steps get small
+    std::unique_ptr<contact::SampleSource> source = held(contact::make_cylinder_source(
         std::move(side), frame, std::move(motion), {Quat::Identity(), Vec3(0, 0, 0.5 * kLength - kDepth)},
-        kRadius + kBeyond, kLength, kCandidates);
+        kRadius + kBeyond, kLength, kCandidates));
     if (fault == "rim-not-seen")
       return spoiled(std::move(source), [](auto& samples) {
         std::erase_if(samples, [](const auto& s) {

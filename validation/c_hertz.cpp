@@ -49,8 +49,9 @@ double force(Way way, const BlockMesh& mesh, double depth, const std::string& fa
       side = contact::material_points(soft, mesh::boundary(rest).surface.vertices, rest,
                                       2.0 * mesh.half_width());
     }
-    std::unique_ptr<contact::SampleSource> source = contact::make_sphere_source(
-        std::move(side), frame, std::move(motion), Vec3(0, 0, kRadius - depth), kRadius, kCandidates);
+    // held: the tangent of points that follow leaves out how they move, and Newton's steps get small
+    std::unique_ptr<contact::SampleSource> source = held(contact::make_sphere_source(
+        std::move(side), frame, std::move(motion), Vec3(0, 0, kRadius - depth), kRadius, kCandidates));
     if (fault == "rim-not-seen")
       return spoiled(std::move(source), [](auto& samples) {
         std::erase_if(samples, [](const auto& s) {

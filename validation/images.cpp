@@ -1,5 +1,7 @@
 #include "images.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -85,12 +87,35 @@ double overlap_volume(const std::vector<contact::ContactSample>& samples) {
   return sum;
 }
 
+std::unique_ptr<contact::SampleSource> held(std::unique_ptr<contact::SampleSource> source) {
+  return spoiled(std::move(source), [](auto&) {});
+}
+
 std::unique_ptr<contact::SampleSource> spoiled(std::unique_ptr<contact::SampleSource> source, Spoil spoil) {
   return std::make_unique<SpoiledSource>(std::move(source), std::move(spoil));
 }
 
 GridShift grid_shift(int i) {
   return {std::fmod(0.754877666 * (i + 1), 1.0), std::fmod(0.569840291 * (i + 1), 1.0)};
+}
+
+Measurement over_pixels(Measurement wanted, const std::vector<int>& pixels,
+                        const std::function<double(int, const GridShift&)>& sampled) {
+  std::vector<double> h, error;
+  for (const int count : pixels) {
+    double squares = 0.0;
+    for (int i = 0; i < kGridShifts; ++i) {
+      wanted.computed = sampled(count, grid_shift(i));
+      squares += std::pow(wanted.computed / wanted.exact - 1.0, 2) / kGridShifts;
+    }
+    h.push_back(1.0 / count);
+    error.push_back(std::sqrt(squares));
+  }
+  wanted.error = error.back();
+  wanted.order = fitted_order(h, error);
+  wanted.note = fmt::format("order in pixel size over {} to {}", pixels.front(), pixels.back());
+  wanted.refinement = {"pixel / edge of the image", h, error};
+  return wanted;
 }
 
 }  // namespace palpate::validation

@@ -25,11 +25,22 @@ double overlap_volume(const std::vector<contact::ContactSample>& samples);  ///<
 using Spoil = std::function<void(std::vector<contact::ContactSample>& samples)>;
 std::unique_ptr<contact::SampleSource> spoiled(std::unique_ptr<contact::SampleSource> source, Spoil spoil);
 
-/// Shifts of the pixel grid without structure: the lattice of the golden ratios of two dimensions.
+/// A source whose samples stay those of the last query: gaps are linear in the positions, and their tangent
+/// is exact.
+std::unique_ptr<contact::SampleSource> held(std::unique_ptr<contact::SampleSource> source);
+
+/// How far the grid of an image's pixels is moved.
 struct GridShift {
-  double u, v;
+  double u, v;  ///< [pixels]
 };
+/// Shifts of the pixel grid without structure: the lattice of the golden ratios of two dimensions.
 inline constexpr int kGridShifts = 20;
 GridShift grid_shift(int i);
+/// Measures what an image's pixels sum up to with images of more and more pixels, each by its RMS over 20
+/// shifts of the grid: error at the last one, and order in pixel size.
+/// @param wanted   quantity, exact value, bar and bounds of the order
+/// @param sampled  (pixels along the longer edge, shift)
+Measurement over_pixels(Measurement wanted, const std::vector<int>& pixels,
+                        const std::function<double(int, const GridShift&)>& sampled);
 
 }  // namespace palpate::validation

@@ -49,7 +49,7 @@ class CoupledNodes {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(carrier_a)) << 32 |
            static_cast<std::uint32_t>(carrier_b);
   }
-  /// That of two points.
+  /// Joins two points.
   static Joint joint_of(const CarriedPoint& a, const CarriedPoint& b) {
     return {key_of(a.number, b.number), a.point.count, b.point.count, a.point.node, b.point.node};
   }

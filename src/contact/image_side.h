@@ -33,7 +33,7 @@ class ImageSide {
   /// The frame that a rigid surface is in, now and when it was kept; of a soft one the world's.
   virtual Pose frame() const { return {}; }
   virtual Pose kept_frame() const { return {}; }
-  /// What may carry a point, by number: see SurfaceState.
+  /// Returns the carrier of this number (SurfaceState counts them).
   virtual Carrier carrier(int number, const ContactAxes& axes) const = 0;  ///< @pre updated
   /// The point of a face with these weights of its corners, at x, on what carries it now.
   /// @param normal  along which a carrier may miss it  @pre updated

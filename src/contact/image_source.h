@@ -9,10 +9,10 @@
 
 namespace palpate::contact {
 
-/// What the sources in image space share: two sides, and what their samples couple.  Side a is soft; the
+/// Finds contact of two sides in images; how the regions are found is its children's.  Side a is soft; the
 /// normal points from b to a.
 ///
-/// A query collects the regions, asks for their images, all in one round, and makes samples of what they show
+/// A query collects the regions, asks for their images, all at once, and makes samples of what they show
 /// (Galoppo et al. 2007, section 4).
 class ImageSource : public SampleSource {
  public:

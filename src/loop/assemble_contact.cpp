@@ -331,8 +331,8 @@ void add_contact(World& world, ContactSpec& given) {
     spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
   // of a tool with ticks of its own on an obstacle no step matrix has a part; its ticks are one solve each
   if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
-  // What sticks has springs that a query moves.  A tool's ticks know of none, nor does what they are compared
-  // with.
+  // Friction that sticks has springs that a query moves.  A tool's ticks know of none, nor does what they are
+  // compared with.
   const bool of_tool = ToolSide::named(world, spec.first) || ToolSide::named(world, spec.second);
   if (spec.friction_anchors && !of_tool)
     spec.friction_retardation_s = world.description.exchange.contact_refresh_s;

@@ -90,7 +90,7 @@ void add_models(store::Summary& summary, const scene::Description& d) {
   for (const scene::Hand& hand : scene::hands_of(d)) add(hand.tool->mesh.file);
 }
 
-/// Effect of queries on the resultants that bodies feel: in images, between two queries, contact goes on
+/// Adds how queries change the resultants that bodies feel: in images, between two queries, contact goes on
 /// with the pairs and normals of the last.
 void add_jumps(store::Summary& summary, const World& world) {
   if (!world.contact) return;

@@ -151,3 +151,25 @@ TEST(Following, WhatDoesNotFollowHasLinearGaps) {
   ASSERT_GT((second - first).norm(), 0.0);
   EXPECT_LT((gaps() - 0.5 * (first + second)).cwiseAbs().maxCoeff(), 1e-12);
 }
+
+/// What does not follow has no material points, hence no anchors: a retardation is no stiffness of its own.
+TEST(Following, WithoutItARetardationChangesNoMatrix) {
+  Touch touch;
+  touch.term.refresh(touch.world.state.view());
+  touch.world.state.u().setConstant(0.01);
+  const auto matrix = [&](double retardation) {
+    contact::ContactForce term;
+    term.add_frame(touch.frame);
+    ContactSpec law;
+    law.stiffness_pa_m = 1e3;
+    law.friction = 0.4;
+    law.friction_tangent = "full";
+    law.friction_retardation_s = retardation;
+    term.add_pair(std::make_unique<ListSource>(touch.term.samples()), law);
+    term.refresh(touch.world.state.view());
+    return step_matrix(term, touch.world.state, 1.0, 0.0).to_dense();
+  };
+  const auto without = matrix(0.0);
+  EXPECT_GT(without.norm(), 0.0);
+  EXPECT_EQ((matrix(0.01) - without).norm(), 0.0);
+}

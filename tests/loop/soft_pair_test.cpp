@@ -74,7 +74,7 @@ TEST(SoftPair, PressedTogetherTheyAreOneBlock) {
   ASSERT_TRUE(loop::run(*world, {}).status.ok());
   const Vec3 force = force_on_first(*world);
   EXPECT_NEAR(-force.z() / exact, 1.0, 0.005);
-  EXPECT_LT(force.head<2>().norm(), 1e-5 * exact);
+  EXPECT_LT(force.head<2>().norm(), 2e-6 * exact);  // the rim, whose triangles are no mirror images
   // Symmetric about the middle plane: each face gives way by F L / (E A).
   const double lower = mean_height(*world, 0, 0.5 * kLength), upper = mean_height(*world, 1, -0.5 * kLength);
   EXPECT_NEAR(kLength - lower, exact * kLength / (kYoung * area), 0.01 * d);

@@ -71,18 +71,21 @@ scene::Description at_soft_plate(double speed) {
 struct Ran {
   loop::RunResult result;
   double velocity;  ///< of the block's centre, up [m/s]
+  double height;    ///< of the block's centre; the plate's top is at 0 [m]
   store::Summary summary;
 };
 Ran run(const scene::Description& d, bool real_time = false) {
   const auto world = loop::assemble(d);
   loop::RunOptions options;
   options.real_time = real_time;
-  Ran out{loop::run(*world, options), 0.0, {}};
+  Ran out{loop::run(*world, options), 0.0, 0.0, {}};
   EXPECT_TRUE(out.result.status.ok()) << out.result.status.message;
   const auto& block = *world->state.layout().find(world->bodies[0].block_id);
   const VecX& m = world->bodies[0].masses;
-  for (Eigen::Index i = 0; i < m.size(); ++i)
+  for (Eigen::Index i = 0; i < m.size(); ++i) {
     out.velocity += m[i] / m.sum() * world->state.u()[block.u_offset + 3 * i + 2];
+    out.height += m[i] / m.sum() * world->state.q()[block.q_offset + 3 * i + 2];
+  }
   out.summary = loop::summarise(*world, out.result, 0.0);
   return out;
 }
@@ -149,6 +152,7 @@ TEST(Tunnelling, SubStepsTurnItRound) {
     Ran ran = run(d);
     EXPECT_EQ(ran.result.tunnelled, std::vector<long>{0});
     EXPECT_GT(ran.velocity, speed < 50.0 ? 0.0 : -1e-5 * speed) << "at 100 m/s the steps take all of it away";
+    EXPECT_GT(ran.height, 0.0) << "it is on the side that it came from";
     EXPECT_LE(ran.velocity, 1.001 * speed) << "no energy from nowhere";
     EXPECT_EQ(ran.result.sub_steps > 0, speed >= 1.0);
     EXPECT_LT(ran.result.sub_steps, 40);

@@ -1,4 +1,4 @@
-// What a query and a step with contact may cost at most, as ratios of one run.  Nearest points, one thread,
+// Bounds the cost of a query and of a step with contact, as ratios of one run.  Nearest points, one thread,
 // where nothing else is said:
 //
 //   samples / elements    forces and tangent of all samples over the elements' own assembly            <= 1
