@@ -56,8 +56,8 @@ compare::FeltDifference print_difference(const scene::Description& description, 
 int repeat_ticks(const scene::Description& description, const std::vector<loop::HapticRecord>& records) {
   bool identical = true;
   for (std::size_t i = 0; i < records.size(); ++i)
-    identical &= print_difference(description, i, records[i].ticks, loop::retrace(description, records[i], i))
-                     .identical;
+    identical &=
+        print_difference(description, i, records[i].ticks, loop::retrace(description, records, i)).identical;
   if (!identical)
     fail("replay: the ticks differ from those recorded: the run was made by another version or machine");
   return 0;

@@ -353,6 +353,11 @@ std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Po
   return make(soft(std::move(surface), rest), rigid(other), options);
 }
 
+std::unique_ptr<SampleSource> make_distance_source(const FrameSurface& a, const FrameSurface& b,
+                                                   const DistanceOptions& options) {
+  return make(rigid(a), rigid(b), options);
+}
+
 std::unique_ptr<SampleSource> make_own_distance_source(NodeSurface surface, const Points& rest,
                                                        const Points& rest_nodes,
                                                        const DistanceOptions& options) {

@@ -56,10 +56,7 @@ void archive_side(Archive& a, ToolSide& side) {
     const Archive::Group group(a, "tool");
     archive_tool(a, *side.tool);
   }
-  if (side.obstacles) {
-    const Archive::Group group(a, "obstacles");
-    side.obstacles->archive(a, side.known.time, {side.known.pose, side.known.twist});
-  }
+  if (side.rigid) side.rigid->query_next();
 }
 
 }  // namespace

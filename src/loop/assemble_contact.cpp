@@ -14,6 +14,7 @@
 #include "palpate/proxy/decompose_solid.h"
 #include "palpate/proxy/region.h"
 #include "palpate/scene/contact_sides.h"
+#include "rigid_contact.h"
 #include "tool_side.h"
 
 namespace palpate::loop {
@@ -69,22 +70,14 @@ contact::ImageOptions image_options(const Pair& pair) {
   return {.pixels = pair.spec.pixels, .candidate_gap = pair.candidate_gap, .look_ahead = pair.look_ahead};
 }
 
-[[noreturn]] void refuse_distance(const ContactSpec& spec, const Error& error) {
-  fail("contact {} - {}: method \"distance\": {}", spec.first, spec.second, error.what());
-}
-
-contact::DistanceOptions distance_options(const Pair& pair) {
-  return {.quadrature_error = pair.spec.quadrature_error,
-          .candidate_gap = pair.spec.candidate_gap_m,
-          .look_ahead = pair.look_ahead};
-}
+contact::DistanceOptions options_of(const Pair& pair) { return distance_options(pair.spec, pair.look_ahead); }
 
 /// Nearest points of a body and another surface, which both have to be closed.
 template <class... Other>
 std::unique_ptr<contact::SampleSource> distance_source(Pair pair, Other... other) {
   try {
     return contact::make_distance_source(std::move(pair.surface), pair.rest, std::move(other)...,
-                                         distance_options(pair));
+                                         options_of(pair));
   } catch (const Error& error) { refuse_distance(pair.spec, error); }
 }
 
@@ -95,8 +88,7 @@ std::unique_ptr<contact::SampleSource> with_own_points(std::unique_ptr<contact::
       own_points(shape, contact::lengths_of({pair.rest, pair.surface.faces}), pair.spec.quadrature_error);
   if (!own) return source;
   return contact::make_half_and_half(
-      std::move(source),
-      contact::make_distance_source(pair.surface, pair.rest, *own, distance_options(pair)));
+      std::move(source), contact::make_distance_source(pair.surface, pair.rest, *own, options_of(pair)));
 }
 
 /// A soft body's points, on a shape of these lengths.
@@ -151,7 +143,7 @@ std::unique_ptr<contact::SampleSource> own_source(Pair pair) {
          pair.spec.second);
   try {
     return contact::make_own_distance_source(in_tetrahedra(std::move(pair.surface), pair.body), pair.rest,
-                                             pair.body.nodes, distance_options(pair));
+                                             pair.body.nodes, options_of(pair));
   } catch (const Error& error) { refuse_distance(pair.spec, error); }
 }
 
@@ -167,17 +159,6 @@ std::unique_ptr<contact::SampleSource> image_source(Pair pair, TriMesh rigid,
   if (!rigid_proxies) rigid_proxies = std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(rigid));
   return contact::make_image_source(std::move(pair.surface), std::move(pair.proxies), std::move(rigid),
                                     rigid_proxies, frame, std::move(motion), options);
-}
-
-/// A tool's frame in contact: its block of the State, or its motion over one exchange period.
-std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolSide& side) {
-  if (side.motion) return side.motion;
-  if (world.monolithic())
-    side.motion = contact::block_frame(side.block_id);
-  else
-    side.motion = side.trajectory = std::make_shared<contact::TrajectoryFrame>();
-  side.frame_index = world.contact->add_frame(side.motion);
-  return side.motion;
 }
 
 std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side, Pair pair) {
@@ -214,17 +195,6 @@ bool steps_are_linearised(const World& world) {
   return entry != registry.end() && entry->traits.linearised;
 }
 
-std::unique_ptr<contact::SampleSource> obstacle_source(const Shape& shape, const ContactSpec& spec,
-                                                       contact::ContactSide side, double candidate_gap,
-                                                       double look_ahead, const ObstacleSpec& obstacle) {
-  if (scene::is_in_images(spec))
-    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"auto\"", spec.first,
-         obstacle.name, obstacle.type);
-  return contact::obstacle_entry(obstacle).make_source(std::move(side), shape.frame, shape.motion,
-                                                       contact::obstacle_shape(obstacle), candidate_gap,
-                                                       look_ahead);
-}
-
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
                                                        const ObstacleSpec& obstacle) {
   const Shape shape = shape_of(*world.contact, obstacle);
@@ -234,61 +204,6 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
   return with_own_points(obstacle_source(shape, pair.spec, points_on(pair, shape.lengths),
                                          pair.spec.candidate_gap_m, pair.look_ahead, obstacle),
                          pair, shape);
-}
-
-/// How the tool stands in a contact.
-struct ToolInContact {
-  contact::ContactForce& force;
-  int frame;
-  std::shared_ptr<contact::MovingFrame> motion;
-  double look_ahead;  ///< time to the next query [s]
-};
-
-std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, const ToolSpec& tool,
-                                                        const ContactSpec& spec, const ObstacleSpec& obstacle,
-                                                        const ToolInContact& in) {
-  if (tool.shape == "sphere" && spec.spring == "per_point")
-    fail("contact {} - {}: spring = \"per_point\" is for vertices, and a sphere has none", spec.first,
-         obstacle.name);
-  const Shape shape = shape_of(in.force, obstacle);
-  const auto source = [&](contact::ContactSide side) {
-    return obstacle_source(shape, spec, std::move(side), spec.candidate_gap_m, in.look_ahead, obstacle);
-  };
-  const bool nearest_points = spec.method == "distance";
-  if (tool.shape == "sphere")
-    return source(contact::FrameBall{tool.radius_m, Vec3::Zero(), in.frame, in.motion, nearest_points});
-  const contact::FrameSurface surface{tool_surface(tool, world.folder), in.frame, in.motion};
-  if (!nearest_points) return source(surface);
-  try {
-    const contact::CharacteristicLengths lengths = contact::lengths_of(surface.mesh);
-    auto of_tool = source(contact::material_points(
-        surface, contact::point_spacing(lengths, shape.lengths, spec.quadrature_error)));
-    const auto own = own_points(shape, lengths, spec.quadrature_error);
-    if (!own) return of_tool;
-    const contact::DistanceOptions options{.quadrature_error = spec.quadrature_error,
-                                           .candidate_gap = spec.candidate_gap_m,
-                                           .look_ahead = in.look_ahead};
-    return contact::make_half_and_half(std::move(of_tool),
-                                       contact::make_distance_source(surface, *own, options));
-  } catch (const Error& error) { refuse_distance(spec, error); }
-}
-
-/// Contact of the tool with an obstacle.  A tool of ticks feels one of its own; what the bodies' side knows
-/// of it, along the path that the tool went, is for energies and pictures.
-std::unique_ptr<contact::SampleSource> tool_on_obstacle(World& world, ToolSide& side, const ContactSpec& spec,
-                                                        const ObstacleSpec& obstacle) {
-  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
-  const scene::CosimulationSpec& exchange = world.description.exchange;
-  const double look_ahead = side.trajectory ? exchange.exchange_period_s : exchange.contact_refresh_s;
-  if (side.trajectory) {
-    if (!side.obstacles) side.obstacles = std::make_unique<ObstacleTouch>(look_ahead);
-    ObstacleTouch& own = *side.obstacles;
-    own.contact().add_pair(tool_on_obstacle(world, *side.spec, spec, obstacle,
-                                            {own.contact(), own.frame(), own.motion(), look_ahead}),
-                           spec);
-  }
-  return tool_on_obstacle(world, *side.spec, spec, obstacle,
-                          {*world.contact, side.frame_index, motion, look_ahead});
 }
 
 /// Makes what hands a tool of ticks the bodies as it touches or carries them, unless it is there.
@@ -302,18 +217,15 @@ void make_touch(World& world, ToolSide& side) {
 /// @pre the names are in their order (scene::order_sides)
 std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec& spec) {
   contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
-  const auto& obstacles = world.description.obstacles;
-  const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(),
-                                     [&](const ObstacleSpec& o) { return o.name == spec.second; });
-  ToolSide* const first_tool = ToolSide::named(world, spec.first);
-  if (first_tool && obstacle != obstacles.end()) return tool_on_obstacle(world, *first_tool, spec, *obstacle);
+  if (auto source = rigid_source(world, spec)) return source;
   if (!world.find_body(spec.first))
-    fail("contact {} - {}: one must be a soft body, or a tool where the other is an obstacle", spec.first,
-         spec.second);
+    fail("contact {} - {}: one must be a soft body, or a tool where the other is an obstacle or another tool",
+         spec.first, spec.second);
   Pair pair = pair_of(world, spec, spec.first);
-  if (ToolSide* const side = ToolSide::named(world, spec.second))
-    return tool_source(world, *side, std::move(pair));
-  if (obstacle != obstacles.end()) return obstacle_source(world, std::move(pair), *obstacle);
+  if (ToolSide* const tool = ToolSide::named(world, spec.second))
+    return tool_source(world, *tool, std::move(pair));
+  for (const ObstacleSpec& obstacle : world.description.obstacles)
+    if (obstacle.name == spec.second) return obstacle_source(world, std::move(pair), obstacle);
   if (spec.second == spec.first) return own_source(std::move(pair));
   if (world.find_body(spec.second)) return pair_source(std::move(pair), pair_of(world, spec, spec.second));
   fail("contact {} - {}: nothing is called \"{}\"; name soft bodies, obstacles or \"tool\"", spec.first,
@@ -329,7 +241,7 @@ void add_contact(World& world, ContactSpec& given) {
   // buys no symmetric matrix: else friction that slides turns nodes round in each step and holds nothing.
   if (spec.friction_tangent == "auto")
     spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
-  // of a tool with ticks of its own on an obstacle no step matrix has a part; its ticks are one solve each
+  // of tools with ticks of their own no step matrix has a part; their ticks are one solve each
   if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
   // Friction that sticks has springs that a query moves.  A tool's ticks know of none, nor does what they are
   // compared with.
@@ -337,13 +249,15 @@ void add_contact(World& world, ContactSpec& given) {
   if (spec.friction_anchors && !of_tool)
     spec.friction_retardation_s = world.description.exchange.contact_refresh_s;
   world.contact->add_pair(source_of(world, spec), spec);
-  if (ToolSide* const side = ToolSide::named(world, spec.second)) make_touch(world, *side);  // of a soft body
+  ToolSide* const side = ToolSide::named(world, spec.second);
+  if (side && world.find_body(spec.first)) make_touch(world, *side);
 }
 
 }  // namespace
 
 void assemble_contact(World& world) {
   world.contact = std::make_shared<contact::ContactForce>();
+  make_rigid_touch(world);
   std::vector<ContactSpec>& contacts = world.description.contacts;
   for (std::size_t i = 0; i < contacts.size(); ++i)
     at_place(world, fmt::format("contact[{}]", i), "", [&] { add_contact(world, contacts[i]); });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/scene/contact_sides.h"
+
 namespace palpate::loop {
 
 Shape round_tool(double radius, int frame, std::shared_ptr<contact::MovingFrame> motion) {
@@ -51,6 +53,27 @@ Shape shape_of(contact::ContactForce& force, const ObstacleSpec& obstacle) {
   };
   if (entry.surface) out.surface = [&entry, shape](double spacing) { return entry.surface(shape, spacing); };
   return out;
+}
+
+std::unique_ptr<contact::SampleSource> obstacle_source(const Shape& shape, const ContactSpec& spec,
+                                                       contact::ContactSide side, double candidate_gap,
+                                                       double look_ahead, const ObstacleSpec& obstacle) {
+  if (scene::is_in_images(spec))
+    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"auto\"", spec.first,
+         obstacle.name, obstacle.type);
+  return contact::obstacle_entry(obstacle).make_source(std::move(side), shape.frame, shape.motion,
+                                                       contact::obstacle_shape(obstacle), candidate_gap,
+                                                       look_ahead);
+}
+
+contact::DistanceOptions distance_options(const ContactSpec& spec, double look_ahead) {
+  return {.quadrature_error = spec.quadrature_error,
+          .candidate_gap = spec.candidate_gap_m,
+          .look_ahead = look_ahead};
+}
+
+void refuse_distance(const ContactSpec& spec, const Error& error) {
+  fail("contact {} - {}: method \"distance\": {}", spec.first, spec.second, error.what());
 }
 
 }  // namespace palpate::loop

@@ -4,6 +4,7 @@
 
 #include "palpate/contact/obstacle.h"
 #include "palpate/contact/sources.h"
+#include "palpate/core/error.h"
 
 namespace palpate::loop {
 
@@ -25,5 +26,15 @@ Shape shape_of(contact::ContactForce& force, const ObstacleSpec& obstacle);
 /// @param error  wanted, as contact::point_spacing() has it
 std::optional<contact::ShapePoints> own_points(const Shape& shape,
                                                const contact::CharacteristicLengths& other, double error);
+
+/// Returns contact of a side with an obstacle.
+/// @param shape  the obstacle's
+std::unique_ptr<contact::SampleSource> obstacle_source(const Shape& shape, const ContactSpec& spec,
+                                                       contact::ContactSide side, double candidate_gap,
+                                                       double look_ahead, const ObstacleSpec& obstacle);
+
+contact::DistanceOptions distance_options(const ContactSpec& spec, double look_ahead);
+/// Says of which contact an error of its nearest points is.
+[[noreturn]] void refuse_distance(const ContactSpec& spec, const Error& error);
 
 }  // namespace palpate::loop

@@ -17,7 +17,7 @@
 #include "palpate/dynamics/exchange.h"
 #include "palpate/loop/contact_record.h"
 #include "real_time_thread.h"
-#include "tick_side.h"
+#include "tick_group.h"
 
 namespace palpate::loop {
 namespace {
@@ -71,6 +71,11 @@ class RealTime {
         count_(static_cast<long>(per_period_) * bodies.periods()),
         queue_(kQueue) {
     for (const auto& side : ToolSide::all(world)) hands_.emplace_back(world.description, *side);
+    groups_ = TickGroup::all(hands_);
+    contact_of_.resize(hands_.size());
+    for (const TickGroup& group : groups_)
+      for (std::size_t i = 0; i < group.members().size(); ++i)
+        contact_of_[group.members()[i].hand] = &group.contact(i);
     out_.tick_s = tick_s_;
     out_.period_s = bodies.period();
     out_.stall_s = device::kFallTime;
@@ -166,11 +171,14 @@ class RealTime {
       const double t = static_cast<double>(i) * tick_s_;
       timed.number = i;
       timed.lateness_s = seconds(late);
+      for (TickGroup& group : groups_)
+        group.find_contact(t, tick_s_, [this](std::size_t hand) -> const ContactRecord& {
+          return hands_[hand].records.latest();
+        });
       for (timed.hand = 0; timed.hand < hands_.size(); ++timed.hand) {
-        Hand& hand = hands_[timed.hand];
-        if (ramps_in) hand.ticks.ramp_in();
-        tick_status_ =
-            hand.ticks.tick(t, tick_s_, hand.ticks.contact(t, tick_s_, hand.records.latest()), timed.record);
+        TickSide& ticks = hands_[timed.hand].ticks;
+        if (ramps_in) ticks.ramp_in();
+        tick_status_ = ticks.tick(t, tick_s_, *contact_of_[timed.hand], timed.record);
         if (!tick_status_.ok()) return;
         timed.record.left_out = static_cast<std::uint32_t>(left_out);
         timed.work_s = seconds(now_ns() - woke);  // of the last: that of all
@@ -285,6 +293,8 @@ class RealTime {
   RunResult& result_;
   RealTimeResult& out_;
   std::deque<Hand> hands_;
+  std::vector<TickGroup> groups_;                               ///< of hands_
+  std::vector<const dynamics::LinearisedContact*> contact_of_;  ///< of each hand, in its group
   int per_period_;
   double tick_s_;
   std::int64_t tick_ns_;

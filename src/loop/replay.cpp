@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "assemble_parts.h"
 #include "palpate/core/error.h"
@@ -10,7 +11,7 @@
 #include "palpate/dynamics/path.h"
 #include "palpate/loop/contact_record.h"
 #include "palpate/scene/hands.h"
-#include "tick_side.h"
+#include "tick_group.h"
 
 namespace palpate::loop {
 namespace {
@@ -75,21 +76,37 @@ class RecordedHand : public device::Device {
   std::shared_ptr<const HapticRecord> record_;
 };
 
-/// A scene of that tool and the obstacles alone: their contact a record of the bodies leaves to the ticks.
-scene::Description tool_alone(const scene::Description& d, const scene::Hand& hand) {
+/// The hands whose tools meet that one's, it among them, in their order.
+std::vector<std::size_t> hands_with(const scene::Description& d, std::size_t hand) {
+  const std::vector<std::size_t> first = scene::meeting_tools(d);
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    if (first[i] == first.at(hand)) out.push_back(i);
+  return out;
+}
+
+/// A scene of these tools and the obstacles alone: their contact a record of the bodies leaves to the ticks.
+scene::Description tools_alone(const scene::Description& d, const std::vector<std::size_t>& hands) {
+  const std::vector<scene::Hand> all = scene::hands_of(d);
   scene::Description out = d;
   out.bodies.clear();
   out.bones.clear();
   out.hands.clear();
-  out.tool = *hand.tool;
-  out.device = *hand.device;
   out.contacts.clear();
+  for (const std::size_t i : hands)
+    if (i != hands.front()) out.hands.push_back({all[i].name, *all[i].tool, *all[i].device});
+  const scene::Hand& first = all[hands.front()];
+  out.tool = *first.tool;
+  out.device = *first.device;
+  const auto stays = [&](const std::string& name) {
+    return std::any_of(d.obstacles.begin(), d.obstacles.end(),
+                       [&](const auto& o) { return o.name == name; }) ||
+           std::any_of(hands.begin(), hands.end(), [&](std::size_t i) { return all[i].name == name; });
+  };
   for (ContactSpec contact : d.contacts) {
-    if (contact.second == hand.name) std::swap(contact.first, contact.second);
-    const bool on_obstacle = std::any_of(d.obstacles.begin(), d.obstacles.end(),
-                                         [&](const ObstacleSpec& o) { return o.name == contact.second; });
-    if (contact.first != hand.name || !on_obstacle) continue;
-    contact.first = "tool";
+    if (!stays(contact.first) || !stays(contact.second)) continue;
+    for (std::string* side : {&contact.first, &contact.second})
+      if (*side == first.name) *side = "tool";
     out.contacts.push_back(contact);
   }
   return out;
@@ -130,36 +147,77 @@ std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<Ha
   return out;
 }
 
-std::vector<TickRecord> retrace(const scene::Description& description, const HapticRecord& record,
-                                std::size_t hand) {
-  refuse_what_cannot_be_retraced(description, record);
-  const scene::Description alone = tool_alone(description, scene::hands_of(description).at(hand));
-  const auto world = assemble(alone, recorded_hand(record));
-  ToolSide::of(*world).passivity =
-      device::make_passivity_controller(record.passivity, *alone.device, alone.tool->tick_s);
-  std::vector<ContactSpec> laws = description.contacts;
-  for (ContactSpec& law : laws)
-    if (law.friction > 0.0 && law.friction_regularisation_m_s == 0.0)
-      law.friction_regularisation_m_s = tool_friction_speed(*world, *alone.tool);
-  TickSide side(*alone.tool, ToolSide::of(*world), record.models.empty() ? nullptr : &laws);
-  side.start(0.0);
-  std::vector<TickRecord> out;
-  out.reserve(record.ticks.size());
-  ContactRecord contact;
-  for (const TickRecord& tick : record.ticks) {
+namespace {
+
+/// A hand that goes its recorded way once more.
+struct Retraced {
+  Retraced(const World& world, const HapticRecord& of, ToolSide& side,
+           const std::vector<ContactSpec>& contacts)
+      : record(of),
+        laws(laws_of(world, contacts, *side.spec)),
+        ticks(*side.spec, side, of.models.empty() ? nullptr : &laws) {
+    side.passivity = device::make_passivity_controller(of.passivity, *side.device_spec, side.spec->tick_s);
+  }
+  static std::vector<ContactSpec> laws_of(const World& world, std::vector<ContactSpec> laws,
+                                          const ToolSpec& tool) {
+    for (ContactSpec& law : laws)
+      if (law.friction > 0.0 && law.friction_regularisation_m_s == 0.0)
+        law.friction_regularisation_m_s = tool_friction_speed(world, tool);
+    return laws;
+  }
+  /// The record in force at a tick.
+  const ContactRecord& in_force(std::size_t tick) {
     // versions count from 1, one an exchange
-    const std::size_t version = tick.record_version;
+    const std::size_t version = record.ticks[tick].record_version;
     if (version > record.exchanges.size())
-      fail("replay: the tick at {:g} s used exchange {}, of which there is no record", tick.time, version);
+      fail("replay: the tick at {:g} s used exchange {}, of which there is no record",
+           record.ticks[tick].time, version);
     if (version != 0) contact.linear = record.exchanges[version - 1];
     if (version != 0 && !record.models.empty()) contact.touch = record.models[version - 1];
-    TickRecord again;
-    if (tick.ramps_in) side.ramp_in();
-    const dynamics::StepResult status =
-        side.tick(tick.time, tick.length, side.contact(tick.time, tick.length, contact), again);
-    if (!status.ok()) fail("replay: {}", status.message);
-    again.left_out = tick.left_out;
-    out.push_back(again);
+    return contact;
+  }
+  const HapticRecord& record;
+  const std::vector<ContactSpec> laws;
+  TickSide ticks;
+  ContactRecord contact{};
+};
+
+}  // namespace
+
+std::vector<TickRecord> retrace(const scene::Description& description,
+                                const std::vector<HapticRecord>& records, std::size_t hand) {
+  const std::vector<std::size_t> hands = hands_with(description, hand);
+  for (const std::size_t i : hands) {
+    refuse_what_cannot_be_retraced(description, records.at(i));
+    if (records[i].ticks.size() != records[hand].ticks.size())
+      fail("replay: {} and {} ticks were recorded of two hands that meet", records[hand].ticks.size(),
+           records[i].ticks.size());
+  }
+  const scene::Description alone = tools_alone(description, hands);
+  std::vector<std::unique_ptr<device::Device>> devices;
+  for (const std::size_t i : hands) devices.push_back(recorded_hand(records[i]));
+  const auto world = assemble(alone, std::move(devices));
+  std::deque<Retraced> retraced;
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    retraced.emplace_back(*world, records[hands[i]], ToolSide::of(*world, i), description.contacts);
+    retraced.back().ticks.start(0.0);
+  }
+  std::vector<TickGroup> group = TickGroup::all(retraced);
+  PALPATE_CHECK(group.size() == 1, "{} groups of hands that meet", group.size());
+  std::vector<TickRecord> out;
+  for (std::size_t n = 0; n < records[hand].ticks.size(); ++n) {
+    const TickRecord& tick = records[hand].ticks[n];
+    group[0].find_contact(tick.time, tick.length,
+                          [&](std::size_t i) -> const ContactRecord& { return retraced[i].in_force(n); });
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+      TickRecord again;
+      if (tick.ramps_in) retraced[i].ticks.ramp_in();
+      const dynamics::StepResult status =
+          retraced[i].ticks.tick(tick.time, tick.length, group[0].contact(i), again);
+      if (!status.ok()) fail("replay: {}", status.message);
+      again.left_out = tick.left_out;
+      if (hands[i] == hand) out.push_back(again);
+    }
   }
   return out;
 }

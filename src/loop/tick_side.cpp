@@ -64,47 +64,36 @@ void TickSide::take_up(const ContactRecord& record) {
   }
 }
 
-dynamics::LinearisedContact TickSide::with_obstacles(const dynamics::LinearisedContact& of_bodies) {
-  return side_.obstacles
-             ? side_.obstacles->with(of_bodies, side_.tool->time(), {side_.tool->pose(), side_.tool->twist()})
-             : of_bodies;
-}
-
 tool::HandleMotion TickSide::handle_motion() const {
   return {handle_.pose, next_->pose, handle_.twist, next_->twist};
 }
 
-// A tick's friction is that of its end (contact/friction.h), to which a linearly implicit step of the tool
-// leads under the record; the tool's own scheme then takes the record that came out.
-dynamics::LinearisedContact TickSide::contact(double t, double h, const ContactRecord& record) {
+void TickSide::begin_tick(double t, double h, const ContactRecord& record) {
   next_ = side_.handle->sample(t);
-  dynamics::LinearisedContact of_bodies = contact_with_bodies(t, h, record);
-  dynamics::LinearisedContact all = with_obstacles(of_bodies);
-  const bool points = of_bodies.source == dynamics::LinearisedContact::Source::kPoints;
-  const bool bodies_rub = points && touch_->rubs(),
-             obstacles_rub = side_.obstacles && side_.obstacles->rubs();
-  while (bodies_rub || obstacles_rub) {
-    const dynamics::RigidMotion end = side_.tool->predict(h, handle_motion(), all);
-    const bool bodies_done = !bodies_rub || touch_->improve(end),
-               obstacles_done = !obstacles_rub || side_.obstacles->improve(end);
-    if (bodies_done && obstacles_done) break;
-    if (bodies_rub) {  // both records are about the same guess of the end
-      const std::uint64_t version = of_bodies.version;
-      of_bodies = touch_->again();
-      of_bodies.version = version;
-    }
-    all = with_obstacles(of_bodies);
-  }
-  if (side_.obstacles) side_.obstacles->end_tick();
-  return all;
+  of_bodies_ = record.linear;
+  if (record.linear.source != dynamics::LinearisedContact::Source::kPoints) return;
+  if (record.linear.version != taken_up_) take_up(record);
+  of_bodies_ = touch_->linearise(t, h, {side_.tool->pose(), side_.tool->twist()});
+  of_bodies_.version = record.linear.version;
 }
 
-dynamics::LinearisedContact TickSide::contact_with_bodies(double t, double h, const ContactRecord& record) {
-  if (record.linear.source != dynamics::LinearisedContact::Source::kPoints) return record.linear;
-  if (record.linear.version != taken_up_) take_up(record);
-  dynamics::LinearisedContact out = touch_->linearise(t, h, {side_.tool->pose(), side_.tool->twist()});
-  out.version = record.linear.version;
-  return out;
+bool TickSide::rubs() const {
+  return of_bodies_.source == dynamics::LinearisedContact::Source::kPoints && touch_->rubs();
+}
+
+tool::StepEquation TickSide::equation(double h, const dynamics::LinearisedContact& contact) const {
+  return side_.tool->step_equation(h, handle_motion(), contact);
+}
+
+bool TickSide::improve(double h, const Vec6& change) {
+  return !rubs() || touch_->improve(side_.tool->after(h, change));
+}
+
+void TickSide::again() {
+  if (!rubs()) return;
+  const std::uint64_t version = of_bodies_.version;
+  of_bodies_ = touch_->again();
+  of_bodies_.version = version;
 }
 
 dynamics::StepResult TickSide::tick(double t, double h, const dynamics::LinearisedContact& contact,

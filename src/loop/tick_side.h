@@ -8,7 +8,7 @@
 
 namespace palpate::loop {
 
-/// The hand's side of an exchange, a tick at a time: device, virtual coupling, tool, limits, passivity.  It
+/// A hand's side of an exchange, a tick at a time: device, virtual coupling, tool, limits, passivity.  It
 /// knows no World: of the bodies it has the linearised contact alone, so that it may run in a thread of its
 /// own.
 class TickSide {
@@ -24,9 +24,20 @@ class TickSide {
   TickSide& operator=(const TickSide&) = delete;
   /// Takes the handle at the run's start.
   void start(double t);
-  /// The contact of the tick of length h to t: the record's own, or what its points come to then, and that
-  /// with obstacles.  Friction is that of the tick's end, found by repeated prediction.  Samples the handle.
-  dynamics::LinearisedContact contact(double t, double h, const ContactRecord& record);
+  /// Begins the tick of length h to t: samples the handle, and takes the contact with bodies, the record's
+  /// own or what its points come to then.
+  void begin_tick(double t, double h, const ContactRecord& record);
+  const dynamics::LinearisedContact& contact_with_bodies() const { return of_bodies_; }
+  /// Whether that has friction of the tick's end (contact/friction.h), found by repeated prediction.
+  bool rubs() const;
+  /// The tool's step in the tick under way, under coupling and that contact.
+  tool::StepEquation equation(double h, const dynamics::LinearisedContact& contact) const;
+  /// Takes the end to which that step leads for the next guess of friction.  False: friction is not the law's
+  /// at that end.
+  bool improve(double h, const Vec6& change);
+  /// The contact with bodies, about that guess.
+  void again();
+  const ToolSide& side() const { return side_; }
   /// No wrench went out for too long: that of the next tick ramps in from zero.
   void ramp_in() { ramps_in_ = true; }
   /// The tool goes on by h to t under coupling and that contact; the wrench goes to the device.
@@ -41,8 +52,6 @@ class TickSide {
   void archive(Archive& a);
 
  private:
-  dynamics::LinearisedContact contact_with_bodies(double t, double h, const ContactRecord& record);
-  dynamics::LinearisedContact with_obstacles(const dynamics::LinearisedContact& of_bodies);
   tool::HandleMotion handle_motion() const;
   /// With the handle as it is.
   void feel_at(TickRecord& tick);
@@ -58,7 +67,8 @@ class TickSide {
   const ToolSpec& spec_;
   ToolSide& side_;
   device::HandleSample handle_;
-  std::optional<device::HandleSample> next_;  ///< of the tick whose contact was asked for
+  std::optional<device::HandleSample> next_;  ///< of the tick under way
+  dynamics::LinearisedContact of_bodies_;     ///< in it
   double time_ = 0.0;                         ///< of the last tick [s]
   bool live_ = false;                         ///< the hand may feel a wrench
   bool ramps_in_ = false;                     ///< from the next tick on

@@ -1,7 +1,6 @@
 #pragma once
 #include <optional>
 
-#include "obstacle_touch.h"
 #include "palpate/device/hand_model.h"
 #include "palpate/device/limiter.h"
 #include "palpate/device/motors.h"
@@ -11,6 +10,7 @@
 #include "palpate/scene/hands.h"
 #include "palpate/tool/hand_block.h"
 #include "palpate/tool/tool.h"
+#include "rigid_touch.h"
 #include "touch_reduction.h"
 
 namespace palpate::loop {
@@ -55,8 +55,10 @@ struct ToolSide {
   std::shared_ptr<proxy::ProxySet> proxies;  ///< null where it meets no body with proxies
   int frame_index = -1;                      ///< of that frame in the contact, -1 where no contact names it
   std::vector<contact::Tie> ties;            ///< of the nodes that a tool of ticks carries
-  /// of a tool of ticks that a contact names together with an obstacle; else null
-  std::unique_ptr<ObstacleTouch> obstacles;
+  /// of a tool of ticks that meets obstacles or other tools, shared by all tools that meet each other; else
+  /// null
+  std::shared_ptr<RigidTouch> rigid;
+  int number_in_rigid = -1;  ///< there
   /// of linearisation = "points"; else null
   std::unique_ptr<TouchReduction> touch;
   /// factors the step matrix, for `condensed` and where `touch` cannot iterate; null until then

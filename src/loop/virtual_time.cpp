@@ -24,6 +24,7 @@ void VirtualTime::make_hands() {
   if (!d.tool) return;
   check_clock(world_, false);
   for (const auto& side : ToolSide::all(world_)) hands_.emplace_back(d, *side);
+  groups_ = TickGroup::all(hands_);
   if (!world_.monolithic()) return;
   dense_.emplace(world_, [this](std::size_t hand, TickRecord tick) {
     hands_[hand].ticks.feel(tick);
@@ -60,15 +61,16 @@ void VirtualTime::one_period(double t0, double t1) {
   }
 }
 
-/// Every hand feels the bodies as all have left them, then each goes through the period by itself.
+/// Every hand feels the bodies as all have left them, then each goes through the period by itself, or with
+/// those that its tool meets.
 void VirtualTime::tick_tools(double t0, double t1) {
   for (std::size_t i = 0; i < hands_.size(); ++i) adopt(hands_[i], bodies_.linearise(i, t1 - t0));
   bodies_.restart_path();
   const ScopedTimer timer(result_.tool_s);
-  for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
-    const int ticks = whole_number((t1 - t0) / hands_[hand].tick_s);
+  for (TickGroup& group : groups_) {
+    const int ticks = whole_number((t1 - t0) / hands_[group.members().front().hand].tick_s);
     const double h = (t1 - t0) / ticks;
-    for (int i = 0; i < ticks && result_.status.ok(); ++i) tick(hand, t0 + (i + 1) * h, h);
+    for (int i = 0; i < ticks && result_.status.ok(); ++i) tick(group, t0 + (i + 1) * h, h);
   }
 }
 
@@ -81,16 +83,23 @@ void VirtualTime::adopt(Hand& hand, const ContactRecord& record) {
     hand.coming.push_back({hand.count + latency, record});
 }
 
-void VirtualTime::tick(std::size_t number, double t, double h) {
-  Hand& hand = hands_[number];
+const ContactRecord& VirtualTime::record_of(Hand& hand) {
   for (; !hand.coming.empty() && hand.coming.front().tick <= hand.count; hand.coming.pop_front())
     hand.in_force = hand.coming.front().record;
   ++hand.count;
-  TickRecord tick;
-  result_.status = hand.ticks.tick(t, h, hand.ticks.contact(t, h, hand.in_force), tick);
-  if (!result_.status.ok()) return;
-  bodies_.follow(number, t, tick.tool, tick.tool_twist);
-  bodies_.felt(number, tick);
+  return hand.in_force;
+}
+
+void VirtualTime::tick(TickGroup& group, double t, double h) {
+  group.find_contact(t, h, [&](std::size_t hand) -> const ContactRecord& { return record_of(hands_[hand]); });
+  for (std::size_t i = 0; i < group.members().size(); ++i) {
+    const auto [hand, ticks] = group.members()[i];
+    TickRecord tick;
+    result_.status = ticks->tick(t, h, group.contact(i), tick);
+    if (!result_.status.ok()) return;
+    bodies_.follow(hand, t, tick.tool, tick.tool_twist);
+    bodies_.felt(hand, tick);
+  }
 }
 
 void run_in_virtual_time(World& world, BodySide& bodies, const RunOptions& options, RunResult& result) {

@@ -4,7 +4,7 @@
 
 #include "body_side.h"
 #include "palpate/loop/contact_record.h"
-#include "tick_side.h"
+#include "tick_group.h"
 
 namespace palpate::loop {
 
@@ -43,7 +43,9 @@ class VirtualTime {
   void one_period(double t0, double t1);
   void tick_tools(double t0, double t1);
   void adopt(Hand& hand, const ContactRecord& record);
-  void tick(std::size_t number, double t, double h);
+  /// The record in force at a hand's next tick.
+  const ContactRecord& record_of(Hand& hand);
+  void tick(TickGroup& group, double t, double h);
 
   World& world_;
   BodySide& bodies_;
@@ -51,6 +53,7 @@ class VirtualTime {
   RunResult& result_;
   int periods_ = 0;  ///< gone through
   std::deque<Hand> hands_;
+  std::vector<TickGroup> groups_;         ///< of hands_
   std::optional<MonolithicTicks> dense_;  ///< where tool and bodies are one system
 };
 

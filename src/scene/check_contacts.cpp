@@ -43,24 +43,22 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
   const std::string at = location(doc, key + ".between");
   if (c.first == c.second && !sides.is_body(c.first))
     refuse(at, where, "only a soft body may touch itself; name two");
-  if (sides.is_tool(c.first) && sides.is_tool(c.second))
-    refuse(at, where,
-           "two tools do not meet: one of the two must be a soft body, or an obstacle for a tool to meet");
   if (sides.is_obstacle(c.first) && sides.is_obstacle(c.second))
     refuse(
         at, where,
         "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool");
 }
 
-/// One body twice: the nearest points of its own skin.
-void check_own_contact(const Document& doc, const std::string& key, const std::string& where,
-                       const ContactSpec& c) {
+/// What there is for nearest points alone.
+/// @param touches  "a body touches itself"
+void check_nearest_points(const Document& doc, const std::string& key, const std::string& where,
+                          const ContactSpec& c, std::string_view touches) {
   if (c.method == "distance") return;
   const std::string method = key + ".method";
   refuse(location(doc, given(doc, method) ? method : key + ".between"), where,
-         fmt::format("a body touches itself by nearest points; method = \"{}\" has none: leave out what asks "
-                     "for it, or write \"distance\"",
-                     c.method));
+         fmt::format("{} by nearest points; method = \"{}\" has none: leave out what asks for it, or write "
+                     "\"distance\"",
+                     touches, c.method));
 }
 
 void check_method(const Document& doc, const std::string& key, const std::string& where, const Sides& sides,
@@ -93,7 +91,9 @@ void check_method(const Document& doc, const std::string& key, const std::string
                        "\"analytic\" or \"distance\"",
                        c.method));
   if (c.first == c.second)
-    check_own_contact(doc, key, where, c);
+    check_nearest_points(doc, key, where, c, "a body touches itself");
+  else if (first_tool && second_tool)
+    check_nearest_points(doc, key, where, c, "two tools touch");
   else if (sides.is_body(c.second)) {
     if (c.method == "analytic")
       refuse(location(doc, key + ".method"), where,

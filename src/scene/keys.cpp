@@ -47,7 +47,7 @@ const KeyTable<ContactSpec>& contact_keys() {
   static const KeyTable<ContactSpec> keys = {
       required(own_key<ContactSpec>(
           "between", read_between, "list of texts", "",
-          "two names, in any order: bodies, \"tool\", obstacles; a body twice: with itself")),
+          "two names, in any order: bodies, \"tool\", other hands, obstacles; a body twice: with itself")),
       text("method", &ContactSpec::method, {}, "how gaps are found"),
       text("spring", &ContactSpec::spring, {},
            "per_area: forces do not depend on the mesh; per_point: the same spring at each colliding vertex"),

@@ -138,7 +138,7 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                  : monolithic ? one_system
                               : "one rate only"});
   const bool touched = tools_carry(d) || count_if(d.contacts, [&](const auto& c) {
-                                           return tool_named(d, c.second) != nullptr;
+                                           return tool_named(d, c.second) && !tool_named(d, c.first);
                                          }) > 0;
   const bool points = two_rates && touched && d.exchange.linearisation == "points";
   out.push_back({"contact points", points,

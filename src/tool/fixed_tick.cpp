@@ -4,14 +4,14 @@
 #include "tick_scheme.h"
 
 namespace palpate::tool {
-namespace {
 
-/// x1 = x0 + h u1: along a straight line, and rotated by exp(h omega1), which is exact for a fixed axis.
 void move(RigidMotion& motion, double h, const Vec6& u) {
   motion.twist = twist_of(u);
   motion.pose.rotation = (quaternion_of(h * motion.twist.angular) * motion.pose.rotation).normalized();
   motion.pose.translation += h * motion.twist.linear;
 }
+
+namespace {
 
 dynamics::StepResult done(const TickInput& input, double residual = 0.0) {
   return {dynamics::StepStatus::kOk, input.t0 + input.h, input.h, 1, 1, residual, {}};
@@ -49,33 +49,38 @@ class SemiImplicitEuler : public TickScheme {
   SimbodyBody& body_;
 };
 
+}  // namespace
+
 // Backward Euler with f linearised about (x0, u0):
 //   u1 = u0 + h M^-1 f(x1, u1, handle at the end),   x1 = x0 + h u1;
 //   (M + h (B + G) + h^2 K) (u1 - u0) = h (f0 - h K u0),   K = -df/dx, B = -df/du of coupling and contact.
 // In a translation, and in a rotation about a principal axis, f is linear and this is backward Euler itself:
 // no bound on k.
+StepEquation linearly_implicit_step(SimbodyBody& body, const TickInput& input, const RigidMotion& motion) {
+  const double h = input.h;
+  const TickInput held = with_handle_held(input, input.handle.pose1, input.handle.twist1);
+  const Mat6 M = body.mass_matrix(motion.pose);
+  // the contact record is taken at the tick's end too
+  const Vec6 f0 = body.right_hand_side(input.t0 + h, motion, held);
+
+  const Mat6 K = coupling_stiffness(input.gains, motion.pose, input.handle.pose1) +
+                 contact_stiffness(input.contact, motion.pose);
+  Mat6 B = coupling_damping(input.gains) + contact_damping(input.contact);
+  B.topLeftCorner<3, 3>() += gyroscopic_matrix(M, motion.twist);
+  return {M + h * B + h * h * K, h * (f0 - h * (K * stacked(motion.twist)))};
+}
+
+namespace {
+
 class LinearlyImplicitEuler : public TickScheme {
  public:
   explicit LinearlyImplicitEuler(SimbodyBody& body) : body_(body) {}
   dynamics::StepResult advance(const TickInput& input, RigidMotion& motion) override {
-    const double h = input.h;
-    const TickInput held = with_handle_held(input, input.handle.pose1, input.handle.twist1);
-    const Vec6 u0 = stacked(motion.twist);
-    const Mat6 M = body_.mass_matrix(motion.pose);
-    // the contact record is taken at the tick's end too
-    const Vec6 f0 = body_.right_hand_side(input.t0 + h, motion, held);
-
-    const Mat6 K = coupling_stiffness(input.gains, motion.pose, input.handle.pose1) +
-                   contact_stiffness(input.contact, motion.pose);
-    Mat6 B = coupling_damping(input.gains) + contact_damping(input.contact);
-    B.topLeftCorner<3, 3>() += gyroscopic_matrix(M, motion.twist);
-    const Mat6 A = M + h * B + h * h * K;
-    const Vec6 rhs = h * (f0 - h * (K * u0));
-    const Vec6 du = A.partialPivLu().solve(rhs);
-    move(motion, h, u0 + du);
-
-    const double scale = rhs.norm();
-    return done(input, scale > 0.0 ? (A * du - rhs).norm() / scale : 0.0);
+    const StepEquation step = linearly_implicit_step(body_, input, motion);
+    const Vec6 du = step.A.partialPivLu().solve(step.r);
+    move(motion, input.h, stacked(motion.twist) + du);
+    const double scale = step.r.norm();
+    return done(input, scale > 0.0 ? (step.A * du - step.r).norm() / scale : 0.0);
   }
 
  private:

@@ -19,6 +19,12 @@ class TickScheme {
   virtual void reset() {}
 };
 
+/// Sets the twist to u and moves by it: x1 = x0 + h u1, along a straight line, and rotated by exp(h omega1),
+/// which is exact for a fixed axis.
+void move(RigidMotion& motion, double h, const Vec6& u);
+/// Returns the equation of linearly implicit Euler's method for the change of u in a tick.
+StepEquation linearly_implicit_step(SimbodyBody& body, const TickInput& input, const RigidMotion& motion);
+
 using MakeTickScheme = std::unique_ptr<TickScheme> (*)(SimbodyBody&);
 const Registry<MakeTickScheme>& tick_scheme_registry();
 

@@ -11,14 +11,12 @@ namespace palpate::tool {
 struct Tool::Impl {
   Impl(const ToolSpec& spec, const Vec3& gravity)
       : body(rigid_parameters(spec, gravity)),
-        predictor(make_linearly_implicit_euler(body)),
         scheme(find(tick_scheme_registry(), spec.integrator, "tool integrator").make(body)) {
     motion.pose = {quaternion_of(spec.rotation_vector_rad), spec.position_m};
     input.gains = coupling_gains(spec);
   }
 
   SimbodyBody body;
-  std::unique_ptr<TickScheme> predictor;  ///< has no history
   std::unique_ptr<TickScheme> scheme;
   double time = 0.0;
   RigidMotion motion;
@@ -82,11 +80,15 @@ dynamics::StepResult Tool::advance(double h, const HandleMotion& handle,
   return result;
 }
 
-RigidMotion Tool::predict(double h, const HandleMotion& handle,
-                          const dynamics::LinearisedContact& contact) const {
-  const Impl& me = *impl_;
-  RigidMotion out = me.motion;
-  me.predictor->advance({me.time, h, handle, contact, me.input.gains}, out);
+StepEquation Tool::step_equation(double h, const HandleMotion& handle,
+                                 const dynamics::LinearisedContact& contact) const {
+  Impl& me = *impl_;
+  return linearly_implicit_step(me.body, {me.time, h, handle, contact, me.input.gains}, me.motion);
+}
+
+RigidMotion Tool::after(double h, const Vec6& change) const {
+  RigidMotion out = impl_->motion;
+  move(out, h, stacked(out.twist) + change);
   return out;
 }
 

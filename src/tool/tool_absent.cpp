@@ -33,9 +33,10 @@ void Tool::set_state(double, const Pose&, const Twist&) { no_tool(); }
 dynamics::StepResult Tool::advance(double, const HandleMotion&, const dynamics::LinearisedContact&) {
   no_tool();
 }
-dynamics::RigidMotion Tool::predict(double, const HandleMotion&, const dynamics::LinearisedContact&) const {
+StepEquation Tool::step_equation(double, const HandleMotion&, const dynamics::LinearisedContact&) const {
   no_tool();
 }
+dynamics::RigidMotion Tool::after(double, const Vec6&) const { no_tool(); }
 Wrench Tool::coupling_wrench(const Pose&, const Twist&) const { no_tool(); }
 Wrench Tool::wrench_on_hand(const Pose&, const Twist&) const { no_tool(); }
 void Tool::coupling_tangent(const Pose&, const Twist&, Mat6&, Mat6&) const { no_tool(); }

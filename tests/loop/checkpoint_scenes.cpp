@@ -114,6 +114,16 @@ Cases make_cases() {
   for (KeyframeSpec& key : left.device.keyframes) key.position_m += Vec3(0.0, 0.01, 0.0);
   two.scene.contacts.push_back(two.scene.contacts[0]);
   two.scene.contacts[1].second = "left";
+  Case& meet = out["ToolsMeet"] = pressed("points");  // one above the other, which presses on the block
+  scene::HandSpec& above = meet.scene.hands.emplace_back();
+  above.name = "above";
+  above.tool = *meet.scene.tool;
+  above.tool.position_m += Vec3(0.002, 0.0, 0.03);
+  above.device = *meet.scene.device;
+  for (KeyframeSpec& key : above.device.keyframes) key.position_m += Vec3(0.002, 0.0, 0.029);
+  meet.scene.contacts.push_back(meet.scene.contacts[0]);
+  meet.scene.contacts[1].first = "above";
+  meet.scene.contacts[1].method = "auto";
   Case& soft = out["SoftTool"] = pressed("points");
   soft.scene.contacts.clear();
   AttachmentSpec carried;

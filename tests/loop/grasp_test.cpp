@@ -161,7 +161,7 @@ TEST(Grasp, IsRetracedBitForBit) {
     ASSERT_TRUE(loop::run(*world, options).status.ok());
   }
   const loop::HapticRecord record = loop::read_haptic_record(path);
-  const auto again = loop::retrace(d, record);
+  const auto again = loop::retrace(d, {record});
   ASSERT_EQ(again.size(), record.ticks.size());
   for (std::size_t i = 0; i < again.size(); ++i) {
     ASSERT_EQ(again[i].device.force, record.ticks[i].device.force) << i;

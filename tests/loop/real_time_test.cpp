@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <thread>
 
-#include "loop/tick_side.h"
+#include "loop/tick_group.h"
 #include "malloc_count.h"
 #include "palpate/core/error.h"
 #include "palpate/core/spsc_ring.h"
@@ -297,6 +298,7 @@ long allocations_on_floor(bool mesh) {
   }
   const auto world = loop::assemble(d);
   loop::TickSide ticks(d, loop::ToolSide::of(*world));
+  loop::TickGroup group(std::vector<loop::TickGroup::Member>{{0, &ticks}});
   ticks.start(0.0);
   loop::TickRecord out;
   const loop::ContactRecord none;
@@ -305,7 +307,8 @@ long allocations_on_floor(bool mesh) {
   for (int i = 1; i <= 300; ++i) {
     if (i == 31) before = malloc_calls;
     const double t = 1e-3 * i;
-    ok = ticks.tick(t, 1e-3, ticks.contact(t, 1e-3, none), out).ok() && ok;
+    group.find_contact(t, 1e-3, [&](std::size_t) -> const loop::ContactRecord& { return none; });
+    ok = ticks.tick(t, 1e-3, group.contact(0), out).ok() && ok;
   }
   const long taken = malloc_calls - before;
   EXPECT_TRUE(ok);
@@ -317,6 +320,52 @@ long allocations_on_floor(bool mesh) {
 TEST(RealTime, ATickOnAnObstacleTakesNoMemory) {
 #if PALPATE_CAN_COUNT
   for (const bool mesh : {false, true}) EXPECT_EQ(allocations_on_floor(mesh), 0) << mesh;
+#else
+  GTEST_SKIP() << "a sanitizer brings its own malloc";
+#endif
+}
+
+#if PALPATE_CAN_COUNT
+/// Allocations in ticks 150 to 400 of two tools, a mesh on top, that two hands press on each other.
+long allocations_of_two(bool round) {
+  scene::Description d = ball_on_floor();
+  d.obstacles.clear();
+  d.tool->shape = "mesh";
+  d.tool->mesh.generator = "ball";
+  d.tool->mesh.radius_m = d.tool->radius_m;
+  d.tool->mesh.element_size_m = 0.2 * d.tool->radius_m;
+  d.tool->inertia_kg_m2 = Vec3::Constant(1e-5);
+  scene::HandSpec& below = d.hands.emplace_back(scene::HandSpec{"below", *d.tool, *d.device});
+  if (round) below.tool.shape = "sphere";
+  below.tool.position_m *= -1.0;
+  for (KeyframeSpec& k : below.device.keyframes) k.position_m *= -1.0;
+  d.contacts[0].second = "below";
+  d.contacts[0].method = "auto";
+  d.contacts[0].friction = 0.3;
+  const auto world = loop::assemble(d);
+  std::deque<loop::TickSide> ticks;
+  for (std::size_t i = 0; i < 2; ++i) ticks.emplace_back(d, loop::ToolSide::of(*world, i)).start(0.0);
+  loop::TickGroup group(std::vector<loop::TickGroup::Member>{{0, &ticks[0]}, {1, &ticks[1]}});
+  const loop::ContactRecord none;
+  loop::TickRecord out;
+  bool ok = true;
+  long before = 0;
+  for (int n = 1; n <= 400; ++n) {
+    if (n == 150) before = malloc_calls;
+    const double t = 1e-3 * n;
+    group.find_contact(t, 1e-3, [&](std::size_t) -> const loop::ContactRecord& { return none; });
+    for (std::size_t i = 0; i < 2; ++i) ok = ticks[i].tick(t, 1e-3, group.contact(i), out).ok() && ok;
+  }
+  const long taken = malloc_calls - before;
+  EXPECT_TRUE(ok);
+  EXPECT_GT(out.contact.force.norm(), 0.1);
+  return taken;
+}
+#endif
+
+TEST(RealTime, ATickOfTwoToolsThatMeetTakesNoMemory) {
+#if PALPATE_CAN_COUNT
+  for (const bool round : {false, true}) EXPECT_EQ(allocations_of_two(round), 0) << round;
 #else
   GTEST_SKIP() << "a sanitizer brings its own malloc";
 #endif

@@ -73,7 +73,7 @@ TEST(Replay, RetracesARunInRealTimeBitForBit) {
   ASSERT_EQ(record.ticks.size(), 200u);
   EXPECT_GT(peak(record.ticks), 0.1);
   EXPECT_GE(record.exchanges.size(), record.ticks.back().record_version);
-  expect_equal(loop::retrace(d, record), record.ticks);
+  expect_equal(loop::retrace(d, {record}), record.ticks);
 }
 
 // The contact with an obstacle is not recorded: it is the ticks' own, and follows from them.
@@ -86,10 +86,10 @@ TEST(Replay, RetracesAToolOnAnObstacle) {
     // through the floor at the block's side: the tool presses on both
     d.obstacles.back().shape = {{"position_m", Vec3(0, 0, 0.019)}};
     const loop::HapticRecord record = recorded(d, real_time, "floored.h5");
-    expect_equal(loop::retrace(d, record), record.ticks);
+    expect_equal(loop::retrace(d, {record}), record.ticks);
     scene::Description softer = d;
     softer.contacts.back().stiffness_pa_m *= 0.5;
-    const auto changed = loop::retrace(softer, record);
+    const auto changed = loop::retrace(softer, {record});
     EXPECT_NE(changed.back().device.force, record.ticks.back().device.force) << "it had no part in it";
   }
 }
@@ -100,19 +100,19 @@ TEST(Replay, RetracesVirtualTimeWithLatency) {
   const int period = static_cast<int>(std::lround(d.exchange.exchange_period_s / d.tool->tick_s));
   ASSERT_EQ(period, 10);
   loop::HapticRecord record = recorded(d, false, "later.h5");
-  expect_equal(loop::retrace(d, record), record.ticks);
+  expect_equal(loop::retrace(d, {record}), record.ticks);
   for (std::size_t i = 0; i < record.ticks.size(); ++i) {
     const int exchanges = std::max(0, (static_cast<int>(i) - 25) / period);  // that have come since the first
     EXPECT_EQ(record.ticks[i].record_version, i < 25 ? 1 : 1 + exchanges) << i;
   }
   d.exchange.latency_ticks = 4;
   record = recorded(d, false, "late.h5");
-  expect_equal(loop::retrace(d, record), record.ticks);
+  expect_equal(loop::retrace(d, {record}), record.ticks);
   // another exchange is another force
   loop::HapticRecord other = record;
   for (auto& model : other.models)
     for (auto& point : model.point) point.area *= 1.1;
-  const auto changed = loop::retrace(d, other);
+  const auto changed = loop::retrace(d, {other});
   EXPECT_NE(changed.back().device.force, record.ticks.back().device.force);
 }
 
@@ -131,9 +131,9 @@ TEST(Replay, RetracesARunUnderThePassivityController) {
   }
   loop::HapticRecord record = recorded(d, false, "control.h5", {}, Passivity::kControl);
   EXPECT_EQ(record.passivity, Passivity::kControl);
-  expect_equal(loop::retrace(d, record), record.ticks);
+  expect_equal(loop::retrace(d, {record}), record.ticks);
   record.passivity = Passivity::kOff;
-  const auto without = loop::retrace(d, record);
+  const auto without = loop::retrace(d, {record});
   double largest = 0.0;
   for (std::size_t i = 0; i < without.size(); ++i)
     largest = std::max(largest, (without[i].device.force - record.ticks[i].device.force).norm());
@@ -206,7 +206,7 @@ TEST(Replay, RetracesAForceThatSetsInAnew) {
   loop::HapticRecord record = recorded(d, false, "ramped.h5");
   for (loop::TickRecord& tick : record.ticks)
     if (&tick - record.ticks.data() == 120) tick.ramps_in = true, tick.left_out = 77;
-  const auto again = loop::retrace(d, record);
+  const auto again = loop::retrace(d, {record});
   EXPECT_EQ(again[119].device.force, record.ticks[119].device.force);
   EXPECT_TRUE(again[120].ramps_in);
   EXPECT_EQ(again[120].left_out, 77u);
@@ -232,7 +232,7 @@ TEST(Replay, AnotherCouplingFollowsTheSameHand) {
 
 std::string refusal(const scene::Description& d, const loop::HapticRecord& record) {
   try {
-    loop::retrace(d, record);
+    loop::retrace(d, {record});
   } catch (const Error& e) { return e.what(); }
   return {};
 }

@@ -343,7 +343,7 @@ TEST(TwoHands, AreRecordedEach) {
   ASSERT_EQ(records.size(), 2u);
   for (const std::size_t hand : {0, 1}) {
     const auto& felt = both.of[hand];
-    const auto again = loop::retrace(d, records[hand], hand);
+    const auto again = loop::retrace(d, records, hand);
     ASSERT_EQ(again.size(), felt.size());
     EXPECT_EQ(records[hand].exchanges.size(), static_cast<std::size_t>(result.periods));
     std::size_t touching = 0;
@@ -357,7 +357,7 @@ TEST(TwoHands, AreRecordedEach) {
   }
   loop::HapticRecord mixed = records[0];
   mixed.models = records[1].models;
-  EXPECT_NE(loop::retrace(d, mixed).back().device.force, both.of[0].back().device.force);
+  EXPECT_NE(loop::retrace(d, {mixed, records[1]}).back().device.force, both.of[0].back().device.force);
 }
 
 }  // namespace

@@ -71,9 +71,9 @@ const Broken kCases[] = {
      "0.012"},
     {"hand-without-tool", "8:1",
      "hand \"left\": the first hand is [tool] and [device]; name one more hand only beside them"},
-    {"hands-that-meet", "14:11",
-     "contact between \"tool\" and \"left\": two tools do not meet: one of the two must be a soft body, or "
-     "an obstacle for a tool to meet"},
+    {"hands-that-meet", "15:10",
+     "contact between \"tool\" and \"left\": two tools touch by nearest points; method = \"image\" has none: "
+     "leave out what asks for it, or write \"distance\""},
     {"idle-key", "11:10",
      "body \"ball\": mesh: size_m means nothing to generator = \"ball\", which takes radius_m, "
      "element_size_m, grading; remove it (used by box, tet)"},

@@ -17,6 +17,10 @@ struct Hand {
 /// All hands of a scene: that of [tool] and [device], which is called "tool", then each [[hand]].
 std::vector<Hand> hands_of(const Description& description);
 
+/// Returns of each hand the first whose tool meets its tool, by a [[contact]] or by way of others; itself
+/// where none does.
+std::vector<std::size_t> meeting_tools(const Description& description);
+
 /// The tool that [[contact]] calls so; null where there is none.
 const ToolSpec* tool_named(const Description& description, const std::string& name);
 

@@ -18,6 +18,13 @@ struct HandleMotion {
   Twist twist0, twist1;  ///< likewise
 };
 
+/// One step of a tool by linearly implicit Euler's method: A du = r, du the change of its twist, angular
+/// first [rad/s, m/s].
+struct StepEquation {
+  Mat6 A = Mat6::Zero();  ///< M + h B + h^2 K, gyroscopic terms included
+  Vec6 r = Vec6::Zero();  ///< [N m s, N s]
+};
+
 /// A Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact
 /// (docs/design.md, 4.5).  The Simbody System stays behind the pimpl.
 class Tool {
@@ -41,9 +48,12 @@ class Tool {
   dynamics::StepResult advance(double h, const HandleMotion& handle,
                                const dynamics::LinearisedContact& contact);
 
-  /// Where a tick would lead by linearly-implicit-euler, whatever the spec names; nothing changes.
-  dynamics::RigidMotion predict(double h, const HandleMotion& handle,
-                                const dynamics::LinearisedContact& contact) const;
+  /// Returns the equation of a tick by linearly-implicit-euler, whatever the spec names; nothing changes.
+  StepEquation step_equation(double h, const HandleMotion& handle,
+                             const dynamics::LinearisedContact& contact) const;
+  /// Returns where that tick leads.
+  /// @param change  solution of the equation
+  dynamics::RigidMotion after(double h, const Vec6& change) const;
 
   /// Wrench that the coupling exerts on the tool about its origin, for a handle pose (before any limit).
   Wrench coupling_wrench(const Pose& handle, const Twist& handle_twist) const;

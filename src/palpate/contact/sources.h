@@ -124,6 +124,9 @@ std::unique_ptr<SampleSource> make_distance_source(NodeSurface a, const Points& 
 /// @param rest  vertices of the soft one at rest [m]
 std::unique_ptr<SampleSource> make_distance_source(NodeSurface surface, const Points& rest,
                                                    const FrameSurface& other, const DistanceOptions& options);
+/// Two rigid surfaces.
+std::unique_ptr<SampleSource> make_distance_source(const FrameSurface& a, const FrameSurface& b,
+                                                   const DistanceOptions& options);
 
 /// Returns the depth up to which overlaps of a body with itself are found: a quarter of its mean radius [m].
 inline double own_contact_depth(const CharacteristicLengths& body) { return 0.25 * body.radius; }

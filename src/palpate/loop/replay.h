@@ -18,11 +18,11 @@ std::unique_ptr<device::Device> recorded_hand(HapticRecord record);
 std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<HapticRecord>& records);
 
 /// The ticks of a hand's record again, each with the input and the contact record that it had: no body is
-/// simulated, and no other hand.  Ticks of a run in real time come out in virtual time as they were, bit for
-/// bit.
-/// @param hand  whose record it is, as scene::hands_of() counts
+/// simulated, and of other hands those alone whose tools meet this one's.  Ticks of a run in real time come
+/// out in virtual time as they were, bit for bit.
+/// @param records  of all hands  @param hand  as scene::hands_of() counts
 /// @throws Error for a tool without ticks of its own, for a record with ticks missing
-std::vector<TickRecord> retrace(const scene::Description& description, const HapticRecord& record,
-                                std::size_t hand = 0);
+std::vector<TickRecord> retrace(const scene::Description& description,
+                                const std::vector<HapticRecord>& records, std::size_t hand = 0);
 
 }  // namespace palpate::loop

@@ -1,0 +1,165 @@
+#include "rigid_contact.h"
+
+#include <algorithm>
+
+#include "assemble_parts.h"
+#include "contact_shapes.h"
+#include "palpate/core/error.h"
+#include "tool_side.h"
+
+namespace palpate::loop {
+
+std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolSide& side) {
+  if (side.motion) return side.motion;
+  if (world.monolithic())
+    side.motion = contact::block_frame(side.block_id);
+  else
+    side.motion = side.trajectory = std::make_shared<contact::TrajectoryFrame>();
+  side.frame_index = world.contact->add_frame(side.motion);
+  return side.motion;
+}
+
+namespace {
+
+/// A tool in a contact, and where its time comes from.
+struct RigidSide {
+  const ToolSpec& tool;
+  int frame;
+  std::shared_ptr<contact::MovingFrame> motion;
+  double look_ahead;  ///< time to the next query [s]
+  bool is_round() const { return tool.shape == "sphere"; }
+  contact::FrameSurface surface(const World& world) const {
+    return {tool_surface(tool, world.folder), frame, motion};
+  }
+};
+
+/// A tool on an exact shape.
+/// @param source  makes that of what it is given against the shape
+template <class Source>
+std::unique_ptr<contact::SampleSource> rigid_on_shape(const World& world, const RigidSide& tool,
+                                                      const ContactSpec& spec, const Shape& shape,
+                                                      const Source& source) {
+  const bool nearest_points = spec.method == "distance";
+  if (tool.is_round())
+    return source(
+        contact::FrameBall{tool.tool.radius_m, Vec3::Zero(), tool.frame, tool.motion, nearest_points});
+  const contact::FrameSurface surface = tool.surface(world);
+  if (!nearest_points) return source(surface);
+  try {
+    const contact::CharacteristicLengths lengths = contact::lengths_of(surface.mesh);
+    auto of_tool = source(contact::material_points(
+        surface, contact::point_spacing(lengths, shape.lengths, spec.quadrature_error)));
+    const auto own = own_points(shape, lengths, spec.quadrature_error);
+    if (!own) return of_tool;
+    return contact::make_half_and_half(
+        std::move(of_tool),
+        contact::make_distance_source(surface, *own, distance_options(spec, tool.look_ahead)));
+  } catch (const Error& error) { refuse_distance(spec, error); }
+}
+
+/// @param force  takes the obstacle's frame
+std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, const RigidSide& tool,
+                                                        const ContactSpec& spec, const ObstacleSpec& obstacle,
+                                                        contact::ContactForce& force) {
+  if (tool.is_round() && spec.spring == "per_point")
+    fail("contact {} - {}: spring = \"per_point\" is for vertices, and a sphere has none", spec.first,
+         obstacle.name);
+  const Shape shape = shape_of(force, obstacle);
+  return rigid_on_shape(world, tool, spec, shape, [&](contact::ContactSide side) {
+    return obstacle_source(shape, spec, std::move(side), spec.candidate_gap_m, tool.look_ahead, obstacle);
+  });
+}
+
+/// Contact of two tools; a round one is an exact shape.
+std::unique_ptr<contact::SampleSource> tool_on_tool(const World& world, const RigidSide& a,
+                                                    const RigidSide& b, const ContactSpec& spec) {
+  if (spec.method != "distance")
+    fail("contact {} - {}: two tools touch by nearest points; use method = \"auto\"", spec.first,
+         spec.second);
+  if (b.is_round())
+    return rigid_on_shape(
+        world, a, spec, round_tool(b.tool.radius_m, b.frame, b.motion), [&](contact::ContactSide side) {
+          return contact::make_sphere_source(std::move(side), b.frame, b.motion, Vec3::Zero(),
+                                             b.tool.radius_m, spec.candidate_gap_m, b.look_ahead);
+        });
+  if (a.is_round()) return tool_on_tool(world, b, a, spec);
+  try {
+    return contact::make_distance_source(a.surface(world), b.surface(world),
+                                         distance_options(spec, a.look_ahead));
+  } catch (const Error& error) { refuse_distance(spec, error); }
+}
+
+/// Adds it to what tools of ticks feel, and returns it once more for the bodies' side.
+/// @param make  (tools in their order, contact)
+template <class Make>
+std::unique_ptr<contact::SampleSource> rigid_source(World& world, const std::vector<ToolSide*>& sides,
+                                                    const ContactSpec& spec, const Make& make) {
+  std::vector<RigidSide> in_ticks, in_world;
+  const scene::CosimulationSpec& exchange = world.description.exchange;
+  for (ToolSide* side : sides) {
+    const auto motion = tool_motion(world, *side);
+    const double look_ahead = side->trajectory ? exchange.exchange_period_s : exchange.contact_refresh_s;
+    in_world.push_back({*side->spec, side->frame_index, motion, look_ahead});
+    if (!side->trajectory) continue;
+    const int number = side->number_in_rigid;
+    in_ticks.push_back({*side->spec, side->rigid->frame(number), side->rigid->motion(number), look_ahead});
+  }
+  if (!in_ticks.empty()) {
+    contact::ContactForce& own = sides.front()->rigid->contact();
+    own.add_pair(make(in_ticks, own), spec);
+  }
+  return make(in_world, *world.contact);
+}
+
+const ObstacleSpec* obstacle_named(const World& world, const std::string& name) {
+  const auto& all = world.description.obstacles;
+  const auto at = std::find_if(all.begin(), all.end(), [&](const ObstacleSpec& o) { return o.name == name; });
+  return at == all.end() ? nullptr : &*at;
+}
+
+}  // namespace
+
+std::unique_ptr<contact::SampleSource> rigid_source(World& world, const ContactSpec& spec) {
+  ToolSide *const first = ToolSide::named(world, spec.first), *const second =
+                                                                  ToolSide::named(world, spec.second);
+  const ObstacleSpec* const obstacle = obstacle_named(world, spec.second);
+  if (first && obstacle)
+    return rigid_source(world, {first}, spec,
+                        [&](const std::vector<RigidSide>& tools, contact::ContactForce& force) {
+                          return tool_on_obstacle(world, tools[0], spec, *obstacle, force);
+                        });
+  if (!first || !second || first == second) return {};
+  return rigid_source(world, {first, second}, spec,
+                      [&](const std::vector<RigidSide>& tools, contact::ContactForce&) {
+                        return tool_on_tool(world, tools[0], tools[1], spec);
+                      });
+}
+
+void make_rigid_touch(World& world) {
+  const scene::Description& d = world.description;
+  if (world.monolithic()) return;
+  const std::vector<std::size_t> first = scene::meeting_tools(d);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    ToolSide& side = ToolSide::of(world, i);
+    const bool meets = std::any_of(d.contacts.begin(), d.contacts.end(), [&](const ContactSpec& contact) {
+      const auto with = [&](const std::string& name) {
+        return obstacle_named(world, name) || ToolSide::named(world, name);
+      };
+      return (contact.first == side.name && with(contact.second)) ||
+             (contact.second == side.name && with(contact.first));
+    });
+    if (!meets) continue;
+    const ToolSide& leader = ToolSide::of(world, first[i]);
+    if (side.spec->tick_s != leader.spec->tick_s)
+      at_place(world, scene::hands_of(d)[i].tool_key + ".tick_s", "", [&] {
+        fail(
+            "tools that meet each other have ticks at the same times: that of \"{}\" has tick_s = {}, \"{}\" "
+            "{}; make them equal",
+            side.name, side.spec->tick_s, leader.name, leader.spec->tick_s);
+      });
+    side.rigid = leader.rigid ? leader.rigid : std::make_shared<RigidTouch>(d.exchange.exchange_period_s);
+    side.number_in_rigid = side.rigid->add(*side.spec);
+  }
+}
+
+}  // namespace palpate::loop

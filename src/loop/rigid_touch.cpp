@@ -1,0 +1,161 @@
+// Tools that meet in a tick.  Under all else tool i has the linearly implicit step A_i du_i = r_i
+// (tool/fixed_tick.cpp).  Contact of tools with each other and with obstacles adds the wrenches
+//
+//     F_i - sum_j (K_ij dx_j + B_ij du_j),     dx_j = h (u_j + du_j),
+//
+// K and B the negative derivatives of F at the tick's start, obstacles being tools that do not move.  So the
+// ends of all tools follow from one system of 6 equations a tool,
+//
+//     A_i du_i + sum_j (h B_ij + h^2 K_ij) du_j = r_i + h (F_i - h sum_j K_ij u_j),
+//
+// which has no bound on the contact's stiffness.  (Each tool against the others where they were, or where
+// they were going, has: h^2 k < 2 m.)  A tool's own scheme then takes a record of its own derivatives, with
+// the others' part a constant:
+//
+//     F_i - sum_{j != i} (K_ij dx_j + B_ij du_j) - K_ii dx_i - B_ii du_i.
+//
+// With linearly implicit Euler's method the tick that comes out is the solution of that system: the forces of
+// two tools on each other are opposite to rounding.  Other schemes' are as far as these differ from it.
+#include "rigid_touch.h"
+
+#include <algorithm>
+
+#include "flat_pose.h"
+#include "palpate/core/error.h"
+
+namespace palpate::loop {
+namespace {
+
+Vec6 stacked(const Twist& twist) {
+  Vec6 out;
+  out << twist.angular, twist.linear;
+  return out;
+}
+
+}  // namespace
+
+RigidTouch::RigidTouch(double look_ahead_s) : look_ahead_(look_ahead_s) {}
+
+int RigidTouch::add(const ToolSpec& tool) {
+  const Quat r = quaternion_of(tool.rotation_vector_rad);
+  VecX q(7);
+  q << r.w(), r.vec(), tool.position_m;
+  tools_.emplace_back().block_id = state_.insert(dynamics::rigid_block("tool", 1.0, 1.0), q, VecX::Zero(6));
+  tools_.back().frame = contact_.add_frame(motion(size() - 1));
+  change_.setZero(6 * size());
+  return size() - 1;
+}
+
+std::shared_ptr<contact::MovingFrame> RigidTouch::motion(int tool) const {
+  return contact::block_frame(tools_[static_cast<std::size_t>(tool)].block_id);
+}
+
+void RigidTouch::place(double t, std::span<const dynamics::RigidMotion> tools) {
+  PALPATE_CHECK(tools.size() == tools_.size(), "{} tools, {} meet", tools.size(), tools_.size());
+  state_.set_time(t);
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    const Pose& pose = tools[i].pose;
+    const auto at = static_cast<Eigen::Index>(i);
+    state_.q().segment<7>(7 * at) << pose.rotation.w(), pose.rotation.vec(), pose.translation;
+    state_.u().segment<6>(6 * at) = stacked(tools[i].twist);
+  }
+}
+
+void RigidTouch::begin_tick(double t, std::span<const dynamics::RigidMotion> tools) {
+  place(t, tools);
+  // ticks add their lengths up: a query is due at the tick next to its time
+  if (t >= due_ - 1e-6 * look_ahead_) {
+    contact_.refresh(state_.view());
+    due_ = t + look_ahead_;
+  }
+  rubs_ = contact_.begin_step(state_.view());
+  again();
+}
+
+void RigidTouch::again() {
+  for (OneTool& tool : tools_) {
+    tool.by_others.setZero();
+    contact_.linearise(state_.view(), tool.frame, tool.contact, contact::Partners::kFrames);
+  }
+}
+
+void RigidTouch::solve(double h, std::span<const tool::StepEquation> equations) {
+  const dynamics::StateView at = state_.view();
+  const auto rows = static_cast<Eigen::Index>(6 * tools_.size());
+  joint_.right.resize(0, rows);
+  joint_.bottom.resize(rows, 0);
+  joint_.corner.setZero(rows, rows);
+  contact_.add_tangent(at, h * h, h, joint_);
+  rhs_.resize(rows);
+  sum_.setZero(rows);
+  one_ = state_.u();
+  contact_.apply_tangent(at, 1.0, 0.0, one_, sum_);
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(6 * i);
+    const Wrench& wrench = tools_[i].contact.wrench;
+    joint_.corner.block<6, 6>(row, row) += equations[i].A;
+    rhs_.segment<3>(row) = h * wrench.moment;
+    rhs_.segment<3>(row + 3) = h * wrench.force;
+    rhs_.segment<6>(row) += equations[i].r - h * h * sum_.segment<6>(row);
+  }
+  lu_.compute(joint_.corner);
+  change_ = lu_.solve(rhs_);
+  moved_ = h * (state_.u() + change_);
+  for (std::size_t i = 0; tools_.size() > 1 && i < tools_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(6 * i);
+    sum_.setZero(rows);
+    one_ = moved_;
+    one_.segment<6>(row).setZero();
+    contact_.apply_tangent(at, 1.0, 0.0, one_, sum_);
+    one_ = change_;
+    one_.segment<6>(row).setZero();
+    contact_.apply_tangent(at, 0.0, 1.0, one_, sum_);
+    tools_[i].by_others = -sum_.segment<6>(row);
+  }
+}
+
+bool RigidTouch::improve() { return !rubs_ || contact_.improve_step(state_.view(), moved_, change_); }
+
+void RigidTouch::end_tick() {
+  if (rubs_) contact_.end_step();
+  rubs_ = false;
+}
+
+bool RigidTouch::touches() const {
+  return std::any_of(tools_.begin(), tools_.end(),
+                     [](const OneTool& tool) { return tool.contact.active > 0; });
+}
+
+// The record R(t, x, v) is linear about (x0, v0); it goes on about (x, v) = now with the same F1, J and B:
+//     R(t + s, x + dx, v + dv) = R(t, x, v) + s F1 + J dx + B dv,
+// up to the second order in the rotation from x0.
+dynamics::LinearisedContact RigidTouch::about_now(int tool, const dynamics::LinearisedContact& record) const {
+  const auto q = state_.q().segment<7>(7 * tool);
+  const auto u = state_.u().segment<6>(6 * tool);
+  const Pose pose{Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
+  dynamics::LinearisedContact out = record;
+  out.time = state_.time();
+  out.x0 = flat(pose);
+  Eigen::Map<Vec6>(out.v0.data()) = u;
+  Eigen::Map<Vec6>(out.F0.data()) =
+      dynamics::contact_wrench(record, out.time, pose, {u.head<3>(), u.tail<3>()});
+  return out;
+}
+
+dynamics::LinearisedContact RigidTouch::with(int tool, const dynamics::LinearisedContact& record) const {
+  using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  const OneTool& mine = tools_[static_cast<std::size_t>(tool)];
+  Vec6 wrench = mine.by_others;
+  wrench.head<3>() += mine.contact.wrench.moment;
+  wrench.tail<3>() += mine.contact.wrench.force;
+  dynamics::LinearisedContact out = record;
+  Eigen::Map<Vec6>(out.F0.data()) += wrench;
+  Eigen::Map<RowMajor6>(out.J.data()) -= mine.contact.K;
+  Eigen::Map<RowMajor6>(out.B.data()) -= mine.contact.B;
+  out.samples += mine.contact.active;
+  if (out.source == dynamics::LinearisedContact::Source::kNone)
+    out.source = dynamics::LinearisedContact::Source::kFrozen;
+  return out;
+}
+
+}  // namespace palpate::loop

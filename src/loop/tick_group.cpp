@@ -1,0 +1,72 @@
+#include "tick_group.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace palpate::loop {
+
+TickGroup::TickGroup(std::vector<Member> members)
+    : members_(std::move(members)),
+      rigid_(members_.front().ticks->side().rigid.get()),
+      found_(members_.size()),
+      equations_(members_.size()) {}
+
+std::vector<TickGroup> TickGroup::of(const std::vector<Member>& all) {
+  std::vector<std::vector<Member>> sets;
+  for (const Member& member : all) {
+    const auto& rigid = member.ticks->side().rigid;
+    const auto set = std::find_if(sets.begin(), sets.end(), [&](const auto& others) {
+      return rigid && others.front().ticks->side().rigid == rigid;
+    });
+    (set == sets.end() ? sets.emplace_back() : *set).push_back(member);
+  }
+  std::vector<TickGroup> out;
+  for (auto& set : sets) out.emplace_back(std::move(set));
+  return out;
+}
+
+// A tick's friction is that of its end (contact/friction.h), to which a linearly implicit step of the tools
+// leads under the records; a tool's own scheme then takes the record that came out.  So it does of what the
+// other tools do within the tick.
+void TickGroup::find(double h) {
+  bool rubs = false;
+  motions_.clear();
+  for (const Member& member : members_) {
+    rubs = rubs || member.ticks->rubs();
+    const tool::Tool& tool = *member.ticks->side().tool;
+    motions_.push_back({tool.pose(), tool.twist()});
+  }
+  if (rigid_) rigid_->begin_tick(members_.front().ticks->side().tool->time(), motions_);
+  const bool touches = rigid_ && rigid_->touches();
+  if (rubs || (touches && (rigid_->rubs() || members_.size() > 1)))
+    while (!solve_and_improve(h)) {
+      // all are about the same guess of the end
+      for (const Member& member : members_) member.ticks->again();
+      if (touches) rigid_->again();
+    }
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    found_[i] = members_[i].ticks->contact_with_bodies();
+    const int tool = static_cast<int>(i);
+    if (touches) found_[i] = rigid_->with(tool, rigid_->about_now(tool, found_[i]));
+  }
+  if (rigid_) rigid_->end_tick();
+}
+
+bool TickGroup::solve_and_improve(double h) {
+  const bool touches = rigid_ && rigid_->touches();
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const dynamics::LinearisedContact& of_bodies = members_[i].ticks->contact_with_bodies();
+    equations_[i] = members_[i].ticks->equation(
+        h, touches ? rigid_->about_now(static_cast<int>(i), of_bodies) : of_bodies);
+  }
+  if (touches) rigid_->solve(h, equations_);
+  bool done = !touches || rigid_->improve();
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const Vec6 change = touches ? rigid_->change(static_cast<int>(i))
+                                : Vec6(equations_[i].A.partialPivLu().solve(equations_[i].r));
+    done = members_[i].ticks->improve(h, change) && done;
+  }
+  return done;
+}
+
+}  // namespace palpate::loop
