@@ -70,7 +70,7 @@ class AnalyticSource final : public SampleSource {
     const Pose pose = motion_->pose(state), inverse = pose.inverse();
     shape_.move_to(pose);
     if constexpr (kMaterial) open_runs(state, pose);
-    find_tunnelled(inverse, state.time);
+    find_tunnelled(pose, inverse, state.time);
     kept_.clear();
     const bool any = find_candidates(state, pose);
     if constexpr (kMaterial) {
@@ -230,11 +230,12 @@ class AnalyticSource final : public SampleSource {
 
   /// A vertex's way since the last query, seen from the frame, as a straight line: outside at both ends, but
   /// through the shape in between. Nothing pushed it back; it is on the wrong side, or inside a body that is.
-  void find_tunnelled(const Pose& inverse, double t) {
+  void find_tunnelled(const Pose& pose, const Pose& inverse, double t) {
     if constexpr (kMaterial) {
       for_each_near([&](int v) {
         const Vec3 now = inverse * surface_.position(v);
-        if (seen_before_ && shape_.is_crossed(seen_from_ * surface_.kept_position(v), now)) ++tunnelled_;
+        if (seen_before_ && goes_through(shape_, pose, seen_from_ * surface_.kept_position(v), now))
+          ++tunnelled_;
       });
       surface_.keep();
       seen_from_ = inverse;
@@ -242,7 +243,7 @@ class AnalyticSource final : public SampleSource {
       seen_.resize(3, surface_.vertex_count());
       for (int v = 0; v < surface_.vertex_count(); ++v) {
         const Vec3 now = inverse * surface_.position(v);
-        if (seen_before_ && shape_.is_crossed(seen_.col(v), now)) ++tunnelled_;
+        if (seen_before_ && goes_through(shape_, pose, seen_.col(v), now)) ++tunnelled_;
         seen_.col(v) = now;
       }
     }

@@ -40,6 +40,15 @@ inline double patch_radius2(double R, double r, double depth) {
   return R * R - from_ball * from_ball;
 }
 
+/// Whether what went straight from a to b, in the frame of a shape, went through it and came out on another
+/// side, where the shape's normal points the other way.  What cuts a rim comes out on the side that contact
+/// would have pushed it to.
+/// @pre the shape is at `pose`
+template <class Shape>
+bool goes_through(const Shape& shape, const Pose& pose, const Vec3& a, const Vec3& b) {
+  return shape.is_crossed(a, b) && shape.at(pose * a).normal.dot(shape.at(pose * b).normal) < 0.0;
+}
+
 /// A ball against an exact shape (analytic_source.h says what a Shape has).
 template <class Shape>
 class BallSource final : public SampleSource {
@@ -157,7 +166,7 @@ class BallSource final : public SampleSource {
 
   /// The centre's way since the last query, as AnalyticSource sees a vertex's.
   void find_tunnelled(const Vec3& now, double t) {
-    const bool crossed = seen_before_ && shape_.is_crossed(seen_, now);
+    const bool crossed = seen_before_ && goes_through(shape_, inverse_.inverse(), seen_, now);
     seen_ = now;
     seen_before_ = true;
     tunnelled_ += crossed;

@@ -267,6 +267,7 @@ TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
   struct Shape {
     std::unique_ptr<contact::SampleSource> source;
     Vec3 above, inside, below, beside;
+    Vec3 rim, past_rim;  ///< outside both, with a corner of the shape between them
   };
   SurfaceWorld world(one);
   std::vector<Shape> shapes;
@@ -274,25 +275,33 @@ TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
                     {0.1, 0.2, 0.5},
                     {0.1, 0.2, 0},
                     {0.3, 0.1, -0.4},
-                    {3, 0, -0.5}});
+                    {3, 0, -0.5},
+                    {0.995, 0, 0.0105},
+                    {1.0005, 0, 0.0095}});
   shapes.push_back({contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), 0.1, 0.01),
                     {0.02, 0, 0.5},
                     {0, 0.02, 0},
                     {0, 0.03, -0.4},
-                    {1.5, 0, -0.5}});
+                    {1.5, 0, -0.5},
+                    {0.095, 0, 0.035},
+                    {0.095, 0, -0.035}});
   shapes.push_back(
       {contact::make_cylinder_source(world.surface, 0, frame,
                                      {quaternion_of(Vec3(kPi / 2, 0, 0)), Vec3::Zero()}, 0.05, 2.0, 0.01),
        {0.01, 0.2, 0.5},
        {0, 0.2, 0.01},
        {-0.01, 0.3, -0.4},
-       {1.5, 0, -0.5}});
+       {1.5, 0, -0.5},
+       {0.0475, 0.2, 0.0175},
+       {0.0475, 0.2, -0.0175}});
   for (Shape& s : shapes) {
     EXPECT_EQ(counted(*s.source, world, s.above, s.below), 3) << s.source->name();
     EXPECT_EQ(counted(*s.source, world, s.below, s.above), 3) << s.source->name() << ", back again";
     EXPECT_EQ(counted(*s.source, world, s.above, s.inside), 0) << s.source->name() << ": seen, it is inside";
     EXPECT_EQ(counted(*s.source, world, s.inside, s.below), 0) << s.source->name() << ": it was seen inside";
     EXPECT_EQ(counted(*s.source, world, s.above, s.beside), 0) << s.source->name() << ": it passes by";
+    EXPECT_EQ(counted(*s.source, world, s.rim, s.past_rim), 0)
+        << s.source->name() << ": where it comes out contact would have pushed it to";
     EXPECT_EQ(counted(*s.source, world, s.above, s.above), 0) << s.source->name() << ": it stands still";
   }
   auto plane = contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.01);
