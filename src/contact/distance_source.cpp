@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "contact/coupled_nodes.h"
 #include "contact/look_back.h"
@@ -75,7 +76,10 @@ class DistanceSource final : public SampleSource {
 
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     update(state);
-    if (!own_ && !contact_.points(0).empty())  // else the points of the other surface have looked back
+    if (own_)
+      look_back_.look_at_itself(
+          *a_, thickness_, [this](int vertex, int face) { return may_meet(vertex, face); }, state.time);
+    else if (!contact_.points(0).empty())  // else the points of the other surface have looked back
       look_back_.look(
           *a_, b(),
           [&](LookBack::Met& met) {
@@ -153,6 +157,20 @@ class DistanceSource final : public SampleSource {
   }
 
  private:
+  /// Of a skin against itself: whether a vertex and a face, as they were given, are no neighbours.
+  bool may_meet(int vertex, int face) const {
+    const distance::Skin& skin = skins_[0];
+    const auto around = [&](int v) {
+      const auto at = static_cast<std::size_t>(v);
+      return std::span(skin.fan.begin() + skin.fan_begin[at], skin.fan.begin() + skin.fan_begin[at + 1]);
+    };
+    const auto faces = around(a_->faces()(0, face));
+    const int found = *std::find_if(faces.begin(), faces.end(), [&](int f) {
+      return skin.given_face[static_cast<std::size_t>(f)] == face;
+    });
+    return contact_.may_touch(around(vertex).front() / distance::kClusterFaces,
+                              found / distance::kClusterFaces);
+  }
   void update(const dynamics::StateView& state) {
     a_->update(state);
     if (b_) b_->update(state);

@@ -22,6 +22,8 @@ SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const 
   out.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
   for (std::size_t i = 0; i < faces.size(); ++i)
     for (int k = 0; k < 3; ++k) out.faces(k, static_cast<Eigen::Index>(i)) = local(side.faces()(k, faces[i]));
+  out.face_of = faces;
+  out.vertex_of = taken;
   const Pose now = axes.frame().inverse(), then = axes.kept_frame().inverse();
   out.now.resize(3, static_cast<Eigen::Index>(taken.size()));
   out.before.resize(3, out.now.cols());
@@ -34,8 +36,13 @@ SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const 
 
 }  // namespace
 
+namespace {
+
+constexpr double kPartOfThickness = 0.25;  // what is shorter is an edge that was grazed
+
+}  // namespace
+
 void LookBack::look(ImageSide& a, ImageSide& b, const std::function<double(Met&)>& find, double t) {
-  constexpr double kPartOfThickness = 0.25;  // what is shorter is an edge that was grazed
   if (kept_) {
     const double least_way = kPartOfThickness * find(met_);
     if (!met_.a.empty() && !met_.b.empty()) {
@@ -46,20 +53,38 @@ void LookBack::look(ImageSide& a, ImageSide& b, const std::function<double(Met&)
   a.keep();
   b.keep();
   kept_ = true;
+  tell("the other body", t);
+}
+
+void LookBack::look_at_itself(ImageSide& side, double thickness,
+                              const std::function<bool(int vertex, int face)>& may_meet, double t) {
+  if (kept_) {
+    find_all_met(side, side, thickness, met_.a, met_.b);
+    if (!met_.a.empty()) {
+      const SurfaceWays ways = ways_of(side, met_.a, side);
+      count_ += passed_.count(ways, ways, kPartOfThickness * thickness, may_meet);
+    }
+  }
+  side.keep();
+  kept_ = true;
+  tell("another part of their body", t);
+}
+
+void LookBack::tell(std::string_view through_what, double t) {
   if (passed_.given_up() > 0 && !gave_up_) {
     gave_up_ = true;
     log::warn(
         "contact at t = {:.6g} s: the surfaces moved so far between two queries that what went through "
-        "unseen "
-        "is not counted whole; refresh contact more often (exchange.contact_refresh_s)",
+        "unseen is not counted whole; refresh contact more often (exchange.contact_refresh_s)",
         t);
   }
   if (count_ == 0 || warned_) return;
   warned_ = true;
   log::warn(
-      "contact at t = {:.6g} s: {} vertices went through the other body between two queries, unseen; refresh "
-      "contact more often (exchange.contact_refresh_s), or set exchange.tunnelling = \"substep\"",
-      t, count_);
+      "contact at t = {:.6g} s: {} vertices went through {} between two queries, unseen; refresh contact "
+      "more "
+      "often (exchange.contact_refresh_s), or set exchange.tunnelling = \"substep\"",
+      t, count_, through_what);
 }
 
 void find_all_met(ImageSide& a, ImageSide& b, double thickness, std::vector<int>& faces_a,

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "contact/image_side.h"
@@ -18,10 +19,15 @@ class LookBack {
   /// Looks back from a query to the one before, where there was one, and keeps the surfaces for the next.
   /// @param t  [s], for messages
   void look(ImageSide& a, ImageSide& b, const std::function<double(Met&)>& find, double t);
+  /// The same of one surface against itself.
+  /// @param may_meet  whether a vertex and a face are no neighbours
+  void look_at_itself(ImageSide& side, double thickness,
+                      const std::function<bool(int vertex, int face)>& may_meet, double t);
   long count() const { return count_; }  ///< so far
   void archive(Archive& a);
 
  private:
+  void tell(std::string_view through_what, double t);
   PassedVertices passed_;
   Met met_;  ///< scratch
   long count_ = 0;

@@ -123,7 +123,8 @@ constexpr long kLooksAVertex = 1000, kPriceOfMeeting = 50;
 
 }  // namespace
 
-long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way) {
+long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way,
+                           const std::function<bool(int vertex, int face)>& may_meet) {
   if (vertices.now.cols() == 0 || faces.faces.cols() == 0) return 0;
   const FastVertices fast(faces, least_way);
   const auto is_fast = [&](Eigen::Index v) { return fast.has(vertices.now.col(v) - vertices.before.col(v)); };
@@ -180,6 +181,9 @@ long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces
     for (; box != boxes_.end() && box->low[axis] <= x_high[axis]; ++box) {
       --left;
       if ((box->low.array() > x_high.array()).any() || (box->high.array() < x_low.array()).any()) continue;
+      if (may_meet && !may_meet(vertices.vertex_of[static_cast<std::size_t>(v)],
+                                faces.face_of[static_cast<std::size_t>(box->face)]))
+        continue;
       meet(x, faces, box->face, meetings);
       left -= kPriceOfMeeting;
     }

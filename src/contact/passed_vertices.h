@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "palpate/core/types.h"
@@ -8,8 +9,10 @@ namespace palpate::contact {
 
 /// Some faces of a closed surface at two times, in the same axes; vertices go straight on between them.
 struct SurfaceWays {
-  Faces faces;         ///< of these vertices, outward
-  Points before, now;  ///< [m]
+  Faces faces;                   ///< of these vertices, outward
+  Points before, now;            ///< [m]
+  std::vector<int> vertex_of{};  ///< number of each vertex in the whole surface
+  std::vector<int> face_of{};    ///< likewise of each face
 };
 
 /// Counts the vertices of one surface that went through another: outside before and now, inside on the way,
@@ -30,7 +33,9 @@ class PassedVertices {
   /// looked at by then is not counted: a query's price stays within a bound, and a scene that has blown up
   /// goes on.
   /// @param least_way  inside, seen from where it entered [m]
-  long count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way);
+  /// @param may_meet   of a surface against itself: (vertex, face), numbers in the whole surface; else null
+  long count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way,
+             const std::function<bool(int vertex, int face)>& may_meet = {});
 
   /// How often count() gave up.
   long given_up() const { return given_up_; }

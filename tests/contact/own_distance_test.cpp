@@ -115,6 +115,49 @@ TEST(OwnDistance, IsThatOfTwoBodiesOfTheSameShape) {
   }
 }
 
+// What flies through another part between two queries is counted as of two bodies; what grazes it, or goes
+// with it, or bends, is not.
+TEST(OwnDistance, WhatGoesThroughAnotherPartIsCounted) {
+  const LayeredModel a = ball(Pose{}, 1.0), b = ball({Quat::Identity(), Vec3(0, 0, -2.4)}, 1.2),
+                     both = together(a, b);
+  dynamics::State two, one;
+  const int block_a = add_block(two, a.tets.nodes), block_b = add_block(two, b.tets.nodes),
+            block = add_block(one, both.tets.nodes);
+  contact::ContactForce between, within;
+  between.add_pair(contact::make_distance_source(surface_of(a, block_a), a.skin.vertices,
+                                                 surface_of(b, block_b), b.skin.vertices, coarse()),
+                   law());
+  within.add_pair(contact::make_own_distance_source(surface_of(both, block), both.skin.vertices,
+                                                    both.tets.nodes, coarse()),
+                  law());
+  const int n = static_cast<int>(a.tets.nodes.size());
+  const auto counted = [&](const Vec3& way, bool of_all) {
+    const long before[] = {between.tunnelled()[0], within.tunnelled()[0]};
+    for (dynamics::State* state : {&two, &one})
+      for (int i = 0; i < (of_all ? state->q().size() : n); ++i) state->q()[i] += way[i % 3];
+    between.refresh(two.view());
+    within.refresh(one.view());
+    const long of_two = between.tunnelled()[0] - before[0], of_one = within.tunnelled()[0] - before[1];
+    // what grazes is told by the thickness of the thinner body, and of one by what it feels
+    EXPECT_NEAR(static_cast<double>(of_one), static_cast<double>(of_two), 0.03 * static_cast<double>(of_two));
+    return of_one;
+  };
+  EXPECT_EQ(counted(Vec3::Zero(), false), 0);
+  EXPECT_GT(counted(Vec3(0, 0, -5.2), false), 200) << "through";
+  EXPECT_GT(counted(Vec3(0, 0, 5.2), false), 200) << "and back";
+  EXPECT_EQ(counted(Vec3(5, 0, 0), false), 0) << "away";
+  EXPECT_EQ(counted(Vec3(0, 0, -5.2), false), 0) << "beside it";
+  EXPECT_EQ(counted(Vec3(7, 8, 9), true), 0) << "both together";
+  Bar bar;
+  contact::ContactForce of_bar;
+  of_bar.add_pair(bar.source(), law());
+  for (const double angle : {0.0, 1.5, 0.0}) {
+    bar.bend(angle);
+    of_bar.refresh(bar.state.view());
+    EXPECT_EQ(of_bar.tunnelled()[0], 0) << "bends";
+  }
+}
+
 // The gap that is looked into is larger than the bar is thick.
 TEST(OwnDistance, WhereABodyIsThickItFeelsNothing) {
   Bar bar;

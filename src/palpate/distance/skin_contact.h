@@ -122,6 +122,8 @@ class SkinContact {
   const std::vector<ContactPoint>& points(int side) const {
     return meshes_[static_cast<std::size_t>(side)].points;
   }
+  /// Whether faces of two clusters of a skin against itself are no neighbours.
+  bool may_touch(int cluster, int other) const { return own_->neighbours.may_touch(cluster, other); }
   Vec3 position(const Spring& spring) const;  ///< of its point [m]
   /// The direction that leads out of the other skin at the spring's foot, unit: away from the nearest point
   /// outside and towards it inside, and the pseudonormal of Surface::outward() where the two coincide.
