@@ -36,6 +36,7 @@ scene::Description inclined(double angle, double friction) {
   d.gravity_m_s2 = kGravity * Vec3(std::sin(angle), 0.0, -std::cos(angle));
   d.contacts[0].friction = friction;
   d.contacts[0].friction_regularisation_m_s = 1e-3;
+  d.contacts[0].friction_anchors = false;  // the regularised law itself, as the faults are of it
   d.tool->position_m.x() = -0.06;
   return d;
 }

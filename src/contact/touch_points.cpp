@@ -19,6 +19,13 @@ namespace palpate::contact {
 // mean normal.  Else places, velocities and modes are means by area: what is lost is of second order in the
 // bunch's size over the contact's, and bunches are split where that is largest.  Samples that press are not
 // bunched with such that do not.
+//
+// Of what sticks a point has friction's spring (friction_anchors.cpp) with the deflection
+//     u = sum c_j u_j / c,    c_j its stiffness, mu times the pressure times a_j over tau v_r,
+// c that of the point, so that it has the samples' friction across n, at rest.  Its moment, and what it does
+// to the modes, are those of the point's arm and modes: what is lacking of the samples' is handed on as
+// constants.  (Without, a block that two tools held between them crept by 4 um/s: each exchange moved the
+// tools to where the points were in balance, by 1e-3 of the friction.)
 namespace {
 
 using Six = Eigen::Matrix<double, 6, 1>;
@@ -107,11 +114,17 @@ class Bunches {
 
 void write(const Vec3& from, std::array<double, 3>& to) { to = {from.x(), from.y(), from.z()}; }
 
-TouchModel::Point point_of(const std::vector<TouchSample>& samples, const ModesOfSamples& modes,
-                           const Mat3& R, const Vec3& origin, const Bunches& bunches, const Bunch& bunch) {
+struct PointOfBunch {
+  TouchModel::Point point;
+  double friction_stiffness = 0.0;  ///< of its spring of friction [N/m]
+};
+
+PointOfBunch point_of(const std::vector<TouchSample>& samples, const ModesOfSamples& modes, const Mat3& R,
+                      const Vec3& origin, const Bunches& bunches, const Bunch& bunch) {
   const bool presses = samples[static_cast<std::size_t>(bunches.member(bunch.first))].gap < 0.0;
-  Vec3 along = Vec3::Zero(), moment = along, offset = along, slide = along, place = along, velocity = along;
-  double area = 0.0, gap = 0.0;
+  Vec3 along = Vec3::Zero(), moment = along, offset = along, slide = along, place = along, velocity = along,
+       friction = along;
+  double area = 0.0, gap = 0.0, friction_stiffness = 0.0, pressed = 0.0;
   // samples of a bunch share nodes: weights are summed before modes are
   struct OfNode {
     int node;
@@ -130,6 +143,9 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const ModesO
     slide += s.area * s.slide;
     place += s.area * s.place;
     velocity += s.area * s.velocity;
+    friction += s.friction_stiffness * s.deflection;
+    friction_stiffness += s.friction_stiffness;
+    pressed += push.norm();
     for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
       auto of_node = std::find_if(of_nodes.begin(), of_nodes.end(),
                                   [&](const OfNode& one) { return one.node == s.node[k]; });
@@ -166,8 +182,12 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const ModesO
   write(slide, out.slide);
   write(place, out.place);
   write(velocity / area, out.velocity);
+  if (presses && friction_stiffness > 0.0) {
+    friction_stiffness *= size / pressed;
+    write(friction / friction_stiffness, out.deflection);
+  }
   Eigen::Map<Eigen::Matrix<double, 3, TouchModel::kMostModes>>(out.modes.data()) = moved.transpose();
-  return out;
+  return {out, friction_stiffness};
 }
 
 // Arms that change by d_i = F_i x l change the moment by sum (F_i x l) x F_i = sum (|F_i|^2 - F_i F_i^T) l.
@@ -200,6 +220,35 @@ void complete_moment(const std::vector<TouchSample>& samples, const std::vector<
   const Vec3 l = eigen.eigenvectors() * part;
   for (TouchModel::Point& p : points) write(vec(p.offset) + R.transpose() * force(p).cross(l), p.offset);
 }
+
+/// Friction's springs at rest, of samples less those of points: on the tool, and on the modes.
+struct MissingFriction {
+  const Mat3& R;
+  Vec6 wrench = Vec6::Zero();
+  Eigen::Matrix<double, TouchModel::kMostModes, 1> load = decltype(load)::Zero();
+
+  void add(const TouchSample& s, const ModesOfSamples& modes) {
+    const Vec3 force = -s.friction_stiffness * s.deflection;
+    if (force.isZero(0.0)) return;
+    add_wrench(R * s.offset + s.slide, force);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k)
+      load -= modes.middleCols<3>(3 * s.node[k]) * (s.weight[k] * force);
+  }
+  void take_away(const PointOfBunch& of) {
+    const Vec3 n = vec(of.point.normal), u = vec(of.point.deflection);
+    const Vec3 force = of.friction_stiffness * (u - n.dot(u) * n);
+    add_wrench(R * vec(of.point.offset) + vec(of.point.slide), force);
+    load -= Eigen::Map<const Eigen::Matrix<double, 3, TouchModel::kMostModes>>(of.point.modes.data())
+                .transpose() *
+            force;
+  }
+
+ private:
+  void add_wrench(const Vec3& arm, const Vec3& force) {
+    wrench.head<3>() += arm.cross(force);
+    wrench.tail<3>() += force;
+  }
+};
 
 /// Held ones as one: the same stiffness between the means of where they are and where they are held.
 TouchModel::Point held_point_of(const std::vector<TouchSample>& samples, const ModesOfSamples& modes,
@@ -243,6 +292,9 @@ struct Kind {
 void gather_points(const std::vector<TouchSample>& samples, const Pose& pose, const ModesOfSamples& modes,
                    TouchModel& out) {
   out.points = 0;
+  const Quat& q = pose.rotation;
+  const Vec3& x = pose.translation;
+  out.tool = {q.w(), q.x(), q.y(), q.z(), x.x(), x.y(), x.z()};
   std::vector<Kind> kinds;
   for (const TouchSample& s : samples)
     if (std::find(kinds.begin(), kinds.end(), Kind(s)) == kinds.end()) kinds.emplace_back(s);
@@ -256,24 +308,31 @@ void gather_points(const std::vector<TouchSample>& samples, const Pose& pose, co
   const Mat3 R = pose.rotation.toRotationMatrix();
   int room = TouchModel::kMostPoints, shares = 0;
   for (const Kind& kind : kinds) shares += kind.share();
+  MissingFriction friction{R};
   for (std::size_t k = 0; k < orders.size() && room > 0; ++k) {
     const int own = std::max(1, room * kinds[k].share() / shares);
     shares -= kinds[k].share();
     const int first = out.points;
+    std::vector<double> friction_stiffness;
     Bunches bunches(samples, pose.translation, orders[k]);
     bunches.split_to(std::min(own, room));
     for (const Bunch& bunch : bunches.all()) {
-      TouchModel::Point point = kinds[k].held ? held_point_of(samples, modes, bunches, bunch)
-                                              : point_of(samples, modes, R, pose.translation, bunches, bunch);
-      if (room == 0 || !(point.area > 0.0)) continue;
-      out.point[static_cast<std::size_t>(out.points++)] = point;
+      const PointOfBunch of = kinds[k].held ? PointOfBunch{held_point_of(samples, modes, bunches, bunch)}
+                                            : point_of(samples, modes, R, pose.translation, bunches, bunch);
+      if (room == 0 || !(of.point.area > 0.0)) continue;
+      out.point[static_cast<std::size_t>(out.points++)] = of.point;
+      friction_stiffness.push_back(of.friction_stiffness);
       --room;
     }
-    if (!kinds[k].apart && !kinds[k].held)
-      complete_moment(samples, orders[k], R, pose.translation,
-                      std::span(out.point).subspan(static_cast<std::size_t>(first),
-                                                   static_cast<std::size_t>(out.points - first)));
+    if (kinds[k].apart || kinds[k].held) continue;
+    const auto points =
+        std::span(out.point).subspan(static_cast<std::size_t>(first), friction_stiffness.size());
+    complete_moment(samples, orders[k], R, pose.translation, points);
+    for (const int j : orders[k]) friction.add(samples[static_cast<std::size_t>(j)], modes);
+    for (std::size_t i = 0; i < points.size(); ++i) friction.take_away({points[i], friction_stiffness[i]});
   }
+  Eigen::Map<Vec6>(out.wrench.data()) = friction.wrench;
+  Eigen::Map<decltype(friction.load)>(out.force.data()) += friction.load;
 }
 
 }  // namespace palpate::contact

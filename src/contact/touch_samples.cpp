@@ -42,7 +42,12 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
                    .gap = motion.gap,
                    .pair = s.source,
                    .stiffness = s.area * slope,
-                   .force = presses ? Vec3(sign * at.force) : Vec3(Vec3::Zero())});
+                   .force = presses ? Vec3(sign * at.force) : Vec3(Vec3::Zero()),
+                   .deflection = sign * law.retardation * s.deflection_rate,
+                   .friction_stiffness = presses && law.retardation > 0.0
+                                             ? law.friction * s.area * pressure(law, motion.gap, 0.0).p /
+                                                   (law.retardation * law.regularisation)
+                                             : 0.0});
     if (tangents) tangents->push_back({at.K, at.D});
   };
   for (const Impl::Pair& pair : m.pairs) {

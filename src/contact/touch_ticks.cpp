@@ -26,6 +26,11 @@ namespace palpate::contact {
 // A point that is held (grasp.cpp) has K, D and F with P in place of its maps to a sample, and besides turns
 // with the tool: of the tool's moment r x F, r changes with the bodies, by h P dz, and F turns.
 //
+// What sticks has a spring beside friction's damper (friction_anchors.cpp).  Its deflection is that of the
+// model's time and the way that the tool's material point has gone against the bodies' since then, at the
+// tick's start, and is held within the tick: as in a step of one linear solve it is multiplied by no less
+// than 1 - h/tau, so that in a tick longer than tau that length stands for tau.
+//
 // A is symmetric and positive definite at any h: K_i and D_i are taken without how friction follows pressure,
 // and with friction as affine about a guess of the tick's end (friction.cpp).  Who integrates the tool finds
 // the end that the record leads to, and has the guess improved, until friction is the law's there.
@@ -65,8 +70,10 @@ struct TouchTicks::Impl {
   std::array<TickPoint, TouchModel::kMostPoints> tick_point;
   int solves = 0;
   Modes q = Modes::Zero(), z = Modes::Zero();
+  Pose of_model;  ///< the tool at the model's time
   // of the tick under way
   double h = 0.0, t1 = 0.0;
+  Pose start;                ///< of the tool
   dynamics::RigidMotion at;  ///< x_p, v
   Modes dz = Modes::Zero();
   ModesBySix dz_dx = ModesBySix::Zero(), dz_dv = ModesBySix::Zero();
@@ -101,6 +108,8 @@ VecX TouchTicks::rates() const { return impl_->z; }
 void TouchTicks::adopt(const TouchModel& model) {
   Impl& m = *impl_;
   m.model = model;
+  const auto& p = model.tool;
+  m.of_model = {Quat(p[0], p[1], p[2], p[3]), Vec3(p[4], p[5], p[6])};
   m.q.setZero();
   m.z.setZero();
   m.dz_dx.setZero();
@@ -130,9 +139,11 @@ struct Sums {
   using ModesByThree = Eigen::Matrix<double, N, 3>;
 
   const dynamics::RigidMotion& tool;  ///< x_p, v
+  const Pose &start, &of_model;       ///< of the tool, at the tick's start and at the model's time
   double tau, h;
   Modes q, z;
-  Mat3 R = tool.pose.rotation.toRotationMatrix();
+  Mat3 R = tool.pose.rotation.toRotationMatrix(), R_start = start.rotation.toRotationMatrix(),
+       R_model = of_model.rotation.toRotationMatrix();
 
   ModesByModes A = ModesByModes::Zero();
   Modes r = Modes::Zero();
@@ -152,6 +163,15 @@ struct Sums {
   }
   Vec3 velocity(const TouchModel::Point& point, const ModesByThree& P_t) const {
     return vec(point.velocity) + P_t.transpose() * z;
+  }
+  /// Deflection of friction's spring at the tick's start.
+  Vec3 deflection(const TouchModel::Point& point, const Vec3& place_then, const PressureLaw& law) const {
+    const Vec3 arm = R_model * vec(point.offset) + vec(point.slide), n = vec(point.normal);
+    const Vec3 way = start.translation + R_start * (R_model.transpose() * arm) - place_then -
+                     (of_model.translation + arm - vec(point.place));
+    const Vec3 u = vec(point.deflection) + way, across = u - n.dot(u) * n;
+    const double longest = law.retardation * law.regularisation, length = across.norm();
+    return length > longest ? Vec3(longest / length * across) : across;
   }
   /// What is common to both kinds.
   /// @param Kx, Dv  -dF by the tool's pose and twist
@@ -188,9 +208,12 @@ void Sums<N>::add_touching(const TouchModel::Point& point, const ModesByThree& P
   out.touches = motion.gap < 0.0;
   if (!out.touches) return;
   motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
+  if (law.friction > 0.0 && law.retardation > 0.0)
+    sample.deflection_rate =
+        deflection(point, motion.b.x - h * motion.b.v, law) / std::max(law.retardation, h);
   if (law.friction > 0.0 && guess.v_r == 0.0) {
-    const SampleEnd start = sample_end(sample, motion, law, {});
-    guess = first_guess(start.limit, start.v, law.regularisation);
+    const SampleEnd now = sample_end(sample, motion, law, {});
+    guess = first_guess(now.limit, now.v, law.regularisation);
   }
   const SampleForce s =
       law.friction > 0.0 ? sample_force_and_tangent(sample, motion, law, friction_line(guess, sample.normal))
@@ -234,7 +257,8 @@ void TouchTicks::Impl::linearise(dynamics::LinearisedContact& out) {
   const auto damping = Eigen::Map<const ModesByModes>(model.damping.data()).topLeftCorner<N, N>();
   const Eigen::Map<const OfModes> stiffness(model.stiffness.data()), force(model.force.data()),
       rate(model.force_rate.data());
-  Sums<N> sums{.tool = at, .tau = tau, .h = h, .q = q_p, .z = z_p};
+  Sums<N> sums{.tool = at, .start = start, .of_model = of_model, .tau = tau, .h = h, .q = q_p, .z = z_p};
+  sums.wrench = Eigen::Map<const Vec6>(model.wrench.data());
   sums.A = h * damping;
   sums.A.diagonal() += OfModes::Ones() + h * h * stiffness;
   sums.r = force + tau * rate - damping * z_p - stiffness.cwiseProduct(q_p);
@@ -298,6 +322,7 @@ dynamics::LinearisedContact TouchTicks::linearise(double t1, double h, const dyn
   m.h = h;
   m.solves = 0;
   std::fill_n(m.guess.begin(), m.model.points, FrictionGuess());
+  m.start = tool.pose;
   m.at.twist = tool.twist;
   m.at.pose.rotation = (quaternion_of(h * tool.twist.angular) * tool.pose.rotation).normalized();
   m.at.pose.translation = tool.pose.translation + h * tool.twist.linear;

@@ -236,6 +236,7 @@ void add_contact(World& world, ContactSpec& given) {
   scene::order_sides(world.description, given);
   if (given.method == "auto") given.method = scene::contact_method(world.description, given);
   set_friction_speed(world, given);
+  given.friction_retardation_s = friction_retardation(world.description, given);
   ContactSpec spec = given;
   // In a step of one linear solve the secant is needed, though what is left out of a tool's rows besides
   // buys no symmetric matrix: else friction that slides turns nodes round in each step and holds nothing.
@@ -243,11 +244,6 @@ void add_contact(World& world, ContactSpec& given) {
     spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
   // of tools with ticks of their own no step matrix has a part; their ticks are one solve each
   if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
-  // Friction that sticks has springs that a query moves.  A tool's ticks know of none, nor does what they are
-  // compared with.
-  const bool of_tool = ToolSide::named(world, spec.first) || ToolSide::named(world, spec.second);
-  if (spec.friction_anchors && !of_tool)
-    spec.friction_retardation_s = world.description.exchange.contact_refresh_s;
   world.contact->add_pair(source_of(world, spec), spec);
   ToolSide* const side = ToolSide::named(world, spec.second);
   if (side && world.find_body(spec.first)) make_touch(world, *side);

@@ -26,6 +26,9 @@ void assemble_attachments(World& world);             ///< after all that nodes m
 double tool_friction_speed(const World& world, const ToolSpec& tool);
 /// Sets that of a contact, where the scene names none.
 void set_friction_speed(World& world, ContactSpec& contact);
+/// Returns the retardation time of the springs that hold what sticks (contact/friction_anchors.cpp); 0: there
+/// are none [s].
+double friction_retardation(const scene::Description& description, const ContactSpec& contact);
 void assemble_contact(World& world);  ///< only with [[contact]], or where a tool of ticks carries nodes
 
 }  // namespace palpate::loop

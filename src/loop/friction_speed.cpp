@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "assemble_parts.h"
+#include "palpate/scene/contact_sides.h"
 #include "tool_side.h"
 
 namespace palpate::loop {
@@ -43,6 +44,16 @@ void set_friction_speed(World& world, ContactSpec& contact) {
       length = std::min(length, length_of(body->rest.nodes));
   }
   contact.friction_regularisation_m_s = friction_speed(world, length);
+}
+
+// Springs are of material points, which move with the bodies between two queries.
+double friction_retardation(const scene::Description& d, const ContactSpec& contact) {
+  const auto is_body = [&](const std::string& name) {
+    return std::any_of(d.bodies.begin(), d.bodies.end(), [&](const auto& body) { return body.name == name; });
+  };
+  const bool sticks = contact.friction_anchors && scene::contact_method(d, contact) == "distance" &&
+                      (is_body(contact.first) || is_body(contact.second));
+  return sticks ? d.exchange.contact_refresh_s : 0.0;
 }
 
 }  // namespace palpate::loop

@@ -90,6 +90,8 @@ void visit_model(F&& f, Row& r) {
   f("points", model.points);
   f("modes", model.modes);
   f("samples", model.samples);
+  visit_all(f, "tool", model.tool);
+  visit_all(f, "wrench", model.wrench);
   visit_all(f, "stiffness", model.stiffness);
   visit_all(f, "damping", model.damping);
   visit_all(f, "force", model.force);
@@ -109,6 +111,7 @@ void visit_point(F&& f, Row& r) {
   visit_all(f, "normal", point.normal);
   visit_all(f, "place_m", point.place);
   visit_all(f, "velocity_m_s", point.velocity);
+  visit_all(f, "deflection_m", point.deflection);
   visit_all(f, "mode", point.modes);
 }
 

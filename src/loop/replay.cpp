@@ -151,18 +151,20 @@ namespace {
 
 /// A hand that goes its recorded way once more.
 struct Retraced {
-  Retraced(const World& world, const HapticRecord& of, ToolSide& side,
-           const std::vector<ContactSpec>& contacts)
+  Retraced(const scene::Description& recorded, const World& world, const HapticRecord& of, ToolSide& side)
       : record(of),
-        laws(laws_of(world, contacts, *side.spec)),
+        laws(laws_of(recorded, world, *side.spec)),
         ticks(*side.spec, side, of.models.empty() ? nullptr : &laws) {
     side.passivity = device::make_passivity_controller(of.passivity, *side.device_spec, side.spec->tick_s);
   }
-  static std::vector<ContactSpec> laws_of(const World& world, std::vector<ContactSpec> laws,
+  static std::vector<ContactSpec> laws_of(const scene::Description& recorded, const World& world,
                                           const ToolSpec& tool) {
-    for (ContactSpec& law : laws)
+    std::vector<ContactSpec> laws = recorded.contacts;
+    for (ContactSpec& law : laws) {
+      law.friction_retardation_s = friction_retardation(recorded, law);
       if (law.friction > 0.0 && law.friction_regularisation_m_s == 0.0)
         law.friction_regularisation_m_s = tool_friction_speed(world, tool);
+    }
     return laws;
   }
   /// The record in force at a tick.
@@ -199,7 +201,7 @@ std::vector<TickRecord> retrace(const scene::Description& description,
   const auto world = assemble(alone, std::move(devices));
   std::deque<Retraced> retraced;
   for (std::size_t i = 0; i < hands.size(); ++i) {
-    retraced.emplace_back(*world, records[hands[i]], ToolSide::of(*world, i), description.contacts);
+    retraced.emplace_back(description, *world, records[hands[i]], ToolSide::of(*world, i));
     retraced.back().ticks.start(0.0);
   }
   std::vector<TickGroup> group = TickGroup::all(retraced);

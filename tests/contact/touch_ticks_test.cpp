@@ -340,8 +340,9 @@ TEST(TouchTicks, ToolAndBodiesKeepTheirMomentum) {
 }
 
 // 500 samples of a dent, their depths and normals all different, in no more points than there is room for:
-// tool and bodies get their loads to rounding, so that what is at rest stays so.
-TEST(TouchPoints, ABunchPressesWithTheForceMomentAndModalLoadOfItsSamples) {
+// tool and bodies get their loads to rounding, so that what is at rest stays so; with what sticks, too.
+void expect_loads_kept(double friction) {
+  constexpr double kRetardation = 5e-3, kSpeed = 2e-4;
   std::mt19937 random(9);
   std::uniform_real_distribution<double> in(-1.0, 1.0);
   const Pose pose{quaternion_of(Vec3(0.3, 0.2, -0.4)), Vec3(0.1, 0.2, 0.3)};
@@ -369,9 +370,14 @@ TEST(TouchPoints, ABunchPressesWithTheForceMomentAndModalLoadOfItsSamples) {
     s.area = area;
     s.gap = gap;
     s.force = Vec3::Zero();
+    if (gap < 0.0 && friction > 0.0) {
+      const Vec3 u = Vec3(in(random), 0.5 + in(random), in(random));
+      s.deflection = 0.5 * kRetardation * kSpeed * (u - normal.dot(u) * normal);
+      s.friction_stiffness = -friction * 1e6 * area * gap / (kRetardation * kSpeed);
+    }
     samples.push_back(s);
     if (gap >= 0.0) continue;
-    const Vec3 f = -1e6 * area * gap * normal;
+    const Vec3 f = -1e6 * area * gap * normal - s.friction_stiffness * s.deflection;
     force += f;
     moment += arm.cross(f);
     stiffness += 1e6 * area * normal * normal.transpose();
@@ -385,13 +391,19 @@ TEST(TouchPoints, ABunchPressesWithTheForceMomentAndModalLoadOfItsSamples) {
     const auto vec = [](const std::array<double, 3>& a) { return Vec3(a[0], a[1], a[2]); };
     const Vec3 n = vec(p.normal);
     const double gap = n.dot(pose.translation + R * vec(p.offset) + vec(p.slide) - vec(p.place));
+    const Vec3 u = vec(p.deflection);
     if (gap < 0.0)
       load += Eigen::Map<const Eigen::Matrix<double, 3, kModes>>(p.modes.data()).transpose() *
-              (1e6 * p.area * gap * n);
+              (1e6 * p.area * gap * (n - friction / (kRetardation * kSpeed) * (u - n.dot(u) * n)));
     p.modes.fill(0.0);  // bodies that hold still, from here on
   }
+  load += Eigen::Map<const Eigen::Matrix<double, kModes, 1>>(model.force.data());
   EXPECT_LE(load.norm(), 1e-11 * force.norm());
-  contact::TouchTicks ticks({law()});
+  ContactSpec spec = law();
+  spec.friction = friction;
+  spec.friction_regularisation_m_s = kSpeed;
+  spec.friction_retardation_s = kRetardation;
+  contact::TouchTicks ticks({spec});
   ticks.adopt(model);
   const auto record = ticks.linearise(1e-3, 1e-3, {pose, {}});
   EXPECT_GT(ticks.pressing(), TouchModel::kMostPoints / 2);
@@ -399,9 +411,63 @@ TEST(TouchPoints, ABunchPressesWithTheForceMomentAndModalLoadOfItsSamples) {
   const Eigen::Map<const Vec6> F(record.F0.data());
   EXPECT_LE((F.tail<3>() - force).norm(), 1e-12 * force.norm());
   EXPECT_LE((F.head<3>() - moment).norm(), 1e-12 * 0.02 * force.norm());
+  if (friction > 0.0) {
+    EXPECT_GT(F.segment<2>(3).norm(), 0.1 * friction * force.norm());
+    return;
+  }
   using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
   const Mat3 J = Eigen::Map<const RowMajor6>(record.J.data()).bottomRightCorner<3, 3>();
   EXPECT_LE((J + stiffness).norm(), 0.02 * stiffness.norm());
+}
+
+TEST(TouchPoints, ABunchPressesWithTheForceMomentAndModalLoadOfItsSamples) {
+  expect_loads_kept(0.0);
+  expect_loads_kept(0.4);
+}
+
+// The spring of friction of what sticks: as the tool moves and turns across the points its force grows with
+// the way of the tool's material, and is never longer than the law's.
+TEST(TouchTicks, WhatSticksHasASpring) {
+  constexpr double kRetardation = 5e-3, kSpeed = 2e-4, kFriction = 0.4, kArea = 1e-6, kGap = -1e-3;
+  ContactSpec spec = law();
+  spec.friction = kFriction;
+  spec.friction_regularisation_m_s = kSpeed;
+  spec.friction_retardation_s = kRetardation;
+  const Pose pose{quaternion_of(Vec3(0.3, 0.2, -0.4)), Vec3(0.1, 0.2, 0.3)};
+  const Vec3 arm(0.01, 0.0, -0.02), centre(0.01, 0.0, 0.0), normal = Vec3::UnitZ();
+  for (const bool round : {false, true}) {  // a ball's point slides round with its centre
+    contact::TouchSample s{};
+    const Mat3 back = pose.rotation.toRotationMatrix().transpose();
+    s.offset = back * (round ? centre : arm);
+    s.slide = round ? Vec3(arm - centre) : Vec3(Vec3::Zero());
+    s.normal = normal;
+    s.place = pose.translation + arm - kGap * normal;
+    s.count = 1;
+    s.area = kArea;
+    s.gap = kGap;
+    s.velocity = s.force = Vec3::Zero();
+    s.deflection = Vec3(2e-7, 0.0, 0.0);
+    const double L = -kFriction * 1e6 * kArea * kGap, stiffness = L / (kRetardation * kSpeed);
+    s.friction_stiffness = stiffness;
+    TouchModel model;
+    contact::gather_points({s}, pose, Eigen::Matrix<double, kModes, Eigen::Dynamic>::Zero(kModes, 3), model);
+    contact::TouchTicks ticks({spec});
+    ticks.adopt(model);
+    const auto friction = [&](const Vec3& moved, const Vec3& turned) {
+      const Pose now{quaternion_of(turned) * pose.rotation, pose.translation + moved};
+      const auto record = ticks.linearise(1e-3, 1e-3, {now, {}});
+      return Vec3(Eigen::Map<const Vec6>(record.F0.data()).tail<3>());
+    };
+    const auto expect = [&](const Vec3& seen, const Vec3& deflection, const char* what) {
+      EXPECT_LT((seen.head<2>() + stiffness * deflection.head<2>()).norm(), 1e-5 * L) << what << round;
+    };
+    expect(friction(Vec3::Zero(), Vec3::Zero()), s.deflection, "at rest ");
+    const Vec3 way(1e-7, -3e-7, 0.0), turn(1e-6, 2e-6, 3e-6);
+    expect(friction(way, Vec3::Zero()), s.deflection + way, "moved ");
+    expect(friction(way, turn), s.deflection + way + turn.cross(arm), "moved and turned ");
+    const Vec3 far(0.0, 1e-4, 0.0);
+    EXPECT_NEAR(friction(far, Vec3::Zero()).head<2>().norm(), L, 1e-9 * L) << "Coulomb's, at most";
+  }
 }
 
 // What is held is bunched as well: the same force, and nearly the same stiffness against turning.

@@ -52,7 +52,7 @@ class Tool {
   StepEquation step_equation(double h, const HandleMotion& handle,
                              const dynamics::LinearisedContact& contact) const;
   /// Returns where that tick leads.
-  /// @param change  solution of the equation
+  /// @param h  its length [s]  @param change  solution of the equation
   dynamics::RigidMotion after(double h, const Vec6& change) const;
 
   /// Wrench that the coupling exerts on the tool about its origin, for a handle pose (before any limit).

@@ -29,20 +29,26 @@ struct TouchModel {
     std::array<double, 3> normal{};           ///< unit, world: pushes the tool; of a held one in its axes
     std::array<double, 3> place{};            ///< on the bodies, at `time` [m]
     std::array<double, 3> velocity{};         ///< v there [m/s]
-    double area = 0.0;                        ///< [m^2]; of springs at points, their number
-    int pair = 0;                             ///< whose law holds: index of the scene's [[contact]]
+    /// of friction's spring, the tool's point from the bodies' (src/contact/friction_anchors.cpp) [m]
+    std::array<double, 3> deflection{};
+    double area = 0.0;  ///< [m^2]; of springs at points, their number
+    int pair = 0;       ///< whose law holds: index of the scene's [[contact]]
     /// of one that the tool holds (ContactForce::set_grasp); else 0 [N/m, N s/m]
     double held_stiffness = 0.0, held_damping = 0.0;
     /// 3 x kMostModes by columns: its displacement by q [kg^-1/2]
     std::array<double, 3 * kMostModes> modes{};
   };
-  double time = 0.0;  ///< [s]
+  double time = 0.0;                                ///< [s]
+  std::array<double, 7> tool{1, 0, 0, 0, 0, 0, 0};  ///< its pose then: qw qx qy qz px py pz
   int points = 0, modes = 0;
   int samples = 0;                                        ///< that pressed at `time`
   std::array<double, kMostModes> stiffness{};             ///< >= 0 [1/s^2]
   std::array<double, kMostModes * kMostModes> damping{};  ///< D, symmetric, >= 0 [1/s]
-  std::array<double, kMostModes> force{};                 ///< without the tool's contact [N kg^-1/2]
-  std::array<double, kMostModes> force_rate{};            ///< [N kg^-1/2 s^-1]
+  /// without the tool's contact, but for what points lack of the friction of samples that stick
+  /// [N kg^-1/2]
+  std::array<double, kMostModes> force{};
+  std::array<double, 6> wrench{};  ///< on the tool, what they lack of that: moment, force [N m, N]
+  std::array<double, kMostModes> force_rate{};  ///< [N kg^-1/2 s^-1]
   std::array<Point, kMostPoints> point{};
 };
 static_assert(std::is_trivially_copyable_v<TouchModel>);
@@ -60,6 +66,9 @@ struct TouchSample {
   /// area times dp/ddepth [N/m]: of one that presses, or would
   double stiffness;
   Vec3 force;  ///< on the frame [N]
+  /// of friction's spring, the frame's point from the body's, and its stiffness [m, N/m]
+  Vec3 deflection = Vec3::Zero();
+  double friction_stiffness = 0.0;
   /// of one that the frame holds (ContactForce::set_grasp): `offset` is where it is held, `gap` that along
   /// `normal`, which turns with the frame
   bool held = false;
@@ -77,7 +86,9 @@ struct TouchTangent {
 /// @param pose   of the tool
 /// @param modes  kMostModes x (directions of nodes): what moves each direction, zeros behind the model's
 /// modes
-/// @param out    points alone are written
+/// Points do not have all of the friction of what sticks, where samples are bunched: what they lack at rest
+/// stands in `wrench` and is added to `force`.
+/// @param out    points, `tool` and `wrench` are written
 void gather_points(const std::vector<TouchSample>& samples, const Pose& pose,
                    const Eigen::Matrix<double, TouchModel::kMostModes, Eigen::Dynamic>& modes,
                    TouchModel& out);
