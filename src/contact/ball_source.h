@@ -40,13 +40,23 @@ inline double patch_radius2(double R, double r, double depth) {
   return R * R - from_ball * from_ball;
 }
 
-/// Whether what went straight from a to b, in the frame of a shape, went through it and came out on another
-/// side, where the shape's normal points the other way.  What cuts a rim comes out on the side that contact
-/// would have pushed it to.
+/// Whether what went straight from a to b, in the frame of a convex shape, went through it: outside at both,
+/// and in between deeper than an eighth of its thickness.  What was less deep grazed an edge or a rim.
 /// @pre the shape is at `pose`
 template <class Shape>
 bool goes_through(const Shape& shape, const Pose& pose, const Vec3& a, const Vec3& b) {
-  return shape.is_crossed(a, b) && shape.at(pose * a).normal.dot(shape.at(pose * b).normal) < 0.0;
+  if (!shape.is_crossed(a, b)) return false;
+  // the signed distance from a convex set is convex along a line
+  const auto gap = [&](double s) { return shape.at(pose * (a + s * (b - a))).gap; };
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const double p = low + (high - low) / 3.0, q = high - (high - low) / 3.0;
+    if (gap(p) < gap(q))
+      high = q;
+    else
+      low = p;
+  }
+  return -gap(0.5 * (low + high)) > shape.lengths().width / 8.0;
 }
 
 /// A ball against an exact shape (analytic_source.h says what a Shape has).

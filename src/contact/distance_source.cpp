@@ -8,9 +8,7 @@
 // in tetrahedra a point hangs on one tetrahedron (surface_state.cpp).
 //
 // A shape's own points (ShapePoints) are the only ones of their source, and those of a ball have no moment
-// about its centre: see on_ball().
-//
-// Samples follow the state: the query only says which points can be near.
+// about its centre: see on_ball().  Samples follow the state: the query only says which points can be near.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -165,11 +163,12 @@ class DistanceSource final : public SampleSource {
       return std::span(skin.fan.begin() + skin.fan_begin[at], skin.fan.begin() + skin.fan_begin[at + 1]);
     };
     const auto faces = around(a_->faces()(0, face));
-    const int found = *std::find_if(faces.begin(), faces.end(), [&](int f) {
+    const auto found = std::find_if(faces.begin(), faces.end(), [&](int f) {
       return skin.given_face[static_cast<std::size_t>(f)] == face;
     });
-    return contact_.may_touch(around(vertex).front() / distance::kClusterFaces,
-                              found / distance::kClusterFaces);
+    PALPATE_CHECK(found != faces.end(), "face {} is none of its own vertex's", face);
+    const auto cluster = [](int f) { return f / distance::kClusterFaces; };
+    return contact_.may_touch(cluster(around(vertex).front()), cluster(*found));
   }
   void update(const dynamics::StateView& state) {
     a_->update(state);

@@ -34,10 +34,6 @@ SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const 
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kPartOfThickness = 0.25;  // what is shorter is an edge that was grazed
 
 }  // namespace

@@ -22,10 +22,10 @@ namespace palpate::contact {
 //
 // Of what sticks a point has friction's spring (friction_anchors.cpp) with the deflection
 //     u = sum c_j u_j / c,    c_j its stiffness, mu times the pressure times a_j over tau v_r,
-// c that of the point, so that it has the samples' friction across n, at rest.  Its moment, and what it does
-// to the modes, are those of the point's arm and modes: what is lacking of the samples' is handed on as
-// constants.  (Without, a block that two tools held between them crept by 4 um/s: each exchange moved the
-// tools to where the points were in balance, by 1e-3 of the friction.)
+// c that of the point, so that it has the samples' friction across n, at rest, by the law's linear part.  Its
+// moment, and what it does to the modes, are those of the point's arm and modes: what is lacking of the
+// samples' is handed on as constants.  (Without, a block that two tools held between them crept by 4 um/s:
+// each exchange moved the tools to where the points were in balance, by 1e-3 of the friction.)
 namespace {
 
 using Six = Eigen::Matrix<double, 6, 1>;
@@ -331,8 +331,8 @@ void gather_points(const std::vector<TouchSample>& samples, const Pose& pose, co
     for (const int j : orders[k]) friction.add(samples[static_cast<std::size_t>(j)], modes);
     for (std::size_t i = 0; i < points.size(); ++i) friction.take_away({points[i], friction_stiffness[i]});
   }
-  Eigen::Map<Vec6>(out.wrench.data()) = friction.wrench;
-  Eigen::Map<decltype(friction.load)>(out.force.data()) += friction.load;
+  Eigen::Map<Vec6>(out.missing_wrench.data()) = friction.wrench;
+  Eigen::Map<decltype(friction.load)>(out.missing_load.data()) = friction.load;
 }
 
 }  // namespace palpate::contact

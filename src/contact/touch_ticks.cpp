@@ -70,7 +70,8 @@ struct TouchTicks::Impl {
   std::array<TickPoint, TouchModel::kMostPoints> tick_point;
   int solves = 0;
   Modes q = Modes::Zero(), z = Modes::Zero();
-  Pose of_model;  ///< the tool at the model's time
+  Pose of_model;                  ///< the tool at the model's time
+  double pressed_by_model = 0.0;  ///< sum of area times depth then [m^3]
   // of the tick under way
   double h = 0.0, t1 = 0.0;
   Pose start;                ///< of the tool
@@ -115,8 +116,14 @@ void TouchTicks::adopt(const TouchModel& model) {
   m.dz_dx.setZero();
   m.dz_dv.setZero();
   m.dz.setZero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(model.points); ++i)
+  m.pressed_by_model = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.points); ++i) {
+    const TouchModel::Point& point = model.point[i];
+    const Vec3 arm = m.of_model.rotation * vec(point.offset) + vec(point.slide);
+    const double gap = vec(point.normal).dot(m.of_model.translation + arm - vec(point.place));
+    if (point.held_stiffness == 0.0) m.pressed_by_model += point.area * std::max(0.0, -gap);
     m.modes[i] = Eigen::Map<const Eigen::Matrix<double, 3, kModes>>(model.point[i].modes.data()).transpose();
+  }
 }
 
 void TouchTicks::archive(Archive& a) {
@@ -151,6 +158,7 @@ struct Sums {
   Vec6 wrench = Vec6::Zero();
   Mat6 K = Mat6::Zero(), B = Mat6::Zero();
   int pressing = 0;
+  double pressed = 0.0;  ///< sum of area times depth [m^3]
 
   /// @param P_t  P^T of the point  @param guess  of its friction; made where there is none
   void add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law,
@@ -207,6 +215,7 @@ void Sums<N>::add_touching(const TouchModel::Point& point, const ModesByThree& P
   motion.gap = sample.normal.dot(motion.a.x - motion.b.x);
   out.touches = motion.gap < 0.0;
   if (!out.touches) return;
+  pressed -= sample.area * motion.gap;
   motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
   if (law.friction > 0.0 && law.retardation > 0.0)
     sample.deflection_rate =
@@ -258,7 +267,6 @@ void TouchTicks::Impl::linearise(dynamics::LinearisedContact& out) {
   const Eigen::Map<const OfModes> stiffness(model.stiffness.data()), force(model.force.data()),
       rate(model.force_rate.data());
   Sums<N> sums{.tool = at, .start = start, .of_model = of_model, .tau = tau, .h = h, .q = q_p, .z = z_p};
-  sums.wrench = Eigen::Map<const Vec6>(model.wrench.data());
   sums.A = h * damping;
   sums.A.diagonal() += OfModes::Ones() + h * h * stiffness;
   sums.r = force + tau * rate - damping * z_p - stiffness.cwiseProduct(q_p);
@@ -269,6 +277,11 @@ void TouchTicks::Impl::linearise(dynamics::LinearisedContact& out) {
       sums.add_held(point, P_t);
     else
       sums.add_touching(point, P_t, laws[static_cast<std::size_t>(point.pair)], tick_point[i], guess[i]);
+  }
+  if (pressed_by_model > 0.0) {
+    const double share = std::min(1.0, sums.pressed / pressed_by_model);
+    sums.wrench += share * Eigen::Map<const Vec6>(model.missing_wrench.data());
+    sums.r += share * Eigen::Map<const OfModes>(model.missing_load.data());
   }
   ++solves;
   pressing = sums.pressing;

@@ -3,6 +3,7 @@
 
 #include "assemble_parts.h"
 #include "palpate/scene/contact_sides.h"
+#include "palpate/scene/hands.h"
 #include "tool_side.h"
 
 namespace palpate::loop {
@@ -46,14 +47,21 @@ void set_friction_speed(World& world, ContactSpec& contact) {
   contact.friction_regularisation_m_s = friction_speed(world, length);
 }
 
-// Springs are of material points, which move with the bodies between two queries.
+// Springs tie material points of a body.  (Between rigid things there are none: a ball has no material points
+// there, and what its contact takes from tick to tick is found anew.)  They are as slow as the queries that
+// move their anchors, and as the ticks that hold their deflection for so long.
 double friction_retardation(const scene::Description& d, const ContactSpec& contact) {
   const auto is_body = [&](const std::string& name) {
     return std::any_of(d.bodies.begin(), d.bodies.end(), [&](const auto& body) { return body.name == name; });
   };
   const bool sticks = contact.friction_anchors && scene::contact_method(d, contact) == "distance" &&
                       (is_body(contact.first) || is_body(contact.second));
-  return sticks ? d.exchange.contact_refresh_s : 0.0;
+  if (!sticks) return 0.0;
+  double slowest = d.exchange.contact_refresh_s;
+  if (d.exchange.scheme == "partitioned")
+    for (const std::string& name : {contact.first, contact.second})
+      if (const ToolSpec* tool = scene::tool_named(d, name)) slowest = std::max(slowest, tool->tick_s);
+  return slowest;
 }
 
 }  // namespace palpate::loop

@@ -91,7 +91,8 @@ void visit_model(F&& f, Row& r) {
   f("modes", model.modes);
   f("samples", model.samples);
   visit_all(f, "tool", model.tool);
-  visit_all(f, "wrench", model.wrench);
+  visit_all(f, "missing_load", model.missing_load);
+  visit_all(f, "missing_wrench", model.missing_wrench);
   visit_all(f, "stiffness", model.stiffness);
   visit_all(f, "damping", model.damping);
   visit_all(f, "force", model.force);

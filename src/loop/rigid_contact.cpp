@@ -102,7 +102,8 @@ std::unique_ptr<contact::SampleSource> rigid_source(World& world, const std::vec
     in_world.push_back({*side->spec, side->frame_index, motion, look_ahead});
     if (!side->trajectory) continue;
     const int number = side->number_in_rigid;
-    in_ticks.push_back({*side->spec, side->rigid->frame(number), side->rigid->motion(number), look_ahead});
+    in_ticks.push_back(
+        {*side->spec, side->rigid->frame(number), side->rigid->motion(number), side->rigid->look_ahead()});
   }
   if (!in_ticks.empty()) {
     contact::ContactForce& own = sides.front()->rigid->contact();
@@ -157,7 +158,10 @@ void make_rigid_touch(World& world) {
             "{}; make them equal",
             side.name, side.spec->tick_s, leader.name, leader.spec->tick_s);
       });
-    side.rigid = leader.rigid ? leader.rigid : std::make_shared<RigidTouch>(d.exchange.exchange_period_s);
+    side.rigid =
+        leader.rigid
+            ? leader.rigid
+            : std::make_shared<RigidTouch>(std::max(d.exchange.contact_refresh_s, side.spec->tick_s));
     side.number_in_rigid = side.rigid->add(*side.spec);
   }
 }

@@ -24,17 +24,16 @@ class RigidTouch {
   /// ticks at the same times.
   int add(const ToolSpec& tool);
   int size() const { return static_cast<int>(tools_.size()); }
+  double look_ahead() const { return look_ahead_; }
 
   /// What pairs are made with: the contact that takes them, a tool's frame in it and its motion.
   contact::ContactForce& contact() { return contact_; }
   int frame(int tool) const { return tools_[static_cast<std::size_t>(tool)].frame; }
   std::shared_ptr<contact::MovingFrame> motion(int tool) const;
 
-  /// Begins a tick.
-  /// @param t      at its start [s]; queries follow from it and from those before, so that the same ticks
-  /// make
-  ///               the same ones; one that finds more than any before takes memory
-  /// @param tools  then, in their order
+  /// Begins a tick.  Queries follow from its time and from those before, so that the same ticks make the same
+  /// queries; one that finds more than any before takes memory.
+  /// @param t  at its start [s]  @param tools  then, in their order
   void begin_tick(double t, std::span<const dynamics::RigidMotion> tools);
   /// Whether something with friction touches in the tick under way.
   bool rubs() const { return rubs_; }

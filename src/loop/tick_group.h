@@ -26,7 +26,7 @@ class TickGroup {
 
   const std::vector<Member>& members() const { return members_; }
   /// Finds the contact of each in the tick of length h to t, with bodies, obstacles and each other.  Friction
-  /// is that of the tick's end, found by repeated prediction.
+  /// is that of the tick's end, found by repeated solves.
   /// @param record_of  returns the record that is in force for a hand
   template <class RecordOf>
   void find_contact(double t, double h, const RecordOf& record_of) {

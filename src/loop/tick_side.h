@@ -28,7 +28,7 @@ class TickSide {
   /// own or what its points come to then.
   void begin_tick(double t, double h, const ContactRecord& record);
   const dynamics::LinearisedContact& contact_with_bodies() const { return of_bodies_; }
-  /// Whether that has friction of the tick's end (contact/friction.h), found by repeated prediction.
+  /// Whether that has friction of the tick's end (contact/friction.h), found by repeated solves.
   bool rubs() const;
   /// The tool's step in the tick under way, under coupling and that contact.
   tool::StepEquation equation(double h, const dynamics::LinearisedContact& contact) const;

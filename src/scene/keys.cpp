@@ -69,7 +69,7 @@ const KeyTable<ContactSpec>& contact_keys() {
              number("friction_regularisation_m_s", &ContactSpec::friction_regularisation_m_s,
                     Ranges::friction_regularisation_m_s, "sliding speed below which friction is viscous")),
       boolean("friction_anchors", &ContactSpec::friction_anchors,
-              "what sticks is held by springs between material points; false: it creeps"),
+              "what sticks is held by springs between material points (not between rigid things)"),
       text("friction_tangent", &ContactSpec::friction_tangent, {"auto", "full", "secant", "symmetric"},
            "symmetric, secant: without its change by pressure; secant: of a step's end, by repeated solves"),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, Ranges::candidate_gap_m,

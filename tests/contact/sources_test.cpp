@@ -267,7 +267,8 @@ TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
   struct Shape {
     std::unique_ptr<contact::SampleSource> source;
     Vec3 above, inside, below, beside;
-    Vec3 rim, past_rim;  ///< outside both, with a corner of the shape between them
+    Vec3 rim, past_rim;                        ///< outside both, with a corner of the shape between them
+    Vec3 corner = above, past_corner = below;  ///< likewise, with much of it between them
   };
   SurfaceWorld world(one);
   std::vector<Shape> shapes;
@@ -277,7 +278,9 @@ TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
                     {0.3, 0.1, -0.4},
                     {3, 0, -0.5},
                     {0.995, 0, 0.0105},
-                    {1.0005, 0, 0.0095}});
+                    {1.0005, 0, 0.0095},
+                    {0.9, 0, 0.012},
+                    {1.1, 0, -0.004}});
   shapes.push_back({contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), 0.1, 0.01),
                     {0.02, 0, 0.5},
                     {0, 0.02, 0},
@@ -300,8 +303,8 @@ TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
     EXPECT_EQ(counted(*s.source, world, s.above, s.inside), 0) << s.source->name() << ": seen, it is inside";
     EXPECT_EQ(counted(*s.source, world, s.inside, s.below), 0) << s.source->name() << ": it was seen inside";
     EXPECT_EQ(counted(*s.source, world, s.above, s.beside), 0) << s.source->name() << ": it passes by";
-    EXPECT_EQ(counted(*s.source, world, s.rim, s.past_rim), 0)
-        << s.source->name() << ": where it comes out contact would have pushed it to";
+    EXPECT_EQ(counted(*s.source, world, s.rim, s.past_rim), 0) << s.source->name() << ": it grazes a rim";
+    EXPECT_EQ(counted(*s.source, world, s.corner, s.past_corner), 3) << s.source->name() << ", by a corner";
     EXPECT_EQ(counted(*s.source, world, s.above, s.above), 0) << s.source->name() << ": it stands still";
   }
   auto plane = contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.01);

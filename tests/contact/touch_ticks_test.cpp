@@ -397,7 +397,7 @@ void expect_loads_kept(double friction) {
               (1e6 * p.area * gap * (n - friction / (kRetardation * kSpeed) * (u - n.dot(u) * n)));
     p.modes.fill(0.0);  // bodies that hold still, from here on
   }
-  load += Eigen::Map<const Eigen::Matrix<double, kModes, 1>>(model.force.data());
+  load += Eigen::Map<const Eigen::Matrix<double, kModes, 1>>(model.missing_load.data());
   EXPECT_LE(load.norm(), 1e-11 * force.norm());
   ContactSpec spec = law();
   spec.friction = friction;
@@ -413,6 +413,10 @@ void expect_loads_kept(double friction) {
   EXPECT_LE((F.head<3>() - moment).norm(), 1e-12 * 0.02 * force.norm());
   if (friction > 0.0) {
     EXPECT_GT(F.segment<2>(3).norm(), 0.1 * friction * force.norm());
+    const Pose away{pose.rotation, pose.translation + Vec3(0, 0, 0.01)};
+    const auto lifted = ticks.linearise(2e-3, 1e-3, {away, {}});
+    EXPECT_EQ(Eigen::Map<const Vec6>(lifted.F0.data()).norm(), 0.0)
+        << "nothing of it stays on a tool that left";
     return;
   }
   using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;

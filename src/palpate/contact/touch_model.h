@@ -44,11 +44,12 @@ struct TouchModel {
   int samples = 0;                                        ///< that pressed at `time`
   std::array<double, kMostModes> stiffness{};             ///< >= 0 [1/s^2]
   std::array<double, kMostModes * kMostModes> damping{};  ///< D, symmetric, >= 0 [1/s]
-  /// without the tool's contact, but for what points lack of the friction of samples that stick
-  /// [N kg^-1/2]
-  std::array<double, kMostModes> force{};
-  std::array<double, 6> wrench{};  ///< on the tool, what they lack of that: moment, force [N m, N]
-  std::array<double, kMostModes> force_rate{};  ///< [N kg^-1/2 s^-1]
+  std::array<double, kMostModes> force{};                 ///< without the tool's contact [N kg^-1/2]
+  std::array<double, kMostModes> force_rate{};            ///< [N kg^-1/2 s^-1]
+  /// What points lack of the friction of samples that stick, at rest: on the modes, and on the tool (moment,
+  /// force).  It acts in the measure in which the points press as at `time`, at most.
+  std::array<double, kMostModes> missing_load{};  ///< [N kg^-1/2]
+  std::array<double, 6> missing_wrench{};         ///< [N m, N]
   std::array<Point, kMostPoints> point{};
 };
 static_assert(std::is_trivially_copyable_v<TouchModel>);
@@ -86,9 +87,7 @@ struct TouchTangent {
 /// @param pose   of the tool
 /// @param modes  kMostModes x (directions of nodes): what moves each direction, zeros behind the model's
 /// modes
-/// Points do not have all of the friction of what sticks, where samples are bunched: what they lack at rest
-/// stands in `wrench` and is added to `force`.
-/// @param out    points, `tool` and `wrench` are written
+/// @param out    points, what they lack, and `tool` are written
 void gather_points(const std::vector<TouchSample>& samples, const Pose& pose,
                    const Eigen::Matrix<double, TouchModel::kMostModes, Eigen::Dynamic>& modes,
                    TouchModel& out);
