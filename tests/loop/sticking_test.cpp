@@ -163,4 +163,40 @@ TEST(Sticking, WhatToolsHoldIsHeld) {
     EXPECT_GT(sinks(d), 2e-5) << partitioned;
   }
 }
+
+// Ticks of 10 ms over queries 1 ms apart: what holds is as slow as the ticks.  On a stiff block, so that
+// nothing else yields.
+TEST(Sticking, HoldsInTicksLongerThanTheTimeBetweenQueries) {
+  scene::Description d = small_scenes::pressed_block(0.0);
+  d.duration_s = 1.0;
+  d.bodies[0].youngs_modulus_pa = 1e8;
+  d.tool->tick_s = 0.01;
+  d.exchange.contact_refresh_s = 0.001;
+  d.integrator.step_s = 0.001;
+  d.contacts[0].method = "auto";
+  d.contacts[0].stiffness_pa_m = 1e8;
+  d.contacts[0].friction = 0.5;
+  KeyframeSpec key = d.device->keyframes[0];
+  const auto go = [&](double t, double x, double z) {
+    key.time_s = t;
+    key.position_m = d.device->keyframes[0].position_m + Vec3(x, 0, z);
+    d.device->keyframes.push_back(key);
+  };
+  go(0.1, 0.0, -0.003);
+  go(0.15, 0.0005, -0.003);
+  struct Places : loop::Observer {
+    void tick(const loop::TickRecord& tick) override {
+      if (tick.time <= 0.7) at = tick.tool.translation;
+      last = tick;
+    }
+    Vec3 at = Vec3::Zero();
+    loop::TickRecord last;
+  } places;
+  loop::RunOptions options;
+  options.observers = {&places};
+  ASSERT_TRUE(loop::run(*loop::assemble(d), options).status.ok());
+  const Vec3& force = places.last.contact.force;
+  EXPECT_GT(force.head<2>().norm(), 0.1 * force.z()) << "it has something to hold";
+  EXPECT_LT((places.last.tool.translation - places.at).norm(), 1e-7);
+}
 #endif

@@ -258,6 +258,40 @@ TEST(ToolsMeet, AnObstacleCarriesAChainOfThem) {
   EXPECT_NEAR(a.contact.force.z() / a.wanted.force.z(), 1.0, 1e-3);
 }
 
+// The lower tool lies on a soft block: the records of the bodies go on beside the other tool's contact, to
+// what one system of all three comes to.
+TEST(ToolsMeet, BesideASoftBody) {
+  scene::Description d = pressed("sphere", "sphere");
+  SoftBodySpec block = small_scenes::held_block().bodies[0];
+  block.mesh.size_m = Vec3(0.06, 0.06, 0.02);
+  block.position_m = Vec3(0, 0, -2.0 * kB - 0.01);
+  block.attachments[0].box_min_m.z() = -1.0;
+  block.attachments[0].box_max_m.z() = -2.0 * kB - 0.02 + 1e-6;
+  d.bodies.push_back(block);
+  ContactSpec below = d.contacts[0];
+  below.first = "block";
+  below.second = "left";
+  d.contacts.push_back(below);
+  d.hands[0].tool.coupling = {20.0, 0.5, 0.1, 0.005};
+  d.duration_s = 1.0;
+  std::vector<Both> both(2);
+  for (const bool partitioned : {true, false}) {
+    d.exchange.scheme = partitioned ? "partitioned" : "monolithic";
+    run(d, both[partitioned ? 0 : 1]);
+  }
+  for (const int hand : {0, 1}) {
+    const loop::TickRecord &ticks = both[0].of[hand].back(), &one = both[1].of[hand].back();
+    EXPECT_GT(both[0].of[0].back().contact.force.z(), 0.1);
+    EXPECT_LT((ticks.tool.translation - one.tool.translation).norm(), 1e-6) << hand;
+    EXPECT_LT((ticks.contact.force - one.contact.force).norm(), 1e-3) << hand;
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < both[0].of[hand].size(); ++i)
+      farthest = std::max(
+          farthest, (both[0].of[hand][i].tool.translation - both[1].of[hand][i].tool.translation).norm());
+    EXPECT_LT(farthest, 1e-5) << hand << ", on the way";
+  }
+}
+
 TEST(ToolsMeet, KeepTheBalanceOfEnergy) {
   scene::Description d = pressed("sphere", "box");
   d.exchange.scheme = "monolithic";
