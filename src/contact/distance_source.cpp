@@ -155,7 +155,7 @@ class DistanceSource final : public SampleSource {
   }
 
  private:
-  /// Of a skin against itself: whether a vertex and a face, as they were given, are no neighbours.
+  /// Returns whether a vertex and a face of a skin against itself, numbered as given, are no neighbours.
   bool may_meet(int vertex, int face) const {
     const distance::Skin& skin = skins_[0];
     const auto around = [&](int v) {

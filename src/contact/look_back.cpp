@@ -78,8 +78,7 @@ void LookBack::tell(std::string_view through_what, double t) {
   warned_ = true;
   log::warn(
       "contact at t = {:.6g} s: {} vertices went through {} between two queries, unseen; refresh contact "
-      "more "
-      "often (exchange.contact_refresh_s), or set exchange.tunnelling = \"substep\"",
+      "more often (exchange.contact_refresh_s), or set exchange.tunnelling = \"substep\"",
       t, count_, through_what);
 }
 

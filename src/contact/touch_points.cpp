@@ -20,7 +20,7 @@ namespace palpate::contact {
 // bunch's size over the contact's, and bunches are split where that is largest.  Samples that press are not
 // bunched with such that do not.
 //
-// Of what sticks a point has friction's spring (friction_anchors.cpp) with the deflection
+// A point that sticks has friction's spring (friction_anchors.cpp) with the deflection
 //     u = sum c_j u_j / c,    c_j its stiffness, mu times the pressure times a_j over tau v_r,
 // c that of the point, so that it has the samples' friction across n, at rest, by the law's linear part.  Its
 // moment, and what it does to the modes, are those of the point's arm and modes: what is lacking of the

@@ -26,9 +26,9 @@ namespace palpate::contact {
 // A point that is held (grasp.cpp) has K, D and F with P in place of its maps to a sample, and besides turns
 // with the tool: of the tool's moment r x F, r changes with the bodies, by h P dz, and F turns.
 //
-// What sticks has a spring beside friction's damper (friction_anchors.cpp).  Its deflection is that of the
-// model's time and the way that the tool's material point has gone against the bodies' since then, at the
-// tick's start, and is held within the tick: as in a step of one linear solve it is multiplied by no less
+// A point that sticks has a spring beside friction's damper (friction_anchors.cpp).  Its deflection is that
+// of the model's time and the way that the tool's material point has gone against the bodies' since then, at
+// the tick's start, and is held within the tick: as in a step of one linear solve it is multiplied by no less
 // than 1 - h/tau, so that in a tick longer than tau that length stands for tau.
 //
 // A is symmetric and positive definite at any h: K_i and D_i are taken without how friction follows pressure,

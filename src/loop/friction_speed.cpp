@@ -54,7 +54,8 @@ double friction_retardation(const scene::Description& d, const ContactSpec& cont
   const auto is_body = [&](const std::string& name) {
     return std::any_of(d.bodies.begin(), d.bodies.end(), [&](const auto& body) { return body.name == name; });
   };
-  const bool sticks = contact.friction_anchors && scene::contact_method(d, contact) == "distance" &&
+  const bool sticks = contact.friction > 0.0 && contact.friction_anchors &&
+                      scene::contact_method(d, contact) == "distance" &&
                       (is_body(contact.first) || is_body(contact.second));
   if (!sticks) return 0.0;
   double slowest = d.exchange.contact_refresh_s;

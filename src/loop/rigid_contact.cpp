@@ -89,11 +89,12 @@ std::unique_ptr<contact::SampleSource> tool_on_tool(const World& world, const Ri
   } catch (const Error& error) { refuse_distance(spec, error); }
 }
 
-/// Adds it to what tools of ticks feel, and returns it once more for the bodies' side.
+/// Makes a contact once for the ticks, which take it, and once for the World.
 /// @param make  (tools in their order, contact)
 template <class Make>
-std::unique_ptr<contact::SampleSource> rigid_source(World& world, const std::vector<ToolSide*>& sides,
-                                                    const ContactSpec& spec, const Make& make) {
+std::unique_ptr<contact::SampleSource> make_for_ticks_and_world(World& world,
+                                                                const std::vector<ToolSide*>& sides,
+                                                                const ContactSpec& spec, const Make& make) {
   std::vector<RigidSide> in_ticks, in_world;
   const scene::CosimulationSpec& exchange = world.description.exchange;
   for (ToolSide* side : sides) {
@@ -125,15 +126,15 @@ std::unique_ptr<contact::SampleSource> rigid_source(World& world, const ContactS
                                                                   ToolSide::named(world, spec.second);
   const ObstacleSpec* const obstacle = obstacle_named(world, spec.second);
   if (first && obstacle)
-    return rigid_source(world, {first}, spec,
-                        [&](const std::vector<RigidSide>& tools, contact::ContactForce& force) {
-                          return tool_on_obstacle(world, tools[0], spec, *obstacle, force);
-                        });
+    return make_for_ticks_and_world(world, {first}, spec,
+                                    [&](const std::vector<RigidSide>& tools, contact::ContactForce& force) {
+                                      return tool_on_obstacle(world, tools[0], spec, *obstacle, force);
+                                    });
   if (!first || !second || first == second) return {};
-  return rigid_source(world, {first, second}, spec,
-                      [&](const std::vector<RigidSide>& tools, contact::ContactForce&) {
-                        return tool_on_tool(world, tools[0], tools[1], spec);
-                      });
+  return make_for_ticks_and_world(world, {first, second}, spec,
+                                  [&](const std::vector<RigidSide>& tools, contact::ContactForce&) {
+                                    return tool_on_tool(world, tools[0], tools[1], spec);
+                                  });
 }
 
 void make_rigid_touch(World& world) {

@@ -9,8 +9,9 @@
 //     A_i du_i + sum_j (h B_ij + h^2 K_ij) du_j = r_i + h (F_i - h sum_j K_ij u_j),
 //
 // which has no bound on the contact's stiffness without friction.  (Each tool against the others where they
-// were, or where they were going, has: h^2 k < 2 m.  With friction the guess of the ticks' end may not settle
-// in contacts of boxes that are stiffer than 1e12 Pa/m.)  A tool's own scheme then takes a record of its own
+// were, or where they were going, has: h^2 k < 2 m.  With friction there is one: a box between another one
+// and the floor keeps its motion at 1e10 Pa/m and ticks of 1 ms, and loses it at 1e11, where ticks of 0.2 ms
+// keep it.)  A tool's own scheme then takes a record of its own
 // derivatives, with the others' part a constant:
 //
 //     F_i - sum_{j != i} (K_ij dx_j + B_ij du_j) - K_ii dx_i - B_ii du_i.
@@ -125,7 +126,7 @@ bool RigidTouch::touches() const {
                      [](const OneTool& tool) { return tool.contact.active > 0; });
 }
 
-// The record R(t, x, v) is linear about (x0, v0); it goes on about (x, v) = now with the same F1, J and B:
+// A record R(t, x, v) that is linear about (x0, v0) is so about the present (x, v) with the same F1, J and B:
 //     R(t + s, x + dx, v + dv) = R(t, x, v) + s F1 + J dx + B dv,
 // up to the second order in the rotation from x0.
 dynamics::LinearisedContact RigidTouch::about_now(int tool, const dynamics::LinearisedContact& record) const {
@@ -147,7 +148,7 @@ dynamics::LinearisedContact RigidTouch::with(int tool, const dynamics::Linearise
   Vec6 wrench = mine.by_others;
   wrench.head<3>() += mine.contact.wrench.moment;
   wrench.tail<3>() += mine.contact.wrench.force;
-  dynamics::LinearisedContact out = record;
+  dynamics::LinearisedContact out = about_now(tool, record);
   Eigen::Map<Vec6>(out.F0.data()) += wrench;
   Eigen::Map<RowMajor6>(out.J.data()) -= mine.contact.K;
   Eigen::Map<RowMajor6>(out.B.data()) -= mine.contact.B;

@@ -26,7 +26,7 @@ class RigidTouch {
   int size() const { return static_cast<int>(tools_.size()); }
   double look_ahead() const { return look_ahead_; }
 
-  /// What pairs are made with: the contact that takes them, a tool's frame in it and its motion.
+  /// Returns the contact that takes pairs; frame() and motion() are a tool's in it.
   contact::ContactForce& contact() { return contact_; }
   int frame(int tool) const { return tools_[static_cast<std::size_t>(tool)].frame; }
   std::shared_ptr<contact::MovingFrame> motion(int tool) const;
@@ -39,7 +39,7 @@ class RigidTouch {
   bool rubs() const { return rubs_; }
   /// Whether a tool touches something then.
   bool touches() const;
-  /// Returns a tool's record of the bodies as it goes on about the tool as it is.
+  /// Returns a tool's record of the bodies, linear about the tool's pose and twist at the tick's start.
   dynamics::LinearisedContact about_now(int tool, const dynamics::LinearisedContact& record) const;
   /// Solves for the change of all twists over the tick of length h, by linearly implicit Euler's method.
   /// @param equations  of each tool under all else that acts on it, the bodies' as about_now() made it
@@ -51,8 +51,7 @@ class RigidTouch {
   bool improve();
   /// Contact about that guess.
   void again();
-  /// Returns a tool's record of the bodies with this contact, in which the other tools go where solve() says.
-  /// @param record  as about_now() made it
+  /// Returns that record with this contact, in which the other tools go where solve() says.
   dynamics::LinearisedContact with(int tool, const dynamics::LinearisedContact& record) const;
   void end_tick();
   /// The next tick queries, whether a query is due or not: then nothing of the ticks before is needed.

@@ -90,8 +90,8 @@ void add_models(store::Summary& summary, const scene::Description& d) {
   for (const scene::Hand& hand : scene::hands_of(d)) add(hand.tool->mesh.file);
 }
 
-/// Adds how queries change the resultants that bodies feel: in images, between two queries, contact goes on
-/// with the pairs and normals of the last.
+/// Adds by how much queries change the resultants on bodies: in images the pairs and normals of the last
+/// query hold until the next.
 void add_jumps(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   store::SummarySection& s = summary.section("contact");

@@ -46,8 +46,7 @@ void TickGroup::find(double h) {
     }
   for (std::size_t i = 0; i < members_.size(); ++i) {
     found_[i] = members_[i].ticks->contact_with_bodies();
-    const int tool = static_cast<int>(i);
-    if (touches) found_[i] = rigid_->with(tool, rigid_->about_now(tool, found_[i]));
+    if (touches) found_[i] = rigid_->with(static_cast<int>(i), found_[i]);
   }
   if (rigid_) rigid_->end_tick();
 }

@@ -61,8 +61,7 @@ void VirtualTime::one_period(double t0, double t1) {
   }
 }
 
-/// Every hand feels the bodies as all have left them, then each goes through the period by itself, or with
-/// those that its tool meets.
+/// Hands every hand the record of the bodies, then runs each set of hands that meet through the period.
 void VirtualTime::tick_tools(double t0, double t1) {
   for (std::size_t i = 0; i < hands_.size(); ++i) adopt(hands_[i], bodies_.linearise(i, t1 - t0));
   bodies_.restart_path();

@@ -75,6 +75,11 @@ void check_method(const Document& doc, const std::string& key, const std::string
       c.method = "image";
     }
   }
+  if (c.spring == "per_point" && first_tool && second_tool)
+    refuse(
+        location(doc, key + ".spring"), where,
+        "spring = \"per_point\" is a spring at each colliding vertex, and two tools touch by nearest points, "
+        "which stand for areas; remove it");
   if (c.spring == "per_point" && c.method == "distance")
     refuse(
         location(doc, key + ".spring"), where,
@@ -85,11 +90,6 @@ void check_method(const Document& doc, const std::string& key, const std::string
         location(doc, key + ".spring"), where,
         "spring = \"per_point\" is a spring at each colliding vertex, and a tool with shape = \"sphere\" has "
         "none; remove it");
-  if (c.spring == "per_point" && first_tool && second_tool)
-    refuse(
-        location(doc, key + ".spring"), where,
-        "spring = \"per_point\" is a spring at each colliding vertex, and two tools touch by nearest points, "
-        "which stand for areas; remove it");
   if (is_in_images(c) && obstacle)
     refuse(location(doc, key + ".method"), where,
            fmt::format("method = \"{}\" is for tools and soft bodies: an obstacle has exact gaps; use "

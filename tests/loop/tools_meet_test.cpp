@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "hands_felt.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/loop/recorder.h"
@@ -19,25 +20,6 @@ using namespace palpate;
 namespace {
 
 constexpr double kA = 0.02, kB = 0.03, kMass = 0.1;
-
-struct Both final : loop::Observer {
-  std::vector<loop::TickRecord> of[2];
-  std::optional<loop::EnergyBalance> last;
-  bool weighs = false;
-  void tick_of(std::size_t hand, const loop::TickRecord& tick) override { of[hand].push_back(tick); }
-  bool wants_energy() const override { return weighs; }
-  void energy(const loop::EnergyBalance& balance) override { last = balance; }
-};
-
-loop::RunResult run(const scene::Description& d, Both& both, bool real_time = false) {
-  const auto world = loop::assemble(d);
-  loop::RunOptions options;
-  options.real_time = real_time;
-  options.observers = {&both};
-  const loop::RunResult result = loop::run(*world, options);
-  EXPECT_TRUE(result.status.ok()) << result.status.message;
-  return result;
-}
 
 /// A tool of half the edge, or the radius, `half`.
 void shape(ToolSpec& tool, const std::string& kind, double half) {
@@ -84,7 +66,7 @@ scene::Description pressed(const std::string& first, const std::string& second) 
 }
 
 /// How far the two overlap where they touch [m].
-double depth(const Both& both) {
+double depth(const HandsFelt& both) {
   return kA + kB -
          (both.of[0].back().tool.translation - both.of[1].back().tool.translation).dot(Vec3::UnitZ());
 }
@@ -103,7 +85,7 @@ TEST(ToolsMeet, AtRestTheyCarryEachOther) {
         scene::Description d = pressed(first, second);
         d.exchange.scheme = scheme;
         d.contacts[0].quadrature_error = 1e-3;
-        Both both;
+        HandsFelt both;
         run(d, both);
         const std::string what = std::string(first) + ", " + second + ", " + scheme;
         const loop::TickRecord &a = both.of[0].back(), &b = both.of[1].back();
@@ -138,7 +120,7 @@ TEST(ToolsMeet, ForcesAreOppositeAtEveryTick) {
           d.device->keyframes[1].rotation_vector_rad = Vec3(0.1, -0.2, 0.3);
           d.device->keyframes[1].time_s = 0.04;
           d.duration_s = 0.2;
-          Both both;
+          HandsFelt both;
           run(d, both);
           const std::string what =
               fmt::format("{} on {}, {:g} Pa/m, mu = {}", first, second, stiffness, friction);
@@ -161,7 +143,7 @@ TEST(ToolsMeet, AStruckToolTakesTheMomentum) {
   d.hands[0].tool.coupling = {0.0, 0.0, 0.0, 0.0};
   d.contacts[0].friction = 0.3;
   d.device->keyframes[1].position_m += Vec3(0.004, 0, -0.02);
-  Both both;
+  HandsFelt both;
   run(d, both);
   Vec3 sum = Vec3::Zero(), about_point = Vec3::Zero();
   for (std::size_t i = 0; i < both.of[0].size(); ++i) {
@@ -193,7 +175,7 @@ TEST(ToolsMeet, NoTickIsOutsideTheConeOfFriction) {
   go(0.25, -0.01, 0.0);
   go(0.35, 0.0, 0.008);
   go(0.45, 0.0, 0.008);
-  Both both;
+  HandsFelt both;
   run(d, both);
   int sticks = 0, slides = 0;
   for (std::size_t i = 1; i < both.of[0].size(); ++i) {
@@ -218,12 +200,12 @@ TEST(ToolsMeet, TicksConvergeToTheMonolithicSystem) {
   one.exchange.scheme = "monolithic";
   one.integrator.name = "cvode-bdf";
   one.integrator.rtol = 1e-8;
-  Both reference;
+  HandsFelt reference;
   run(one, reference);
   double before = 0.0;
   for (const std::size_t n : {1, 2, 4}) {
     d.tool->tick_s = d.hands[0].tool.tick_s = 1e-3 / static_cast<double>(n);
-    Both both;
+    HandsFelt both;
     run(d, both);
     double error = 0.0;
     for (std::size_t i = 0; i < reference.of[0].size(); ++i)
@@ -250,7 +232,7 @@ TEST(ToolsMeet, AnObstacleCarriesAChainOfThem) {
   below.second = "floor";
   d.contacts.push_back(below);
   d.hands[0].tool.coupling = {0.0, 0.5, 0.0, 0.005};
-  Both both;
+  HandsFelt both;
   run(d, both);
   const loop::TickRecord &a = both.of[0].back(), &b = both.of[1].back();
   EXPECT_GT(a.contact.force.z(), 0.3);
@@ -274,7 +256,7 @@ TEST(ToolsMeet, BesideASoftBody) {
   d.contacts.push_back(below);
   d.hands[0].tool.coupling = {20.0, 0.5, 0.1, 0.005};
   d.duration_s = 1.0;
-  std::vector<Both> both(2);
+  std::vector<HandsFelt> both(2);
   for (const bool partitioned : {true, false}) {
     d.exchange.scheme = partitioned ? "partitioned" : "monolithic";
     run(d, both[partitioned ? 0 : 1]);
@@ -299,7 +281,7 @@ TEST(ToolsMeet, KeepTheBalanceOfEnergy) {
   d.integrator.rtol = 1e-8;
   d.contacts[0].friction = 0.3;
   d.device->keyframes[1].position_m.x() += 0.01;
-  Both both;
+  HandsFelt both;
   both.weighs = true;
   run(d, both);
   ASSERT_TRUE(both.last);
@@ -317,7 +299,7 @@ TEST(ToolsMeet, AreReplayedTogether) {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   const auto world = loop::assemble(d);
-  Both both;
+  HandsFelt both;
   {
     loop::Recorder recorder(*world, folder.string());
     loop::RunOptions options;
@@ -337,7 +319,7 @@ TEST(ToolsMeet, AreReplayedTogether) {
 }
 
 TEST(ToolsMeet, InRealTime) {
-  Both both;
+  HandsFelt both;
   scene::Description d = pressed("box", "sphere");
   d.duration_s = 0.3;
   run(d, both, true);
@@ -356,7 +338,7 @@ TEST(ToolsMeet, WantTicksAtTheSameTimes) {
         << e.what();
   }
   d.contacts.clear();  // tools that do not meet may have any
-  Both both;
+  HandsFelt both;
   run(d, both);
   EXPECT_EQ(both.of[1].size(), 2 * both.of[0].size());
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "hands_felt.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/loop/recorder.h"
@@ -59,29 +60,6 @@ scene::Description squeezed(double shift = 0.0) {
   return d;
 }
 
-struct Both final : loop::Observer {
-  std::vector<loop::TickRecord> of[2];
-  std::vector<std::size_t> order;
-  std::optional<loop::EnergyBalance> last;
-  bool weighs = false;
-  void tick_of(std::size_t hand, const loop::TickRecord& tick) override {
-    of[hand].push_back(tick);
-    order.push_back(hand);
-  }
-  bool wants_energy() const override { return weighs; }
-  void energy(const loop::EnergyBalance& balance) override { last = balance; }
-};
-
-loop::RunResult run(const scene::Description& d, Both& both, bool real_time = false) {
-  const auto world = loop::assemble(d);
-  loop::RunOptions options;
-  options.real_time = real_time;
-  options.observers = {&both};
-  const loop::RunResult result = loop::run(*world, options);
-  EXPECT_TRUE(result.status.ok()) << result.status.message;
-  return result;
-}
-
 double peak(const std::vector<loop::TickRecord>& ticks) {
   double out = 0.0;
   for (const loop::TickRecord& tick : ticks) out = std::max(out, tick.device.force.norm());
@@ -105,7 +83,7 @@ TEST(TwoHands, PressEquallyOnAFreeBlock) {
       d.exchange.scheme = how;
     else
       d.exchange.linearisation = how;
-    Both both;
+    HandsFelt both;
     const loop::RunResult result = run(d, both);
     ASSERT_EQ(both.of[0].size(), 300u) << how;
     ASSERT_EQ(both.of[1].size(), 300u) << how;
@@ -159,7 +137,7 @@ scene::Description hanging(const std::string& how) {
 TEST(TwoHands, HoldByFriction) {
   const double weight = 9.81 * loop::assemble(hanging("points"))->bodies[0].masses.sum();
   for (const char* how : {"condensed", "points", "monolithic"}) {
-    Both both;
+    HandsFelt both;
     run(hanging(how), both);
     double lifted[2] = {0.0, 0.0};
     for (const int hand : {0, 1})
@@ -175,7 +153,7 @@ TEST(TwoHands, ChangePlaces) {
   scene::Description other = d;
   std::swap(*other.tool, other.hands[0].tool);
   std::swap(*other.device, other.hands[0].device);
-  Both a, b;
+  HandsFelt a, b;
   run(d, a);
   run(other, b);
   EXPECT_LT(difference(a.of[0], b.of[1]), 1e-6);
@@ -203,14 +181,14 @@ TEST(TwoHands, TendToOneSystem) {
     scene::Description truth = whole;
     truth.exchange.scheme = "monolithic";
     truth.exchange.exchange_period_s = truth.exchange.contact_refresh_s = 1e-3;
-    Both exact;
+    HandsFelt exact;
     run(truth, exact);
     ASSERT_GT(peak(exact.of[1]), 0.2);
     for (const int fine : {0, 1}) {
       scene::Description d = whole;
       d.exchange.linearisation = linearisation;
       d.exchange.exchange_period_s = d.exchange.contact_refresh_s = fine ? 0.003 : 0.006;
-      Both both;
+      HandsFelt both;
       run(d, both);
       for (const int hand : {0, 1}) error[fine][hand] = difference(both.of[hand], exact.of[hand]);
     }
@@ -232,7 +210,7 @@ TEST(TwoHands, BalanceTheirEnergy) {
     d.tool->tick_s = d.hands[0].tool.tick_s = 2e-4;
     d.integrator.name = "cvode-bdf";
     d.integrator.rtol = 1e-7;
-    Both both;
+    HandsFelt both;
     both.weighs = true;
     run(d, both);
     ASSERT_TRUE(both.last);
@@ -263,7 +241,7 @@ TEST(TwoHands, OfOneSystemTickTogether) {
 }
 
 TEST(TwoHands, TickByOneClock) {
-  Both both;
+  HandsFelt both;
   const loop::RunResult result = run(squeezed(), both, true);
   ASSERT_TRUE(result.real_time);
   ASSERT_GT(both.of[0].size(), 100u);
@@ -303,7 +281,7 @@ TEST(TwoHands, GraspByThemselves) {
   }
   d.device->max_force_n = d.hands[0].device.max_force_n = 20.0;
   const auto world = loop::assemble(d);
-  Both both;
+  HandsFelt both;
   loop::RunOptions options;
   options.observers = {&both};
   ASSERT_TRUE(loop::run(*world, options).status.ok());
@@ -322,7 +300,7 @@ TEST(TwoHands, AreRecordedEach) {
   d.record->states = d.record->forces = true;
   d.record->state_period_s = 0.01;
   const auto world = loop::assemble(d);
-  Both both;
+  HandsFelt both;
   loop::RunResult result;
   {
     loop::Recorder recorder(*world, folder.string());

@@ -105,6 +105,10 @@ const Broken kCases[] = {
     {"skin-of-generator", "8:8",
      "body \"ball\": skin = true needs mesh = { file = \"MODEL.h5\" }, a model file; `palpate model SURFACE "
      "-o MODEL.h5` makes one"},
+    {"springs-between-tools", "15:10",
+     "contact between \"tool\" and \"left\": spring = \"per_point\" is a spring at each colliding vertex, "
+     "and "
+     "two tools touch by nearest points, which stand for areas; remove it"},
     {"syntax", "3:14", "not valid TOML: "},
     {"tool-without-device", "4:1", "tool: a tool needs a hand: add [device] with [[device.keyframe]]"},
     {"two-of-a-name", "10:8",
