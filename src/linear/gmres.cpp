@@ -5,6 +5,7 @@
 
 #include "linear/make.h"
 #include "linear/settings.h"
+#include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/finite.h"
@@ -17,42 +18,46 @@ using dynamics::SolveStatus;
 
 namespace {
 
-/// What the recurrence says of a residual drifts from b - A x by rounding; so often is the iteration begun
-/// again from there.
+/// Restarts from a recomputed residual b - A x, where the residual of the recurrence has drifted from it.
 constexpr int kRestarts = 4;
-/// Of the preconditioner's own iterations: each direction takes two digits at most, so no more of them are
-/// spent than the residual needs.
+/// With an exact S the recurrence drifts by some roundings times the root of S's condition, 1e-11 at 1e10:
+/// b - A x is computed where the tolerance is below this.
+constexpr double kCheckedBelow = 1e-10;
+/// Tolerance of the iteration that solves with S: a direction gains two digits at most, so no more of them
+/// are worth their cost.
 constexpr double kInnerTolerance = 1e-2;
 
 }  // namespace
 
-Gmres::Gmres(double rtol, std::unique_ptr<dynamics::LinearSolver> inner)
-    : rtol_(std::max(rtol, kTightest)), inner_(std::move(inner)) {
+Gmres::Gmres(double rtol, dynamics::LinearSolver& symmetric)
+    : rtol_(std::max(rtol, kTightest)), symmetric_(symmetric) {
+  counters::count("integrate.solver.gmres");
+}
+
+Gmres::Gmres(double rtol, std::unique_ptr<dynamics::LinearSolver> symmetric)
+    : rtol_(std::max(rtol, kTightest)), owned_(std::move(symmetric)), symmetric_(*owned_) {
   counters::count("integrate.solver.gmres");
 }
 
 const dynamics::SolverCounters& Gmres::counters() const {
-  sum_ = inner_->counters();
-  sum_.solves = solves_;  // of the preconditioner there are many a right-hand side
-  sum_.iterations += products_;
+  sum_ = counters_;
+  if (owned_) sum_ += owned_->counters();
   return sum_;
 }
 
 SolveStatus Gmres::factor(const BorderedMatrix& A) {
-  const bool same = matrix_ == &A && A.values_version != 0 && A.values_version == values_version_;
   matrix_ = &A;
-  if (same) return status_;
   values_version_ = A.values_version;
   const auto& values = A.body.values();
   if (!all_finite(Eigen::Map<const VecX>(values.data(), static_cast<Eigen::Index>(values.size()))) ||
       !all_finite(A.right) || !all_finite(A.bottom) || !all_finite(A.corner))
     return status_ = SolveStatus::kSingular;
-  return status_ = inner_->factor(part_.of(A));
+  return status_ = symmetric_.factor(part_.of(A));
 }
 
 SolveStatus Gmres::solve(const VecX& b, VecX& x) {
   check(b.rows());
-  b_ = b;  // a copy: the solution may stand in its place
+  b_ = b;  // copied: b and x may be one vector
   const SolveStatus status = solve_column();
   if (status == SolveStatus::kOk) x = x_;
   return status;
@@ -77,62 +82,82 @@ void Gmres::check(Eigen::Index rows) const {
 }
 
 void Gmres::multiply(const VecX& v, VecX& Av) {
+  const ScopedTimer timer(counters_.solve_s);
   matrix_->multiply(v, Av);
-  ++products_;
+  ++counters_.iterations;
+}
+
+SolveStatus Gmres::precondition(const VecX& r, VecX& z) {
+  --counters_.solves;  // symmetric_ counts it, and it is no right-hand side
+  return symmetric_.solve(r, z);
 }
 
 SolveStatus Gmres::solve_column() {
-  ++solves_;
+  if (!owned_ && part_.whole()) return symmetric_.solve(b_, x_);
+  ++counters_.solves;
   x_.setZero(b_.size());
-  const double goal = rtol_ * b_.norm();
-  if (goal == 0.0) return SolveStatus::kOk;
-  if (!std::isfinite(goal)) return SolveStatus::kNotConverged;
+  if (b_.isZero(0.0)) return SolveStatus::kOk;
   r_ = b_;
+  if (const SolveStatus status = precondition(r_, z_); status != SolveStatus::kOk) return status;
+  double size = std::sqrt(r_.dot(z_));
+  const double goal = rtol_ * size;
+  if (!std::isfinite(goal)) return SolveStatus::kNotConverged;
   for (int i = 0; i <= kRestarts; ++i) {
-    if (const SolveStatus status = reduce_residual(goal); status != SolveStatus::kOk) return status;
-    multiply(x_, w_);
-    r_ = b_ - w_;
-    if (r_.norm() <= goal) return SolveStatus::kOk;
+    if (const SolveStatus status = reduce_residual(size, goal); status != SolveStatus::kOk) return status;
+    if (!owned_ && rtol_ >= kCheckedBelow) return SolveStatus::kOk;
+    multiply(x_, r_);
+    r_ = b_ - r_;
+    if (const SolveStatus status = precondition(r_, z_); status != SolveStatus::kOk) return status;
+    size = std::sqrt(std::max(0.0, r_.dot(z_)));
+    if (size <= goal) return SolveStatus::kOk;
   }
   return SolveStatus::kNotConverged;
 }
 
-/// x += Z y with y the least |r - A Z y|, Z = S^-1 V, V an orthonormal basis: Arnoldi by modified
-/// Gram-Schmidt, the least squares by Givens rotations.
-SolveStatus Gmres::reduce_residual(double goal) {
-  V_.resize(b_.size(), kDirections + 1);
-  Z_.resize(b_.size(), kDirections);
+/// Keeps r_/size and z_/size as basis vector k and its direction.
+void Gmres::keep_direction(std::size_t k, double size) {
+  if (k == V_.size()) {
+    V_.emplace_back();
+    Z_.emplace_back();
+  }
+  V_[k] = r_ / size;
+  Z_[k] = z_ / size;
+}
+
+/// Adds to x the Z y of least |r - A Z y|, from r_ and z_ = S^-1 r_ with |r_| = size.  A Z_k = V_{k+1} H_k by
+/// Arnoldi's modified Gram-Schmidt in the inner product of S^-1; the least squares by Givens rotations.
+SolveStatus Gmres::reduce_residual(double size, double goal) {
   H_.setZero(kDirections + 1, kDirections);
   g_.setZero(kDirections + 1, 1);
-  g_(0, 0) = r_.norm();
-  V_.col(0) = r_ / g_(0, 0);
+  g_(0, 0) = size;
+  keep_direction(0, size);
   int k = 0;
-  while (k < kDirections && std::abs(g_(k, 0)) > goal) {
-    v_ = V_.col(k);
+  while (std::abs(g_(k, 0)) > goal) {
+    if (k == kDirections) return SolveStatus::kNotConverged;
+    const auto at = static_cast<std::size_t>(k);
     ++directions_;
-    if (const SolveStatus status = inner_->solve(v_, z_); status != SolveStatus::kOk) return status;
-    Z_.col(k) = z_;
-    multiply(z_, w_);
-    for (int i = 0; i <= k; ++i) {
-      H_(i, k) = V_.col(i).dot(w_);
-      w_ -= H_(i, k) * V_.col(i);
+    multiply(Z_[at], r_);
+    for (std::size_t i = 0; i <= at; ++i) {
+      const double along = Z_[i].dot(r_);
+      H_(static_cast<Eigen::Index>(i), k) = along;
+      r_ -= along * V_[i];
     }
-    const double beyond = w_.norm();
+    if (const SolveStatus status = precondition(r_, z_); status != SolveStatus::kOk) return status;
+    const double beyond = std::sqrt(std::max(0.0, r_.dot(z_)));
     if (!std::isfinite(beyond)) return SolveStatus::kNotConverged;
     for (int i = 0; i < k; ++i) rotation_[static_cast<std::size_t>(i)].rotate(H_, i, k);
     H_(k + 1, k) = beyond;
-    Rotation& last = rotation_[static_cast<std::size_t>(k)];
+    Rotation& last = rotation_[at];
     last.make(H_(k, k), beyond);
     last.rotate(H_, k, k);
     last.rotate(g_, k, 0);
     ++k;
-    if (beyond == 0.0) break;  // the solution lies in what was spanned
-    V_.col(k) = w_ / beyond;
+    if (beyond == 0.0) break;  // the basis spans the solution
+    if (k < kDirections) keep_direction(at + 1, beyond);
   }
-  if (k == 0) return SolveStatus::kOk;
   y_ = H_.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(g_.col(0).head(k));
-  x_.noalias() += Z_.leftCols(k) * y_;
-  return std::abs(g_(k, 0)) > goal && k == kDirections ? SolveStatus::kNotConverged : SolveStatus::kOk;
+  for (int i = 0; i < k; ++i) x_ += y_[i] * Z_[static_cast<std::size_t>(i)];
+  return SolveStatus::kOk;
 }
 
 void Gmres::Rotation::make(double a, double b) {

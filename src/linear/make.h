@@ -8,7 +8,6 @@ namespace palpate::linear {
 
 std::unique_ptr<dynamics::LinearSolver> make_cholmod(const IntegratorSpec&);
 std::unique_ptr<dynamics::LinearSolver> make_umfpack(const IntegratorSpec&);
-std::unique_ptr<dynamics::LinearSolver> make_klu(const IntegratorSpec&);
 std::unique_ptr<dynamics::LinearSolver> make_gmres(const IntegratorSpec&);
 std::unique_ptr<dynamics::LinearSolver> make_pcg(const IntegratorSpec&);
 std::unique_ptr<dynamics::LinearSolver> make_pcg_single(const IntegratorSpec&);

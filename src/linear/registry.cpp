@@ -1,7 +1,7 @@
 #include "linear/auto_choice.h"
 #include "linear/border_elimination.h"
-#include "linear/conjugate_residuals.h"
 #include "linear/direct/direct_solver.h"
+#include "linear/gmres.h"
 #include "linear/make.h"
 #include "palpate/linear/solvers.h"
 
@@ -11,24 +11,19 @@ const dynamics::LinearSolverRegistry& linear_solver_registry() {
   static const dynamics::LinearSolverRegistry registry = {
       {"cholmod",
        "supernodal Cholesky of SuiteSparse, ordered by AMD or METIS; symmetric positive definite matrices; "
-       "with friction, conjugate residuals over the factor of the symmetric part",
+       "with friction, GMRES preconditioned by the factor of the symmetric part",
        0, make_cholmod},
       {"umfpack", "multifrontal LU of SuiteSparse; unsymmetric and indefinite matrices", 0, make_umfpack},
-      {"klu",
-       "left-looking LU of SuiteSparse, pivot order kept; unsymmetric and indefinite matrices, of small "
-       "bodies (3,700 nodes: many times umfpack's time)",
-       0, make_klu},
       {"gmres",
        "flexible GMRES to linear_rtol, preconditioned by conjugate gradients on the symmetric part, which "
-       "must be "
-       "positive definite; unsymmetric matrices, as friction makes them",
+       "must be positive definite; unsymmetric matrices, as friction makes them",
        0, make_gmres, part_keys({"linear_rtol"})},
       {"pcg",
        "conjugate gradients, block-Jacobi, warm start, to linear_rtol; symmetric positive definite matrices",
        0, make_pcg, part_keys({"linear_rtol"})},
       {"auto",
-       "the fastest of cholmod, pcg-single and pcg-two-level for the matrix's size and stiffness and for "
-       "linear_rtol, by measurements kept in the source; gmres for an unsymmetric matrix",
+       "pcg-single, or pcg-two-level where stiffness outweighs mass in the matrix (squared Courant number of "
+       "at least 30); gmres for an unsymmetric matrix",
        0, make_auto, part_keys({"linear_rtol"})},
       {"pcg-single",
        "conjugate gradients in single precision with residuals in double, block-Jacobi, start from three "
@@ -50,8 +45,7 @@ std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& na
 std::unique_ptr<dynamics::LinearSolver> make_unsymmetric_solver(dynamics::LinearSolver& symmetric,
                                                                 const IntegratorSpec& spec) {
   if (dynamic_cast<const DirectSolver*>(&symmetric))
-    return std::make_unique<BorderElimination>(
-        std::make_unique<ConjugateResiduals>(spec.linear_rtol, symmetric));
+    return std::make_unique<BorderElimination>(std::make_unique<Gmres>(spec.linear_rtol, symmetric));
   return make_gmres(spec);
 }
 

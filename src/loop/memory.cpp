@@ -17,11 +17,10 @@ constexpr double kMiB = 1024.0 * 1024.0;
 /// Bytes of a factor over N^(4/3).  Nested dissection of a mesh in space leaves O(N^(4/3)) numbers in the
 /// factor of N nodes (George 1973; Lipton, Rose and Tarjan 1979).  Measured of cholmod: 645 on cubes of 1,331
 /// to 39,304 nodes, 900 to 1,300 on a ball of 8,217 and 600 on one of 33,153; of umfpack 1,600 to 1,800 on
-/// cubes.  Of klu not measured: its ordering is no nested dissection, and it is slow long before it is large.
+/// cubes.
 double factor_constant(const std::string& solver) {
   if (solver == "cholmod") return 800.0;
   if (solver == "umfpack") return 2000.0;
-  if (solver == "klu") return 3000.0;
   return 0.0;  // conjugate gradients keep none
 }
 

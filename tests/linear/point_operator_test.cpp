@@ -310,7 +310,8 @@ TEST_P(PointSolvers, GoOnFromSolveToSolveOfAStep) {
     }
     EXPECT_GT(rough, 4);
     EXPECT_EQ(solver->counters().factorisations, 4);
-    EXPECT_EQ(solver->counters().symbolic, 1);
+    // auto sees how stiff the first matrix is, and may give the next to another solver
+    EXPECT_EQ(solver->counters().symbolic, threads == 1 ? 1 : 2);
   }
 }
 

@@ -15,9 +15,9 @@ const dynamics::LinearSolverRegistry& linear_solver_registry();
 std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name,
                                                            const IntegratorSpec& spec = {});
 
-/// Solves unsymmetric matrices with the help of a solver of symmetric ones, to spec.linear_rtol.  Where
-/// `symmetric` is a direct solver: the border by its Schur complement, the body by conjugate residuals over
-/// the factor of its symmetric part, or by that factor alone where the body is symmetric; else by gmres.
+/// Makes a solver of unsymmetric matrices from a solver of symmetric ones, by GMRES to spec.linear_rtol.
+/// Where `symmetric` is a direct solver it preconditions the body, and the border is eliminated by its Schur
+/// complement; a symmetric body takes the factor alone.  Otherwise "pcg-two-level" preconditions the whole.
 /// @param spec  its settings are the solver's
 /// @param symmetric  outlives the result, whose counters are to be added to its own; what it factors in
 ///   between costs another factorisation at the next factor()
