@@ -90,7 +90,7 @@ void Archive::operator()(std::string_view name, Wrench& wrench) {
 }
 
 void Archive::check_length(std::string_view name, std::int64_t size) const {
-  constexpr std::int64_t kMost = 1 << 28;  // a damaged file must not ask for all of the memory
+  constexpr std::int64_t kMost = 1 << 28;  // A damaged file must not request all of the memory.
   if (size < 0 || size > kMost) fail("{}: \"{}\" cannot have {} elements", where_, full(name), size);
 }
 

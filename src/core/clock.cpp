@@ -18,10 +18,10 @@ double seconds(clockid_t clock) {
 }  // namespace
 
 double wall_seconds() { return seconds(CLOCK_MONOTONIC); }
-// While a process has a timer or a limit on its CPU time (core/process_pool.h sets both), Linux counts
-// CLOCK_PROCESS_CPUTIME_ID at the scheduler's ticks alone: a run of a millisecond then took 0 s.  The clocks
-// of its threads stay exact.  Their number is (~tid << 3) | 6, what pthread_getcpuclockid() makes of a
-// thread: CPUCLOCK_PERTHREAD_MASK | CPUCLOCK_SCHED.
+// While a process has a timer or a limit on its CPU time (core/process_pool.h sets both), Linux updates
+// CLOCK_PROCESS_CPUTIME_ID at scheduler ticks only: a run of a millisecond then took 0 s.  The clocks of its
+// threads stay exact.  Their clock id is (~tid << 3) | 6, as pthread_getcpuclockid() computes it:
+// CPUCLOCK_PERTHREAD_MASK | CPUCLOCK_SCHED.
 double cpu_seconds() {
   DIR* tasks = opendir("/proc/self/task");
   if (!tasks) return seconds(CLOCK_PROCESS_CPUTIME_ID);
@@ -34,8 +34,8 @@ double cpu_seconds() {
 }
 double thread_cpu_seconds() { return seconds(CLOCK_THREAD_CPUTIME_ID); }
 
-// Linux hands ru_maxrss on to the program that a process becomes by exec: a small run that a large program
-// has started would report that one's peak.  VmHWM is of this program's own memory.
+// Linux passes ru_maxrss on to the program that a process becomes by exec: a small run started by a large
+// program would report the peak of the latter.  VmHWM refers to this program's memory only.
 double peak_memory_mib() {
   long kib = 0;
   if (std::FILE* f = std::fopen("/proc/self/status", "r")) {

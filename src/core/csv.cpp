@@ -13,7 +13,7 @@ constexpr std::string_view kBlanks = " \t";
 
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
-/// Without its byte-order mark.
+/// Checks the encoding and returns the text without its byte-order mark.
 std::string_view check_encoding(std::string_view text, const std::string& path) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     fail("{}:1: the file is in UTF-16; save it as CSV in UTF-8", path);
@@ -23,7 +23,7 @@ std::string_view check_encoding(std::string_view text, const std::string& path) 
   return text;
 }
 
-/// The first line that is not empty.
+/// Returns the first line that is not empty.
 std::string_view first_line(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of("\r\n"), text.size()));
   return text.substr(0, text.find_first_of("\r\n"));
@@ -42,7 +42,7 @@ char delimiter_of(std::string_view line) {
                                               counts)];
 }
 
-/// Splits a text into rows, a character at a time.
+/// Splits a text into rows, character by character.
 class Splitter {
  public:
   Splitter(char delimiter, const std::string& path) : delimiter_(delimiter), path_(path) {}
@@ -70,7 +70,7 @@ class Splitter {
   }
 
  private:
-  /// @return how many characters it took beside c
+  /// Handles a character inside quotes.  @return number of characters consumed in addition to c
   std::size_t in_quotes(char c, char next) {
     if (c != '"' || next == '"') {
       cell_ += c;
@@ -102,9 +102,9 @@ class Splitter {
   std::vector<CsvRow> rows_;
   CsvRow row_{1, {}};
   std::string cell_;
-  bool quoted_ = false;      ///< inside of quotes
-  bool was_quoted_ = false;  ///< this cell began with one
-  bool any_ = false;         ///< this line is not empty
+  bool quoted_ = false;      ///< Inside quotes.
+  bool was_quoted_ = false;  ///< This cell began with a quote.
+  bool any_ = false;         ///< This line is not empty.
   long line_ = 1, opened_ = 0;
 };
 
@@ -113,7 +113,7 @@ class Splitter {
 std::vector<CsvRow> read_csv_text(std::string_view text, const std::string& path) {
   text = check_encoding(text, path);
   const std::string_view line = first_line(text);
-  const bool says = line.size() == 5 && line.starts_with("sep=");  // a spreadsheet's own line
+  const bool says = line.size() == 5 && line.starts_with("sep=");  // Delimiter line written by spreadsheets.
   std::vector<CsvRow> rows = Splitter(says ? line[4] : delimiter_of(line), path).split(text);
   if (says) rows.erase(rows.begin());
   return rows;

@@ -18,7 +18,7 @@ namespace {
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours cost one
-/// each, letter case costs nothing.
+/// each; letter case is ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -35,7 +35,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// Whether `longer` is `name` and further words: "stiffness" and "stiffness_pa_m".
+/// Whether `longer` is `name` followed by further words: "stiffness" and "stiffness_pa_m".
 bool adds_words(std::string_view longer, std::string_view name) {
   return !name.empty() && longer.size() > name.size() && longer.starts_with(name) &&
          (longer[name.size()] == '_' || longer[name.size()] == '-' || longer[name.size()] == ' ');
@@ -47,7 +47,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   std::size_t best_distance = std::max<std::size_t>(1, name.size() / 2) + 1;
   for (const auto& candidate : candidates) {
     const bool words = adds_words(candidate, name) || adds_words(name, candidate);
-    // a forgotten unit counts as one slip
+    // A missing unit counts as one edit.
     const std::size_t full = edit_distance(name, candidate),
                       distance = words ? std::min<std::size_t>(full, 1) : full;
     if (distance < best_distance) {
@@ -55,7 +55,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
       best = candidate;
     }
   }
-  // none is near: the beginning of a name may stand for it
+  // No close candidate: accept an abbreviation, the beginning of a candidate.
   for (const auto& candidate : candidates)
     if (best.empty() && !name.empty() && candidate.starts_with(name)) best = candidate;
   return best;

@@ -15,10 +15,10 @@ void prefer_huge_pages([[maybe_unused]] const void* memory, [[maybe_unused]] std
   const auto last = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / kPage * kPage;
   if (first >= last) return;
   void* begin = reinterpret_cast<void*>(first);
-  ::madvise(begin, last - first, MADV_HUGEPAGE);  // for pages that are not there yet
-  // MADV_COLLAPSE of Linux 6.1, which C libraries name later; older kernels refuse
+  ::madvise(begin, last - first, MADV_HUGEPAGE);  // For pages not yet mapped.
+  // MADV_COLLAPSE of Linux 6.1; C libraries define the name later, and older kernels reject it.
   constexpr int kCollapse = 25;
-  ::madvise(begin, last - first, kCollapse);  // for those that are
+  ::madvise(begin, last - first, kCollapse);  // For pages already mapped.
 #endif
 }
 

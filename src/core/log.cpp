@@ -12,7 +12,7 @@
 namespace palpate::log {
 namespace {
 
-/// The message, as a terminal may have it.
+/// Formats the message with control characters escaped.
 class PrintableMessage : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
@@ -24,7 +24,7 @@ class PrintableMessage : public spdlog::custom_flag_formatter {
   }
 };
 
-/// Keeps the text of each message once.
+/// Sink that stores the text of each distinct message once.
 class Memory : public spdlog::sinks::base_sink<std::mutex> {
  public:
   std::vector<std::string> texts() {

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 std::optional<double> number_in(const fs::path& file) {
   std::ifstream in(file);
   double out = 0.0;
-  if (!(in >> out)) return {};  // "max", or no such file
+  if (!(in >> out)) return {};  // "max", or no such file.
   return out;
 }
 
@@ -31,7 +31,7 @@ std::optional<double> of_meminfo(const fs::path& root) {
   return {};
 }
 
-/// A figure of memory.stat: pages of files, which the kernel takes back when it must.
+/// Reads a figure of memory.stat: file pages, which the kernel can reclaim.
 double reclaimable(const fs::path& group, const char* name) {
   std::ifstream in(group / "memory.stat");
   std::string key;
@@ -44,7 +44,8 @@ void take(AvailableMemory& least, std::optional<double> bytes, const std::string
   if (bytes && *bytes < least.bytes) least = {std::max(0.0, *bytes), limited_by};
 }
 
-/// Version 2, the group and all above it: memory.max, memory.current.  Version 1: memory.limit_in_bytes.
+/// Applies the limits of the control groups.  Version 2, the group and all above it: memory.max,
+/// memory.current. Version 1: memory.limit_in_bytes.
 void take_groups(AvailableMemory& least, const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {  // "0::/user.slice/..." or "9:memory:/..."
@@ -70,8 +71,8 @@ bool is_limited(__rlimit_resource_t resource, rlimit& most) {
   return ::getrlimit(resource, &most) == 0 && most.rlim_cur != RLIM_INFINITY;
 }
 
-/// proc(5), /proc/self/statm: addresses of this process are its first number, those of data its sixth
-/// [pages].
+/// Applies the limits of address space and data.  proc(5), /proc/self/statm: the first number is the size of
+/// the address space, the sixth the size of data [pages].
 void take_addresses(AvailableMemory& least, const fs::path& root, double addresses) {
   double pages[6] = {};
   std::ifstream in(root / "proc/self/statm");

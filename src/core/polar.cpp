@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-/// cof(F) = det(F) F^-T, column by column; needs no inverse and never divides.
+/// Returns cof(F) = det(F) F^-T, column by column; needs no inverse and no division.
 Mat3 cofactor(const Mat3& F) {
   Mat3 c;
   c.col(0) = F.col(1).cross(F.col(2));
@@ -22,9 +22,9 @@ Mat3 cofactor(const Mat3& F) {
 
 /// Newton's method on X^T X = I from X0 = F, scaled after Higham (1986), "Computing the polar decomposition":
 ///   X <- (g X + X^-T / g) / 2,   g^2 = |X^-1|_F / |X|_F.
-/// Each singular value s of X goes to (g s + 1/(g s))/2 while the singular vectors stay, so the limit is R of
-/// F = R S.  Quadratic: e <- e^2/2, so a step below 1e-8 means that the iterate it led to is orthogonal to
-/// rounding.
+/// Each singular value s of X becomes (g s + 1/(g s))/2 while the singular vectors are unchanged, so the
+/// limit is R of F = R S.  Convergence is quadratic, e <- e^2/2, so after a step below 1e-8 the iterate is
+/// orthogonal to rounding.
 std::optional<Mat3> newton_rotation(const Mat3& F) {
   constexpr int kMaxIterations = 12;
   constexpr double kStepSquared = 1e-16;
@@ -41,17 +41,18 @@ std::optional<Mat3> newton_rotation(const Mat3& F) {
   return std::nullopt;
 }
 
-/// The cofactors lose digits as (largest / smallest singular value)^2; within these bounds that is harmless,
-/// and every element of a mesh in ordinary use is within them.  False for NaN.
+/// Whether F is within bounds where cofactors are accurate.  They lose digits as (largest / smallest singular
+/// value)^2; within these bounds the loss is harmless, and every element of a mesh in ordinary use is within
+/// them.  False for NaN.
 bool well_conditioned(const Mat3& F) {
   constexpr double kSmallestDet = 0.05, kLargestNormSquared = 30.0;
   return F.squaredNorm() < kLargestNormSquared && F.determinant() > kSmallestDet;
 }
 
 /// One-sided Jacobi (Hestenes): rotates pairs of columns of B = F V until all are orthogonal.  Works on F
-/// itself, never on F^T F, so that small singular values keep their digits.
+/// itself, not on F^T F, so that small singular values keep their digits.
 void orthogonalise_columns(Mat3& B, Mat3& V) {
-  constexpr int kMaxSweeps = 30;  // quadratic: 4 to 6 are usual
+  constexpr int kMaxSweeps = 30;  // Quadratic convergence: 4 to 6 are usual.
   constexpr double kRelative = 4 * std::numeric_limits<double>::epsilon(), kAbsolute = 1e-80;
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     bool rotated = false;
@@ -72,7 +73,7 @@ void orthogonalise_columns(Mat3& B, Mat3& V) {
   }
 }
 
-/// Longest column of B first; a swap negates one column, so that V stays proper.
+/// Sorts columns of B by descending length; a swap negates one column, so that V stays proper.
 void sort_columns(Mat3& B, Mat3& V) {
   for (const auto& [p, q] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}}) {
     if (B.col(p).squaredNorm() >= B.col(q).squaredNorm()) continue;
@@ -96,7 +97,7 @@ SignedSvd signed_svd(const Mat3& F) {
   }
   if (scale < std::numeric_limits<double>::min()) return {Mat3::Identity(), Vec3::Zero(), Mat3::Identity()};
 
-  constexpr double kRankOne = 1e-30;  // far below rounding: the direction of such a column means nothing
+  constexpr double kRankOne = 1e-30;  // Far below rounding: such a column has no meaningful direction.
   Mat3 B = F / scale, V = Mat3::Identity();
   orthogonalise_columns(B, V);
   sort_columns(B, V);

@@ -5,11 +5,12 @@
 namespace palpate {
 namespace {
 
-/// Below this angle the series' first term is exact to rounding, and the square of a component may underflow.
+/// Below this angle the first term of the series is exact to rounding, and the square of a component may
+/// underflow.
 constexpr double kTinyAngle = 1e-8;
 
-/// Whether q is the representative of {q, -q}: the one with w > 0; at w = 0 (180 degrees) the one whose first
-/// non-zero component is positive.
+/// Whether q is the representative of {q, -q}: w > 0, or at w = 0 (180 degrees) the first non-zero component
+/// is positive.
 bool is_canonical(const Quat& q) {
   if (q.w() != 0.0) return q.w() > 0.0;
   for (int i = 0; i < 3; ++i)
@@ -19,8 +20,8 @@ bool is_canonical(const Quat& q) {
 
 }  // namespace
 
-// q = (cos(a/2), sin(a/2) n): with w >= 0, a = 2 atan2(|v|, w) is in [0, pi] and accurate at both ends, where
-// acos and asin are not.
+// q = (cos(a/2), sin(a/2) n): with w >= 0, a = 2 atan2(|v|, w) is in [0, pi] and accurate at both ends,
+// unlike acos and asin.
 Vec3 rotation_vector(const Quat& q) {
   const double sign = is_canonical(q) ? 1.0 : -1.0;
   const Vec3 v = sign * q.vec();

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-/// Bytes of the control character at `at`; 0: there is none.
+/// Returns the length in bytes of the control character at `at`; 0 for none.
 std::size_t control_at(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
   constexpr unsigned kDelete = 0x7f, kLeadOfC1 = 0xc2, kFirstC1 = 0x80, kLastC1 = 0x9f;

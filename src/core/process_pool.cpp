@@ -27,7 +27,7 @@ void ProcessPool::prepare() { work_server::prepare(); }
 ProcessPool::ProcessPool(int jobs) : jobs_(std::max(1, jobs)), server_(work_server::connect()) {}
 
 ProcessPool::~ProcessPool() {
-  shutdown(server_, SHUT_WR);  // the server ends, and all that it has started; then its side closes
+  shutdown(server_, SHUT_WR);  // The server ends with all its processes; then its side closes.
   Notice notice;
   while (work_server::receive_bytes(server_, &notice, sizeof notice)) {}
   close(server_);
@@ -86,7 +86,7 @@ bool ProcessPool::take_notice() {
 bool ProcessPool::is_asleep(Child& child) {
   clockid_t clock{};
   timespec used{};
-  // it has ended
+  // The process has ended.
   if (clock_getcpuclockid(child.pid, &clock) != 0 || clock_gettime(clock, &used) != 0) return false;
   const double cpu_s = static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
   if (cpu_s > child.cpu_s) child.moved = wall_seconds();
@@ -133,7 +133,7 @@ void ProcessPool::wait(double most_s) {
     bool any = false;
     for (auto child = children_.begin(); child != children_.end();) {
       const auto current = child++;
-      // All that a process has written stands in the pipe once it has ended.
+      // Once a process has ended, all its output is in the pipe.
       char block[1 << 16];
       for (ssize_t n; (n = read(current->pipe, block, sizeof block)) > 0;)
         current->bytes.append(block, static_cast<std::size_t>(n));

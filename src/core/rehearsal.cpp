@@ -17,12 +17,12 @@
 namespace palpate {
 namespace {
 
-/// Statuses of the child.  Others are none of ours: a sanitizer ends a process with 1, say.
+/// Exit statuses of the child.  Others come from elsewhere: a sanitizer ends a process with 1, for example.
 constexpr int kRead = 40, kRefused = 41, kNoMemory = 42;
 
 std::atomic<int> unwanted{0};
 
-/// A second for each MiB, which is a hundred times of what reading takes.
+/// CPU limit: 20 s and one second per MiB of the file, about a hundred times the usual cost.
 rlim_t longest_s(const std::string& path) {
   constexpr rlim_t kLeast = 20;
   std::error_code none;
@@ -30,8 +30,8 @@ rlim_t longest_s(const std::string& path) {
   return kLeast + (none ? 0 : static_cast<rlim_t>(bytes >> 20));
 }
 
-/// Far more than a file of its size needs, so that a number in it that is wrong takes no memory from others.
-/// Sanitizers have terabytes of addresses of their own, and no such limit.
+/// Limits memory to far more than a file of its size needs, so that a wrong number in it cannot exhaust the
+/// machine.  Sanitizers reserve terabytes of address space; no limit is set there.
 void limit_memory([[maybe_unused]] const std::string& path) {
 #ifndef PALPATE_SANITIZED
   constexpr rlim_t kSpare = rlim_t{1} << 30, kTimesTheFile = 64;
@@ -65,17 +65,17 @@ std::string read_all(int from) {
   }
 }
 
-/// The child's life.  It never returns: what this process holds is not the child's to end.
+/// Runs the child.  Never returns: destructors of the parent's objects must not run here.
 [[noreturn]] void live(int to, const std::string& path, const std::function<void()>& read) {
-  ++unwanted;  // nothing inside it is rehearsed again
+  ++unwanted;  // No rehearsal inside the rehearsal.
   if (const int null = ::open("/dev/null", O_WRONLY); null >= 0) ::dup2(null, 1), ::dup2(null, 2);
   const rlimit no_core{0, 0}, time{longest_s(path), longest_s(path)};
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::setrlimit(RLIMIT_CPU, &time);
   limit_memory(path);
-  // also where it waits for a lock that a thread of the parent had
+  // The alarm also ends a wait for a lock that a thread of the parent held.
   constexpr unsigned kLongestWait = 600;
-  // handlers of the parent, such as one that reports a crash, are for the parent's own
+  // Handlers of the parent, such as one that reports a crash, must not run in the child.
   for (const int signal : {SIGALRM, SIGXCPU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
     std::signal(signal, SIG_DFL);
   ::alarm(kLongestWait);

@@ -11,7 +11,8 @@ Pose rigid_fit(const Points& before, const Points& after, const VecX& weights) {
   const Mat3 sum = (before.colwise() - c) * w.asDiagonal() * (after.colwise() - d).transpose();
   const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Mat3 V = svd.matrixV(), Ut = svd.matrixU().transpose();
-  const Vec3 hand(1.0, 1.0, (V * Ut).determinant());  // of a flat one the last is free: no reflection
+  // Avoids a reflection; for flat point sets the last direction is free.
+  const Vec3 hand(1.0, 1.0, (V * Ut).determinant());
   const Mat3 R = V * hand.asDiagonal() * Ut;
   return {Quat(R), d - R * c};
 }

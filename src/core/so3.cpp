@@ -5,8 +5,8 @@
 namespace palpate {
 namespace {
 
-/// Below this angle the closed forms lose digits to cancellation, and the series, cut after a^8, are exact to
-/// rounding.
+/// Below this angle the closed forms lose digits to cancellation, and the series, truncated after a^8, are
+/// exact to rounding.
 constexpr double kSeriesAngle = 0.25;
 
 }  // namespace

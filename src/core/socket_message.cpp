@@ -33,7 +33,7 @@ bool receive_bytes(int socket, void* data, std::size_t size) {
 }
 
 namespace {
-/// Room for the control message that carries one open file.
+/// Buffer for the control message that carries one open file.
 union Control {
   cmsghdr header;
   char room[CMSG_SPACE(sizeof(int))];

@@ -5,8 +5,8 @@
 
 namespace palpate {
 
-/// Polls of a waiting thread before it sleeps, some 50 us on a core of 3 GHz: longer than most serial work
-/// between two loops, far shorter than a time slice.
+/// Number of polls of a waiting thread before it sleeps, some 50 us on a 3 GHz core: longer than most serial
+/// work between two loops, far shorter than a time slice.
 constexpr int kSpins = 4000;
 
 inline void spin_once() {

@@ -22,7 +22,7 @@ constexpr double kGraceSeconds = 2.0;
 std::atomic<bool> out_of_time{false};
 void on_limit(int) { out_of_time = true; }
 
-/// The flag after `limit_s` of CPU time; a signal that ends the process some time after.
+/// Sets the flag after `limit_s` of CPU time, and a signal that ends the process some time later.
 void limit_cpu(double limit_s) {
   struct sigaction action = {};
   action.sa_handler = on_limit;
@@ -38,10 +38,11 @@ void limit_cpu(double limit_s) {
   setrlimit(RLIMIT_CORE, &none);
 }
 
-/// The terminal's Ctrl-C is the caller's to heed, as in the server; all else is as in a fresh process.
+/// Separates the process from its server.  Ctrl-C at the terminal stays ignored, as in the server: the caller
+/// handles it.  All other signals are reset as in a fresh process.
 void detach(pid_t server) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != server) _exit(1);  // it died before that
+  if (getppid() != server) _exit(1);  // The server died before prctl() took effect.
   for (int one : {SIGTERM, SIGHUP, SIGQUIT, SIGCHLD, SIGXCPU, SIGPIPE, SIGSEGV, SIGABRT})
     signal(one, SIG_DFL);
   sigset_t none;
@@ -72,7 +73,7 @@ void run_work(const Request& request, const std::string& folder, const std::stri
   const itimerval off{};
   setitimer(ITIMER_PROF, &off, nullptr);
   send(pipe, answer);
-  _exit(0);  // no destructor of the caller's process runs here
+  _exit(0);  // Destructors of the caller's process must not run here.
 }
 
 }  // namespace palpate::work_server

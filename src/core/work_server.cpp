@@ -22,12 +22,13 @@ namespace palpate::work_server {
 namespace {
 
 #ifdef __SANITIZE_THREAD__
-constexpr long kThreadsOfOurOwn = 2;  // the sanitizer has one, and knows how to be forked
+constexpr long kThreadsOfOurOwn = 2;  // The sanitizer runs one that is safe to fork.
 #else
 constexpr long kThreadsOfOurOwn = 1;
 #endif
 
-/// SIGCHLD comes when a child has ended and, by request, when the parent has: one wait for both.
+/// Waits for children and parent alike: SIGCHLD arrives when a child has ended and, by request, when the
+/// parent has.
 class FamilySignals {
  public:
   explicit FamilySignals(pid_t parent) : parent_(parent) {
@@ -39,7 +40,8 @@ class FamilySignals {
     prctl(PR_SET_PDEATHSIG, SIGCHLD);
   }
   int file() const { return file_; }
-  /// Linux sends the signal when the parent's thread that forked ends: the process may live on.
+  /// Whether the parent process is gone.  Linux sends the signal already when the parent's thread that forked
+  /// ends; the process may still live.
   bool parent_died() const { return getppid() != parent_; }
   void drain() const {
     signalfd_siginfo info;
@@ -52,7 +54,7 @@ class FamilySignals {
   sigset_t set_{};
 };
 
-/// True where the socket has something to read (or its other side is gone), false on a signal.
+/// Returns true where the socket has data (or its other side is gone), false on a signal.
 bool wait_for_request(int socket, const FamilySignals& family) {
   pollfd polled[] = {{socket, POLLIN, 0}, {family.file(), POLLIN, 0}};
   while (!family.parent_died()) {
@@ -66,7 +68,8 @@ bool wait_for_request(int socket, const FamilySignals& family) {
   return false;
 }
 
-/// The terminal's Ctrl-C, and what else is meant for the caller; what libraries print belongs to no table.
+/// Ignores Ctrl-C and other signals meant for the caller, and discards the output of libraries, which must
+/// not mix into printed tables.
 void leave_terminal() {
   for (int one : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) signal(one, SIG_IGN);
   const int nowhere = open("/dev/null", O_RDWR);
@@ -166,14 +169,14 @@ class Server {
       close(family.file());
       Server(client, self).run();
     }
-    close(client);  // without a server the pool finds its socket closed
+    close(client);  // Without a server the pool finds its socket closed.
   }
-  _exit(0);  // the servers notice
+  _exit(0);  // The servers detect it and end.
 }
 
 // --- caller's side
 
-/// This process's helper; of a process that was forked from one that has a helper: not yet its own.
+/// Helper of this process.  After a fork, `owner` differs from getpid() until the process has made its own.
 struct Helper {
   std::mutex mutex;
   pid_t owner = 0;
@@ -190,14 +193,14 @@ long thread_count() {
   return none ? 1 : static_cast<long>(std::distance(begin, end));
 }
 
-/// Two connected sockets.
+/// Makes two connected sockets.
 void make_pair(int (&ends)[2]) {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     fail("no socket can be made: {}", std::strerror(errno));
 }
 
 void make_helper(Helper& own) {
-  if (own.socket >= 0) close(own.socket);  // belongs to the process that this one was forked from
+  if (own.socket >= 0) close(own.socket);  // Belongs to the process that this one was forked from.
   own.socket = -1;
   int ends[2];
   make_pair(ends);
@@ -209,11 +212,11 @@ void make_helper(Helper& own) {
   }
   if (pid == 0) {
     close(ends[0]);
-    own.mutex.unlock();  // work may have a pool of its own, and then makes its own helper
+    own.mutex.unlock();  // Work may use a pool, and then makes another helper.
     run_helper(ends[1], caller);
   }
   close(ends[1]);
-  // Counted after the fork: a library that knows how to be forked (OpenBLAS) stops its threads before it.
+  // Counted after the fork: a library with fork handlers (OpenBLAS) stops its threads before it.
   if (const long threads = thread_count(); threads > kThreadsOfOurOwn) {
     close(ends[0]);
     while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {}
@@ -246,7 +249,7 @@ int connect() {
   close(ends[1]);
   if (sent) return ends[0];
   close(ends[0]);
-  own.owner = 0;  // the next pool tries to make another
+  own.owner = 0;  // The next pool tries to make another.
   fail("the helper process that starts the runs has died");
 }
 

@@ -16,14 +16,14 @@
 namespace palpate::workers {
 namespace {
 
-constexpr int kMost = 256;  ///< threads
+constexpr int kMost = 256;  ///< Threads.
 
-thread_local int t_count = 0;         ///< of the innermost Count, or of the loop that runs here; 0: neither
-thread_local bool t_in_loop = false;  ///< this thread runs a task
+thread_local int t_count = 0;         ///< Value of the innermost Count or of the running loop; 0 for neither.
+thread_local bool t_in_loop = false;  ///< This thread runs a task.
 
-// One word, `ticket_`, holds the loop's number (24 bits), its tasks and the next of them (20 bits each).  A
-// thread that takes a task replaces the word by its successor (compare and exchange): when that succeeds, the
-// loop was open from the load to the exchange, and what was read of the loop in between is valid.  So the
+// The word `ticket_` packs the loop's number (24 bits), its number of tasks and the next task (20 bits each).
+// A thread takes a task by replacing the word by its successor (compare and exchange): when that succeeds,
+// the loop was open from the load to the exchange, and the loop's data read in between are valid.  So the
 // caller need not wait for threads that slept through the loop, only for the tasks.
 class Pool {
  public:
@@ -90,7 +90,7 @@ class Pool {
     }
   }
 
-  /// Takes tasks until none is left; takes none where the loop is for fewer threads.
+  /// Takes tasks until none is left; returns at once where the loop uses fewer threads.
   void take(int worker) {
     std::uint64_t ticket = ticket_.load();
     const int count_outside = t_count;
@@ -148,8 +148,8 @@ class Pool {
 std::atomic<Pool*> g_pool{nullptr};
 std::atomic<int> g_count{1};
 
-/// In a forked child the threads are gone, and the mutex may be held by none of those that are left: it
-/// starts with a pool of its own, and leaves the other as it is.
+/// Creates the pool, and a new one in a forked child: there the threads are gone, and a lost thread may hold
+/// the mutex.  The parent's pool is left as it is.
 struct FirstPool {
   FirstPool() : own(new Pool) {
     g_pool = own;

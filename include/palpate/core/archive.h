@@ -15,32 +15,34 @@
 
 namespace palpate {
 
-/// What an object must keep to go on later from where it is now, by name, to the last bit.
+/// Checkpoint of an object: the named values that it needs to resume later from its present state, bitwise.
 ///
-/// One function serves both directions, so that they cannot differ:
+/// One function serves saving and restoring, so that the two cannot differ:
 ///     void archive(Archive& a) { a("x", x_); a("v", v_); a("axis", axis_); }
-/// An archive that keeps takes the values; one that gives back sets them, and throws where a value is not
-/// there or has another size or kind.
+/// A saving archive copies the values; a restoring one sets them, and throws Error where a value is missing
+/// or has another size or kind.
 class Archive {
  public:
-  /// Numbers, whole numbers, or bytes.
+  /// Value of one entry: doubles, integers, or bytes.
   using Value = std::variant<std::vector<double>, std::vector<std::int64_t>, std::string>;
-  /// By full names: "bodies.state.q".
+  /// Entries by full name, for example "bodies.state.q".
   using Values = std::map<std::string, Value, std::less<>>;
 
-  /// Keeps.
+  /// Makes an archive that saves.
   Archive() = default;
-  /// Gives back.  @param values  of one that kept  @param where  what messages begin with: the file
+  /// Makes an archive that restores.
+  /// @param values  entries of an archive that saved
+  /// @param where  beginning of error messages: the file
   Archive(Values values, std::string where);
-  bool gives_back() const { return gives_back_; }   ///< else it keeps
-  const Values& values() const { return values_; }  ///< all that was kept, or is there to be given back
-  /// @throws Error where something was kept that nobody asked back
+  bool gives_back() const { return gives_back_; }   ///< Whether it restores; otherwise it saves.
+  const Values& values() const { return values_; }  ///< All entries, saved or to be restored.
+  /// Checks that every entry was restored.  @throws Error for an entry that no object requested
   void check_all_given_back() const;
 
-  /// Names are of this group while the object lives: "limiter.last_time".
+  /// Scope in which names get a prefix: "limiter.last_time".
   class Group {
    public:
-    /// Begins it, within those that live already.
+    /// Appends `name` to the prefix of the enclosing groups.
     Group(Archive& archive, std::string_view name) : archive_(archive), before_(archive.prefix_) {
       archive_.prefix_ += name;
       archive_.prefix_ += '.';
@@ -54,13 +56,13 @@ class Archive {
     std::string before_;
   };
 
-  /// One value under a name that is new in its group: a number, a truth value or enumeration, a text, a list
-  /// of numbers, a matrix, a rotation, a pose, a twist, a wrench, or an object that can archive itself.
-  /// @throws Error where it is to be given back and is not there or does not fit
+  /// Archives one value under a name that is unique in its group: a number, boolean, enumeration, text,
+  /// list of numbers, matrix, rotation, pose, twist, wrench, or an object that has an archive() function.
+  /// @throws Error on restoring, where the value is missing or does not fit
   void operator()(std::string_view name, double& value) { numbers(name, {&value, 1}); }
-  void operator()(std::string_view name, std::string& text);          ///< see above
-  void operator()(std::string_view name, std::vector<double>& list);  ///< see above
-  /// See above.
+  void operator()(std::string_view name, std::string& text);          ///< Archives a text.
+  void operator()(std::string_view name, std::vector<double>& list);  ///< Archives a list of numbers.
+  /// Archives an integer, boolean or enumeration.
   template <class Integer>
   requires(std::integral<Integer> || std::is_enum_v<Integer>) void operator()(std::string_view name,
                                                                               Integer& value) {
@@ -68,7 +70,7 @@ class Archive {
     integer(name, kept);
     value = static_cast<Integer>(kept);
   }
-  /// See above; one without a fixed size gets it.
+  /// Archives a matrix; one of dynamic size is resized on restoring.
   template <int Rows, int Columns>
   void operator()(std::string_view name, Eigen::Matrix<double, Rows, Columns>& matrix) {
     if constexpr (Rows == Eigen::Dynamic || Columns == Eigen::Dynamic) {
@@ -83,18 +85,20 @@ class Archive {
       numbers(name, {matrix.data(), static_cast<std::size_t>(matrix.size())});
     }
   }
-  void operator()(std::string_view name, Quat& q) { numbers(name, {q.coeffs().data(), 4}); }  ///< see above
-  void operator()(std::string_view name, Pose& pose);                                         ///< see above
-  void operator()(std::string_view name, Twist& twist);                                       ///< see above
-  void operator()(std::string_view name, Wrench& wrench);                                     ///< see above
-  /// An object that can archive itself.
+  /// Archives a rotation.
+  void operator()(std::string_view name, Quat& q) { numbers(name, {q.coeffs().data(), 4}); }
+  void operator()(std::string_view name, Pose& pose);      ///< Archives a pose.
+  void operator()(std::string_view name, Twist& twist);    ///< Archives a twist.
+  void operator()(std::string_view name, Wrench& wrench);  ///< Archives a wrench.
+  /// Archives an object by its archive() function, in a group called `name`.
   template <class Object>
   requires requires(Object& object, Archive& archive) { object.archive(archive); }
   void operator()(std::string_view name, Object& object) {
     const Group group(*this, name);
     object.archive(*this);
   }
-  /// Elements of a sequence whose length is known on both sides; f(element) archives one.
+  /// Archives the elements of a sequence whose length is the same on saving and restoring; f(element)
+  /// archives one.
   template <class Sequence, class F>
   void each(std::string_view name, Sequence& sequence, F&& f) {
     std::size_t i = 0;
@@ -103,7 +107,7 @@ class Archive {
       f(element);
     }
   }
-  /// Likewise of many small elements, in one list of numbers; visit(f, element) calls f for each member:
+  /// Archives many small elements as one list of numbers.  visit(f, element) calls f for each member:
   /// numbers, vectors, poses, twists, wrenches.
   template <class Sequence, class Visit>
   void rows(std::string_view name, Sequence& sequence, Visit&& visit) {
@@ -121,7 +125,8 @@ class Archive {
     if (!gives_back_) return keep(name, std::move(all));
     check_count(name, all.size(), next);
   }
-  /// A sequence that gets its length from here; of elements that can be made of nothing.
+  /// Archives a sequence with its length; restoring resizes it, so the elements must be
+  /// default-constructible.
   template <class Sequence, class F>
   void list(std::string_view name, Sequence& sequence, F&& f) {
     std::size_t size = sequence.size();
@@ -130,9 +135,9 @@ class Archive {
     sequence.resize(size);
     each(name, sequence, f);
   }
-  /// Numbers whose count both sides know.
+  /// Archives numbers whose count is the same on saving and restoring.
   void numbers(std::string_view name, std::span<double> values);
-  /// A plain record as it lies in memory: for the same program alone.
+  /// Archives a trivially copyable record as raw bytes: readable only by the same program.
   template <class Record>
   requires std::is_trivially_copyable_v<Record>
   void bytes(std::string_view name, Record& record) {

@@ -11,77 +11,78 @@
 
 namespace palpate {
 
-/// Values that a number may take, and what to do about one outside.  The loader of scenes and the part that
-/// uses the number check it by the same Range.
+/// Admissible interval of a number, with the remedy for a value outside.  The scene loader and the part that
+/// uses the number check it with the same Range.
 struct Range {
-  double low = -std::numeric_limits<double>::infinity();  ///< least value
-  double high = std::numeric_limits<double>::infinity();  ///< largest value
-  bool low_open = false, high_open = false;               ///< whether the bounds themselves are outside
-  std::string_view remedy = {};                           ///< for the end of a message: "1e-8 is usual"
+  double low = -std::numeric_limits<double>::infinity();  ///< Lower bound.
+  double high = std::numeric_limits<double>::infinity();  ///< Upper bound.
+  bool low_open = false, high_open = false;               ///< Whether the bound itself is excluded.
+  std::string_view remedy = {};                           ///< End of the error message: "1e-8 is usual".
 
-  /// (0, infinity).
+  /// Returns (0, infinity).
   static constexpr Range positive(std::string_view remedy = {}) {
     Range r = at_least(0.0, remedy);
     r.low_open = true;
     return r;
   }
-  /// [low, infinity).
+  /// Returns [low, infinity).
   static constexpr Range at_least(double low, std::string_view remedy = {}) {
     Range r;
     r.low = low;
     r.remedy = remedy;
     return r;
   }
-  /// [low, high].
+  /// Returns [low, high].
   static constexpr Range closed(double low, double high, std::string_view remedy = {}) {
     Range r = at_least(low, remedy);
     r.high = high;
     return r;
   }
-  /// (low, high).
+  /// Returns (low, high).
   static constexpr Range open(double low, double high, std::string_view remedy = {}) {
     Range r = closed(low, high, remedy);
     r.low_open = r.high_open = true;
     return r;
   }
 
-  /// NaN and infinity are in no range.
+  /// Whether x lies in the range; false for NaN and infinity.
   bool holds(double x) const;
-  std::string text() const;  ///< "> 0", ">= 1", "[0, 1]"; empty: any number
-  /// "must be positive; 1e-8 is usual"
+  std::string text() const;  ///< "> 0", ">= 1", "[0, 1]"; empty for an unbounded range.
+  /// Returns the requirement for an error message: "must be positive; 1e-8 is usual".
   std::string demand() const;
 };
 
-/// The value of a key as a scene gives it.
+/// Value of a scene key.
 using Setting = std::variant<bool, double, std::string, Vec3>;
-/// The keys of a table that have a value, by name.
+/// Values of a scene table, by key.
 using Settings = std::map<std::string, Setting>;
-std::string to_toml(double value);  ///< so that it reads back exactly, and as a number with a point
-/// As a scene file writes it: text in quotes, a vector as an array.
+std::string to_toml(double value);  ///< Shortest decimal that reads back exactly, always a TOML float.
+/// Returns the value as a scene file writes it: text in quotes, a vector as an array.
 std::string to_toml(const Setting& value);
 
-/// One key of a scene that a registry entry uses.  Keys of an entry that no other table of keys describes
-/// (those of an obstacle) have their default and meaning here as well.
+/// Key of the scene that a registry entry uses.  For entries whose keys no other table describes (obstacles),
+/// it also holds default and meaning.
 struct PartKey {
-  std::string name;       ///< as it stands in the scene's table
-  Range range = {};       ///< of each number; narrower than the key's own where the entry can take less
-  bool required = false;  ///< a scene that leaves it out is refused
-  std::optional<Setting> fallback = {};  ///< the default, and with it the type
-  std::string meaning = {};              ///< one line
-  /// what is wrong beyond type and range, in words that follow "KEY = VALUE"; empty: nothing
+  std::string name;  ///< Key in the scene's table.
+  /// Range of each number; narrower than the key's general range where the entry requires it.
+  Range range = {};
+  bool required = false;                 ///< Whether a scene without the key is rejected.
+  std::optional<Setting> fallback = {};  ///< Default value; its type is the type of the key.
+  std::string meaning = {};              ///< Description of one line.
+  /// Returns the fault beyond type and range, as the continuation of "KEY = VALUE"; empty for none.
   std::string (*fault)(const Setting& value) = nullptr;
 };
 
-/// Keys by their names alone: whatever the key's own range holds will do.
+/// Returns PartKeys with names only: no restriction beyond the keys' general ranges.
 std::vector<PartKey> part_keys(const std::vector<std::string>& names);
 
-const char* type_name(const Setting& like);    ///< "number"
-const char* type_demand(const Setting& like);  ///< "must be a number"
+const char* type_name(const Setting& like);    ///< Name of the value's type: "number".
+const char* type_demand(const Setting& like);  ///< Requirement for an error message: "must be a number".
 
-/// What is wrong with a value, in words that follow "KEY = VALUE"; empty: nothing.
+/// Returns the fault of a value, as the continuation of "KEY = VALUE"; empty for none.
 std::string fault_of(const PartKey& key, const Setting& value);
 
-/// `given` with the defaults of what it leaves out.
+/// Returns `given`, completed with defaults.
 /// @throws Error beginning with `what` for a key that is not in `keys`, is missing, or has a bad value
 Settings complete(const std::vector<PartKey>& keys, const Settings& given, const std::string& what);
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// Messages to the person at the terminal: spdlog on standard error, level set once by the command line.
+/// Messages to the user: spdlog on standard error; the command line sets the level once.
 namespace palpate::log {
 
 using spdlog::debug;
@@ -12,11 +12,11 @@ using spdlog::error;
 using spdlog::info;
 using spdlog::warn;
 
-/// Pattern and level; for a program's main, before it changes `stderr`.  A library user who never calls it
-/// gets spdlog's default.  Messages are printable() then.
+/// Sets pattern and level, and makes messages printable().  Called by a program's main before it redirects
+/// `stderr`; without the call, a user of the library gets spdlog's default logger.
 void configure(bool quiet, bool verbose);
 
-/// Every different warning since configure(), in the order of its first: results keep them (summary.json).
+/// Returns the distinct warnings since configure(), in order of first occurrence; summary.json stores them.
 std::vector<std::string> warnings();
 
 }  // namespace palpate::log

@@ -8,13 +8,13 @@ struct Pose {
   Quat rotation = Quat::Identity();  ///< R_AB, of unit length
   Vec3 translation = Vec3::Zero();   ///< [m]
 
-  /// The point p_B, given in B [m], in A.
+  /// Returns in frame A the point p_B given in frame B [m].
   Vec3 operator*(const Vec3& p) const { return rotation * p + translation; }
-  /// X_AB X_BC = X_AC.
+  /// Returns X_AC = X_AB X_BC.
   Pose operator*(const Pose& other) const {
     return {rotation * other.rotation, rotation * other.translation + translation};
   }
-  /// X_BA.
+  /// Returns X_BA.
   Pose inverse() const { return {rotation.conjugate(), -(rotation.conjugate() * translation)}; }
 };
 
@@ -22,15 +22,15 @@ struct Pose {
 struct Twist {
   Vec3 angular = Vec3::Zero();  ///< angular velocity [rad/s]
   Vec3 linear = Vec3::Zero();   ///< velocity of the frame's origin [m/s]
-  /// Velocity of the point at `arm` = p - origin, world axes.
+  /// Returns the velocity of the point at `arm` = p - origin [m/s], world axes.
   Vec3 at(const Vec3& arm) const { return linear + angular.cross(arm); }
 };
 
 /// Moment about the frame's origin [N m] and force [N], world axes.
 struct Wrench {
-  Vec3 moment = Vec3::Zero();  ///< about the frame's origin [N m]
-  Vec3 force = Vec3::Zero();   ///< [N]
-  /// Sum of two wrenches about the same point.
+  Vec3 moment = Vec3::Zero();  ///< Moment about the frame's origin [N m].
+  Vec3 force = Vec3::Zero();   ///< Force [N].
+  /// Adds a wrench about the same point.
   Wrench& operator+=(const Wrench& o) {
     moment += o.moment;
     force += o.force;
@@ -38,14 +38,14 @@ struct Wrench {
   }
 };
 
-/// Rotation vector of a unit quaternion, angle in [0, pi] [rad].  Accurate for small angles; both signs of q
-/// give the same result.
+/// Returns the rotation vector of a unit quaternion, with angle in [0, pi] [rad].  Accurate for small angles;
+/// q and -q give the same result.
 Vec3 rotation_vector(const Quat& q);
 
-/// The unit quaternion of a rotation vector [rad].
+/// Returns the unit quaternion of a rotation vector [rad].
 Quat quaternion_of(const Vec3& rotation_vector);
 
-/// The 6-vector (angular, linear) [rad, m] that carries `from` to `to`: rotation vector of
+/// Returns the 6-vector (angular, linear) [rad, m] that carries `from` to `to`: rotation vector of
 /// to.rotation * from.rotation^-1 (world axes) and to.translation - from.translation.
 Vec6 pose_difference(const Pose& from, const Pose& to);
 

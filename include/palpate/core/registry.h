@@ -9,11 +9,12 @@
 
 namespace palpate {
 
-/// One line of a registry, which maps a name in a scene to a part.  `order` is the theoretical order where
-/// there is one, else 0.  `keys` are those of the scene's table that this entry uses and that not every entry
-/// of the registry does.
+/// Entry of a registry, which maps a name in a scene to a part.  `order` is the theoretical order, or 0 where
+/// the notion does not apply.  `keys` lists the keys of the scene's table that this entry uses and some other
+/// entries of the registry do not.
 template <class Make>
 struct RegistryEntry {
+  /// Builds the entry.
   /// @param its_name, its_summary, its_order, its_make, its_keys  the members of those names
   RegistryEntry(std::string its_name, std::string its_summary, int its_order, Make its_make,
                 std::vector<PartKey> its_keys = {})
@@ -22,18 +23,18 @@ struct RegistryEntry {
         order(its_order),
         make(std::move(its_make)),
         keys(std::move(its_keys)) {}
-  std::string name;           ///< what a scene, the command line and reports call the part
-  std::string summary;        ///< one line
-  int order;                  ///< theoretical order; 0 where there is none
-  Make make;                  ///< makes the part, or describes it
-  std::vector<PartKey> keys;  ///< keys of the scene's table that this entry alone uses
+  std::string name;           ///< Name of the part in scenes, on the command line and in reports.
+  std::string summary;        ///< Description of one line.
+  int order;                  ///< Theoretical order; 0 where there is none.
+  Make make;                  ///< Builds or describes the part.
+  std::vector<PartKey> keys;  ///< Keys of the scene's table that not every entry uses.
 };
 
 template <class Make>
-/// A registry whose entries have nothing more.
+/// Registry whose entries have no further members.
 using Registry = std::vector<RegistryEntry<Make>>;
 
-/// A registry is a vector of entries that have a `name`: RegistryEntry, or a struct with more members.
+/// Returns the names of a registry: a vector of RegistryEntry, or of any struct with a member `name`.
 template <class Entry>
 std::vector<std::string> names(const std::vector<Entry>& registry) {
   std::vector<std::string> out;
@@ -41,7 +42,7 @@ std::vector<std::string> names(const std::vector<Entry>& registry) {
   return out;
 }
 
-/// The entry called `name`; throws Error naming `what` and the nearest known name.
+/// Returns the entry called `name`.  @throws Error that mentions `what` and the nearest known name
 template <class Entry>
 const Entry& find(const std::vector<Entry>& registry, std::string_view name, std::string_view what) {
   for (const auto& entry : registry)

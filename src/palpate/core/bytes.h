@@ -7,27 +7,32 @@
 #include "palpate/core/error.h"
 #include "palpate/core/types.h"
 
-/// Plain data as bytes and back, bit for bit: between a run's own process and the study, and into the study's
+/// Serialization of plain data to bytes, bitwise: between a run's process and the study, and into the study's
 /// database.
 namespace palpate {
 
+/// Appends values to a byte string; texts and vectors are preceded by their length.
 class ByteWriter {
  public:
+  /// Appends a number or an enumeration.
   template <class T>
   ByteWriter& put(const T& value) {
     static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
     return *this;
   }
+  /// Appends the length and the characters.
   ByteWriter& put(const std::string& text) {
     put(text.size());
     bytes_ += text;
     return *this;
   }
+  /// Appends the length and the values.
   ByteWriter& put(const VecX& values) {
     return put_range(values.data(), static_cast<std::size_t>(values.size()));
   }
   ByteWriter& put(const std::vector<double>& values) { return put_range(values.data(), values.size()); }
+  /// Returns all bytes; the writer is empty afterwards.
   std::string take() { return std::move(bytes_); }
 
  private:
@@ -39,10 +44,12 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads in the order of writing.  @throws Error where the bytes end too soon
+/// Reads values in the order of writing.  @throws Error where the bytes end too soon
 class ByteReader {
  public:
+  /// @param bytes  must outlive the reader
   explicit ByteReader(const std::string& bytes) : bytes_(bytes) {}
+  /// Reads the next value: a number, enumeration, std::string, VecX or std::vector<double>.
   template <class T>
   T get() {
     if constexpr (std::is_same_v<T, std::string>) {
@@ -64,6 +71,7 @@ class ByteReader {
       return value;
     }
   }
+  /// Whether all bytes have been read.
   bool at_end() const { return at_ == bytes_.size(); }
 
  private:

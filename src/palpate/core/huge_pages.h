@@ -4,12 +4,13 @@
 
 namespace palpate {
 
-/// Asks the system to back this memory by huge pages (2 MiB on x86) as far as whole ones lie in it; contents
-/// stay.  A processor's TLB holds some thousand translations (of 4 KiB each: about 16 MiB), so arrays beyond
-/// that pay a walk through the page tables at nearly every jump.  Worth it for arrays that live long; nothing
-/// happens where the system has none to give.
+/// Requests huge pages (2 MiB on x86) for the whole pages inside this memory; contents are kept.  A
+/// processor's TLB holds some thousand translations (4 KiB each: about 16 MiB), so random access to larger
+/// arrays costs a page walk nearly every time.  Worthwhile for long-lived arrays; no effect where the system
+/// has no huge pages available.
 void prefer_huge_pages(const void* memory, std::size_t bytes);
 
+/// Requests huge pages for the capacity of a vector.
 template <class T, class A>
 void prefer_huge_pages(const std::vector<T, A>& v) {
   prefer_huge_pages(v.data(), v.capacity() * sizeof(T));

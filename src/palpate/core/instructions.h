@@ -1,21 +1,25 @@
 #pragma once
 #include <string_view>
 
-/// Instruction sets that kernels are compiled for; which one is used is chosen at run time.
+/// Instruction sets that kernels are compiled for; the one in use is chosen at run time.
 namespace palpate {
 
+/// Instruction sets in ascending order of width.
 enum class Instructions { kBaseline, kAvx2, kAvx512 };
 
 std::string_view name_of(Instructions set);  ///< "baseline", "avx2" or "avx512"
-/// Whether this processor has it.
+/// Whether this processor supports the set.
 bool has_instructions(Instructions set);
-/// @param name  "baseline", "avx2" or "avx512"  @return whether there is such a set and this processor has it
+/// Finds a set by name.  @param name  "baseline", "avx2" or "avx512"  @return whether the set exists and this
+/// processor supports it
 bool find_instructions(std::string_view name, Instructions& set);
-/// @param wanted  a name, or empty: the widest  @param widest  that the processor has; it has all before it
-/// @throws Error for another name, and for a set that is wider
+/// Returns the requested set.
+/// @param wanted  name of a set, or empty for `widest`
+/// @param widest  widest set that the processor supports; it supports all narrower ones
+/// @throws Error for an unknown name, and for a set wider than `widest`
 Instructions choose_instructions(std::string_view wanted, Instructions widest);
-/// The widest that this processor has; the environment variable PALPATE_INSTRUCTIONS may name another.
-/// @throws Error when that is not to be had.
+/// Returns the widest set that this processor supports, or the one that the environment variable
+/// PALPATE_INSTRUCTIONS specifies.  @throws Error when that one is unknown or unsupported
 Instructions best_instructions();
 
 }  // namespace palpate

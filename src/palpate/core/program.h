@@ -3,13 +3,13 @@
 
 namespace palpate {
 
-/// The file of the program that runs, without links.  Where /proc is not mounted, the name that it was
-/// started by is taken, as the kernel hands it over.
+/// Returns the file of the running program, with links resolved.  Where /proc is not mounted, the name that
+/// the kernel recorded at the start (AT_EXECFN) is resolved instead.
 /// @throws Error where neither leads to a file
 std::string program_path();
 
-/// The folder for temporary files: TMPDIR, or /tmp.
-/// @throws Error where that is no folder, with what to do
+/// Returns the folder for temporary files: TMPDIR, or /tmp.
+/// @throws Error with the remedy, where that is no folder
 std::string temporary_folder();
 
 }  // namespace palpate

@@ -2,26 +2,27 @@
 #include <functional>
 #include <string>
 
-/// Files that a library of others reads.  HDF5, CGAL and Gmsh trust the bytes that they are given: damaged
-/// ones make them read beyond their memory, or ask for all of the machine's.  So a child process reads such a
-/// file first.  Where it dies, this process refuses the file, and lives.
+/// Sandboxed reading of files through third-party libraries.  HDF5, CGAL and Gmsh trust their input: damaged
+/// files make them read out of bounds or request all of the machine's memory.  Therefore a child process
+/// reads such a file first; where the child dies, this process rejects the file and survives.
 namespace palpate {
 
-/// Calls `read` in a child process (fork; it changes nothing here), and returns where that went well.  The
-/// child has a bounded processor time, and prints nothing.  Inside another rehearsal, it does nothing.
-/// @param path     of the file, for messages
-/// @param library  that reads it: "HDF5"
-/// @throws Error with the message of the Error that `read` threw in the child, or one that says how it died
+/// Calls `read` in a child process (fork; this process is not changed), and returns if it succeeded.  The
+/// child has bounded CPU time and memory, and prints nothing.  No effect inside another rehearsal.
+/// @param path     file that is read, for messages
+/// @param library  library that reads it: "HDF5"
+/// @throws Error with the message of the Error that `read` threw in the child, or with the cause of the
+///   child's death
 void rehearse(const std::string& path, const char* library, const std::function<void()>& read);
 
-/// `read` after its rehearsal.
+/// Calls `read` after its rehearsal in a child process, and returns its result.
 template <class Read>
 auto rehearsed(const std::string& path, const char* library, const Read& read) {
   rehearse(path, library, [&] { read(); });
   return read();
 }
 
-/// While one lives, nothing is rehearsed: for tests that want to see a reader's own faults.
+/// Scope in which nothing is rehearsed, for tests of a reader's errors.
 class WithoutRehearsal {
  public:
   WithoutRehearsal();

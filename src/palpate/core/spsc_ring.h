@@ -6,15 +6,15 @@
 
 namespace palpate {
 
-/// A bounded queue between one writing and one reading thread, without locks (Lamport 1983): each index is
-/// written by one side alone.  Memory is taken once, at construction.
+/// Bounded lock-free queue between one writing and one reading thread (Lamport 1983): each index is written
+/// by one side alone.  Memory is allocated once, at construction.
 template <class T>
 class SpscRing {
  public:
-  /// @param capacity  entries at least; rounded up to a power of two
+  /// @param capacity  minimum number of entries; rounded up to a power of two
   explicit SpscRing(std::size_t capacity) : slots_(std::bit_ceil(capacity)) {}
 
-  /// The writer's: false, and nothing changed, where the ring is full.
+  /// Appends a value (writing thread).  Returns false, without any change, where the ring is full.
   bool push(const T& value) {
     const std::size_t end = end_.load(std::memory_order_relaxed);
     if (end - begin_.load(std::memory_order_acquire) == slots_.size()) return false;
@@ -23,7 +23,7 @@ class SpscRing {
     return true;
   }
 
-  /// The reader's: false where the ring is empty.
+  /// Removes the oldest value (reading thread).  Returns false where the ring is empty.
   bool pop(T& value) {
     const std::size_t begin = begin_.load(std::memory_order_relaxed);
     if (begin == end_.load(std::memory_order_acquire)) return false;
@@ -36,8 +36,8 @@ class SpscRing {
 
  private:
   std::vector<T> slots_;
-  alignas(64) std::atomic<std::size_t> begin_{0};  ///< of the reader
-  alignas(64) std::atomic<std::size_t> end_{0};    ///< of the writer
+  alignas(64) std::atomic<std::size_t> begin_{0};  ///< Index of the reader.
+  alignas(64) std::atomic<std::size_t> end_{0};    ///< Index of the writer.
 };
 
 }  // namespace palpate

@@ -7,19 +7,20 @@
 
 namespace palpate {
 
-/// A few threads that work together on one computation, repeatedly: the caller and size() - 1 of the
+/// Team of threads that repeatedly work together on one computation: the caller and size() - 1 threads of the
 /// process's pool (workers.h).  A waiting thread spins for some tens of microseconds and then sleeps: on a
-/// machine with fewer free cores than threads a spinning team costs seconds.  One caller at a time.  An
-/// exception of a worker ends the program: give it work that does not throw.
+/// machine with fewer free cores than threads a spinning team costs seconds.  One caller at a time.  Work
+/// must not throw: an exception in a worker ends the program.
 class Team {
  public:
+  /// @param size  number of threads, including the caller; at least 1
   explicit Team(int size);
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
   int size() const { return size_; }
 
-  /// Calls work(k) for k = 0 ... size() - 1, one thread each, the caller being one of them; returns when all
-  /// have returned.  Allocates nothing once the pool has its threads.
+  /// Calls work(k) for k = 0 ... size() - 1, one thread each, including the caller; returns when all have
+  /// returned.  Allocates nothing once the pool has its threads.
   template <class Work>
   void run(Work&& work) {
     using W = std::remove_reference_t<Work>;
@@ -28,7 +29,7 @@ class Team {
         size_, [](void* w, int k, int) { (*static_cast<W*>(w))(k); },
         const_cast<std::remove_const_t<W>*>(&work));
   }
-  /// Barrier, inside run: waits until every thread has reached it.
+  /// Waits until every thread has reached the barrier; inside run() only.
   void barrier();
 
  private:
