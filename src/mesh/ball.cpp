@@ -7,8 +7,8 @@
 #include "palpate/mesh/generators.h"
 #include "rings.h"
 
-// The ball is cut into 20 sectors over the faces of an icosahedron; a sector is nearly a regular tetrahedron
-// (edges 1 and 1.05), so shells of it cut like a tetrahedral lattice give nearly regular elements everywhere.
+// The ball is cut into 20 sectors over the faces of an icosahedron.  A sector is nearly a regular tetrahedron
+// (edges 1 and 1.05), so its shells, cut like a tetrahedral lattice, give nearly regular elements everywhere.
 // A point on a shell of frequency m is given by the weights (i, j, k), i + j + k = m, of the sector's three
 // corner directions, and lies at the shell's radius.
 namespace palpate::mesh {
@@ -47,8 +47,8 @@ const Icosahedron& icosahedron() {
   return out;
 }
 
-/// The nodes of one shell.  Points on an edge or corner of a sector are shared: they are identified by
-/// corners and weights, zeros left out.
+/// Nodes of one shell.  Points on an edge or corner of a sector are shared: they are identified by their
+/// nonzero corner weights.
 class Shell {
  public:
   Shell(const Ring& ring, Builder& builder) : ring_(ring) {
@@ -94,20 +94,20 @@ void for_each_place(int sum, Use use) {
 }
 const Weights kUnit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
-/// Four tetrahedra around the shortest of an octahedron's diagonals; pairs[i] are opposite corners.
+/// Adds four tetrahedra around the shortest of an octahedron's diagonals; pairs[i] are opposite corners.
 void add_octahedron(Builder& builder, const std::array<std::array<int, 2>, 3>& pairs) {
   std::size_t axis = 0;
   const auto length = [&](std::size_t i) {
     return (builder.point(pairs[i][0]) - builder.point(pairs[i][1])).norm();
   };
   for (const std::size_t i : {1u, 2u})
-    if (length(i) < length(axis) * (1 - 1e-9)) axis = i;  // ties go to the first on any machine
+    if (length(i) < length(axis) * (1 - 1e-9)) axis = i;  // ties go to the first, on every machine
   const auto &b = pairs[(axis + 1) % 3], &c = pairs[(axis + 2) % 3];
   for (const auto& [p, q] : {std::pair{b[0], c[0]}, {c[0], b[1]}, {b[1], c[1]}, {c[1], b[0]}})
     builder.add_tet(pairs[axis][0], pairs[axis][1], p, q);
 }
 
-/// Elements between frequency m and m - 1: the layer of a tetrahedral lattice.
+/// Adds the elements between frequency m and m - 1: the layer of a tetrahedral lattice.
 void add_layer(Builder& builder, std::size_t s, const Shell& outer, const Shell& inner) {
   const auto P = [&](const Weights& w) { return outer.node(s, w); };
   const auto Q = [&](const Weights& w) { return inner.node(s, w); };
@@ -122,8 +122,8 @@ void add_layer(Builder& builder, std::size_t s, const Shell& outer, const Shell&
   });
 }
 
-/// Elements between frequency m and m / 2: over each inner triangle (a, b, c) four outer ones, with corners
-/// at 2a, 2b, 2c and a+b, b+c, c+a.
+/// Adds the elements between frequency m and m / 2: each inner triangle (a, b, c) faces four outer ones, with
+/// corners at 2a, 2b, 2c and a+b, b+c, c+a.
 void add_halving_layer(Builder& builder, std::size_t s, const Shell& outer, const Shell& inner) {
   const auto P = [&](const Weights& w) { return outer.node(s, w); };
   const auto Q = [&](const Weights& w) { return inner.node(s, w); };
@@ -142,7 +142,7 @@ void add_halving_layer(Builder& builder, std::size_t s, const Shell& outer, cons
 }  // namespace
 
 int sphere_subdivisions(double radius, double element_size) {
-  // An edge of the icosahedron spans 1.107 rad, the radius 1: 1.05 is between.
+  // An edge of the icosahedron spans an arc of 1.107 radii, the layers 1 radius in depth: 1.05 is between.
   return std::max(1, static_cast<int>(std::lround(1.05 * radius / element_size)));
 }
 

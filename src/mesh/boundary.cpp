@@ -10,7 +10,7 @@
 namespace palpate::mesh {
 namespace {
 
-/// One face of one tetrahedron; equal faces have equal `nodes`, which are sorted.
+/// One face of one tetrahedron; equal faces have equal, sorted `nodes`.
 struct NumberedSide {
   std::array<int, 3> nodes;
   int tet, face;
@@ -28,7 +28,7 @@ std::vector<NumberedSide> sides(const Tets& tets) {
   return out;
 }
 
-/// The sides whose nodes no other side has, in the order of the tetrahedra.
+/// Returns the sides that belong to one tetrahedron, in the order of the tetrahedra.
 std::vector<NumberedSide> single_sides(std::vector<NumberedSide> all) {
   std::sort(all.begin(), all.end(),
             [](const NumberedSide& a, const NumberedSide& b) { return a.nodes < b.nodes; });
@@ -72,7 +72,7 @@ Boundary boundary(const TetMesh& mesh) {
 }
 
 // Divergence theorem with the field x/3: V = sum over faces of (a - o) . ((b - o) x (c - o)) / 6 for any o;
-// the middle of the vertices keeps the terms small.
+// the mean of the vertices keeps the terms small.
 double enclosed_volume(const TriMesh& surface) {
   if (surface.vertices.cols() == 0) return 0.0;
   const Vec3 o = surface.vertices.rowwise().mean();

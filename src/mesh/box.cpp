@@ -4,7 +4,7 @@
 #include "palpate/mesh/generators.h"
 
 // A cube is five tetrahedra: one at each corner of even i + j + k, and the regular one between the four odd
-// corners.  Every diagonal of a face then joins two odd nodes, whichever cell it is seen from: faces match.
+// corners.  Every diagonal of a face then joins two odd nodes in both adjacent cells, so that faces match.
 namespace palpate::mesh {
 namespace {
 
@@ -41,7 +41,7 @@ void add_cell(Lattice& lattice, int i, int j, int k) {
   lattice.builder.add_tet(node(odd), node(odd ^ 3), node(odd ^ 5), node(odd ^ 6));
 }
 
-/// The quads of the side where coordinate `axis` is 0 or at its end, cut between their odd corners.
+/// Adds the quads of the side where coordinate `axis` is 0 or at its end, cut between their odd corners.
 void add_side(Lattice& lattice, std::size_t axis, bool at_end) {
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
   for (int b = 0; b < lattice.cells[v]; ++b)
@@ -55,7 +55,7 @@ void add_side(Lattice& lattice, std::size_t axis, bool at_end) {
       };
       std::array<int, 4> quad = {lattice.node(corner(0, 0)), lattice.node(corner(1, 0)),
                                  lattice.node(corner(1, 1)), lattice.node(corner(0, 1))};
-      // seen from outside, counter-clockwise; 0 and 2 stay opposite
+      // Counter-clockwise seen from outside; 0 and 2 stay opposite.
       if (!at_end) std::swap(quad[1], quad[3]);
       auto& faces = lattice.builder.faces;
       if (is_odd(corner(0, 0))) {

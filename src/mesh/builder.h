@@ -7,31 +7,33 @@
 
 namespace palpate::mesh {
 
-/// Gathers the points and elements of a generated mesh.
+/// Collects the points and elements of a generated mesh.
 struct Builder {
   std::vector<Vec3> points;
   std::vector<Eigen::Vector4i> tets;
   std::vector<Eigen::Vector3i> faces;
 
+  /// Appends one point; returns its index.
   int add_point(const Vec3& p) {
     points.push_back(p);
     return static_cast<int>(points.size()) - 1;
   }
   const Vec3& point(int i) const { return points[static_cast<std::size_t>(i)]; }
 
-  /// In either order of its nodes; stored with positive volume.
+  /// Adds a tetrahedron; its nodes are reordered if necessary to make the volume positive.
   void add_tet(int a, int b, int c, int d) {
     if (tet_volume(point(a), point(b), point(c), point(d)) < 0) std::swap(c, d);
     tets.emplace_back(a, b, c, d);
   }
 
+  /// Returns the points and the tetrahedra.
   TetMesh tet_mesh() const {
     TetMesh out{gathered(points), Tets(4, static_cast<Eigen::Index>(tets.size()))};
     for (std::size_t t = 0; t < tets.size(); ++t) out.tets.col(static_cast<Eigen::Index>(t)) = tets[t];
     return out;
   }
 
-  /// The faces, and of the points only those that they use, in their order.
+  /// Returns the faces, and the points that they use in their order.
   TriMesh tri_mesh() const {
     std::vector<int> new_index(points.size(), -1);
     for (const auto& face : faces)
@@ -50,6 +52,7 @@ struct Builder {
   }
 
  private:
+  /// Converts a list of points to columns.
   static Points gathered(const std::vector<Vec3>& from) {
     Points out(3, static_cast<Eigen::Index>(from.size()));
     for (std::size_t i = 0; i < from.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = from[i];

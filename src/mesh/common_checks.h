@@ -7,9 +7,10 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/checks.h"
 
-/// Checks that tetrahedra and triangles share.  Elements: Corners x n, one a column.
+/// Checks common to tetrahedra and triangles.  Elements: Corners x n, one per column.
 namespace palpate::mesh {
 
+/// Rejects coordinates that are not finite or exceed 1e30 m.
 inline void refuse_non_finite(const Points& points, const Provenance& from) {
   constexpr double kLargest = 1e30;  // [m]; a volume beyond it overflows
   for (int i = 0; i < static_cast<int>(points.cols()); ++i)
@@ -19,6 +20,7 @@ inline void refuse_non_finite(const Points& points, const Provenance& from) {
              x);
 }
 
+/// Rejects elements with a repeated corner.
 template <int Corners>
 void refuse_repeated_nodes(const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elements,
                            const Provenance& from) {
@@ -30,6 +32,7 @@ void refuse_repeated_nodes(const Eigen::Matrix<int, Corners, Eigen::Dynamic>& el
                from.node_name(elements(i, e)));
 }
 
+/// Rejects elements with the same corners as another.
 template <int Corners>
 void refuse_duplicates(const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elements, const Provenance& from) {
   std::vector<std::pair<std::array<int, static_cast<std::size_t>(Corners)>, int>> sets;
@@ -47,6 +50,7 @@ void refuse_duplicates(const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elemen
            from.element(sets[i - 1].second));
 }
 
+/// Rejects points of no element; `remedy` completes the message.
 template <int Corners>
 void refuse_unreferenced(Eigen::Index points, const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elements,
                          const Provenance& from, std::string_view remedy) {

@@ -7,8 +7,9 @@
 
 namespace palpate::mesh {
 
-// On a polyhedron curvature sits in the edges: the integral of H is half the sum of their lengths times the
-// angles between the normals of their faces, positive where they are convex (Cohen-Steiner, Morvan 2003).
+// The curvature of a polyhedron is concentrated in its edges: the integral of H is half the sum of their
+// lengths times the angles between the normals of their faces, positive at convex edges (Cohen-Steiner,
+// Morvan 2003).
 double mean_radius(const TriMesh& closed) {
   const auto normal = [&](Eigen::Index f) -> Vec3 {
     const Vec3 a = closed.vertices.col(closed.faces(0, f)), b = closed.vertices.col(closed.faces(1, f)),
@@ -17,7 +18,7 @@ double mean_radius(const TriMesh& closed) {
   };
   struct HalfEdge {
     int low, high;  ///< vertices
-    bool is_up;     ///< from the lower one to the higher one in its face
+    bool is_up;     ///< whether its face runs from the lower vertex to the higher one
     Eigen::Index face;
   };
   double area = 0.0, integral = 0.0;

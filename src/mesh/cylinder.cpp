@@ -9,24 +9,24 @@
 #include "rings.h"
 
 // A disc of six sectors in rings, extruded along z into prisms.  A prism over (a, b, c), a < b < c, is the
-// tetrahedra a b c c', a b b' c', a a' b' c': the diagonal of each of its quads starts at the bottom's
-// smaller number, so neighbours agree (Dompierre et al. 1999).
+// tetrahedra a b c c', a b b' c', a a' b' c': the diagonal of each of its quads starts at the smaller index
+// at the bottom, so that neighbours agree (Dompierre et al. 1999).
 namespace palpate::mesh {
 namespace {
 
 struct Disc {
   std::vector<Eigen::Vector2d> points;
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise
-  int rim = 0;                                // points 0 to rim - 1 go round the outside
+  int rim = 0;                                // points 0 to rim - 1 lie on the circumference
 };
 
-/// Indices of a ring's points: six sectors of `frequency` parts, from `first` on; the centre has one.
+/// Indices of a ring's points: six sectors of `frequency` parts, from `first` on; the centre has one point.
 struct RingPoints {
   int first, frequency;
   int operator()(int i) const { return frequency == 0 ? first : first + i % (6 * frequency); }
 };
 
-/// Triangles between frequency m and m - 1.
+/// Adds the triangles between frequency m and m - 1.
 void add_ring(Disc& disc, const RingPoints& P, const RingPoints& Q) {
   const int m = P.frequency;
   for (int s = 0; s < 6; ++s)
@@ -37,7 +37,7 @@ void add_ring(Disc& disc, const RingPoints& P, const RingPoints& Q) {
     }
 }
 
-/// Triangles between frequency m and m / 2: three on each inner part.
+/// Adds the triangles between frequency m and m / 2: three per inner part.
 void add_halving_ring(Disc& disc, const RingPoints& P, const RingPoints& Q) {
   for (int i = 0; i < 6 * Q.frequency; ++i) {
     disc.triangles.push_back({Q(i), P(2 * i), P(2 * i + 1)});
@@ -64,7 +64,7 @@ Disc make_disc(double radius, double element_size, double grading) {
   return out;
 }
 
-/// The disc's points at every height.
+/// Places the disc's points at every height.
 Builder extruded(const Disc& disc, const std::vector<double>& z) {
   Builder out;
   for (const double height : z)

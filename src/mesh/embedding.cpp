@@ -6,10 +6,10 @@
 namespace palpate::mesh {
 namespace {
 
-/// distances (of the mesh's size) and sums of weights that differ by less are equal: rounding decides nothing
+/// Tie tolerance for distances [mesh sizes] and weight sums, so that rounding does not decide.
 constexpr double kTie = 1e-9;
 
-/// Among equally near tetrahedra, the one with the least extrapolation of its weights; the first of equals.
+/// Returns the tetrahedron with the least sum |w| among equally near ones; the first of equals.
 int least_extrapolating(const TetMesh& mesh, const std::vector<int>& tets, const Vec3& point,
                         Eigen::Vector4d& weights) {
   int best = -1;
@@ -25,11 +25,11 @@ int least_extrapolating(const TetMesh& mesh, const std::vector<int>& tets, const
   return best;
 }
 
-/// Above this sum |w| the nearest tetrahedron is a poor one to continue (a flat one, seen along its thin
-/// direction), and others at nearly that distance are tried as well.
+/// Above this sum |w| the nearest tetrahedron extrapolates poorly (a flat one, along its thin direction), and
+/// others at nearly that distance are considered.
 constexpr double kPoor = 3.0;
-constexpr double kNearly = 0.25;  ///< of the distance
-constexpr double kBetter = 0.9;   ///< of the sum: what it takes to prefer one that is farther
+constexpr double kNearly = 0.25;  ///< [distances of the nearest]
+constexpr double kBetter = 0.9;   ///< largest ratio of the sums at which a farther tetrahedron is preferred
 
 }  // namespace
 

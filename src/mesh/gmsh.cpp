@@ -28,7 +28,7 @@ void add_tet(TextFile& file, Content& content, long tag, const std::vector<long>
     bool joined = false;
     for (const long group : groups) {
       if (group == 0) continue;
-      // negative where the volume is flipped
+      // The tag is negative if the volume is flipped.
       std::vector<int>& members = content.tets_of_group[static_cast<double>(std::abs(group))];
       const auto at = std::lower_bound(members.begin(), members.end(), tet);
       if (at != members.end() && *at == tet) continue;
@@ -67,7 +67,7 @@ namespace {
 
 constexpr std::string_view kConvert = "convert it: gmsh {0} -save -format msh41 -o NEW.msh";
 
-/// Reads `$MeshFormat` up to its end; 2 or 4 (for 4.1).
+/// Reads `$MeshFormat` up to its end; returns 2 or 4 (for 4.1).
 int major_version(TextFile& file) {
   const std::string convert = fmt::format(fmt::runtime(kConvert), file.path());
   file.require_line("$MeshFormat");
@@ -130,13 +130,13 @@ Content read(TextFile& file) {
   return content;
 }
 
-/// Physical volumes; where there are none, the volumes of the model.
+/// Returns the physical volumes; if there are none, the volumes of the model.
 std::vector<MaterialRegion> regions(Content& content) {
   if (content.tets_of_group.empty()) return regions_of_labels(content.tet_entity);
   return regions_of_groups(std::move(content.tets_of_group), content.volume_names, content.tets.size());
 }
 
-/// Index in the list of nodes by tag; tags may be sparse and in any order.
+/// Returns the index in the list of nodes by tag; tags may be sparse and in any order.
 std::unordered_map<long, int> index_of_tags(const std::string& path, const Content& content) {
   std::unordered_map<long, int> out;
   for (std::size_t i = 0; i < content.nodes.size(); ++i)

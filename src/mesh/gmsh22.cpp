@@ -1,10 +1,10 @@
 #include "gmsh.h"
 
 // Gmsh 2.x, ASCII (reference manual, "MSH file format version 2"):
-//   $Nodes: number-of-nodes, then  tag x y z  a line ($ParametricNodes: more entries follow on the line)
-//   $Elements: number-of-elements, then  tag type number-of-tags tag... node...  a line;
+//   $Nodes: number-of-nodes, then per line  tag x y z  ($ParametricNodes: more entries follow on the line)
+//   $Elements: number-of-elements, then per line  tag type number-of-tags tag... node...;
 //              the first two tags are the physical group (0: none) and the entity of the model; an element in
-//              several groups stands there once for each
+//              several groups is repeated once for each
 namespace palpate::mesh::gmsh {
 
 void nodes_22(TextFile& file, Content& content) {

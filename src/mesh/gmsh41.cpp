@@ -1,11 +1,11 @@
 #include "gmsh.h"
 
 // Gmsh 4.1, ASCII (reference manual, "MSH file format"):
-//   $Entities: points curves surfaces volumes, then a line each, in this order;
+//   $Entities: points curves surfaces volumes, then one line each, in this order;
 //              a volume: tag, 6 numbers of its box, number of physical tags, the tags, ...
-//   $PartitionedEntities: partitions; ghosts, then a line each; counts as in $Entities, then a line each;
+//   $PartitionedEntities: partitions; ghosts, then one line each; counts as in $Entities, then one line each;
 //              a volume: tag, dimension and tag of its parent, number of partitions, these, then as above.
-//              $Elements then names these parts
+//              $Elements then refers to these parts
 //   $Nodes:    blocks nodes min-tag max-tag;
 //              each block: dimension entity parametric n, n lines of tags, n lines  x y z [u v w]
 //   $Elements: blocks elements min-tag max-tag;
@@ -19,7 +19,7 @@ void require_total(const TextFile& file, std::string_view what, long announced, 
               what, announced);
 }
 
-/// The counts of four dimensions, and the lines of those below volumes; returns the number of volumes.
+/// Reads the counts of the four dimensions, skips the lines below volumes, and returns the number of volumes.
 int skip_to_volumes(TextFile& file) {
   file.require_line("the counts of the entities");
   long before = 0;
@@ -30,7 +30,7 @@ int skip_to_volumes(TextFile& file) {
   return volumes;
 }
 
-/// The box, and the physical tags after it.
+/// Skips the box, and returns the physical tags after it.
 std::vector<long> groups_after_box(TextFile& file) {
   for (int k = 0; k < 6; ++k) file.real("bound of its box");
   std::vector<long> out;

@@ -13,8 +13,8 @@
 namespace palpate::mesh {
 namespace {
 
-/// The vertex of one corner, counted from zero; a vertex of a later line is allowed, so the upper bound is
-/// checked at the end.
+/// Returns the vertex of one corner, counted from zero.  A vertex of a later line is allowed, so the upper
+/// bound is checked at the end.
 int corner(TextFile& file, std::string_view word, std::size_t vertices) {
   const std::string_view digits = word.substr(0, word.find('/'));
   long value = 0;

@@ -34,7 +34,7 @@ TetMesh perturbed(TetMesh mesh, double amplitude, unsigned seed) {
   std::vector<char> on_boundary(edges.size(), 0);
   for (const int node : boundary(mesh).node_of_vertex) on_boundary[static_cast<std::size_t>(node)] = 1;
   std::mt19937 random(seed);
-  // the standard's distributions differ between libraries
+  // The distributions of the C++ standard differ between libraries.
   const auto uniform = [&] { return 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0; };
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (on_boundary[i]) continue;

@@ -12,27 +12,27 @@
 
 #include "palpate/core/error.h"
 
-// The plane is that of the least squares of distances, so that a crossed outline, whose vector area may
-// vanish, has one too.  Its normal points to the side of Newell's, the sum of the cross products of
-// neighbouring corners.  The projection drops the coordinate along which the normal is largest.  It changes
-// no digit of the other two, so that corners on a line stay on one.
+// The plane is the least-squares plane of the corners, because the vector area of a crossed outline may
+// vanish.  Its normal points to the side of Newell's, the sum of the cross products of neighbouring corners.
+// The projection drops the coordinate along which the normal is largest.  It leaves the other two bitwise
+// unchanged, so that collinear corners stay collinear.
 //
-// An edge that the outline passes twice, to and fro, bounds nothing: it is the bridge to a hole.  All other
-// edges are constraints.  A triangle is inside where the way to infinity crosses an odd number of them.  A
-// polygon of n corners has n - 2 triangles; another number tells of an outline that touches itself.
+// An edge that the outline traverses in both directions bounds nothing: it is the bridge to a hole.  All
+// other edges are constraints.  A triangle is inside if a path to infinity crosses an odd number of them.  A
+// polygon of n corners has n - 2 triangles; another number means that the outline touches itself.
 namespace palpate::mesh {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;  // place of the corner
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;  // index of the corner
 using FaceBase =
-    CGAL::Triangulation_face_base_with_info_2<int, Kernel,  // 1: inside, 0: not, -1: open
+    CGAL::Triangulation_face_base_with_info_2<int, Kernel,  // 1: inside, 0: outside, -1: unvisited
                                               CGAL::Constrained_triangulation_face_base_2<Kernel>>;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
     Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>, CGAL::No_constraint_intersection_tag>;
 using Triangles = std::vector<std::array<int, 3>>;
 
-/// Unit normal of the plane through the corners; zero where they lie on a line.
+/// Returns the unit normal of the plane through the corners; zero if they lie on a line.
 Vec3 normal_of(const std::vector<Vec3>& corners) {
   Vec3 middle = Vec3::Zero(), newell = Vec3::Zero();
   for (const Vec3& p : corners) middle += p / static_cast<double>(corners.size());
@@ -42,8 +42,8 @@ Vec3 normal_of(const std::vector<Vec3>& corners) {
     spread += a * a.transpose();
     newell += a.cross(b);
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);  // least first
-  constexpr double kRounding = 1e-14;                      // of squares: a width below 1e-7 of the length
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);  // ascending
+  constexpr double kRounding = 1e-14;                      // on squares: a width below 1e-7 of the length
   if (!(axes.eigenvalues()[1] > kRounding * axes.eigenvalues()[2])) return Vec3::Zero();
   const Vec3 normal = axes.eigenvectors().col(0);
   return newell.dot(normal) < 0.0 ? Vec3(-normal) : normal;
@@ -69,8 +69,8 @@ Triangles fan(std::size_t corners) {
   return out;
 }
 
-/// Whether every triangle turns as the polygon does, and none is degenerate: of a simple polygon, such a fan
-/// covers it once.
+/// Whether every triangle is oriented like the polygon, and none is degenerate: then the fan covers a simple
+/// polygon once.
 bool turns_along(const std::vector<Vec3>& corners, const Triangles& triangles, const Vec3& normal) {
   return std::all_of(triangles.begin(), triangles.end(), [&](const std::array<int, 3>& t) {
     const auto at = [&](std::size_t k) -> const Vec3& { return corners[static_cast<std::size_t>(t[k])]; };
@@ -80,7 +80,8 @@ bool turns_along(const std::vector<Vec3>& corners, const Triangles& triangles, c
   });
 }
 
-/// Angle that a fan sweeps about its corner: below a whole turn unless the outline winds about it twice.
+/// Returns the angle that a fan sweeps about its corner: below a full turn unless the outline winds about it
+/// twice.
 double swept(const std::vector<Vec3>& corners) {
   double out = 0;
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
@@ -106,7 +107,7 @@ void mark_inside(Triangulation& all) {
   }
 }
 
-/// Triangles of the projection; empty where the outline crosses or touches itself.
+/// Returns the triangles of the projection; empty if the outline crosses or touches itself.
 Triangles delaunay(const std::vector<Vec3>& corners, const Vec3& normal) {
   Eigen::Index dropped = 0;
   normal.cwiseAbs().maxCoeff(&dropped);
@@ -119,7 +120,7 @@ Triangles delaunay(const std::vector<Vec3>& corners, const Vec3& normal) {
     vertex.push_back(all.insert({corners[i][u], corners[i][v]}));
     if (all.number_of_vertices() > before) vertex.back()->info() = static_cast<int>(i);
   }
-  std::map<std::array<int, 2>, int> passed;  // corners of an edge: how often
+  std::map<std::array<int, 2>, int> passed;  // number of passes per edge (its corners)
   for (std::size_t i = 0; i < vertex.size(); ++i) {
     const int a = vertex[i]->info(), b = vertex[(i + 1) % vertex.size()]->info();
     if (a != b) ++passed[{std::min(a, b), std::max(a, b)}];
@@ -161,7 +162,7 @@ void append_polygon(const std::vector<Vec3>& points, const std::vector<int>& pol
   std::vector<int> distinct = polygon;
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   while (distinct.size() > 1 && distinct.front() == distinct.back()) distinct.pop_back();
-  // fewer than three: the face stays in the list as it is, for those who check faces to name it
+  // With fewer than three corners the face is kept unchanged, so that later face checks report it.
   const std::vector<int>& named = distinct.size() < 3 ? polygon : distinct;
   std::vector<Vec3> corners;
   for (const int i : named) corners.push_back(points[static_cast<std::size_t>(i)]);

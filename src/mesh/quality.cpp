@@ -16,8 +16,8 @@ double tet_volume(const TetMesh& mesh, int tet) {
   return tet_volume(mesh.nodes.col(n[0]), mesh.nodes.col(n[1]), mesh.nodes.col(n[2]), mesh.nodes.col(n[3]));
 }
 
-// Faces f and g meet in the edge that joins the two nodes other than f and g; with outward normals n_f, n_g
-// the angle inside is pi minus the angle between them: atan2(|n_f x n_g|, -n_f . n_g), accurate for slivers
+// Faces f and g meet in the edge that joins the two nodes other than f and g.  With outward normals n_f, n_g
+// the inner angle is pi minus the angle between them: atan2(|n_f x n_g|, -n_f . n_g), accurate for slivers
 // too.
 std::array<double, 6> dihedral_angles(const TetMesh& mesh, int tet) {
   std::array<Vec3, 4> normal;

@@ -4,7 +4,7 @@
 namespace palpate::mesh {
 namespace {
 
-// about 8 GB in a simulation; beyond it a wrong unit is likelier than a wish
+// About 8 GB in a simulation; a larger number is more likely a wrong unit than intended.
 constexpr double kMaxElements = 2e7;
 
 void require_length(const MeshSpec& spec, std::string_view key, double value) {
@@ -12,8 +12,8 @@ void require_length(const MeshSpec& spec, std::string_view key, double value) {
     fail("generator \"{}\": {} = {} {}", spec.generator, key, value, MeshRanges::length.demand());
 }
 
-/// The edges of a box around the body bound the number of elements before any is made; each direction has at
-/// least one.
+/// Checks the sizes.  The edges of a box around the body bound the number of elements before any is made;
+/// each direction has at least one.
 void require_sizes(const MeshSpec& spec, const Vec3& edges) {
   const double h = spec.element_size_m;
   require_length(spec, "element_size_m", h);
@@ -67,7 +67,7 @@ TriMesh make_cylinder_surface(const MeshSpec& s) {
   return check_cylinder(s), cylinder_surface(s.radius_m, s.length_m, s.element_size_m, s.grading);
 }
 
-/// What a generator must be told, and what it may be.
+/// Returns the required and optional keys of a generator.
 std::vector<PartKey> generator_keys(const std::vector<std::string>& needed,
                                     const std::vector<std::string>& taken) {
   std::vector<PartKey> keys = part_keys(needed);

@@ -8,15 +8,15 @@
 namespace palpate::mesh {
 namespace {
 
-/// Elements may grow by this much per length on the way in: one layer of the surface's size is kept before
-/// the first doubling.
+/// Growth of the element size per unit of depth: one layer of the surface's size is kept before the first
+/// doubling.
 constexpr double kGrowth = 0.45;
-/// A stretch beyond these would flatten elements more than the grading is worth (where few layers leave no
-/// room to halve).
+/// Bounds of the stretch; beyond them it would flatten elements more than the grading is worth (where few
+/// layers leave no room to halve).
 constexpr double kLeastStretch = 0.5, kMostStretch = 1.45;
 
-/// Elements double as soon as the wanted size, h (1 + kGrowth depth / h) and at most g h, is closer to the
-/// double.
+/// Elements double as soon as the target size, h (1 + kGrowth depth / h) and at most g h, is closer to the
+/// double size.
 bool should_halve(const Ring& ring, const Ring& outermost, double grading) {
   const double size = ring.radius / ring.frequency, surface_size = outermost.radius / outermost.frequency;
   const double wanted =
@@ -26,8 +26,8 @@ bool should_halve(const Ring& ring, const Ring& outermost, double grading) {
 
 }  // namespace
 
-// A layer of elements of size s = r/m is s thick: r - r/m = r (m-1)/m, so s stays when m falls by one, and r
-// is 0 when m is.  Between s and 2 s the layer is 1.5 s thick.
+// A layer of elements of size s = r/m is s thick: r - r/m = r (m-1)/m, so s is kept when m falls by one, and
+// r is 0 when m is.  Between s and 2 s the layer is 1.5 s thick.
 std::vector<Ring> rings(double radius, int frequency, double grading) {
   std::vector<Ring> out = {{frequency, radius}};
   while (out.back().frequency > 1) {

@@ -3,15 +3,15 @@
 
 namespace palpate::mesh {
 
-/// One ring (of a disc) or shell (of a ball): its sectors' edges are cut into `frequency` parts.  The last
-/// one is the centre, {0, 0}.
+/// Ring of a disc, or shell of a ball: its sectors' edges are cut into `frequency` parts.  The last ring is
+/// the centre, {0, 0}.
 struct Ring {
   int frequency;
   double radius;
 };
 
-/// Rings from the outermost inwards.  From one to the next the frequency falls by one, so that elements keep
-/// their size, or to its half, so that they double; thicknesses follow, and a smooth stretch makes up the
+/// Returns rings from the outermost inwards.  From ring to ring the frequency falls by one, which keeps the
+/// element size, or to one half, which doubles it; the thicknesses follow, and a smooth stretch provides the
 /// rest of `grading` (thickness in the middle / at the surface).
 std::vector<Ring> rings(double radius, int frequency, double grading);
 

@@ -12,7 +12,8 @@
 namespace palpate::mesh {
 namespace {
 
-/// Exactly one of file and generator is given.
+/// Whether the spec has a file.
+/// @throws Error unless exactly one of file and generator is given
 bool is_file(const MeshSpec& spec) {
   if (!spec.file.empty() && !spec.generator.empty())
     fail("mesh: file = \"{}\" and generator = \"{}\" exclude each other; give one", spec.file,
@@ -51,7 +52,7 @@ SurfaceFile read_surface(const std::string& path) {
   return read_obj(path);
 }
 
-/// Refuses a size in metres that nobody is likely to mean, where the scene gives no scale.
+/// Rejects a size that is implausible in metres if the scene specifies no scale.
 void check_size(const MeshSpec& spec, const Points& points, const std::string& path, const char* what) {
   if (spec.scale) return;
   if (const auto doubt = doubt_about_size(points))

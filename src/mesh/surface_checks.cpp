@@ -11,7 +11,7 @@
 namespace palpate::mesh {
 namespace {
 
-/// An edge and one of its faces: nodes sorted; `forward` when the face runs from the smaller to the larger
+/// An edge and one of its faces: nodes sorted; `forward` if the face runs from the smaller to the larger
 /// vertex.
 struct EdgeOfFace {
   std::array<int, 2> nodes;
@@ -32,15 +32,15 @@ std::vector<EdgeOfFace> sorted_edges(const Faces& faces) {
   return out;
 }
 
-/// The face across each of a face's edges, and whether both run along the edge in the same direction (then
-/// one of them is flipped).
+/// Face across an edge, and whether both faces run along the edge in the same direction (then one of them is
+/// flipped).
 struct Neighbour {
   int face;
   bool same_way;
 };
 using Neighbours = std::vector<std::vector<Neighbour>>;
 
-/// Pairs the faces across each edge; refuses an edge that has not exactly two.
+/// Pairs the faces across each edge; rejects an edge that does not have exactly two.
 Neighbours neighbours(const Faces& faces, const Provenance& from) {
   const std::vector<EdgeOfFace> edges = sorted_edges(faces);
   Neighbours out(static_cast<std::size_t>(faces.cols()));
@@ -68,7 +68,7 @@ Neighbours neighbours(const Faces& faces, const Provenance& from) {
 
 void flip(Faces& faces, int f) { std::swap(faces(1, f), faces(2, f)); }
 
-/// Walks from face to face within each connected shell and flips those that disagree with the shell's first.
+/// Walks from face to face within each connected shell and flips faces that disagree with the shell's first.
 /// Returns the shell of each face; `flipped` records which faces were flipped.
 std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& from,
                       std::vector<char>& flipped) {
@@ -101,7 +101,8 @@ std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& 
   return shell;
 }
 
-/// Signed volume of a shell (as enclosed_volume), and the size of the rounding error for a flat shell.
+/// Returns the signed volume of a shell (as enclosed_volume), and the rounding error of a flat shell's
+/// volume.
 std::pair<double, double> shell_volume(const TriMesh& mesh, const std::vector<int>& faces) {
   const Vec3 o = mesh.vertices.col(mesh.faces(0, faces[0]));
   double volume = 0, terms = 0;
@@ -114,8 +115,8 @@ std::pair<double, double> shell_volume(const TriMesh& mesh, const std::vector<in
   return {volume, 16 * std::numeric_limits<double>::epsilon() * terms};
 }
 
-/// Orients each shell outwards, or inwards where it lies within an odd number of others (it bounds a cavity
-/// then).
+/// Orients each shell outwards, or inwards if it lies within an odd number of others (it then bounds a
+/// cavity).
 void orient_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face, const Provenance& from,
                             std::vector<char>& flipped) {
   std::vector<std::vector<int>> shells;
@@ -141,7 +142,7 @@ void orient_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face
   }
 }
 
-/// Refuses degenerate faces; fills the edge lengths of the report.
+/// Rejects degenerate faces; fills in the edge lengths of the report.
 void measure_faces(const TriMesh& mesh, const Provenance& from, MeshReport& report) {
   report.smallest_edge = std::numeric_limits<double>::infinity();
   for (int f = 0; f < static_cast<int>(mesh.faces.cols()); ++f) {

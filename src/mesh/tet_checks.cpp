@@ -18,15 +18,15 @@ double longest_edge(const TetMesh& mesh, int t) {
   return out;
 }
 
-/// Relative volume that rounding of the coordinates alone gives a flat element: edges carry an error of
-/// epsilon |x|.
+/// Returns the relative volume that rounding of the coordinates alone gives a flat element: edges have an
+/// error of epsilon |x|.
 double rounding_volume(const TetMesh& mesh, int t, double longest) {
   double far = 0;
   for (int k = 0; k < 4; ++k) far = std::max(far, mesh.nodes.col(mesh.tets(k, t)).cwiseAbs().maxCoeff());
   return 16 * std::numeric_limits<double>::epsilon() * far / longest;
 }
 
-/// Flips elements of negative volume; refuses degenerate ones.  Returns the number flipped.
+/// Flips elements of negative volume; rejects degenerate ones.  Returns the number flipped.
 int orient(TetMesh& mesh, const Provenance& from) {
   int flipped = 0;
   for (int t = 0; t < static_cast<int>(mesh.tets.cols()); ++t) {
@@ -49,7 +49,7 @@ struct Side {
   auto operator<=>(const Side&) const = default;
 };
 
-/// A face has an element on each side at most; three elements on one face overlap.
+/// Rejects three elements on one face, which overlap; a face has at most one element on each side.
 void refuse_crowded_faces(const Tets& tets, const Provenance& from) {
   std::vector<Side> sides;
   sides.reserve(4 * static_cast<std::size_t>(tets.cols()));

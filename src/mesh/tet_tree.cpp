@@ -12,7 +12,7 @@
 namespace palpate::mesh {
 namespace {
 
-/// Distance from a point to a segment.
+/// Returns the distance from a point to a segment.
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 edge = b - a;
   const double length2 = edge.squaredNorm();
@@ -20,7 +20,7 @@ double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - s * edge).norm();
 }
 
-// The foot of the perpendicular lies in the triangle when it is on the inner side of each edge; else the
+// The foot of the perpendicular lies in the triangle if it is on the inner side of each edge; otherwise the
 // nearest point is on an edge.
 double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
@@ -46,7 +46,7 @@ double tet_distance(const TetMesh& mesh, int tet, const Vec3& point) {
   for (const auto& face : kTetFaces) {
     const Vec3 a = mesh.nodes.col(mesh.tets(face[0], tet)), b = mesh.nodes.col(mesh.tets(face[1], tet)),
                c = mesh.nodes.col(mesh.tets(face[2], tet));
-    // on the inner side: another face is nearer, or none is needed
+    // On the inner side of this face another face is nearer, or the point is inside.
     if ((b - a).cross(c - a).dot(point - a) <= 0.0) continue;
     const double distance = triangle_distance(point, a, b, c);
     nearest = outside ? std::min(nearest, distance) : distance;

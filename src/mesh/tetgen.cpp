@@ -4,12 +4,12 @@
 #include "text_file.h"
 
 // TetGen (Si 2015, manual section 5.2), `#` starts a comment, numbering starts at 0 or 1:
-//   .node: points dimension attributes markers(0|1), then  index x y z [attribute...] [marker]  a line
-//   .ele:  tetrahedra nodes-per-tetrahedron attributes(0|1), then  index node... [attribute]  a line
+//   .node: points dimension attributes markers(0|1), then per line  index x y z [attribute...] [marker]
+//   .ele:  tetrahedra nodes-per-tetrahedron attributes(0|1), then per line  index node... [attribute]
 namespace palpate::mesh {
 namespace {
 
-/// Numbers must run on from the first, as TetGen writes them: element lines refer to them.
+/// Requires consecutive numbers, as TetGen writes them: element lines refer to them.
 void require_next(const TextFile& file, std::string_view what, long number, long expected) {
   if (number != expected)
     file.fail("{} {} found where {} is expected; numbers must run on without gaps", what, number, expected);

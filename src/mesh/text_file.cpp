@@ -36,11 +36,12 @@ std::string printable(std::string_view word) {
 TextFile::TextFile(const std::string& path, TextForm form)
     : path_(path), text_(read_whole(path)), form_(form) {
   if (text_.starts_with("\xEF\xBB\xBF")) next_ = 3;  // byte order mark
-  // lines that end with a carriage return alone, as of old Macintosh programs
+  // Lines that end with a carriage return only, as in files of old Macintosh programs.
   if (text_.find('\n') == std::string::npos) std::replace(text_.begin(), text_.end(), '\r', '\n');
 }
 
-/// End of the line that begins at `from`, which goes over its continuations; these become blanks.
+/// Returns the end of the line that begins at `from`, including its continuations, whose breaks become
+/// blanks.
 std::size_t TextFile::end_of_line(std::size_t from, int& lines) {
   for (std::size_t begin = from;; ++lines) {
     const std::size_t end = std::min(text_.find('\n', begin), text_.size());
@@ -103,7 +104,7 @@ double TextFile::real(std::string_view what) {
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (code == std::errc::invalid_argument || end != digits.data() + digits.size())
     fail("{} = \"{}\" is not a number", what, printable(w));
-  // 0 or infinity
+  // Out of range: 0 or infinity.
   if (code == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
   if (!std::isfinite(value)) fail("{} = {} is not finite; write the mesh again", what, printable(w));
   return value;

@@ -6,13 +6,13 @@
 
 namespace palpate {
 
-/// Tetrahedra: every node is used, every volume is positive (checks.h makes it so or refuses).
+/// Tetrahedral mesh: every node is used, every volume is positive (checks.h ensures it or throws).
 struct TetMesh {
   Points nodes;  ///< rest positions [m]
   Tets tets;     ///< nodes of each tetrahedron
 };
 
-/// A triangle surface; closed and oriented outwards where it bounds a body.
+/// Triangle surface; closed and oriented outwards if it is the boundary of a body.
 struct TriMesh {
   Points vertices;  ///< [m]
   Faces faces;      ///< vertices of each triangle

@@ -5,21 +5,21 @@
 
 namespace palpate::mesh {
 
-/// Signed volume [m^3], det[b-a, c-a, d-a] / 6: positive when d sees (a, b, c) counter-clockwise.
+/// Returns the signed volume [m^3], det[b-a, c-a, d-a] / 6: positive when d sees (a, b, c) counter-clockwise.
 double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
-/// Of one tetrahedron of a mesh, likewise.
+/// Returns the signed volume of one tetrahedron of a mesh [m^3].
 double tet_volume(const TetMesh& mesh, int tet);
 
-/// The six angles between faces, inside a tetrahedron of positive volume [rad]; entry e belongs to edge
-/// kTetEdges[e].
+/// Returns the six angles between faces, inside a tetrahedron of positive volume [rad]; entry e belongs to
+/// edge kTetEdges[e].
 std::array<double, 6> dihedral_angles(const TetMesh& mesh, int tet);
 
-/// The two nodes of each edge of a tetrahedron.
+/// Node pairs of a tetrahedron's edges.
 inline constexpr int kTetEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 /// Faces of a positive tetrahedron, outwards; face f lies opposite node f.
 inline constexpr int kTetFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-/// Counts, volume, smallest dihedral angle, edge lengths.
+/// Measures counts, volume, smallest dihedral angle and edge lengths.
 MeshReport measure(const TetMesh& mesh);
 
 }  // namespace palpate::mesh

@@ -7,26 +7,33 @@
 
 namespace palpate::mesh {
 
-/// Report of a mesh check: what it changed or found.
+/// Report of a mesh check.
 struct MeshReport {
-  int nodes = 0, elements = 0;                     ///< of the mesh as it is used
-  int flipped = 0;                                 ///< elements whose orientation was mended
+  int nodes = 0, elements = 0;                     ///< counts of the checked mesh
+  int flipped = 0;                                 ///< elements whose orientation was corrected
   double volume = 0.0;                             ///< [m^3]
   double smallest_dihedral_deg = 180.0;            ///< between two faces of one tetrahedron
   double largest_edge = 0.0, smallest_edge = 0.0;  ///< [m]
 };
 
-/// Reads or generates the tetrahedra of a spec, checked: volumes positive (orientation mended and reported),
-/// no degenerate, duplicate, unreferenced or non-finite entries (refused, with file, element and value).
-/// `folder`: where a relative file starts.  Formats by ending: .msh (Gmsh 2.2, 4.1 ASCII), .node/.ele
-/// (TetGen); .h5 is read by store/mesh_file.h.
-/// @param regions  of the file, if wanted; a generator has none
-/// @param spec  what to read or generate  @param folder  see above  @param report  what was found, if wanted
+/// Reads or generates the tetrahedra of a spec, and checks them: volumes are made positive (reported in
+/// `flipped`); degenerate, duplicate, unreferenced or non-finite entries are rejected with file, element and
+/// value. Formats by ending: .msh (Gmsh 2.2, 4.1 ASCII), .node/.ele (TetGen); .h5 is read by
+/// store/mesh_file.h.
+/// @param spec     file or generator
+/// @param folder   base of a relative file path
+/// @param report   receives the result of the check unless null
+/// @param regions  receives the file's regions unless null; a generator has none
+/// @throws Error for a spec, file or mesh that fails a check
 TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr,
                  std::vector<MaterialRegion>* regions = nullptr);
 
-/// Reads or generates a surface: .obj, or a generator ("ball", "box", "cylinder"), closed and oriented
-/// outwards.
+/// Reads or generates a surface and checks it: .obj, or a generator ("ball", "box", "cylinder"); the result
+/// is closed and oriented outwards.
+/// @param spec    file or generator
+/// @param folder  base of a relative file path
+/// @param report  receives the result of the check unless null
+/// @throws Error for a spec, file or surface that fails a check
 TriMesh surface(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr);
 
 }  // namespace palpate::mesh

@@ -6,44 +6,47 @@
 #include "palpate/core/types.h"
 #include "palpate/mesh/checks.h"
 
-/// Polygons of files as triangles between their corners.
+/// Triangulation of the polygons of files, without new vertices.
 namespace palpate::mesh {
 
+/// Triangulation of one polygon.
 struct PolygonCut {
-  /// Places in the list of corners; they turn as the polygon does.
+  /// Indices into the list of corners, oriented like the polygon.
   std::vector<std::array<int, 3>> triangles;
-  /// Largest distance of a corner from the polygon's mean plane, divided by the largest extent.
+  /// Largest distance of a corner from the polygon's mean plane, relative to its largest extent.
   double warp = 0.0;
-  /// False where the outline crosses or touches itself: it is no polygon, and was cut into a fan.
+  /// False if the outline crosses or touches itself: the polygon is invalid, and was cut into a fan.
   bool simple = true;
 };
 
-/// Triangulates a polygon in space, concave ones included: the constrained Delaunay triangulation of its
+/// Triangulates a polygon in space, convex or concave: the constrained Delaunay triangulation of its
 /// projection along the mean normal (Newell), by CGAL.  A convex polygon is cut into the fan about its first
 /// corner.  A hole that the outline enters and leaves along the same edge is left open.
 /// @param corners  at least three, in order [m]
 PolygonCut cut_polygon(const std::vector<Vec3>& corners);
 
-/// Corners within this share of a polygon's extent are in one plane.  Files with six digits are off by at
-/// most 5e-6; from a thousandth on, the choice of diagonals moves the surface by what printed figures show.
+/// Corners within this share of a polygon's extent count as planar.  Files with six digits deviate by at most
+/// 5e-6; from a thousandth on, the choice of diagonals moves the surface enough to change printed figures.
 inline constexpr double kPlanar = 1e-3;
 
-/// What the polygons of one file were.  Elements are triangles, as Provenance numbers them.
+/// Report on the polygons of one file.  Elements are triangles, as Provenance numbers them.
 struct PolygonReport {
-  int warped = 0;             ///< polygons with a corner farther from the plane than kPlanar
-  int most_warped = -1;       ///< first element of the worst of them
+  int warped = 0;             ///< polygons that deviate from their plane by more than kPlanar
+  int most_warped = -1;       ///< first element of the worst one
   double largest_warp = 0.0;  ///< as PolygonCut::warp
   int crossing = 0;           ///< polygons whose outline crosses or touches itself
-  int first_crossing = -1;    ///< first element of the first of them
+  int first_crossing = -1;    ///< first element of the first one
 };
 
-/// Appends the triangles of one polygon.
-/// @param points  of the file  @param polygon  its corners in `points`; a corner twice in a row counts once
+/// Appends the triangles of one polygon, and updates the report.
+/// @param points   points of the file
+/// @param polygon  its corners as indices into `points`; a corner repeated in a row counts once
 void append_polygon(const std::vector<Vec3>& points, const std::vector<int>& polygon,
                     std::vector<std::array<int, 3>>& triangles, PolygonReport& report);
 
-/// "FILE:LINE: face 3 ..." of polygons that are not planar, and of those that cross themselves; empty: none.
+/// Returns "FILE:LINE: face 3 ..." for polygons that are not planar; empty: none.
 std::string warped_text(const PolygonReport& report, const Provenance& from);
+/// Returns "FILE:LINE: face 3 ..." for polygons whose outline crosses or touches itself; empty: none.
 std::string crossing_text(const PolygonReport& report, const Provenance& from);
 
 }  // namespace palpate::mesh

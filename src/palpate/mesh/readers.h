@@ -5,28 +5,29 @@
 #include "palpate/mesh/polygon.h"
 #include "palpate/mesh/regions.h"
 
-/// File formats.  Each reader gives indices within range and finite coordinates, or throws Error `FILE:LINE:
-/// ...`; it judges no geometry.
+/// Readers of file formats.  Each returns indices within range and finite coordinates, or throws Error
+/// `FILE:LINE: ...`; geometry is not checked.
 namespace palpate::mesh {
 
+/// Tetrahedra of a file, with their origin and regions.
 struct TetFile {
   TetMesh mesh;
   Provenance from;
   std::vector<MaterialRegion> regions;
 };
-/// .msh, ASCII, versions 2.0 to 2.2 and 4.1; tetrahedra only, other elements are passed over.  Regions:
-/// physical volumes, which may overlap; where the file has none, the model's
-/// volumes, if there are several.
+/// Reads .msh, ASCII, versions 2.0 to 2.2 and 4.1.  Tetrahedra only; other elements are skipped.  Regions are
+/// the physical volumes, which may overlap; if the file has none, the model's volumes, if there are several.
 TetFile read_gmsh(const std::string& path);
-/// .node and .ele of the same stem; `path` names either.
-/// Regions: the attribute of the tetrahedra, where it has several values.
+/// Reads .node and .ele of the same stem; `path` is either of them.  Regions are the values of the
+/// tetrahedra's attribute, if there are several.
 TetFile read_tetgen(const std::string& path);
 
+/// Surface of a file, with its origin and a report on its polygons.
 struct SurfaceFile {
   TriMesh mesh;
   Provenance from;
   PolygonReport polygons;
 };
-SurfaceFile read_obj(const std::string& path);  ///< v and f; polygons are cut into triangles
+SurfaceFile read_obj(const std::string& path);  ///< reads v and f; polygons are cut into triangles
 
 }  // namespace palpate::mesh

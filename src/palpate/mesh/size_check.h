@@ -5,14 +5,14 @@
 
 namespace palpate::mesh {
 
-/// A size that no body or tool is likely to have in metres.
+/// Size that is implausible for a body or tool in metres.
 struct SizeDoubt {
-  double size_m;           ///< largest extent along an axis
-  const char* other_unit;  ///< "millimetres", or "kilometres"
-  double factor;           ///< from that unit to metres
+  double size_m;           ///< largest extent along an axis [m]
+  const char* other_unit;  ///< likely unit of the file: "millimetres", or "kilometres"
+  double factor;           ///< factor from that unit to metres
 };
 
-/// Nothing where the extent lies between 1 mm and 10 m, or is not finite.
+/// Returns nothing if the extent lies between 1 mm and 10 m, or is not finite.
 inline std::optional<SizeDoubt> doubt_about_size(const Points& points) {
   constexpr double kLargest = 10.0, kSmallest = 1e-3;  // [m]
   if (points.cols() == 0 || !points.allFinite()) return std::nullopt;
