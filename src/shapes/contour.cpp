@@ -10,7 +10,7 @@
 namespace palpate::shapes {
 namespace {
 
-/// Half a body and its image about x = 0, joined along the rim; to the bit the same on both sides.
+/// Joins half a body and its mirror image about x = 0 along the rim; both sides are bitwise equal.
 TriMesh with_mirror_image(const TriMesh& half) {
   const int n = static_cast<int>(half.vertices.cols()), faces = static_cast<int>(half.faces.cols());
   std::vector<int> image(static_cast<std::size_t>(n));
@@ -31,7 +31,7 @@ TriMesh with_mirror_image(const TriMesh& half) {
   return whole;
 }
 
-/// The piece with the most faces: specks of relief beside a body and bubbles in it are not its surface.
+/// Returns the piece with the most faces; specks of relief outside the body and bubbles in it are dropped.
 TriMesh largest_piece(const TriMesh& mesh) {
   std::vector<int> parent(static_cast<std::size_t>(mesh.vertices.cols()));
   std::iota(parent.begin(), parent.end(), 0);
@@ -63,9 +63,9 @@ TriMesh largest_piece(const TriMesh& mesh) {
 
 }  // namespace
 
-// Halving the edges of a first contour more than twice leaves needles where its triangles had any shape: a
-// lattice beyond that is made finer first.
-constexpr double kCoarsest = 3.0;  ///< spacing of the lattice in wanted edges
+// Halving the edges of a first contour more than twice leaves needles where its triangles were badly shaped,
+// so a coarser lattice is refined first.
+constexpr double kCoarsest = 3.0;  ///< spacing of the lattice in target edges
 
 TriMesh contour(const Blueprint& blueprint, int vertices) {
   RemeshRules rules;
@@ -81,7 +81,7 @@ TriMesh contour(const Blueprint& blueprint, int vertices) {
     return contour(finer, vertices);
   }
   for (int i = 0; i < 3; ++i) remesher.round(edge);
-  edge *= std::sqrt(static_cast<double>(remesher.count()) / vertices);  // the number goes like edge^-2
+  edge *= std::sqrt(static_cast<double>(remesher.count()) / vertices);  // the number scales as edge^-2
   for (int i = 0; i < 3; ++i) remesher.round(edge);
   remesher.trim(edge, vertices);
   remesher.settle(2);

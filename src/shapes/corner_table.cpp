@@ -20,7 +20,7 @@ CornerTable::CornerTable(const Faces& faces, int vertices) {
   origin.assign(faces.data(), faces.data() + faces.size());
   twin.assign(origin.size(), -1);
   out.assign(static_cast<std::size_t>(vertices), -1);
-  std::vector<std::pair<std::uint64_t, int>> halves;  // sorted by edge, whichever way it runs
+  std::vector<std::pair<std::uint64_t, int>> halves;  // sorted by edge, in either direction
   halves.reserve(origin.size());
   for (int h = 0; h < static_cast<int>(origin.size()); ++h) {
     out[origin[h]] = h;
@@ -34,7 +34,7 @@ CornerTable::CornerTable(const Faces& faces, int vertices) {
                   "edge {} {} is in more than two faces, or twice the same way round", from(h), to(h));
     join(h, t);
   }
-  std::unordered_map<int, int> rim;  // from a vertex along the rim, against the faces
+  std::unordered_map<int, int> rim;  // from a vertex along the rim, against the orientation of the faces
   std::vector<int> rim_starts;
   for (int h = 0; h < static_cast<int>(origin.size()); ++h) {
     if (twin[h] >= 0) continue;
@@ -48,7 +48,7 @@ CornerTable::CornerTable(const Faces& faces, int vertices) {
     last_ghost = ghost + 1;
     const int first_face = static_cast<int>(origin.size()) / 3;
     int h = start, count = 0;
-    do {  // the ghost's faces stand in the order of the rim
+    do {  // the ghost's faces follow the order of the rim
       const int f = first_face + count++;
       origin.resize(origin.size() + 3);
       twin.resize(twin.size() + 3, -1);

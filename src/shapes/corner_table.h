@@ -5,10 +5,10 @@
 
 namespace palpate::shapes {
 
-/// A closed triangle surface that can change: half-edge h runs from vertex origin[h] to origin[next(h)] in
-/// face h/3, and twin[h] runs back. A surface with rims is closed by a ghost vertex a rim, joined to all of
-/// it, so that no operation needs to know about rims. Edges and vertices come and go; what is gone keeps its
-/// number and is skipped (origin -1, out -1).
+/// Mutable closed triangle surface: half-edge h runs from vertex origin[h] to origin[next(h)] in face h/3,
+/// and twin[h] runs back.  A surface with rims is closed by one ghost vertex per rim, joined to all of its
+/// vertices, so that operations need no special case for rims.  Removed edges and vertices keep their number
+/// and are skipped (origin -1, out -1).
 class CornerTable {
  public:
   CornerTable() = default;
@@ -23,7 +23,7 @@ class CornerTable {
   bool is_ghost(int v) const { return v >= first_ghost && v < last_ghost; }
   bool gone(int h) const { return origin[h] < 0; }
   bool touches_ghost(int h) const { return is_ghost(from(h)) || is_ghost(to(h)); }
-  /// The edge has a ghost on one side: it lies on a rim.
+  /// Whether the edge has a ghost on one side: it lies on a rim.
   bool on_rim(int h) const { return is_ghost(opposite(h)) || is_ghost(opposite(twin[h])); }
 
   /// Calls visit(h) for every half-edge out of v, in turn.
@@ -36,19 +36,21 @@ class CornerTable {
       h = twin[previous(h)];
     } while (h != start);
   }
+  /// Returns the number of edges at v, ghosts included.
   int valence(int v) const;
 
-  int add_vertex();          ///< its number; belongs to no face yet
-  void flip(int h);          ///< turns the edge inside its two faces
-  void split(int h, int m);  ///< puts vertex m on the edge
-  /// Moves everything at from(h) over to to(h).
+  int add_vertex();          ///< returns its number; it belongs to no face yet
+  void flip(int h);          ///< rotates the edge within its two faces
+  void split(int h, int m);  ///< inserts vertex m on the edge
+  /// Merges from(h) into to(h).
   void collapse(int h);
-  bool can_flip(int h) const;  ///< the new edge is not there yet
-  /// the ends share the two opposite vertices and no other (link condition), which keep three neighbours
+  bool can_flip(int h) const;  ///< whether the new edge does not exist yet
+  /// Whether the ends share the two opposite vertices and no other (link condition), and these keep at least
+  /// three neighbours.
   bool can_collapse(int h) const;
 
-  std::vector<int> origin, twin;  ///< three a face
-  std::vector<int> out;           ///< a half-edge out of each vertex
+  std::vector<int> origin, twin;  ///< three per face
+  std::vector<int> out;           ///< an outgoing half-edge per vertex
   int first_ghost = 0, last_ghost = 0;
 
  private:

@@ -5,15 +5,15 @@
 #include "noise.h"
 #include "solids.h"
 
-// Proportions in millimetres, scaled to a head of 240: distance of the pupils 64, nose 34 wide and 22 proud,
-// mouth 52 wide, ear 63 high, as in anthropometric tables (Farkas, "Anthropometry of the Head and Face",
-// 1994: means for adults, rounded).
+// Proportions in millimetres, scaled to a head of 240: pupils 64 apart, nose 34 wide and 22 high, mouth 52
+// wide, ear 63 high, as in anthropometric tables (Farkas, "Anthropometry of the Head and Face", 1994: means
+// for adults, rounded).
 namespace palpate::shapes {
 namespace {
 
 const Vec3 kEye(32, -77, 0);
 
-/// Height above the cheek of the two edges of the lids at u from the middle of the eye.
+/// Heights of the lids' edges relative to the centre of the eye, at u from the middle of the eye.
 double upper_lid(double u) { return 5.6 * (1.0 - u * u / 210.0) + 0.05 * u; }
 double lower_lid(double u) { return -4.2 * (1.0 - u * u / 210.0) + 0.05 * u; }
 
@@ -30,10 +30,10 @@ double with_eye(double head, const Vec3& p, bool fine) {
   const double iris = std::hypot(u, w - 0.4);
   if (p.y() < kEye.y()) {
     eyeball += 0.55 * (1.0 - ramp(iris, 4.7, 5.5)) + 1.3 * (1.0 - ramp(iris, 1.4, 2.4));
-    // the glint, as sculptors leave it
+    // glint, as sculptors carve it
     eyeball -= 0.5 * (1.0 - ramp(std::hypot(u - 1.6, w - 2.0), 0.6, 1.4));
   }
-  // Lids: a ball around the eyeball, open down to it between the two edges; a fold above the upper one.
+  // Lids: a ball around the eyeball, open down to it between the two edges; a fold above the upper lid.
   const double opening =
       std::max({0.9 * (w - upper_lid(u)), 0.9 * (lower_lid(u) - w), -eyeball, p.y() + 78.0}) +
       2.0 * ramp(std::abs(u), 9.5, 14.0);
@@ -46,7 +46,8 @@ double with_eye(double head, const Vec3& p, bool fine) {
 
 double with_nose(double head, const Vec3& p, bool fine) {
   if ((p - Vec3(0, -95, -20)).norm() > 90.0) return head;
-  head = join(head, limb(p, {0, -82, 2}, {0, -93, -34}, 8.0, 11.5), 9.0);  // its body, between the cheeks
+  head = join(head, limb(p, {0, -82, 2}, {0, -93, -34}, 8.0, 11.5), 9.0);  // body of the nose, between the
+                                                                           // cheeks
   const double bridge = limb(p, {0, -88, 8}, {0, -109, -32}, 6.0, 8.5);
   head = join(head, bridge, fine ? 11.0 : 16.0);
   head = join(head, ball(p, {0, -110, -34}, 9.2), 6.0);
@@ -64,7 +65,7 @@ double with_mouth(double head, const Vec3& p, bool fine) {
   if ((p - Vec3(0, -95, -66)).norm() > 90.0) return head;
   if (!fine) return join(head, ellipsoid(p, {0, -92, -68}, {22, 8, 10}), 14.0);
   head = carve(head, limb(p, {0, -98.5, -50}, {0, -100.5, -59}, 1.6, 2.2), 4.0);  // philtrum
-  // Upper lip: from the middle over the bow to the corner; lower lip, fuller.
+  // Upper lip: from the middle over the bow to the corner; then the fuller lower lip.
   double upper = limb(p, {0, -97.0, -65.0}, {7, -96.6, -63.4}, 3.9, 4.0);
   upper = join(upper, limb(p, {7, -96.6, -63.4}, {25, -86.5, -68.5}, 4.0, 1.4), 2.0);
   double lower = limb(p, {0, -95.8, -73.6}, {9, -95.2, -73.2}, 5.3, 5.0);
@@ -76,7 +77,7 @@ double with_mouth(double head, const Vec3& p, bool fine) {
   head = carve(head, line, 2.2);
   // below the lower lip
   head = carve(head, limb(p, {0, -96.5, -84.5}, {12, -92, -83.5}, 3.0, 2.0), 7.0);
-  // from the nose to the mouth's corner
+  // nasolabial fold
   const double fold = limb(p, {21, -92, -42}, {33, -80, -66}, 1.2, 1.2);
   return carve(head, fold, 6.0);
 }
@@ -90,7 +91,7 @@ double with_ear(double head, const Vec3& p, bool fine) {
   const Vec3 d = p - middle;
   if (d.norm() > 62.0) return head;
   const Vec3 q(d.dot(back), d.dot(up), d.dot(outwards));
-  const double s = q.x() / (1.0 + 0.006 * q.y()), t = q.y();  // an egg, wider above
+  const double s = q.x() / (1.0 + 0.006 * q.y()), t = q.y();  // egg, wider above
   const Vec3 egg(s, t, q.z());
   if (!fine) return join(head, ellipsoid(egg, {0, -1, 0}, {17, 32, 7.5}), 12.0);
   double ear = ellipsoid(egg, {0, 0, -0.5}, {16, 30, 3.6});
@@ -99,7 +100,7 @@ double with_ear(double head, const Vec3& p, bool fine) {
   const double rho = std::hypot(s / 14.6, t / 28.0),
                theta = std::atan2(t / 28.0, s / 14.6) * 180.0 / std::numbers::pi;
   // The rim (helix) runs from the lobe up the back and over the top into the hollow; the ridge inside it
-  // (antihelix) keeps to the back.
+  // (antihelix) stays at the back.
   const double turn = theta < -100.0 ? theta + 360.0 : theta;
   const double rim_here = ramp(turn, -75.0, -35.0) * (1.0 - ramp(turn, 175.0, 205.0));
   const double rim = std::hypot((rho - 1.0) * 15.0, q.z() - 3.2) - (5.0 * rim_here - 1.5);
@@ -137,7 +138,7 @@ double with_hair(double head, const Vec3& p, double wavelength) {
 
 double eyebrow(const Vec3& p, double wavelength) {
   if (p.y() > -50.0 || p.z() < 5.0 || p.z() > 40.0) return 0.0;
-  // A curve over the eye, seen from the front, thick inside and thin outside.
+  // Curve over the eye in the frontal view, thick inside and thin outside.
   const double along = std::clamp((p.x() - 9.0) / 43.0, 0.0, 1.0);
   const double height = 17.0 + 7.5 * along * (1.9 - 1.55 * along);
   const double half_width = 3.6 - 2.0 * along;

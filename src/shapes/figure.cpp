@@ -5,7 +5,7 @@
 namespace palpate::shapes::figure {
 namespace {
 
-/// Bones added by name; a pair is a bone and its mirror image.
+/// Builder of bones by name; a pair is a bone and its mirror image.
 class Builder {
  public:
   void one(const std::string& name, const std::string& parent, const Vec3& head, const Vec3& tail,

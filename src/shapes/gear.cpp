@@ -7,9 +7,9 @@
 #include "plane.h"
 
 // The surface is a chain of loops around the axis: up the teeth, in over the top, down the bore, out over the
-// bottom.  Between two loops of as many points is a band of quadrilaterals; between others, in a plane, a
-// ring that is filled with triangles.  Going along the chain with the loops counter-clockwise, the outside is
-// always on the same hand.
+// bottom.  Two loops with equal numbers of points are joined by a band of quadrilaterals; two coplanar loops,
+// or loops with different numbers, by a plane ring filled with triangles.  With counter-clockwise loops along
+// the chain, the outside is always on the same side.
 namespace palpate::shapes {
 namespace {
 
@@ -18,9 +18,9 @@ struct Loop {
   double z = 0.0;
 };
 
-/// What the gear's surface passes, and the spacing of its points [m].
+/// Loops of the gear's surface and numbers of rows between them.
 struct Plan {
-  std::vector<Loop> top;  ///< from the teeth's upper edge in to the bore's
+  std::vector<Loop> top;  ///< from the upper edge of the teeth in to the upper edge of the bore
   int teeth_rows = 1, bore_rows = 1;
 };
 
@@ -36,7 +36,7 @@ int pieces(double length, double spacing) {
   return std::max(1, static_cast<int>(std::lround(length / spacing)));
 }
 
-/// A cone from one radius to another, in rows; the first loop is left out.
+/// Appends a cone from one radius to another, in rows, without its first loop.
 void add_cone(std::vector<Loop>& chain, double r0, double z0, double r1, double z1, int count,
               double spacing) {
   const int rows = pieces(std::hypot(r1 - r0, z1 - z0), spacing);
@@ -45,12 +45,12 @@ void add_cone(std::vector<Loop>& chain, double r0, double z0, double r1, double 
 }
 
 constexpr double kChamfer = 0.0005, kBoreChamfer = 0.0008;  // [m]
-// of the web between rim and hub [m]
+// Dimensions of the web between rim and hub [m].
 constexpr double kRecess = 0.0015, kRim = 0.037, kWebOuter = 0.0355, kWebInner = 0.0215, kHub = 0.020;
 
-/// The outline moved inwards by a chamfer, point by point.  At a tip's corner that meets both sides' offsets,
-/// the point also slides along each side; its neighbours share the slide, less and less over half the tip, so
-/// that none passes another.
+/// Returns the outline offset inwards by a chamfer, point by point.  At a tip's corner, which meets both
+/// sides' offsets, the point also slides along each side; its neighbours share the slide, decreasing over
+/// half the tip, so that no point passes another.
 std::vector<Point2> chamfered(const GearProfile& profile, double chamfer) {
   const int n = static_cast<int>(profile.points.size());
   const auto at = [&](int i) { return static_cast<std::size_t>((i % n + n) % n); };
@@ -104,7 +104,7 @@ bool is_plane_ring(const Loop& a, const Loop& b) {
   return a.points.size() != b.points.size() || (a.z == b.z);
 }
 
-/// Vertices inside each plane ring of the top, for triangles of edge `spacing`.
+/// Returns the number of interior vertices of each plane ring of the top, for triangles of edge `spacing`.
 std::vector<int> fillings(const Plan& plan, double spacing) {
   std::vector<int> out;
   for (std::size_t i = 0; i + 1 < plan.top.size(); ++i)
@@ -122,7 +122,7 @@ int total(const Plan& plan, const std::vector<int>& filling) {
   return static_cast<int>(n);
 }
 
-/// Puts the surface together.
+/// Assembles the surface.
 class Assembly {
  public:
   int add(const Loop& loop) {
@@ -130,7 +130,7 @@ class Assembly {
     for (const Point2& p : loop.points) points_.emplace_back(p.x(), p.y(), loop.z);
     return first;
   }
-  /// Quadrilaterals from the loop that starts at a to the one at b, cut along the shorter diagonal.
+  /// Adds quadrilaterals from the loop that starts at a to the loop at b, cut along the shorter diagonal.
   void band(int a, int b, int count) {
     for (int i = 0; i < count; ++i) {
       const int j = (i + 1) % count, p = a + i, q = a + j, r = b + j, s = b + i;
@@ -141,7 +141,9 @@ class Assembly {
         triangle(p, q, s), triangle(q, r, s);
     }
   }
-  /// A plane ring; `facing` +1 up, -1 down.  Loops stand at a (outer) and b.
+  /// Adds a plane ring.
+  /// @param a, b    first vertices of the outer loop and of the hole
+  /// @param facing  +1 up, -1 down
   void plane(const TriMesh& mesh, int a, int outer, int b, int hole, double z, int facing) {
     const int first = static_cast<int>(points_.size()) - outer - hole;
     for (Eigen::Index v = outer + hole; v < mesh.vertices.cols(); ++v)
@@ -171,11 +173,11 @@ class Assembly {
   std::vector<Eigen::Vector3i> faces_;
 };
 
-/// Surface and, on request, where it is sharp (the base: the outline
-/// and the bore above and below, the tips' corners in between).
+/// Builds the surface and, if requested, its creases (for the base: the outline and the bore above and below,
+/// and the tips' corners in between).
 TriMesh build(const GearSize& size, int vertices, bool fine, std::vector<std::vector<Vec3>>* creases) {
   double low = 1e-5, high = 0.02;
-  for (int i = 0; i < 40; ++i) {  // the number falls as the spacing grows
+  for (int i = 0; i < 40; ++i) {  // the number of vertices falls as the spacing grows
     const double middle = 0.5 * (low + high);
     const Plan trial = plan_of(size, middle, fine);
     (total(trial, fillings(trial, middle)) > vertices ? low : high) = middle;
@@ -206,7 +208,7 @@ TriMesh build(const GearSize& size, int vertices, bool fine, std::vector<std::ve
       out.band(bottom[i + 1], bottom[i], count);
     }
   }
-  // between the top's and the bottom's copy of a loop
+  // Adds the wall between the top and the bottom copy of a loop.
   const auto wall = [&](std::size_t i, int rows, bool up) {
     const Loop& loop = plan.top[i];
     std::vector<int> starts = {bottom[i]};
@@ -243,7 +245,7 @@ Shape make_gear(const Resolution& resolution) {
   const GearSize size;
   Shape shape;
   shape.name = "gear";
-  shape.tetrahedra = 20000;  // its creases alone ask for 19,000
+  shape.tetrahedra = 20000;  // the creases alone require 19,000
   shape.base = build(size, resolution.base_vertices, false, &shape.creases);
   shape.skin = build(size, resolution.skin_vertices, true, nullptr);
   return shape;

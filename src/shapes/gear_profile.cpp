@@ -5,7 +5,7 @@
 
 #include "palpate/core/error.h"
 
-// Half a tooth, from the middle of the tip clockwise seen from the tooth, that is with growing polar angle:
+// Half a tooth, from the middle of the tip with growing polar angle:
 //   tip arc   radius ra, from angle 0 to the flank's end
 //   involute  of the base circle rb: at roll t the radius is rb sqrt(1 + t^2) and the polar angle has
 //             advanced by t - atan t = inv(alpha), alpha = atan t.  On the pitch circle half a tooth spans
@@ -26,15 +26,15 @@ double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 Point2 polar(double r, double angle) { return {r * std::cos(angle), r * std::sin(angle)}; }
 double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// What the pieces of half a tooth have in common.
+/// Parameters common to the pieces of half a tooth.
 struct HalfTooth {
   double ra, rb, rf, f;
-  double roll_tip;      // of the involute at the tip circle
+  double roll_tip;      // roll of the involute at the tip circle
   double flank_base;    // polar angle of the flank on the base circle and of the radial line
-  double middle;        // of the gap
-  Point2 centre;        // of the fillet
-  double touch_radius;  // where the fillet leaves the radial line
-  double root_angle;    // polar angle where it meets the root circle
+  double middle;        // polar angle of the middle of the gap
+  Point2 centre;        // centre of the fillet
+  double touch_radius;  // radius at which the fillet leaves the radial line
+  double root_angle;    // polar angle at which the fillet meets the root circle
 
   explicit HalfTooth(const GearSize& g)
       : ra(g.tip_radius()), rb(g.base_radius()), rf(g.root_radius()), f(g.fillet * g.module) {
@@ -42,7 +42,7 @@ struct HalfTooth {
     roll_tip = std::sqrt(ra * ra / (rb * rb) - 1.0);
     flank_base = std::numbers::pi / (2.0 * g.teeth) + t0 - std::atan(t0);
     middle = std::numbers::pi / g.teeth;
-    // The centre stands f beside the radial line (towards the gap) and f outside the root circle.
+    // The centre is at distance f from the radial line (towards the gap) and from the root circle (outside).
     const double along = std::sqrt((rf + f) * (rf + f) - f * f);
     touch_radius = along;
     centre = along * polar(1.0, flank_base) + f * polar(1.0, flank_base + 0.5 * std::numbers::pi);
@@ -61,8 +61,7 @@ double gear_area(const GearSize& size) {
   const HalfTooth h(size);
   const double tip = 0.5 * h.ra * h.ra * h.angle(h.roll_tip);
   const double flank = h.rb * h.rb * std::pow(h.roll_tip, 3) / 6.0;
-  // From the line's side (direction from the centre to the line) round to the root's (from the centre to the
-  // axis); both ends of u.
+  // u at both ends: from the centre to the radial line, and from the centre to the axis.
   const Point2 u0 = -polar(1.0, h.flank_base + 0.5 * std::numbers::pi), u1 = -polar(1.0, h.root_angle);
   const double turn = std::atan2(cross(u0, u1), u0.dot(u1));
   const double fillet = 0.5 * (h.f * cross(h.centre, u1 - u0) + h.f * h.f * turn);
@@ -80,8 +79,8 @@ GearProfile gear_profile(const GearSize& size, double spacing) {
     points.push_back(p), normals.push_back(n.normalized());
   };
   const auto on_flank = [&](double t) { return polar(h.rb * std::sqrt(1.0 + t * t), h.angle(t)); };
-  // The involute's normal touches the base circle:
-  // it points along the unwound string, at angle h(t) + pi/2 - atan t.
+  // The involute's normal is tangent to the base circle: it points along the unwound string, at angle h(t) +
+  // pi/2 - atan t.
   const auto flank_normal = [&](double t) {
     return polar(1.0, h.angle(t) + 0.5 * std::numbers::pi - std::atan(t));
   };
@@ -114,7 +113,7 @@ GearProfile gear_profile(const GearSize& size, double spacing) {
     add(polar(h.rf, angle), polar(1.0, angle));
   }
 
-  // The other half is its image about the middle of the gap; then all teeth.
+  // The other half is the mirror image about the middle of the gap; then all teeth.
   const int half = static_cast<int>(points.size()) - 1;  // the last point is the gap's middle
   GearProfile out;
   for (int tooth = 0; tooth < size.teeth; ++tooth) {

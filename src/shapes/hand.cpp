@@ -5,9 +5,9 @@
 #include "figure.h"
 #include "solids.h"
 
-// The hand hangs from the wrist with its palm towards the thigh.  Its axes: `along` to the fingertips,
-// `across` from the little finger to the index finger (forwards), `through` from the palm to the back of the
-// hand (outwards).
+// The hand hangs from the wrist with its palm towards the thigh.  Axes of the hand: `along` to the
+// fingertips, `across` from the little finger to the index finger (forwards), `through` from the palm to the
+// back of the hand (outwards).
 namespace palpate::shapes {
 namespace {
 
@@ -22,8 +22,8 @@ struct HandAxes {
   }
 };
 
-/// One finger: place of its knuckle (along, across) [m], direction in the hand's plane [degrees towards the
-/// index finger], lengths, radii.
+/// One finger: position of its knuckle (along, across) [m], direction in the hand's plane [degrees towards
+/// the index finger], lengths [m], radii [m].
 struct Finger {
   double along, across, spread_deg, first, rest, thick, thin;
 };

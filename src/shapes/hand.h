@@ -3,8 +3,9 @@
 
 namespace palpate::shapes {
 
-/// Left hand and foot of the standing figure, metres, in its axes.  @param fine  fingers and toes apart; else
-/// a mitten and a shoe, which bound them
+/// Distance to the left hand and the left foot of the standing figure, in its axes [m].
+/// @param fine  true: separate fingers and toes; false: a mitten and a shoe, for the boundary of the
+///   tetrahedra
 double hand(const Vec3& p, bool fine);
 double foot(const Vec3& p, bool fine);
 

@@ -7,12 +7,12 @@
 #include "face.h"
 #include "solids.h"
 
-// Skull, face and jaw are ellipsoids and limbs that grow together; the details of face.cpp go on in the order
-// of a sculptor, from the sockets to the skin.
+// Skull, face and jaw are smooth unions of ellipsoids and limbs; the details of face.cpp are added in a
+// sculptor's order, from the sockets to the skin.
 namespace palpate::shapes {
 namespace {
 
-constexpr double kScale = 1e-3;  // metres in a millimetre: 0.24 m from chin to crown
+constexpr double kScale = 1e-3;  // metres per millimetre: 0.24 m from chin to crown
 
 double skull(const Vec3& p) {
   double d = ellipsoid(p, {0, 12, 34}, {75.5, 95, 81});               // cranium
@@ -87,12 +87,12 @@ Shape make_head(const Resolution& resolution) {
   plan.lattice = 0.003;
   plan.symmetric = true;
   shape.base = contour(plan, resolution.base_vertices);
-  // The finest relief has four edges a wave;
-  // 0.19 m^2 of surface with half as many triangles' worth of refinement again.
+  // The shortest wavelength of the relief is three edges.  The factor 0.30 is 0.19 m^2 of surface plus about
+  // half as much for the refinement.
   const double edge_mm = std::sqrt(2.0 / std::sqrt(3.0) * 0.30 / resolution.skin_vertices) / kScale;
   plan.inside = body({true, true, 3.0 * edge_mm});
   plan.size = [](const Vec3& x) { return head_size_mm(x / kScale); };
-  plan.lattice = std::min(0.0018, 0.65 * kScale * edge_mm);  // a finer mesh finds narrower gaps
+  plan.lattice = std::min(0.0018, 0.65 * kScale * edge_mm);  // a finer mesh resolves narrower gaps
   plan.lipschitz = 2.0;
   shape.skin = contour(plan, resolution.skin_vertices);
   return shape;

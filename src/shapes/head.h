@@ -4,19 +4,20 @@
 
 namespace palpate::shapes {
 
-/// What of a head is made.
+/// Parts of a head.
 struct HeadParts {
-  bool fine = true;         ///< eyes, lids, lips, ears in detail, hair; else what bounds the tetrahedra
-  bool neck = true;         ///< cut level below
-  double wavelength = 0.0;  ///< of the finest relief [mm]; 0: none
+  bool fine = true;  ///< true: eyes, lids, lips, ears in detail, hair; false: boundary of the tetrahedra
+  bool neck = true;  ///< with a neck, cut level below
+  double wavelength = 0.0;  ///< shortest wavelength of the relief [mm]; 0: none
 };
 
-/// A head that measures 240 from chin to crown, in millimetres: the origin between the eyes' level and the
-/// ears, crown at z = 120, chin at z = -120. Mirror image of itself about x = 0.
+/// Returns the distance to a head that measures 240 from chin to crown, in millimetres.  The origin is
+/// between the level of the eyes and the ears, crown at z = 120, chin at z = -120.  Symmetric about x = 0.
 double head_mm(const Vec3& place, const HeadParts& parts);
-/// Wanted edge length there, as a factor: less at the eyes, nose, mouth and ears.
+/// Returns the target edge length as a factor: smaller at the eyes, nose, mouth and ears.
 double head_size_mm(const Vec3& place);
 
+/// Makes a head, 0.24 m from chin to crown.
 Shape make_head(const Resolution& resolution);
 
 }  // namespace palpate::shapes

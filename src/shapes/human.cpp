@@ -9,24 +9,24 @@
 #include "head.h"
 #include "solids.h"
 
-// Torso and limbs are limbs and ellipsoids on the joints of figure.h; muscles are ellipsoids that grow into
-// them; head and hands are their own formulas. Parts near the middle are joined with their own mirror images,
-// so that the body is smooth there.
+// Torso and limbs are limbs and ellipsoids on the joints of figure.h; muscles are ellipsoids joined to them;
+// head and hands have separate formulas.  Parts near the middle are joined with their mirror images, so that
+// the body is smooth there.
 namespace palpate::shapes {
 namespace {
 
 using namespace figure;
 
-constexpr double kHeadScale = 1e-3 * kHead / 0.240;  // metres in a millimetre of head_mm
+constexpr double kHeadScale = 1e-3 * kHead / 0.240;  // metres per millimetre of head_mm
 const Vec3 kHeadOrigin(0, -0.006, kHeight - 120.0 * kHeadScale);
 
-/// A part and its mirror image as one.
+/// Returns the union of a part and its mirror image.
 template <class Part>
 double both(const Vec3& p, double k, Part&& part) {
   return join(part(p), part(mirrored(p)), k);
 }
 
-/// A lower bound of the distance outside a ball: distant parts are not evaluated exactly.
+/// Evaluates a part only near its bounding ball; elsewhere returns a lower bound of the distance.
 template <class Part>
 double when_near(const Vec3& p, const Vec3& centre, double radius, Part&& part) {
   const double away = (p - centre).norm() - radius;
@@ -94,14 +94,14 @@ double leg(const Vec3& p, bool fine) {
   double d = limb(p, kHip, kKnee, 0.088, 0.055, 0.004, 0.35);
   // front of the thigh
   d = join(d, ellipsoid(p, {0.107, -0.026, 0.720}, {0.058, 0.056, 0.155}), 0.04);
-  d = join(d, ellipsoid(p, {0.098, 0.036, 0.700}, {0.052, 0.048, 0.150}), 0.04);  // back of it
+  d = join(d, ellipsoid(p, {0.098, 0.036, 0.700}, {0.052, 0.048, 0.150}), 0.04);  // back of the thigh
   d = join(d, ellipsoid(p, above_knee + Vec3(0.0, -0.024, -0.030), {0.036, 0.034, 0.044}), 0.03);  // knee cap
   d = join(d, limb(p, kKnee, kAnkle, 0.052, 0.034), 0.03);
   d = join(d, ellipsoid(p, {0.112, 0.034, 0.372}, {0.044, 0.038, 0.110}), 0.04);  // calf
   d = join(d, ellipsoid(p, {0.138, 0.030, 0.385}, {0.030, 0.034, 0.100}), 0.03);
   d = join(d, limb(p, {0.127, 0.048, 0.24}, {0.127, 0.058, 0.05}, 0.018, 0.016), 0.03);  // Achilles' tendon
   if (fine) {
-    // inner and outer head above the knee
+    // Inner and outer muscle heads above the knee.
     d = join(d, ellipsoid(p, {0.084, -0.034, 0.570}, {0.024, 0.026, 0.050}), 0.02);
     d = join(d, ellipsoid(p, {0.140, -0.030, 0.590}, {0.022, 0.024, 0.060}), 0.02);
     d = join(d, limb(p, {0.112, -0.046, 0.43}, {0.124, -0.012, 0.13}, 0.012, 0.010), 0.025);  // shin
@@ -184,7 +184,7 @@ Shape make_human(const Resolution& resolution) {
   shape.base = contour(plan, resolution.base_vertices);
   plan.inside = [](const Vec3& p) { return human(p, true); };
   plan.size = size_of;
-  // a finer mesh finds narrower gaps
+  // A finer mesh resolves narrower gaps.
   plan.lattice = 0.0046 * std::min(1.0, std::sqrt(60000.0 / resolution.skin_vertices));
   plan.lipschitz = 2.0;
   shape.skin = contour(plan, resolution.skin_vertices);

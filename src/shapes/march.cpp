@@ -7,15 +7,14 @@
 #include "contour.h"
 #include "palpate/core/error.h"
 
-// Each cube of the lattice is cut into six tetrahedra around its diagonal (Kuhn 1960): a
-// tetrahedron goes from the low corner to the high one along the three axes in one of their six
-// orders.  The cut is the same in every cube, so faces match, and a plane of the lattice is a union
-// of faces: a symmetric body may be cut there.  The surface crosses an edge where the function
-// changes sign; a tetrahedron holds one triangle or two. A block of cubes is skipped where
-// |inside(centre)| exceeds the Lipschitz bound times its half diagonal.  The bound is the author's word: fine
-// relief may be steeper than it in places, and a block skipped there would be a hole.  So a block is marched
-// after all where the surface leaves a marched one through the side between them; what the sweep finds of a
-// piece is then the whole piece, closed.
+// Each cube of the lattice is cut into six tetrahedra around its diagonal (Kuhn 1960): a tetrahedron goes
+// from the low corner to the high one along the three axes in one of their six orders.  The cut is the same
+// in every cube, so faces match, and a plane of the lattice is a union of faces: a symmetric body may be cut
+// there.  The surface crosses an edge where the function changes sign; a tetrahedron holds one triangle or
+// two.  A block of cubes is skipped where |inside(centre)| exceeds the Lipschitz bound times its half
+// diagonal.  The bound is an estimate of the shape's author: fine relief may be steeper in places, and a
+// block skipped there would leave a hole. Therefore a skipped block is marched if the surface leaves a
+// marched block through their common side, so that every piece found by the sweep is complete and closed.
 namespace palpate::shapes {
 namespace {
 
@@ -121,8 +120,8 @@ class March {
                  b = static_cast<std::size_t>(out[static_cast<std::size_t>(o)]);
       return crossing(corner[a], corner[b], value[a], value[b]);
     };
-    // Outwards: from the mean of the corners inside to that of those outside.  Judged at the middles of the
-    // edges, where no triangle is thin.
+    // Outwards: from the mean of the corners inside to the mean of the corners outside.  The orientation is
+    // judged at the midpoints of the edges, where no triangle is thin.
     Vec3 outwards = Vec3::Zero();
     for (int i = 0; i < ins; ++i)
       outwards -= place(corner[static_cast<std::size_t>(in[static_cast<std::size_t>(i)])]) / ins;
@@ -149,8 +148,8 @@ class March {
 
   static Vec3 place(const Place& p) { return {double(p[0]), double(p[1]), double(p[2])}; }
 
-  /// The vertex on an edge of the lattice, made when it is first asked for; kept off the edge's ends:
-  /// crossings that crowd around a lattice point make slivers.
+  /// Returns the vertex on an edge of the lattice, created on first use.  It is kept away from the edge's
+  /// ends, because crossings that crowd around a lattice point make slivers.
   int crossing(Place a, Place b, double fa, double fb) {
     if (b < a) std::swap(a, b), std::swap(fa, fb);
     const auto way = static_cast<std::uint64_t>((b[0] - a[0]) * 4 + (b[1] - a[1]) * 2 + (b[2] - a[2]));
@@ -169,7 +168,7 @@ class March {
   double h_;
   std::array<int, 3> blocks_{};
   std::set<Place> marched_;
-  std::vector<Place> crossed_;  ///< blocks behind a side that the surface goes through
+  std::vector<Place> crossed_;  ///< blocks behind a side that the surface crosses
   std::array<double, (kBlock + 1) * (kBlock + 1) * (kBlock + 1)> values_{};
   std::unordered_map<std::uint64_t, int> vertex_;
   std::vector<Vec3> points_;

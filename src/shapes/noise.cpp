@@ -6,8 +6,8 @@
 namespace palpate::shapes {
 namespace {
 
-/// Mixes all bits: multiplications by odd numbers and shifts are invertible,
-/// so no two inputs of one word share an output.
+/// Mixes all bits.  Multiplications by odd numbers and xor-shifts are invertible, so no two inputs share an
+/// output.
 std::uint32_t mix(std::uint32_t h) {
   h ^= h >> 16;
   h *= 0x7feb352dU;
@@ -22,7 +22,8 @@ std::uint32_t hash(int i, int j, int k, unsigned seed) {
   return mix(h + static_cast<std::uint32_t>(k));
 }
 
-/// One of the 12 directions to the edges of a cube, times the way from the lattice point.
+/// Returns the dot product of one of the 12 directions to the edges of a cube with the offset from the
+/// lattice point.
 double slope(std::uint32_t h, double x, double y, double z) {
   const std::uint32_t which = h % 12;
   const double u = which < 8 ? x : y, v = which < 4 ? y : z;

@@ -3,12 +3,12 @@
 
 namespace palpate::shapes {
 
-/// A smooth random function of space: gradients drawn by an integer hash at the points of the unit lattice,
-/// blended by 6 t^5 - 15 t^4 + 10 t^3 (Perlin 2002). About within [-1, 1], zero at lattice points, features
-/// of size 1, the same on every machine.
+/// Returns a smooth random function of space: gradients drawn by an integer hash at the points of the unit
+/// lattice, blended by 6 t^5 - 15 t^4 + 10 t^3 (Perlin 2002).  Values are about within [-1, 1], zero at
+/// lattice points, with features of size 1, and the same on every machine.
 double noise(const Vec3& p, unsigned seed = 0);
 
-/// A number in [0, 1) that belongs to an integer.
+/// Returns the pseudo-random number in [0, 1) of an integer.
 double chance(int i, unsigned seed = 0);
 
 }  // namespace palpate::shapes

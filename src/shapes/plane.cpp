@@ -5,8 +5,8 @@
 #include "palpate/core/error.h"
 #include "remesh.h"
 
-// First any triangulation, by cutting ears off the loop that a bridge from the outer loop to the hole and
-// back makes of both; then the remesher puts vertices inside.  The loops stay as they are.
+// The first triangulation cuts ears off the loop that a bridge from the outer loop to the hole and back
+// makes of both; then the remesher inserts interior vertices.  The loops stay unchanged.
 namespace palpate::shapes {
 namespace {
 
@@ -23,8 +23,8 @@ double area(const std::vector<Point2>& loop) {
   return sum;
 }
 
-/// Ears of a simple polygon: of the corners that hold no other vertex, the one with the best shape is cut
-/// first among a few, to keep slivers away.
+/// Cuts a simple polygon into ears: convex corners whose triangle contains no other vertex.  After each cut
+/// the search moves on by one corner, to limit slivers.
 std::vector<std::array<int, 3>> ears(const std::vector<Point2>& at, std::vector<int> loop) {
   std::vector<std::array<int, 3>> out;
   std::size_t i = 0, misses = 0;
@@ -48,7 +48,7 @@ std::vector<std::array<int, 3>> ears(const std::vector<Point2>& at, std::vector<
     out.push_back({a, b, c});
     loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(i));
     misses = 0;
-    ++i;  // go round: ears next to each other make fans of slivers
+    ++i;  // skip a corner: adjacent ears make fans of slivers
   }
   out.push_back({loop[0], loop[1], loop[2]});
   return out;
@@ -57,7 +57,7 @@ std::vector<std::array<int, 3>> ears(const std::vector<Point2>& at, std::vector<
 }  // namespace
 
 // Euler: V - E + F = 0 for a ring, 3 F = 2 E - B with B edges on its rims, so F = 2 V - B = 2 (inside) + B;
-// each face has sqrt(3)/4 edge^2.
+// each face has the area sqrt(3)/4 edge^2.
 int vertices_between(const std::vector<Point2>& outer, const std::vector<Point2>& hole, double edge) {
   const double faces = (area(outer) - area(hole)) / (std::sqrt(3.0) / 4.0 * edge * edge);
   return std::max(

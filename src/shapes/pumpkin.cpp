@@ -8,8 +8,8 @@
 #include "noise.h"
 #include "solids.h"
 
-// Twelve ribs stand around an axis, each an ellipsoid of its own size; where two meet is a groove, where all
-// meet is the dimple that holds the stem, bent and five-cornered.  0.30 m across.
+// Twelve ribs around an axis, each an ellipsoid of slightly different size.  Two neighbours form a groove;
+// all together form the dimple that holds the stem, which is bent and five-cornered.  0.30 m across.
 namespace palpate::shapes {
 namespace {
 
@@ -32,7 +32,7 @@ const Rib& rib_of(int i) {
   return ribs[static_cast<std::size_t>((i + 2 * kRibs) % kRibs)];
 }
 
-/// Distance to rib i (they repeat), p about the axis.
+/// Distance to rib i (modulo their number); p is relative to the axis.
 double rib(const Vec3& p, int i, bool fine) {
   const Rib& own = rib_of(i);
   const Vec3 q(own.c * p.x() + own.s * p.y(), own.c * p.y() - own.s * p.x(), p.z() + own.shift);
@@ -58,11 +58,11 @@ double stem(const Vec3& p, bool fine) {
   const double radius = std::hypot(p.x() - axis.x(), p.y() - axis.y());
   const double turn = std::atan2(p.y() - axis.y(), p.x() - axis.x()) + 9.0 * (p.z() - 0.08);
   if (fine) d -= 0.0020 * std::cos(5.0 * turn) * ramp(radius, 0.003, 0.009);
-  // where it was cut
+  // cut end of the stem
   return meet(d, (p - Vec3(0.024, -0.013, 0.147)).dot(Vec3(0.5, -0.25, 0.83).normalized()), 0.003);
 }
 
-/// Skin: shallow dents, a few warts, fine streaks along the ribs.
+/// Returns the height of the skin: shallow dents, a few warts, fine streaks along the ribs.
 double relief(const Vec3& p, double wavelength) {
   double out = 0.0011 * noise(p / 0.045, 21);
   if (wavelength < 0.016) out += 0.0005 * noise(p / 0.016, 22);

@@ -9,7 +9,7 @@
 namespace palpate::shapes {
 namespace {
 
-// Botsch and Kobbelt 2004: neither step undoes the other
+// Botsch and Kobbelt 2004: with these limits splits and collapses do not undo each other.
 constexpr double kLongest = 4.0 / 3.0, kShortest = 4.0 / 5.0;
 
 double cotangent(const Vec3& at, const Vec3& a, const Vec3& b) {
@@ -32,8 +32,8 @@ Remesher::Remesher(const TriMesh& mesh, RemeshRules rules)
     table_.around(ghost, [&](int h) { rim_[table_.to(h)] = 1; });
 }
 
-/// Gradient from four values at the corners of a small tetrahedron, which err by O(probe^2) in their mean and
-/// O(probe) in the slope's curvature alone.
+/// Computes gradient and value from four values at the corners of a small tetrahedron.  The error of their
+/// mean is O(probe^2); the error of the gradient is O(probe), from mixed second derivatives only.
 Vec3 Remesher::slope(const Vec3& p, double* value) const {
   static const std::array<Vec3, 4> corners = {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1),
                                               Vec3(-1, -1, 1)};
@@ -48,7 +48,7 @@ Vec3 Remesher::slope(const Vec3& p, double* value) const {
   return gradient / (4.0 * rules_.probe);
 }
 
-/// Two Newton steps along the slope, each no longer than `reach`.
+/// Performs two Newton steps along the gradient, each no longer than `reach`.
 Vec3 Remesher::on_surface(Vec3 p, bool in_plane, double reach) const {
   for (int step = 0; step < 2; ++step) {
     double f;
@@ -90,8 +90,8 @@ int Remesher::count() const {
   return n;
 }
 
-// An even mesh has two triangles a vertex, each of area sqrt(3)/4 (size edge)^2: the number of vertices is
-// the integral of dA 2 / (sqrt(3) size^2 edge^2).
+// A uniform mesh has two triangles per vertex, each of area sqrt(3)/4 (size edge)^2: the number of vertices
+// is the integral of dA 2 / (sqrt(3) size^2 edge^2).
 double Remesher::edge_for(int vertices) const {
   double sum = 0.0;
   for (int h = 0; h < static_cast<int>(table_.origin.size()); h += 3) {
@@ -112,7 +112,7 @@ bool Remesher::try_split(int h) {
   const double length = (x_[a] - x_[b]).norm();
   Vec3 middle = 0.5 * (x_[a] + x_[b]);
   if (on_rim) middle.x() = 0.0;
-  // off the plane
+  // moved off the plane
   else if (is_chord(h))
     middle = 0.5 * middle + 0.25 * (x_[table_.opposite(h)] + x_[table_.opposite(table_.twin[h])]);
   const int m = table_.add_vertex();
@@ -123,8 +123,8 @@ bool Remesher::try_split(int h) {
   return true;
 }
 
-/// Collapses from(h) into to(h) unless an edge grows beyond `longest` (of the wanted length), a face turns
-/// over, or a rim would change.
+/// Collapses from(h) into to(h) unless an edge grows beyond `longest` [target lengths], a face turns over or
+/// becomes a sliver, or a rim changes.
 bool Remesher::try_collapse(int h, double longest) {
   const int a = table_.from(h), b = table_.to(h), c = table_.opposite(h), d = table_.opposite(table_.twin[h]);
   if (is_rim(a) && (!rules_.rims_in_plane || !table_.on_rim(h))) return false;
@@ -146,7 +146,7 @@ bool Remesher::try_collapse(int h, double longest) {
                  quality_before =
                      before.norm() / std::max({(x_[v] - x_[a]).squaredNorm(), (x_[w] - x_[a]).squaredNorm(),
                                                (x_[v] - x_[w]).squaredNorm()});
-    if (quality < std::min(0.15, 0.8 * quality_before)) fine = false;  // a sliver where none was
+    if (quality < std::min(0.15, 0.8 * quality_before)) fine = false;  // a new sliver
     if (after.dot(ring) < 0.3 * size ||
         (quality_before > 0.2 && after.dot(before) < 0.5 * size * before.norm()))
       fine = false;
@@ -158,7 +158,7 @@ bool Remesher::try_collapse(int h, double longest) {
 
 void Remesher::split_long(double edge) {
   for (int sweep = 0; sweep < 2; ++sweep) {
-    const int edges = static_cast<int>(table_.origin.size());  // those made here wait for the next sweep
+    const int edges = static_cast<int>(table_.origin.size());  // new edges wait for the next sweep
     for (int h = 0; h < edges; ++h)
       if (real(h) && h < table_.twin[h] && (relative(h) > kLongest * edge || is_chord(h))) try_split(h);
   }
@@ -169,8 +169,8 @@ void Remesher::collapse_short(double edge) {
     if (real(h) && relative(h) < kShortest * edge) try_collapse(h, kLongest * edge);
 }
 
-// Sum of |valence - 6| over the four vertices (4 on a rim, counting real neighbours),
-// less after the flip than before.
+// Flips an edge if that reduces the sum of |valence - 6| over the four vertices (4 on a rim, real neighbours
+// only).
 void Remesher::flip_by_valence() {
   std::vector<int> valence(x_.size(), 0);
   for (int v = 0; v < static_cast<int>(x_.size()); ++v)
@@ -197,8 +197,8 @@ void Remesher::flip_by_valence() {
   }
 }
 
-// Delaunay's criterion: the angles opposite an edge add up to less than pi, so cot + cot > 0; else the flip
-// raises the smallest angle.
+// Delaunay criterion: the angles opposite an edge add up to less than pi, so cot + cot > 0; otherwise the
+// flip raises the smallest angle.
 int Remesher::flip_by_angle() {
   int flips = 0;
   for (int h = 0; h < static_cast<int>(table_.origin.size()); ++h) {
@@ -220,9 +220,9 @@ int Remesher::flip_by_angle() {
   return flips;
 }
 
-// Towards the mean of the middles of the faces around, weighted by area / size^2 (equal for the wanted
-// triangles), within the tangent plane. On a rim in the plane: towards the middle of its two neighbours along
-// the rim.  A move that turns a face over is not made.
+// Moves vertices towards the mean of the centroids of the adjacent faces, weighted by area / size^2 (equal
+// for triangles of the target size), within the tangent plane.  A rim vertex in the plane moves towards the
+// middle of its two neighbours along the rim.  A move that turns a face over is rejected.
 void Remesher::move() {
   for (int v = 0; v < static_cast<int>(x_.size()); ++v) {
     if (table_.out[v] < 0 || table_.is_ghost(v) || (is_rim(v) && !rules_.rims_in_plane)) continue;
@@ -254,7 +254,7 @@ void Remesher::move() {
   }
 }
 
-/// Puts a vertex there unless a face would turn over or half a body reach across its plane.
+/// Moves vertex v to `goal` unless a face would turn over or half a body would reach across its plane.
 void Remesher::place(int v, const Vec3& goal) {
   bool fine = is_rim(v) || !rules_.rims_in_plane || goal.x() > 0.0;
   table_.around(v, [&](int h) {
@@ -309,7 +309,7 @@ void Remesher::trim(double edge, int vertices) {
     int wanted = std::abs(now - vertices) / least;
     for (const auto& [length, h] : order) {
       if (wanted == 0) break;
-      if (!real(h) || std::abs(relative(h) - std::abs(length)) > 1e-12) continue;  // changed meanwhile
+      if (!real(h) || std::abs(relative(h) - std::abs(length)) > 1e-12) continue;  // changed in this pass
       if (split ? try_split(h) : try_collapse(h, 1.6 * edge) || try_collapse(table_.twin[h], 1.6 * edge))
         --wanted;
     }
