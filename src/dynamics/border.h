@@ -3,7 +3,7 @@
 
 namespace palpate::dynamics {
 
-/// Room for the border of a matrix; nothing where it has it.
+/// Resizes the border of a matrix; does nothing where it has this size.
 inline void resize_border(BorderedMatrix& A, int nodal, int border) {
   if (A.right.rows() == nodal && A.corner.rows() == border) return;
   A.right.resize(nodal, border);

@@ -3,7 +3,7 @@
 namespace palpate::dynamics {
 namespace {
 
-/// Quaternion rate with world angular velocity w: q' = 1/2 (0, w) q (Shuster 1993).  Left inverse: (0, w) = 2
+/// Quaternion rate with world angular velocity w: q' = 1/2 (0, w) q (Shuster 1993). Left inverse: (0, w) = 2
 /// q' q* / |q|^2.
 class FreeBodyKinematics final : public BlockKinematics {
  public:

@@ -73,7 +73,7 @@ NodePairs PatternBuilder::pairs() const {
   return sorted;
 }
 
-// By counting, then each node's own few.
+// Counting sort by the first node, then a comparison sort of the few second nodes of each.
 void sort_unique(NodePairs& pairs, int node_count) {
   std::vector<std::size_t> start(static_cast<std::size_t>(node_count) + 2, 0);
   for (const auto& pair : pairs) ++start[static_cast<std::size_t>(pair.first) + 2];

@@ -5,7 +5,8 @@
 namespace palpate::dynamics {
 namespace {
 
-/// Cubic through 0 and `end` with slopes `m0`, `m1` by s: value and derivative at s in [0, 1] (Hermite).
+/// Value and derivative at s in [0, 1] of the Hermite cubic through 0 and `end` with slopes `m0` and `m1`
+/// with respect to s.
 struct Cubic {
   Vec3 value, slope;
 };
@@ -17,9 +18,9 @@ Cubic cubic(double s, const Vec3& end, const Vec3& m0, const Vec3& m1) {
 
 }  // namespace
 
-// Rotation: theta(s) from 0 to d, the rotation vector of R1 R0^T, with R(s) = exp(theta) R0 and
-// omega = J(theta) theta'/h.  The slopes at the ends follow from the twists: h omega0 at s = 0 (J(0) = I) and
-// h J^-1(d) omega1 at s = 1.
+// Rotation: theta(s) runs from 0 to d, the rotation vector of R1 R0^T, with R(s) = exp(theta) R0 and omega =
+// J(theta) theta'/h. The slopes at the ends follow from the twists: h omega0 at s = 0 (J(0) = I) and h
+// J^-1(d) omega1 at s = 1.
 RigidMotion motion_between(const RigidMotion& from, const RigidMotion& to, double h, double s) {
   const Vec6 d = pose_difference(from.pose, to.pose);
   const Cubic rotation = cubic(s, d.head<3>(), h * from.twist.angular,

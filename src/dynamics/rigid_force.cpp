@@ -21,9 +21,9 @@ Mat3 world_inertia(const Pose& pose, const Vec3& inertia) {
   return R * inertia.asDiagonal() * R.transpose();
 }
 
-// f = -w x I w with I = R I0 R^T.  By velocity: D = -df/dw = [w] I - [I w].  A rotation e of the body takes I
-// to I + [e] I - I [e], so d(I w) = e x I w - I (e x w) = (I [w] - [I w]) e, and K = -df/de = [w] (I [w] - [I
-// w]).
+// f = -w x I w with I = R I0 R^T. With respect to velocity, D = -df/dw = [w] I - [I w]. A rotation e of the
+// body changes I to I + [e] I - I [e], so d(I w) = e x I w - I (e x w) = (I [w] - [I w]) e, and K = -df/de =
+// [w] (I [w] - [I w]).
 Mat6 gyroscopic_tangent(const RigidMotion& m, const Vec3& inertia, double k_scale, double d_scale) {
   Mat6 A = Mat6::Zero();
   const Mat3 I = world_inertia(m.pose, inertia), w = cross_matrix(m.twist.angular),

@@ -13,7 +13,7 @@ std::uint64_t fresh_state_version() {
   return next++;
 }
 
-/// Offsets and sizes follow from the order of the blocks.
+/// Sets offsets and sizes from the order of the blocks.
 void place_blocks(Layout& layout) {
   layout.q_size = layout.u_size = layout.nodal_size = 0;
   for (Block& b : layout.blocks) {

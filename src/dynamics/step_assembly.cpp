@@ -25,8 +25,9 @@ void StepAssembly::find_parts() {
 
 namespace {
 
-/// Whether, between different nodes, no pair is in two of these lists, nor in that of a mass: fewer in all,
-/// and some are shared; more, and a mass has some.
+/// Returns whether no pair of different nodes is in two of these lists, and none is in the pattern by a mass
+/// alone. If the lists have more pairs in all than the pattern has off-diagonal blocks, some are shared; if
+/// fewer, a mass adds some.
 bool are_disjoint(const std::vector<const NodePairs*>& lists, const BlockSparse& pattern) {
   std::size_t pairs = 0;
   for (const NodePairs* own : lists)
@@ -37,7 +38,7 @@ bool are_disjoint(const std::vector<const NodePairs*>& lists, const BlockSparse&
 
 }  // namespace
 
-/// The pattern of the fused terms alone.
+/// Builds the pattern of the fused terms only.
 void StepAssembly::update_own_pattern(const Layout& layout) {
   versions_.assign(1, layout.version);
   for (const Part& part : parts_)
@@ -78,7 +79,7 @@ bool StepAssembly::applies(const StateView& state) {
   return disjoint_;
 }
 
-/// False where a fused term does not say when it gives something else.
+/// Reads the versions of the fused terms; returns false where one of them has no version.
 bool StepAssembly::find_versions() {
   step_versions_.clear();
   for (const Part& part : parts_) {
@@ -92,7 +93,7 @@ bool StepAssembly::find_versions() {
 
 namespace {
 
-/// Of numbers that differ by the rounding of a time in a step.
+/// Relative difference of numbers that differ by the rounding of a time in a step.
 constexpr double kSame = 1e-9;
 
 bool equal(const VecX& kept, const double* now, Eigen::Index size) {
@@ -119,7 +120,8 @@ bool StepAssembly::is_kept(const StateView& state, const VecX& shift, double d_s
          equal(kept.u, state.u.data(), nodal) && alike(kept.shift, shift, nodal);
 }
 
-/// f and A hold no force and m_scale M.
+/// Adds the contribution of the fused terms.
+/// @pre f is zero, and A holds m_scale M only
 void StepAssembly::add_fused(const StateView& state, const VecX& shift, double d_scale, double k_scale,
                              VecX& f, ZeroRowSumMatrix& A, bool keep) {
   KeptStep& kept = system_.kept_step();

@@ -36,7 +36,7 @@ int System::event_count() const {
 }
 
 std::uint64_t System::events_version() const {
-  std::uint64_t sum = terms_.size();  // each grows only, so does the sum
+  std::uint64_t sum = terms_.size();  // Versions only increase, and so does their sum.
   for (const auto& term : terms_) sum += term->events_version();
   return sum;
 }
@@ -130,7 +130,7 @@ void System::acceleration(const StateView& state, VecX& a) {
   acceleration_of_force(state, force_scratch_, a);
 }
 
-// With a = P a_free + a_known (given accelerations; G a_master + gamma under a master) and T = d a / d
+// With a = P a_free + a_known (prescribed accelerations; G a_master + gamma under a master) and T = d a / d
 // (a_free, a_master):
 //   T^T M T (a_free, a_master) = T^T (f - M a_known).
 void System::acceleration_of_force(const StateView& state, VecX& f, VecX& a) {
@@ -197,8 +197,8 @@ void System::solve_mass(const StateView& state, VecX& r, VecX& a) {
                 static_cast<int>(status));
 }
 
-/// k_scale K + d_scale D of what the filter lets pass.  Where a term writes the rows of a node block whole,
-/// that is the first that happens to them.
+/// Computes k_scale K + d_scale D of the terms that pass the filter. A term that writes all rows of a node
+/// block does so before any other term adds to them.
 void System::assemble_tangents(const StateView& state, double d_scale, double k_scale, BorderedMatrix& A,
                                const TermFilter& filter) {
   const bool any = d_scale != 0.0 || k_scale != 0.0;

@@ -1,5 +1,5 @@
-/// Directions given from outside, by functions or by a master that carries them: what they take out of the
-/// equations of motion, and bring to their master's.
+/// Driven directions, prescribed by functions of time or carried by a master: their elimination from the
+/// equations of motion, and their contribution to the masters' equations.
 #include "palpate/core/error.h"
 #include "palpate/dynamics/system.h"
 
@@ -23,7 +23,7 @@ void System::impose(const Layout& layout, double t, double* q, double* u) const 
   evaluate_driven(make_view(layout, t, q, u));
   for (const Driven& d : driven_) {
     const auto& dofs = d.motion->dofs();
-    // node blocks come first with q' = u: one index serves both
+    // Node blocks come first with q' = u: one index is valid for both.
     for (std::size_t i = 0; i < dofs.size(); ++i) {
       q[dofs[i]] = d.x[static_cast<Eigen::Index>(i)];
       u[dofs[i]] = d.v[static_cast<Eigen::Index>(i)];
@@ -31,9 +31,9 @@ void System::impose(const Layout& layout, double t, double* q, double* u) const 
   }
 }
 
-// The force of carried nodes on their master, c = f - M u', rotates with it.  It is taken with u' of the
-// present state: a body that falls freely presses with nothing, and of a light master the forces and moments
-// c are in balance, which makes K symmetric.
+// The force of carried nodes on their master, c = f - M u', rotates with it. It is evaluated with u' of the
+// present state: a body in free fall exerts no force, and for a light master the forces and moments c are in
+// balance, which makes K symmetric.
 void System::evaluate_carried_stiffness(const StateView& state, const TermFilter& filter) {
   force(state, held_scratch_, filter);
   force_scratch_ = held_scratch_;
@@ -59,10 +59,10 @@ void System::apply_carried_stiffness(const StateView& state, const VecX& x, VecX
       y.segment(d.master_offset, d.master_size) += d.K * x.segment(d.master_offset, d.master_size);
 }
 
-// T^T A T with T = [P Ghat; 0 I]: the driven columns, carried by their master, add to its columns, and
-// likewise the rows.
+// T^T A T with T = [P Ghat; 0 I]: the driven columns, carried by their master, are added to its columns, and
+// the driven rows to its rows.
 //     right' = right + B G,   corner' = corner + G^T right' + bottom G,   bottom' = bottom + (B^T G)^T,
-// over the rows of the carried directions alone.  B has a symmetric pattern: column j of nodes is read along
+// over the rows of the carried directions only. B has a symmetric pattern: column j of nodes is read along
 // row j.
 void System::reduce_to_masters(const StateView& state, BorderedMatrix& A) const {
   using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;

@@ -7,7 +7,7 @@
 namespace palpate::dynamics {
 namespace {
 
-/// FNV-1a over version numbers: one number that changes when any of them does.
+/// FNV-1a hash over version numbers: changes when any of them does.
 struct VersionHash {
   std::uint64_t value = 1469598103934665603ull;
   void add(std::uint64_t v) { value = (value ^ v) * 1099511628211ull; }
@@ -15,8 +15,8 @@ struct VersionHash {
 
 }  // namespace
 
-// Pairs of a term are kept from one of its versions to the next: where contact changes what it couples, the
-// elements' pairs, which are most, are merged, not sorted anew.
+// Pairs of a term are kept until its version changes: where contact changes its coupling, the element pairs,
+// which are the majority, are merged and not sorted again.
 void System::update_pattern(const StateView& state) {
   const Layout& layout = *state.layout;
   VersionHash key;

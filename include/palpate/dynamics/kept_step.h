@@ -6,18 +6,19 @@
 
 namespace palpate::dynamics {
 
-/// What the fused terms of a System (FusedStepTerm) gave to a step's matrix and right-hand side, kept for
-/// whoever asks for the same of them next: a haptic loop linearises its bodies over the period that they then
-/// step over, from the same state, and soft bodies are what costs there.
+/// Contribution of the fused terms of a System (FusedStepTerm) to the matrix and right-hand side of a step,
+/// kept for reuse. A haptic loop linearises the bodies over the period that they then step over, from the
+/// same state, and the soft bodies dominate the cost of both.
 struct KeptStep {
-  std::vector<std::uint64_t> versions;  ///< FusedStepTerm::step_version() of each; empty: nothing is kept
-  std::uint64_t slot_map_key = 0;       ///< of the matrix
-  double scale = 0.0;                   ///< of the matrix
-  double d_scale = 0.0, k_scale = 0.0;  ///< of D and K
-  VecX q, u, shift;                     ///< of the nodes: positions [m], velocities [m/s], displacements [m]
+  /// FusedStepTerm::step_version() of each term; empty: nothing is kept.
+  std::vector<std::uint64_t> versions;
+  std::uint64_t slot_map_key = 0;       ///< Key of the matrix (ZeroRowSumMatrix::slot_map_key).
+  double scale = 0.0;                   ///< Scale of the matrix (ZeroRowSumMatrix::scale).
+  double d_scale = 0.0, k_scale = 0.0;  ///< Factors of D and K.
+  VecX q, u, shift;                     ///< Nodal positions [m], velocities [m/s] and displacements [m].
   std::vector<float> values;            ///< ZeroRowSumMatrix::values
-  VecX diagonal;                        ///< what was added to ZeroRowSumMatrix::diagonal
-  VecX force;                           ///< force - K shift, of all u-directions [N]
+  VecX diagonal;                        ///< Part added to ZeroRowSumMatrix::diagonal.
+  VecX force;                           ///< force - K shift, all u-directions [N].
 };
 
 }  // namespace palpate::dynamics

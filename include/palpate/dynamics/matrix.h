@@ -8,46 +8,46 @@
 
 namespace palpate::dynamics {
 
-/// Sparse matrix of 3x3 blocks over the nodes, both triangles stored, rows compressed, columns ascending.
-/// Values are row-major inside a block: entry (r, c) of block s is values[9 s + 3 r + c].
+/// Sparse matrix of 3x3 blocks over the nodes (block compressed rows, both triangles stored, columns
+/// ascending). Values are row-major inside a block: entry (r, c) of block s is values[9 s + 3 r + c].
 class BlockSparse {
  public:
-  /// Number of nodes.
+  /// Returns the number of nodes.
   int block_rows() const { return static_cast<int>(row_start_.size()) - 1; }
-  /// Number of stored blocks.
+  /// Returns the number of stored blocks.
   int slot_count() const { return static_cast<int>(columns_.size()); }
-  /// Where the blocks of each row start; one more than rows.
+  /// Returns the index of the first block of each row, and the total at the end.
   const std::vector<int>& row_start() const { return row_start_; }
-  /// Column of each block; ascending in a row.
+  /// Returns the column of each block; ascending within a row.
   const std::vector<int>& columns() const { return columns_; }
-  /// Nine numbers a block; whoever writes them must call BorderedMatrix::touch().
+  /// Returns the values, nine per block. Whoever writes them must call BorderedMatrix::touch().
   std::vector<double>& values() { return values_; }
-  /// Nine numbers a block.
+  /// Returns the values, nine per block.
   const std::vector<double>& values() const { return values_; }
 
-  /// Index of block (i, j) in columns(), -1 when it is not in the pattern.  O(log row length).
+  /// Returns the index of block (i, j) in columns(), -1 when it is not in the pattern. O(log row length).
   int slot(int i, int j) const;
-  /// Slot of block (i, i), O(1).
+  /// Returns the slot of block (i, i), O(1).
   int diagonal(int i) const { return diagonal_[static_cast<std::size_t>(i)]; }
-  /// The nine numbers of a block.
+  /// Returns the nine values of a block.
   double* block(int slot) { return values_.data() + 9 * static_cast<std::size_t>(slot); }
-  /// The nine numbers of a block.
+  /// Returns the nine values of a block.
   const double* block(int slot) const { return values_.data() + 9 * static_cast<std::size_t>(slot); }
-  /// Adds a 3x3 block.
+  /// Adds a 3x3 matrix to a block.
   void add(int slot, const Mat3& m) {
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(block(slot)) += m;
   }
-  /// All values become 0; the pattern stays.
+  /// Sets all values to 0; the pattern is unchanged.
   void set_zero() { set_zero(0, block_rows()); }
-  /// The values of some rows become 0.
+  /// Sets the values of some rows to 0.
   void set_zero(int first_row, int rows);
-  /// y += A x
+  /// Adds y += A x.
   void multiply_add(const double* x, double* y) const;
-  /// y += A^T x
+  /// Adds y += A^T x.
   void multiply_transposed_add(const double* x, double* y) const;
 
-  /// Grows whenever the pattern is rebuilt: symbolic analyses and scatter maps made for another version are
-  /// stale.  Unique over all matrices of the process.
+  /// Version of the pattern. Increases whenever the pattern is rebuilt; symbolic analyses and scatter maps
+  /// made for another version are stale. Unique over all matrices of the process.
   std::uint64_t pattern_version() const { return pattern_version_; }
 
  private:
@@ -60,64 +60,66 @@ class BlockSparse {
   std::uint64_t pattern_version_ = 0;
 };
 
-/// Node pairs, both ways round, ascending, each once.
+/// Node pairs, each in both orders, ascending, without duplicates.
 using NodePairs = std::vector<std::pair<int, int>>;
-/// Into that order, duplicates removed.  Linear in their number, for pairs spread over the nodes.
-/// @pre 0 <= first < node_count of each
+/// Sorts the pairs into that order and removes duplicates. Linear in their number for pairs spread over the
+/// nodes.
+/// @pre 0 <= first < node_count for each pair
 void sort_unique(NodePairs& pairs, int node_count);
 
-/// Collects which node pairs interact; diagonal blocks are always in.
+/// Collects which node pairs interact; diagonal blocks are always included.
 class PatternBuilder {
  public:
-  /// @param node_count  of all node blocks; nodes are counted over them
+  /// @param node_count  number of nodes of all node blocks; nodes are numbered over all of them
   explicit PatternBuilder(int node_count) : node_count_(node_count) {}
-  /// Over all node blocks of a layout; a term finds its own block's place with first_node().
+  /// Builds over all node blocks of a layout; a term finds the first node of its block with first_node().
   explicit PatternBuilder(const Layout& layout) : node_count_(layout.node_count()), layout_(&layout) {}
-  /// First node of a node block, counted over all node blocks; 0 where the builder was made without a layout.
+  /// Returns the first node of a node block, numbered over all node blocks; 0 where the builder was made
+  /// without a layout.
   int first_node(int block_id) const;
-  void add_pair(int i, int j);                   ///< (i, j) and (j, i)
-  void add_clique(const int* nodes, int count);  ///< every pair of them
-  /// The pattern so far, values 0.
+  void add_pair(int i, int j);                   ///< Adds (i, j) and (j, i).
+  void add_clique(const int* nodes, int count);  ///< Adds every pair of these nodes.
+  /// Returns the pattern of all pairs added so far, values 0.
   BlockSparse build() const;
-  NodePairs pairs() const;  ///< what was added
+  NodePairs pairs() const;  ///< Returns the pairs added so far, sorted.
 
  private:
   int node_count_;
   const Layout* layout_ = nullptr;
-  NodePairs pairs_;  ///< as they came
+  NodePairs pairs_;  ///< Pairs in the order in which they were added.
 };
 
-/// The pattern of some lists together, and of the diagonal: what a PatternBuilder builds that was given all
-/// of them, without sorting them anew.
+/// Builds the pattern of the union of some sorted lists and the diagonal: the result of a PatternBuilder
+/// given all of them, without sorting them again.
 BlockSparse pattern_of(int node_count, const std::vector<const NodePairs*>& lists);
 
-/// The matrix of one implicit step in u-space: a sparse body part over the nodes, bordered by dense rows and
+/// Matrix of one implicit step in u-space: a sparse body part over the nodes, bordered by dense rows and
 /// columns of rigid and articulated blocks.
 ///     [ body    right  ]   nodal_size
 ///     [ bottom  corner ]   border_size
 struct BorderedMatrix {
-  BlockSparse body;  ///< the sparse part
-  MatX right;        ///< nodal_size x border
-  MatX bottom;       ///< border x nodal_size
-  MatX corner;       ///< border x border
-  /// of the nodes [m], three numbers each, for preconditioners that know rigid motions; empty: not known
+  BlockSparse body;  ///< Sparse part over the nodes.
+  MatX right;        ///< nodal_size x border_size
+  MatX bottom;       ///< border_size x nodal_size
+  MatX corner;       ///< border_size x border_size
+  /// Nodal positions [m], three numbers each, for preconditioners that use rigid motions; empty: not known.
   VecX positions;
-  bool symmetric = true;  ///< whether A = A^T; what a term adds must agree with it
-  /// grows with every change of values; equal versions and patterns mean an equal matrix
+  bool symmetric = true;  ///< Whether A = A^T; the contributions of all terms must agree with it.
+  /// Increases with every change of values. Equal versions and patterns imply equal matrices.
   std::uint64_t values_version = 0;
 
-  /// Rows of `body`.
+  /// Returns the number of rows of `body`.
   int nodal_size() const { return 3 * body.block_rows(); }
-  /// Rows of the border.
+  /// Returns the number of rows of the border.
   int border_size() const { return static_cast<int>(corner.rows()); }
-  /// Rows of all.
+  /// Returns the number of all rows.
   int size() const { return nodal_size() + border_size(); }
-  /// All values become 0; the pattern and the sizes stay.
+  /// Sets all values to 0; the pattern and the sizes are unchanged.
   void set_zero();
-  void touch();  ///< gives values_version a fresh, process-wide unique value
-  /// y = A x; y is resized.
+  void touch();  ///< Gives values_version a new value, unique in the process.
+  /// Computes y = A x; y is resized.
   void multiply(const VecX& x, VecX& y) const;
-  MatX to_dense() const;  ///< tests and small systems
+  MatX to_dense() const;  ///< Returns the dense matrix, for tests and small systems.
 };
 
 }  // namespace palpate::dynamics

@@ -6,34 +6,34 @@
 
 namespace palpate::dynamics {
 
-/// A symmetric, positive semi-definite matrix over the nodes, as a sum of small ones on up to eight nodes
-/// each: stiffness and damping of contact.  It has no pattern; what it couples may change with every matrix,
-/// and costs no symbolic analysis.
+/// Symmetric positive semi-definite matrix over the nodes, as a sum of small matrices on up to eight nodes
+/// each: stiffness and damping of contact. It has no sparsity pattern: the coupled nodes may change with
+/// every matrix, without a symbolic analysis.
 ///
-/// Points of two soft bodies feel their difference alone: `relative` sums have row sums of zero, and products
-/// with them take the nodes' motions against that of the first node, so that rounding acts on differences
-/// (as in zero_row_sum_matrix.h).
+/// Contact points between two soft bodies depend on their relative motion only: `relative` summands have zero
+/// row sums, and products with them use the nodes' motions relative to the first node, so that rounding acts
+/// on differences (as in zero_row_sum_matrix.h).
 struct PointStiffness {
-  static constexpr int kMostNodes = 8;  ///< four of each side
-  /// of the nodes; zero beyond their count
+  static constexpr int kMostNodes = 8;  ///< Four per side.
+  /// Weights of the nodes; zero beyond their count.
   using Weights = Eigen::Matrix<double, kMostNodes, 1>;
-  /// The nodes that one sum couples.
+  /// Nodes that one summand couples.
   struct Nodes {
-    int count = 0;                       ///< how many there are
-    bool relative = false;               ///< row sums are zero: rigid translations feel nothing
-    std::array<int, kMostNodes> node{};  ///< over all node blocks; one may stand there twice
+    int count = 0;                       ///< Number of nodes.
+    bool relative = false;               ///< Row sums are zero: a rigid translation causes no force.
+    std::array<int, kMostNodes> node{};  ///< Node numbers, over all node blocks; a node may occur twice.
   };
-  /// The motion of one point, sum w_i x_i: block (i, j) is w_i w_j C.
+  /// Summand of the motion of one point, sum w_i x_i: block (i, j) is w_i w_j C.
   struct OfPoint {
-    Nodes nodes;                       ///< that carry the point
-    Weights weight = Weights::Zero();  ///< w_i, of each node
-    Mat3 C = Mat3::Zero();             ///< symmetric, positive semi-definite [N/m]
+    Nodes nodes;                       ///< Nodes that carry the point.
+    Weights weight = Weights::Zero();  ///< Weight w_i per node.
+    Mat3 C = Mat3::Zero();             ///< Symmetric, positive semi-definite [N/m].
   };
-  std::vector<OfPoint> points;  ///< the sums
+  std::vector<OfPoint> points;  ///< All summands.
 
-  /// Whether there are no sums.
+  /// Returns whether there are no summands.
   bool empty() const { return points.empty(); }
-  /// Takes all sums out; memory is kept.
+  /// Removes all summands; memory is kept.
   void clear() { points.clear(); }
 };
 

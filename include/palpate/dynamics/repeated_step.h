@@ -3,26 +3,27 @@
 
 namespace palpate::dynamics {
 
-/// Optional capability of a ForceTerm: part of its force bends too sharply for one linear solve a step
-/// (friction between sticking and sliding).  Between begin_step() and end_step() forces and tangents of that
-/// part are affine about a guess of the step's end, first its start, which each solve improves.  A class
-/// derives from it beside ForceTerm.
+/// Optional capability of a ForceTerm: part of its force is too nonlinear for one linear solve per step
+/// (friction between sticking and sliding). Between begin_step() and end_step() forces and tangents of that
+/// part are affine about a guess of the step's end. The first guess is the start of the step; each solve
+/// improves it. A class inherits it in addition to ForceTerm.
 class RepeatedStepTerm {
  public:
   virtual ~RepeatedStepTerm() = default;
-  /// Whether that part acts at a state, and an acceleration there says nothing of the step that begins: at
-  /// rest friction is zero by the law, and a whole mu N as soon as something moves.
+  /// Returns whether that part acts at a state and the acceleration there does not predict the step that
+  /// begins: at rest friction is zero by its law, and the full mu N as soon as there is motion.
   virtual bool bends_at(const StateView& state) = 0;
-  /// From a state that stays the same for all solves of the step.  False: one solve serves, and there is
-  /// nothing to end.
+  /// Starts the solves of one step from a state that is the same for all of them. Returns false where one
+  /// solve is sufficient; end_step() is then not called.
   virtual bool begin_step(const StateView& state) = 0;
-  /// Takes the end that a solve found for the next guess.
-  /// @param state  where the step begins
-  /// @param moved   displacement over the step, along u-directions  @param change  that of the velocity
-  /// @return  whether the part that was taken as affine is within its tolerance of what it is at that end, or
-  ///          no further solve is worth its cost
+  /// Takes the end of the step found by a solve as the next guess.
+  /// @param state  start of the step
+  /// @param moved  displacement over the step, along u-directions
+  /// @param change  change of the velocity over the step
+  /// @return  whether the affine part is within its tolerance of the true one at that end, or no further
+  ///   solve is worth its cost
   virtual bool improve_step(const StateView& state, const VecX& moved, const VecX& change) = 0;
-  /// Forces and tangents are the law's again.
+  /// Restores the forces and tangents of the law.
   virtual void end_step() = 0;
 };
 

@@ -7,66 +7,67 @@
 
 namespace palpate::dynamics {
 
-/// Optional capability of a ForceTerm: fused assembly of a linearly implicit step.  Force, product and
-/// tangent come from one pass over what they have in common, and the tangent has zero row sums
-/// (ZeroRowSumMatrix).  A class derives from it beside ForceTerm.
+/// Optional capability of a ForceTerm: fused assembly of a linearly implicit step. Force, product and tangent
+/// are computed in one pass that shares their common intermediate results, and the tangent has zero row sums
+/// (ZeroRowSumMatrix). A class inherits it in addition to ForceTerm.
 class FusedStepTerm {
  public:
   virtual ~FusedStepTerm() = default;
-  /// Whether the tangent that the term has at present is symmetric with zero row sums.
+  /// Returns whether the current tangent of the term is symmetric with zero row sums.
   virtual bool fuses_step() const { return true; }
-  /// Differs where add_step() would give something else at the same state and scales: materials, tangents.
-  /// 0: not known, and what it gives is never kept.
+  /// Returns a version that differs where add_step() would yield a different result at the same state and
+  /// scales (materials, tangents). 0: not known; the results are then never kept.
   virtual std::uint64_t step_version() const { return 0; }
-  /// f += force - K shift and A += k_scale K + d_scale D.  Off-diagonal blocks are stored, not added:
+  /// Adds f += force - K shift and A += k_scale K + d_scale D. Off-diagonal blocks are stored, not added:
   /// StepAssembly is used only where no two terms write the same block.
   virtual void add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
                         ZeroRowSumMatrix& A) = 0;
-  /// f += force - K shift - D change, without the matrix: the term's share of a step's residual.
+  /// Adds f += force - K shift - D change, without the matrix: contribution of the term to the residual of a
+  /// step.
   virtual void add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) = 0;
 };
 
-/// Optional capability of a ForceTerm: its tangent is a PointStiffness, which stands beside the pattern of a
-/// step's matrix.  A class derives from it beside ForceTerm.
+/// Optional capability of a ForceTerm: its tangent is a PointStiffness, which is outside the sparsity
+/// pattern of a step matrix. A class inherits it in addition to ForceTerm.
 class PointStiffnessTerm {
  public:
   virtual ~PointStiffnessTerm() = default;
-  /// Whether the tangent that the term has at present is such a sum: symmetric and on nodes alone.
+  /// Returns whether the current tangent of the term is a PointStiffness: symmetric and on nodes only.
   virtual bool is_point_stiffness() const { return true; }
-  /// f += force - K shift and C += k_scale K + d_scale D.
+  /// Adds f += force - K shift and C += k_scale K + d_scale D.
   virtual void add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
                         PointStiffness& C) = 0;
-  /// f += force - K shift - D change
+  /// Adds f += force - K shift - D change.
   virtual void add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) = 0;
 };
 
-/// Fused assembly of the linearly implicit steps of a system, from its terms' FusedStepTerm and
-/// PointStiffnessTerm capabilities.  Terms without a tangent matrix (TermTraits::zero_tangent) add their
-/// force alone.
+/// Fused assembly of the linearly implicit steps of a system, from the FusedStepTerm and PointStiffnessTerm
+/// capabilities of its terms. Terms without a tangent matrix (TermTraits::zero_tangent) add their force only.
 class StepAssembly {
  public:
-  /// @param system  outlives this
+  /// @param system  must outlive this object
   explicit StepAssembly(System& system) : system_(system) {}
 
-  /// Whether this state's step can be assembled so: every term takes part, no two of them couple the same
-  /// pair of nodes, the mass is lumped, no block is rigid.  Brings the pattern up to date.
+  /// Returns whether the step at this state can be assembled in this way: every term takes part, no two of
+  /// them couple the same pair of nodes, the mass is lumped, no block is rigid. Updates the pattern.
   bool applies(const StateView& state);
-  /// What the fused terms couple: the system's pattern, or, with terms that stand beside it, one without
+  /// Returns the pattern of the fused terms: the system's pattern, or, with PointStiffness terms, one without
   /// these.
   const BlockSparse& pattern() const { return any_beside_ ? pattern_ : system_.pattern(); }
-  /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held.
-  /// What the fused terms give is taken from System::kept_step() where that is of these scales, this state
-  /// and shift, to a relative 1e-9 of shift and scales.
-  /// With `keep`, what they give is kept there for the next who asks.
+  /// Assembles f = sum of (force - K shift) and A = m_scale M + d_scale D + k_scale K, with the driven
+  /// directions held. The contribution of the fused terms is taken from System::kept_step() where that was
+  /// made at this state and, to a relative 1e-9, for this shift and these scales. With `keep`, a newly
+  /// computed contribution is stored there for reuse.
   void assemble(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale,
                 VecX& f, ZeroRowSumMatrix& A, bool keep = false);
-  /// r = h (sum of force - K shift - D change) - M change, zero along driven directions; without a matrix.
+  /// Computes r = h sum of (force - K shift - D change) - M change, zero along driven directions, without a
+  /// matrix.
   void residual(const StateView& state, const VecX& shift, const VecX& change, double h, VecX& r);
 
  private:
   struct Part {
     ForceTerm* term;
-    FusedStepTerm* fused;  ///< null: of zero tangent, beside the pattern, or it takes no part
+    FusedStepTerm* fused;  ///< null: zero tangent, point stiffness, or no part in the step
     PointStiffnessTerm* beside;
   };
   void find_parts();
@@ -80,10 +81,10 @@ class StepAssembly {
   System& system_;
   std::vector<Part> parts_;
   bool all_can_ = false, any_beside_ = false, disjoint_ = false;
-  std::uint64_t pattern_version_ = 0;         ///< that disjoint_ was found for
-  BlockSparse pattern_;                       ///< without the terms beside it
-  std::vector<std::uint64_t> step_versions_;  ///< of the fused terms; empty: one of them has none
-  /// versions of the layout and of the terms that it was made of; scratch
+  std::uint64_t pattern_version_ = 0;         ///< Pattern version that disjoint_ was determined for.
+  BlockSparse pattern_;                       ///< Pattern without the PointStiffness terms.
+  std::vector<std::uint64_t> step_versions_;  ///< Versions of the fused terms; empty: one of them has none.
+  /// Versions of the layout and of the terms that pattern_ was built from; scratch.
   std::vector<std::uint64_t> made_of_, versions_;
 };
 

@@ -2,14 +2,14 @@
 
 namespace palpate::dynamics {
 
-/// Optional capability of an iterative LinearSolver: an absolute tolerance beside its relative one.  Newton's
-/// method under error control knows how large an error of a correction may be, and asks for no digit that its
-/// own test does not see.  A class derives from it beside LinearSolver.
+/// Optional capability of an iterative LinearSolver: an absolute tolerance in addition to its relative one.
+/// In Newton's method under error control the acceptable error of a correction is known; digits below its
+/// convergence test need not be computed. A class inherits it in addition to LinearSolver.
 class EnergyTolerance {
  public:
   virtual ~EnergyTolerance() = default;
-  /// Solves with a right-hand side of one column end, from now on, where |x - x*|_A <= error as well; 0: by
-  /// the relative tolerance alone.
+  /// Sets the absolute tolerance of later solves with one right-hand side: they also stop where |x - x*|_A <=
+  /// error. 0: relative tolerance only.
   virtual void allow_error(double error) = 0;
 };
 

@@ -6,58 +6,62 @@
 
 namespace palpate::dynamics {
 
-/// A system of equations that is known by the residuals of its approximate solutions.
+/// System of linear equations A x = b that is given by the residuals of its approximate solutions.
 class ResidualFunction {
  public:
   virtual ~ResidualFunction() = default;
-  /// r = b - A x; zero along held directions.
+  /// Computes r = b - A x; zero along held directions.
   virtual void at(const VecX& x, VecX& r) = 0;
 };
 
-/// What a mixed-precision step matrix serves for.
+/// Possible uses of a mixed-precision step matrix.
 enum class StepMatrixUse {
-  kSolve,       ///< LinearSolver::solve() takes right-hand sides, which are zero along held directions
-  kRefine,      ///< its rounding is too coarse for that, not for corrections: solve_by_refinement() serves
-  kIndefinite,  ///< for nothing: it is indefinite
-  kNone,        ///< for nothing: it is singular, not finite or too coarse
+  kSolve,   ///< LinearSolver::solve() accepts right-hand sides that are zero along held directions.
+  kRefine,  ///< Its rounding is too coarse for solve(), but not for corrections: use solve_by_refinement().
+  kIndefinite,  ///< Not usable: it is indefinite.
+  kNone,        ///< Not usable: it is singular, not finite or too coarse.
 };
 
-/// Optional capability of a LinearSolver: it solves with step matrices of mixed precision that are written
-/// straight into its own order, and keeps one as a lagged matrix for the steps that follow.  A class derives
-/// from it beside LinearSolver.
+/// Optional capability of a LinearSolver: solves with mixed-precision step matrices that are written directly
+/// in its node order, and keeps one as a lagged matrix for the following steps. A class inherits it in
+/// addition to LinearSolver.
 class MixedPrecisionSolver {
  public:
   virtual ~MixedPrecisionSolver() = default;
-  /// Room for a matrix of this pattern in the solver's own order, to be written and then prepared by
-  /// factor_step_matrix(); null where matrices of this pattern are better given to factor(), in double.  The
-  /// pattern stays where it is until the next call.
+  /// Returns storage for a matrix of this pattern in the solver's order, to be written and then prepared by
+  /// factor_step_matrix(). Null where matrices of this pattern are better passed to factor(), in double. The
+  /// pattern must stay at its address until the next call.
   virtual ZeroRowSumMatrix* step_matrix(const BlockSparse& pattern) = 0;
-  /// LinearSolver::factor() of what was written there.
+  /// Does the work of LinearSolver::factor() for the matrix written there.
   virtual StepMatrixUse factor_step_matrix() = 0;
-  /// Solves A x = b by iterative refinement with the step matrix last factored, whether that is A itself,
-  /// rounded, or the matrix of an earlier step (a lagged matrix); as accurately as a solve with A.
-  /// Empty: there is no such matrix, or it is known to be too far from A; nothing was evaluated.  A status
-  /// other than kOk: refinement was tried and did not reach the tolerance.
+  /// Solves A x = b by iterative refinement with the step matrix last factored, which may be A itself,
+  /// rounded, or the matrix of an earlier step (a lagged matrix). The result is as accurate as a solve with
+  /// A.
+  /// Returns empty where there is no such matrix, or it is known to be too far from A; nothing was then
+  /// evaluated. A status other than kOk means that refinement was tried and did not reach the tolerance.
   virtual std::optional<SolveStatus> solve_by_refinement(ResidualFunction& residual, VecX& x) = 0;
 };
 
-/// Optional capability of a MixedPrecisionSolver: the solves of one step that repeats them
-/// (RepeatedStepTerm). Their matrices differ in what stands beside the pattern alone, and each solution is
-/// close to the one before.  A class derives from it beside MixedPrecisionSolver.
+/// Optional capability of a MixedPrecisionSolver: the repeated solves of one step (RepeatedStepTerm). Their
+/// matrices differ only in the part outside the sparsity pattern, and each solution is close to the previous
+/// one. A class inherits it in addition to MixedPrecisionSolver.
 class StepSolves {
  public:
   virtual ~StepSolves() = default;
+  /// Result of one of these solves.
   struct Solved {
     SolveStatus status;
-    bool accurate;  ///< within the tolerance of LinearSolver::solve()
+    bool accurate;  ///< Error within the tolerance of LinearSolver::solve().
   };
-  /// The first one, after factor_step_matrix() has returned StepMatrixUse::kSolve; from where solve() begins.
-  /// It ends where the error is within the tolerance, or `share` of the way that the solution has come.
+  /// Solves for the first time in a step, after factor_step_matrix() returned StepMatrixUse::kSolve, from the
+  /// same initial guess as solve(). Stops where the error is within the tolerance, or below `share` times the
+  /// distance from the initial guess.
   virtual Solved solve_first(const VecX& b, VecX& x, double share) = 0;
-  /// The next one, from the last solution on; ZeroRowSumMatrix::points may have been written anew.  Nothing
-  /// is solved, and the status is not kOk, where these are beyond what the matrix serves for.
+  /// Solves again, starting from the last solution; ZeroRowSumMatrix::points may have been rewritten. Where
+  /// these exceed the precision of the matrix nothing is solved, and the status is not kOk.
   virtual Solved solve_next(const VecX& b, VecX& x, double share) = 0;
-  /// The last one was the step's: later steps begin with it.  @param x  it
+  /// Accepts the last solution as the one of the step: later steps start from it.
+  /// @param x  the last solution
   virtual void end_solves(VecX& x) = 0;
 };
 
