@@ -49,12 +49,12 @@ class Driven final : public dynamics::DrivenMotion {
   dynamics::Path path_;
 };
 
-/// See make_carried.  Its geometric stiffness: under a small rotation e of the body, dr = e x r, and with the
-/// force f held the moment r x f changes by
+/// See make_carried(). Geometric stiffness: under a small rotation e of the body, dr = e x r, and for a
+/// constant force f the moment r x f changes by
 ///     (e x r) x f = [f][r] e = (r f^T - (r . f) I) e,      K = -d(r x f)/de = (r . f) I - r f^T
-///     (rotation against rotation alone).
-/// Summed over nodes, K - K^T is the cross matrix of the sum of r x f: it is symmetric where the moments are
-/// in balance.
+///     (rotation block only).
+/// Summed over nodes, K - K^T is the cross matrix of the sum of r x f: K is symmetric where the moments
+/// balance.
 class Carried final : public dynamics::DrivenMotion {
  public:
   Carried(std::vector<int> dofs, Points local, int master)

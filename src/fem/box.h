@@ -6,9 +6,9 @@
 
 namespace palpate::fem {
 
-/// What a box or a sphere reaches beyond its border, so that nodes on it are inside: a millionth of the
-/// mesh's extent, which files in single precision or with six digits are off by, and the rounding of a
-/// placement.
+/// Returns the tolerance [m] by which a box or sphere is enlarged, so that nodes on its border are inside: a
+/// millionth of the mesh's extent, which covers files in single precision or with six digits, plus the
+/// rounding of a placement.
 inline double selection_tolerance(const Points& placed) {
   if (placed.cols() == 0) return 0.0;
   constexpr double kOfExtent = 1e-6, kRounding = 1e-15;
@@ -25,6 +25,7 @@ inline std::string describe(const Vec3& low, const Vec3& high) {
                      high.z());
 }
 
+/// @throws Error if a lower bound exceeds its upper bound; `what` begins the message
 inline void check_box(const Vec3& low, const Vec3& high, const char* what) {
   for (int i = 0; i < 3; ++i)
     if (!(low[i] <= high[i]))

@@ -8,9 +8,9 @@ namespace palpate::fem {
 namespace {
 
 using Chunk = ElementChunks::Chunk;
-constexpr int kNodesAhead = 24;  // how long before they are used nodes are prefetched
+constexpr int kNodesAhead = 24;  // prefetch distance in nodes
 
-/// Nodes that the thread which has chunk c is likely to need next; the kernels prefetch them while they work.
+/// Returns the nodes that the thread working on chunk c is likely to need next; kernels prefetch them.
 NodePrefetch nodes_after(const ElementChunks& chunks, int c, const BodyFields& at, const double* out) {
   const auto next = static_cast<std::size_t>(c + workers::count());
   if (next >= chunks.chunks.size()) return {};

@@ -5,21 +5,21 @@
 
 namespace palpate::fem {
 
-/// Nodal vectors of a body, three doubles a node.
+/// Nodal vectors of a body, three doubles per node.
 struct BodyFields {
   const double* x = nullptr;   ///< positions [m]
   const double* v = nullptr;   ///< velocities [m/s]
   const double* w = nullptr;   ///< a direction
-  const double* dv = nullptr;  ///< what is added to v [m/s]
+  const double* dv = nullptr;  ///< increment of v [m/s]
 };
 
-/// A cache line of doubles: vectors of them are aligned as the kernels ask.
+/// One cache line of doubles, so that vectors of lines have the alignment that the kernels require.
 struct alignas(64) Line {
   double value[8];
 };
 inline double* numbers(std::vector<Line>& lines) { return lines.empty() ? nullptr : lines.front().value; }
 
-/// Blocks of one chunk, one an edge or node.
+/// Blocks of one chunk, one per edge or node.
 struct BlockMemory {
   std::vector<Line> first;  ///< entries 0 to 7 of a block
   std::vector<double> last;
@@ -28,15 +28,18 @@ struct BlockMemory {
   std::size_t bytes() const { return first.capacity() * sizeof(Line) + last.capacity() * sizeof(double); }
 };
 
-/// What one thread needs to work on one chunk after the other: its nodal vectors, copied together, and the
-/// sums over its elements.
+/// Work memory of one thread, for one chunk after another: copies of the chunk's nodal vectors and the sums
+/// over its elements.
 class ChunkMemory {
  public:
   void fit(const ElementChunks& chunks);
-  /// The nodal vectors of chunk c; behind its nodes stand the corners of the unit tetrahedron that fills up
-  /// groups.  @param out  what is added to when the chunk is done
+  /// Copies the nodal vectors of chunk c. After its nodes come the corners of the unit tetrahedron that pads
+  /// groups.
+  /// @param chunks, c  The chunk.
+  /// @param at  Nodal vectors of the body; null ones are skipped.
+  /// @param out  Vector to which the chunk's result will be added, for prefetching.
   ChunkFields load(const ElementChunks& chunks, int c, const BodyFields& at, const double* out = nullptr);
-  /// Nodal sums of a chunk, four doubles a node, set to zero.
+  /// Returns the nodal sums of a chunk, four doubles per node, set to zero.
   double* zeroed_sum(const ElementChunks::Chunk& chunk);
   std::size_t bytes() const;
 
@@ -45,17 +48,17 @@ class ChunkMemory {
   LaneCounts counts;
 
  private:
-  std::vector<Line> x_, v_, w_, sum_;  ///< nodal, four doubles a node
+  std::vector<Line> x_, v_, w_, sum_;  ///< nodal vectors, four doubles per node
   NodePrefetch nodes_;
 };
 
-/// Bytes that a vector holds.
+/// Returns the bytes of a vector's memory.
 template <class T>
 std::size_t bytes_of(const std::vector<T>& v) {
   return v.capacity() * sizeof(T);
 }
 
-/// Groups of elements in a chunk.
+/// Returns the number of element groups in a chunk.
 int groups_of(const ElementChunks& chunks, const ElementChunks::Chunk& chunk);
 
 }  // namespace palpate::fem

@@ -12,14 +12,14 @@
 namespace palpate::fem {
 namespace {
 
-/// C = c G with its eigenvalues bounded: those of G by 1/kSmallestSum, and those of C by `largest`.
+/// Returns C = c G with bounded eigenvalues: those of G by 1/kSmallestSum, and those of C by `largest`.
 Mat3 bounded_coupling(const Mat3& inverse_of_G, double c, double largest, bool& clamped) {
   Eigen::SelfAdjointEigenSolver<Mat3> eigen(inverse_of_G);
   Vec3 values;
   for (int i = 0; i < 3; ++i) {
     const double sum = eigen.eigenvalues()[i];
     if (c >= largest * std::max(sum, kSmallestSum)) {
-      values[i] = largest;  // no singularity: the bound acts before it
+      values[i] = largest;  // not singular: this bound is reached first
     } else {
       clamped = clamped || sum < kSmallestSum;
       values[i] = c / std::max(sum, kSmallestSum);
@@ -28,7 +28,7 @@ Mat3 bounded_coupling(const Mat3& inverse_of_G, double c, double largest, bool& 
   return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-/// Sylvester's criterion.
+/// Whether a symmetric matrix is positive definite, by Sylvester's criterion.
 bool positive_definite(const Mat3& m) {
   return m(0, 0) > 0.0 && m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0) > 0.0 && m.determinant() > 0.0;
 }
@@ -50,8 +50,8 @@ Mat3 rotation_coupling(Tangent tangent, const Mat3& F, const Mat3& R, const Lame
   const Mat3 B = 0.5 * (FRt + FRt.transpose());
   const double c = 2.0 * lame.mu - lame.lambda * (B.trace() - 3.0);
   const Mat3 A = B.trace() * Mat3::Identity() - B;  // G^-1: eigenvalues s_i + s_j >= 0
-  // The product of the two larger sums is at most (tr A / 2)^2, so this bounds the smallest from below,
-  // without eigenvalues.
+  // The product of the two larger sums is at most (tr A / 2)^2, so the determinant bounds the smallest sum
+  // from below without computing eigenvalues.
   const double half_trace = 0.5 * A.trace();
   const bool regular = A.determinant() > kSmallestSum * half_trace * half_trace;
   const bool exact = tangent == Tangent::kExact;
@@ -105,7 +105,7 @@ void rotation_by_scalar(const double* F, double* R) {
   out = rotation_of(Eigen::Map<const RowMajor>(F));
 }
 
-/// C; 1 where it was clamped.
+/// Computes C; returns 1 if it was clamped.
 int coupling_by_scalar(const ElementModel& model, const double* F, const double* R, double* C) {
   bool clamped = false;
   const Tangent tangent = model.warped      ? Tangent::kWarped

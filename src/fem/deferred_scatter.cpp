@@ -12,8 +12,8 @@ namespace palpate::fem {
 namespace {
 
 using Chunk = ElementChunks::Chunk;
-// A matrix of so few chunks is held by the caches: to fill them with the blocks of two chunks at a time costs
-// more than waiting for it.
+// Number of chunks up to which one buffer per thread is used: a matrix of so few chunks stays in the caches,
+// and a second buffer would displace more than the overlap gains.
 constexpr int kFewChunks = 16;
 
 }  // namespace
@@ -30,7 +30,7 @@ void DeferredScatter::prepare(const ElementChunks& chunks, int first_node,
   if (!is_current()) make(chunks, first_node, A, maps_[current_]);
 }
 
-/// Ascending in the matrix, so that its memory is written in order.
+/// Slots are sorted, so that the matrix is written in memory order.
 void DeferredScatter::make(const ElementChunks& chunks, int first_node, const dynamics::ZeroRowSumMatrix& A,
                            Map& map) {
   counters::count("fem.scatter_map");

@@ -7,51 +7,53 @@
 
 namespace palpate::fem {
 
-/// Scatters the blocks of chunks into a matrix in single precision that holds each edge once, and each
-/// chunk's blocks while the elements of the next one are computed: the matrix lies far away in memory, and
-/// stores are then on their way while there is arithmetic to do.
+/// Scatters the blocks of chunks into a matrix in single precision that holds each edge once. The blocks of
+/// one chunk are scattered while the elements of the next are computed: the matrix is far larger than the
+/// cache, and stores then overlap with arithmetic.
 class DeferredScatter {
  public:
-  /// Takes the map into A's slots: one of the last two, or a new one.  Two matrices of different orders that
-  /// take turns (a step's, and one that a tool's touch is reduced with) so have one each.
+  /// Prepares the map into A's slots: one of the last two, or a new one. Two matrices of different orders
+  /// used in turn (the step matrix and the matrix of a reduced contact model) thus keep one map each.
   void prepare(const ElementChunks& chunks, int first_node, const dynamics::ZeroRowSumMatrix& A);
+  /// Allocates the buffers of the threads.
   void fit(const ElementChunks& chunks, int threads);
-  /// Where a thread sums the blocks of its next chunk, and those of its last one, of which the kernel
-  /// scatters a batch with each of `groups` groups of elements.
+  /// Buffers of a thread: sums of its next chunk, and the blocks of its last chunk, which the kernel scatters
+  /// batch by batch, one batch per group of elements.
   struct Work {
     ChunkBlocks upper;
     DeferredBlocks* before;
   };
+  /// Returns the buffers for a chunk with `groups` groups of elements.
   Work begin(int thread, int groups);
-  /// Defers the blocks of chunk c, the thread's current one; `last` where none is likely to follow.
+  /// Defers the blocks of chunk c, the thread's current one. `last`: no further chunk is likely to follow.
   void end(const ElementChunks& chunks, int c, int thread, bool last, const SharedKernels& kernels,
            dynamics::ZeroRowSumMatrix& A);
-  /// Scatters what is still deferred and adds what was put aside; after all chunks.
+  /// Scatters the blocks still deferred and adds the stored contributions. Call after all chunks.
   void finish(const ElementChunks& chunks, const SharedKernels& kernels, dynamics::ZeroRowSumMatrix& A);
   std::size_t map_bytes() const;
   std::size_t scratch_bytes() const;
 
  private:
-  /// What one thread has: blocks of two chunks alternately, or of one where there are few; zero between
-  /// steps.
+  /// Buffers of one thread: the blocks of two chunks in turn, or of one where there are few chunks; zero
+  /// between steps.
   struct Buffers {
     BlockMemory blocks[2];
     int current = 0;
     DeferredBlocks before;
   };
-  /// Slot of an edge of ElementChunks::shared_edges.
+  /// Slot of an edge in ElementChunks::shared_edges.
   struct SharedSlot {
     std::int32_t slot;
     int edge;
   };
   static int buffers(const ElementChunks& chunks);
 
-  std::vector<Buffers> buffers_;  ///< one a thread
-  std::vector<float> shared_;     ///< nine a contribution; the matrix is no finer itself
+  std::vector<Buffers> buffers_;  ///< one per thread
+  std::vector<float> shared_;     ///< contributions, nine numbers each; in single precision like the matrix
   struct Map {
-    /// of each chunk's owned edges, ascending, then of its shared ones
+    /// Slots of each chunk's owned edges, ascending, then of its shared ones.
     std::vector<std::int32_t> slots;
-    std::vector<std::uint16_t> edges;      ///< the edge of each of slots
+    std::vector<std::uint16_t> edges;      ///< edge of each slot
     std::vector<SharedSlot> shared_slots;  ///< ascending
     std::uint64_t key = 0;                 ///< ZeroRowSumMatrix::slot_map_key
     int first_node = -1;

@@ -5,9 +5,8 @@
 
 namespace palpate::fem {
 
-/// The nine 3x3 blocks of an element matrix that belong to nodes 1, 2, 3 (index 3 (a-1) + (b-1)).  Those of
-/// node 0 follow: a translation of the whole element changes nothing, so that the blocks of each row and of
-/// each column sum to zero.
+/// The nine 3x3 blocks of an element matrix for nodes 1, 2, 3 (index 3 (a-1) + (b-1)). The blocks of node 0
+/// follow from translation invariance: the blocks of each row and of each column sum to zero.
 using ElementBlocks = std::array<Mat3, 9>;
 
 }  // namespace palpate::fem

@@ -16,9 +16,9 @@
 namespace palpate::fem {
 namespace {
 
-/// Elements in a chunk, at most and at least.  The blocks of a chunk then fit a second-level cache; smaller
-/// ones share more of their edges, but a mesh of some ten thousand elements shall give each of a few threads
-/// several.
+/// Most and least elements per chunk. The blocks of a chunk then fit a second-level cache; smaller chunks
+/// share more of their edges, but a mesh of some ten thousand elements should still yield several chunks for
+/// each of a few threads.
 constexpr int kMostElements = 4096, kLeastElements = 1024, kChunksToShare = 8;
 int chunks_of(int elements) {
   const auto parts = [&](int size) { return (elements + size - 1) / size; };
@@ -33,8 +33,8 @@ std::uint64_t key_of(int i, int j) {
   return (static_cast<std::uint64_t>(i) << 32) | static_cast<std::uint32_t>(j);
 }
 
-/// Cuts [begin, end) of `order` into `chunks` compact parts of nearly equal size: recursively, across the
-/// longest side of the box around the centroids.
+/// Divides [begin, end) of `order` into `chunks` compact parts of nearly equal size by recursive bisection
+/// across the longest side of the centroids' bounding box.
 void bisect(const Points& centroids, std::vector<int>& order, int begin, int end, int chunks,
             std::vector<int>& starts) {
   if (chunks <= 1) {
@@ -49,10 +49,9 @@ void bisect(const Points& centroids, std::vector<int>& order, int begin, int end
   bisect(centroids, order, middle, end, chunks - left, starts);
 }
 
-/// What is used in a chunk (nodes, or pairs of nodes), with owned ones first, and the sums over chunks of
-/// what is shared.
+/// Nodes or edges used in each chunk, owned ones first, and the sums over chunks of the shared ones.
 struct Uses {
-  /// ascending, then rearranged: owned ascending, shared ascending
+  /// Ascending, then partitioned: owned ascending, shared ascending.
   std::vector<std::vector<std::uint64_t>> by_chunk;
   std::vector<int> owned;
   std::vector<int> first_shared;
@@ -90,7 +89,7 @@ struct Uses {
       start.push_back(static_cast<int>(entries.size()));
     }
   }
-  /// Number of a key within a chunk.
+  /// Returns the index of a key within a chunk.
   int find(std::size_t chunk, std::uint64_t key) const {
     const auto& keys = by_chunk[chunk];
     const auto middle = keys.begin() + owned[chunk];
@@ -101,7 +100,7 @@ struct Uses {
   }
 };
 
-/// Corners of an element, ascending by node.
+/// Returns the corners of an element, ascending by node.
 Corners sorted_corners(const RestElements& elements, std::size_t e) {
   Corners corners{0, 1, 2, 3};
   std::sort(corners.begin(), corners.end(), [&](int a, int b) {
@@ -110,7 +109,7 @@ Corners sorted_corners(const RestElements& elements, std::size_t e) {
   return corners;
 }
 
-/// A lane that only fills up: a unit tetrahedron at rest on four nodes behind those of the chunk, of no
+/// Fills a padding lane: a unit tetrahedron at rest on four extra nodes after those of the chunk, with zero
 /// volume, so that it adds zeros there.
 void fill_up(ElementGroup& group, GroupEdges& edges, std::size_t lane, int chunk_nodes, int chunk_edges) {
   constexpr double kUnit[6] = {1.0, 0.0, 0.0, 1.0, 0.0, 1.0};
@@ -120,14 +119,14 @@ void fill_up(ElementGroup& group, GroupEdges& edges, std::size_t lane, int chunk
   for (auto& edge : edges.edge) edge[lane] = static_cast<std::uint16_t>(chunk_edges);
 }
 
-/// T^-1 of the rest edges Dm = Q T, Q a rotation: T is then that of Dm^T Dm to rounding (Householder), and a
-/// triangle's inverse is good in each entry.
+/// Returns T^-1 for the rest edges Dm = Q T, Q a rotation. T is accurate as a factor of Dm^T Dm (Householder
+/// QR), and the inverse of a triangular matrix is accurate entry by entry.
 Mat3 inverse_triangle(const Mat3& Dm) {
   const Eigen::HouseholderQR<Mat3> qr(Dm);
   Mat3 T = qr.matrixQR().triangularView<Eigen::Upper>();
   for (int r = 0; r < 2; ++r)
     if (T(r, r) < 0.0) T.row(r) *= -1.0;
-  if ((T(2, 2) < 0.0) != (Dm.determinant() < 0.0)) T(2, 2) *= -1.0;  // no mirror images
+  if ((T(2, 2) < 0.0) != (Dm.determinant() < 0.0)) T(2, 2) *= -1.0;  // Q must not be a reflection
   return T.triangularView<Eigen::Upper>().solve(Mat3::Identity());
 }
 
@@ -202,7 +201,7 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements,
         groups.emplace_back();
         edges.emplace_back();
         numbers_.insert(numbers_.end(), kLanes, -1);
-        // those that no element takes stay so
+        // lanes without an element stay padding
         for (std::size_t l = 0; l < kLanes; ++l)
           fill_up(groups.back(), edges.back(), l, chunk.nodes, chunk.edges);
       }
@@ -250,8 +249,8 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements,
   prefer_huge_pages(row_edges);
 }
 
-/// The edges at each node of a chunk: the owned ones, by the node at the other end, that is in the order of
-/// the matrix's columns; then the shared ones.
+/// Builds the rows of a chunk: the edges at each node, owned ones first, sorted by the node at the other end,
+/// which is the order of the matrix's columns; then the shared ones.
 void ElementChunks::make_rows(const Chunk& chunk) {
   struct Entry {
     bool shared;

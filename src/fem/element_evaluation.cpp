@@ -16,7 +16,7 @@ void set_zero(const ChunkBlocks& blocks, int count) {
   std::fill_n(blocks.last, count, 0.0);
 }
 
-/// Runs f(groups, edges, count, model) for each material of a chunk.
+/// Calls f(groups, edges, count, model) for each material of a chunk.
 template <class F>
 void for_each_run(const ElementChunks& chunks, const Chunk& chunk, const ElementModels& models, F&& f) {
   chunks.for_each_run(chunk, [&](const ElementChunks::Run& run) {
@@ -159,8 +159,8 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
   return collect_counts();
 }
 
-/// Sums kernel(groups, count, material, fields, sums, counts) over the chunks, lane by lane, then in their
-/// order.
+/// Sums kernel(chunk, fields, sums, counts) over the chunks: lane by lane within a chunk, then in the
+/// order of the chunks.
 template <class Kernel>
 double ElementEvaluation::sum_over_elements(const BodyFields& at, const Kernel& kernel) {
   fit();

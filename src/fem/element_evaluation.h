@@ -10,18 +10,21 @@
 
 namespace palpate::fem {
 
-/// One a material of the body; their flags and scales agree.
+/// One model per material of the body; flags and scales are equal in all.
 using ElementModels = std::vector<ElementModel>;
 
-/// Sums over the elements of one body: the law's kernels run over the chunks (the partition,
-/// element_chunks.h), on as many threads as core's workers have; nodal sums are reduced (nodal_reduction.h)
-/// and blocks scattered (matrix_scatter.h, deferred_scatter.h).  What chunks share is summed in their order:
-/// results do not depend on the number of threads.  Memory is set aside when something is first asked for,
-/// and when workers or pattern change.
+/// Sums over the elements of one body: the law's kernels run over the chunks (element_chunks.h) on all worker
+/// threads of core; nodal sums are reduced (nodal_reduction.h) and blocks scattered (matrix_scatter.h,
+/// deferred_scatter.h). Contributions to shared nodes and edges are summed in the order of the chunks:
+/// results do not depend on the number of threads. Memory is allocated at the first use of each function, and
+/// when workers or pattern change.
 class ElementEvaluation {
  public:
-  /// @param material_of_element  numbers in the ElementModels; empty: all 0
-  /// @param law  place in law_registry()  @param with_lower  room for unsymmetric tangents
+  /// @param rest, elements  Mesh and rest shapes of the body.
+  /// @param material_of_element  Index in the ElementModels per element; empty: all 0.
+  /// @param kernels  Instruction set.
+  /// @param law  Index in law_registry().
+  /// @param with_lower  Whether to allocate memory for unsymmetric tangents.
   ElementEvaluation(const TetMesh& rest, const RestElements& elements,
                     const std::vector<int>& material_of_element, const LaneKernels& kernels, std::size_t law,
                     bool with_lower);
@@ -29,27 +32,33 @@ class ElementEvaluation {
   const ElementChunks& chunks() const { return chunks_; }
   const LaneKernels& kernels() const { return *kernels_; }
 
+  /// f += nodal forces.
   LaneCounts add_force(const ElementModels& models, const BodyFields& at, double* f);
-  /// f += forces - stiffness times w.
+  /// f += nodal forces - stiffness times w.
   LaneCounts add_step_force(const ElementModels& models, const BodyFields& at, double* f);
+  /// y += tangent times w.
   LaneCounts apply_tangent(const ElementModels& models, const BodyFields& at, double* y);
+  /// A += tangent, in the rows of the body's nodes.
   LaneCounts add_tangent(const ElementModels& models, const BodyFields& at, int first_node,
                          dynamics::BlockSparse& A) {
     return tangent(models, at, first_node, A, false);
   }
-  /// The rows of the body's nodes, whole: zeros where the pattern has more, whatever was there.
+  /// Overwrites all blocks in the rows of the body's nodes: blocks that no element contributes to become
+  /// zero.
   LaneCounts store_tangent(const ElementModels& models, const BodyFields& at, int first_node,
                            dynamics::BlockSparse& A);
-  /// Fused assembly: f += forces - stiffness times w, and the off-diagonal blocks of k_scale K + d_scale D,
-  /// times A.scale, stored in A.
+  /// Fused assembly: f += nodal forces - stiffness times w, and the off-diagonal blocks of
+  /// k_scale K + d_scale D, times A.scale, are stored in A.
   LaneCounts add_step(const ElementModels& models, const BodyFields& at, int first_node, double* f,
                       dynamics::ZeroRowSumMatrix& A);
+  /// Returns the elastic energy [J].
   double energy(const ElementModels& models, const BodyFields& at);
+  /// Returns the power dissipated by damping [W].
   double dissipated_power(const ElementModels& models, const BodyFields& at);
 
-  /// Slot of the diagonal block of a node of the body; after add_tangent or prepare.
+  /// Returns the slot of the diagonal block of a node of the body. Call after add_tangent() or prepare().
   int diagonal(int node) const { return matrix_.diagonal(node); }
-  /// Makes the maps into A's pattern, unless they are the ones at hand.
+  /// Computes the maps into A's pattern, unless they are up to date.
   void prepare(int first_node, const dynamics::BlockSparse& A) { matrix_.prepare(chunks_, first_node, A); }
   std::size_t map_bytes() const { return matrix_.map_bytes() + deferred_.map_bytes(); }
   std::size_t scratch_bytes() const;
@@ -71,7 +80,7 @@ class ElementEvaluation {
   const LawKernels* law_;
   ScalarPath scalar_;
   bool with_lower_;
-  std::vector<ChunkMemory> memory_;  ///< one a thread
+  std::vector<ChunkMemory> memory_;  ///< one per thread
   NodalReduction nodal_;
   MatrixScatter matrix_;
   DeferredScatter deferred_;

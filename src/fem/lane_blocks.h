@@ -1,23 +1,23 @@
 #pragma once
-// The element matrices in lanes.  Only the six blocks K_ab, a < b, of the edges are made: a translation of
-// the element changes nothing, so that the blocks of each row sum to zero and a diagonal block is minus the
-// sum of the others of its row, taken once for the whole chunk (lane_flush.h) or by who reads the matrix.
+// Element matrices in SIMD lanes. Only the six edge blocks K_ab, a < b, are computed. By translation
+// invariance the blocks of each row sum to zero, so a diagonal block is minus the sum of the other blocks of
+// its row. It is computed once for the whole chunk (lane_flush.h), or by the reader of the matrix.
 
-/// What the blocks of an element are made of beside the law's own: F g_a = k_a and F' g_a = l_a, whose sums
+/// Common factors of an element's blocks, in addition to the law's: F g_a = k_a and F' g_a = l_a, whose sums
 /// over the four nodes are zero.
 template <class Law>
 struct BlockParts {
-  Pack gg[4][4];  ///< g_a . g_b of a != b
+  Pack gg[4][4];  ///< g_a . g_b for a != b
   typename Law::BlockParts elastic;
   Vector k[4], l[4];
-  Symmetric B2;  ///< mu_d F F^T of the damping, scaled
+  Symmetric B2;  ///< damping: mu_d F F^T, scaled
   Pack damping_mu, damping_lambda;
-  Matrix FFdot;  ///< of the damping's derivative by position
+  Matrix FFdot;  ///< damping's derivative by position: F F'^T
   Pack g_Sigma_g[4][4];
   Pack position_mu, position_lambda, position;
 };
 
-/// mu_d ((g_a . g_b) B2 + k_b k_a^T) + lambda_d k_a k_b^T
+/// block += mu_d ((g_a . g_b) B2 + k_b k_a^T) + lambda_d k_a k_b^T, scaled.
 template <class Law>
 PALPATE_INLINE void add_damping_block(Matrix& block, const BlockParts<Law>& e, int a, int b) {
   block = block + e.gg[a][b] * full(e.B2);
@@ -25,7 +25,7 @@ PALPATE_INLINE void add_damping_block(Matrix& block, const BlockParts<Law>& e, i
   add_outer(block, e.damping_lambda * e.k[a], e.k[b]);
 }
 
-/// (g_a . Sigma g_b) I + mu_d ((g_a . g_b) F F'^T + k_b l_a^T) + lambda_d k_a l_b^T
+/// block += (g_a . Sigma g_b) I + mu_d ((g_a . g_b) F F'^T + k_b l_a^T) + lambda_d k_a l_b^T, scaled.
 template <class Law>
 PALPATE_INLINE void add_position_block(Matrix& block, const BlockParts<Law>& e, int a, int b) {
   block = block + (e.position_mu * e.gg[a][b]) * e.FFdot;
@@ -61,8 +61,8 @@ PALPATE_INLINE void edge_block(const std::uint16_t* edge, const BlockParts<Law>&
   scatter_block(upper, edge, block);
 }
 
-/// g_a . v_b for a != b, of v_b = S g_b with a symmetric S: both ways round the same, and each row of the
-/// whole sums to zero.
+/// Computes p[a][b] = g_a . v_b for a != b, for v_b = S g_b with a symmetric S: p is symmetric, and each row
+/// sums to zero.
 PALPATE_INLINE void products_with_gradients(const Gradients& G, const Vector* v, Pack (&p)[4][4]) {
   const Pack p11 = G.xx * v[1].x + G.xy * v[1].y + G.xz * v[1].z, p22 = G.yy * v[2].y + G.yz * v[2].z,
              p33 = G.zz * v[3].z;
@@ -122,8 +122,8 @@ PALPATE_INLINE void set_rates(BlockParts<Law>& e, const Lanes& at, const Element
   if constexpr (kByPosition) set_position(e, model, F, gradient_of(at, G, fields.v), G, volume);
 }
 
-/// What the law finds of an element serves all that is asked for: the blocks, and in a linearly
-/// implicit step (kStep) the forces less the stiffness times w.
+/// Computes all requested quantities from one evaluation of the law: the blocks, and in a linearly implicit
+/// step (kStep) the forces minus the stiffness times w.
 template <class Law, Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
 static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int count,
                       const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,

@@ -1,5 +1,5 @@
 #pragma once
-// A matrix in single precision takes each block as it is.
+// Scatter of blocks into a matrix in single precision, which stores each block as it is.
 
 #if PALPATE_WIDTH == 8
 PALPATE_INLINE void store_single(const double* first, double last, float* to) {
@@ -22,8 +22,8 @@ PALPATE_INLINE void add_single(const double* first, double last, float* to) {
   to[8] += static_cast<float>(last);
 }
 
-/// What the batch after next writes is prefetched: stores then find their lines in the cache, and do not hold
-/// up those of the elements behind them.
+/// Prefetches the destinations of the batch after the next, so that stores hit the cache and do not delay the
+/// stores of the following elements.
 PALPATE_INLINE void fetch_slots(const DeferredBlocks& blocks, int begin, int end) {
   const int last = blocks.shared ? blocks.owned : blocks.count;
   for (int k = begin; k < end && k < last; ++k)

@@ -1,20 +1,21 @@
 #pragma once
-// What every kernel does with an element in lanes: memory, gradients, forces, damping.  The formulas of the
-// damping are those of objective_damping.h.
+// Parts common to all element kernels in SIMD lanes: prefetching, gradients, forces, damping. The damping
+// formulas are those of objective_damping.h.
 
-/// Elements go together, kTogether in each lane: while one waits for its divisions, the other goes on.
+/// Vectors of elements that are computed together, so that one can proceed while the other waits for
+/// divisions.
 constexpr int kTogether = 2;
 
-/// Work on one group takes some 120 ns, a line from memory about as long: well ahead, and into the
-/// second-level cache.
+/// Prefetch distance in groups, into the second-level cache: the work on one group takes about 120 ns, as
+/// long as a cache line from memory.
 constexpr int kGroupsAhead = 16;
-/// Asks for share number `share` of the lines of what comes kGroupsAhead records later.  A core has some
-/// sixteen lines on their way at a time: asked for all at once they hold up what the work itself wants from
-/// the second-level cache, so that a record of many lines is asked for in several places.
+/// Prefetches share number `share` of the cache lines of the record kGroupsAhead later. A core can have about
+/// sixteen outstanding lines; requesting all at once would delay the kernel's loads from the second-level
+/// cache, so a record of many lines is prefetched in several places.
 template <class Record>
 PALPATE_INLINE void fetch_ahead(const Record* records, int g, int share = 0, int shares = 1) {
   constexpr int kLines = (sizeof(Record) + 63) / 64;
-  // behind the last one stand those of the next run, or nothing that hurts
+  // reading past the last record is harmless: the next run's records follow, and prefetches do not fault
   const char* first = reinterpret_cast<const char*>(records + g + kGroupsAhead);
   for (int line = share * kLines / shares; line < (share + 1) * kLines / shares; ++line)
     __builtin_prefetch(first + 64 * line, 0, 2);
@@ -28,8 +29,8 @@ PALPATE_INLINE void fetch_nodes(NodePrefetch& next) {
   next.done = end;
 }
 
-/// A few lines of the rows that the chunk will write, prefetched with each edge of a group: all that a chunk
-/// writes, or most of it, is then on its way while there is arithmetic to do.
+/// Prefetches a few lines of the rows that the chunk will write, once per edge of a group, so that most of
+/// the rows are in flight while there is arithmetic to do.
 PALPATE_INLINE void fetch_rows(RowPrefetch& rows) {
   constexpr int kLines = 5;
   if (rows.next >= rows.end) {
@@ -44,7 +45,7 @@ PALPATE_INLINE void fetch_rows(RowPrefetch& rows) {
   rows.next += 64 * kLines;
 }
 
-/// The lanes of group number g of a run from `first` on.
+/// Lanes of group `number` of a run, from lane `first` on.
 struct Lanes {
   const ElementGroup& group;
   int first, number;
@@ -53,7 +54,7 @@ struct Lanes {
   const std::uint16_t* node(int corner) const { return group.node[corner] + first; }
 };
 
-/// Rows g_1, g_2, g_3 of an upper triangle.
+/// Rows g_1, g_2, g_3 of an upper triangular matrix.
 struct Gradients {
   Pack xx, xy, xz, yy, yz, zz;
 };
@@ -61,7 +62,7 @@ PALPATE_INLINE Gradients gradients(const Lanes& at) {
   return {at.inverse_edges(0), at.inverse_edges(1), at.inverse_edges(2),
           at.inverse_edges(3), at.inverse_edges(4), at.inverse_edges(5)};
 }
-/// M g_0 to M g_3, where g_0 is minus the sum of the others.
+/// Computes M g_0 to M g_3, where g_0 is minus the sum of the others.
 PALPATE_INLINE void spread(const Matrix& M, const Gradients& G, Vector* v) {
   const Vector x{M.row[0].x, M.row[1].x, M.row[2].x}, y{M.row[0].y, M.row[1].y, M.row[2].y},
       z{M.row[0].z, M.row[1].z, M.row[2].z};
@@ -71,7 +72,7 @@ PALPATE_INLINE void spread(const Matrix& M, const Gradients& G, Vector* v) {
   v[0] = -(v[1] + v[2] + v[3]);
 }
 
-/// Ds T^-1 of a nodal field: its gradient by the rest position.
+/// Returns the gradient Ds T^-1 of a nodal field with respect to the rest position.
 PALPATE_INLINE Matrix gradient_of(const Lanes& at, const Gradients& G, const double* field) {
   const Vector origin = gather(field, at.node(0));
   const Vector a = gather(field, at.node(1)) - origin, b = gather(field, at.node(2)) - origin,

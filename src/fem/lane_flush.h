@@ -1,8 +1,8 @@
 #pragma once
-// From the blocks of a chunk to the matrix.
+// Scatter of a chunk's blocks to the matrix.
 
-// Blocks as rows of eight doubles and one.  Widths below eight go entry by entry: their time is in the memory
-// as well.
+// A block is a row of eight doubles and one more. For vector widths below eight it is processed entry by
+// entry, as the time is dominated by memory access there too.
 
 #if PALPATE_WIDTH == 8
 struct BlockSum {
@@ -64,14 +64,14 @@ struct BlockSum {
 };
 #endif
 
-/// The rows of the matrix that follow: six rows, some eighty blocks, take longer to add up than a line takes
-/// to come from memory.
+/// Prefetch distance in rows of the matrix: six rows, about eighty blocks, take longer to add up than a cache
+/// line takes to arrive from memory.
 constexpr int kRowsAhead = 6;
 PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
   if (n >= targets.nodes) return;
   const int begin = targets.row_start[n],
             end = targets.in_order ? targets.row_start[n + 1] : begin + targets.row_owned[n];
-  // mostly side by side
+  // the row's blocks are mostly contiguous
   if (begin < end) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[begin]), 72 * (end - begin));
 }
 
@@ -103,7 +103,8 @@ static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, co
       const BlockSum block = take(p);
       if (targets.in_order) block.add_to(at(targets.slots[p]));
     }
-    // to the last bit: the two sides of an edge's block were summed in different orders
+    // makes the diagonal block bitwise symmetric: the two sides of an edge's block were summed in different
+    // orders
     if (kSymmetric) sum.symmetrise();
     if (n < targets.owned_nodes)
       put(sum, at(targets.diagonal[n]));

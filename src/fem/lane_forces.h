@@ -1,25 +1,25 @@
 #pragma once
-// Force, energy and the product with the tangent for any law, eight elements at a time.  A law is a struct of
-// static functions over packs of elements:
+// Force, energy and the product with the tangent for any law, eight elements at a time. A law is a struct of
+// static functions on vectors of elements:
 //
-//   State                                what forces and tangents need of F, with the member det = det F
+//   State                                quantities of F that forces and tangents need; member det = det F
 //   find_states(F, count, scalar, state, counts)         the first `count` of kTogether elements
 //   stress(model, F, state)              first Piola-Kirchhoff stress P
 //   energy_density(model, F, state)
 //   Tangent, ScalarModes                 dP/dF of one of the tangents; memory for lanes that scalar code
-//                                        finished, empty where there is none
+//                                        computed, empty where there is none
 //   tangent(model, F, state, scalar, modes, counts)
 //   change(model, F, state, tangent, dF)                 dP
-//   BlockParts                           what the blocks of the element matrix have in common, scaled
+//   BlockParts                           common factors of the element matrix's blocks, scaled
 //   set_parts<kWarped>(parts, model, F, state, tangent, G, volume)
 //   block<kWarped>(parts, g_a . g_b, a, b)               K_ab, a < b
-//   add_modes(tangent, edges, at, scale, upper, lower)  what scalar code adds to the blocks
-//   kHasWarped                           whether kWarped is ever asked for
+//   add_modes(tangent, edges, at, scale, upper, lower)   scalar code's additions to the blocks
+//   kHasWarped                           whether kWarped is ever requested
 
 template <class Law>
 using State = typename Law::State;
 
-/// work(lanes, F, state) for each element of the groups, with what the law has found of F.
+/// Calls work(lanes, F, state) for each element of the groups, with the law's state of F.
 template <class Law, class Work>
 PALPATE_INLINE void for_each_element(const ElementGroup* groups, int count, const ChunkFields& fields,
                                      const ScalarPath& scalar, LaneCounts& counts, Work&& work) {
@@ -81,8 +81,8 @@ static void energy(const ElementGroup* groups, int count, const ElementModel& mo
       });
 }
 
-/// The stress of a linearly implicit step: that of the state and its elastic change by w, and, of what is
-/// damped, that of the rate v.
+/// Returns the stress of a linearly implicit step: the stress of the state, its elastic change by w and, if
+/// damped, the damping stress at the velocity v.
 template <class Law, bool kDamped>
 PALPATE_INLINE Matrix step_stress(const Lanes& at, const Gradients& G, const Matrix& F,
                                   const State<Law>& state, const typename Law::Tangent& tangent,

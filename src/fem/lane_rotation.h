@@ -1,37 +1,39 @@
 #pragma once
-// The rotation R of F = R S in lanes, for every F away from the singular set: regular, flat and inverted
+// Rotation R of F = R S in SIMD lanes, for every F away from the singular set: regular, flat and inverted
 // alike.
 //
-// R is the proper rotation with the greatest R : F, and with the signed singular values s of F (Irving et al.
-// 2004) that greatest value is l = s0 + s1 + s2.  The four numbers l, s0 - s1 - s2, s1 - s0 - s2, s2 - s0 -
-// s1 are the eigenvalues of the symmetric traceless 4 x 4 matrix
-// whose quadratic form on unit quaternions is R : F (Davenport), and so the roots of
+// R is the proper rotation with the greatest R : F. With the signed singular values s of F (Irving et al.
+// 2004) that greatest value is l = s0 + s1 + s2. The four numbers l, s0 - s1 - s2, s1 - s0 - s2, s2 - s0 - s1
+// are the eigenvalues of the symmetric traceless 4 x 4 matrix whose quadratic form on unit quaternions is R :
+// F (Davenport), and so the roots of
 //
-//   p(l) = (l^2 - |F|^2)^2 - 8 l det F - 4 |cof F|^2,       p'(l) = 8 z,   z = (s0 + s1)(s1 + s2)(s2 + s0) =
-//   k l - det F,   k = (l^2 - |F|^2)/2.
+//   p(l) = (l^2 - |F|^2)^2 - 8 l det F - 4 |cof F|^2,       p'(l) = 8 z,
+//   z = (s0 + s1)(s1 + s2)(s2 + s0) = k l - det F,   k = (l^2 - |F|^2)/2.
 //
-// All roots are real and l is the greatest, so Newton's method descends to it from any bound above, without a
-// branch; such a bound is l^2 <= 3 |F|^2 (Cauchy and Schwarz), hence l <= (3 + |F|^2)/2, which is exact at S
-// = I.  A step of length d leaves an error of d^2 p''/(2 p') with p'' = 12 l^2 - 4 |F|^2, so that it need not
-// be seen to be small itself.  With l at hand (Markley 1993, "Attitude determination
-// using vector observations: a fast optimal matrix algorithm", eq. 17):
+// All roots are real and l is the greatest, so Newton's method converges to it monotonically from any upper
+// bound, without a branch. Such a bound is l^2 <= 3 |F|^2 (Cauchy and Schwarz), hence l <= (3 + |F|^2)/2,
+// which is exact at S = I. A step of length d leaves an error of d^2 p''/(2 p') with p'' = 12 l^2 - 4 |F|^2,
+// so the error is known without a further step. With l known (Markley 1993, "Attitude determination using
+// vector observations: a fast optimal matrix algorithm", eq. 17):
 //
 //   R = ( (k + |F|^2) F + l cof F - F F^T F ) / z.
 //
-// The right side is a polynomial of F: whatever error l has, the singular vectors are those of F and only the
-// stretches r_i of this R are off 1.  One step R (3 I - R^T R)/2 of Newton and Schulz brings them from 1 + e
-// to 1 - 3/2 e^2: full accuracy from an e of 1e-8.
+// The right side is a polynomial of F: whatever the error of l, the singular vectors are those of F and only
+// the stretches r_i of this R differ from 1. One Newton-Schulz step R (3 I - R^T R)/2 brings them from 1 + e
+// to 1 - 3/2 e^2: full accuracy for an e of 1e-8.
 //
-// What rounding does to R is of order |F|^3 / z times the unit roundoff, about s0/(s1 + s2), as it must be:
-// lanes where z < |F|^3 / 100 (flat to a line, or s1 + s2 near 0 where R jumps) and lanes that are not finite
-// are left to the scalar path.
+// The rounding error of R is of order |F|^3 / z times the unit roundoff, about s0/(s1 + s2), which is
+// inherent: lanes where z < |F|^3 / 100 (flat to a line, or s1 + s2 near 0 where R is discontinuous) and
+// lanes that are not finite are left to the scalar path.
 
-/// Half of the relative error that Newton may leave in l; in the stretches it is up to |F|^3 / z, a hundred,
-/// times as large.
+/// Half of the relative error that Newton's method may leave in l; in the stretches it is larger by a
+/// factor of up to |F|^3 / z, that is, a hundred.
 constexpr double kLeft = 2e-10;
 
-/// Rotations R and det F of kTogether deformation gradients.
-/// @param right  lanes where R is right
+/// Computes rotations R and det F of kTogether deformation gradients.
+/// @param F  Deformation gradients.
+/// @param states  Out: R and det.
+/// @param right  Out: lanes where R is accurate.
 template <class State>
 PALPATE_INLINE void find_rotations(const Matrix* F, State* states, Mask* right) {
   Pack f[kTogether], q[kTogether], d[kTogether], l[kTogether];
@@ -69,8 +71,8 @@ PALPATE_INLINE void find_rotations(const Matrix* F, State* states, Mask* right) 
   }
 }
 
-/// The lanes that are not right, one by one.  By value: the matrices of the common path then stay in
-/// registers.
+/// Computes the inaccurate lanes one by one. Arguments are copies, so that the matrices of the common path
+/// can stay in registers.
 [[gnu::noinline, gnu::cold]] static void rotate_by_scalar(const Matrix* F, Matrix* R, const Mask* right,
                                                           const ScalarPath& scalar, LaneCounts& counts) {
   for (int l = 0; l < kWidth; ++l) {
@@ -83,7 +85,7 @@ PALPATE_INLINE void find_rotations(const Matrix* F, State* states, Mask* right) 
   }
 }
 
-/// The rotations of the first `count` of kTogether deformation gradients.
+/// Computes the rotations of the first `count` of kTogether deformation gradients.
 template <class State>
 PALPATE_INLINE void rotations(const Matrix* F, int count, const ScalarPath& scalar, State* states,
                               LaneCounts& counts) {

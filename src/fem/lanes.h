@@ -1,21 +1,21 @@
 #pragma once
-// Elements in the lanes of a vector, by the compiler's own vector types.  This header and the other lane_*.h
-// but lane_kernels.h are included by lanes_*.cpp alone, inside the namespace of one instruction set,
-// PALPATE_KERNELS, whose vectors have PALPATE_WIDTH doubles; everything in them is static and inlined, so
+// Elements in SIMD lanes, by the compiler's vector types. This header and the other lane_*.h except
+// lane_kernels.h are included only by lanes_*.cpp, inside the namespace of one instruction set,
+// PALPATE_KERNELS, whose vectors have PALPATE_WIDTH doubles. Everything in them is static and inlined, so
 // that no copy for one set is linked into another.
 
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
 #define PALPATE_INLINE_MEMBER [[gnu::always_inline]]
 
-// lanes of one vector: 2, 4 or 8; a group of eight is worked through in 8 / kWidth parts
+// lanes of one vector: 2, 4 or 8; a group of eight is processed in 8 / kWidth parts
 constexpr int kWidth = PALPATE_WIDTH;
 typedef double Pack __attribute__((vector_size(8 * PALPATE_WIDTH)));
 typedef long long Mask __attribute__((vector_size(8 * PALPATE_WIDTH)));
 typedef double PackInMemory __attribute__((vector_size(8 * PALPATE_WIDTH), may_alias));
 
 PALPATE_INLINE Pack load(const double* p) { return *reinterpret_cast<const PackInMemory*>(p); }
-/// Lines that are wanted soon, at once (3) or rather later (2: into the second-level cache).  A processor's
-/// own guess ends at every page of 4 KiB, which here is every 40 elements.
+/// Prefetches cache lines that are needed soon (3) or later (2: into the second-level cache). The hardware
+/// prefetcher stops at every 4 KiB page, which here is every 40 elements.
 template <int kHowSoon>
 PALPATE_INLINE void fetch(const void* first, int bytes) {
   for (int at = 0; at < bytes; at += 64)
@@ -79,7 +79,7 @@ PALPATE_INLINE Matrix cofactors(const Matrix& F) {
   return {{cross(F.row[1], F.row[2]), cross(F.row[2], F.row[0]), cross(F.row[0], F.row[1])}};
 }
 
-/// One lane of a matrix, row by row.
+/// Copies one lane of a matrix, row by row.
 PALPATE_INLINE void take_lane(const Matrix& A, int l, double* a) {
   for (int r = 0; r < 3; ++r) {
     a[3 * r] = A.row[r].x[l];
@@ -95,7 +95,7 @@ PALPATE_INLINE void put_lane(const double* a, int l, Matrix& A) {
   }
 }
 
-/// A symmetric matrix: xx, yy, zz, yz, xz, xy.
+/// Symmetric matrix: xx, yy, zz, yz, xz, xy.
 struct Symmetric {
   Pack xx, yy, zz, yz, xz, xy;
 };
@@ -126,14 +126,14 @@ PALPATE_INLINE void add_diagonal(Matrix& block, Pack s) {
   block.row[2].z += s;
 }
 
-/// Unsigned, as wide as an address: what is multiplied needs no widening.
+/// Unsigned and as wide as an address, so that products need no widening.
 PALPATE_INLINE std::size_t index_of(std::uint16_t number) { return number; }
 
-// Transposes between lanes (one number of several elements) and rows (several numbers of one element).
+// Transposition between lanes (one number of several elements) and rows (several numbers of one element).
 
 #if PALPATE_WIDTH == 2
 
-/// Loads of a nodal field with four doubles a node.
+/// Gathers a nodal field with four doubles per node.
 PALPATE_INLINE Vector gather(const double* field, const std::uint16_t* node) {
   const double *p = field + 4 * index_of(node[0]), *q = field + 4 * index_of(node[1]);
   return {Pack{p[0], q[0]}, Pack{p[1], q[1]}, Pack{p[2], q[2]}};
@@ -146,7 +146,7 @@ PALPATE_INLINE void scatter_add(double* field, const std::uint16_t* node, const 
     p[2] += f.z[l];
   }
 }
-/// Adds entries 0 to 7 of a block to the row of eight of its edge.
+/// Adds entries 0 to 7 of a block to its edge's row of eight.
 PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const Pack* k) {
   PackInMemory *first = reinterpret_cast<PackInMemory*>(rows + 8 * index_of(edge[0])),
                *second = reinterpret_cast<PackInMemory*>(rows + 8 * index_of(edge[1]));

@@ -1,4 +1,4 @@
-// The corotational law in lanes; its derivation and its scalar formulas are in corotational.h.
+// Corotational law in SIMD lanes; derivation and scalar formulas: corotational.h.
 #include "fem/lane_kernels.h"
 
 namespace palpate::fem::PALPATE_KERNELS {
@@ -10,10 +10,10 @@ namespace {
 
 #include "fem/lane_rotation.h"
 
-// The coupling matrix C of a tangent.  A = tr(B) I - B is inverted by its cofactors where det A >
-// kSmallestSum (tr A / 2)^2, as in corotational.cpp.
+// Coupling matrix C of a tangent. A = tr(B) I - B is inverted by its cofactors where det A > kSmallestSum (tr
+// A / 2)^2, as in corotational.cpp.
 
-/// @return lanes where C, times one [Pa], is right
+/// Computes C [Pa]; returns the lanes where it is accurate.
 PALPATE_INLINE Mask find_coupling(const ElementModel& model, const Matrix& F, const Matrix& R, Symmetric& C) {
   constexpr double kSmallestSum = 1e-4;  // corotational.h
   const Pack xx = dot(F.row[0], R.row[0]), yy = dot(F.row[1], R.row[1]), zz = dot(F.row[2], R.row[2]);
@@ -30,7 +30,7 @@ PALPATE_INLINE Mask find_coupling(const ElementModel& model, const Matrix& F, co
   const Pack s = c / det;
   C = {s * cof.xx, s * cof.yy, s * cof.zz, s * cof.yz, s * cof.xz, s * cof.xy};
   Mask right = det > kSmallestSum * trace * trace;
-  if (model.projected) {  // mu A - c I positive definite (Sylvester): the bound mu does not act
+  if (model.projected) {  // mu A - c I positive definite (Sylvester): the bound mu is inactive
     const Pack a = model.mu * A.xx - c, b = model.mu * A.yy - c, d = model.mu * A.zz - c;
     const Pack yz = model.mu * A.yz, xz = model.mu * A.xz, xy = model.mu * A.xy;
     const Pack minor = a * b - xy * xy;
@@ -133,7 +133,7 @@ struct Corotational {
     }
   }
 
-  /// lambda h_a h_b^T + [h_a]x C [h_b]x + 2 mu (g_a . g_b) I, where a row m^T of [h_a]x C gives (m x h_b)^T;
+  /// lambda h_a h_b^T + [h_a]x C [h_b]x + 2 mu (g_a . g_b) I, where a row m^T of [h_a]x C yields (m x h_b)^T;
   /// with C = mu I: lambda h_a h_b^T + mu h_b h_a^T + mu (g_a . g_b) I.
   template <bool kWarped>
   PALPATE_INLINE Matrix block(const BlockParts& e, Pack gg, int a, int b) {

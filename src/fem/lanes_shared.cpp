@@ -1,4 +1,4 @@
-// The kernels that do not depend on the constitutive law.
+// Kernels that do not depend on the constitutive law.
 #include "fem/lane_kernels.h"
 
 namespace palpate::fem::PALPATE_KERNELS {

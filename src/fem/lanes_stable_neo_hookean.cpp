@@ -1,4 +1,4 @@
-// The stable neo-Hookean law in lanes; its derivation and its scalar formulas are in stable_neo_hookean.cpp.
+// Stable neo-Hookean law in SIMD lanes; derivation and scalar formulas: stable_neo_hookean.cpp.
 #include "fem/lane_kernels.h"
 
 namespace palpate::fem::PALPATE_KERNELS {
@@ -8,32 +8,32 @@ namespace {
 
 #include "fem/lane_element.h"
 
-/// What scalar code found of the lanes whose tangent has negative eigenvalues, a projected one: `count` modes
-/// of ten numbers each, deficit and mode.
+/// Modes with negative eigenvalues that scalar code found for a projected tangent: per lane `count` modes,
+/// each of ten numbers, the deficit and the mode.
 struct ProjectedModes {
   int count[kWidth];
   double mode[kWidth][90];
 };
 
-/// A projected tangent is the exact one in lanes where that is positive definite.  In the basis of the
-/// singular vectors twists and flips have a +- d s_k > 0, all of them where a^2 1 - d^2 F F^T is positive
-/// definite.  The stretches have the matrix A; its invariants are symmetric functions of the singular values
-/// and so polynomials of I = |F|^2, II = |cof F|^2 and J.  With e = l J + d, A_ij = b s_i s_j + e s_k for i
-/// != j, and N = A - b s s^T of diagonal n_i = a + l c_i^2,
+/// Returns the lanes where the exact tangent is positive definite, so that it equals the projected one. In
+/// the basis of the singular vectors twists and flips have the eigenvalues a +- d s_k, which are all positive
+/// if a^2 1 - d^2 F F^T is positive definite. The stretches have the matrix A; its invariants are symmetric
+/// functions of the singular values and so polynomials of I = |F|^2, II = |cof F|^2 and J. With e = l J + d,
+/// A_ij = b s_i s_j + e s_k for i != j, and N = A - b s s^T with the diagonal n_i = a + l c_i^2,
 ///
 ///   sum of the minors = 3 a^2 + 2 a (b I + l II) + l^2 J^2 I + b l (I II - 3 J^2) - 6 b e J - e^2 I,
 ///   det A = det N + b s^T adj(N) s,
 ///   det N = a^3 + a^2 l II + a l^2 J^2 I + l^3 J^4 + 2 e^3 J - e^2 (a I + 3 l J^2),
-///   s^T adj(N) s = a^2 I + a l (I II - 3 J^2) + l^2 J^2 (I^2 - 2 II) - e^2 (I^2 - 4 II) - 2 e J (3 a + l
-///   II).
+///   s^T adj(N) s = a^2 I + a l (I II - 3 J^2) + l^2 J^2 (I^2 - 2 II) - e^2 (I^2 - 4 II)
+///                  - 2 e J (3 a + l II).
 ///
-/// Where they are lost in rounding the eigenvalues decide.
+/// Where these are within rounding of zero, the lane is left to the eigenvalues.
 PALPATE_INLINE Mask surely_definite(Pack a, Pack b, Pack d, double l, const Matrix& F, const Matrix& cof,
                                     Pack I, Pack J) {
   const Symmetric B = gram_of_rows(F);
   const Pack d2 = d * d, a2 = a * a;
   const Pack x = a2 - d2 * B.xx, y = a2 - d2 * B.yy, z = a2 - d2 * B.zz;
-  const Pack yz = d2 * B.yz, xz = d2 * B.xz, xy = d2 * B.xy;  // with the sign of minus the entries
+  const Pack yz = d2 * B.yz, xz = d2 * B.xz, xy = d2 * B.xy;  // minus the off-diagonal entries
   const Pack minor = x * y - xy * xy;
   Mask out = (a > 0.0) & (x > 0.0) & (minor > 0.0) &
              (z * minor - x * yz * yz - y * xz * xz - 2.0 * xy * yz * xz > 0.0);
@@ -136,7 +136,7 @@ struct StableNeoHookean {
 
   struct Tangent {
     Pack a, b, d;
-    const ProjectedModes* modes;  ///< null where no lane has any
+    const ProjectedModes* modes;  ///< null if no lane has any
   };
   using ScalarModes = ProjectedModes;
 
@@ -196,7 +196,7 @@ struct StableNeoHookean {
   struct BlockParts {
     Pack a;
     Vector k[4], bk[4], n[4], ln[4];  ///< F g_a, G g_a, and both times their scaled constants
-    Vector q[4][4];                   ///< -d F (g_a x g_b), scaled, of a < b
+    Vector q[4][4];                   ///< -d F (g_a x g_b), scaled, for a < b
   };
   template <bool kWarped>
   PALPATE_INLINE void set_parts(BlockParts& e, const ElementModel& model, const Matrix& F, const State& state,
@@ -206,11 +206,11 @@ struct StableNeoHookean {
     spread(F, G, e.k);
     spread(state.cof, G, e.n);
     const Pack b = at.b * scale, l = own_lambda(model) * scale, d = -(at.d * scale);
-    for (int a = 0; a < 3; ++a) {  // the greater end of an edge needs no constant
+    for (int a = 0; a < 3; ++a) {  // the edge's second node needs no constant
       e.bk[a] = b * e.k[a];
       e.ln[a] = l * e.n[a];
     }
-    // g_1 x g_2, g_2 x g_3, g_3 x g_1 by their entries; g_0 = -(g_1 + g_2 + g_3) gives the others.
+    // g_1 x g_2, g_2 x g_3, g_3 x g_1 entry by entry; g_0 = -(g_1 + g_2 + g_3) yields the others.
     const Vector x{F.row[0].x, F.row[1].x, F.row[2].x}, y{F.row[0].y, F.row[1].y, F.row[2].y},
         z{F.row[0].z, F.row[1].z, F.row[2].z};
     const Vector q12 =

@@ -1,9 +1,9 @@
 #pragma once
 
-/// The constitutive laws by their names in a scene, in the order of the registry; for each NAME there are
+/// Constitutive laws by their names in a scene, in the order of the registry. For each NAME there are
 ///
-///   src/fem/NAME.cpp        its derivation, its scalar formulas and its entry, laws::NAME (law.h);
-///   src/fem/lanes_NAME.cpp  its formulas in vector lanes (lane_forces.h says what they must offer);
+///   src/fem/NAME.cpp        derivation, scalar formulas and registry entry, laws::NAME (law.h);
+///   src/fem/lanes_NAME.cpp  formulas in vector lanes (required functions: lane_forces.h);
 ///   CMakeLists.txt          both, in PALPATE_LAWS.
 #define PALPATE_LAWS(LAW) \
   LAW(corotational)       \

@@ -11,7 +11,7 @@ namespace {
 
 using dynamics::StateView;
 
-/// Forces that neither state nor time changes; potential -f . x.
+/// Forces that depend on neither state nor time; potential -f . x.
 class DeadLoad final : public dynamics::ForceTerm {
  public:
   DeadLoad(std::string name, VecX forces, int block_id)
@@ -73,7 +73,7 @@ Points spread_over_boundary(const TetMesh& placed, const LoadSpec& load) {
     }
     if (!inside) continue;
     const Vec3 a = placed.nodes.col(node[0]), b = placed.nodes.col(node[1]), c = placed.nodes.col(node[2]);
-    const double third = (b - a).cross(c - a).norm() / 6.0;  // of the triangle's area
+    const double third = (b - a).cross(c - a).norm() / 6.0;  // a third of the triangle's area
     for (int i = 0; i < 3; ++i) share[node[i]] += third;
   }
   const double area = share.sum();

@@ -14,7 +14,7 @@ Materials of_density(double density) {
   return m;
 }
 
-/// rho V of each element [kg].
+/// Returns rho V of each element [kg].
 std::vector<double> element_masses(const RestElements& elements, const Materials& materials) {
   check(materials, elements.count(), "mass");
   std::vector<double> out(elements.volume);
@@ -49,7 +49,7 @@ class LumpedMass final : public dynamics::InertiaTerm {
   int block_id_;
 };
 
-/// Integral of rho N_a N_b over a tetrahedron = rho V / 20 (1 + delta_ab).
+/// Consistent mass: integral of rho N_a N_b over a tetrahedron = rho V / 20 (1 + delta_ab).
 class ConsistentMass final : public dynamics::InertiaTerm {
  public:
   ConsistentMass(const TetMesh& rest, const Materials& materials, int block_id)
@@ -85,7 +85,7 @@ class ConsistentMass final : public dynamics::InertiaTerm {
     return NodeBlock(state, block_id_, elements_.node_count());
   }
   RestElements elements_;
-  std::vector<double> masses_;  ///< of the elements [kg]
+  std::vector<double> masses_;  ///< element masses [kg]
   int block_id_;
   mutable ScatterMap scatter_;
 };

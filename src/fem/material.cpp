@@ -16,7 +16,7 @@ void check_range(const char* where, const char* key, double value, const Range& 
 
 }  // namespace
 
-// The names are the scene's keys, so that a person finds the line.
+// Messages use the scene's keys, so that the user finds the line.
 void check(const Material& m, const char* where) {
   using Ranges = MaterialRanges;
   check_range(where, "youngs_modulus_pa", m.youngs_modulus, Ranges::youngs_modulus_pa);

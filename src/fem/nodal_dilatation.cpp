@@ -16,44 +16,47 @@
 #include "palpate/fem/laws.h"
 #include "stress.h"
 
-// A linear tetrahedron has one constraint of volume as lambda -> inf; a mesh has five to six times as many
-// tetrahedra as nodes, more constraints than the three directions a node has: it locks.  Averages at the
-// nodes are one constraint a node.  With theta_e = tr(R^T F) - 3 (corotational.h),
+// Volumetric locking: each linear tetrahedron imposes one constraint of volume as lambda -> inf. A mesh has
+// five to six times as many tetrahedra as nodes, more constraints than the three degrees of freedom per node:
+// it locks. Averages at the nodes impose one constraint per node. With theta_e = tr(R^T F) - 3
+// (corotational.h),
 //
-//   theta_n = (1/V_n) sum_{e at n} (V_e/4) theta_e,   V_n = sum_{e at n} V_e/4,      E = (kappa/2) sum_n V_n
-//   theta_n^2,
+//   theta_n = (1/V_n) sum_{e at n} (V_e/4) theta_e,   V_n = sum_{e at n} V_e/4,
+//   E = (kappa/2) sum_n V_n theta_n^2,
 //
-// kappa = (1 - share) lambda.  As d theta_e = R : dF (corotational.h: dR drops out),
+// kappa = (1 - share) lambda. As d theta_e = R : dF (corotational.h: dR drops out),
 //
 //   dE = kappa sum_n theta_n sum_{e at n} (V_e/4) R : dF = sum_e V_e P_e : dF,   P_e = kappa theta*_e R,
 //   theta*_e = mean of theta_n over the four nodes:
 //
-// the element's own force with the average of averages in place of theta_e.  Uniform strain has theta* =
-// theta: the patch test holds; P_e F^T is symmetric: no moment; a tetrahedron alone has theta* = theta_e: it
-// is the element.
+// the element's force with the average of averages in place of theta_e. Uniform strain has theta* = theta:
+// the patch test is satisfied. P_e F^T is symmetric: no moment. A single tetrahedron has theta* = theta_e: it
+// equals the element.
 //
-// Where a body has several materials, averages are taken within each: theta jumps where lambda does (the
-// pressure across the border is what agrees), and an average over both sides would hold the soft side to what
-// the stiff one does.  So n runs over sites, the pairs of a node and a material at it, V_n and kappa_n are
-// the site's own, and theta*_e is the mean over the four sites that e has corners at.  All of the above holds
-// as it stands: each element's corners still have weights that sum to one over its own material.
+// In a body of several materials, averages are taken within each material: theta jumps where lambda does (the
+// pressure is continuous across the interface), and an average over both sides would constrain the soft side
+// to the dilatation of the stiff one. So n runs over sites, that is, pairs of a node and a material at it,
+// V_n and kappa_n belong to the site, and theta*_e is the mean over the four sites at the corners of e. The
+// equations above hold unchanged: each element's corners still have weights that sum to one over the
+// element's material.
 //
-// Tangent.  V_n d theta_n = sum_j b_nj . dx_j over the ring of n, b_nj = sum_{e at n and j} (V_e/4) R g_j; so
+// Tangent. V_n d theta_n = sum_j b_nj . dx_j over the ring of n, b_nj = sum_{e at n and j} (V_e/4) R g_j, so
 // that
 //
 //   K_ij = sum_n (kappa/V_n) b_ni b_nj^T + sum_{e at i and j} V_e [h_i]x C [h_j]x,   C = -kappa theta*_e G,
 //   h = R g, G = d axl / dR of corotational.h.
 //
-// The first sum is positive semi-definite, of rank one a node.  The second, kappa theta* dR, adds to
-// SoftBody's -c dR and is exact with it; its twists have the eigenvalues 2 kappa theta*/(s_i + s_j):
-// projected takes C only where theta* > 0; warped leaves it out, as there C = mu I is that of theta = 0.
+// The first sum is positive semi-definite, of rank one per node. The second, kappa theta* dR, adds to
+// SoftBody's -c dR and makes it exact; its twists have the eigenvalues 2 kappa theta*/(s_i + s_j). The
+// projected tangent therefore includes C only where theta* > 0. The warped tangent omits it, since there
+// C = mu I is the coupling at theta = 0.
 //
-// Damping (corotational.h) alike, with tau_e = tr E' = F : F' in place of theta_e:
+// Damping (objective_damping.h) is analogous, with tau_e = tr E' = F : F' in place of theta_e:
 //
-//   P_d = kappa_d tau*_e F,   D_ij = sum_n (kappa_d/V_n) d_ni d_nj^T,   d_nj = sum (V_e/4) F g_j,   power =
-//   kappa_d sum_n V_n tau_n^2 >= 0,
-//   by position (unsymmetric):  K_ij = sum_e V_e kappa_d tau*_e (g_i . g_j) I + sum_n (kappa_d/V_n) d_ni
-//   l_nj^T,   l_nj = sum (V_e/4) F' g_j.
+//   P_d = kappa_d tau*_e F,   D_ij = sum_n (kappa_d/V_n) d_ni d_nj^T,   d_nj = sum (V_e/4) F g_j,
+//   power = kappa_d sum_n V_n tau_n^2 >= 0,
+//   by position (unsymmetric):  K_ij = sum_e V_e kappa_d tau*_e (g_i . g_j) I
+//                                      + sum_n (kappa_d/V_n) d_ni l_nj^T,   l_nj = sum (V_e/4) F' g_j.
 
 namespace palpate::fem {
 
@@ -62,11 +65,11 @@ using dynamics::StateView;
 
 namespace {
 
-/// The four gradients as columns.
+/// The four shape function gradients of an element as columns.
 using Gradients = Eigen::Matrix<double, 3, 4>;
 
-/// Where averages are taken: at each node, once for each material at it.  Of one material, the nodes
-/// themselves: nothing is kept then.
+/// Sites at which averages are taken: each node, once for each material at it. With one material the sites
+/// are the nodes, and nothing is stored.
 struct Sites {
   std::array<std::vector<int>, 4> corner;  ///< site of each corner of each element
   std::vector<double> volume;              ///< [m^3]
@@ -74,7 +77,7 @@ struct Sites {
 
   Sites(const RestElements& elements, const Materials& materials) {
     if (materials.of_element.empty()) return;
-    std::map<std::pair<int, int>, int> number;  // ordered by node: sites of one node stand together
+    std::map<std::pair<int, int>, int> number;  // ordered by node: sites of one node are adjacent
     for (std::size_t e = 0; e < elements.volume.size(); ++e)
       for (const auto& nodes : elements.node) number[{nodes[e], materials.number(e)}] = 0;
     for (auto& [key, site] : number) {
@@ -117,14 +120,14 @@ struct NodalDilatation::Impl {
   Sites sites;
   NodeRings rings;
   struct Constants {
-    Lame kept;             ///< of the SoftBody [Pa]
+    Lame kept;             ///< elastic constants of the SoftBody [Pa]
     double kappa = 0.0;    ///< (1 - share) lambda [Pa]
     double kappa_d = 0.0;  ///< (1 - share) lambda_d [Pa s]
   };
-  std::vector<Constants> constants;  ///< of the materials
+  std::vector<Constants> constants;  ///< per material
   bool definite = false;
-  std::vector<Mat3> F, R;    ///< of each element at the state last deformed to
-  VecX element, site, rate;  ///< element values and averages at the sites; averages of the rate
+  std::vector<Mat3> F, R;    ///< per element, for the state of the last deform()
+  VecX element, site, rate;  ///< element values; averages at the sites; averages of the rate
   std::vector<Vec3> rotated, deformed, moving;  ///< ring rows b, d, l of the tangents
 
   Impl(std::string n, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& o, int id)
@@ -194,7 +197,7 @@ struct NodalDilatation::Impl {
     }
   }
 
-  /// site = averages of the element values w(e).
+  /// Sets `site` to the averages of the element values value(e).
   template <class Value>
   void to_sites(const Value& value) {
     site.setZero();
@@ -205,7 +208,7 @@ struct NodalDilatation::Impl {
     for (int s = 0; s < rings.site_count(); ++s)
       if (const double volume = site_volume(s); volume > 0.0) site[s] /= volume;
   }
-  /// Value* of each element: mean of its sites' averages.
+  /// Computes value* of each element: the mean of its sites' averages.
   template <class Value>
   void average(const Value& value, VecX& out) {
     to_sites(value);
@@ -215,14 +218,14 @@ struct NodalDilatation::Impl {
       out[static_cast<Eigen::Index>(e)] = 0.25 * sum;
     }
   }
-  /// sum_s kappa_s V_s site_s^2, or with kappa_d.
+  /// Returns sum_s kappa_s V_s site_s^2; `kappa` selects kappa or kappa_d.
   double weighted_square(double Constants::*kappa) const {
     double sum = 0.0;
     for (int s = 0; s < rings.site_count(); ++s)
       sum += of_site(s).*kappa * site_volume(s) * site[s] * site[s];
     return sum;
   }
-  /// Averages at the nodes of what stands at the sites, by volume.
+  /// Returns the values at the sites averaged to the nodes by volume.
   VecX at_nodes() const {
     if (sites.node.empty()) return site;
     VecX out = VecX::Zero(elements.node_count());
@@ -237,8 +240,8 @@ struct NodalDilatation::Impl {
   }
   double star(const VecX& values, std::size_t e) const { return values[static_cast<Eigen::Index>(e)]; }
 
-  /// out += scale V P g_a; that of node 0 is minus the sum of the others, so that momentum is kept to
-  /// rounding.
+  /// out += scale V P g_a. The force on node 0 is minus the sum of the others, so that momentum is conserved
+  /// to rounding.
   void scatter(std::size_t e, const Mat3& P, double scale, double* out) const {
     const Mat3 H = (scale * elements.volume[e]) * P * elements.gradients(e).transpose();
     for (std::size_t a = 1; a < 4; ++a)
@@ -246,15 +249,15 @@ struct NodalDilatation::Impl {
     Eigen::Map<Vec3>(out + 3 * elements.node[0][e]) -= H.rowwise().sum();
   }
 
-  /// C of the second sum; zero where the tangent leaves it out.
+  /// Returns C of the second sum; zero where the tangent omits it.
   Mat3 coupling(std::size_t e) const {
     const double c = -of_element(e).kappa * star(element, e);
     if (tangent() == Tangent::kWarped || (tangent() == Tangent::kProjected && c > 0.0)) return Mat3::Zero();
-    bool clamped = false;  // counted by the SoftBody
+    bool clamped = false;  // the SoftBody counts it
     return rotation_coupling(Tangent::kExact, F[e], R[e], {0.5 * c, 0.0}, clamped);
   }
 
-  /// rows[ring entry (n, j)] = sum of (V_e/4) M_e g_j.
+  /// rows[ring entry (n, j)] = sum of (V_e/4) M_e g_j
   template <class Matrix>
   void fill_rows(const Matrix& matrix, std::vector<Vec3>& rows) const {
     std::fill(rows.begin(), rows.end(), Vec3::Zero());
@@ -265,7 +268,7 @@ struct NodalDilatation::Impl {
     }
   }
 
-  /// A += sum_n (scale kappa_n/V_n) left_ni right_nj^T.
+  /// A += sum_n (scale kappa_n/V_n) left_ni right_nj^T
   void add_products(double scale, double Constants::*kappa, const std::vector<Vec3>& left,
                     const std::vector<Vec3>& right, dynamics::BlockSparse& A) const {
     for (int n = 0; n < rings.site_count(); ++n) {
@@ -280,7 +283,7 @@ struct NodalDilatation::Impl {
     }
   }
 
-  /// A += the blocks of one element, block(a, b).
+  /// A += the blocks of one element, block(a, b)
   template <class Block>
   void add_element(std::size_t e, const Block& block, dynamics::BlockSparse& A) const {
     for (int a = 0; a < 4; ++a) {

@@ -3,7 +3,7 @@
 namespace palpate::fem {
 namespace {
 
-constexpr int kReducedAhead = 24;  // how long before they are added to nodes are prefetched
+constexpr int kReducedAhead = 24;  // prefetch distance in nodes
 
 }  // namespace
 

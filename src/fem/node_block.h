@@ -4,13 +4,13 @@
 
 namespace palpate::fem {
 
-/// Where one body's nodes are in a state: looked up anew at each evaluation, since blocks move when others
-/// come and go.
+/// Location of one body's nodes in a state. It is looked up anew at each evaluation, since blocks move when
+/// others are added or removed.
 struct NodeBlock {
-  const double* x;  ///< positions [m], three a node
+  const double* x;  ///< positions [m], three per node
   const double* v;  ///< velocities [m/s]
-  int u_offset;     ///< place in u, forces and directions
-  int first_node;   ///< counted over all node blocks
+  int u_offset;     ///< offset in u, forces and directions
+  int first_node;   ///< index over all node blocks
 
   NodeBlock(const dynamics::StateView& state, int block_id, int node_count) {
     const dynamics::Block* block = state.layout->find(block_id);

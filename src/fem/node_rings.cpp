@@ -36,7 +36,7 @@ NodeRings::NodeRings(const RestElements& elements, const std::array<std::vector<
 }
 
 void NodeRings::add_pattern(int first_node, dynamics::PatternBuilder& pattern) const {
-  std::vector<int> later;  // of node n: the nodes behind it that share a ring with it
+  std::vector<int> later;  // per node n: later nodes that share a ring with it
   std::vector<std::vector<int>> rings_of(static_cast<std::size_t>(nodes_));
   for (int n = 0; n < site_count(); ++n)
     for (int k = begin(n); k < begin(n + 1); ++k) rings_of[static_cast<std::size_t>(node(k))].push_back(n);

@@ -7,12 +7,12 @@
 
 namespace palpate::fem {
 
-/// Slot map of the 16 blocks of each element matrix in an assembled matrix.  Made once a pattern.
+/// Slot map of the 16 blocks of each element matrix in an assembled matrix. Computed once per pattern.
 class ScatterMap {
  public:
-  /// Makes the map for A's pattern and the body's first node, unless it is the one at hand.
+  /// Computes the map for A's pattern and the body's first node, unless it is up to date.
   void prepare(const RestElements& elements, int first_node, const dynamics::BlockSparse& A);
-  /// Slot of the block of nodes (a, b) of element e.
+  /// Returns the slot of the block of nodes (a, b) of element e.
   int slot(std::size_t e, int a, int b) const { return slots_[16 * e + static_cast<std::size_t>(4 * a + b)]; }
 
  private:
@@ -21,7 +21,7 @@ class ScatterMap {
   std::vector<int> slots_;
 };
 
-/// Adds the pairs of every element to a pattern.
+/// Adds the node pairs of every element to a pattern.
 void add_element_pattern(const RestElements& elements, int first_node, dynamics::PatternBuilder& pattern);
 
 }  // namespace palpate::fem

@@ -4,13 +4,12 @@
 #include "element_chunks.h"
 #include "palpate/core/huge_pages.h"
 
-// Contributions of chunks to the blocks of shared nodes and edges, nine numbers each, that are put aside and
+// Contributions of chunks to the blocks of shared nodes and edges, nine numbers each, which are stored and
 // summed afterwards.
 
 namespace palpate::fem {
 
-/// to += the contributions to shared node or edge k, one after the other; of a transposed block where
-/// `transposed`.
+/// Adds the contributions to shared node or edge k to `to`, in order; transposed blocks if `transposed`.
 template <class Real>
 void add_contributions(const SharedSums& sums, int k, const std::vector<Real>& contributions, Real* to,
                        bool transposed = false) {
@@ -22,8 +21,7 @@ void add_contributions(const SharedSums& sums, int k, const std::vector<Real>& c
   }
 }
 
-/// How many sums ahead a shared edge's memory is prefetched: what its sum reads and writes lies
-/// scattered.
+/// Prefetch distance in shared edges: a sum reads and writes scattered memory.
 inline constexpr int kSumsAhead = 6;
 template <class Real>
 void prefetch_block(const Real* block) {
@@ -36,7 +34,7 @@ void prefetch_contributions(const SharedSums& sums, int k, const Real* contribut
     prefetch_block(contributions + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]));
 }
 
-/// Room for `count` contributions.
+/// Resizes to `count` contributions.
 template <class Real>
 void fit_contributions(std::vector<Real>& blocks, std::size_t count) {
   if (blocks.size() == 9 * count) return;
@@ -44,7 +42,7 @@ void fit_contributions(std::vector<Real>& blocks, std::size_t count) {
   prefer_huge_pages(blocks);
 }
 
-/// at(i, j) and at(j, i) of each edge that chunks share.
+/// Fills `sides` with at(i, j) and at(j, i) of each edge that chunks share.
 template <class At>
 void find_both_sides(const SharedSums& edges, At&& at, std::vector<std::int32_t>& sides) {
   sides.resize(2 * edges.first.size());

@@ -45,14 +45,14 @@ struct SoftBody::Impl {
   std::string name;
   SoftBodyOptions options;
   int block_id;
-  std::size_t law;  ///< place in law_registry()
+  std::size_t law;  ///< index in law_registry()
   ElementEvaluation elements;
   std::vector<Material> materials;
-  std::uint64_t materials_version = 0;  ///< of all bodies no two have the same
-  ElementModels models;                 ///< of the materials, for the evaluation at hand
+  std::uint64_t materials_version = 0;  ///< unique over all bodies
+  ElementModels models;                 ///< per material, for the current evaluation
   VecX drag;                            ///< mass-proportional damping of each node [kg/s]; empty: none
   ElementCounts counts;
-  bool definite = false;  ///< the projected tangent in place of the named one
+  bool definite = false;  ///< use the projected tangent whatever the options
 
   Impl(std::string body, const TetMesh& rest, const Materials& from, const SoftBodyOptions& opts, int block)
       : name(std::move(body)),
@@ -91,7 +91,7 @@ struct SoftBody::Impl {
     }
     return models;
   }
-  /// Whether a tangent of these scales needs the elements at all.
+  /// Whether a tangent with these scales has element contributions.
   bool acts(double k_scale, double d_scale) const { return k_scale != 0.0 || (d_scale != 0.0 && damped()); }
 
   bool dragged() const { return drag.size() > 0; }
@@ -100,7 +100,7 @@ struct SoftBody::Impl {
       Eigen::Map<Vec3>(force + 3 * i) -= drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i);
   }
 
-  /// The body's rows of A += or, `stored`, = k_scale K + d_scale D.
+  /// The body's rows of A += (`stored`: =) k_scale K + d_scale D.
   void tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A, bool stored) {
     const NodeBlock at = block(state);
     if (acts(k_scale, d_scale)) {
@@ -196,7 +196,7 @@ void SoftBody::add_pattern(dynamics::PatternBuilder& pattern) const {
     pattern.add_clique(nodes, 4);
   });
 }
-std::uint64_t SoftBody::pattern_version() const { return 1; }  // rest connectivity never changes
+std::uint64_t SoftBody::pattern_version() const { return 1; }  // the rest connectivity never changes
 
 void SoftBody::add_force(const StateView& state, VecX& f) {
   Impl& m = *impl_;
@@ -243,8 +243,7 @@ void SoftBody::add_step_force(const StateView& state, const VecX& shift, const V
   const LaneCounts met = m.elements.add_step_force(
       m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset, more}, force);
   m.counts.inverted += met.inverted;
-  m.counts.by_scalar +=
-      met.by_scalar;  // its tangents are applied, as often as an iteration asks: not counted
+  m.counts.by_scalar += met.by_scalar;  // clamped is not counted: iterations apply this tangent repeatedly
   if (!m.dragged()) return;
   m.add_drag(at, force);
   for (int i = 0; i < node_count(); ++i)

@@ -8,18 +8,17 @@
 #include "palpate/core/polar.h"
 
 // Stable neo-Hookean (Smith, de Goes and Kim 2018, "Stable Neo-Hookean Flesh Simulation", ACM Trans. Graphics
-// 37(2), eq. 14), with I = |F|^2, J = det F and the law's own constants m, l:
+// 37(2), eq. 14), with I = |F|^2, J = det F and the constants m, l of this law:
 //
 //   Psi = m/2 (I - 3) + l/2 (J - alpha)^2 - m/2 log(I + 1),     alpha = 1 + 3 m / (4 l).
 //
-// alpha makes F = 1 free of stress.  Without the logarithm (their eq. 13, alpha = 1 + m/l) F = 0 would be a
-// local minimum: Psi(s 1) = 3/2 m s^2 + O(s^3) there, and an element that collapsed to a point stays.  With
-// it Psi(s 1) - Psi(0) = -(l + 3/4 m) s^3 + O(s^4): the point gives way.  Hence the whole form is used.
-// Elements that are flat or inverted are driven back as well: at a flat F with stretches s1, s2, 0 the
-// derivative by the third is -(l + 3/4 m) s1 s2 < 0.  Nothing is singular: Psi is smooth for every F.
+// alpha makes F = 1 stress-free. Without the logarithm (their eq. 13, alpha = 1 + m/l) F = 0 would be a local
+// minimum: Psi(s 1) = 3/2 m s^2 + O(s^3) there, and an element that has collapsed to a point stays collapsed.
+// With it Psi(s 1) - Psi(0) = -(l + 3/4 m) s^3 + O(s^4): the point is unstable. Hence the whole form is used.
+// Flat and inverted elements are driven back as well: at a flat F with stretches s1, s2, 0 the derivative by
+// the third is -(l + 3/4 m) s1 s2 < 0. There is no singularity: Psi is smooth for every F.
 //
-// Written from rest, without the constant and without alpha, (J - alpha)^2 = (J - 1)^2 - 3 m/(2 l) (J - 1) +
-// const:
+// Shifted to zero at rest and without alpha, with (J - alpha)^2 = (J - 1)^2 - 3 m/(2 l) (J - 1) + const:
 //
 //   Psi = m/2 (I - 3 - log((I + 1)/4)) - 3/4 m (J - 1) + l/2 (J - 1)^2.
 //
@@ -28,23 +27,23 @@
 //   P = a F + d G,     a = m - m/(I + 1),   d = l (J - 1) - 3/4 m,
 //   dP = a dF + b (F : dF) F + l (G : dF) G + d dG,     b = 2 m/(I + 1)^2,
 //
-// dG being linear in dF.  Nodes: for dF = w g_b^T, with k = F g, n = G g, and u . (dG g_a) for dG of w g_b^T
-// the coefficient of s t in det(F + s u g_a^T + t w g_b^T), (u x w) . F (g_a x g_b),
+// where dG is linear in dF. Nodes: for dF = w g_b^T, with k = F g, n = G g, and u . (dG g_a) for dG of w
+// g_b^T the coefficient of s t in det(F + s u g_a^T + t w g_b^T), (u x w) . F (g_a x g_b),
 //
 //   K_ab = V ( a (g_a . g_b) 1 + b k_a k_b^T + l n_a n_b^T - d [F (g_a x g_b)]x ).
 //
 // No rotation of F is needed for force, energy or exact tangent.
 //
-// Lame's constants.  At F = 1: a = 3/4 m, d = -3/4 m, b = m/8, dG = tr(dF) 1 - dF^T, so that a symmetric dF
-// gives dP = 3/2 m dF + (l - 5/8 m) tr(dF) 1, and a skew one nothing.  It is linear elasticity, 2 mu dF +
-// lambda tr(dF) 1, with
+// Lame constants. At F = 1: a = 3/4 m, d = -3/4 m, b = m/8, dG = tr(dF) 1 - dF^T, so that a
+// symmetric dF yields dP = 3/2 m dF + (l - 5/8 m) tr(dF) 1, and a skew one zero. This is linear
+// elasticity, 2 mu dF + lambda tr(dF) 1, with
 //
 //   m = 4/3 mu,   l = lambda + 5/6 mu      (their section 3.4),
 //
 // positive for every Poisson's ratio in (-1, 1/2), where lambda > -2/3 mu.
 //
-// Eigensystem (their section 4).  With the signed singular values F = U diag(s) V^T, det U = det V = 1
-// (Irving, Teran and Fedkiw 2004), dG of U X V^T is U (.) V^T of what it is for the diagonal matrix.  So for
+// Eigensystem (their section 4). With the signed singular values F = U diag(s) V^T, det U = det V = 1
+// (Irving, Teran and Fedkiw 2004), dG for U X V^T is U (.) V^T of dG for the diagonal matrix and X. So for
 // each k, with i and j the other two,
 //
 //   twist  U (e_i e_j^T - e_j e_i^T) V^T / sqrt 2     eigenvalue a + d s_k,
@@ -54,8 +53,8 @@
 //
 //   A = a 1 + b s s^T + l c c^T + d H,   c_k = s_i s_j,   H_ij = s_k, H_ii = 0.
 //
-// The projected tangent adds to dP/dF, for each of the nine with a negative eigenvalue e and its mode M, -e M
-// M^T: the nearest positive semi-definite matrix.
+// The projected tangent adds -e M M^T to dP/dF for each of the nine modes M with a negative eigenvalue e,
+// which yields the nearest positive semi-definite matrix.
 
 namespace palpate::fem {
 namespace {
@@ -68,7 +67,7 @@ Mat3 cofactors(const Mat3& F) {
   return G;
 }
 
-/// d cof(F) of dF.
+/// Returns d cof(F) for a direction dF.
 Mat3 cofactor_change(const Mat3& F, const Mat3& dF) {
   Mat3 dG;
   for (int i = 0; i < 3; ++i) {
@@ -78,7 +77,7 @@ Mat3 cofactor_change(const Mat3& F, const Mat3& dF) {
   return dG;
 }
 
-/// The constants of the derivation at one F.
+/// Constants of the derivation at one F.
 struct Coefficients {
   double m, l, a, b, d;
   Coefficients(const Lame& lame, double I, double J) {
@@ -90,13 +89,13 @@ struct Coefficients {
   }
 };
 
-/// One mode of the Hessian with a negative eigenvalue.
+/// Mode of the Hessian with a negative eigenvalue.
 struct Mode {
   double deficit;  ///< minus the eigenvalue
   RowMajor M;
 };
 
-/// @return how many of `modes` are set
+/// Computes the modes with negative eigenvalues; returns their number.
 int negative_modes(const Mat3& F, const Lame& lame, Mode* modes) {
   const SignedSvd svd = signed_svd(F);
   const Vec3& s = svd.sigma;
@@ -148,10 +147,11 @@ Mat3 stress_change(Tangent tangent, const Mat3& F, const Mat3& dF, const Lame& l
   return dP;
 }
 
-/// The modes that a projected tangent adds, ten numbers each: deficit, then M row by row.
+/// Computes the modes that a projected tangent adds, ten numbers each: deficit, then M row by row. Returns
+/// their number.
 int projection(const ElementModel& model, const double* F, const double*, double* out) {
   const Mat3 one_F = Eigen::Map<const RowMajor>(F);
-  if (!one_F.allFinite()) {  // no decomposition: the tangent says so
+  if (!one_F.allFinite()) {  // no decomposition: the tangent becomes NaN
     out[0] = std::numeric_limits<double>::quiet_NaN();
     Eigen::Map<RowMajor>(out + 1).setIdentity();
     return 1;

@@ -12,7 +12,7 @@ constexpr double kSmallestDet = 0.1;
 
 }  // namespace
 
-/// sqrt(3/2 dev : dev)
+/// sqrt(3/2 dev : dev), dev the deviator of the Cauchy stress
 double von_mises(const Mat3& P, const Mat3& F) {
   const Mat3 cauchy = P * F.transpose() / std::max(F.determinant(), kSmallestDet);
   const Mat3 deviator = cauchy - cauchy.trace() / 3.0 * Mat3::Identity();

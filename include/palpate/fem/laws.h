@@ -4,17 +4,19 @@
 
 namespace palpate::fem {
 
-/// A hyperelastic, isotropic constitutive law (src/fem/law.h).
+/// Hyperelastic, isotropic constitutive law (src/fem/law.h).
 struct Law;
 
-/// The laws that SoftBodyOptions::law and the scene's key `[[body]] material` name.  All take Young's modulus
-/// and Poisson's ratio, and agree with linear elasticity at small strain.
+/// Returns the laws by the names used in SoftBodyOptions::law and in the scene's key `[[body]] material`. All
+/// laws take Young's modulus and Poisson's ratio, and agree with linear elasticity at small strain.
 const Registry<const Law*>& law_registry();
 
-/// Refuses what a law does not have.
-/// @param law  its name  @param tangent  which it is to have  @param where  begins the message
-/// @param nodal_dilatation  whether part of the resistance to a change of volume is left to NodalDilatation
-/// @throws Error where `law` is unknown, or lacks what is asked for; `where` begins the message
+/// Checks that a law exists and supports the given options.
+/// @param law  Name of the law.
+/// @param tangent  Tangent that the law must support.
+/// @param nodal_dilatation  Whether part of the volumetric stiffness is left to NodalDilatation.
+/// @param where  Beginning of the message.
+/// @throws Error if `law` is unknown or does not support the options
 void check_law(const std::string& law, Tangent tangent, bool nodal_dilatation, const std::string& where);
 
 }  // namespace palpate::fem

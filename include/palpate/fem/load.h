@@ -4,11 +4,10 @@
 
 namespace palpate::fem {
 
-/// Nodal forces [N] of a uniform traction with the given resultant over the boundary triangles whose three
-/// nodes all lie in the box:
-/// a third of each triangle's share to each of its nodes.  `placed`: the mesh at its initial world positions.
-/// 3 x node count.
-/// @throws Error when no triangle lies in the box, or the box or the force is no box or force.
+/// Returns the nodal forces [N], 3 x node count, of a uniform traction with the given resultant over the
+/// boundary triangles whose three nodes all lie in the box: a third of each triangle's force goes to each of
+/// its nodes. `placed`: the mesh at its initial world positions.
+/// @throws Error if no triangle lies in the box, or the box or the force is invalid
 Points spread_over_boundary(const TetMesh& placed, const LoadSpec& load);
 
 }  // namespace palpate::fem

@@ -6,11 +6,11 @@ namespace palpate::fem {
 
 /// Lame's constants [Pa].
 struct Lame {
-  double mu = 0.0, lambda = 0.0;  ///< shear modulus, and its companion
+  double mu = 0.0, lambda = 0.0;  ///< shear modulus mu and first Lame constant lambda
 };
 
-/// Isotropic material by its behaviour at small strain, and its damping; what it does at large strain is the
-/// constitutive law's (laws.h).
+/// Isotropic material: its stiffness at small strain, density and damping. The response at large strain is
+/// given by the constitutive law (laws.h).
 struct Material {
   double youngs_modulus = 1e4;     ///< E [Pa] > 0
   double poissons_ratio = 0.3;     ///< nu in (-1, 0.5)
@@ -26,25 +26,28 @@ struct Material {
   }
 };
 
-/// The materials of a body: one, or a list and the number in it of each tetrahedron.
+/// Materials of a body: one for all elements, or a list with one index per tetrahedron.
 struct Materials {
   std::vector<Material> list;   ///< at least one
-  std::vector<int> of_element;  ///< in the order of the mesh; empty: all are list[0]
+  std::vector<int> of_element;  ///< index in the list per element, in mesh order; empty: all are list[0]
 
   /// One material throughout.
   Materials(const Material& all) : list{all} {}
-  /// @param materials  the list  @param numbers  place in it of each tetrahedron, as many as the mesh has
+  /// @param materials  The list.
+  /// @param numbers  Index in the list for each tetrahedron; as many as the mesh has.
   Materials(std::vector<Material> materials, std::vector<int> numbers)
       : list(std::move(materials)), of_element(std::move(numbers)) {}
-  /// Place of an element's material in the list.
+  /// Index of an element's material in the list.
   int number(std::size_t element) const { return of_element.empty() ? 0 : of_element[element]; }
   /// An element's material.
   const Material& of(std::size_t element) const { return list[static_cast<std::size_t>(number(element))]; }
 };
 
-/// @throws Error naming the value out of range; `where` begins the message.
+/// Checks that all values are in range. `where` begins the message.
+/// @throws Error with the value that is out of range
 void check(const Material& material, const char* where);
-/// Checks each material of a list, and that the numbers of the elements, one each, are in the list.
+/// Checks each material of a list, and that there is one valid index per element. `where` begins the message.
+/// @throws Error with the value that is out of range
 void check(const Materials& materials, int elements, const char* where);
 
 }  // namespace palpate::fem

@@ -16,45 +16,47 @@
 
 namespace palpate::fem {
 
-/// What one evaluation met, for reports: counts since the last reset.
+/// Counts of special cases in element evaluations since the last reset, for reports.
 struct ElementCounts {
   long inverted = 0;  ///< det F <= 0
-  long clamped = 0;   ///< exact tangent near its singular set (two signed singular values cancel)
-  /// lanes that were finished one by one: close to the singular set, or in need of eigenvalues (projected
-  /// tangent)
+  long clamped = 0;   ///< exact tangents near the singular set (two signed singular values cancel)
+  /// Lanes that were computed one by one: close to the singular set, or in need of eigenvalues (projected
+  /// tangent).
   long by_scalar = 0;
 };
 
-/// What a body holds, in bytes.
+/// Memory of a body [bytes].
 struct MemoryUse {
   std::size_t elements = 0;  ///< rest shapes, topology, chunks
-  std::size_t maps = 0;      ///< into the pattern of the matrix
-  std::size_t scratch = 0;   ///< of all threads, and sums that chunks share
+  std::size_t maps = 0;      ///< maps into the matrix pattern
+  std::size_t scratch = 0;   ///< work memory of all threads, and sums shared by chunks
 };
 
-/// Linear tetrahedra of one constitutive law (laws.h) as one force term over one node block: elastic force,
-/// objective stiffness damping, their tangents, energy. Mass-proportional damping acts here too (it needs the
-/// lumped masses): f = -alpha M v; of several materials f_i = -c_i v_i, c_i = sum (alpha rho V / 4) over the
+/// Force term of linear tetrahedra with one constitutive law (laws.h) on one node block: elastic force,
+/// objective stiffness damping, their tangents, energy. Mass-proportional damping is included (it needs the
+/// lumped masses): f = -alpha M v; for several materials f_i = -c_i v_i, c_i = sum (alpha rho V / 4) over the
 /// elements at node i. Materials belong to elements: where two meet, they share nodes and displacements, and
-/// the traction is continuous as far as the mesh resolves it. Elements are worked through in the lanes of
-/// vectors and on core's workers (core/workers.h); results do not depend on the number of threads.
+/// the traction is continuous as far as the mesh resolves it. Elements are evaluated in SIMD lanes and on the
+/// worker threads of core (core/workers.h); results do not depend on the number of threads.
 class SoftBody : public dynamics::ForceTerm,
                  public dynamics::StoredTangentTerm,
                  public dynamics::FusedStepTerm,
                  public dynamics::PsdProjectedTerm {
  public:
-  /// @param name  of the term, in messages and reports  @param materials  of the elements  @param options how
-  /// it is evaluated
-  /// @param rest  rest positions and tetrahedra, volumes positive  @param block_id  the node block in the
-  ///   State
+  /// @param name  Name of the term, in messages and reports.
+  /// @param rest  Rest positions and tetrahedra, volumes positive.
+  /// @param materials  Materials of the elements.
+  /// @param options  Options of the evaluation.
+  /// @param block_id  Node block in the State.
   SoftBody(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options,
            int block_id);
   ~SoftBody() override;
 
   std::string_view name() const override;
-  /// The projected tangent (symmetric, positive semi-definite) in place of the one that the options name.
+  /// Switches to the projected tangent (symmetric, positive semi-definite) in place of the tangent in the
+  /// options.
   void project_to_psd(bool on) override;
-  /// The element with the smallest det F <= 0.
+  /// Reports the element with the smallest det F <= 0.
   dynamics::Diagnostic inspect(const dynamics::StateView& state) const override;
   long clamped_tangents() const override { return counts().clamped; }
   dynamics::TermTraits traits() const override;
@@ -77,24 +79,24 @@ class SoftBody : public dynamics::ForceTerm,
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;
 
-  /// Counts since the last reset_counts().
+  /// Returns the counts since the last reset_counts().
   const ElementCounts& counts() const;
-  /// All counts from zero.
+  /// Sets all counts to zero.
   void reset_counts();
-  const std::vector<Material>& materials() const;  ///< the list that it was made with
-  /// Others in their places, as many; they take effect at the next evaluation.  Which element has which
-  /// stays.
+  const std::vector<Material>& materials() const;  ///< list of materials, as set
+  /// Replaces the materials, as many as before; they take effect at the next evaluation. The assignment of
+  /// elements to materials does not change.
   void set_materials(const std::vector<Material>& materials);
-  /// Nodes of the mesh.
+  /// Number of nodes of the mesh.
   int node_count() const;
-  /// Tetrahedra of the mesh.
+  /// Number of tetrahedra of the mesh.
   int element_count() const;
-  /// Name of the instruction set in use.
+  /// Returns the name of the instruction set in use.
   std::string_view instructions() const;
-  /// What it holds now.
+  /// Returns the memory currently in use.
   MemoryUse memory() const;
-  /// Von Mises norm of the element Cauchy stress, averaged to nodes by volume [Pa]; size node_count (pictures
-  /// and records).
+  /// Returns the von Mises norm of the element Cauchy stress, averaged to nodes by volume [Pa]; size
+  /// node_count (for pictures and records).
   VecX nodal_stress(const dynamics::StateView& state) const;
 
  private:
@@ -102,28 +104,28 @@ class SoftBody : public dynamics::ForceTerm,
   std::unique_ptr<Impl> impl_;
 };
 
-/// Nodal masses [kg] of a mesh, one a node: rho V / 4 from each tetrahedron.
+/// Returns the nodal masses [kg] of a mesh, one per node: rho V / 4 from each tetrahedron.
 VecX lumped_masses(const TetMesh& rest, double density);
-/// Likewise, with the density of each tetrahedron's material.
+/// Returns the nodal masses [kg] with the density of each tetrahedron's material.
 VecX lumped_masses(const TetMesh& rest, const Materials& materials);
 
-/// Lumped or consistent mass of one node block; of the materials only the densities count.
+/// Builds the lumped mass (lumped_masses()) of one node block.
 std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, double density, int block_id);
-/// Likewise, with the density of each tetrahedron's material.
+/// Builds the lumped mass of one node block, with the density of each tetrahedron's material.
 std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, const Materials& materials,
                                                         int block_id);
-/// Consistent mass, the integral of rho N_i N_j: rho V / 10 on the diagonal and rho V / 20 beside it, from
-/// each tetrahedron.
+/// Builds the consistent mass of one node block, the integral of rho N_i N_j: rho V / 10 on the diagonal and
+/// rho V / 20 off the diagonal, from each tetrahedron.
 std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density,
                                                             int block_id);
-/// Likewise, with the density of each tetrahedron's material.
+/// Builds the consistent mass of one node block, with the density of each tetrahedron's material.
 std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, const Materials& materials,
                                                             int block_id);
 
-/// Weight: f_i = m_i g (lumped; equal to the consistent load of a constant field).
+/// Builds the weight f_i = m_i g of a node block (lumped; equal to the consistent load of a constant field).
 std::shared_ptr<dynamics::ForceTerm> make_gravity(const VecX& masses, const Vec3& gravity, int block_id);
 
-/// Dead load: a constant force on each node, 3 x node_count [N].
+/// Builds a dead load: a constant force on each node, 3 x node_count [N].
 std::shared_ptr<dynamics::ForceTerm> make_dead_load(std::string name, const Points& forces, int block_id);
 
 }  // namespace palpate::fem
