@@ -7,12 +7,12 @@ namespace {
 
 constexpr int kSteps = 12;
 
-/// Least of u . (x - y) over both hulls.
+/// Returns the least u . (x - y) over both hulls.
 double least_along(const ProxySet& a, int p, const ProxySet& b, int q, const Vec3& u) {
   return -a.most_along(p, -u) - b.most_along(q, u);
 }
 
-/// The shortest vector from v toward s.
+/// Returns the shortest vector on the segment from v to s.
 Vec3 shorten(const Vec3& v, const Vec3& s) {
   const Vec3 step = s - v;
   const double length2 = step.squaredNorm();

@@ -39,13 +39,14 @@ void BodyMotion::update(const Eigen::Ref<const Points>& nodes) {
 
 void BodyMotion::keep() {
   constexpr double kFlat = 1e-8;
-  then_ = now_;  // of equal size: copies
+  then_ = now_;  // equal sizes: copies without allocating
   middle_.setZero();
   for (const int n : samples_) middle_ += then_.point(n) / static_cast<double>(samples_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i)
     coefficients_.col(static_cast<Eigen::Index>(i)) = then_.point(samples_[i]) - middle_;
   Mat3 M = coefficients_ * coefficients_.transpose();
-  M += kFlat * M.trace() * Mat3::Identity();  // a flat body, or of few nodes, has a map too
+  M += kFlat * M.trace() * Mat3::Identity();  // regularised, so that a flat body or one of few nodes has a
+                                              // map too
   coefficients_ = (M.trace() > 0.0 ? Mat3(M.inverse()) : Mat3(Mat3::Zero())) * coefficients_;
   linear_.setIdentity();
   offset_.setZero();

@@ -5,18 +5,19 @@
 
 namespace palpate::proxy {
 
-/// How a body's nodes have moved since they were last stored:
-/// x = linear x_then + offset to within `residual`, for every node.
+/// Affine motion of a body's nodes since they were last stored: x = linear x_then + offset to within
+/// `residual`, for every node.
 ///
-/// Any affine map serves (the residual is measured against it, node by node); it is the one of least squares
-/// for a few nodes spread over the body, so that a body that moves as a whole, and stretches evenly, leaves
-/// no residual at all.
+/// Any affine map is valid (the residual is measured against it, node by node).  This one is the
+/// least-squares fit to a few nodes spread over the body, so that rigid motion and uniform stretch leave no
+/// residual.
 class BodyMotion {
  public:
+  /// Allocates for a number of nodes and selects the samples.
   void resize(int nodes);
-  /// Takes the present positions.  @throws nothing; `residual` is not a number where a position is not
+  /// Takes the present positions [m].  Never throws; `residual` is NaN if a position is not finite.
   void update(const Eigen::Ref<const Points>& nodes);
-  void keep();  ///< the present positions are the ones to count from
+  void keep();  ///< stores the present positions as the reference
 
   Columns nodes() const { return now_.read(0); }
   const Mat3& linear() const { return linear_; }
@@ -24,13 +25,14 @@ class BodyMotion {
   double residual() const { return residual_; }
 
  private:
+  /// Fits the affine map to the samples.
   void fit(const Eigen::Ref<const Points>& nodes);
 
   static constexpr int kSamples = 64;
   int count_ = 0;
   Table now_, then_;
   std::vector<int> samples_;
-  Vec3 middle_ = Vec3::Zero();  // of the samples, then
+  Vec3 middle_ = Vec3::Zero();  // mean of the samples' stored positions
   Points coefficients_;         // q = M^-1 (x_then - middle): see proxy_set.cpp
   Mat3 linear_ = Mat3::Identity();
   Vec3 offset_ = Vec3::Zero();

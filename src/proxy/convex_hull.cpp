@@ -16,15 +16,16 @@
 namespace palpate::proxy {
 namespace {
 
-/// The affine space that points span: `dimension` orthonormal columns of `axes` along it, the others across.
+/// Affine space spanned by points: `dimension` orthonormal columns of `axes` lie along it, the others across
+/// it.
 struct Span {
   Vec3 origin;
   Mat3 axes;
   int dimension = 0;
 };
 
-// Each axis points to the point that is farthest from what the axes so far span; what is left within kFlat of
-// the size is rounding, or flat to any use.
+// Each axis points to the point farthest from the space spanned so far.  A remainder within kFlat of the size
+// is rounding, or negligible thickness.
 Span span(const Points& points) {
   constexpr double kFlat = 1e-7;
   Span out{points.col(0), Mat3::Zero(), 0};
@@ -44,8 +45,8 @@ Span span(const Points& points) {
   return out;
 }
 
-/// What Qhull says of points in the plane or in space:
-/// facets (normal, offset), extreme points, volume or area.
+/// Qhull's result for points in the plane or in space: facets (normal, offset), extreme points, volume or
+/// area.
 struct Facets {
   std::vector<std::array<double, 4>> planes;  // inside is normal . x + offset <= 0
   std::vector<int> corners;
@@ -88,13 +89,13 @@ class Qhull {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  std::unique_ptr<std::FILE, Close> log_{std::tmpfile()};  // it insists on a stream to complain to
+  std::unique_ptr<std::FILE, Close> log_{std::tmpfile()};  // Qhull requires a stream for its messages
   qhT qh_{};
 };
 
 }  // namespace
 
-// In the coordinates y = axes^T (x - origin) / size of its span a facet reads n . y + o <= 0, which is (axes
+// A facet reads n . y + o <= 0 in the coordinates y = axes^T (x - origin) / size of its span, which is (axes
 // n) . x <= (axes n) . origin - o size.
 ConvexHull convex_hull(const Points& points) {
   PALPATE_CHECK(points.cols() > 0 && points.allFinite(), "convex hull of {} points, or not finite ones",
@@ -138,7 +139,7 @@ std::vector<int> greedy_corners(const Points& points, int count, double toleranc
   const std::vector<int> extreme = convex_hull(points).corners;
   if (static_cast<int>(extreme.size()) <= count) return extreme;
   std::set<int> taken;
-  // the ends along the axes: where most hulls reach farthest
+  // Start with the extreme points along the axes, where most hulls reach farthest.
   for (int axis = 0; axis < 3 && static_cast<int>(taken.size()) + 2 <= count; ++axis) {
     const auto along = [&](int i, int j) { return points(axis, i) < points(axis, j); };
     const auto [low, high] = std::minmax_element(extreme.begin(), extreme.end(), along);

@@ -27,8 +27,8 @@ void check(const LayeredModel& model, const DecomposeOptions& options) {
          model.embedding.size(), model.skin.vertices.cols());
 }
 
-/// The proxy of most of a face's vertices, of three different ones the first; every face of the skin so has a
-/// proxy that holds its three vertices.
+/// Returns the proxy that holds most of a face's vertices; of three different proxies the first.  Every
+/// face of the skin then has a proxy that holds its three vertices.
 int majority(const std::array<int, 3>& of_vertex) {
   const auto [a, b, c] = of_vertex;
   return b == c ? b : a == b || a == c ? a : std::min({a, b, c});
@@ -48,7 +48,7 @@ void take_faces(const TriMesh& skin, const std::vector<int>& cluster, std::vecto
   }
 }
 
-/// Nodes of the tetrahedra that each proxy owns, ascending.
+/// Returns the nodes of the tetrahedra that each proxy owns, ascending.
 std::vector<std::vector<int>> owned_nodes(const LayeredModel& model, const std::vector<ProxyHull>& proxies) {
   std::vector<std::vector<int>> nodes(proxies.size());
   if (model.tets.tets.cols() == 0) return nodes;

@@ -1,5 +1,5 @@
-// The solid B is cut by planes into B in C_1, B in C_2, ..., the cells C boxes that tile a box around it.
-// What one cell holds, P = closure(int B in int C), is in the hull of its extreme points (Krein and Milman
+// The solid B is cut by planes into B in C_1, B in C_2, ..., the cells C boxes that tile a box around it. The
+// content of one cell, P = closure(int B in int C), is in the hull of its extreme points (Krein and Milman
 // 1940), and there are few of these.  Where such a point e is inside B, P equals C in a neighbourhood of e,
 // so e is a corner of C.  Where e is on the surface and a face through it continues into the cell, e is in
 // the part of the face that lies in the cell.  Where no face does, a neighbourhood of e in the cell is solid,
@@ -8,14 +8,16 @@
 //   P is in the hull of { corners of the faces' parts in C } and { corners of C that are in B or on it }.
 //
 // Whether a corner is solid towards the cell is tested one small step into the cell: a surface that is closer
-// to the corner than the step makes an error no larger than the step.  A proxy's hull is that of these points
-// and of the whole faces that it owns, reduced to the few points that lie farthest out.  ProxyHull::outside
-// says how far the other points are outside, and ProxySet computes it for the members.
+// to the corner than the step makes an error no larger than the step.  A proxy's hull is spanned by these
+// points and the whole faces that it owns, reduced to the few points that lie farthest out.
+// ProxyHull::outside is the distance of the other points outside the hull; ProxySet computes it for the
+// members.
 //
-// Where to cut.  A ray from a point of the surface along its normal exits the hull at once where the solid is
-// convex, and late where a hollow is in front: the gap of HullQuality, whose integral over the surface is
-// about the hollow's volume.  The piece with the largest hollow is cut across one of the three axes, in its
-// middle or, where the two parts then have clearly less hollow volume, at the point of the largest gap.
+// Cutting criterion.  A ray from a point of the surface along its normal exits the hull at once where the
+// solid is convex, and late where a hollow is in front: the gap of HullQuality, whose integral over the
+// surface is about the hollow's volume.  The piece with the largest hollow is cut across one of the three
+// axes, in its middle or, where the two parts then have clearly less hollow volume, at the point of the
+// largest gap.
 #include "palpate/proxy/decompose_solid.h"
 
 #include <algorithm>
@@ -34,11 +36,11 @@
 namespace palpate::proxy {
 namespace {
 
-constexpr double kFlat = 1e-9;     // of the solid's size: in a plane
-constexpr double kStep = 1e-7;     // of the solid's size: into a cell
+constexpr double kFlat = 1e-9;     // tolerance of a point in a plane [solid sizes]
+constexpr double kStep = 1e-7;     // step into a cell [solid sizes]
 constexpr int kGapSamples = 1000;  // polygons of a piece that decide whether to cut it
 constexpr int kCutSamples = 600;   // polygons of a piece that decide where to cut it
-constexpr int kDirections = 64;    // in which its farthest points stand for its hull
+constexpr int kDirections = 64;    // directions whose farthest points represent a piece's hull
 
 Points columns(const std::vector<Vec3>& points) {
   Points out(3, static_cast<Eigen::Index>(points.size()));
@@ -46,8 +48,8 @@ Points columns(const std::vector<Vec3>& points) {
   return out;
 }
 
-/// Those of some points that lie farthest in `count` directions, on a spiral of Fibonacci, of a space in
-/// which they reach equally far along the axes.
+/// Returns the points that lie farthest in `count` directions of a Fibonacci spiral, after scaling the points
+/// to equal extent along the axes.
 std::vector<int> farthest_points(const Points& points, int count) {
   const Vec3 extent = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
   const Vec3 scale = extent.cwiseMax(1e-6 * extent.maxCoeff()).cwiseInverse();
@@ -77,10 +79,10 @@ struct Solid {
   }
 };
 
-/// Where the hull stands off a piece.
+/// Hollow between a piece and its hull.
 struct Hollow {
   double volume = 0.0;  // integral of the gap [m^3]
-  double gap = 0.0;     // the largest [m]
+  double gap = 0.0;     // largest gap [m]
   Vec3 deepest = Vec3::Zero();
 };
 struct Measured {
@@ -88,7 +90,7 @@ struct Measured {
   Hollow hollow;
 };
 
-/// Every so many of a piece's polygons: at most `most`.
+/// Returns every n-th polygon of a piece, so that at most `most` remain.
 SolidPiece thinned(const SolidPiece& piece, std::size_t most) {
   const std::size_t step = 1 + piece.surface.size() / most;
   SolidPiece out;
@@ -127,7 +129,7 @@ Measured measured(SolidPiece piece) {
   return {std::move(piece), hollow};
 }
 
-/// The two halves of the best cut; nothing where no cut has surface on both sides.
+/// Returns the two halves of the best cut; empty if no cut has surface on both sides.
 std::vector<SolidPiece> best_cut(const Measured& from, const Solid& solid) {
   constexpr double kMargin = 0.02, kClearlyLess = 0.9;
   const SolidPiece some = thinned(from.piece, kCutSamples);
@@ -189,7 +191,7 @@ ProxyHull proxy_of(const SolidPiece& piece, const Solid& solid, const SolidOptio
     for (const int v : solid.surface.faces.col(f)) out.members.push_back(v);
   std::sort(out.members.begin(), out.members.end());
   out.members.erase(std::unique(out.members.begin(), out.members.end()), out.members.end());
-  std::vector<Vec3> inner;  // what is no member
+  std::vector<Vec3> inner;  // points that are not members
   for (const Polygon& polygon : piece.surface)
     if (polygon.is_cut || !std::binary_search(piece.faces.begin(), piece.faces.end(), polygon.face))
       for (int k = 0; k < polygon.count; ++k) inner.push_back(polygon.corner[static_cast<std::size_t>(k)]);
@@ -198,7 +200,7 @@ ProxyHull proxy_of(const SolidPiece& piece, const Solid& solid, const SolidOptio
     const Vec3 corner(i & 1 ? piece.cell.low.x() : piece.cell.high.x(),
                       i & 2 ? piece.cell.low.y() : piece.cell.high.y(),
                       i & 4 ? piece.cell.low.z() : piece.cell.high.z());
-    // no solid beyond: the surface is here
+    // The solid ends at its box, so such a corner lies on the surface.
     if (solid.box.high.cwiseEqual(corner).any() || solid.box.low.cwiseEqual(corner).any()) continue;
     if (solid.holds(corner + kStep * solid.size * (middle - corner).normalized())) inner.push_back(corner);
   }
@@ -248,7 +250,7 @@ std::vector<ProxyHull> decompose_solid(const TriMesh& surface, const SolidOption
 }
 
 ProxySet rigid_proxies(const TriMesh& surface, const SolidOptions& options) {
-  constexpr int kPatchFaces = 16;  // few faces in all: a finer grain costs more than it spares
+  constexpr int kPatchFaces = 16;  // few faces in total: finer patches cost more than they save
   LayeredModel model;
   model.name = "rigid surface";
   model.skin = surface;

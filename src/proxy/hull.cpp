@@ -7,16 +7,16 @@
 namespace palpate::proxy {
 namespace {
 
-/// At most four points, one a column, and the point of their hull nearest to the origin.
+/// At most four points, one per column.
 struct Simplex {
   Eigen::Matrix<double, 3, 4> points;
   int count = 0;
 };
 
-/// The point nearest to the origin of the hull of N + 1 points: p0 + E l with l = -(E^T E)^-1 E^T p0, E = [p1
-/// - p0, ...]. False when it lies outside (fewer of the points then have it) or they are degenerate:
-///   det(E^T E) over the product of its diagonal is 1 for edges at right
-/// angles (Hadamard), the square of the angle's sine for two.
+/// Finds the point nearest to the origin in the hull of N + 1 points: p0 + E l with l = -(E^T E)^-1 E^T p0, E
+/// = [p1 - p0, ...].  Returns false when it lies outside (a subset of the points then holds the nearest
+/// point) or the points are degenerate: det(E^T E) over the product of its diagonal is 1 for orthogonal edges
+/// (Hadamard), and the squared sine of the angle for two edges.
 template <int N>
 bool nearest_of(const Simplex& s, const int* index, Vec3& nearest) {
   constexpr double kFlat = 1e-14;
@@ -43,7 +43,8 @@ bool nearest_in_subset(const Simplex& s, int mask, Vec3& nearest) {
   }
 }
 
-/// Nearest point of the simplex's hull, over all its subsets; the points that do not carry it are dropped.
+/// Returns the nearest point of the simplex's hull, over all its subsets, and drops the points outside the
+/// best subset.
 Vec3 reduce(Simplex& s) {
   double least = std::numeric_limits<double>::infinity();
   Vec3 best = Vec3::Zero();
@@ -79,9 +80,9 @@ void Hull::assign(const Eigen::Ref<const Points>& points, const Vec3& origin, do
   centre_ /= static_cast<double>(points.cols());
 }
 
-// v is a point of the convex set C = a - b, s = argmin over C of v.s.  The difference v.v - v.s bounds how
-// much nearer to the origin another point can be.  s joins the simplex that carries v, and the next v is the
-// point of that simplex nearest to the origin.
+// Let v be a point of the convex set C = a - b, s = argmin over C of v.s.  The difference v.v - v.s bounds
+// how much nearer to the origin another point can be.  s joins the simplex that supports v, and the next v is
+// the point of that simplex nearest to the origin.
 Vec3 nearest_difference(const Hull& a, const Hull& b) {
   constexpr int kMaxSteps = 100;
   constexpr double kRelativeGap = 1e-9;
@@ -90,11 +91,11 @@ Vec3 nearest_difference(const Hull& a, const Hull& b) {
   for (int i = 0; i < kMaxSteps; ++i) {
     const Vec3 s = a.support(-v) - b.support(v);
     if (simplex.count > 0 && v.dot(v - s) <= kRelativeGap * v.squaredNorm()) break;
-    if (simplex.count == 4) break;  // four points carry v: the origin is inside
+    if (simplex.count == 4) break;  // four points support v: the origin is inside
     simplex.points.col(simplex.count++) = s;
     const double before = v.squaredNorm();
     v = reduce(simplex);
-    if (i > 0 && !(v.squaredNorm() < before)) break;  // rounding: no nearer any more
+    if (i > 0 && !(v.squaredNorm() < before)) break;  // stagnation at rounding level
   }
   return v;
 }

@@ -6,15 +6,15 @@
 
 namespace palpate::proxy {
 
-/// A point set as the convex hull that it spans, its coordinates side by side.
+/// Point set as the convex hull that it spans, stored as columns of coordinates.
 class Hull {
  public:
   Hull() = default;
   explicit Hull(const Points& points) { assign(points, Vec3::Zero(), 1.0); }
-  /// The points scale (p - origin).  Allocates only when there are more than ever before.
+  /// Sets the points to scale (p - origin).  Allocates only when there are more points than ever before.
   void assign(const Eigen::Ref<const Points>& points, const Vec3& origin, double scale);
   const Vec3& centre() const { return centre_; }
-  /// Its point farthest along a direction; the first of equals.
+  /// Returns the point farthest along a direction; the first of equals.
   Vec3 support(const Vec3& direction) const {
     const auto i = static_cast<std::size_t>(
         farthest({x_.data(), y_.data(), z_.data()}, static_cast<int>(x_.size()), direction.data()));
@@ -26,20 +26,21 @@ class Hull {
   Vec3 centre_ = Vec3::Zero();
 };
 
-/// Depth along a unit direction n from b to a:
-/// how far a must move along n to be clear of b; negative when it is.
+/// Depth along a unit direction n from b to a: the distance that a must move along n to be clear of b;
+/// negative if it is clear.
 struct DepthAlong {
   double depth;
   Vec3 lowest_a, highest_b;
 };
+/// Computes the depth of a and b along n, with the two support points.
 inline DepthAlong depth_along(const Hull& a, const Hull& b, const Vec3& n) {
   const Vec3 low = a.support(-n), high = b.support(n);
   return {n.dot(high - low), low, high};
 }
 
-/// The algorithm of Gilbert, Johnson and Keerthi (1988) on the difference a - b: its point nearest to the
-/// origin (the direction is judged by the caller:
-/// every direction with negative depth proves that the hulls are apart).  Zero where the hulls overlap.
+/// Returns the point of the difference a - b nearest to the origin, by the algorithm of Gilbert, Johnson and
+/// Keerthi (1988); zero where the hulls overlap.  The caller judges the direction: every direction with
+/// negative depth proves that the hulls are apart.
 Vec3 nearest_difference(const Hull& a, const Hull& b);
 
 }  // namespace palpate::proxy

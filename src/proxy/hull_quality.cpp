@@ -35,7 +35,7 @@ HullQuality quality(const ProxyHull& proxy, const Points& vertices, const Points
 
 }  // namespace
 
-// The hull's surface is met at the nearest of the planes ahead, (offset - n . x) / (n . m).
+// The ray leaves the hull at the nearest of the planes ahead, (offset - n . x) / (n . m).
 double gap_along(const ConvexHull& hull, const Vec3& x, const Vec3& m) {
   double gap = std::numeric_limits<double>::infinity();
   for (Eigen::Index f = 0; f < hull.normals.cols(); ++f)

@@ -4,10 +4,11 @@
 
 namespace palpate::proxy {
 
-/// How far a hull's surface stands off a point in it, along a unit normal; 0 outside of it [m].
+/// Returns the distance from a point in a hull to the hull's surface along a unit normal; 0 outside the hull
+/// [m].
 double gap_along(const ConvexHull& hull, const Vec3& point, const Vec3& normal);
 
-/// How well hulls stand for a skin.
+/// Computes the quality of hulls as an approximation of a skin.
 DecomposeReport decompose_report(const TriMesh& skin, const std::vector<ProxyHull>& proxies);
 
 }  // namespace palpate::proxy

@@ -8,8 +8,8 @@
 
 namespace palpate::proxy {
 
-// Qhull names facets by their planes, flat polygons more than once where it cut them.  A facet's corners are
-// the hull's corners on its plane, in the order of their angle about the middle of them.
+// Qhull lists facets by their planes, flat polygons more than once where it triangulated them.  A facet's
+// corners are the hull's corners on its plane, ordered by their angle about their mean.
 TriMesh hull_surface(const Points& points) {
   const ConvexHull hull = convex_hull(points);
   TriMesh out{points(Eigen::all, hull.corners), {}};

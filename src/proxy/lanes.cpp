@@ -7,8 +7,9 @@
 namespace palpate::proxy {
 namespace {
 
-// GCC's vectors become whatever registers the function's target has.  Sums are formed lane by lane; with
-// fused multiply-add their last bits differ between targets, which moves a bound by rounding and no force.
+// GCC's vector types use whatever registers the function's target has.  Sums are formed lane by lane; with
+// fused multiply-add they differ between targets by rounding, which affects bounds at rounding level and no
+// force.
 typedef double Pack __attribute__((vector_size(8 * kLanes)));
 typedef double PackInMemory __attribute__((vector_size(8 * kLanes), may_alias, aligned(8)));
 typedef long long Mask __attribute__((vector_size(8 * kLanes)));
@@ -95,7 +96,7 @@ PALPATE_CLONES double residuals(Columns p, Columns rest, int count, const double
     out = std::max(out, most[lane]);
     sum += total[lane];
   }
-  // comparisons do not see what is not a number
+  // Comparisons with NaN are false, so the maximum misses it and the sum does not.
   return std::isfinite(sum) ? out : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -127,7 +128,7 @@ PALPATE_CLONES double most_along(Columns p, int count, const double d[3]) {
   return most_along_inline(p, count, d);
 }
 
-// Loads as wide as the lanes, then two shuffles a coordinate.
+// Full-width loads, then two shuffles per coordinate.
 PALPATE_CLONES double take(const double* points, int stride, int count, Columns then, const double a[9],
                            const double o[3], MutableColumns out) {
   static_assert(kLanes == 8);
@@ -196,13 +197,14 @@ PALPATE_CLONES void balls_beyond(const double d[3], double limit, Columns c, con
   }
 }
 
-// Lane by lane: v from a point w of the hull to the ball's centre, and the corner s
-// farthest along v.  v.c - v.s > reach |v| proves the ball apart; |v| <= reach that it is
-// near; else w goes toward s as far as |v| falls.
+// Per lane: v points from a point w of the hull to the ball's centre, and s is the corner farthest along v.
+// v.c - v.s > reach |v| proves the ball apart; |v| <= reach proves it near; otherwise w moves toward s as
+// long as
+// v| falls.
 PALPATE_CLONES void balls_near(const HullColumns& hull, Columns c, const double* radii, int count, int steps,
                                unsigned char* near) {
   const Pack zero = {}, one = zero + 1.0;
-  // handed on: neighbours in the list are neighbours in space
+  // Warm start from the previous pack: neighbours in the list are neighbours in space.
   Pack wx = zero + hull.inside[0], wy = zero + hull.inside[1], wz = zero + hull.inside[2];
   const auto any = [](const Mask& mask) __attribute__((always_inline)) {
     long long all = 0;

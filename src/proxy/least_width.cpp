@@ -18,7 +18,8 @@ double width_along(const Eigen::Ref<const Points>& points, const Vec3& direction
   return high - low;
 }
 
-/// A direction of a coarse lattice over the half sphere: none is farther than a quarter of a radian from one.
+/// Returns the best direction of a coarse lattice over the half sphere.  Every direction is within a
+/// quarter of a radian of a lattice direction.
 Vec3 best_of_lattice(const Eigen::Ref<const Points>& points) {
   Vec3 best = Vec3::UnitZ();
   double least = std::numeric_limits<double>::infinity();
@@ -37,8 +38,8 @@ Vec3 best_of_lattice(const Eigen::Ref<const Points>& points) {
 
 }  // namespace
 
-// Compass search over the sphere: a thin plate that stands between the lattice's directions is many times
-// thinner than any of them says.
+// Compass search over the sphere: a thin plate whose normal is between the lattice's directions is many times
+// thinner than its width along any of them.
 double least_width(const Eigen::Ref<const Points>& points) {
   constexpr double kFirst = 0.25, kLast = 1e-5;  // [rad]
   constexpr int kMostSteps = 1000;

@@ -57,7 +57,7 @@ std::vector<int> owner_of_tets(const Tets& tets, Eigen::Index nodes, const mesh:
     if (!votes[t].empty()) owner[t] = winner(votes[t]);
 
   std::vector<std::map<int, int>> at_node(static_cast<std::size_t>(nodes));
-  // a ring: owned tetrahedra vote at their nodes, then the others take what their nodes say most
+  // One ring: owned tetrahedra vote at their nodes, then the others take the majority of their nodes' votes.
   for (bool spread = true; spread;) {
     spread = false;
     for (auto& node : at_node) node.clear();

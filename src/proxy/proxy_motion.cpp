@@ -1,19 +1,19 @@
-// How fast what a proxy stands for moves.
+// Velocity bounds of a proxy's skin and tetrahedra.
 //
-// A soft body.  A point of its skin is x = sum w_k x_k with constant weights of sum 1, so it moves with
+// Soft body.  A point of its skin is x = sum w_k x_k with constant weights of sum 1, so it moves with
 //
 //   v = sum w_k v_k,      v - V = sum w_k (v_k - V),      |v - V| <= s max |v_k - V|
 //
 // for any V, with s = max sum |w_k| as in proxy_set.cpp; V is the mean over the proxy's nodes.  A point of
-// its tetrahedra is such a mean with weights in [0, 1].  Ways x_k(1) - x_k(0) in place of velocities make the
-// bound one on the ways, of any length: it is the same sum.
+// its tetrahedra is such a mean with weights in [0, 1].  Displacements x_k(1) - x_k(0) in place of
+// velocities, of any length, give a bound on the displacements: the sum is the same.
 //
 // All proxies.  With V the mean over all nodes and R = max |v_k - V|, a proxy's mean is within R of V and its
-// nodes within 2 R of that mean, so what its own bound allows lies within (1 + 2 s) R of V.
+// nodes within 2 R of that mean, so its bound lies within (1 + 2 s) R of V.
 //
-// A rigid body.  v = L X + l for a point X at rest: L = [omega] R under a twist, R(1) - R(0) for its way.
-// With c the middle of the corners and everything within r of it, |v - (L c + l)| <= |L|_2 r; |[omega] R|_2 =
-// |omega|, and R(1) - R(0), a rotation by theta less the identity, stretches by 2 sin(theta / 2).
+// Rigid body.  v = L X + l for a point X at rest: L = [omega] R under a twist, R(1) - R(0) for a
+// displacement. With c the middle of the corners and everything within r of it, |v - (L c + l)| <= |L|_2 r;
+// [omega] R|_2 = |omega|, and |R(1) - R(0)|_2 = 2 sin(theta / 2) for a relative rotation by theta.
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ Mat3 cross_matrix(const Vec3& w) {
   return out;
 }
 
-/// The mean of some velocities, and the largest distance from it.
+/// Returns the mean of some velocities, and the largest distance from it.
 template <class At>
 ProxyMotion around_mean(int count, const At& at) {
   ProxyMotion out;
@@ -66,7 +66,7 @@ void ProxySet::Impl::add_motions() {
 }
 
 void ProxySet::Impl::rest() {
-  if (motions.empty()) return;  // being built
+  if (motions.empty()) return;  // under construction
   ++motions_set;
   whole = widest = {};
   std::fill(motions.begin(), motions.end(), ProxyMotion{});

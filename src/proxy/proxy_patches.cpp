@@ -1,6 +1,6 @@
-// The bound of proxy_set.cpp for a patch of skin, at rest in a ball of centre c and radius r: its faces are
-// within |F|_2 r + s D of F c + t, with the D of the whole proxy, or, which is less where a dent is elsewhere
-// on it, with that of the nodes that the patch's vertices hang on.
+// Application of the bound of proxy_set.cpp to a patch of skin, at rest in a ball of centre c and radius r:
+// its faces are within |F|_2 r + s D of F c + t.  D is taken over the whole proxy, or over the nodes of the
+// patch's vertices, which is less where the proxy is dented elsewhere.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -23,7 +23,7 @@ void ProxySet::Impl::ready_balls(int proxy) {
         state.stretch * rest_radius[static_cast<std::size_t>(i)] + state.residual;
 }
 
-/// Replaces the proxy's residual by that of the patch's own nodes, where it is not small anyway.
+/// Replaces the proxy's residual by the maximum over the patch's nodes, unless the residual is small.
 void ProxySet::Impl::measure(int number) {
   constexpr double kSmall = 0.1;
   const SkinPatch& patch = skin.patches[static_cast<std::size_t>(number)];
@@ -39,7 +39,8 @@ void ProxySet::Impl::measure(int number) {
                                            1e-13 * balls.point(ball).cwiseAbs().maxCoeff();
 }
 
-// A moving patch sweeps the balls from c to c + drift, which lie in the one around the middle of that way.
+// A moving patch sweeps the balls from c to c + drift, which lie in the ball around the middle of that
+// segment.
 void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, const Reach& reach,
                             const Vec3& toward, std::span<const unsigned char> known,
                             std::vector<int>& out) const {
@@ -75,7 +76,8 @@ void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, const Re
   for (int i = 0; i < count; ++i)
     if (s.near[static_cast<std::size_t>(i)]) s.near_patch[static_cast<std::size_t>(left++)] = first_patch + i;
   const bool twice = s.soft && state.residual > 0.0;
-  for (int round = 0; round < 1 + twice && left > 0; ++round) {  // by the proxy's bound, then by their own
+  for (int round = 0; round < 1 + twice && left > 0; ++round) {  // by the proxy's bound, then by the patches'
+                                                                 // bounds
     for (int i = 0; i < padded(left); ++i) {
       const auto at = static_cast<std::size_t>(i);
       const int patch = s.near_patch[i < left ? at : 0];
@@ -111,7 +113,7 @@ Ball ProxySet::ball(const SkinPatch& patch) const {
   return {impl_->balls.point(ball), impl_->radius[static_cast<std::size_t>(ball)]};
 }
 
-// Area vectors turn with the cofactors: n da = cof(F) N dA (Nanson).
+// Area vectors transform with the cofactors: n da = cof(F) N dA (Nanson).
 Vec3 ProxySet::area(const SkinPatch& patch) const {
   const Mat3& F = state(patch.proxy).linear;
   return patch.area.x() * F.col(1).cross(F.col(2)) + patch.area.y() * F.col(2).cross(F.col(0)) +

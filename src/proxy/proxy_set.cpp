@@ -1,4 +1,4 @@
-// The bound.  A vertex of the skin at rest,
+// Bound on the skin.  A vertex of the skin at rest,
 //
 //   X = sum w_k X_k    (weights of its tetrahedron, sum 1),    is now at    x = sum w_k x_k.
 //
@@ -12,34 +12,34 @@
 //   s = max over the skin of sum |w_k| (1 inside),        D = max over the nodes of |d_k|.
 //
 // The hull H has few corners, so at rest the vertex may lie outside H by up to e: X = y + z with y in H and
-// |z| <= e.  Then g(y) lies in the moved hull F H + t (the image of a hull under an affine map is the hull of
-// the images, also of a mirrored or flat one), and
+// z| <= e.  Then g(y) lies in the moved hull F H + t (the image of a hull under an affine map is the hull of
+// the images, also for a mirrored or flat one), and
 //
 //   distance of x from F H + t  <=  |x - g(X)| + |g(X) - g(y)|  <=  s D + |F|_2 e  =  the inflation.
 //
 // A node of a tetrahedron that the proxy owns is within |d_k| + |F|_2 e of the moved hull, which is no more.
 // The bound assumes nothing about F and t: any motion of the nodes (squashed, inverted, scattered) makes the
-// inflation larger, never wrong.  The best F and t make D small: those of least squares,
+// inflation larger, never wrong.  The best F and t make D small: the least-squares fit,
 //
 //   t = mean x - F mean X,   F = [sum x_k (X_k - mean X)^T] M^-1,   M = sum (X_k - mean X)(X_k - mean X)^T,
 //
-// which stretch, shear and flattening leave at D = 0, so that only curvature within a proxy counts; or the
-// mean rotation, F = polar factor of the sum in brackets, where strain counts with the proxy's size.  With
+// has D = 0 under stretch, shear and flattening, so that only curvature within a proxy counts; for the mean
+// rotation, F = polar factor of the sum in brackets, strain times the proxy's size counts.  With
 //
 //   q_k = M^-1 (X_k - mean X),   sum q_k = 0,   F = sum x_k q_k^T    from any origin:
 //
 // one pass over the nodes.
 //
-// Which proxies are fitted.  A fit costs a pass over the nodes of the proxy, and most proxies are far from
-// every other surface; bounding boxes prove that.  At a fit of all proxies the box of each proxy (all its
-// points y, centre c, half edges e) is stored, with the positions p_k of all nodes.  Later
+// Lazy fitting.  A fit costs a pass over the nodes of the proxy, and most proxies are far from every other
+// surface; bounding boxes prove that.  At a fit of all proxies the box of each proxy (all its points y,
+// centre c, half edges e) is stored, with the positions p_k of all nodes.  Later
 //
 //   x_k = G p_k + h + d_k,      G and h: one affine map for the whole body (body_motion.h),
 //
 // and by the first bound each point of the proxy is within s max |d_k| of G y + h: it lies in the box with
 // centre G c + h and half edges |G| e, grown by that.  The maximum takes one pass over the nodes.  Nothing
-// else depends on the stored boxes: a proxy whose box may meet something is fitted to the present nodes.
-// When the boxes have grown by a fifth, all proxies are fitted and stored again.
+// else depends on the stored boxes: a proxy whose box may meet something is fitted to the present nodes. When
+// the boxes have grown by a fifth, all proxies are fitted and stored again.
 #include "palpate/proxy/proxy_set.h"
 
 #include <Eigen/LU>
@@ -54,9 +54,9 @@
 namespace palpate::proxy {
 namespace {
 
-/// Spectral norm from the largest root of the characteristic polynomial of C = F^T F, with the
-/// trigonometric formula (Smith 1961): with m = tr C / 3, p^2 = |C - m I|_F^2 / 6 and
-/// r = det((C - m I) / p) / 2 it is m + 2 p cos(acos(r) / 3).
+/// Returns the spectral norm, from the largest root of the characteristic polynomial of C = F^T F by the
+/// trigonometric formula (Smith 1961): with m = tr C / 3, p^2 = |C - m I|_F^2 / 6 and r = det((C - m I) / p)
+/// / 2 it is m + 2 p cos(acos(r) / 3).
 double spectral_norm(const Mat3& F) {
   const Mat3 C = F.transpose() * F;
   const double m = C.trace() / 3.0;
@@ -82,8 +82,8 @@ void ProxySet::Impl::gather(const Cloud& cloud, const Vec3& origin) {
   proxy::gather(motion.nodes(), node.data() + cloud.first, cloud.lanes, origin.data(), gathered.write(0));
 }
 
-/// The map of least squares or the mean rotation, from the cloud's nodes as gathered about its first: the
-/// entries that fill up the lanes are zero then.
+/// Computes the least-squares map or the mean rotation from the cloud's nodes, gathered relative to its first
+/// node so that the padding entries are zero.
 void ProxySet::Impl::fit(const Cloud& cloud, ProxyState& state) {
   const Vec3 origin = first_node(cloud);
   gather(cloud, origin);
@@ -96,7 +96,7 @@ void ProxySet::Impl::fit(const Cloud& cloud, ProxyState& state) {
   state.offset = origin + Eigen::Map<const Vec3>(sums) / cloud.count - state.linear * cloud.middle;
 }
 
-/// Moves corners and box, once linear and offset are set.
+/// Moves corners and box by the state's linear and offset, and sets the inflation.
 void ProxySet::Impl::place(int proxy, double residual, double reach) {
   const auto at = static_cast<std::size_t>(proxy);
   ProxyState& state = states[at];
@@ -127,7 +127,7 @@ void ProxySet::Impl::refit(int p) {
   fitted_at[at] = moment;
 }
 
-/// Boxes from those kept; returns the sum of their edges' halves.
+/// Computes loose boxes from the stored ones; returns the sum of their half edges.
 double ProxySet::Impl::loosen() {
   constexpr double kRounding = 1e-13;
   const Mat3 G = motion.linear(), magnitude = G.cwiseAbs();

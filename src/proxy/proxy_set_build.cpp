@@ -41,7 +41,7 @@ Cloud ProxySet::Impl::add_cloud(const TetMesh& tets, const std::vector<int>& nod
   return cloud;
 }
 
-/// For each patch the slots of the nodes that its vertices hang on.
+/// Collects for each patch the slots of the nodes in which its vertices are embedded.
 void ProxySet::Impl::add_patch_nodes(const LayeredModel& model) {
   std::vector<int> slot_of_node(static_cast<std::size_t>(node_count), -1);
   int proxy = -1;
@@ -69,7 +69,7 @@ void ProxySet::Impl::add_patch_nodes(const LayeredModel& model) {
   }
 }
 
-/// The patches' balls as columns.
+/// Stores the patches' balls as columns.
 void ProxySet::Impl::add_balls() {
   ball_of_patch.resize(skin.patches.size());
   std::size_t most = 0;
@@ -169,7 +169,7 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options)
     }
     for (const int n : owned[at]) reach_for(model.tets.nodes.col(n));
     const double size = (hull.corners.rowwise().maxCoeff() - hull.corners.rowwise().minCoeff()).norm();
-    s.outside.push_back(outside + 1e-9 * size);  // the distance algorithm's own accuracy
+    s.outside.push_back(outside + 1e-9 * size);  // accuracy of the distance algorithm
     s.weight_sum.push_back(sum);
     if (!s.soft) continue;
     nodes_of[at].insert(nodes_of[at].end(), owned[at].begin(), owned[at].end());

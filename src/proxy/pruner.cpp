@@ -1,45 +1,45 @@
-// Completeness.  The inflated hulls of each body cover its skin and its inside (proxy_set.cpp).  A point
-// of a's skin that is inside b, or nearer to it than the gap, lies in a face of one patch of one proxy i, and
+// Completeness.  The inflated hulls of each body cover its skin and its inside (proxy_set.cpp).  A point of
+// a's skin that is inside b, or nearer to it than the gap, lies in a face of one patch of one proxy i, and
 // within the gap of an inflated hull j of b.  So the boxes of i and j come within the gap, no direction
 // proves i and j farther apart than the sum of their inflations and the gap, and none proves the patch's ball
-// farther from j than that: (i, j) stays a pair and the patch stays.  Each step excludes only what a checked
-// inequality proves to be far.  With a and b exchanged the same holds for b's skin.
+// farther from j than that: (i, j) stays a pair and the patch stays.  Each step excludes only pairs that
+// a checked inequality proves to be far.  With a and b exchanged the same holds for b's skin.
 //
-// The opposite skin.  Along the normal a point of a inside b is paired with the point of b's skin above it.
-// If that point is inside a, its patch is kept by the rule above.  If not, a is enclosed by b there: the line
+// Opposite skin.  A point of a inside b is paired with the point of b's skin above it along the normal. If
+// that point is inside a, its patch is kept by the rule above.  If not, a is enclosed by b there: the line
 // upwards exits a before it exits b, through skin of a that faces up inside b.  For each kept patch of a that
-// faces up, b's patches above it that face up are therefore added (`add_facing_patches`), and likewise with a
-// and b exchanged.  This is done only where the kept skin of the side to be added to has no common direction:
-// where it has one, the line enters through that skin, neither body is enclosed, and the skin beyond is the
-// far side of a body that holds the other from two sides; the line must not be paired with it.
+// faces up, b's patches above it that face up are therefore added (`add_facing_patches`), and vice versa with
+// a and b exchanged.  This is done only where the kept skin of the side to be added to has no common
+// direction: where it has one, the line enters through that skin, neither body is enclosed, and the skin
+// beyond is the far side of a body that holds the other from two sides; the line must not be paired with it.
 //
-// Motion.  Until the next query both bodies move on, a point of proxy i against one of proxy j by no more
-// than `Reach` says (reach.h).  Each inequality above is taken for that: along a direction u two points that
-// are farther apart than reach.along(u) do not come to touch.  So a face that comes to touch at the present
-// velocities is in a region although it is apart now, or although the body would be beyond the other when it
-// is next looked at; and a proxy that moves fast does not make the candidates of another one more.
+// Motion.  Both bodies move until the next query, and `Reach` bounds the motion of a point of proxy i
+// relative to one of proxy j (reach.h).  Each inequality above is evaluated with that bound: two points
+// farther apart along a direction u than reach.along(u) do not come to touch.  So a face that comes to touch
+// at the present velocities is in a region although it is apart now, or although the body would be beyond the
+// other at the next query; and a fast proxy does not add candidates to the other proxies.
 //
-// No double counting.  Every face of a belongs to one patch, that to one proxy i, and all that is kept
-// of i goes into one region: the faces of a are divided among the regions.  The force is an integral over a's
-// skin (each point against b's surface along its region's normal), so each point of a contributes once,
-// however b's side is shared, and however either body is cut into proxies.
+// No double counting.  Every face of a belongs to one patch, the patch to one proxy i, and all kept
+// patches of i go into one region: the faces of a are divided among the regions.  The force is an integral
+// over a's skin (each point against b's surface along its region's normal), so each point of a contributes
+// once, however b's side is shared, and however either body is cut into proxies.
 //
-// Jumps.  A patch that comes or goes is farther away than the gap: no force comes or goes with it.  What
-// jumps as patches come and go, and as regions merge and split, is the normal: by the angle phi, which
+// Jumps.  A patch that enters or leaves is farther away than the gap, so that no force changes with it.  When
+// patches enter or leave, and when regions merge or split, the normal jumps by the angle phi, which
 // `rotation` and `largest_rotation` report.  Regions merge when the directions that their skins face differ
-// by less than the merge angle: how many images are made.
+// by less than the merge angle, which determines the number of images.
 //
-// Which proxies share a plane.  The resultant of a uniform pressure on the part of a's skin inside b is minus
-// its area vector, which by the divergence theorem is the area vector of b's skin inside a: both say which
-// way the contact pushes, D = -A_a / |A_a|_1 + A_b / |A_b|_1 with area vectors A and areas |A|_1 of the kept
-// patches.  Neighbours (with neighbours) whose D agree make one region, and D over all of it is its normal:
-// an integral over the skin, it does not know how the bodies are cut, and moves as they move, where the
-// normals of coarse hulls go from facet to facet; but where libccd's normal on the same side is better by
-// more than the hulls are inexact (their inflation: flat faces), that is taken.  Where there is no D (one
-// body's skin is far from the other's, or encloses it) the normal stays what it was at the last
-// query, the side that the bodies came from; and where they never met before, it is libccd's for the hull of
-// all the region's proxies together, in which the walls between a body's own proxies are no surfaces.  A
-// region whose hulls are proven apart along its normal ends.
+// Shared planes.  The resultant of a uniform pressure on the part of a's skin inside b is minus its area
+// vector, which by the divergence theorem is the area vector of b's skin inside a.  Both give the
+// direction of the contact force, D = -A_a / |A_a|_1 + A_b / |A_b|_1 with area vectors A and areas |A|_1 of
+// the kept patches.  Neighbours (with neighbours) whose D agree make one region, and D over all of it is its
+// normal. As an integral over the skin, D is independent of how the bodies are cut, and moves as they move,
+// whereas the normals of coarse hulls jump from facet to facet.  If libccd's normal on the same side is
+// better by more than the inexactness of the hulls (their inflation: flat faces), it replaces D.  If there is
+// no D (one body's skin is far from the other's, or encloses it), the normal stays what it was at the last
+// query, the side that the bodies came from; if they never met before, it is libccd's normal for the hull of
+// all the region's proxies together, in which the walls between a body's proxies are not surfaces.  A region
+// whose hulls are proven apart along its normal ends.
 #include "palpate/proxy/pruner.h"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ bool boxes_apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const
 
 }  // namespace
 
-/// Both trees from the root down, the larger branch first.
+/// Traverses both trees from the root down, splitting the larger branch first.
 void Pruner::Impl::visit(int x, int y) {
   const auto tree_a = a.set.tree(), tree_b = b.set.tree();
   const ProxyBranch &branch_a = tree_a[static_cast<std::size_t>(x)],
@@ -109,9 +109,9 @@ void Pruner::Impl::find_pairs(double new_gap, double new_time) {
   visit(0, 0);
 }
 
-/// The patches of `own` that may come within reach of the inflated hull `against`.  Those that only motion
-/// brings there count for the direction of the contact as far as they lead: through skin that trails the
-/// other body cannot enter.
+/// Keeps the patches of `own` that may come within reach of the inflated hull `against`.  Patches that only
+/// motion brings there count towards the direction of the contact only if they face the motion: the other
+/// body cannot enter through trailing skin.
 void Pruner::Impl::keep_patches(Side& side, int own, const Side& other, int against, const Reach& reach,
                                 const Vec3& toward) {
   Facing& facing = side.facing_of(own, pass);
@@ -137,7 +137,7 @@ void Pruner::Impl::keep_patches_of(const Pair& pair) {
   keep_patches(b, pair.b, a, pair.a, within.from_other(), -direction);
 }
 
-/// Pairs that have kept patches, and the result for each proxy of a.
+/// Reduces the pairs to those that have kept patches, and sums the kept skin per proxy of a.
 void Pruner::Impl::collect() {
   for (const Pair& pair : pairs) keep_patches_of(pair);
   std::erase_if(pairs, [&](const Pair& pair) {
@@ -177,7 +177,7 @@ std::span<const ContactRegion> Pruner::query(double gap, double time) {
     const Active& one = s.active[static_cast<std::size_t>(i)];
     return one.a.size * std::pow(one.direction().norm(), 4);
   };
-  // the clearest contact first
+  // Regions grow from the clearest contact first.
   std::sort(s.order.begin(), s.order.end(),
             [&](int i, int j) { return clear(i) != clear(j) ? clear(i) > clear(j) : i < j; });
   int number = 0;
@@ -203,7 +203,7 @@ void Pruner::met_on_the_way(std::vector<int>& faces_a, std::vector<int>& faces_b
   Impl& s = *impl_;
   faces_a.clear();
   faces_b.clear();
-  const PruneCounts before = s.counts;  // of queries alone
+  const PruneCounts before = s.counts;  // the counts are of queries only
   const auto may_pass = [](const ProxyMotion& p, double thickness_p, const ProxyMotion& q,
                            double thickness_q) {
     return (p.velocity - q.velocity).norm() + p.spread + q.spread >
@@ -211,7 +211,7 @@ void Pruner::met_on_the_way(std::vector<int>& faces_a, std::vector<int>& faces_b
   };
   const ProxySet &a = s.a.set, &b = s.b.set;
   if (!may_pass(a.motion(), a.rest_thickness(), b.motion(), b.rest_thickness())) return;
-  s.find_pairs(0.0, -1.0);  // back along the way
+  s.find_pairs(0.0, -1.0);  // backwards along the displacement
   const bool through = std::any_of(s.pairs.begin(), s.pairs.end(), [&](const Pair& pair) {
     return may_pass(a.motion(pair.a), a.rest_thickness(pair.a), b.motion(pair.b), b.rest_thickness(pair.b));
   });
@@ -230,7 +230,7 @@ void Pruner::met_on_the_way(std::vector<int>& faces_a, std::vector<int>& faces_b
   s.counts = before;
 }
 
-// Directions that proved proxies apart are no part of it: each is proven anew, or found.
+// Separating directions are not archived: each is proven anew, or found.
 void Pruner::archive(Archive& a) {
   Impl& s = *impl_;
   PruneCounts& c = s.counts;

@@ -5,11 +5,11 @@
 
 #include "palpate/proxy/pruner.h"
 
-/// What pruner.cpp (pairs and patches) and pruner_regions.cpp (planes and faces) work on;
-/// the derivation stands in pruner.cpp.
+/// Data shared by pruner.cpp (pairs and patches) and pruner_regions.cpp (planes and faces).  The method is
+/// derived in pruner.cpp.
 namespace palpate::proxy {
 
-/// Skin kept on one side: its area vector and area.
+/// Skin kept on one side: sum of its area vectors, and its area.
 struct Facing {
   Vec3 area = Vec3::Zero();
   double size = 0.0;
@@ -21,27 +21,28 @@ struct Facing {
     area += other.area;
     size += other.size;
   }
-  /// It faces one way, as skin in contact does;
-  /// not skin of a enclosed body, which is kept all around, nor none.
+  /// Whether the skin has a common direction, as skin in contact has.  False for the skin of an enclosed
+  /// body, which is kept all around, and for no skin.
   bool directed() const { return area.norm() > 0.5 * size; }
 };
 
-/// D; zero where one of them has no skin.
+/// Returns D; zero if one of the two has no skin.
 inline Vec3 facing(const Facing& a, const Facing& b) {
   return a.size > 0.0 && b.size > 0.0 ? Vec3(b.area / b.size - a.area / a.size) : Vec3(Vec3::Zero());
 }
-/// |D| of skins that face each other is 2, of enclosed skin 0; above this it is a direction
+/// |D| is 2 for flat skins that face each other and 0 for enclosed skin; above kClear it counts as a
+/// direction.
 inline constexpr double kClear = 1.0;
 
-/// One body of the query: its patches as far as they were tested.
+/// One body of the query: data of its patches, filled as they are tested.
 struct Side {
   const ProxySet& set;
   std::span<const SkinPatch> patches;
   std::vector<Ball> balls;
   std::vector<Vec3> areas;
-  std::vector<long> measured_at;    // by patch
-  std::vector<unsigned char> kept;  // by patch, in this query
-  std::vector<Facing> facing;       // by proxy, of what is kept of it
+  std::vector<long> measured_at;    // per patch
+  std::vector<unsigned char> kept;  // per patch, in this query
+  std::vector<Facing> facing;       // per proxy, of its kept skin
   std::vector<long> facing_at;
 
   explicit Side(const ProxySet& s)
@@ -53,12 +54,15 @@ struct Side {
         kept(balls.size(), 0),
         facing(static_cast<std::size_t>(s.size())),
         facing_at(facing.size(), -1) {}
+  /// Returns the index of the proxy's first patch.
   int first(int proxy) const { return static_cast<int>(set.patches(proxy).data() - patches.data()); }
+  /// Computes ball and area of a patch, once per query.
   void measure(std::size_t patch, long query) {
     if (std::exchange(measured_at[patch], query) == query) return;
     balls[patch] = set.ball(patches[patch]);
     areas[patch] = set.area(patches[patch]);
   }
+  /// Returns the proxy's kept skin, reset at the first call of a query.
   Facing& facing_of(int proxy, long query) {
     const auto at = static_cast<std::size_t>(proxy);
     if (std::exchange(facing_at[at], query) != query) facing[at] = {};
@@ -66,11 +70,12 @@ struct Side {
   }
 };
 
+/// Proxies of a and b that may be in contact.
 struct Pair {
   int a, b;
 };
 
-/// What is kept of one proxy of a, against all of b.
+/// Kept skin of one proxy of a, and of all proxies of b paired with it.
 struct Active {
   int proxy;
   Facing a, b;
@@ -84,25 +89,24 @@ struct Pruner::Impl {
   RegionFinder finder;
   Side a, b;
   double gap = 0.0, time = 0.0;
-  Reach whole_reach;  // of any proxy of a against any of b
-  long pass = 0;      // counts queries and looks back; what `measured_at` and the like refer to
-  // by pair: the last direction that its proxies were found apart along,
-  // or that the search ended with; zero for none
+  Reach whole_reach;  // between any proxy of a and any of b
+  long pass = 0;  // counts queries and look-backs; the stamp in `measured_at`, `facing_at` and `claimed_a`
+  // Per pair: the last direction that proved its proxies apart, or that the search ended with; zero: none.
   std::vector<Vec3> separating;
-  std::vector<Vec3> last_normal;  // by proxy of a
+  std::vector<Vec3> last_normal;  // per proxy of a
   std::vector<long> last_query;
   std::vector<Pair> pairs;
   std::vector<Active> active;
   std::vector<int> open, near;
-  // by patch: the query that looked through to it; the region (counted over all queries) that has it
+  // Per patch: query that added it as opposite skin; region (numbered over all queries) that holds it.
   std::vector<long> claimed_a, in_region_b;
   std::vector<int> order, proxies_a, proxies_b, patches_a, patches_b;
-  Points corners_a, corners_b;  // room for all of a body; of the region at hand the first `count`
+  Points corners_a, corners_b;  // capacity for a whole body; the first `count` columns are in use
   Eigen::Index count_a = 0, count_b = 0;
-  std::vector<ContactRegion> regions;  // the first `used` are the last query's
+  std::vector<ContactRegion> regions;  // the first `used` belong to the last query
   std::size_t used = 0;
   long serial = 0;
-  bool faces_a = false, faces_b = false;  // of the region at hand: Facing::directed
+  bool faces_a = false, faces_b = false;  // Facing::directed of the current region
 
   Impl(const ProxySet& set_a, const ProxySet& set_b, const PruneOptions& given)
       : options(given),
@@ -122,7 +126,9 @@ struct Pruner::Impl {
     return Points::Zero(3, count);
   }
 
+  /// Returns the reach of proxy p of a relative to proxy q of b.
   Reach reach(int p, int q) const { return {gap, time, a.set.motion(p), b.set.motion(q)}; }
+  /// Finds the pairs of proxies that are not proven apart.
   void find_pairs(double new_gap, double new_time);
   void visit(int x, int y);
   void test_pair(int p, int q);
@@ -135,15 +141,18 @@ struct Pruner::Impl {
   }
   void collect();
   bool linked(int p, int p2) const;
+  /// Grows a region from a seed (pruner_regions.cpp).
   void grow(std::size_t seed, int region);
   double gather(const Side& side, const std::vector<int>& proxies, Points& corners,
                 Eigen::Index& count) const;
   void turn_to(Region& region, const Vec3& n, RegionMethod method) const;
   void measure_approach(ContactRegion& region, double inexact) const;
+  /// Finds pairs and plane of a region; false: proven apart.
   bool find_plane(int number, ContactRegion& region);
   template <class Take>
   void add_facing_patches(Side& from, const std::vector<int>& from_patches, Side& to,
                           const ContactRegion& region, double sign, Take take);
+  /// Fills in the faces and the extent of a region.
   void fill(ContactRegion& region);
   void remember(ContactRegion& region);
 };

@@ -11,7 +11,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-/// Two proxies of a touch b side by side: neighbours, with neighbours.
+/// Whether two proxies of a touch b next to each other: they are neighbours, and so are their partners in b.
 bool Pruner::Impl::linked(int p, int p2) const {
   if (!a.set.neighbours(p, p2)) return false;
   const auto less = [](const Pair& pair, int proxy) { return pair.a < proxy; };
@@ -23,8 +23,8 @@ bool Pruner::Impl::linked(int p, int p2) const {
   return false;
 }
 
-/// The region of a seed: what is linked to it, step by step, and faces as it does.  Swallowed skin, which
-/// faces every way, faces with all.
+/// Grows a region from a seed: all contacts that are linked to it, step by step, and face the seed's
+/// direction. Enclosed skin, which faces all directions, agrees with every direction.
 void Pruner::Impl::grow(std::size_t seed, int region) {
   const Vec3 direction = active[seed].direction();
   const auto agrees = [&](const Active& other) {
@@ -45,7 +45,7 @@ void Pruner::Impl::grow(std::size_t seed, int region) {
   }
 }
 
-/// All corners of some proxies, in the first columns; returns the largest inflation among them.
+/// Copies the corners of some proxies into the first columns; returns their largest inflation.
 double Pruner::Impl::gather(const Side& side, const std::vector<int>& proxies, Points& corners,
                             Eigen::Index& at) const {
   double inflation = 0.0;
@@ -58,7 +58,7 @@ double Pruner::Impl::gather(const Side& side, const std::vector<int>& proxies, P
   return inflation;
 }
 
-/// The plane along another normal.
+/// Recomputes the region's plane along another normal.
 void Pruner::Impl::turn_to(Region& region, const Vec3& n, RegionMethod method) const {
   Eigen::Index lowest = 0, highest = 0;
   region.depth = -n.transpose().lazyProduct(corners_a.leftCols(count_a)).minCoeff(&lowest) +
@@ -68,7 +68,7 @@ void Pruner::Impl::turn_to(Region& region, const Vec3& n, RegionMethod method) c
   region.method = method;
 }
 
-/// What its own proxies say along its normal.
+/// Computes gap, closing speed, distance and thickness from the region's proxies, along its normal.
 void Pruner::Impl::measure_approach(ContactRegion& region, double inexact) const {
   const Vec3& n = region.region.normal;
   region.gap = gap;
@@ -85,7 +85,8 @@ void Pruner::Impl::measure_approach(ContactRegion& region, double inexact) const
   for (const int q : proxies_b) region.thickness = std::min(region.thickness, b.set.rest_thickness(q));
 }
 
-/// Pairs and plane of a region; false when the hulls of all its proxies together are proven apart.
+/// Finds pairs and plane of a region; returns false when the hulls of all its proxies together are proven
+/// apart.
 bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   constexpr double kSameSide = 0.5;
   region.pairs.clear();
@@ -117,7 +118,7 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   faces_b = facing_b.directed();
   const bool is_clear = region.facing.norm() >= kClear;
   if (is_clear) turn_to(region.region, region.facing.normalized(), RegionMethod::kAreas);
-  // else the hulls know nothing that is sharper
+  // Otherwise the hulls cannot give a more accurate normal.
   if (!is_clear || region.region.depth > inexact) {
     double margin = gap;
     for (const auto& [p, q] : region.pairs) margin = std::max(margin, reach(p, q).in_any_direction());
@@ -147,8 +148,9 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   return true;
 }
 
-/// Patches of `to` that `from` sees through itself: see above.  sign: +1 from a up to b, along the normal; -1
-/// from b down to a.  take(patch) says whether it is new.
+/// Adds the patches of `to` that are opposite skin to `from` (see the top of pruner.cpp).
+/// @param sign  +1 from a up to b, along the normal; -1 from b down to a
+/// @param take  called for each such patch; adds it unless it is already in a region
 template <class Take>
 void Pruner::Impl::add_facing_patches(Side& from, const std::vector<int>& from_patches, Side& to,
                                       const ContactRegion& region, double sign, Take take) {
@@ -182,7 +184,7 @@ void Pruner::Impl::add_facing_patches(Side& from, const std::vector<int>& from_p
   }
 }
 
-/// Patches, faces and extent, once the plane is known.
+/// Fills in patches, faces and extent once the plane is known.
 void Pruner::Impl::fill(ContactRegion& region) {
   patches_a.clear();
   patches_b.clear();
@@ -234,7 +236,7 @@ void Pruner::Impl::fill(ContactRegion& region) {
   counts.faces_b += static_cast<long>(region.faces_b.size());
 }
 
-/// Keeps the normal of the region's proxies, and its rotation for those that had one at the last query.
+/// Stores the region's normal for its proxies, and its rotation relative to the last query.
 void Pruner::Impl::remember(ContactRegion& region) {
   region.rotation = 0.0;
   for (const int p : proxies_a) {

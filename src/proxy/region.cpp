@@ -14,26 +14,26 @@
 namespace palpate::proxy {
 namespace {
 
-// libccd's tolerances, for shapes of unit size: the depth shall err by no more than kDepthError.
+// libccd's tolerances for shapes of unit size: the error of the depth is at most kDepthError.
 //
 // MPR's tolerance is a length, EPA's a squared length.  EPA's polytope has the nearest point w; a support
-// point v in direction w lies e = v.w/|w| - |w| above that face, which is the error of the depth |w|.  It
+// point v in direction w lies e = v.w/|w| - |w| above that face, which is the error of the depth |w|.  EPA
 // ends where v.w - |w|^2 = e |w| is below the tolerance, or the squared distance of v to the face, which is
-// at least e^2.  With kDepthError^2 both mean e < kDepthError, of depths above kDepthError.
+// at least e^2.  With kDepthError^2 both imply e < kDepthError, for depths above kDepthError.
 constexpr double kDepthError = 1e-6;
 // max_iterations bounds libccd's GJK and the last loop of MPR, but neither EPA nor the refinement of MPR's
-// portal.  On round shapes EPA finds a new vertex in each iteration, at a cost that grows with those before.
+// portal.  On round shapes EPA finds a new vertex in each iteration, at a cost that grows with their number.
 // Each iteration of either evaluates a support point of both shapes, so the support points are bounded: after
-// `most` of them the shapes answer with one point, the origin.  Then v.w = 0, no face has anything above it,
-// and every loop ends with the face that it has; its direction is verified like any other.
+// `most` of them the shapes return one point, the origin.  Then v.w = 0, no face has anything above it, and
+// every loop ends with the face that it has; its direction is verified like any other.
 constexpr int kMaxIterations = 200;
 
-/// Support points that both hulls of a pair have given, and may give.
+/// Number of support points that both hulls of a pair have evaluated, and may evaluate.
 struct Budget {
   int given = 0, most = 0;
   bool spent = false;
 };
-/// A hull as libccd sees it.
+/// Hull in the form of a libccd object.
 struct Shape {
   const Hull* hull;
   Budget* budget;
@@ -56,7 +56,7 @@ void ccd_centre(const void* object, ccd_vec3_t* out) {
   ccdVec3Set(out, c.x(), c.y(), c.z());
 }
 
-/// libccd's result, turned to our normal (from b to a: its direction moves b away).
+/// libccd's result, with the normal from b to a (libccd's direction moves b away).
 struct Answer {
   Vec3 normal;
   double depth;
@@ -84,7 +84,7 @@ std::optional<Answer> ask(Penetration algorithm, const Hull& a, const Hull& b, i
   return Answer{-Vec3(ccdVec3X(&direction), ccdVec3Y(&direction), ccdVec3Z(&direction)), depth};
 }
 
-/// The candidate with the least depth so far.
+/// Candidate with the least depth so far.
 struct Best {
   double depth = std::numeric_limits<double>::infinity();
   Vec3 normal = Vec3::Zero();
@@ -99,10 +99,10 @@ struct Best {
   }
 };
 
-/// Asks one algorithm; true when its answer stands up to the two support calls.
+/// Runs one algorithm and offers its direction; returns true if the two support calls confirm its depth.
 bool offer_answer(Penetration algorithm, RegionMethod by, const Hull& a, const Hull& b, int most_supports,
                   Best& best, RegionCounts& counts) {
-  constexpr double kMismatch = 1e-3;  // of unit-sized shapes
+  constexpr double kMismatch = 1e-3;  // [unit-sized shapes]
   const auto answer = ask(algorithm, a, b, most_supports, counts);
   if (!answer) return false;
   const double length = answer->normal.norm();
@@ -174,7 +174,7 @@ Region RegionFinder::find(const Eigen::Ref<const Points>& a, const Eigen::Ref<co
   if (best.depth <= 0.0 || best.method == RegionMethod::kCentroids ||
       best.method == RegionMethod::kLastNormal)
     best.offer(hull_a, hull_b, nearest_difference(hull_a, hull_b), RegionMethod::kDistance);
-  // two coincident points: any direction
+  // Two coincident points: any direction is valid.
   if (best.normal.isZero()) best = {0.0, Vec3::UnitZ(), RegionMethod::kCentroids};
 
   counts_.last_normal += best.method == RegionMethod::kLastNormal;

@@ -13,8 +13,8 @@ namespace {
 using Features = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// How many clusters each group gets: one, and of the rest its share by area (largest remainders first; of
-/// equals the first group).
+/// Returns the number of clusters per group: one each, and the remaining ones by area (largest remainders
+/// first; of equals the first group).
 std::vector<int> share_out(const VecX& area, int count) {
   const int groups = static_cast<int>(area.size()), rest = std::max(0, count - groups);
   std::vector<int> shares(static_cast<std::size_t>(groups), 1), order(static_cast<std::size_t>(groups));
@@ -33,9 +33,8 @@ std::vector<int> share_out(const VecX& area, int count) {
   return shares;
 }
 
-/// Lloyd's k-means, weighted by area.  It starts from points that are each farthest from those before
-/// (Gonzalez 1985), the first farthest from the middle:
-/// no chance in it.  Of equals the first wins.
+/// Lloyd's k-means, weighted by area.  Deterministic farthest-point start (Gonzalez 1985): each centre is the
+/// point farthest from the previous ones, the first the point farthest from the mean.  Ties go to the first.
 std::vector<int> k_means(const Features& x, const VecX& weight, int count) {
   constexpr int kMaxRounds = 25;
   const Eigen::Index n = x.cols();
@@ -81,8 +80,8 @@ std::vector<int> k_means(const Features& x, const VecX& weight, int count) {
 
 }  // namespace
 
-// The capsule with radii r0 and r1 at its ends, taken as |x - (head + s (tail - head))| - (r0 + s (r1 - r0))
-// at the s in [0, 1] nearest on the axis.
+// The distance to a capsule with end radii r0 and r1 is taken as |x - (head + s (tail - head))| - (r0 + s (r1
+// - r0)) at the nearest s in [0, 1] on the axis.
 std::vector<int> nearest_bone(const Skeleton& skeleton, const Points& points) {
   std::vector<int> out(static_cast<std::size_t>(points.cols()), 0);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -103,15 +102,15 @@ std::vector<int> nearest_bone(const Skeleton& skeleton, const Points& points) {
   return out;
 }
 
-// Positions are measured in the edge of a cluster's share of the area, L = sqrt(area / count); normals so
-// that opposite ones are normal_weight apart.
+// Positions are scaled by the edge of a cluster's share of the area, L = sqrt(area / count); normals so that
+// opposite ones are normal_weight apart.
 std::vector<int> skin_clusters(const TriMesh& skin, const std::vector<int>& group_of_vertex, int count,
                                double normal_weight) {
   const int groups = 1 + *std::max_element(group_of_vertex.begin(), group_of_vertex.end());
   Points normals;
   VecX areas;
   mesh::vertex_normals_and_areas(skin.faces, skin.vertices, normals, areas);
-  areas.array() += 1e-12 * areas.sum();  // a vertex of flat faces counts a little
+  areas.array() += 1e-12 * areas.sum();  // small weight for vertices of degenerate faces
   const double length = std::sqrt(areas.sum() / std::max(1, count));
 
   std::vector<std::vector<int>> vertices(static_cast<std::size_t>(groups));
@@ -130,7 +129,7 @@ std::vector<int> skin_clusters(const TriMesh& skin, const std::vector<int>& grou
     x.topRows<3>() = skin.vertices(Eigen::all, vertices[g]) / length;
     x.bottomRows<3>() = 0.5 * normal_weight * normals(Eigen::all, vertices[g]);
     const std::vector<int> cluster = k_means(x, areas(vertices[g]), shares[g]);
-    // those that are not empty, in the order in which their vertices come
+    // Number the non-empty clusters in the order of their first vertices.
     std::vector<int> number(static_cast<std::size_t>(shares[g]), -1);
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       int& own = number[static_cast<std::size_t>(cluster[i])];

@@ -14,7 +14,7 @@ Vec3 face_middle(const TriMesh& skin, int f) {
          3.0;
 }
 
-/// The axis along which points reach farthest.
+/// Returns the axis along which the points extend farthest.
 template <class Item, class Place>
 int longest_axis(std::span<const Item> items, Place place) {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -27,7 +27,9 @@ int longest_axis(std::span<const Item> items, Place place) {
   return axis;
 }
 
-/// @param rank  what decides between items at one place
+/// Partitions items at the median along their longest axis; returns the size of the first half.
+/// @param place  position of an item
+/// @param rank   tie-breaker of items at one position
 template <class Place, class Rank>
 std::size_t halve(std::span<int> items, Place place, Rank rank) {
   const int axis = longest_axis(std::span<const int>(items), place);
@@ -38,8 +40,8 @@ std::size_t halve(std::span<int> items, Place place, Rank rank) {
   return static_cast<std::size_t>(half);
 }
 
-/// The place of each face in an order that its corners decide, not the order in which faces are listed: a
-/// region's patches, and with them where it is first looked at along, are then the same for any listing.
+/// Returns the rank of each face in an order that depends on its corners only.  A region's patches, and with
+/// them its first normal, are then independent of the order in which faces are listed.
 std::vector<int> ranks(const Faces& faces) {
   std::vector<int> order(static_cast<std::size_t>(faces.cols())), rank(order.size());
   std::iota(order.begin(), order.end(), 0);
@@ -55,7 +57,7 @@ std::vector<int> ranks(const Faces& faces) {
   return rank;
 }
 
-/// The ball around the box of some faces.
+/// Returns a ball around some faces, centred in their box.
 Ball ball_of(const TriMesh& skin, std::span<const int> faces) {
   Ball out{Vec3::Zero(), 0.0};
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -71,7 +73,7 @@ Ball ball_of(const TriMesh& skin, std::span<const int> faces) {
   return out;
 }
 
-/// The faces [first, first + count) of out.faces as one patch, or as two halves that are cut on.
+/// Adds the faces [first, first + count) of out.faces as one patch, or recursively as two halves.
 void add_faces(const TriMesh& skin, const std::vector<int>& rank, int proxy, std::size_t first,
                std::size_t count, int patch_faces, SkinPatches& out) {
   const std::span<int> faces(out.faces.data() + first, count);
@@ -110,7 +112,7 @@ void add_halved(std::vector<ProxyBranch>& tree, std::span<int> proxies, const Po
   tree[branch].after = static_cast<int>(tree.size());
 }
 
-/// The bone's own proxies and, below them, the bones that hang on it; nothing for a bone without any.
+/// Adds the bone's proxies and, below them, its child bones; nothing for a bone without any.
 void add_bone(std::vector<ProxyBranch>& tree, const Skeleton& skeleton,
               std::vector<std::vector<int>>& of_bone, const Points& middle, int bone, int parent) {
   const auto branch = tree.size();
@@ -178,7 +180,7 @@ void refit(std::vector<ProxyBranch>& tree, const std::vector<Box>& boxes) {
     branch.high = branch.proxy < 0 ? Vec3(Vec3::Constant(-infinity))
                                    : boxes[static_cast<std::size_t>(branch.proxy)].high;
   }
-  for (std::size_t i = tree.size(); i-- > 1;) {  // preorder: children stand after their parent
+  for (std::size_t i = tree.size(); i-- > 1;) {  // preorder: children follow their parent
     ProxyBranch& parent = tree[static_cast<std::size_t>(tree[i].parent)];
     parent.low = parent.low.cwiseMin(tree[i].low);
     parent.high = parent.high.cwiseMax(tree[i].high);

@@ -10,7 +10,8 @@
 namespace palpate::proxy {
 namespace {
 
-/// The part of a polygon where side (x[axis] - at) >= 0, to within `flat`: Sutherland and Hodgman (1974).
+/// Returns the part of a polygon where side (x[axis] - at) >= 0, to within `flat`: Sutherland and Hodgman
+/// (1974).
 Polygon clipped(const Polygon& polygon, int axis, double at, double side, double flat) {
   Polygon out;
   out.face = polygon.face;
@@ -38,7 +39,7 @@ double middle_of(const TriMesh& surface, int face, int axis) {
   return (x(0) + x(1) + x(2)) / 3.0;
 }
 
-/// A face looks away from the solid, which is below it where the face looks up.
+/// Whether the solid is below a face that is normal to the axis: it is where the face looks up.
 bool solid_is_below(const TriMesh& surface, int face, int axis) {
   const auto x = [&](int k) { return surface.vertices.col(surface.faces(k, face)); };
   return Vec3(x(1) - x(0)).cross(Vec3(x(2) - x(0)))[axis] > 0.0;
@@ -104,8 +105,8 @@ std::array<SolidPiece, 2> cut(const SolidPiece& piece, const TriMesh& surface, i
   return out;
 }
 
-// The covariance of a triangle's points about its middle m is
-// (sum over corners of (x - m)(x - m)^T) / 12, times its area.
+// The covariance of a triangle's points about its middle m is (sum over corners of (x - m)(x - m)^T) / 12,
+// times its area.
 Mat3 principal_axes(const TriMesh& surface) {
   Mat3 second = Mat3::Zero();
   Vec3 first = Vec3::Zero();

@@ -3,8 +3,8 @@
 
 namespace palpate::proxy {
 
-/// The surface of the convex hull of points in space, its faces outward: each flat facet a fan of triangles.
-/// Of points in a plane, on a line or in one place: no faces.
+/// Returns the surface of the convex hull of points in space, faces outward; each flat facet is a fan of
+/// triangles.  Points that lie in a plane, on a line or in one place yield no faces.
 /// @throws InternalError for no points, or points that are not finite
 TriMesh hull_surface(const Points& points);
 
