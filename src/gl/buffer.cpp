@@ -11,7 +11,7 @@
 
 namespace palpate::gl {
 namespace {
-// A target that no vertex array and no indexed binding remembers: touching a buffer here disturbs nothing.
+// A target without vertex array or indexed binding: binding a buffer to it changes no other state.
 constexpr GLenum kScratchTarget = GL_COPY_WRITE_BUFFER;
 }  // namespace
 

@@ -37,8 +37,8 @@ struct Candidate {
   const char* platform() const { return kind == DisplayKind::kSurfaceless ? "surfaceless" : "device"; }
 };
 
-/// Displays that need no window system, hardware first.  (eglGetDisplay(EGL_DEFAULT_DISPLAY) fails without a
-/// window system.)
+/// Returns displays that need no window system, hardware first.  (eglGetDisplay(EGL_DEFAULT_DISPLAY) fails
+/// without a window system.)
 std::vector<Candidate> candidates() {
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   std::vector<Candidate> out;
@@ -63,15 +63,15 @@ std::vector<Candidate> candidates() {
   return out;
 }
 
-/// A core context of version 4.5, else of 4.3 (compute shaders and shader storage).
-/// No surface: EGL_KHR_surfaceless_context.
+/// Creates a core context of version 4.5, else 4.3 (compute shaders and shader storage).  Without a surface:
+/// EGL_KHR_surfaceless_context.
 EGLContext create_context(EGLDisplay display) {
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
   const EGLint config_wanted[] = {EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
                                   EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
-  // EGL_KHR_no_config_context
+  // Without a config: EGL_KHR_no_config_context.
   if (!eglChooseConfig(display, config_wanted, &config, 1, &count) || count < 1) config = nullptr;
   for (const int minor : {5, 3})
     for (const bool told_of_resets : {true, false}) {  // EGL 1.5
@@ -111,8 +111,8 @@ struct Context::Handles {
   std::thread::id owner;
 };
 
-// libepoxy opens its libraries itself,
-// but aborts the process where they are missing; so they are tried first.
+// libepoxy opens its libraries itself, but aborts the process where they are missing; so they are tried
+// first.
 void require_library(const std::string& file, const std::string& package) {
   void* handle = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (!handle)
@@ -161,8 +161,8 @@ Context::Context() : handles_(std::make_unique<Handles>()) {
   counters::count("gl.context");
 }
 
-// A static object: it is constructed after EGL's libraries were loaded,
-// so it is destroyed before their own exit handlers run.
+// Static object: constructed after EGL's libraries were loaded, so it is destroyed before their exit handlers
+// run.
 Context::~Context() {
   g_opened = false;
   if (handles_->context == EGL_NO_CONTEXT) return;
@@ -188,7 +188,7 @@ void Context::release() {
 }
 
 void check_context(const char* what) {
-  // OpenGL 4.5; an older one tells nothing, and says so itself by errors
+  // Needs OpenGL 4.5; older versions report a reset only through errors.
   if (epoxy_gl_version() < 45 || glGetGraphicsResetStatus() == GL_NO_ERROR) return;
   throw ContextLost(fmt::format("{}: the GPU {} was reset by its driver, and what was on it is lost", what,
                                 Context::shared().info().renderer));

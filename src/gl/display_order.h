@@ -2,14 +2,14 @@
 
 namespace palpate::gl {
 
-/// A display that needs no window system.
+/// Kind of a display that needs no window system.
 enum class DisplayKind {
-  kSoftwareDevice,  ///< EGL_MESA_device_software: a rasteriser on the processor
-  kSurfaceless,     ///< Mesa's platform: it takes a GPU where there is one that Mesa drives, else software
+  kSoftwareDevice,  ///< EGL_MESA_device_software: a rasteriser on the CPU.
+  kSurfaceless,     ///< Mesa's surfaceless platform: a GPU that Mesa drives if there is one, else software.
   kHardwareDevice
 };
 
-/// Hardware before what may be software before what is.  A strict order of the kinds.
+/// Strict order of the kinds: hardware first, then possibly software, then software.
 constexpr bool is_tried_before(DisplayKind a, DisplayKind b) {
   const auto rank = [](DisplayKind kind) {
     return kind == DisplayKind::kHardwareDevice ? 0 : kind == DisplayKind::kSurfaceless ? 1 : 2;

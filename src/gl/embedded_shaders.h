@@ -4,12 +4,13 @@
 
 namespace palpate::gl {
 
+/// Shader source that is compiled into the library.
 struct EmbeddedShader {
-  std::string_view name;  ///< path under shaders/
+  std::string_view name;  ///< Path under shaders/.
   std::string_view source;
 };
 
-/// Defined in a file made at build time (embed.cmake).
+/// Returns all shaders.  Defined in a file that is generated at build time (embed.cmake).
 const std::vector<EmbeddedShader>& embedded_shaders();
 
 }  // namespace palpate::gl

@@ -39,7 +39,7 @@ Texture::Texture(int width, int height, Format format) : width_(width), height_(
   if (width < 1 || height < 1 || width > largest || height > largest)
     fail("an image of {} x {} pixels cannot be made: this OpenGL device allows 1 to {} an edge", width,
          height, largest);
-  // The classic binding calls, because direct state access needs 4.5.
+  // Classic binding calls: direct state access needs 4.5.
   glGenTextures(1, &id_);
   glBindTexture(GL_TEXTURE_2D, id_);
   glTexStorage2D(GL_TEXTURE_2D, 1, info(format).internal, width, height);
@@ -141,7 +141,7 @@ void Framebuffer::clear(int attachment, std::uint32_t value) {
 
 void Framebuffer::clear_depth(float depth) {
   glBindFramebuffer(GL_FRAMEBUFFER, id_);
-  glDepthMask(GL_TRUE);  // a clear obeys the mask
+  glDepthMask(GL_TRUE);  // Clears respect the mask.
   glClearBufferfv(GL_DEPTH, 0, &depth);
 }
 

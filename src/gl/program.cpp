@@ -14,7 +14,7 @@
 namespace palpate::gl {
 namespace {
 
-/// The info log of a shader or program, whose getters differ by name only.
+/// Returns the info log of a shader or program; their getters differ only by name.
 template <class GetLength, class GetLog>
 std::string info_log(unsigned id, GetLength get_length, GetLog get_log) {
   GLint length = 0;
@@ -42,7 +42,7 @@ struct Stage {
   std::string_view name;
 };
 
-/// From the cache, else compiled and kept there.
+/// Loads a program from the cache, or else compiles and caches it.
 unsigned make(const std::vector<Stage>& stages, const std::string& name) {
   std::string sources;
   for (const Stage& stage : stages) sources.append(shader_source(stage.name)).push_back('\0');
@@ -53,7 +53,7 @@ unsigned make(const std::vector<Stage>& stages, const std::string& name) {
   for (const Stage& stage : stages) {
     const unsigned shader = compile(stage.kind, stage.name);
     glAttachShader(id, shader);
-    glDeleteShader(shader);  // goes with the program
+    glDeleteShader(shader);  // Deleted with the program.
   }
   glLinkProgram(id);
   GLint ok = 0;

@@ -18,7 +18,7 @@ namespace palpate::gl {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::uint64_t kMagic = 0x70616c7061746531;  // "palpate1": the layout of these files
+constexpr std::uint64_t kMagic = 0x70616c7061746531;  // "palpate1": version of the file layout.
 
 /// FNV-1a, 64 bits.
 std::uint64_t hash(const void* data, std::size_t bytes, std::uint64_t start = 0xcbf29ce484222325) {
@@ -47,7 +47,7 @@ fs::path file_of(const ProgramKey& key) {
   return folder / "shaders" / fmt::format("{:016x}.bin", hash(key.text));
 }
 
-/// The whole of a cache's file, where it is one and is whole.
+/// Reads a cache file; returns false where it is missing, has another key, or is damaged.
 bool read_file(const fs::path& path, const ProgramKey& key, GLenum& format, std::vector<char>& binary) {
   std::ifstream in(path, std::ios::binary);
   Header header{};
@@ -77,7 +77,7 @@ bool load_program(unsigned id, const ProgramKey& key) {
   glProgramBinary(id, format, binary.data(), static_cast<GLsizei>(binary.size()));
   GLint ok = 0;
   glGetProgramiv(id, GL_LINK_STATUS, &ok);
-  while (glGetError() != GL_NO_ERROR) {}  // a format that the driver no longer knows
+  while (glGetError() != GL_NO_ERROR) {}  // Clears the error of a format that the driver no longer supports.
   if (ok) counters::count("gl.program_from_cache");
   return ok;
 }
@@ -97,7 +97,7 @@ void keep_program(unsigned id, const ProgramKey& key) {
   const Header header{kMagic, key.text.size(), format, binary.size(), hash(binary.data(), binary.size())};
   std::error_code ignored;
   fs::create_directories(path.parent_path(), ignored);
-  // under another name until it is whole: two programs may write it at the same time
+  // Written under a temporary name: two programs may write it at the same time.
   fs::path draft = path;
   draft += fmt::format(".{}", ::getpid());
   {

@@ -6,7 +6,7 @@ namespace palpate::gl {
 
 class MappedBuffer;
 
-/// Bytes on the GPU: vertices, indices, shader storage.  Storage grows to the largest upload and is kept.
+/// Buffer on the GPU: vertices, indices, shader storage.  Storage grows to the largest upload and is kept.
 class Buffer {
  public:
   Buffer();
@@ -14,29 +14,29 @@ class Buffer {
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;
 
-  /// Replaces the contents (the old ones are orphaned, so that the GPU need not be waited for).
+  /// Replaces the contents; the old storage is orphaned, so that the call does not wait for the GPU.
   void upload(const void* data, std::size_t bytes);
   template <class T>
   void upload(const std::vector<T>& values) {
     upload(values.data(), values.size() * sizeof(T));
   }
-  /// Makes room for at least that many bytes; contents undefined when it had to grow.
+  /// Allocates at least that many bytes; contents are undefined when it had to grow.
   void reserve(std::size_t bytes);
-  /// Copies bytes [offset, offset + bytes) back, waiting for the GPU.
+  /// Copies bytes [offset, offset + bytes) back; waits for the GPU.
   void read(void* out, std::size_t bytes, std::size_t offset = 0) const;
   /// Overwrites bytes [offset, offset + bytes).
   void write(const void* data, std::size_t bytes, std::size_t offset = 0);
 
   unsigned id() const { return id_; }
   std::size_t capacity() const { return capacity_; }
-  void bind_storage(unsigned index) const;  ///< shader storage block `index`
+  void bind_storage(unsigned index) const;  ///< Binds to shader storage block `index`.
 
  private:
   unsigned id_ = 0;
   std::size_t capacity_ = 0;
 };
 
-/// Which buffers feed the vertex attributes.
+/// Vertex array object: assigns buffers to vertex attributes.
 class VertexArray {
  public:
   VertexArray();
@@ -44,14 +44,15 @@ class VertexArray {
   VertexArray(VertexArray&& other) noexcept;
   VertexArray& operator=(VertexArray&& other) noexcept;
 
-  /// Attribute `location` reads `components` floats a vertex, `stride` bytes apart, from `offset`.
+  /// Sets attribute `location` to read `components` floats per vertex, `stride` bytes apart, from `offset`.
   void attribute(unsigned location, const Buffer& buffer, int components, int stride, std::size_t offset = 0);
-  /// Likewise of unsigned 32-bit numbers.
+  /// As attribute(), with unsigned 32-bit integers.
   void attribute_unsigned(unsigned location, const Buffer& buffer, int components, int stride,
                           std::size_t offset = 0);
-  /// One such number a draw in place of a vertex: record number `base_instance` of the draw.
+  /// Sets an unsigned 32-bit attribute that advances per draw instead of per vertex: record
+  /// `base_instance` of the draw.
   void attribute_a_draw(unsigned location, const MappedBuffer& buffer, int stride, std::size_t offset);
-  void indices(const Buffer& buffer);  ///< of unsigned 32-bit
+  void indices(const Buffer& buffer);  ///< Sets the index buffer, unsigned 32-bit.
   void bind() const;
   unsigned id() const { return id_; }
 

@@ -4,38 +4,40 @@
 
 #include "palpate/core/error.h"
 
-/// Headless OpenGL: one EGL context without a window, opened on first use and owned by one thread at a time.
+/// Headless OpenGL: one EGL context without a window, created on first use and current on one thread at a
+/// time.
 namespace palpate::gl {
 
-/// What the context turned out to be.
+/// Properties of the context.
 struct ContextInfo {
-  std::string platform;                   ///< "device" or "surfaceless"
-  std::string vendor, renderer, version;  ///< of GL_VENDOR, GL_RENDERER, GL_VERSION
-  bool software = false;                  ///< a software rasteriser (llvmpipe, softpipe, swrast)
+  std::string platform;                   ///< EGL platform: "device" or "surfaceless".
+  std::string vendor, renderer, version;  ///< GL_VENDOR, GL_RENDERER, GL_VERSION.
+  bool software = false;  ///< Whether it is a software rasteriser (llvmpipe, softpipe, swrast).
 };
 
-/// The GPU is gone or has been reset: nothing that was made in the context is there any more.
+/// The GPU was lost or reset: all objects of the context are gone.
 class ContextLost : public Error {
  public:
   using Error::Error;
 };
 
-/// The process's one GL context (OpenGL 4.5 core, or 4.3).  No GL library is loaded before the first call of
-/// `shared`. It is current on one thread: `make_current` takes it, `release` lets another thread take it.
+/// The process's GL context (OpenGL 4.5 core, or 4.3).  No GL library is loaded before the first call of
+/// shared().  It is current on one thread: make_current() acquires it, release() lets another thread acquire
+/// it.
 class Context {
  public:
-  /// Opens the context at the first call and makes it current on the calling thread; later calls make it
-  /// current there. A hardware device is preferred; else Mesa's software rasteriser.  Counts "gl.context".
-  /// @throws Error when no EGL library, device or OpenGL >= 4.3 is found, naming the package that brings it.
+  /// Creates the context at the first call, and makes it current on the calling thread.  A hardware device is
+  /// preferred; else Mesa's software rasteriser is used.  Counts "gl.context".
+  /// @throws Error when no EGL library, device or OpenGL >= 4.3 is found, with the package that provides it
   static Context& shared();
-  static bool opened();  ///< asks without opening
+  static bool opened();  ///< Whether the context exists; does not create it.
 
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  void make_current();  ///< @throws InternalError when another thread holds it
-  void release();       ///< no longer current on this thread
+  void make_current();  ///< @throws InternalError when it is current on another thread
+  void release();       ///< Makes it no longer current on this thread.
   const ContextInfo& info() const { return info_; }
 
  private:
@@ -45,14 +47,15 @@ class Context {
   ContextInfo info_;
 };
 
-/// The libraries that a context needs, by file name.
-/// @throws Error with the Debian package of the first that cannot be loaded.
+/// Checks that a shared library can be loaded.
+/// @throws Error with the Debian package that provides it, where it cannot
 void require_library(const std::string& file, const std::string& package);
 
-/// @throws ContextLost where the driver says that it was reset; `what` names the work
+/// Checks for a reset of the GPU.  @param what  name of the work  @throws ContextLost where the driver
+/// reports one
 void check_context(const char* what);
 
-/// Throws InternalError when GL recorded an error since the last call; `what` names the work.
+/// Throws InternalError when GL recorded an error since the last call; `what` is the name of the work.
 void check_errors(const char* what);
 
 }  // namespace palpate::gl

@@ -3,26 +3,27 @@
 
 namespace palpate::gl {
 
-/// Bytes that the processor and the GPU share: mapped once and for good (GL 4.4 or ARB_buffer_storage), so
-/// that no call copies or waits.  What the GPU reads may be written, and what it wrote may be read, after
-/// finish() (commands.h).
+/// Buffer shared by CPU and GPU, persistently mapped (GL 4.4 or ARB_buffer_storage), so that no call copies
+/// or waits.  After finish() (commands.h) the CPU may overwrite data that the GPU has read, and read data
+/// that the GPU has written.
 class MappedBuffer {
  public:
   enum class For { kUpload, kReadback };
-  explicit MappedBuffer(For use);  ///< @throws Error where OpenGL has no such buffers
+  explicit MappedBuffer(For use);  ///< @throws Error where OpenGL lacks such buffers
   ~MappedBuffer();
   MappedBuffer(const MappedBuffer&) = delete;
   MappedBuffer& operator=(const MappedBuffer&) = delete;
 
-  /// Makes room; contents undefined, and `data` and `id` others, when it had to grow.
+  /// Allocates memory; when it had to grow, contents are undefined, and `data` and `id` change.
   void reserve(std::size_t bytes);
   std::byte* data() { return data_; }
   std::size_t capacity() const { return capacity_; }
   unsigned id() const { return id_; }
-  void bind_storage(unsigned index) const;  ///< shader storage block `index`
-  /// Part of it; `offset` a multiple of kStorageAlignment.
+  void bind_storage(unsigned index) const;  ///< Binds to shader storage block `index`.
+  /// Binds a part of it; `offset` must be a multiple of kStorageAlignment.
   void bind_storage(unsigned index, std::size_t offset, std::size_t bytes) const;
-  static constexpr std::size_t kStorageAlignment = 256;  ///< the most that GL lets a driver ask for
+  /// Largest alignment that GL allows a driver to require.
+  static constexpr std::size_t kStorageAlignment = 256;
 
  private:
   void release();

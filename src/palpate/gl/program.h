@@ -9,18 +9,19 @@
 
 namespace palpate::gl {
 
-/// Text of a file under shaders/, embedded at build time: shader_source("contact/skin.vert").  Adding a
-/// shader is adding its file.
+/// Returns the source of a file under shaders/, embedded at build time: shader_source("contact/skin.vert").
+/// To add a shader, add its file.
 /// @throws InternalError for an unknown name
 std::string_view shader_source(std::string_view name);
+/// Returns the names of all embedded shaders.
 std::vector<std::string> shader_names();
 
-/// A linked GLSL program.  Needs the context to be current, as everything here.
+/// Linked GLSL program.  All functions require the context to be current.
 class Program {
  public:
-  /// Vertex and fragment shader by embedded name.
+  /// Links vertex and fragment shader given by embedded name.
   Program(std::string_view vertex, std::string_view fragment);
-  /// Compute shader by embedded name.
+  /// Links a compute shader given by embedded name.
   explicit Program(std::string_view compute);
   ~Program();
   Program(Program&& other) noexcept;
@@ -28,15 +29,15 @@ class Program {
 
   void use() const;
   unsigned id() const { return id_; }
-  /// Uniforms of the program, which need not be in use.  @throws InternalError for a name that the linked
-  /// program does not have.
+  /// Sets a uniform; the program need not be in use.  @throws InternalError for a name that the linked
+  /// program does not have
   void set(const std::string& name, int value);
   void set(const std::string& name, unsigned value);
   void set(const std::string& name, float value);
   void set(const std::string& name, const Eigen::Vector2f& value);
   void set(const std::string& name, const Eigen::Vector3f& value);
   void set(const std::string& name, const Eigen::Vector4f& value);
-  void set(const std::string& name, std::span<const Eigen::Vector4f> values);  ///< an array
+  void set(const std::string& name, std::span<const Eigen::Vector4f> values);  ///< Sets an array.
   void set(const std::string& name, const Eigen::Matrix3f& value);
   void set(const std::string& name, const Eigen::Matrix4f& value);
 

@@ -3,8 +3,8 @@
 
 namespace palpate::gl {
 
-/// Instants on the GPU's own clock: when it has done what it was told so far, which the processor does not
-/// wait for (OpenGL's timer queries, GL_TIMESTAMP).
+/// Timestamps on the GPU clock: each marks the completion of all earlier commands, without waiting on the CPU
+/// (OpenGL timer queries, GL_TIMESTAMP).
 class Timestamps {
  public:
   explicit Timestamps(int count);
@@ -12,13 +12,13 @@ class Timestamps {
   Timestamps(const Timestamps&) = delete;
   Timestamps& operator=(const Timestamps&) = delete;
 
-  void mark(int which);  ///< that one, 0 <= which < count, behind all commands before
-  /// From one mark to another [s]; waits until the GPU has passed both.  0 where the driver has no such
-  /// clock.
+  void mark(int which);  ///< Records mark `which`, 0 <= which < count, behind all earlier commands.
+  /// Returns the time between two marks [s]; waits until the GPU has passed both.  0 where the driver has no
+  /// timer.
   double seconds(int from, int to) const;
 
  private:
-  std::vector<unsigned> ids_;  ///< none where the driver has no such clock
+  std::vector<unsigned> ids_;  ///< Empty where the driver has no timer.
 };
 
 }  // namespace palpate::gl
