@@ -17,23 +17,24 @@
 
 namespace palpate::contact {
 
-/// Vertices of a surface, a SurfaceState or FrameVertices, or material points, a MaterialPointState, against
-/// an exact shape.  Vertices stand for their area as it is now, seen along the normal; material points for
-/// the integrals of their hats (MaterialGaps), so that with a pressure k |gap| their force is the gradient of
-/// an energy: a sample has the area A' of the hat that overlaps and the gap -V/A', V the integral of overlap
-/// times hat.
-/// A Shape has
+/// Contact source of the vertices of a surface (SurfaceState or FrameVertices), or of material points
+/// (MaterialPointState), with an exact shape. A vertex represents its present area, projected on the normal.
+/// A material point represents the integrals of its hat function (MaterialGaps), so that with a pressure k
+/// |gap| its force is the gradient of an energy: the sample has the area A' of the overlapping part of the
+/// hat and the gap -V/A', with V the integral of overlap times hat.
+///
+/// A Shape provides
 ///   kName                    for messages and counters
 ///   move_to(pose of its frame), before each query
-///   Nearest at(x)            x and the answer in world axes
-///   is_crossed(a, b)         whether the way from a to b, in the frame, passes through it from outside to
-///   outside
+///   Nearest at(x)            nearest point to x; argument and result in world axes
+///   is_crossed(a, b)         whether the segment from a to b, in the frame, crosses the shape and both ends
+///                            are outside
 ///   lengths()                its CharacteristicLengths
-///   curvature()              mean curvature where it is the same all over, else 0 [1/m]
+///   curvature()              mean curvature where it is uniform, else 0 [1/m]
 /// and, for balls (ball_source.h),
-///   kRound                   whether it looks the same all around a normal
-///   height(x, n)             how far along the unit vector n from x the line leaves it, -infinity where the
-///   line misses it; world axes
+///   kRound                   whether it is rotationally symmetric about each normal
+///   height(x, n)             distance along the unit vector n from x at which the line leaves the shape,
+///                            -infinity where the line misses it; world axes
 template <class Surface, class Shape>
 class AnalyticSource final : public SampleSource {
  public:
@@ -85,7 +86,8 @@ class AnalyticSource final : public SampleSource {
     if constexpr (kMaterial) return kept_;
     return {};
   }
-  /// At vertices areas are those of the query: at another state they would be the gradient of nothing.
+  /// Vertex samples do not follow: their areas are those of the query, so that at another state the force
+  /// would not be a gradient.
   bool follows() const override { return kMaterial; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     if constexpr (kMaterial) {
@@ -131,7 +133,7 @@ class AnalyticSource final : public SampleSource {
     }
     gaps_->integrate(nearest_);
   }
-  /// @param i  of those kept
+  /// Returns the sample of one kept material point. @param i  index into kept_
   ContactSample sample_of_point(std::size_t i, const Pose& inverse) const {
     const double area = gaps_->area(i);
     if (gaps_->overlap(i) == 0.0)
@@ -142,16 +144,17 @@ class AnalyticSource final : public SampleSource {
     return sample;
   }
 
-  // Material points stand in runs of neighbours.  A signed distance is 1-Lipschitz, so a run whose least one
-  // was g stays outside until its points have gone as far as g, and comes near at the next query only where
-  // that, at the speed of the fastest, is not enough.  What is left out would have been no sample, would have
-  // crossed nothing and have been safe for longer than the look-ahead: it changes the time of a query alone.
+  // Material points are stored in runs of neighbours. A signed distance is 1-Lipschitz, so a run with
+  // smallest gap g stays outside until its points have moved by g, and it needs a query only where the
+  // displacement so far and the displacement until the next query, at the speed of the fastest point, exceed
+  // g. Points in skipped runs would have produced no sample and no crossing, and their safe time exceeds the
+  // look-ahead: skipping them changes only the time of a query.
   static constexpr int kRun = 64;
   void open_runs(const dynamics::StateView& state, const Pose& pose) {
     constexpr double kRounding = 1e-12;
     const auto count = static_cast<std::size_t>((surface_.vertex_count() + kRun - 1) / kRun);
-    // of a point r from the frame's origin, seen from the frame: its own way, the origin's, and 2 r
-    // sin(theta/2)
+    // Displacement of a point at distance r from the frame's origin, relative to the frame: the point's
+    // displacement, the origin's, and 2 r sin(theta/2).
     const double farthest = surface_.farthest_from(pose.translation);
     const double angle = rotation_vector(pose.rotation * shape_pose_.rotation.conjugate()).norm();
     const double way = (surface_.way() + (pose.translation - shape_pose_.translation).norm() +
@@ -171,7 +174,7 @@ class AnalyticSource final : public SampleSource {
     for (std::size_t r = 0; r < count; ++r)
       if (!(clear_[r] > gone_ + near)) open_.push_back(static_cast<int>(r));
   }
-  /// visit(v) for what may be near, in order.
+  /// Calls visit(v) for all points that may be near, in ascending order.
   template <class Visit>
   void for_each_near(const Visit& visit) const {
     if constexpr (kMaterial) {
@@ -182,7 +185,7 @@ class AnalyticSource final : public SampleSource {
     }
   }
 
-  /// A vertex that faces away has no area: pressure there would pull.
+  /// Returns the sample of one vertex. A vertex that faces away has no area: pressure there would pull.
   ContactSample sample_at(int v, const Pose& inverse) const {
     const Vec3 x = surface_.position(v);
     const Nearest nearest = shape_.at(x);
@@ -200,8 +203,8 @@ class AnalyticSource final : public SampleSource {
     return sample;
   }
 
-  /// Near, or near at the next query: gap + look_ahead gap' < candidate_gap, with the frame's own motion in
-  /// gap'.
+  /// Marks candidates: points that are near, or will be at the next query: gap + look_ahead gap' <
+  /// candidate_gap, with the motion of the shape's frame included in gap'.
   bool find_candidates(const dynamics::StateView& state, const Pose& pose) {
     bool any = false;
     safe_time_ = HUGE_VAL;
@@ -228,8 +231,9 @@ class AnalyticSource final : public SampleSource {
     return any;
   }
 
-  /// A vertex's way since the last query, seen from the frame, as a straight line: outside at both ends, but
-  /// through the shape in between. Nothing pushed it back; it is on the wrong side, or inside a body that is.
+  /// Counts the points that tunnelled. The path of a point since the last query, relative to the shape's
+  /// frame, is taken as a straight line: outside at both ends, but through the shape in between. No contact
+  /// force acted on such a point; it is on the wrong side, or part of a body that is.
   void find_tunnelled(const Pose& pose, const Pose& inverse, double t) {
     if constexpr (kMaterial) {
       for_each_near([&](int v) {
@@ -261,26 +265,27 @@ class AnalyticSource final : public SampleSource {
   std::shared_ptr<MovingFrame> motion_;
   Shape shape_;
   double thickness_, candidate_gap_, look_ahead_;
-  double near_ = 0.0;  ///< candidate_gap_, of material points with what their gaps are lowered by
+  /// candidate_gap_, for material points increased by the largest lowering of their gaps.
+  double near_ = 0.0;
   std::vector<char> wanted_;
   Points areas_;
-  Points seen_;                ///< vertices at the last query, in the frame
-  Pose seen_from_;             ///< of material points: into the frame, at the last query
-  std::vector<double> clear_;  ///< of each run of material points: value of `gone_` up to which it is outside
-  std::vector<int> open_;      ///< runs that may be near
-  double gone_ = 0.0;          ///< bound on the points' way [m]
+  Points seen_;                ///< Vertices at the last query, in the frame.
+  Pose seen_from_;             ///< Material points: pose that maps into the frame, at the last query.
+  std::vector<double> clear_;  ///< Value of `gone_` up to which each run of material points lies outside.
+  std::vector<int> open_;      ///< Runs that may be near.
+  double gone_ = 0.0;          ///< Upper bound on the points' accumulated displacement [m].
   Pose shape_pose_;
-  std::vector<int> kept_;             ///< material points of the last query's samples
-  std::optional<MaterialGaps> gaps_;  ///< of material points
-  std::vector<Vec3> places_;          ///< of those kept
+  std::vector<int> kept_;             ///< Material points of the last query's samples.
+  std::optional<MaterialGaps> gaps_;  ///< Material points only.
+  std::vector<Vec3> places_;          ///< Positions of the kept points.
   std::vector<Nearest> nearest_;
   bool seen_before_ = false, warned_ = false;
   long tunnelled_ = 0, fast_ = 0;
-  double safe_time_ = HUGE_VAL;  ///< as SampleSource::safe_time
+  double safe_time_ = HUGE_VAL;  ///< As SampleSource::safe_time.
   SumError sum_error_;
 };
 
-/// The source of one side, soft or rigid, against a shape.
+/// Makes the source of one side, soft or rigid, with a shape.
 template <class Shape>
 std::unique_ptr<SampleSource> make_analytic_source(ContactSide side, int frame,
                                                    std::shared_ptr<MovingFrame> motion, const Shape& shape,
@@ -302,7 +307,7 @@ std::unique_ptr<SampleSource> make_analytic_source(ContactSide side, int frame,
                                              shape, candidate_gap, look_ahead);
 }
 
-/// What an obstacle's registry entry needs of its Shape: a gap to look at without a source.
+/// Returns the nearest point on a shape at rest: for ObstacleEntry::nearest, without a source.
 template <class Shape>
 Nearest nearest_to(Shape shape, const Vec3& x) {
   shape.move_to(Pose{});

@@ -13,26 +13,28 @@
 
 namespace palpate::contact {
 
-// A ball of radius R, its centre at c, over a shape whose point nearest to c lies along -n.  Along n, at the
-// distance rho from the axis through c, the ball begins at the height -sqrt(R^2 - rho^2) over c, and the
-// shape ends at the height t:
+// Consider a ball of radius R with its centre at c, and a shape whose point nearest to c lies along -n. Along
+// n, at the distance rho from the axis through c, the ball begins at the height -sqrt(R^2 - rho^2) above c,
+// and the shape ends at the height t:
 //
 //     depth = t + sqrt(R^2 - rho^2),      force = k sum of depth dA = k x overlap volume.
 //
-// Rings of equal area around the axis are samples, each with the mean of the ball's heights in it,
+// The samples are rings of equal area around the axis, each with the mean height of the ball over the ring,
 //     mean of sqrt(R^2 - rho^2) = 2/3 (p^2 + p q + q^2)/(p + q),    p, q = sqrt(R^2 - rho^2) at its two rims,
-// so that a ring pressed as a whole has its volume exactly.  The rings within the patch that is pressed have
-// equal areas, at every state.
+// so that a ring in full contact has its volume exactly. The rings divide the pressed patch into equal areas
+// at every state.
 //
-// By its own surface (FrameBall::by_surface), as material points have it, a ring between p and q has the area
-// 2 pi R (p - q) and the mean height (p + q)/2, both exactly; on a plane that is pi R depth^2.
+// Integrated over the ball's surface (FrameBall::by_surface), as with material points, a ring between p and q
+// has the area 2 pi R (p - q) and the mean height (p + q)/2, both exactly; on a plane the integral is pi R
+// depth^2.
 //
-// All samples stand on the axis.  A ball without friction feels no moment about its centre, and a ball that
-// rotates about it feels no change; both are so here, exactly, for the arm of each force is along n.  The
-// torque of friction against spin about n, of the order of friction times the patch's radius, is left out.
+// All samples lie on the axis. A ball without friction has no contact moment about its centre, and its
+// contact does not change when the ball rotates about its centre. Both hold exactly here, because the arm of
+// each force is along n. The friction torque against spin about n, of the order of friction times the patch's
+// radius, is neglected.
 
-/// What a ball of radius R and a shape with the radius of curvature r (0: flat) have in common when they
-/// overlap by `depth`: the radius squared of the circle where they meet [m^2].
+/// Returns the squared radius of the circle in which a ball of radius R and a shape with radius of curvature
+/// r (0: flat) intersect when they overlap by `depth` [m^2].
 inline double patch_radius2(double R, double r, double depth) {
   if (r == 0.0) return depth < R ? depth * (2.0 * R - depth) : R * R;
   const double d = R + r - depth, from_ball = (d * d + R * R - r * r) / (2.0 * d);
@@ -40,13 +42,13 @@ inline double patch_radius2(double R, double r, double depth) {
   return R * R - from_ball * from_ball;
 }
 
-/// Whether what went straight from a to b, in the frame of a convex shape, went through it: outside at both,
-/// and in between deeper than an eighth of its thickness.  What was less deep grazed an edge or a rim.
-/// @pre the shape is at `pose`
+/// Returns whether a point that moved straight from a to b, in the frame of a convex shape, tunnelled:
+/// outside at both ends, and deeper than an eighth of the shape's thickness in between. Shallower paths
+/// grazed an edge or a rim. @pre the shape is at `pose`
 template <class Shape>
 bool goes_through(const Shape& shape, const Pose& pose, const Vec3& a, const Vec3& b) {
   if (!shape.is_crossed(a, b)) return false;
-  // the signed distance from a convex set is convex along a line
+  // The signed distance from a convex set is convex along a line.
   const auto gap = [&](double s) { return shape.at(pose * (a + s * (b - a))).gap; };
   double low = 0.0, high = 1.0;
   for (int i = 0; i < 60; ++i) {
@@ -59,7 +61,7 @@ bool goes_through(const Shape& shape, const Pose& pose, const Vec3& a, const Vec
   return -gap(0.5 * (low + high)) > shape.lengths().width / 8.0;
 }
 
-/// A ball against an exact shape (analytic_source.h says what a Shape has).
+/// Contact source of a ball with an exact shape (requirements on Shape: analytic_source.h).
 template <class Shape>
 class BallSource final : public SampleSource {
  public:
@@ -84,7 +86,7 @@ class BallSource final : public SampleSource {
     a("fast", fast_);
   }
   void add_pattern(dynamics::PatternBuilder&) const override {}
-  bool has_events() const override { return false; }  // force and stiffness set in from zero
+  bool has_events() const override { return false; }  // Force and stiffness set in continuously from zero.
 
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     const double rate = place(state);
@@ -109,9 +111,9 @@ class BallSource final : public SampleSource {
   }
 
  private:
-  static constexpr int kSectors = Shape::kRound ? 1 : 40;  ///< parts of a ring
+  static constexpr int kSectors = Shape::kRound ? 1 : 40;  ///< Sectors per ring.
 
-  /// Ball and shape at a state, and the speed at which their nearest points part [m/s].
+  /// Evaluates ball and shape at a state. Returns the rate of the gap between them [m/s].
   double place(const dynamics::StateView& state) {
     const Pose own = ball_.motion->pose(state), shape_pose = motion_->pose(state);
     c_ = own * ball_.centre;
@@ -125,14 +127,15 @@ class BallSource final : public SampleSource {
                   motion_->twist(state).at(foot - shape_pose.translation));
   }
 
-  /// The shape at the distance sqrt(a) from the axis, as a height along the normal over the centre.
+  /// Returns the height of the shape along the normal, relative to the centre, at the distance sqrt(a) from
+  /// the axis.
   double height(double a, double phi) const {
     const Vec3 e = n_.unitOrthogonal(), f = n_.cross(e);
     return shape_.height(c_ + std::sqrt(a) * (std::cos(phi) * e + std::sin(phi) * f), n_);
   }
 
-  /// How far from the axis, squared, the ball is pressed.  The gap grows with the distance: the shape is
-  /// convex, and lies below the plane through its highest point that n stands on.
+  /// Returns the squared distance from the axis up to which the ball is pressed. The gap increases with the
+  /// distance: the shape is convex, and lies below the plane that is normal to n at its highest point.
   double rim(double phi) const {
     const double R2 = ball_.radius * ball_.radius;
     double low = 0.0, high = R2;
@@ -143,8 +146,8 @@ class BallSource final : public SampleSource {
     return low;
   }
 
-  /// Rings of equal area within the patch; on a shape that does not look the same all around, in sectors with
-  /// rims of their own.  Always as many: without a patch they have no area.
+  /// Appends rings of equal area within the patch; on a shape that is not rotationally symmetric, in sectors
+  /// with separate rims. The number of samples is constant: without a patch they have no area.
   void sample(double gap, std::vector<ContactSample>& samples) {
     constexpr int kRings = Shape::kRound ? 48 : 24;
     for (int k = 0; k < kSectors; ++k) {
@@ -157,7 +160,7 @@ class BallSource final : public SampleSource {
     }
   }
 
-  /// A sector of the ring between the squared distances a0 and a1 from the axis.
+  /// Appends the sample of a sector of the ring between the squared distances a0 and a1 from the axis.
   void add_cell(double a0, double a1, double phi, std::vector<ContactSample>& samples) {
     const double R2 = ball_.radius * ball_.radius, p = std::sqrt(std::max(R2 - a0, 0.0)),
                  q = std::sqrt(std::max(R2 - a1, 0.0)),
@@ -174,7 +177,7 @@ class BallSource final : public SampleSource {
     samples.push_back(sample);
   }
 
-  /// The centre's way since the last query, as AnalyticSource sees a vertex's.
+  /// Checks the centre's path since the last query for tunnelling, as AnalyticSource does for vertices.
   void find_tunnelled(const Vec3& now, double t) {
     const bool crossed = seen_before_ && goes_through(shape_, inverse_.inverse(), seen_, now);
     seen_ = now;
@@ -192,14 +195,14 @@ class BallSource final : public SampleSource {
   std::shared_ptr<MovingFrame> motion_;
   Shape shape_;
   double candidate_gap_, look_ahead_;
-  Nearest nearest_{};                    ///< to the centre, at the state of the query or evaluation under way
-  Vec3 c_, n_;                           ///< the centre then, and the shape's normal nearest to it
-  Pose inverse_;                         ///< of the shape's frame then
-  std::vector<ContactSample> followed_;  ///< scratch
-  Vec3 seen_ = Vec3::Zero();             ///< the centre at the last query, in the shape's frame
+  Nearest nearest_{};  ///< Nearest point to the centre at the state of the present query or evaluation.
+  Vec3 c_, n_;         ///< Centre of the ball and normal of the shape at that state.
+  Pose inverse_;       ///< Inverse pose of the shape's frame at that state.
+  std::vector<ContactSample> followed_;  ///< Scratch.
+  Vec3 seen_ = Vec3::Zero();             ///< Centre at the last query, in the shape's frame.
   bool seen_before_ = false;
   long tunnelled_ = 0, fast_ = 0;
-  double safe_time_ = HUGE_VAL;  ///< as SampleSource::safe_time
+  double safe_time_ = HUGE_VAL;  ///< As SampleSource::safe_time.
 };
 
 }  // namespace palpate::contact

@@ -1,4 +1,4 @@
-// What a checkpoint keeps of contact.
+// State of contact in a checkpoint.
 #include <algorithm>
 
 #include "contact/contact_force_impl.h"
@@ -23,7 +23,8 @@ void archive(Archive& a, std::string_view name, ResultantSize& size) {
 
 }  // namespace
 
-/// Ties are the scene's: they stand in front, and stay.
+/// Saves or restores the held points. Ties come from the scene: they precede held points in the list and are
+/// kept.
 void Bonds::archive(Archive& a) {
   const auto first =
       std::find_if(bonds_.begin(), bonds_.end(), [](const Bond& bond) { return bond.pair != Bond::kTied; });
@@ -46,7 +47,7 @@ void Bonds::archive(Archive& a) {
   bonds_.insert(bonds_.end(), grasped.begin(), grasped.end());
 }
 
-// The query is the last thing: it takes from those before what was given back.
+// The query comes last, because it uses the restored state of earlier queries.
 void ContactForce::archive(Archive& a, const dynamics::StateView& state) {
   Impl& m = *impl_;
   a.each("pair", m.pairs, [&](Impl::Pair& pair) {

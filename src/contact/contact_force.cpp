@@ -26,11 +26,13 @@ void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
   follow(state);
 }
 
-// Force, tangent and events of one state ask one after the other; the shape is asked once.  Time alone does
-// not tell a moving frame's pose: what is known of its path may have grown.
+// Force, tangent and events of one state are requested one after another; the shape is evaluated once for
+// all. Equal times do not imply equal poses of a moving frame, because its known trajectory may have been
+// extended.
 void ContactForce::Impl::follow(const dynamics::StateView& state) {
   if (!has_followers()) return;
-  if (!state.q.allFinite()) return;  // an integrator's failed trial: the force says so by itself
+  // A failed trial of an integrator: the resulting force is not finite either.
+  if (!state.q.allFinite()) return;
   bool same = followed.query == queries && followed.time == state.time &&
               followed.q.size() == state.q.size() && followed.q == state.q &&
               followed.poses.size() == frames.size();
@@ -122,7 +124,7 @@ int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSp
   PALPATE_CHECK(source, "contact \"{}\" with \"{}\" has no source", law.first, law.second);
   const bool follows = source->follows();
   Impl::Pair pair{.source = std::move(source), .law = pressure_law(law), .follows = follows};
-  if (!follows) pair.law.retardation = 0.0;  // anchors are of material points
+  if (!follows) pair.law.retardation = 0.0;  // Anchors need material points.
   if (follows && law.friction > 0.0)
     pair.anchors = FrictionAnchors(pair.law.retardation, pair.law.regularisation);
   pair.begin = pair.end = impl_->samples.size();
@@ -132,7 +134,7 @@ int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSp
 
 std::string_view ContactForce::name() const { return "contact"; }
 
-// Friction has no potential; the rows of a frame in the State see rotations, which do not commute (see
+// Friction has no potential. The rows of a frame in the State involve rotations, which do not commute (see
 // tangent.cpp).
 dynamics::TermTraits ContactForce::traits() const {
   dynamics::TermTraits traits;
@@ -156,7 +158,7 @@ void ContactForce::add_pattern(dynamics::PatternBuilder& pattern) const {
 }
 
 std::uint64_t ContactForce::pattern_version() const {
-  std::uint64_t sum = impl_->pairs.size();  // each grows only, so does the sum
+  std::uint64_t sum = impl_->pairs.size();  // All counters increase only, and so does the sum.
   for (const auto& pair : impl_->pairs) sum += pair.source->pattern_version();
   return sum;
 }
@@ -224,9 +226,10 @@ SecantTangents::~SecantTangents() {
   contact_.laws_kept.clear();
 }
 
-// With a symmetric tangent the step goes on with the friction of the pressure p0 that it began with:
-//     F = F0 - mu p0 A ds/dv dv,   and leaves out   -mu s A (p - p0),
-// whose sum over a pair's samples is what is measured, at the pressure that the step has led to.
+// With a symmetric tangent the step uses the friction of the pressure p0 at its start:
+//     F = F0 - mu p0 A ds/dv dv,   and neglects   -mu s A (p - p0).
+// The norm of the sum of the neglected part over a pair's samples is recorded, at the pressure at the end of
+// the step.
 void ContactForce::Impl::linearise_friction(const dynamics::StateView& state) {
   if (!laws_kept.empty()) return;
   measure_friction_lag(state);
@@ -274,7 +277,8 @@ bool ContactForce::refresh(const dynamics::StateView& state) {
   m.check_samples(state);
   const bool grasped = m.take_grasps(state);
   m.all_forces(state, m.force_after, m.resultants.after);
-  m.resultants.compare(m.next_samples, m.samples, state, m.frames);  // next_samples: those of before
+  // next_samples holds the previous samples.
+  m.resultants.compare(m.next_samples, m.samples, state, m.frames);
   return grasped || m.force_after != m.force_before;
 }
 
@@ -290,8 +294,8 @@ std::uint64_t ContactForce::events_version() const {
   return impl_->events_version;
 }
 
-// A candidate that is far apart is among them: it may close before the next query.  A sample whose gap is far
-// away costs a root finder an evaluation, no more.
+// Distant candidates are included: they may close before the next query. A sample with a large gap costs a
+// root finder no more than one evaluation.
 void ContactForce::events(const dynamics::StateView& state, double* g) {
   Impl& m = *impl_;
   m.place_frames(state);
@@ -367,7 +371,8 @@ std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state)
   std::vector<ContactPoint> out;
   out.reserve(m.samples.size());
   for (const ContactSample& s : m.samples) {
-    if (s.area == 0.0) continue;  // it has no force, wherever it is, and need not be where it is nearest
+    // Without area there is no force, and the points need not be nearest points.
+    if (s.area == 0.0) continue;
     const SampleMotion motion = sample_motion(s, state, m.frame_states);
     const double p = pressure(m.pairs[static_cast<std::size_t>(s.source)].law, motion.gap, motion.rate).p;
     out.push_back({motion.a.x, motion.b.x, s.normal, motion.gap, s.stored * motion.gap, p, s.area, s.source});

@@ -8,36 +8,39 @@
 
 namespace palpate::contact {
 
-/// A spring of its own, whatever area it stands for; none where it faces away.
+/// Turns one sample into a spring per point, independent of its area; without a spring where the vertex faces
+/// away.
 inline void count_as_point(ContactSample& sample) { sample.area = sample.area > 0.0 ? 1.0 : 0.0; }
 
+/// State and helpers of ContactForce.
 struct ContactForce::Impl {
   struct Pair {
     std::unique_ptr<SampleSource> source;
     PressureLaw law;
-    std::size_t begin = 0, end = 0;  ///< its samples
-    bool follows = false;            ///< they are exact at every evaluation
-    double deepest = 0.0;            ///< largest overlap that a query saw [m]
-    FrictionAnchors anchors{};       ///< of what sticks
-    bool given = false;  ///< frames given from outside on both sides: nothing in the State feels them
+    std::size_t begin = 0, end = 0;  ///< Range of its samples.
+    bool follows = false;            ///< Samples are re-evaluated at every state (SampleSource::follows).
+    double deepest = 0.0;            ///< Largest overlap found by a query [m].
+    FrictionAnchors anchors{};       ///< Anchors of sticking contacts.
+    bool given = false;              ///< Prescribed frames on both sides: no effect on the State.
   };
 
   std::vector<std::shared_ptr<MovingFrame>> frames;
   std::vector<Pair> pairs;
-  std::vector<PressureLaw> laws_kept;  ///< the pairs' own, while SecantTangents lives
+  std::vector<PressureLaw> laws_kept;  ///< Laws of the pairs, saved during the lifetime of SecantTangents.
   std::vector<ContactSample> samples, next_samples;
-  std::vector<FrameState> frame_states;  ///< at the state of the evaluation under way
-  std::vector<int> frame_rows;           ///< scratch
-  VecX force_before, force_after;        ///< scratch of refresh
+  std::vector<FrameState> frame_states;  ///< Frames at the state of the present evaluation.
+  std::vector<int> frame_rows;           ///< Scratch.
+  VecX force_before, force_after;        ///< Scratch of refresh().
   long queries = 0;
-  std::uint64_t events_version = 1;  ///< grows when a query finds other samples than the one before
-  /// the last query's samples were not compared yet with those before, which are in next_samples
+  std::uint64_t events_version = 1;  ///< Increases when a query finds other samples than the previous one.
+  /// True: the samples of the last query were not compared yet with the previous ones, which are in
+  /// next_samples.
   bool events_to_compare = false;
   void compare_events();
   double query_seconds = 0.0;
   Resultants resultants;
 
-  /// What a frame is to do about what presses on it, and what it does since the last refresh.
+  /// Requested and actual state of a frame's grasp; the actual state changes at a refresh.
   struct Grasp {
     int frame;
     bool wanted = false, closed = false;
@@ -45,26 +48,26 @@ struct ContactForce::Impl {
   std::vector<Grasp> grasps;
   Bonds bonds;
   GraspCounts grasp_counts;
-  /// True where one closed or let go.  @pre frames are placed
+  /// Applies grasp commands. Returns true where points were held or released. @pre frames are placed
   bool take_grasps(const dynamics::StateView& state);
 
-  /// Friction of the samples that a symmetric tangent was made of: what it leaves out is how this follows the
-  /// pressure until the next.
+  /// Friction of a sample for which a symmetric tangent was computed. The tangent neglects how this friction
+  /// follows the pressure until the next tangent.
   struct Linearised {
     std::size_t sample, pair;
-    double pressure;    ///< [Pa]
-    Vec3 per_pressure;  ///< [m^2]
+    double pressure;    ///< Pressure [Pa].
+    Vec3 per_pressure;  ///< Friction per pressure [m^2].
   };
   std::vector<Linearised> linearised;
   double largest_friction_lag = 0.0, largest_friction = 0.0;  ///< [N]
   void linearise_friction(const dynamics::StateView& state);
   void measure_friction_lag(const dynamics::StateView& state);
-  /// Friction within a step, where it is that of the step's end.
+  /// State of friction within a step for which it is evaluated at the step's end.
   struct StepFriction {
     bool on = false;
     int solves = 0;
-    std::vector<FrictionGuess> guesses;    ///< by sample
-    double left_out = 0.0, largest = 0.0;  ///< of the last solve, of the pairs' sums [N]
+    std::vector<FrictionGuess> guesses;    ///< Guess per sample.
+    double left_out = 0.0, largest = 0.0;  ///< Sums over pairs in the last solve [N].
   } step_friction;
   bool has_step_friction(const PressureLaw& law) const {
     return step_friction.on && law.secant_friction && law.friction > 0.0;
@@ -72,11 +75,11 @@ struct ContactForce::Impl {
   FrictionLine line_of(const ContactSample& s) const {
     return friction_line(step_friction.guesses[static_cast<std::size_t>(&s - samples.data())], s.normal);
   }
-  /// ContactForce::improve_step.
+  /// Implements ContactForce::improve_step.
   bool improve_friction(const dynamics::StateView& state, const VecX& moved, const VecX& change,
                         const FrameStep& given, double tolerance);
-  std::vector<FrictionError> friction_errors;  ///< scratch: by pair
-  /// As the pair's law has it, or within a step as that takes it.
+  std::vector<FrictionError> friction_errors;  ///< Scratch, per pair.
+  /// Returns the force of a sample by the pair's law or, within a step, by the affine friction of the step.
   Vec3 force_of(const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) const {
     return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s)).force
                                   : sample_force(s, motion, law);
@@ -86,13 +89,13 @@ struct ContactForce::Impl {
     return has_step_friction(law) ? sample_force_and_tangent(s, motion, law, line_of(s))
                                   : sample_force_and_tangent(s, motion, law, symmetric);
   }
-  /// Frames, and with them the samples that follow, at the state of an evaluation.
+  /// Evaluates the frames, and the samples that follow, at a state.
   void place_frames(const dynamics::StateView& state);
   void place_frames_alone(const dynamics::StateView& state);
   void follow(const dynamics::StateView& state);
-  bool has_followers() const;  ///< whether a pair's samples follow the state
+  bool has_followers() const;  ///< Returns whether the samples of any pair follow the state.
   void note_followed(const dynamics::StateView& state);
-  /// What the samples that follow depend on, as it was when they were last evaluated.
+  /// Inputs of the samples that follow, as of their last evaluation.
   struct Followed {
     long query = -1;
     double time = 0.0;
@@ -100,30 +103,30 @@ struct ContactForce::Impl {
     std::vector<Pose> poses;
   } followed;
   void query(const dynamics::StateView& state);
-  void measure_depth(Pair& pair) const;  ///< of its next samples
+  void measure_depth(Pair& pair) const;  ///< Evaluates its next samples.
   void check_samples(const dynamics::StateView& state) const;
-  const std::vector<int>& rows_of_frames();  ///< in the State
+  const std::vector<int>& rows_of_frames();  ///< Rows of the frames in the State.
   /// @pre frames are placed
   void add_forces(const dynamics::StateView& state, VecX& f);
   void apply_tangents(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x,
                       VecX& y);
-  /// Forces on the nodes and on every frame (six rows each, given ones too): what a refresh must not change
-  /// unseen.
-  /// @param on_a  one entry a pair: its resultant is added
+  /// Computes the forces on the nodes and on every frame (six rows each, prescribed frames included), for
+  /// comparison before and after a refresh.
+  /// @param on_a  resultants on side a, to which those of the samples are added; one entry per pair
   void all_forces(const dynamics::StateView& state, VecX& f, std::vector<Wrench>& on_a);
 
-  void find_given();  ///< Pair::given
-  VecX product;       ///< scratch of a step
+  void find_given();  ///< Sets Pair::given.
+  VecX product;       ///< Scratch of a step.
 
-  /// Whether its samples open and close with a kink that the State feels.
+  /// Returns whether the samples of a pair open and close with a kink that affects the State.
   static bool has_events(const Pair& pair) {
     return pair.law.onset == 0.0 && !pair.given && pair.source->has_events();
   }
   enum class Which {
     kEvery,
-    kOfState  ///< each that acts on the State
+    kOfState  ///< Samples that act on the State.
   };
-  /// visit(sample, motion, law) for each sample in penetration, in order.  @pre frames are placed
+  /// Calls visit(sample, motion, law) for each sample in penetration, in order. @pre frames are placed
   template <class Visit>
   void visit_active(const dynamics::StateView& state, Which which, const Visit& visit) {
     for (const Pair& pair : pairs) {

@@ -1,4 +1,4 @@
-// A query of all pairs.
+// Query of all pairs.
 #include <algorithm>
 
 #include "contact/contact_force_impl.h"
@@ -10,7 +10,8 @@ namespace palpate::contact {
 
 namespace {
 
-/// Whether two samples stand for the same two points, wherever these are now: the points of a frame slide.
+/// Returns whether two samples represent the same two points, whatever their positions; points of a frame
+/// slide.
 bool is_same_pair(const ContactSample& s, const ContactSample& t) {
   const auto is_same = [](const SurfacePoint& p, const SurfacePoint& q) {
     return p.frame == q.frame && p.count == q.count && (p.frame >= 0 || p.node == q.node);
@@ -49,13 +50,14 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   ++queries;
   counters::count("contact.query");
   std::swap(samples, next_samples);
-  if (has_followers()) note_followed(state);  // what was found now is nearest now
+  if (has_followers()) note_followed(state);  // The samples are up to date for this state.
   find_given();
-  if (events_to_compare) ++events_version;  // nobody asked between two queries: no comparison is needed
+  // The version was not requested between two queries: no comparison is needed.
+  if (events_to_compare) ++events_version;
   events_to_compare = true;
 }
 
-// Contact of the state that the grasp closes at is found first: what presses is held.
+// The contact at the state of the grasp command is found first: what presses there is held.
 bool ContactForce::Impl::take_grasps(const dynamics::StateView& state) {
   bool changed = false;
   for (Grasp& grasp : grasps) {

@@ -13,7 +13,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Box = AxisBox;
 
-/// All faces; returns their bounds.
+/// Makes all faces visible. Returns their bounds.
 Box see_all(Patch& patch) {
   const auto count = static_cast<std::size_t>(patch.faces->cols());
   patch.visible.resize(count);
@@ -28,9 +28,9 @@ Box see_all(Patch& patch) {
   return bounds;
 }
 
-/// Keeps the faces of `patch.visible` that reach into `window`; returns their bounds.
-/// No processor can guess which faces reach in: every face is written to the next place, which goes on where
-/// the face is kept.
+/// Keeps the faces of `patch.visible` that reach into `window`. Returns their bounds. Branch-free compaction,
+/// because the outcome is unpredictable: every face is written to the next place, which advances only if the
+/// face is kept.
 Box cut(Patch& patch, const Box& window) {
   Box bounds;
   std::size_t kept = 0;
@@ -54,8 +54,9 @@ Box cut(Patch& patch, const Box& window) {
 }  // namespace
 
 ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin(region_origin) {
-  // Pixels stand along u and v.  A direction that is far from the normal turns them as little as the normal
-  // turns; one made of the normal's small components (Eigen's unitOrthogonal) spins where these change sign.
+  // Pixels are aligned with u and v. A reference direction far from the normal makes u and v rotate no faster
+  // than the normal; one built from the normal's small components (Eigen's unitOrthogonal) spins where these
+  // change sign.
   constexpr double kFar = 0.8;
   const Vec3 far_from_normal = std::abs(normal.x()) < kFar ? Vec3::UnitX() : Vec3::UnitY();
   to_world.col(2) = normal;
@@ -86,7 +87,7 @@ ContactCamera camera_of(const ContactWindow& window, double pixel, const Eigen::
 
 ContactCamera camera_of(const ContactWindow& window, int pixels, const Eigen::Vector2d& shift) {
   ContactCamera camera = camera_of(window, window.longer_edge() / (pixels - 1), shift);
-  camera.width = std::min(camera.width, pixels);  // rounding of the edge
+  camera.width = std::min(camera.width, pixels);  // Rounding of the edge.
   camera.height = std::min(camera.height, pixels);
   return camera;
 }

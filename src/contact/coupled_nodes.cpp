@@ -37,7 +37,7 @@ std::span<const int> NodeNeighbours::of(int node) const {
                                    static_cast<std::size_t>(start_[at + 1] - start_[at]));
 }
 
-/// visit(i, j) for the nodes that two carriers couple, until it says false.
+/// Calls visit(i, j) for the nodes that two carriers couple, until it returns false.
 template <class Visit>
 bool CoupledNodes::for_each_pair(const Joint& joint, Visit visit) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(joint.count_a); ++i)
@@ -46,8 +46,8 @@ bool CoupledNodes::for_each_pair(const Joint& joint, Visit visit) {
   return true;
 }
 
-/// Whether all that the joints couple is there.  Most of them were met before: they are known by their
-/// carriers.
+/// Returns whether the pattern contains all pairs that the joints couple. Most joints are known from earlier
+/// queries by their carriers.
 bool CoupledNodes::holds() {
   for (const Joint& joint : joints_) {
     if (known_.contains(joint.key)) continue;

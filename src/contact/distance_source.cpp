@@ -1,14 +1,17 @@
-// Contact by nearest points: material points of both skins, each tied to the nearest point of the other one.
+// Contact by nearest points: material points of both skins, each paired with the nearest point of the other
+// skin.
 //
 // The samples are the springs of distance::SkinContact: x a point of a skin, y(x) the nearest point of the
-// other one, normal along x - y.  With A' the area of the point's hat that overlaps and V the integral of
-// overlap times hat, the sample has area A' and the gap -V/A': for a pressure k |gap| its force is the exact
-// gradient of the contact's energy.  Where nothing overlaps it has all of its hat, and its own gap.  Force
-// and opposite force have one line.  What the nodes get of them is exact where vertices are nodes; on a skin
-// in tetrahedra a point hangs on one tetrahedron (surface_state.cpp).
+// other skin, normal along x - y. With A' the overlapping area of the point's hat and V the integral of
+// overlap times hat, the sample has area A' and gap -V/A': for a pressure k |gap| its force is the exact
+// gradient of the contact's energy. Where nothing overlaps, the sample has the area of the whole hat and the
+// gap at the point. Force and opposite force act along one line. The distribution to nodes is exact where
+// vertices are nodes; on a skin embedded in tetrahedra a point is carried by one tetrahedron
+// (surface_state.cpp).
 //
-// A shape's own points (ShapePoints) are the only ones of their source, and those of a ball have no moment
-// about its centre: see on_ball().  Samples follow the state: the query only says which points can be near.
+// A source with points on an exact shape (ShapePoints) has points on that side only, and those of a ball have
+// no moment about its centre: see on_ball(). Samples follow the state: the query determines only which points
+// can be near.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,8 +36,9 @@ namespace {
 struct SkinSide {
   std::unique_ptr<ImageSide> surface;
   distance::Skin skin;
-  Points corners;  ///< of a rigid one: of what carries the skin, in its frame [m]; else none
-  TriMesh rest;    ///< [m]
+  /// Rigid side: corners of the tetrahedron that carries the skin, in its frame [m]; else empty.
+  Points corners;
+  TriMesh rest;  ///< Surface at rest [m].
 };
 
 class DistanceSource final : public SampleSource {
@@ -52,7 +56,7 @@ class DistanceSource final : public SampleSource {
     if (options_.candidate_gap == 0.0) options_.candidate_gap = std::min(mean_edge(0), mean_edge(1));
     counters::count("contact.distance_source");
   }
-  /// Of a skin against itself.
+  /// Creates self-contact of a skin.
   DistanceSource(SkinSide side, distance::ContactMesh mesh, double radius, const Points& rest_nodes,
                  const DistanceOptions& options)
       : a_(std::move(side.surface)),
@@ -77,7 +81,8 @@ class DistanceSource final : public SampleSource {
     if (own_)
       look_back_.look_at_itself(
           *a_, thickness_, [this](int vertex, int face) { return may_meet(vertex, face); }, state.time);
-    else if (!contact_.points(0).empty())  // else the points of the other surface have looked back
+    // Otherwise the source of the other surface's points checks for tunnelling.
+    else if (!contact_.points(0).empty())
       look_back_.look(
           *a_, b(),
           [&](LookBack::Met& met) {
@@ -123,7 +128,7 @@ class DistanceSource final : public SampleSource {
     contact_.follow(carrying(0), carrying(1));
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (!springs[i].is_placed) {
-        samples[i].area = 0.0;  // its points are not where they were nearest: no force, whatever they do
+        samples[i].area = 0.0;  // The points are not nearest points at this state: no force.
         continue;
       }
       Pair pair = pair_of(springs[i]);
@@ -155,7 +160,8 @@ class DistanceSource final : public SampleSource {
   }
 
  private:
-  /// Returns whether a vertex and a face of a skin against itself, numbered as given, are no neighbours.
+  /// Returns whether a vertex and a face of a skin in self-contact, in the original numbering, are not
+  /// neighbours.
   bool may_meet(int vertex, int face) const {
     const distance::Skin& skin = skins_[0];
     const auto around = [&](int v) {
@@ -174,8 +180,8 @@ class DistanceSource final : public SampleSource {
     a_->update(state);
     if (b_) b_->update(state);
   }
-  /// Positions of the nodes of a side's distance::Skin: the body's nodes, its vertices, or the corners of
-  /// what carries a rigid one.
+  /// Returns the positions of the nodes of a side's distance::Skin: the body's nodes, its vertices, or the
+  /// corners of the tetrahedron that carries a rigid skin.
   const double* carrying(std::size_t side) {
     ImageSide& surface = side == 0 ? *a_ : b();
     if (surface.soft()) return surface.points().data();
@@ -188,7 +194,7 @@ class DistanceSource final : public SampleSource {
     return placed_[side].data();
   }
 
-  /// As MaterialPointState::mean_edge(); infinite of a side without points.
+  /// As MaterialPointState::mean_edge(); infinite for a side without points.
   double mean_edge(int side) const {
     double area = 0.0;
     for (const distance::ContactPoint& point : contact_.points(side)) area += point.area;
@@ -212,7 +218,7 @@ class DistanceSource final : public SampleSource {
     const distance::ContactPoint& point =
         contact_.points(spring.side)[static_cast<std::size_t>(spring.point)];
     const Vec3 x = contact_.position(spring), y = x + spring.reach;
-    const Vec3 out = contact_.outward(spring);  // of b where the point is a's
+    const Vec3 out = contact_.outward(spring);  // Outward direction of b for a point of a.
     Pair pair;
     const bool is_of_a = spring.side == 0;
     pair.normal = is_of_a ? out : Vec3(-out);
@@ -232,12 +238,12 @@ class DistanceSource final : public SampleSource {
     out.a = pair.a.point;
     out.b = pair.b.point;
     out.normal = pair.normal;
-    out.area = spring.is_placed ? spring.stiffness : 0.0;  // of 1 Pa/m: half of the hat's area
+    out.area = spring.is_placed ? spring.stiffness : 0.0;  // Stiffness at 1 Pa/m: half of the hat's area.
     out.gap = spring.gap;
     if (spring.force > 0.0) {
       out.gap = -spring.force / spring.stiffness;
       out.stored = 2.0 * spring.energy * spring.stiffness / (spring.force * spring.force);
-      const Vec3 end = pair.at_a - out.gap * pair.normal;  // on the same line
+      const Vec3 end = pair.at_a - out.gap * pair.normal;  // On the same line.
       if (b().soft())
         out.b.offset += end - pair.at_b;
       else
@@ -245,15 +251,15 @@ class DistanceSource final : public SampleSource {
     }
     return out;
   }
-  // A ball's points keep their axes while it rotates: no force depends on its rotation, so that the gradient
-  // has no moment about its centre.  Each acts along the line through the centre.
+  // The points of a ball do not rotate with it: no force depends on its rotation, so that the gradient has no
+  // moment about its centre. Each force acts along the line through the centre.
   SurfacePoint on_ball(const Vec3& x, const Vec3& normal) const {
     SurfacePoint point = *centre_;
     point.slide = normal.dot(x - b_->frame() * centre_->offset) * normal;
     return point;
   }
 
-  /// Blocks between the nodes of two soft bodies.
+  /// Returns whether the tangent has blocks between the nodes of two soft sides.
   bool is_coupled() const { return a_->soft() && b().soft(); }
   void couple() {
     const std::uint64_t layout = a_->soft()->pattern_version() + b().soft()->pattern_version();
@@ -264,8 +270,9 @@ class DistanceSource final : public SampleSource {
     }
     coupled_.take(joints_);
   }
-  /// The blocks between two bodies are those of the query's carriers and of all that these share nodes with
-  /// (CoupledNodes).  A point that has gone farther hangs on what carried it at the query.
+  /// Keeps one sample within the pattern, which has the blocks of the query's carriers and of all carriers
+  /// that share nodes with these (CoupledNodes). A point that has moved farther stays attached to its carrier
+  /// at the query.
   void keep_in_pattern(const CoupledNodes::Joint& then, Pair& now) const {
     const auto keep = [&](const ImageSide& side, int number, const std::array<int, 4>& nodes, int count,
                           const Vec3& x, CarriedPoint& point) {
@@ -284,16 +291,17 @@ class DistanceSource final : public SampleSource {
     return own_->point(skins_[0].given_face[static_cast<std::size_t>(face)], weights, at);
   }
 
-  std::unique_ptr<ImageSide> a_, b_;  ///< b: none of a skin against itself
+  std::unique_ptr<ImageSide> a_, b_;  ///< Sides; b is null for self-contact.
   std::array<distance::Skin, 2> skins_;
-  std::unique_ptr<SelfContactFilter> own_;  ///< of a skin against itself
-  std::array<Points, 2> corners_, placed_;  ///< of rigid sides, in their frames and in the world [m]
+  std::unique_ptr<SelfContactFilter> own_;  ///< Self-contact only.
+  /// Rigid sides: carrying corners in their frames and in the world [m].
+  std::array<Points, 2> corners_, placed_;
   distance::SkinContact contact_;
   DistanceOptions options_;
-  double thickness_;                         ///< of the thinner side [m]
-  std::optional<SurfacePoint> centre_;       ///< of a ball, side b, in its frame
-  std::vector<int> points_;                  ///< of the samples of the last query, b's behind a's
-  std::vector<CoupledNodes::Joint> joints_;  ///< of two soft bodies: what carried the samples at the query
+  double thickness_;                    ///< Thickness of the thinner side [m].
+  std::optional<SurfacePoint> centre_;  ///< Centre of a ball, side b, in its frame.
+  std::vector<int> points_;  ///< Indices of the last query's samples; those of b follow those of a.
+  std::vector<CoupledNodes::Joint> joints_;  ///< Two soft bodies: carriers of the samples at the query.
   mutable CoupledNodes coupled_;
   std::optional<std::array<NodeNeighbours, 2>> neighbours_;
   std::uint64_t counted_in_ = 0;
@@ -323,7 +331,7 @@ SkinSide rigid(const FrameSurface& surface) {
   return side;
 }
 
-/// Points of both.
+/// Makes a source with points of both sides.
 std::unique_ptr<SampleSource> make(SkinSide a, SkinSide b, const DistanceOptions& options) {
   const CharacteristicLengths of_a = lengths_of(a.rest), of_b = lengths_of(b.rest);
   const auto spacing = [&](const CharacteristicLengths& own, const CharacteristicLengths& other) {
@@ -335,7 +343,7 @@ std::unique_ptr<SampleSource> make(SkinSide a, SkinSide b, const DistanceOptions
                                           std::min(of_a.width, of_b.width), options);
 }
 
-/// Points of the shape alone.
+/// Makes a source with points of the shape only.
 std::unique_ptr<SampleSource> make(SkinSide other, const ShapePoints& shape, const DistanceOptions& options) {
   SkinSide own = rigid(shape.surface);
   distance::ContactMesh mesh = distance::contact_mesh(own.skin, shape.spacing);

@@ -10,8 +10,8 @@ void FacePlanes::start(const Patch& patch) {
   kinds_.assign(patch.visible.size(), Kind::kUnknown);
 }
 
-// With corners p0, p1, p2 seen along w and d_i = p_i - p0, the weights of corners 1 and 2 at p0 + d are
-// (d x d_2) / (d_1 x d_2) and (d_1 x d) / (d_1 x d_2).
+// With corners p0, p1, p2 seen along w and d_i = p_i - p0, the weights of corners 1 and 2 at p0 + d are (d x
+// d_2) / (d_1 x d_2) and (d_1 x d) / (d_1 x d_2).
 FacePlanes::Kind FacePlanes::prepare(Plane& plane, int face) const {
   constexpr double kFlat = 1e-12;
   const auto corner = [&](int k) { return patch_->uvw.col((*patch_->faces)(k, face)); };

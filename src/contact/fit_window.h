@@ -5,10 +5,10 @@
 
 namespace palpate::contact {
 
-/// The cuts of fit_window (contact_view.h), for any storage of faces.
+/// Performs the cuts of fit_window() (contact_view.h), for any storage of faces.
 /// @param box_a, box_b  bounds of the faces
-/// @param cut_a, cut_b  (window): remove the faces that do not reach into it, and return the bounds of the
-///   others, whose low is above their high where none is left
+/// @param cut_a, cut_b  (window): remove the faces that do not reach into the window, and return the
+///   bounds of the others, with low above high where none is left
 template <class CutA, class CutB>
 ContactWindow cut_to_window(AxisBox box_a, AxisBox box_b, double candidate_gap, CutA cut_a, CutB cut_b) {
   constexpr int kCuts = 3;
@@ -30,7 +30,7 @@ ContactWindow cut_to_window(AxisBox box_a, AxisBox box_b, double candidate_gap, 
   out.high = box_a.high.cwiseMin(box_b.high).head<2>();
   out.near = box_a.low.z() - candidate_gap;
   out.far = box_b.high.z() + candidate_gap;
-  const double room = 1e-3 * (out.far - out.near);  // nothing at the very ends of the depth range
+  const double room = 1e-3 * (out.far - out.near);  // Margin at both ends of the depth range.
   out.near -= room;
   out.far += room;
   return out;

@@ -23,7 +23,8 @@ class FixedFrame final : public MovingFrame {
 class BlockFrame final : public MovingFrame {
  public:
   explicit BlockFrame(int block_id) : block_id_(block_id) {}
-  // An integrator's trial quaternion is not quite a unit one; the rotation is that of its direction.
+  // Trial quaternions of an integrator are not exactly normalised; the rotation is taken from their
+  // direction.
   Pose pose(const dynamics::StateView& state) const override {
     const double* q = state.q.data() + block(state).q_offset;
     return {Quat(q[0], q[1], q[2], q[3]).normalized(), Vec3(q[4], q[5], q[6])};
@@ -45,13 +46,13 @@ class BlockFrame final : public MovingFrame {
   int block_id_;
 };
 
-/// The motion that goes on with one knot's twist.
+/// Extrapolates the motion with one knot's twist.
 Pose continued(const Pose& pose, const Twist& twist, double dt) {
   return {(quaternion_of(dt * twist.angular) * pose.rotation).normalized(),
           pose.translation + dt * twist.linear};
 }
 
-/// The knot at or before t (the first one where there is none).
+/// Returns the knot at or before t, or the first knot.
 template <class Knots>
 std::size_t knot_before(const Knots& knots, double t) {
   PALPATE_CHECK(!knots.empty(), "a trajectory frame without a knot was asked for its pose at t = {}", t);

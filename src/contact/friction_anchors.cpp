@@ -1,25 +1,26 @@
-// Regularised friction alone, -L v/max(|v|, v_r), is a damper below v_r: what sticks creeps, at v_r times the
-// share of L that it has to hold.  A spring beside the damper ends that.  With u the deflection since the
-// points met, and tau the spring's retardation time, the damping over its stiffness, friction is
+// Regularised friction alone, -L v/max(|v|, v_r), is a damper below v_r: a sticking contact creeps, at v_r
+// times the fraction of L that it has to hold. A spring in parallel to the damper prevents this. With u the
+// deflection since the points came into contact, and tau the spring's retardation time, damping over
+// stiffness, friction is
 //
 //     -L w/max(|w|, v_r),   w = v + u/tau,   |u| <= tau v_r:
 //
 // a Kelvin-Voigt element within the cone (Coulomb's law with bristles: Dahl 1968; Haessig, Friedland 1991).
-// At rest u = tau v_r times that share, 1e-6 m for v_r = 2e-4 m/s and tau = 5 ms, and nothing moves.  Where
-// the points slide the anchor goes along, so that u is never longer, and w has the direction of v but for
-// v_r/|v|.
+// At rest u = tau v_r times that fraction, 1e-6 m for v_r = 2e-4 m/s and tau = 5 ms, and nothing moves. Where
+// the points slide the anchor is dragged along, so that |u| never exceeds tau v_r, and w has the direction of
+// v up to v_r/|v|.
 //
-// u is a function of the state between two queries: the tangential part of the way that the two material
-// points, those of the last query, have gone against each other, added to the deflection then; cut to its
-// longest at every evaluation.  A query moves the anchors to the new points, with the deflections that are
-// there, and changes no force.  What is missed is the anchor's motion between two queries: points that slide
-// one way, stop and turn round within one feel up to L too late by the way that they had slid.
+// Between two queries u is a function of the state: the tangential part of the relative displacement of the
+// two material points of the last query, added to the deflection at the query and cut to its maximum length
+// at every evaluation. A query moves the anchors to the new points, with the present deflections, and changes
+// no force. The motion of the anchor between two queries is neglected: where points slide one way, stop and
+// reverse within one period, friction lags by up to L over the distance that they had slid.
 //
-// Deflections are carried along by what has the second point, as the axes of its frame rotate, or of the
-// triangle of its nodes.
+// Deflections rotate with the carrier of the second point: with the axes of its frame, or of the triangle of
+// its nodes.
 //
-// A step of one linear solve holds u for its length h.  Its spring is slower than its damper by tau: u is
-// multiplied by no less than 1 - h/tau, so that tau, the time between two queries, is never too short.
+// A step of one linear solve holds u constant for its length h. The spring is slower than the damper by tau:
+// u is multiplied by no less than 1 - h/tau, so that tau, the time between two queries, is never too short.
 #include "contact/friction_anchors.h"
 
 #include <algorithm>
@@ -30,7 +31,7 @@
 namespace palpate::contact {
 namespace {
 
-/// Axes that go along with what has a point.
+/// Returns axes that move with the carrier of a point.
 Mat3 axes_of(const SurfacePoint& point, const dynamics::StateView& state,
              const std::vector<FrameState>& frames) {
   if (point.frame >= 0) return frames[static_cast<std::size_t>(point.frame)].R;
@@ -83,7 +84,7 @@ void FrictionAnchors::renew(std::span<ContactSample> samples, std::span<const in
                             const dynamics::StateView& state, const std::vector<FrameState>& frames) {
   std::swap(anchors_, before_);
   anchors_.clear();
-  if (samples.size() != points.size()) return;  // they stand for no material points: nothing sticks
+  if (samples.size() != points.size()) return;  // The samples represent no material points: no anchors.
   auto last = before_.begin();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     ContactSample& s = samples[i];

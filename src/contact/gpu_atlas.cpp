@@ -7,7 +7,7 @@
 namespace palpate::contact {
 
 std::size_t GpuAtlas::pack(std::span<DepthRequest* const> requests, int largest) {
-  constexpr int kWidth = 1024;  // a few tiles of the usual sizes
+  constexpr int kWidth = 1024;  // A few tiles of the usual sizes.
   const auto blocks_of = [](int pixels) { return (pixels + kBlock - 1) / kBlock; };
   tiles_.clear();
   blocks_.clear();
@@ -32,7 +32,7 @@ std::size_t GpuAtlas::pack(std::span<DepthRequest* const> requests, int largest)
                       static_cast<int>(blocks_.size()) + columns * rows > kBlocks;
     if (full && !tiles_.empty()) return tiles_.size();
     const auto number = static_cast<std::uint32_t>(tiles_.size());
-    // single precision and the rasteriser's own grid; the exact gap decides later
+    // Rounding in single precision and the rasteriser's subpixel grid; the exact gap is tested later.
     constexpr double kDepthRounding = 1e-4;
     AtlasTile& tile = tiles_.emplace_back();
     tile.x = static_cast<std::uint32_t>(x);

@@ -7,30 +7,31 @@
 
 namespace palpate::contact {
 
-/// A request's rectangle of the atlas [pixels].
+/// Rectangle of one request in the atlas [pixels].
 struct AtlasTile {
   std::uint32_t x = 0, y = 0, width = 0, height = 0;
-  float largest_gap = 0.0f;  ///< of the slab; pixels farther apart are excluded
+  float largest_gap = 0.0f;  ///< Largest gap, relative to the slab; pixels with a larger gap are excluded.
 };
 
-/// Where the images of many requests stand side by side: in rows, from the left.
+/// Layout of the images of many requests in one atlas: in rows, from the left.
 class GpuAtlas {
  public:
-  static constexpr int kBlock = 16;      ///< edge of a work group of pair.comp; tiles start at multiples
-  static constexpr int kTiles = 256;     ///< at most: a tile's number has 8 bits
-  static constexpr int kBlocks = 65536;  ///< at most: the largest tile has as many
+  static constexpr int kBlock = 16;      ///< Edge of a work group of pair.comp; tiles start at its multiples.
+  static constexpr int kTiles = 256;     ///< Largest number of tiles: an index has 8 bits.
+  static constexpr int kBlocks = 65536;  ///< Largest number of blocks, sufficient for the largest tile.
 
-  /// Takes as many requests as have room, at least one; returns how many.  Those that see nothing have a tile
-  /// without pixels.
-  /// @param largest  edge of a texture, at most
+  /// Places as many requests as there is room for, at least one, and returns their number. Requests that see
+  /// nothing get a tile without pixels.
+  /// @param largest  largest edge of a texture
   std::size_t pack(std::span<DepthRequest* const> requests, int largest);
 
+  /// Returns the tiles of the requests, in their order.
   std::span<const AtlasTile> tiles() const { return tiles_; }
-  /// tile, row and column of each block of pixels: 16, 8 and 8 bits
+  /// Returns tile, row and column of each block of pixels, packed into 16, 8 and 8 bits.
   std::span<const std::uint32_t> blocks() const { return blocks_; }
-  int width() const { return width_; }  ///< that is in use
+  int width() const { return width_; }  ///< Width in use [pixels].
   int height() const { return height_; }
-  std::size_t pixels() const { return pixels_; }  ///< of all tiles
+  std::size_t pixels() const { return pixels_; }  ///< Number of pixels of all tiles.
 
  private:
   std::vector<AtlasTile> tiles_;

@@ -14,11 +14,12 @@ namespace palpate::contact {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-constexpr int kUsualEdge = 512;  // of an atlas: targets are no smaller [pixels]
-constexpr std::size_t kListOffset = gl::MappedBuffer::kStorageAlignment;  // behind the count
+constexpr int kUsualEdge = 512;  // Smallest edge of the render targets [pixels].
+// Offset of the list, which follows the count.
+constexpr std::size_t kListOffset = gl::MappedBuffer::kStorageAlignment;
 
 const char* opened(const char* name) {
-  const gl::Context& context = gl::Context::shared();  // before any member is made
+  const gl::Context& context = gl::Context::shared();  // Created before any member.
   if (gl::vertex_storage_blocks() < 1)
     fail(
         "contact on the GPU needs storage buffers in vertex shaders, which {} has not; take method = "
@@ -81,7 +82,7 @@ void GpuImage::answer_tiles(std::span<DepthRequest* const> requests) {
   instants_.mark(2);
   gl::finish("the contact images");
   hand_out(requests);
-  // the device's clock is not the host's: what it says takes no more than the host waited
+  // The device's clock is not the host's: measured stages are limited to the time that the host waited.
   const double waited = wall_seconds() - start - upload;
   const double passes = std::min(instants_.seconds(0, 1), waited);
   const double gather = std::min(instants_.seconds(1, 2), waited - passes);
@@ -91,7 +92,7 @@ void GpuImage::answer_tiles(std::span<DepthRequest* const> requests) {
   times_.readback += waited - passes - gather;
 }
 
-/// Points that moved, tiles, and the ranges of faces to draw.
+/// Uploads moved points, tiles, and the ranges of faces to draw.
 void GpuImage::send(std::span<DepthRequest* const> requests) {
   draws_.clear();
   layers_.clear();
@@ -113,7 +114,7 @@ void GpuImage::send(std::span<DepthRequest* const> requests) {
   std::memcpy(tiles_sent_.data() + aligned(tiles.size_bytes()), blocks.data(), blocks.size_bytes());
 }
 
-/// A draw for each range of the region's faces that stands together in the surface's order.
+/// Adds one draw for each range of the region's faces that is contiguous in the surface's order.
 GpuImage::Layer GpuImage::add_draws(const PatchSource& source) {
   GpuSurface& surface = surfaces_.at(*source.side);
   Layer layer{&surface, draws_.size(), 0};
@@ -132,7 +133,7 @@ GpuImage::Layer GpuImage::add_draws(const PatchSource& source) {
 
 // With the points x of a surface about its origin o, in a frame with the pose (R, t), contact axes (A, c) and
 // an orthographic camera, clip coordinates are s . (A^T (R (o + x) + t - c)) + d, where s = 2/(width pixel)
-// and d = -1 - s u0 along u, likewise along v, and s = 2/(far - near), d = -1 - s near along w.
+// and d = -1 - s u0 along u, correspondingly along v, and s = 2/(far - near), d = -1 - s near along w.
 void GpuImage::draw(std::span<DepthRequest* const> requests, bool of_a) {
   std::unique_ptr<gl::Framebuffer>& target = of_a ? target_a_ : target_b_;
   if (!target || target->width() < atlas_.width() || target->height() < atlas_.height()) {
@@ -145,7 +146,7 @@ void GpuImage::draw(std::span<DepthRequest* const> requests, bool of_a) {
   target->bind();
   gl::set_plain_state(atlas_.width(), atlas_.height(),
                       of_a ? gl::Keep::kLeastDepth : gl::Keep::kGreatestDepth);
-  gl::cull(of_a);  // of a those that face up
+  gl::cull(of_a);  // Culls upward faces of a, downward faces of b.
   gl::set_window(0, 0, atlas_.width(), atlas_.height());
   target->clear(0, std::uint32_t{0});
   target->clear_depth(of_a ? 1.0f : 0.0f);
@@ -176,7 +177,8 @@ void GpuImage::draw(std::span<DepthRequest* const> requests, bool of_a) {
     gl::draw_ranges(layer.surface->layout, draws_sent_, layer.first_draw * sizeof(Draw), layer.draw_count,
                     sizeof(Draw));
   }
-  gl::set_plain_state(atlas_.width(), atlas_.height(), gl::Keep::kAll);  // no window for what others draw
+  // No viewport for later drawing by other code.
+  gl::set_plain_state(atlas_.width(), atlas_.height(), gl::Keep::kAll);
 }
 
 void GpuImage::append_pairs() {
@@ -192,7 +194,7 @@ void GpuImage::append_pairs() {
   tiles_sent_.bind_storage(2, aligned(tile_bytes), atlas_.blocks().size_bytes());
   count_.bind_storage(3);
   pairs_found_.bind_storage(4, kListOffset, pairs_found_.capacity() - kListOffset);
-  constexpr int kRow = 256;  // work groups
+  constexpr int kRow = 256;  // Work groups.
   const int groups = static_cast<int>(atlas_.blocks().size());
   gl::dispatch(pair_, std::min(groups, kRow), (groups + kRow - 1) / kRow);
   gl::copy(count_, pairs_found_, sizeof none);
@@ -200,7 +202,7 @@ void GpuImage::append_pairs() {
 
 namespace {
 
-/// By the region's faces: which of the patch's visible ones each is, or -1.
+/// Computes, per face of the region, its index in the patch's `visible`, or -1.
 void invert(const Patch& patch, const PatchSource& source, std::vector<std::int32_t>& out) {
   out.assign(source.faces.size(), -1);
   for (std::size_t i = 0; i < patch.visible.size(); ++i)
@@ -228,7 +230,7 @@ void GpuImage::hand_out(std::span<DepthRequest* const> requests) {
     invert(*request.a, request.from_a, visible_a_);
     invert(*request.b, request.from_b, visible_b_);
     const AtlasTile& tile = atlas_.tiles()[i];
-    // one pair a pixel at most: no comparison is needed to sort them
+    // At most one pair per pixel: no comparison is needed to sort them.
     found_at_.assign(static_cast<std::size_t>(tile.width) * tile.height, kNone);
     for (std::size_t k = 0; k < list.size(); ++k) found_at_[list[k].at] = static_cast<std::uint32_t>(k);
     request.pairs.reserve(list.size());
@@ -236,7 +238,7 @@ void GpuImage::hand_out(std::span<DepthRequest* const> requests) {
       if (k == kNone) continue;
       const Found& pair = list[k];
       const std::int32_t a = visible_a_[pair.a], b = visible_b_[pair.b];
-      if (a < 0 || b < 0) continue;  // outside of the window in double precision
+      if (a < 0 || b < 0) continue;  // Outside the window in double precision.
       request.pairs.push_back({pair.at, static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
     }
   }

@@ -35,7 +35,7 @@ std::vector<std::uint32_t> corners_of(const ImageSide& side) {
   return out;
 }
 
-/// FNV-1a, 64 bits.
+/// FNV-1a hash, 64 bits.
 class Hash {
  public:
   template <class T>
@@ -82,8 +82,8 @@ GpuSurface& GpuSurfaces::at(const ImageSide& side) {
   return *found;
 }
 
-/// Soft bodies' nodes are shared by all surfaces that hang on them; those of a skin, or of a surface whose
-/// vertices are nodes themselves.
+/// Returns the points of a side. The nodes of a soft body are shared by all surfaces carried by them; skins
+/// and surfaces whose vertices are nodes are kept separate.
 GpuPoints& GpuSurfaces::points_of(const ImageSide& side) {
   const auto count = static_cast<std::size_t>(side.points().cols());
   GpuPoints** known = side.block_id() >= 0 ? &by_block_[{side.block_id(), count}] : nullptr;
@@ -102,7 +102,7 @@ void GpuSurfaces::send_points(const GpuSurface& surface, const ImageSide& side) 
     buffer_.reserve(bytes);
     for (const auto& other : points_) other->sent = 0;
   }
-  const bool moves = side.block_id() >= 0;  // a rigid surface's points stay what they are
+  const bool moves = side.block_id() >= 0;  // The points of a rigid surface are constant in its frame.
   if (points.sent == query_ || (points.sent != 0 && !moves)) return;
   const Points& x = side.points();
   points.origin = 0.5 * (x.rowwise().minCoeff() + x.rowwise().maxCoeff());

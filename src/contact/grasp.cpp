@@ -4,31 +4,33 @@
 
 namespace palpate::contact {
 
-// What presses on a frame is held from then on: contact goes on as it is, and each sample's points are tied
-// besides, by a spring k and a damper d (areas in them), where contact does nothing: along the surface, and
-// against being pulled off.  With the held point x of the body, the point y of the frame that it is tied to,
-// u = y - x, and the unit normal n that pushes the frame, turning with it,
+// Grasp of the points that press on a frame. Contact continues unchanged, and in addition each sample's
+// points are tied by a spring k and a damper d (areas included) in the directions where contact does not act:
+// along the surface, and against separation. With the held point x of the body, the point y of the frame that
+// it is tied to, u = y - x, and the unit normal n along the force on the frame, rotating with the frame,
 //     g = n . u,      E = k/2 (|u|^2 - min(g, 0)^2),
-// so E has no part along n while they press (contact has it there), and is a spring of zero length when they
-// do not: with contact's own k the two of them are one linear spring through g = 0, for `onset_width_m` = 0.
+// so that E has no part along n while the points press (contact has it there), and is a spring of zero length
+// otherwise. With k equal to the stiffness of contact both together are one linear spring through g = 0, for
+// `onset_width_m` = 0.
 //
-// E does not change when frame and body move rigidly together, so it is balanced in force and moment.  Its
-// force, and the damper's, act on both at x:
+// E does not change when frame and body move rigidly together, so that it is balanced in force and moment.
+// Its force, and the damper's, act on both at x:
 //     F = -(1 - s n n^T) (k u + d w),     s = [g < 0],     w = v + omega x r - x',     r = x - origin,
-// on the frame, with the moment r x F; -F on x.  (u x F of the spring is what n's turning needs.)  The damper
-// takes w^T (1 - s n n^T) w d >= 0.  At the start y is such that F = 0 with u's normal part as it is: nothing
-// jumps.
+// on the frame, with the moment r x F; -F on x. (The part u x F of the spring's moment is due to the
+// rotation of n.) The damper dissipates w^T (1 - s n n^T) w d >= 0. Initially y is such that F = 0, with the
+// normal part of u unchanged: there is no jump.
 //
-// A node that a frame carries (ContactForce::tie) is held with n = 0: E = k/2 |u|^2, and F = -(k u + d w).
+// A node carried by a frame (ContactForce::tie) is held with n = 0: E = k/2 |u|^2, and F = -(k u + d w).
 //
-// Derivatives.  With the relative displacement at x, de = dp + dtheta x r - dx, the elastic force turns with
-// the frame (move all rigidly: de = 0, dF = dtheta x F), so
+// Derivatives. With the relative displacement at x, de = dp + dtheta x r - dx, the elastic force rotates with
+// the frame (for a common rigid motion de = 0 and dF = dtheta x F), so that
 //     dF = -K de + dtheta x F,                     K = k (1 - s n n^T),
 //     dM = dr x F + r x dF = dtheta x M - r x K de - de x F,      dr = dtheta x r - de,  M = r x F,
-// by Jacobi's identity for dtheta.  So beside Z^T K Z of (dtheta, dp), Z = [-[r]x, I],
-//     -dM = [M]x dtheta - [F]x (dp - [r]x dtheta - dx) + ...,    -dF = [F]x dtheta + ...,    +F on x alike.
-// The damper's change by positions (by the turning of n and of the arm) is left out, and where K is: both are
-// of the order of d omega.  Node-node blocks are symmetric: w_i w_j K.
+// by Jacobi's identity for dtheta. In addition to Z^T K Z of (dtheta, dp), Z = [-[r]x, I], this gives
+//     -dM = [M]x dtheta - [F]x (dp - [r]x dtheta - dx) + ...,    -dF = [F]x dtheta + ...,
+// and correspondingly +F on x. The change of the damper's force with position (due to the rotation of n
+// and of the arm) is neglected in K: both parts are of the order of d omega. Node-node blocks are symmetric:
+// w_i w_j K.
 BondForce bond_force(const Vec3& stretch, const Vec3& normal, const Vec3& arm, const Vec3& relative,
                      double stiffness, double damping) {
   const double gap = normal.dot(stretch);
@@ -86,7 +88,7 @@ void Bonds::tie(int frame, const std::vector<Tie>& ties) {
   }
 }
 
-// F = 0 where (1 - n n^T) (k u + d w) = 0: u = g n - d/k w across n.
+// F = 0 where (1 - n n^T) (k u + d w) = 0: u = g n - d/k w projected perpendicular to n.
 int Bonds::take(const std::vector<ContactSample>& samples, int frame, const std::vector<PressureLaw>& laws,
                 const dynamics::StateView& state, const std::vector<FrameState>& frames) {
   const FrameState& holder = frames[static_cast<std::size_t>(frame)];
@@ -103,7 +105,7 @@ int Bonds::take(const std::vector<ContactSample>& samples, int frame, const std:
     const Vec3& x = is_a ? motion.b.x : motion.a.x;
     const Vec3 arm = x - holder.pose.translation;
     const Vec3 w = holder.twist.at(arm) - (is_a ? motion.b.v : motion.a.v);
-    const double damping = -p.dp_drate / law.k;  // over the stiffness [s]
+    const double damping = -p.dp_drate / law.k;  // Damping divided by the stiffness [s].
     const Vec3 u = motion.gap * n - damping * (w - n.dot(w) * n);
     bonds_.push_back({other, frame, holder.R.transpose() * (arm + u), holder.R.transpose() * n,
                       s.area * law.k, s.area * law.k * damping, s.area, s.source, is_a});
@@ -141,21 +143,21 @@ void Bonds::add_resultants(const dynamics::StateView& state, const std::vector<F
 
 namespace {
 
-/// Z = [-[r]x, I] of the frame at the held point.
+/// Returns Z = [-[r]x, I] of the frame at the held point.
 Mat36 at_held(const Vec3& arm) {
   Mat36 Z;
   Z << -cross_matrix(arm), Mat3::Identity();
   return Z;
 }
 
-/// Of the nodes' columns by the frame's motion, -df_x: of weight 1.
+/// Returns -df_x with respect to the frame's motion, for a node of weight 1.
 Mat36 by_frame(const Mat3& C, const Vec3& elastic, const Mat36& Z) {
   Mat36 out = -C * Z;
   out.leftCols<3>() -= cross_matrix(elastic);
   return out;
 }
 
-/// Of the frame's rows by the held point's motion, of weight 1.
+/// Returns the frame's rows with respect to the motion of the held point, for a node of weight 1.
 Mat63 by_held(const Mat3& C, const Vec3& elastic, const Mat36& Z) {
   Mat63 out = -Z.transpose() * C;
   out.topRows<3>() += cross_matrix(elastic);

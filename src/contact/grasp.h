@@ -9,31 +9,36 @@
 
 namespace palpate::contact {
 
-/// A point of a body that a frame holds (grasp.cpp).
+/// Point of a body held by a frame (grasp.cpp).
 struct Bond {
-  static constexpr int kTied = -1;  ///< `pair` of a Tie: nothing presses there, and it is not let go
-  SurfacePoint held;                ///< on nodes
-  int frame = 0;                    ///< that holds it
-  /// in the frame's axes: where it is held, and outward from the body, unit; of a Tie zero
+  /// `pair` of a Tie, which carries no contact pressure and is never released.
+  static constexpr int kTied = -1;
+  SurfacePoint held;  ///< Held point, on nodes.
+  int frame = 0;      ///< Holding frame.
+  /// Attachment point and outward unit normal of the body, in the frame's axes; zero normal for a Tie.
   Vec3 anchor, normal;
-  double stiffness, damping;  ///< [N/m, N s/m]
-  double area;                ///< [m^2]; of a Tie 1
+  double stiffness, damping;  ///< Spring and damper [N/m, N s/m].
+  double area;                ///< Area [m^2]; 1 for a Tie.
   int pair;
-  bool frame_is_a;  ///< of the pair's sides
+  bool frame_is_a;  ///< True: the frame is side a of the pair.
 };
 
-/// The pull of a bond at its state, and its derivatives by the relative motion at the held point.
+/// Force of a bond at a state, and its derivatives with respect to the relative motion at the held point.
 struct BondForce {
-  Vec3 elastic, force;  ///< on the frame, at the held point, without and with damping [N]
-  Vec3 arm;             ///< from the frame's origin to the held point [m]
-  Mat3 K, D;            ///< symmetric, positive semi-definite [N/m, N s/m]
-  double energy, dissipation;
+  Vec3 elastic, force;         ///< Force on the frame, at the held point, without and with damping [N].
+  Vec3 arm;                    ///< Vector from the frame's origin to the held point [m].
+  Mat3 K, D;                   ///< Symmetric, positive semi-definite [N/m, N s/m].
+  double energy, dissipation;  ///< Energy [J], dissipated power [W].
 };
-/// @param relative  velocity of the frame's material at the held point from that of the body
+/// Computes the force of a bond.
+/// @param stretch  u, from the held point to its attachment point [m]  @param normal  n, or zero for a Tie
+/// @param arm  from the frame's origin to the held point [m]
+/// @param relative  velocity of the frame's material at the held point relative to the body [m/s]
 BondForce bond_force(const Vec3& stretch, const Vec3& normal, const Vec3& arm, const Vec3& relative,
                      double stiffness, double damping);
 
-/// -dF of a bond beside Z^T K Z, Z = [-[r]x, I]: see grasp.cpp.  Rows and columns angular first.
+/// Returns the part of -dF of a bond in addition to Z^T K Z, Z = [-[r]x, I]: see grasp.cpp. Rows and columns
+/// angular first.
 inline Mat6 turning_part(const Vec3& elastic, const Vec3& arm) {
   const Mat3 F = cross_matrix(elastic);
   Mat6 out = Mat6::Zero();
@@ -43,26 +48,29 @@ inline Mat6 turning_part(const Vec3& elastic, const Vec3& arm) {
   return out;
 }
 
-/// All bonds of a contact.  @pre of all methods: `frames` are at the state given
+/// All bonds of a contact. @pre for all methods: `frames` are evaluated at the given state
 class Bonds {
  public:
   bool empty() const { return bonds_.empty(); }
-  /// Of grasps, without ties, as area() is.
+  /// Returns the number of held points, ties excluded, as in area().
   int count() const;
-  int count_of(int frame) const;  ///< likewise
+  int count_of(int frame) const;  ///< Held points of one frame, ties excluded.
   void archive(Archive& a);
+  /// Returns the held area [m^2].
   double area() const;
-  /// Holds what presses on a frame, each point as it is.
-  /// @return how many
+  /// Holds the samples that press on a frame, each at its present position. @return their number
   int take(const std::vector<ContactSample>& samples, int frame, const std::vector<PressureLaw>& laws,
            const dynamics::StateView& state, const std::vector<FrameState>& frames);
+  /// Releases the points held by a frame.
   void let_go(int frame);
-  void tie(int frame, const std::vector<Tie>& ties);  ///< before anything is held
+  void tie(int frame, const std::vector<Tie>& ties);  ///< Adds ties. @pre nothing is held
 
-  /// @param rows  of each frame's six velocities in f, -1: none
+  /// Adds the forces of all bonds.
+  /// @param rows  offset of each frame's six velocities in f, -1: none
   void add_force(const dynamics::StateView& state, const std::vector<FrameState>& frames,
                  const std::vector<int>& rows, VecX& f) const;
-  /// @param on_a  one entry a pair: moment about the world's origin, and force, on its side a
+  /// Adds the resultants of held points per pair.
+  /// @param on_a  one entry per pair: moment about the world's origin, and force, on its side a
   void add_resultants(const dynamics::StateView& state, const std::vector<FrameState>& frames,
                       std::vector<Wrench>& on_a) const;
   void add_tangent(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,

@@ -1,4 +1,4 @@
-// Two sums over one contact: over the points of either surface, each with half of the weight.
+// Two quadratures of one contact, over the points of either surface, each with half of the weight.
 #include <algorithm>
 
 #include "palpate/contact/sources.h"
@@ -63,9 +63,10 @@ class HalfAndHalf final : public SampleSource {
   }
 
   std::unique_ptr<SampleSource> first_, second_;
-  static constexpr int kSecond = 1 << 24;  ///< more than a side has
+  /// Offset of the second source's point indices; larger than the number of points of a side.
+  static constexpr int kSecond = 1 << 24;
   std::vector<int> points_;
-  std::size_t count_ = 0;  ///< of the first one's samples
+  std::size_t count_ = 0;  ///< Number of the first source's samples.
   SumError sum_error_;
 };
 

@@ -60,7 +60,7 @@ void ImageRegion::see() {
   context_.stages.hits += static_cast<long>(hits_.size());
 }
 
-/// The image, for pictures: gaps at the pixels' middles, in double.
+/// Keeps the image for pictures: gaps at the pixels' centres, in double precision.
 void ImageRegion::keep_view() {
   const auto pixels = static_cast<std::size_t>(camera().width) * static_cast<std::size_t>(camera().height);
   RegionView& region = context_.view->regions.emplace_back();

@@ -12,48 +12,53 @@
 
 namespace palpate::contact {
 
-/// What the regions of one source share.
+/// State shared by the regions of one source.
 struct RegionContext {
   std::shared_ptr<ImageSide> a, b;
   ImageOptions options;
   QueryStages stages;
-  std::optional<QueryView> view = {};  ///< of the last query, where somebody asked
-  double safe_time = 0.0;              ///< as SampleSource::safe_time, of the query under way
-  long fast_regions = 0;               ///< as SampleSource::fast_regions
+  std::optional<QueryView> view = {};  ///< Picture data of the last query, if requested.
+  double safe_time = 0.0;              ///< As SampleSource::safe_time, for the present query.
+  long fast_regions = 0;               ///< As SampleSource::fast_regions.
 
   VertexRule vertices;
-  std::vector<int> local_a, local_b;  ///< scratch of RegionMesh
+  std::vector<int> local_a, local_b;  ///< Scratch of RegionMesh.
 
-  /// A region's part of `safe_time`.  @param thickness  of the thinner side [m]
+  /// Updates `safe_time` and `fast_regions` with one region.
+  /// @param apart  gap [m]  @param approach  rate of decrease of the gap [m/s]  @param thickness of  the
+  ///   thinner side [m]
   void take_speed(double apart, double approach, double thickness);
 };
 
-/// The plane that a region is looked at along, and the faces that may take part.
+/// Plane along whose normal a region is seen, and the faces that may take part.
 struct RegionPlane {
-  Vec3 origin = Vec3::Zero(), normal = Vec3::UnitZ();  ///< from b to a
-  double candidate_gap = 0.0;                          ///< [m]
+  Vec3 origin = Vec3::Zero(), normal = Vec3::UnitZ();  ///< Origin [m] and unit normal from b to a.
+  double candidate_gap = 0.0;                          ///< Candidate gap [m].
   const std::vector<int>*faces_a = nullptr, *faces_b = nullptr;
 };
 
-/// A contact region on its way from triangles to samples: start(), the answer to what it has asked for,
+/// Contact region, evaluated from triangles to samples in this order: start(), result of the requested image,
 /// see(), append_samples().
 class ImageRegion {
  public:
   explicit ImageRegion(RegionContext& context) : context_(context) {}
+  /// Gathers the faces of the region, fits its camera, and prepares its image request.
   void start(const RegionPlane& plane);
-  DepthRequest* wanted() { return asks_ ? &request_ : nullptr; }  ///< null: there is nothing to see
-  /// Gathers the image at the vertices.  @pre asked
+  /// Returns the requested image; null: nothing to see.
+  DepthRequest* wanted() { return asks_ ? &request_ : nullptr; }
+  /// Evaluates the image at the vertices. @pre the request was answered
   void see();
-  /// @param joints  of two soft sides: what carries the samples; else null
+  /// Appends the samples of the region.
+  /// @param joints  receives the carriers of the samples for two soft sides; otherwise null
   void append_samples(std::vector<ContactSample>& samples, std::vector<CoupledNodes::Joint>* joints);
-  bool presses() const;  ///< whether something overlaps in it
+  bool presses() const;  ///< Returns whether any sample overlaps.
 
  private:
   const ContactCamera& camera() const { return request_.camera; }
   void keep_view();
 
   RegionContext& context_;
-  double candidate_gap_ = 0.0;  ///< of this region [m]
+  double candidate_gap_ = 0.0;  ///< Candidate gap of this region [m].
   ContactAxes axes_;
   RegionMesh mesh_a_, mesh_b_;
   Patch a_, b_;

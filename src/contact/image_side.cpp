@@ -57,13 +57,13 @@ class SoftSide final : public ImageSide {
   }
 
  private:
-  /// As proxy_motion.cpp derives it, of the whole surface.
+  /// Mean and spread as derived in proxy_motion.cpp, for the whole surface.
   proxy::ProxyMotion around_mean(const Eigen::Ref<const Points>& v) const {
     const Vec3 mean = v.rowwise().mean();
     return {mean, state_.weight_sum() * std::sqrt((v.colwise() - mean).colwise().squaredNorm().maxCoeff())};
   }
   SurfaceState state_;
-  Points kept_, way_;  ///< of the carriers
+  Points kept_, way_;  ///< Positions of the carriers when kept, and their displacements since.
 };
 
 class RigidSide final : public ImageSide {
@@ -104,8 +104,8 @@ class RigidSide final : public ImageSide {
     proxies.set_motion(motion_->twist(state));
   }
   void keep() override { kept_ = pose_; }
-  // R X + p less R' X + p' about the middle: a rotation by theta moves what is r away by 2 sin(theta/2) r at
-  // most
+  // The difference of R X + p and R' X + p' relative to the centre: a rotation by theta moves points at
+  // distance r by at most 2 sin(theta/2) r.
   proxy::ProxyMotion way() override {
     const double angle = rotation_vector(pose_.rotation * kept_.rotation.conjugate()).norm();
     return {pose_ * centre_ - kept_ * centre_, 2.0 * std::sin(0.5 * angle) * reach_};
@@ -114,7 +114,7 @@ class RigidSide final : public ImageSide {
   Vec3 kept_vertex(int vertex) const override { return kept_ * Vec3(surface_.vertices.col(vertex)); }
   Pose frame() const override { return pose_; }
   Pose kept_frame() const override { return kept_; }
-  /// The point in the frame's axes, R^T (origin + U (u, v, w) - t).
+  /// Returns the map to the point in the frame's axes, R^T (origin + U (u, v, w) - t).
   Carrier carrier(int, const ContactAxes& axes) const override {
     Carrier out;
     out.frame = frame_;
@@ -136,8 +136,8 @@ class RigidSide final : public ImageSide {
   std::shared_ptr<MovingFrame> motion_;
   Pose pose_, kept_;
   Mat3 turn_ = Mat3::Identity();
-  Vec3 centre_ = Vec3::Zero();  ///< of the surface's box, in the frame
-  double reach_ = 0.0;          ///< of a vertex from there
+  Vec3 centre_ = Vec3::Zero();  ///< Centre of the surface's bounding box, in the frame.
+  double reach_ = 0.0;          ///< Largest distance of a vertex from the centre [m].
   Points world_;
 };
 

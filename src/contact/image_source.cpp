@@ -26,13 +26,13 @@ std::uint64_t ImageSource::sides_version() const {
   return sum;
 }
 
-// each grows only
+// Both counters increase only.
 std::uint64_t ImageSource::pattern_version() const { return sides_version() + coupled_.version(); }
 
 void ImageSource::archive(Archive& a) {
   look_back_.archive(a);
   a("fast", context_.fast_regions);
-  a("near", context_.options.candidate_gap);  // of the skin as it was at the first query
+  a("near", context_.options.candidate_gap);  // Chosen from the skin at the first query.
   QueryStages& s = context_.stages;
   for (auto& [name, seconds] :
        std::initializer_list<std::pair<const char*, double&>>{{"positions_s", s.positions_s},
@@ -90,7 +90,8 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
 void ImageSource::answer() {
   QueryStages& stages = context_.stages;
   const ScopedTimer timer(stages.images_s);
-  if (!image_) {  // in the first query, whether anything touches or not: first touch holds up no loop
+  // Created in the first query, in contact or not, so that first touch does not delay the loop.
+  if (!image_) {
     image_ = make_depth_image();
     image_->prepare(*context_.a, *context_.b);
   }

@@ -9,11 +9,11 @@
 
 namespace palpate::contact {
 
-/// Finds contact of two sides in images; how the regions are found is its children's.  Side a is soft; the
-/// normal points from b to a.
+/// Image-space contact of two sides; derived classes find the regions. Side a is soft; the normal points from
+/// b to a.
 ///
-/// A query collects the regions, asks for their images, all at once, and makes samples of what they show
-/// (Galoppo et al. 2007, section 4).
+/// A query collects the regions, requests all their images at once, and makes samples from them (Galoppo et
+/// al. 2007, section 4).
 class ImageSource : public SampleSource {
  public:
   ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const ImageOptions& options);
@@ -30,35 +30,36 @@ class ImageSource : public SampleSource {
   void archive(Archive& a) override;
 
  protected:
-  /// Appends the regions of the state; their faces are there until the next query.
+  /// Appends the regions at a state; their faces are valid until the next query.
   virtual void find_regions(const dynamics::StateView& state, std::vector<RegionPlane>& out) = 0;
-  /// Faces of either side, of which some may have met since the sides were kept; empty where none can have
-  /// gone through.  @return how thick the thinner side is [m]
+  /// Collects the faces of either side that may have come into contact since the sides were kept; empty where
+  /// tunnelling is impossible. @return thickness of the thinner side [m]
   virtual double find_met(std::vector<int>& faces_a, std::vector<int>& faces_b) = 0;
-  /// Region `number` of find_regions() was seen, and presses.
+  /// Notifies that region `number` of find_regions() was evaluated and presses.
   virtual void take_pressing(std::size_t number) = 0;
 
   RegionContext context_;
 
  private:
   void answer();
-  std::uint64_t sides_version() const;  // grows with what either side couples by itself
+  std::uint64_t sides_version() const;  // Increases with the pairs that either side couples alone.
   void couple();
 
   LookBack look_back_;
-  std::unique_ptr<DepthImage> image_;  ///< made in the first query
+  std::unique_ptr<DepthImage> image_;  ///< Created in the first query.
   std::vector<RegionPlane> planes_;
-  std::vector<std::unique_ptr<ImageRegion>> regions_;  ///< the first planes_.size() are of the last query
-  std::vector<DepthRequest*> requests_;                ///< scratch
-  std::vector<CoupledNodes::Joint> joints_;            // of two soft sides
-  mutable CoupledNodes coupled_;                       // the pattern is made when it is asked for
+  std::vector<std::unique_ptr<ImageRegion>> regions_;  ///< The first planes_.size() belong to the last query.
+  std::vector<DepthRequest*> requests_;                ///< Scratch.
+  std::vector<CoupledNodes::Joint> joints_;            // Two soft sides only.
+  mutable CoupledNodes coupled_;                       // The pattern is built on request.
   NodeNeighbours neighbours_a_, neighbours_b_;
-  std::uint64_t counted_ = 0;  // the sides_version() that `coupled_` was made for
+  std::uint64_t counted_ = 0;  // Value of sides_version() for which `coupled_` was made.
 };
 
-/// One region: both surfaces whole.
+/// Makes a source with one region that contains both surfaces entirely.
 std::unique_ptr<SampleSource> make_whole_source(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b,
                                                 const ImageOptions& options);
+/// Makes a source whose regions are found by convex proxies.
 std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a,
                                                  std::shared_ptr<proxy::ProxySet> proxies_a,
                                                  std::shared_ptr<ImageSide> b,

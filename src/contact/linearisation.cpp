@@ -14,8 +14,8 @@ void reset(FrameLinearisation& out, Eigen::Index nodal) {
   out.active = 0;
 }
 
-/// The other side's nodes against the frame: see the derivation in tangent.cpp, with q (columns) or p (rows)
-/// the frame.
+/// Adds the coupling of the other side's nodes with the frame: see the derivation in tangent.cpp, with the
+/// frame as q (columns) or p (rows).
 void add_node_coupling(const Side& frame, const Side& nodes, const SampleForce& s, FrameLinearisation& out) {
   const double sign = frame.sign * nodes.sign;
   Mat36 columns_k = sign * s.K * frame.Z;

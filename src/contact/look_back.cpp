@@ -8,7 +8,8 @@
 namespace palpate::contact {
 namespace {
 
-/// Some faces with vertices of their own, seen from the frame of `axes`: what is rigid stands still there.
+/// Returns the motion of some faces and their vertices, relative to the frame of `axes`, in which a rigid
+/// surface is at rest.
 SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const ImageSide& axes) {
   SurfaceWays out;
   std::vector<int> taken;
@@ -34,7 +35,7 @@ SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const 
   return out;
 }
 
-constexpr double kPartOfThickness = 0.25;  // what is shorter is an edge that was grazed
+constexpr double kPartOfThickness = 0.25;  // Shorter paths graze an edge.
 
 }  // namespace
 
@@ -84,7 +85,8 @@ void LookBack::tell(std::string_view through_what, double t) {
 
 void find_all_met(ImageSide& a, ImageSide& b, double thickness, std::vector<int>& faces_a,
                   std::vector<int>& faces_b) {
-  constexpr double kPart = 0.25;  // of the thickness, which may have been squeezed: see proxy/pruner.h
+  // Relative to the thickness, which may have been reduced by compression: see proxy/pruner.h.
+  constexpr double kPart = 0.25;
   faces_a.clear();
   faces_b.clear();
   const proxy::ProxyMotion of_a = a.way(), of_b = b.way();

@@ -58,7 +58,7 @@ void MaterialGaps::start(const std::vector<char>& wanted) {
   for (const int point : taken_) place_[static_cast<std::size_t>(point)] = -1;
 }
 
-/// visit(triangle, overlap at its corners) where one of them overlaps.
+/// Calls visit(triangle, overlap at its corners) for each triangle with at least one overlapping corner.
 template <class Visit>
 void MaterialGaps::for_each_overlap(std::span<const Nearest> at, const Visit& visit) const {
   for (const Triangle& t : near_) {

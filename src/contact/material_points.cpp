@@ -12,17 +12,19 @@
 #include "palpate/mesh/curvature.h"
 #include "palpate/proxy/region.h"
 
-// How far apart.  Two bodies of radii r and s touch as a ball of R = r s/(r + s) and a plane do (Hertz);
-// pressed in by d, in a circle of radius a, a^2 = 2 R d, with the mean depth d/2.  The gap to a surface of
-// mean curvature H is above its linear interpolation on triangles of edge e by H e^2/8 in the mean, which is
+// Spacing of contact points. Two bodies of radii r and s touch like a ball of radius R = r s/(r + s) and a
+// plane (Hertz). Pressed in by d, they touch in a circle of radius a, a^2 = 2 R d, with the mean depth d/2.
+// The gap to a surface of mean curvature H is above its linear interpolation on triangles of edge e by
+// H e^2/8 in the mean, which is
 //     H R/2 (e/a)^2 of the force.
-// Where H is known and taken into account (a sphere's), what is left is of second order as well: the normals
-// are interpolated, |n_j - n_i|^2/8 = (e/s)^2/8, and so much is H off deeper inside and, the other way, where
-// the triangles are not square to the normal.  With d an eighth of R, a = R/2, and (e/s)^2/8 = 1/32 (R/s)^2
-// (e/a)^2, of which tests/contact/material_points_test.cpp finds 0.036 for 1/32:
-//     e = R/2 sqrt(wanted/(0.036 (R/s)^2 + H R/2)).
-// On a plane nothing is missed, and triangles stay as they are.  A contact that is less deep has a smaller
-// circle, and errs by more of a smaller force: the run says by how much.
+// Where H is known and taken into account (for a sphere), the remaining error is of second order as well: the
+// normals are interpolated, |n_j - n_i|^2/8 = (e/s)^2/8, and by as much H is off deeper inside and, with
+// opposite sign, where the triangles are not perpendicular to the normal. With d an eighth of R, a = R/2, and
+// (e/s)^2/8 = 1/32 (R/s)^2 (e/a)^2, for whose factor 1/32 tests/contact/material_points_test.cpp finds 0.036,
+// a relative error eps requires
+//     e = R/2 sqrt(eps/(0.036 (R/s)^2 + H R/2)).
+// On a plane there is no error, and triangles are not divided. A contact that is less deep has a smaller
+// circle and a larger relative error of a smaller force; the run reports it.
 
 namespace palpate::contact {
 
@@ -33,7 +35,8 @@ CharacteristicLengths lengths_of(const TriMesh& closed) {
 
 namespace {
 
-/// @param turn2  (R/s)^2, of all curvature that is known  @param bend  H of what is not
+/// Returns the edge length e derived above.
+/// @param turn2  (R/s)^2, summed over the known curvatures  @param bend  H of the unknown curvature
 double spacing(double R, double turn2, double bend, double wanted_error) {
   constexpr double kKnown = 0.036;
   if (!(wanted_error > 0.0))
@@ -51,8 +54,8 @@ double point_spacing(const CharacteristicLengths& own, const CharacteristicLengt
   return std::isinf(other.radius) ? HUGE_VAL : e;
 }
 
-// A shape's own points stand on a surface that bulges over their triangles.  It is known, as a sphere's
-// curvature is above, and what is left of it as well: the normals between the points.
+// Points on a shape's own surface lie on a surface that bulges over their triangles. The bulge is known, like
+// a sphere's curvature above, and so is the remaining error: the change of the normals between the points.
 double shape_spacing(const CharacteristicLengths& shape, const CharacteristicLengths& body,
                      double wanted_error) {
   const double R = 1.0 / (1.0 / shape.radius + 1.0 / body.radius);
@@ -61,12 +64,12 @@ double shape_spacing(const CharacteristicLengths& shape, const CharacteristicLen
 
 namespace {
 
-/// Points on faces, still without what carries them.
+/// Points on faces, before carriers are assigned.
 struct PlacedPoints {
   MaterialPoints out;
   std::vector<distance::ContactPoint> points;
   distance::Skin skin;
-  Points at;  ///< at rest [m]
+  Points at;  ///< Positions at rest [m].
 };
 PlacedPoints place_points(const TriMesh& rest, double spacing) {
   PlacedPoints placed;
@@ -99,8 +102,8 @@ PlacedPoints place_points(const TriMesh& rest, double spacing) {
 
 }  // namespace
 
-// A point of a skin hangs on the tetrahedron that holds it, as the skin's vertices do: four nodes carry it
-// exactly, where the three vertices of its face would hang it on twelve.
+// A point of a skin is carried by the tetrahedron that contains it, like the skin's vertices: four nodes
+// carry it exactly, whereas the three vertices of its face would involve twelve.
 MaterialPoints material_points(const NodeSurface& surface, const Points& rest, const TetMesh& body,
                                double spacing) {
   PlacedPoints placed = place_points({rest, surface.faces}, spacing);
@@ -191,8 +194,8 @@ void MaterialPointState::keep() {
   kept_R_ = R_;
 }
 
-// A point of nodes moves by sum w_i dx_i, at most sum |w_i| times the largest |dx_i|; one of a frame by dt +
-// dR o, and a rotation by theta moves o by 2 |o| sin(theta/2) at most.
+// A point on nodes moves by sum w_i dx_i, at most sum |w_i| times the largest |dx_i|; a point of a frame by
+// dt + dR o, and a rotation by theta moves o by at most 2 |o| sin(theta/2).
 double MaterialPointState::way() const {
   if (!is_kept_) return HUGE_VAL;
   if (is_rigid()) {

@@ -5,31 +5,34 @@
 
 namespace palpate::contact {
 
-/// MaterialPoints at a state: what SurfaceState and FrameVertices are for the vertices of a surface, with the
-/// same names, so that AnalyticSource takes any of the three.
+/// MaterialPoints at a state: counterpart of SurfaceState and FrameVertices, with the same member names, so
+/// that AnalyticSource accepts each of the three.
 class MaterialPointState {
  public:
-  /// @throws InternalError where areas and triangles differ in number, or points of nodes have no block
+  /// @throws InternalError where the numbers of areas and triangles differ, or where points on nodes have no
+  ///   block
   explicit MaterialPointState(MaterialPoints points);
 
+  /// Evaluates the nodes or the frame at a state.
   void update(const dynamics::StateView& state);
 
   int vertex_count() const { return static_cast<int>(points_.at.size()); }
-  /// In the world, evaluated when it is asked for: what does not touch costs nothing between queries [m].
+  /// Returns the world position of a point, evaluated on demand, so that points that do not touch cost
+  /// nothing between queries [m].
   Vec3 position(int point) const;
   Vec3 velocity(int point, const dynamics::StateView& state) const;
-  double fastest(const dynamics::StateView& state) const;  ///< bound on any point's speed [m/s]
+  double fastest(const dynamics::StateView& state) const;  ///< Upper bound on the speed of all points [m/s].
 
-  double farthest_from(const Vec3& x) const;  ///< bound on any point's distance from x [m]
+  double farthest_from(const Vec3& x) const;  ///< Upper bound on the distance of all points from x [m].
 
-  // The way since the points were last kept.
-  void keep();                          ///< as they are now
-  double way() const;                   ///< bound on any point's displacement [m]; infinite before keep()
-  Vec3 kept_position(int point) const;  ///< @pre kept
-  /// Its nodes are counted over all node blocks.
+  // Displacement since the points were last kept.
+  void keep();         ///< Keeps the present configuration.
+  double way() const;  ///< Upper bound on the displacement of all points [m]; infinite before keep().
+  Vec3 kept_position(int point) const;  ///< World position when kept [m]. @pre keep() was called
+  /// Returns the contact point, with nodes counted over all node blocks.
   SurfacePoint vertex_point(int point) const;
   const MaterialPoints& points() const { return points_; }
-  double mean_edge() const;  ///< of squares of the points' mean area [m]
+  double mean_edge() const;  ///< Edge of a square of the points' mean area [m].
 
   void add_vertex_pattern(dynamics::PatternBuilder& pattern) const;
   std::uint64_t vertex_pattern_version() const { return pattern_version_; }
@@ -42,10 +45,10 @@ class MaterialPointState {
   MaterialPoints points_;
   int node_offset_ = 0;
   std::uint64_t pattern_version_ = 0;
-  double weight_sum_ = 1.0;  ///< largest sum |w| of a point
-  double radius_ = 0.0;      ///< largest distance of a rigid one from the frame's origin [m]
+  double weight_sum_ = 1.0;  ///< Largest sum |w| of a point.
+  double radius_ = 0.0;      ///< Largest distance of a rigid point from the frame's origin [m].
   bool is_kept_ = false;
-  Points nodes_, kept_nodes_;  ///< of the block, now and when they were kept
+  Points nodes_, kept_nodes_;  ///< Nodes of the block, now and when kept [m].
   Pose pose_, kept_pose_;
   Mat3 R_ = Mat3::Identity(), kept_R_ = Mat3::Identity();
   Twist twist_;

@@ -10,18 +10,19 @@ namespace palpate::contact {
 namespace {
 
 struct Cubic {
-  std::array<double, 4> c;  ///< of 1, t, t^2, t^3
+  std::array<double, 4> c;  ///< Coefficients of 1, t, t^2, t^3.
   double at(double t) const { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
 };
 
-/// Where the cubic's slope is zero in (0, 1), with 0 and 1: between them it is monotonic.  Returns how many.
+/// Computes the zeros of the cubic's slope in (0, 1), together with 0 and 1: between them it is monotonic.
+/// Returns their number.
 int monotonic_parts(const Cubic& f, std::array<double, 4>& ends) {
   int count = 0;
   ends[static_cast<std::size_t>(count++)] = 0.0;
   const double a = 3.0 * f.c[3], b = 2.0 * f.c[2], c = f.c[1];
   const double discriminant = b * b - 4.0 * a * c;
   if (discriminant >= 0.0) {
-    // both roots without cancellation; a quotient by zero is no root
+    // Both roots without cancellation; a quotient by zero is not a root.
     const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
     std::array<double, 2> roots{q / a, c / q};
     if (roots[1] < roots[0]) std::swap(roots[0], roots[1]);
@@ -32,7 +33,7 @@ int monotonic_parts(const Cubic& f, std::array<double, 4>& ends) {
   return count;
 }
 
-/// The zero of a monotonic part that has one.
+/// Returns the zero of a monotonic part that has one.
 double zero_between(const Cubic& f, double low, double high) {
   const bool falls = f.at(low) >= 0.0;
   for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
@@ -42,11 +43,11 @@ double zero_between(const Cubic& f, double low, double high) {
   return 0.5 * (low + high);
 }
 
-/// First and last time that a vertex meets the surface, and how.
+/// First and last time at which a vertex crosses the surface, and the direction of the crossings.
 struct Meetings {
   double first = 2.0, last = -1.0;
   bool entered_first = false, left_last = false;
-  double speed = 0.0;  ///< against the face that was met first
+  double speed = 0.0;  ///< Speed relative to the face crossed first.
   void add(double t, bool entered, double relative_speed) {
     if (t < first) {
       first = t;
@@ -59,7 +60,7 @@ struct Meetings {
     }
   }
   bool passed(double least_way) const {
-    constexpr double kInstant = 1e-12;  // a ridge that was touched
+    constexpr double kInstant = 1e-12;  // Shorter times: a ridge was touched.
     return entered_first && left_last && last - first > kInstant && (last - first) * speed > least_way;
   }
 };
@@ -70,7 +71,7 @@ struct Line {
 };
 
 bool is_inside(const Vec3& d, const Vec3& e1, const Vec3& e2) {
-  constexpr double kEdge = 1e-9;  // an edge belongs to both of its faces
+  constexpr double kEdge = 1e-9;  // An edge belongs to both of its faces.
   const Vec3 n = e1.cross(e2);
   const double area2 = n.squaredNorm();
   const double w1 = d.cross(e2).dot(n), w2 = e1.cross(d).dot(n);
@@ -100,8 +101,9 @@ void meet(const Line& x, const SurfaceWays& surface, int face, Meetings& out) {
   }
 }
 
-/// Bound on the ways of vertices against any point of the faces: with m the mean of the faces' ways, |v - w|
-/// <= |v - m| + max |w - m|.  Those within `least_way` go through nothing by more than that.
+/// Bound on the displacements of vertices relative to all points of the faces: with m the mean of the faces'
+/// displacements, |v - w| <= |v - m| + max |w - m|. Vertices within `least_way` cannot tunnel by more than
+/// that.
 class FastVertices {
  public:
   FastVertices(const SurfaceWays& faces, double least_way) {
@@ -117,8 +119,8 @@ class FastVertices {
   double rest2_;
 };
 
-/// Looks at boxes that a count may take for each vertex and each face, and how many of them a meeting is
-/// worth: a few tenths of a second for skins of 30,000 vertices.
+/// Limits of the cost of count(): box tests per vertex and face, and the number of box tests to which one
+/// crossing test is equivalent. A few tenths of a second for skins of 30,000 vertices.
 constexpr long kLooksAVertex = 1000, kPriceOfMeeting = 50;
 
 }  // namespace
@@ -155,7 +157,7 @@ long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces
   };
   if (box_misses(vertices.before, vertices.now)) return 0;
   const Vec3 way = (vertices.now - vertices.before).cwiseAbs().rowwise().mean();
-  // sorted along the axis on which a vertex meets the fewest
+  // Sorted along the axis on which a vertex overlaps the fewest boxes.
   Eigen::Index axis = 0;
   ((mean + way).array() / (high - low).array().max(1e-300)).minCoeff(&axis);
   std::sort(boxes_.begin(), boxes_.end(), [axis](const FaceBox& p, const FaceBox& q) {

@@ -7,37 +7,38 @@
 
 namespace palpate::contact {
 
-/// Some faces of a closed surface at two times, in the same axes; vertices go straight on between them.
+/// Motion of some faces of a closed surface between two times, in the same axes; vertices move along straight
+/// lines in between.
 struct SurfaceWays {
-  Faces faces;                   ///< of these vertices, outward
-  Points before, now;            ///< [m]
-  std::vector<int> vertex_of{};  ///< number of each vertex in the whole surface
-  std::vector<int> face_of{};    ///< likewise of each face
+  Faces faces;                   ///< Faces, by local vertex indices, oriented outwards.
+  Points before, now;            ///< Vertex positions at both times [m].
+  std::vector<int> vertex_of{};  ///< Index of each vertex in the whole surface.
+  std::vector<int> face_of{};    ///< Index of each face in the whole surface.
 };
 
-/// Counts the vertices of one surface that went through another: outside before and now, inside on the way,
-/// so that neither query saw them in contact.
+/// Counts the vertices of one surface that tunnelled through another: outside before and now, inside in
+/// between, so that neither query found them in contact.
 ///
-/// With a vertex x and the corners p0, p1, p2 of a face all linear in the time t in [0, 1], they lie in one
-/// plane where the cubic
+/// With a vertex x and the corners p0, p1, p2 of a face linear in the time t in [0, 1], the four points are
+/// coplanar where the cubic
 ///
 ///   f(t) = (x - p0) . [(p1 - p0) x (p2 - p0)] = d0.c0 + t (d'.c0 + d0.c1) + t^2 (d'.c1 + d0.c2) + t^3 d'.c2,
 ///   d = x - p0,  c0 + t c1 + t^2 c2 = (p1 - p0) x (p2 - p0),
 ///
-/// is zero; there the vertex enters (f falls) or leaves (f rises) if it is inside the triangle.  It went
-/// through if it entered first and left last, and its way in between was longer than a least one: not where
-/// it only grazed an edge.
+/// is zero. If the vertex is inside the triangle at that time, it enters (f decreases) or leaves (f
+/// increases). It tunnelled if it entered first and left last, and if its path in between was longer than a
+/// threshold, which excludes grazed edges.
 class PassedVertices {
  public:
-  /// Where ways are so long that all would have to be looked at against all, it gives up, and what it has not
-  /// looked at by then is not counted: a query's price stays within a bound, and a scene that has blown up
-  /// goes on.
-  /// @param least_way  inside, seen from where it entered [m]
-  /// @param may_meet   of a surface against itself: (vertex, face), numbers in the whole surface; else null
+  /// Counts tunnelled vertices. Where displacements are so long that all vertices would have to be tested
+  /// against all faces, the count is terminated and excludes the untested vertices: the cost of a query
+  /// remains bounded, even for a diverged simulation.
+  /// @param least_way  threshold of the path inside, relative to the face entered [m]
+  /// @param may_meet   for self-contact: (vertex, face) by their indices in the whole surface; else null
   long count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way,
              const std::function<bool(int vertex, int face)>& may_meet = {});
 
-  /// How often count() gave up.
+  /// Returns how often count() was terminated early.
   long given_up() const { return given_up_; }
 
  private:

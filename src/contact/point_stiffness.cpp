@@ -6,7 +6,7 @@ using dynamics::PointStiffness;
 
 bool ContactForce::is_point_stiffness() const { return traits().symmetric_tangent; }
 
-// A sample with friction is one point, x_a - x_b: K and D are the derivatives of its force by that
+// A sample with friction is one point, x_a - x_b: K and D are the derivatives of its force with respect to it
 // (tangent.h).
 void ContactForce::add_step(const dynamics::StateView& state, const VecX& shift, double k_scale,
                             double d_scale, VecX& f, PointStiffness& C) {

@@ -75,10 +75,9 @@ PressureLaw pressure_law(const ContactSpec& spec) {
 
 // p > 0 where delta > 0 and
 //   kelvin_voigt   k delta + d delta' > 0         that is  gap + (d/k) rate < 0
-//   hunt_crossley  1 + 3/2 c delta' > 0           that is  3/2 c rate - 1 < 0, times the gap's size to
-//   stand beside it
-// so the larger of gap and that is negative exactly there.  (For laws without an onset: with one the force
-// has no kink to find.)
+//   hunt_crossley  1 + 3/2 c delta' > 0           that is  3/2 c rate - 1 < 0, times |gap| for equal units
+// so that the larger of the gap and this expression is negative exactly there. (For laws without an onset:
+// with one the force has no kink to locate.)
 double pressing(const PressureLaw& law, double gap, double gap_rate) {
   if (law.d == 0.0) return gap;
   return std::max(gap, law.kind == PressureLaw::Kind::kKelvinVoigt

@@ -5,32 +5,34 @@
 
 namespace palpate::contact {
 
-/// A ContactSpec's law, its name resolved once.
+/// Pressure law of a ContactSpec, with its names resolved.
 struct PressureLaw {
   enum class Kind { kKelvinVoigt, kHuntCrossley } kind = Kind::kKelvinVoigt;
-  double k = 0.0;      ///< [Pa/m]; per point [N/m]
-  double d = 0.0;      ///< [Pa s/m]; per point [N s/m]; or c of hunt_crossley [s/m]
-  double onset = 0.0;  ///< w [m]
-  double friction = 0.0;
-  double regularisation = 1e-3;  ///< v_r [m/s]
-  double retardation = 0.0;      ///< tau of what sticks; 0: none [s]
-  /// step matrices leave out how friction follows the pressure (sample_math.cpp)
+  double k = 0.0;                ///< Stiffness [Pa/m]; per point [N/m].
+  double d = 0.0;                ///< Damping [Pa s/m]; per point [N s/m]; or c of hunt_crossley [s/m].
+  double onset = 0.0;            ///< w [m]
+  double friction = 0.0;         ///< mu [-].
+  double regularisation = 1e-3;  ///< v_r [m/s].
+  double retardation = 0.0;      ///< tau of the friction springs [s]; 0: none.
+  /// True: step matrices omit the derivative of friction with respect to pressure (sample_math.cpp).
   bool symmetric_tangent = false;
-  /// springs of points, not of area: `Pressure::p` is a force [N], and every sample's area is 1
+  /// True: springs per point instead of per area: `Pressure::p` is a force [N], and the area of every sample
+  /// is 1.
   bool per_point = false;
-  /// friction's derivative by the velocity is its secant through zero (sample_math.cpp)
+  /// True: the derivative of friction with respect to velocity is its secant through zero (sample_math.cpp).
   bool secant_friction = false;
 };
 
-/// @throws Error for a value that no contact can have, naming the pair and the key.
+/// Resolves and checks the contact law of a spec. @throws Error for an invalid value, with the pair and the
+/// key
 PressureLaw pressure_law(const ContactSpec& spec);
 
 /// s(delta) with its derivative and its integral from 0.
 struct Onset {
   double value, slope, integral;
 };
-// A parabola that meets the line delta - w/2 with equal value w/2 and slope 1 at delta = w.  Its integral is
-// delta^3/(6 w) up to w, w^2/6 there, and delta^2/2 - w delta/2 + w^2/6 beyond.
+// Evaluates the onset function: a parabola that joins the line delta - w/2 with equal value w/2 and slope 1
+// at delta = w. Its integral is delta^3/(6 w) up to w, w^2/6 there, and delta^2/2 - w delta/2 + w^2/6 beyond.
 inline Onset onset(double width, double depth) {
   if (!(depth > 0.0)) return {0.0, 0.0, 0.0};
   if (depth < width)
@@ -42,10 +44,10 @@ inline Onset onset(double width, double depth) {
 // w, 0 beyond:
 //   kelvin_voigt   dp/ddelta = k s' + d s'' delta'       dp/ddelta' = d s'
 //   hunt_crossley  dp/ddelta = k s' (1 + 3/2 c delta')   dp/ddelta' = 3/2 k c s
-// The damper of kelvin_voigt takes s', so that it does not jump at first touch, and is whole from w on.
-// hunt_crossley keeps s: whatever function of depth stands there, m v dv = -F(delta) (1 + a v) ddelta
-// separates, and the speeds before and after an impact are related by the same G(a v) = a v - ln(1 + a v).
-// Where the formula gives tension the pressure and its derivatives are zero: a contact never pulls.
+// The damper of kelvin_voigt is multiplied by s', so that it does not jump at first touch, and acts fully
+// from w on. hunt_crossley keeps s: for any function of depth in its place, m v dv = -F(delta) (1 + a v)
+// ddelta separates, and the speeds before and after an impact are related by the same G(a v) = a v - ln(1 + a
+// v). Where the formula gives tension, the pressure and its derivatives are zero: a contact never pulls.
 inline Pressure pressure(const PressureLaw& law, double gap, double gap_rate) {
   const double depth = -gap, rate = -gap_rate;
   if (!(depth > 0.0)) return {0.0, 0.0, 0.0, 0.0};
@@ -63,8 +65,8 @@ inline Pressure pressure(const PressureLaw& law, double gap, double gap_rate) {
                       : Pressure{0.0, 0.0, 0.0, energy};
 }
 
-/// Negative while the law presses, positive while it does not, and zero exactly where that changes [m].
-/// Continuous in gap and rate.
+/// Returns the root function of opening and closing [m]: negative while the law presses, positive while it
+/// does not, and zero exactly where that changes. Continuous in gap and rate.
 double pressing(const PressureLaw& law, double gap, double gap_rate);
 
 }  // namespace palpate::contact

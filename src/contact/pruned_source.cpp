@@ -9,7 +9,7 @@
 namespace palpate::contact {
 namespace {
 
-/// The regions where proxies come near.
+/// Image-space contact whose regions are found by convex proxies that are close to each other.
 class PrunedSource final : public ImageSource {
  public:
   PrunedSource(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a,
@@ -53,10 +53,10 @@ class PrunedSource final : public ImageSource {
     context_.a->set_way(*proxies_a_);
     context_.b->set_way(*proxies_b_);
     pruner_.met_on_the_way(faces_a, faces_b);
-    placed_ = context_.options.look_ahead > 0.0;  // else they rest
+    placed_ = context_.options.look_ahead > 0.0;  // Without look-ahead the proxies must be at rest.
     return std::min(proxies_a_->rest_thickness(), proxies_b_->rest_thickness());
   }
-  /// Its hulls, for pictures: each once, whatever regions it is in.
+  /// Keeps the hulls of a region for pictures, each once even if it belongs to several regions.
   void take_pressing(std::size_t number) override {
     if (!context_.view) return;
     const auto keep = [](const proxy::ProxySet& set, int p, std::set<int>& kept, std::vector<Points>& out) {
@@ -85,9 +85,9 @@ class PrunedSource final : public ImageSource {
 
   std::shared_ptr<proxy::ProxySet> proxies_a_, proxies_b_;
   proxy::Pruner pruner_;
-  bool placed_ = false;                          ///< the proxies are where the sides are
-  std::span<const proxy::ContactRegion> found_;  ///< of the last query
-  std::set<int> kept_a_, kept_b_;                ///< proxies in the view of the query under way
+  bool placed_ = false;                          ///< True: the proxies are at the configuration of the sides.
+  std::span<const proxy::ContactRegion> found_;  ///< Regions of the last query.
+  std::set<int> kept_a_, kept_b_;                ///< Proxies in the picture data of the present query.
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace palpate::contact {
 namespace {
 
-/// Mean of the positions of the block that has this node.
+/// Returns the mean position of the block that contains this node.
 Vec3 centre_of_block(int node, const dynamics::StateView& state) {
   for (const dynamics::Block& block : state.layout->blocks) {
     if (block.kind != dynamics::BlockKind::kNodes || 3 * node < block.u_offset ||
@@ -46,7 +46,8 @@ void Resultants::find_bodies(const Samples& samples, const dynamics::StateView& 
   }
 }
 
-// With the moment M about the world's origin, that about c is M - c x F.  Side b has the opposite of both.
+// With the moment M about the world's origin, the moment about c is M - c x F. Side b has the opposite of
+// both.
 void Resultants::compare(const Samples& samples_before, const Samples& samples_after,
                          const dynamics::StateView& state,
                          const std::vector<std::shared_ptr<MovingFrame>>& frames) {

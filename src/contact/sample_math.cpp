@@ -5,7 +5,7 @@
 namespace palpate::contact {
 namespace {
 
-constexpr double kLongest = 1e-9;  // a spring that is cut to its longest is that long but for rounding
+constexpr double kLongest = 1e-9;  // A spring that was cut to its maximum has that length up to rounding.
 
 }  // namespace
 
@@ -37,9 +37,9 @@ SampleMotion sample_motion(const ContactSample& sample, const dynamics::StateVie
   return motion;
 }
 
-// Normal and regularised Coulomb part, with the tangential velocity v_t = (I - n n^T)(v_a - v_b):
+// Normal force and regularised Coulomb friction, with the tangential velocity v_t = (I - n n^T)(v_a - v_b):
 //   F = A p (n - mu s),   s = v_t / max(|v_t|, v_r)
-// Below v_r the sliding direction is replaced by a viscous law; above it the friction is mu p A exactly.
+// Below v_r friction is viscous; above it the friction is mu p A exactly.
 Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
   const double p = pressure(law, motion.gap, motion.rate).p;
   if (law.friction == 0.0 || p == 0.0) return sample.area * p * sample.normal;
@@ -52,21 +52,21 @@ Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const
 //   dF/dv_rel = A (p_rate m n^T - mu p ds/dv_t P),   P = I - n n^T
 //   ds/dv_t   = I / v_r                        for |v_t| <= v_r
 //             = (I - t t^T) / |v_t|, t = s     beyond
-// Where a spring sticks (friction_anchors.cpp) v_t stands for w = v_t + u/tau, and dF/dx_rel has -A mu p
-// ds/dv_t P/tau besides, as long as the spring is not at its longest. Of these A p_gap mu s n^T and A p_rate
-// mu s n^T, by which friction follows the pressure, have no transpose partner.  Without them (`symmetric`)
-// both matrices are symmetric and positive semi-definite: friction is that of the pressure at which it was
-// linearised, for one step.
+// With a friction spring (friction_anchors.cpp) v_t is replaced by w = v_t + u/tau, and dF/dx_rel has the
+// additional term -A mu p ds/dv_t P/tau while the spring is shorter than its maximum. The terms A p_gap mu s
+// n^T and A p_rate mu s n^T, by which friction follows the pressure, have no transpose counterpart. Without
+// them (`symmetric`) both matrices are symmetric and positive semi-definite: for one step friction is that of
+// the pressure at which it was linearised.
 //
-// Along t friction does not change while it slides, and a step of one linear solve then takes it for
-// constant: it changes the velocity by as much as h mu p A/m, m being the mass behind the sample, however
-// little the sample slides.  Where |v_t| < h mu p A/m the sliding turns round instead of ending, and so in
-// the next step: |v_t| = h mu p A/(2m) back and forth, while friction takes m/2 (h mu p A/m)^2 a step that
-// nobody gave. With the secant through v_t = 0 (`secant_friction`),
+// Along t friction is constant while the sample slides, and a step of one linear solve takes it as constant:
+// it changes the velocity by h mu p A/m, with m the mass that the sample moves, however slowly the sample
+// slides. Where |v_t| < h mu p A/m the sliding reverses instead of ending, and again in the next step: |v_t|
+// = h mu p A/(2m) back and forth, while friction appears to dissipate m/2 (h mu p A/m)^2 per step, which
+// nothing supplies. With the secant through v_t = 0 (`secant_friction`),
 //   ds/dv_t = I / max(|v_t|, v_r),      F_t(v) = -A mu p v / max(|v_t|, v_r)      over the step,
-// friction opposes the velocity v that the step ends with: F_t . v <= 0 for every h, and a mass that slides
-// freely comes to v = v_t / (1 + h mu p A/(m |v_t|)), which has the sign of v_t.  It errs by |v|/|v_t| - 1
-// of the friction, of first order in h as the step does.
+// friction opposes the velocity v at the end of the step: F_t . v <= 0 for every h, and a freely sliding mass
+// reaches v = v_t / (1 + h mu p A/(m |v_t|)), which has the sign of v_t. The error is |v|/|v_t| - 1 of the
+// friction, of first order in h like the step's.
 SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
                                      const PressureLaw& law, bool symmetric) {
   const Pressure p = pressure(law, motion.gap, motion.rate);
@@ -98,7 +98,7 @@ SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMo
           -p.dp_dgap * nn, -p.dp_drate * nn + friction.D};
 }
 
-// The linear equations may find tension, where a contact opens within the step: no friction then.
+// The linear equations may give tension where a contact opens within the step: friction is zero then.
 SampleEnd sample_end(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law,
                      const SampleStep& step) {
   const Pressure p = pressure(law, motion.gap, motion.rate);
@@ -113,11 +113,11 @@ Vec3 friction_per_pressure(const ContactSample& sample, const SampleMotion& moti
   return -sample.area * law.friction / std::max(v_t.norm(), law.regularisation) * v_t;
 }
 
-// The spring stores A k S, S' = s; the contact gives the power -A p delta' to the two surfaces.  What is
-// missing:
+// The spring stores A k S, S' = s; the contact supplies the power -A p delta' to the two surfaces. The
+// difference is dissipated:
 //   -(A k s delta' - A p delta') = A (p - k s) delta'  =  A d s' delta'^2  or  A 3/2 k c s delta'^2,
-// and where the pressure was cut to zero, -A k s delta' with delta' < 0: all >= 0.  Friction takes A mu p
-// w . v_t / max(|w|, v_r): what its spring stores is counted with it, and given back.
+// and where the pressure was cut off, -A k s delta' with delta' < 0: all >= 0. Friction takes A mu p w . v_t
+// / max(|w|, v_r), which includes the energy that its spring stores and returns.
 double damping_power(const PressureLaw& law, double gap, double rate) {
   return (pressure(law, gap, rate).p - law.k * onset(law.onset, -gap).value) * -rate;
 }

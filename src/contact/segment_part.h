@@ -12,9 +12,9 @@ struct Part {
     return {-kFar, kFar};
   }
   void clear() { s0 = 1.0, s1 = -1.0; }
-  /// The last point, -infinity where there is none.
+  /// Returns the last parameter, -infinity for an empty part.
   double end() const { return s0 <= s1 ? s1 : -std::numeric_limits<double>::infinity(); }
-  /// Cut to where low <= a + s d <= high.
+  /// Clips the part to low <= a + s d <= high.
   void cut(double a, double d, double low, double high) {
     if (d == 0.0) {
       if (a < low || a > high) clear();

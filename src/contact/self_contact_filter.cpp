@@ -1,25 +1,25 @@
-// Seen along the normal n, from b to a, a's skin faces down and b's faces up; they overlap where x_b lies
-// above x_a.  Three things look like that:
-//   contact         a's tissue begins at x_a and b's ends at x_b: between them both are there;
-//   own thickness   b's skin is the back of the tissue that begins at x_a: between them is tissue once;
-//   passed by       the tissue that begins at x_a ends below the tissue that ends at x_b, air between: b's
-//                   tissue is above a's, and they do not touch here.
-// What they differ in is where the straight way from x_a to x_b ends if it is walked through the tetrahedra,
-// from one to its neighbour across a face.  It ends in contact somewhere inside a's tissue, at a point Y of
-// the body at rest; in own thickness at X_b, the very point of the skin; passing by, it comes out before.
-// The way from b is walked as well, and one way that ends inside is enough: a thin part that has been
-// swallowed by a thick one ends the one way and not the other.  Where both are thinner than the overlap is
-// deep, no way stays inside and nothing is said to touch.
+// Seen along the normal n, from b to a, a's skin faces down and b's skin faces up; they overlap where x_b
+// lies above x_a. Three situations look like this:
+//   contact         a's tissue begins at x_a and b's ends at x_b: both occupy the space in between;
+//   own thickness   b's skin is the back of the tissue that begins at x_a: one tissue in between;
+//   passed by       the tissue that begins at x_a ends below the tissue that ends at x_b, with air between:
+//                   the tissue of b is above that of a, and they do not touch here.
+// They differ in the end of the straight path from x_a to x_b if it is traced through the tetrahedra, from
+// one to its neighbour across a face. In contact it ends inside a's tissue, at a point Y of the body at rest;
+// in own thickness at X_b, the same point of the skin; in passing by it leaves the tissue before its end. The
+// path from b is traced as well, and one path that ends inside is sufficient: if a thin part is enclosed by a
+// thick one, only one of the paths ends inside. Where both are thinner than the overlap is deep, no path
+// stays inside and no contact is detected.
 //
-// Y and X_b are compared by their distance from the way's begin.  In own thickness |Y - X_b| is rounding, and
-// the skin's distance from the tetrahedra where these do not fill it.  In contact Y lies below the skin at
-// X_a and X_b lies on the skin, so while |Y - X_a| is less than half of the tissue's thickness, |Y - X_b| is
-// not less than Y's depth, |Y - X_a| cos(tilt of the skin against n).  Half of |Y - X_a| parts the two.  At
-// rest every overlap of a skin that does not cut itself is own thickness, with Y = X_b: the body at rest
-// feels nothing, whatever the gap that is looked into.
+// The distance of Y from X_b is compared with its distance from the path's start X_a. In own thickness
+// |Y - X_b| is rounding, plus the skin's distance from the tetrahedra where these do not fill it. In contact
+// Y lies below the skin at X_a and X_b lies on the skin, so that while |Y - X_a| is less than half of the
+// tissue's thickness, |Y - X_b| is not less than Y's depth, |Y - X_a| cos(tilt of the skin against n). The
+// threshold is half of |Y - X_a|. At rest every overlap of a skin that does not intersect itself is own
+// thickness, with Y = X_b: there is no contact force at rest, whatever the search distance.
 //
-// The way may end outside of the tetrahedra by as much as the skin does; there the last tetrahedron is
-// continued.  One that is too flat to have weights ends the way: no force comes from nowhere.
+// The path may end outside the tetrahedra by as much as the skin does; there the last tetrahedron is
+// extrapolated. A tetrahedron too flat to have weights ends the path, so that no spurious force arises.
 #include "contact/self_contact_filter.h"
 
 #include <Eigen/LU>
@@ -34,7 +34,7 @@
 namespace palpate::contact {
 namespace {
 
-/// For each corner of each tetrahedron, the one across the face opposite to it.
+/// Returns, for each corner of each tetrahedron, the tetrahedron across the face opposite to it.
 Tets neighbours(const Tets& tets) {
   struct Face {
     std::array<int, 3> nodes;
@@ -57,10 +57,10 @@ Tets neighbours(const Tets& tets) {
   return across;
 }
 
-/// The map from a position, relative to the first corner, to the weights of the other three; false where the
-/// tetrahedron is flat.
+/// Computes the map from a position, relative to the first corner, to the weights of the other three corners.
+/// Returns false where the tetrahedron is flat.
 bool weights_of(const Tets& tets, const Points& nodes, int tet, Mat3& map) {
-  constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
+  constexpr double kFlat = 1e-6;  // Volume divided by the cube of the longest edge.
   Mat3 edges;
   for (int k = 0; k < 3; ++k) edges.col(k) = nodes.col(tets(k + 1, tet)) - nodes.col(tets(0, tet));
   const double size = edges.colwise().norm().maxCoeff();
@@ -81,8 +81,8 @@ SelfContactFilter::SelfContactFilter(const SurfaceState& skin, Points rest_nodes
                 surface.tets.maxCoeff(), rest_nodes_.cols());
   across_ = neighbours(surface.tets);
   mesh::evaluate(surface.embedding, surface.tets, rest_nodes_, rest_vertices_);
-  // A negative weight is a distance outside of the face opposite to its corner, in heights of that corner: 1
-  // / |gradient of the weight|.
+  // A negative weight is a distance outside the face opposite to its corner, in heights of that corner: 1 /
+  // |gradient of the weight|.
   for (int v = 0; v < surface.embedding.size(); ++v) {
     if (surface.embedding.weights.col(v).minCoeff() >= 0.0) continue;
     Mat3 map;
@@ -109,7 +109,7 @@ SkinPoint SelfContactFilter::point(int face, const Vec3& weights, const Vec3& wo
 
 SelfContactFilter::Way SelfContactFilter::walk(int tet, const Vec3& from, const Vec3& to) const {
   constexpr int kMostSteps = 1000;
-  constexpr double kGrazing = 1e-12;  // a weight that falls by less over the whole way is rounding
+  constexpr double kGrazing = 1e-12;  // A smaller decrease of a weight over the whole path is rounding.
   const Tets& tets = skin_.surface().tets;
   Way way{0.0, tet, Eigen::Vector4d::Zero()};
   for (int step = 0; step < kMostSteps; ++step) {

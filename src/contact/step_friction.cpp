@@ -1,4 +1,4 @@
-// Friction over a step: that of its end, found by repeated solves (friction.cpp).
+// Friction over a step, evaluated at its end by repeated solves (friction.cpp).
 #include <algorithm>
 
 #include "contact/contact_force_impl.h"
@@ -6,8 +6,8 @@
 namespace palpate::contact {
 namespace {
 
-/// How a point moves with its frame, by displacements along u-directions; a frame that turns with its twist
-/// held changes the point's velocity besides (V of tangent.h).
+/// Returns the motion of a point with its frame, for displacements along u-directions. The rotation of a
+/// frame with constant twist also changes the point's velocity (V of tangent.h).
 SampleStep of_frame(const PointMotion& motion, const FrameState& frame, const Vec6& moved,
                     const Vec6& change) {
   const Vec3 turn = moved.head<3>();
@@ -79,7 +79,7 @@ bool ContactForce::improve_step(const dynamics::StateView& state, const VecX& mo
                                  tolerance > 0.0 ? tolerance : kFrictionTolerance);
 }
 
-/// Each pair's error counts for itself: a heavy body in the same step does not hide a light one's.
+/// The error is measured per pair: a heavy body in the same step does not hide the error of a light one.
 bool ContactForce::Impl::improve_friction(const dynamics::StateView& state, const VecX& moved,
                                           const VecX& change, const FrameStep& given, double tolerance) {
   Impl& m = *this;
@@ -101,7 +101,8 @@ bool ContactForce::Impl::improve_friction(const dynamics::StateView& state, cons
     FrictionError& error = m.friction_errors[p];
     for (std::size_t i = pair.begin; i < pair.end; ++i) {
       const ContactSample& s = m.samples[i];
-      const bool elsewhere = s.a.frame != given.frame && s.b.frame != given.frame;  // as all of a pair
+      // The same holds for all samples of a pair.
+      const bool elsewhere = s.a.frame != given.frame && s.b.frame != given.frame;
       if (given.frame >= 0 && elsewhere) break;
       const SampleMotion motion = sample_motion(s, state, m.frame_states);
       if (motion.gap >= 0.0) continue;

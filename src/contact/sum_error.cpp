@@ -11,7 +11,7 @@ void SumError::take(const Query& query) {
   largest_term_ = std::max(largest_term_, query.largest_term);
 }
 
-// The last query is not kept: a resumed run makes it again.
+// The last query is not saved: a resumed run repeats it.
 void SumError::archive(Archive& a) {
   a("largest_sum", largest_sum_);
   a("largest_error", largest_error_);

@@ -102,28 +102,28 @@ SurfacePoint SurfaceState::vertex_point(int vertex) const {
   return point;
 }
 
-// The corners of a face of a skin may hang on three tetrahedra, twelve nodes in all; a contact point has
-// four.  It is tied to the tetrahedron of the corner nearest to it, by its barycentric coordinates there as
-// it stands now: so it lies where it is seen, and a force at it keeps its moment.  Between two queries it
-// moves with that one tetrahedron, and leaves the face by a part of the difference of the tetrahedra's
-// strains.
+// The corners of a face of a skin may be carried by three tetrahedra, twelve nodes in all, whereas a contact
+// point has four. It is attached to the tetrahedron of the corner nearest to it, by its barycentric
+// coordinates there in the present configuration: it keeps its position, and a force on it keeps its moment.
+// Between two queries it moves with that tetrahedron, and deviates from the face by a fraction of the
+// difference of the tetrahedra's strains.
 //
-// In a tetrahedron that is squashed against its neighbours the coordinates w grow as 1 / height: a force f
-// reaches the nodes as w f, and a stiffness k as w^2 k.  The sum |w| is therefore held below that which an
-// embedding may have.  A force along n keeps its moment at any point of its line, so the point may be carried
-// by one that differs from it along n: of all weights with
+// In a tetrahedron squashed relative to its neighbours the coordinates w grow as 1 / height: a force f acts
+// on the nodes as w f, and a stiffness k as w^2 k. The sum |w| is therefore kept below the limit for an
+// embedding. A force along n has the same moment at any point of its line, so that the point may be carried
+// by a point displaced along n: of all weights with
 //     sum w_i = 1,   sum w_i P x_i = P x,   P = I - n n^T
 // the least ones,
 //     w_i = 1/4 + p_i^T (sum p_j p_j^T)^-1 p,
-// p_i and p the P x_i and P x about the mean of the corners, are bounded however low the tetrahedron is along
-// n.  The offset left along n does not rotate: gap and moment are right to first order, and friction's moment
-// is off by friction times offset.  Where that is not enough, the tetrahedra of the face's other corners
-// are tried, and at last, all three flat and seen edge-on, the corner's own weights carry it, with a moment
-// of the offset times the force.
+// with p_i and p the P x_i and P x relative to the mean of the corners, are bounded however low the
+// tetrahedron is along n. The remaining offset along n does not rotate: gap and moment are correct to first
+// order, and the moment of friction is off by friction times offset. Where that is not sufficient, the
+// tetrahedra of the face's other corners are tried. As a last resort, if all three are flat and seen edge-on,
+// the corner's embedding weights carry the point, with a moment of the offset times the force.
 //
-// All of these are affine in the place, but for the last, which are constant.  Carriers have numbers: of
-// tetrahedron t 2 t by its coordinates and 2 t + 1 by the least weights, then the vertices by their own; of a
-// surface whose vertices are nodes those of its faces.
+// All these weights are affine in the place, except the last, which are constant. Carriers are numbered: for
+// tetrahedron t, 2 t with its coordinates and 2 t + 1 with the least weights; then the vertices with their
+// embedding weights. For a surface whose vertices are nodes the carriers are its faces.
 int SurfaceState::carrier_choices() const { return is_skin() ? 9 : 1; }
 
 int SurfaceState::carrier_choice(int face, int corner, int choice) const {
@@ -138,10 +138,10 @@ int SurfaceState::carrier_choice(int face, int corner, int choice) const {
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFlatTetrahedron = 1e-6;  // volume over the cube of the longest edge
+constexpr double kFlatTetrahedron = 1e-6;  // Volume divided by the cube of the longest edge.
 
-/// Barycentric coordinates by the place, of a tetrahedron with these corners, the first at 0; NaN of one that
-/// is too flat to have them.
+/// Returns the barycentric coordinates as a function of place, for a tetrahedron with these corners, the
+/// first at 0; NaN for one that is too flat.
 Mat4 coordinates_in(const Mat34& x) {
   const Mat3 edges = x.rightCols<3>();
   const double size = edges.colwise().norm().maxCoeff();
@@ -153,8 +153,8 @@ Mat4 coordinates_in(const Mat34& x) {
   return out;
 }
 
-/// The least weights by the place, in the sense of squares, of a point on the line through it along w; NaN
-/// where the corners are on a line as w sees them.
+/// Returns the least-squares weights as a function of place, for a point on the line through it along w; NaN
+/// where the corners are collinear as seen along w.
 Mat4 least_weights(const Mat34& x) {
   constexpr double kEdgeOn = 1e-12;
   const Eigen::Vector2d middle = x.topRows<2>().rowwise().mean();
@@ -168,8 +168,8 @@ Mat4 least_weights(const Mat34& x) {
   return out;
 }
 
-/// Of a triangle with its first corner at 0, seen along w: three weights by the place; the same everywhere
-/// where it is seen edge-on.
+/// Returns the weights of a triangle with its first corner at 0, seen along w, as a function of place;
+/// constant where it is seen edge-on.
 Mat4 coordinates_in_face(const Mat34& x) {
   const Eigen::Matrix2d edges = x.block<2, 2>(0, 1);
   Mat4 out = Mat4::Zero();
@@ -184,16 +184,16 @@ Mat4 coordinates_in_face(const Mat34& x) {
 
 }  // namespace
 
-// With the nodes at x_i, seen from the first one, the place p = (u, v, w, 1) is carried to sum (B p)_i x_i,
-// at the height sum (B p)_i w_i; `beside` is what is missing to w, zero but for rounding where the point is
-// on the carrier.
+// With the nodes at x_i relative to the first one, the place p = (u, v, w, 1) is carried to sum (B p)_i x_i,
+// at the height sum (B p)_i w_i. `beside` is the difference to w, zero up to rounding where the point is on
+// the carrier.
 Carrier SurfaceState::carrier(int number, const ContactAxes& axes) const {
   Carrier out;
   const Tets& tets = surface_.tets;
   const auto nodes_of = [&](int tet) {
     for (int k = 0; k < 4; ++k) out.node[static_cast<std::size_t>(k)] = node_of_tet(tet, k);
   };
-  Mat34 x = Mat34::Zero();  // of the carrier's nodes, in the axes, from the first
+  Mat34 x = Mat34::Zero();  // Positions of the carrier's nodes in the axes, relative to the first.
   if (!is_skin()) {
     out.count = 3;
     const int first = surface_.faces(0, number);
@@ -210,7 +210,7 @@ Carrier SurfaceState::carrier(int number, const ContactAxes& axes) const {
               tet = vertex >= 0 ? tet_of(vertex) : number / 2;
     nodes_of(tet);
     out.at = axes.in_axes(nodes_.col(tets(0, tet)));
-    for (int k = 1; k < 4; ++k)  // from the first
+    for (int k = 1; k < 4; ++k)  // Relative to the first.
       x.col(k).noalias() = axes.to_world.transpose() * (nodes_.col(tets(k, tet)) - nodes_.col(tets(0, tet)));
     if (vertex >= 0)
       out.by_place.col(3) = surface_.embedding.weights.col(vertex);
@@ -222,7 +222,7 @@ Carrier SurfaceState::carrier(int number, const ContactAxes& axes) const {
 }
 
 CarriedPoint SurfaceState::carried(int face, const Vec3& weights, const Vec3& x, const Vec3& normal) const {
-  // a vertex that was embedded with weights at the bound may come out above it by rounding
+  // Weights of a vertex embedded at the bound may exceed it by rounding.
   constexpr double kBound = (1.0 + 1e-9) * mesh::kLargestWeightSum;
   CarriedPoint out;
   SurfacePoint& point = out.point;
@@ -238,7 +238,7 @@ CarriedPoint SurfaceState::carried(int face, const Vec3& weights, const Vec3& x,
   }
   Eigen::Index corner = 0;
   weights.maxCoeff(&corner);
-  // The first choice without axes: x = sum w_i x_i in three equations.
+  // First choice, without axes: x = sum w_i x_i in three equations.
   out.number = carrier_choice(face, static_cast<int>(corner), 0);
   const auto tet = surface_.tets.col(out.number / 2);
   const Vec3 x0 = nodes_.col(tet[0]);

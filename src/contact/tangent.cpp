@@ -4,23 +4,23 @@
 
 namespace palpate::contact {
 
-// The tangent of one sample.  With x_rel = x_a - x_b, the sample's force F on a and its derivatives K =
-// -dF/dx_rel, D = -dF/dv_rel, and each side's map B (w_i I or Z), the generalised force on side p is  s_p
-// B_p^T F.  Its derivatives, negated:
+// Tangent of one sample. With x_rel = x_a - x_b, the sample's force F on a and its derivatives
+// K = -dF/dx_rel, D = -dF/dv_rel, and each side's map B (w_i I or Z), the generalised force on side p is
+// s_p B_p^T F. Its derivatives, negated:
 //
-//   by side q's position   s_p s_q B_p^T (K B_q + D V_q)      V_q: a frame's twist, held, moves the rotated
-//   arm otherwise
+//   by side q's position   s_p s_q B_p^T (K B_q + D V_q)      V_q: at constant twist the velocity of a
+//                          frame's rotated arm changes
 //   by side q's velocity   s_p s_q B_p^T  D B_q
-//   geometric (p = q)      a frame's moment s_p (r x F) changes with its own arm, dr = dtheta x R o:
+//   geometric (p = q)      a frame's moment s_p (r x F) changes with its arm, dr = dtheta x R o:
 //                          d(r x F) = (dtheta x R o) x F = F x (R o x dtheta) = [F]x [R o]x dtheta = G
 //                          dtheta,  so K_theta,theta += -s_p G
 //
-// The slide s does not rotate, so positions move with R o and velocities, w x r, with r = R o + s; but s is
-// parallel to n, and K acts on n . dx alone:
-// K (dtheta x s) = 0, and Z serves for both.
+// The slide s does not rotate, so that positions move with R o and velocities, w x r, with r = R o + s; but s
+// is parallel to n, and K acts on n . dx only: K (dtheta x s) = 0, and Z serves for both.
 //
-// Node-node blocks stay symmetric without friction (K = A k n n^T).  Frame blocks do not: G is symmetric only
-// up to the moment that it is the derivative of (rotations do not commute), and D V has no transpose partner.
+// Node-node blocks are symmetric without friction (K = A k n n^T). Frame blocks are not: G is symmetric only
+// up to the moment that it is the derivative of (rotations do not commute), and D V has no transpose
+// counterpart.
 Side::Side(const SurfacePoint& surface_point, const PointMotion& motion,
            const std::vector<FrameState>& frames, double side_sign, const Vec3& force_on_a)
     : point(surface_point), frame(nullptr), sign(side_sign), arm(motion.arm) {
@@ -34,7 +34,7 @@ Side::Side(const SurfacePoint& surface_point, const PointMotion& motion,
 
 namespace {
 
-/// Rows 3 node of the body part: one 3x3 block, weighted.
+/// Adds one 3x3 block, weighted, to the rows 3 node of the body part.
 void add_node_node(const Side& p, const Side& q, const Mat3& block, dynamics::BorderedMatrix& A) {
   for (int i = 0; i < p.point.count; ++i)
     for (int j = 0; j < q.point.count; ++j) {
@@ -47,7 +47,7 @@ void add_node_node(const Side& p, const Side& q, const Mat3& block, dynamics::Bo
     }
 }
 
-/// s_p s_q B_p^T (k (K B_q + D V_q) + d D B_q) for one pair of sides.
+/// Adds s_p s_q B_p^T (k (K B_q + D V_q) + d D B_q) for one pair of sides.
 void add_pair_block(const Side& p, const Side& q, const SampleForce& s, double k_scale, double d_scale,
                     int nodal_size, dynamics::BorderedMatrix& A) {
   const double sign = p.sign * q.sign;
@@ -94,7 +94,8 @@ void add_sample_tangent(const Side& a, const Side& b, const SampleForce& s, doub
 
 void apply_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
                           const VecX& x, VecX& y) {
-  Vec3 dx = Vec3::Zero(), dv = Vec3::Zero();  // of x_rel by u-directions, and of v_rel by the rotating arms
+  // Changes of x_rel along u-directions, and of v_rel due to rotating arms.
+  Vec3 dx = Vec3::Zero(), dv = Vec3::Zero();
   for (const Side* q : {&a, &b}) {
     if (q->is_nodes()) {
       for (int j = 0; j < q->point.count; ++j) {

@@ -7,39 +7,41 @@
 
 namespace palpate::contact {
 
-// A bunch of samples j with areas a_j, normals n_j, arms r_j and gaps g_j becomes one point.  Where they
-// press it has their force and moment by the law's linear part, k g a n:
+// A cluster of samples j with areas a_j, normals n_j, arms r_j and gaps g_j becomes one point. Where they
+// press it has their force and moment by the linear part of the law, k g a n:
 //     gap g = sum a_j g_j / sum a_j,    F = sum a_j g_j n_j = g a n  gives area a and normal n,
 //     arm r = mean of r_j by area + d,  r x F = sum a_j g_j r_j x n_j  gives d, across F,
 //     modes P = mean of P_j by area + p n^T,  P F = sum a_j g_j P_j n_j  gives p.
-// So tool and modes get the loads of the samples, and bodies that are at rest under these are at rest under
-// the points.  (With modes by area alone they moved within each period until their stiffness balanced the
-// difference, a force of 0.1 to 0.6 % too much, and back at its end.)  A moment along F no arm gives: what
-// all bunches lack of it is spread over their arms (complete_moment).  Where they do not press, n is their
-// mean normal.  Else places, velocities and modes are means by area: what is lost is of second order in the
-// bunch's size over the contact's, and bunches are split where that is largest.  Samples that press are not
-// bunched with such that do not.
+// Tool and modes thus receive the loads of the samples, and bodies that are at rest under these are at rest
+// under the points. (With modes averaged by area alone the bodies moved within each period until their
+// stiffness balanced the difference, a force of 0.1 to 0.6 % too much, and back at its end.) A moment along F
+// cannot be matched by an arm: the sum over clusters is distributed to their arms (complete_moment). Where
+// samples do not press, n is their mean normal. Places, velocities and modes are otherwise means by area: the
+// error is of second order in the ratio of the cluster's size to the contact's, and clusters are split where
+// it is largest. Pressing samples are not clustered with others.
 //
-// A point that sticks has friction's spring (friction_anchors.cpp) with the deflection
+// A sticking point has a friction spring (friction_anchors.cpp) with the deflection
 //     u = sum c_j u_j / c,    c_j its stiffness, mu times the pressure times a_j over tau v_r,
-// c that of the point, so that it has the samples' friction across n, at rest, by the law's linear part.  Its
-// moment, and what it does to the modes, are those of the point's arm and modes: what is lacking of the
-// samples' is handed on as constants.  (Without, a block that two tools held between them crept by 4 um/s:
-// each exchange moved the tools to where the points were in balance, by 1e-3 of the friction.)
+// with c the stiffness of the point, so that it has the samples' friction across n, at rest, by the linear
+// part of the law. Its moment, and its load on the modes, follow from the point's arm and modes; the
+// differences from those of the samples are passed on as constants. (Without them a block held between two
+// tools crept by 4 um/s: each exchange moved the tools to where the points were in balance, by 1e-3 of the
+// friction.)
 namespace {
 
 using Six = Eigen::Matrix<double, 6, 1>;
 using ModesOfSamples = Eigen::Matrix<double, TouchModel::kMostModes, Eigen::Dynamic>;
 using MovedBy = Eigen::Matrix<double, TouchModel::kMostModes, 3>;
 
-/// A range of the samples' order.
+/// Sample cluster: a range of the samples' order.
 struct Bunch {
   int first, last;
-  Six middle;  ///< mean by area
-  Six spread;  ///< sum of area times squared distance from the mean, by direction
+  Six middle;  ///< Mean by area.
+  Six spread;  ///< Sum of area times squared distance from the mean, per direction.
   double worst() const { return last - first > 1 ? spread.maxCoeff() : 0.0; }
 };
 
+/// Clustering of samples by recursive bisection at the mean of the direction of largest spread.
 class Bunches {
  public:
   Bunches(const std::vector<TouchSample>& samples, const Vec3& origin, std::vector<int> order)
@@ -60,7 +62,7 @@ class Bunches {
     if (!order_.empty()) bunches_.push_back(bunch(0, static_cast<int>(order_.size())));
   }
 
-  /// Splits the worst until there are so many, or each is one sample.
+  /// Splits the cluster of largest spread until there are `count` clusters, or each is one sample.
   void split_to(int count) {
     while (static_cast<int>(bunches_.size()) < count) {
       const auto worst =
@@ -74,7 +76,7 @@ class Bunches {
       const auto split = std::partition(order_.begin() + first, order_.begin() + last,
                                         [&](int j) { return coordinates(j)[axis] < middle; });
       const int at = static_cast<int>(split - order_.begin());
-      if (at == first || at == last) return;  // equal to rounding
+      if (at == first || at == last) return;  // Equal up to rounding.
       *worst = bunch(first, at);
       bunches_.push_back(bunch(at, last));
     }
@@ -107,16 +109,18 @@ class Bunches {
   Vec3 origin_;
   double reach_ = 0.0;
   std::vector<int> order_;
-  /// of each sample: place, and normal at the contact's own size: a turn by one radian is as bad as that way
+  /// Per sample: position, and normal scaled by the contact's size, so that a rotation by one radian weighs
+  /// as much as a displacement by that size.
   std::vector<Six> coordinates_;
   std::vector<Bunch> bunches_;
 };
 
 void write(const Vec3& from, std::array<double, 3>& to) { to = {from.x(), from.y(), from.z()}; }
 
+/// Point of a cluster.
 struct PointOfBunch {
   TouchModel::Point point;
-  double friction_stiffness = 0.0;  ///< of its spring of friction [N/m]
+  double friction_stiffness = 0.0;  ///< Stiffness of its friction spring [N/m].
 };
 
 PointOfBunch point_of(const std::vector<TouchSample>& samples, const ModesOfSamples& modes, const Mat3& R,
@@ -125,11 +129,11 @@ PointOfBunch point_of(const std::vector<TouchSample>& samples, const ModesOfSamp
   Vec3 along = Vec3::Zero(), moment = along, offset = along, slide = along, place = along, velocity = along,
        friction = along;
   double area = 0.0, gap = 0.0, friction_stiffness = 0.0, pressed = 0.0;
-  // samples of a bunch share nodes: weights are summed before modes are
+  // Samples of a cluster share nodes: weights are summed per node before the modes are.
   struct OfNode {
     int node;
-    double area;  ///< times weight
-    Vec3 push;    ///< times weight
+    double area;  ///< Sum of area times weight.
+    Vec3 push;    ///< Sum of force times weight.
   };
   std::vector<OfNode> of_nodes;
   for (int i = bunch.first; i < bunch.last; ++i) {
@@ -172,10 +176,10 @@ PointOfBunch point_of(const std::vector<TouchSample>& samples, const ModesOfSamp
   moved /= area;
   out.area = presses ? size / -gap : size;
   if (presses) moved += (load / size - moved * normal) * normal.transpose();
-  // what does not press yet will do so along the line of an even pressure
+  // Samples that do not press yet are expected to press with uniform pressure: the arm matches its line.
   const Vec3 missing = moment - (R * offset + slide).cross(along);
   offset += R.transpose() * along.cross(missing) / (size * size);
-  // the mean of places need not have the mean of gaps
+  // The mean position does not reproduce the mean gap: it is corrected along the normal.
   place += normal * (normal.dot(origin + R * offset + slide - place) - gap);
   write(normal, out.normal);
   write(offset, out.offset);
@@ -191,8 +195,9 @@ PointOfBunch point_of(const std::vector<TouchSample>& samples, const ModesOfSamp
 }
 
 // Arms that change by d_i = F_i x l change the moment by sum (F_i x l) x F_i = sum (|F_i|^2 - F_i F_i^T) l.
-// Where all forces have one direction nothing is missing along it, and the sum is singular there.
-/// Gives the points of samples that press the moment of the samples.  Their forces stay as they are.
+// If all forces have one direction, no moment is missing along it, and the sum is singular there.
+/// Corrects the arms of the points of pressing samples so that their moment equals that of the samples. Their
+/// forces do not change.
 void complete_moment(const std::vector<TouchSample>& samples, const std::vector<int>& members, const Mat3& R,
                      const Vec3& origin, std::span<TouchModel::Point> points) {
   constexpr double kSameDirection = 1e-9;
@@ -221,7 +226,7 @@ void complete_moment(const std::vector<TouchSample>& samples, const std::vector<
   for (TouchModel::Point& p : points) write(vec(p.offset) + R.transpose() * force(p).cross(l), p.offset);
 }
 
-/// Friction's springs at rest, of samples less those of points: on the tool, and on the modes.
+/// Force of the friction springs at rest, of samples minus that of points: on the tool, and on the modes.
 struct MissingFriction {
   const Mat3& R;
   Vec6 wrench = Vec6::Zero();
@@ -250,7 +255,8 @@ struct MissingFriction {
   }
 };
 
-/// Held ones as one: the same stiffness between the means of where they are and where they are held.
+/// Returns the point of a cluster of held samples: their total stiffness between the means of their positions
+/// and of their attachment points.
 TouchModel::Point held_point_of(const std::vector<TouchSample>& samples, const ModesOfSamples& modes,
                                 const Bunches& bunches, const Bunch& bunch) {
   Vec3 normal = Vec3::Zero(), offset = normal, place = normal, velocity = normal;
@@ -278,12 +284,12 @@ TouchModel::Point held_point_of(const std::vector<TouchSample>& samples, const M
   return out;
 }
 
-/// What samples may be bunched by: those that press, held ones, and those that do neither, of each pair.
+/// Criterion of samples that may share a cluster: pressing, held, or neither, per contact pair.
 struct Kind {
   int apart, held, pair;
   explicit Kind(const TouchSample& s) : apart(!s.held && !(s.gap < 0.0)), held(s.held), pair(s.pair) {}
   auto operator<=>(const Kind&) const = default;
-  /// Of the room that there is for points: what may come to press needs less.
+  /// Returns the share of the available points: candidates need fewer.
   int share() const { return apart ? 1 : 3; }
 };
 

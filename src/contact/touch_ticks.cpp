@@ -8,35 +8,35 @@
 
 namespace palpate::contact {
 
-// One tick, from t0 to t1 = t0 + h, of tool and reduced bodies together by linearly implicit Euler.  Tool and
-// bodies are first carried on with the velocities that they have, to (x_p, v) and q_p = q0 + h z0, z = q'; at
-// that state each point i has its force F_i on the tool with K_i = -dF/dx_rel, D_i = -dF/dv_rel.  A point
-// that leaves within the tick presses no more there, and one that comes does.  Z_i and V_i are the tool's
-// maps to the point (tangent.cpp), P_i the modes there.  While the tool ends at x_p + dx with v + dv, and the
-// bodies with z_p + dz, q_p + h dz,
+// One tick, from t0 to t1 = t0 + h, of tool and reduced bodies together by linearly implicit Euler. Tool and
+// bodies are first extrapolated with their present velocities, to (x_p, v) and q_p = q0 + h z0, z = q'. In
+// that state each point i has its force F_i on the tool with K_i = -dF/dx_rel, D_i = -dF/dv_rel. A point that
+// separates within the tick no longer presses there, and one that comes into contact does. Z_i and V_i are
+// the tool's maps to the point (tangent.cpp), P_i the modes there. If the tool ends at x_p + dx with v + dv,
+// and the bodies with z_p + dz, q_p + h dz, then
 //     F_i(t1) = F_i - K_i (Z_i dx - h P_i dz) - D_i (V_i dx + Z_i dv - P_i dz),
-// and q' of the model gives, with S_i = h K_i + D_i,
+// and q' of the model follows, with S_i = h K_i + D_i, from
 //     A dz = r + h sum P_i^T (K_i Z_i + D_i V_i) dx + h sum P_i^T D_i Z_i dv,
 //     A = 1 + h D + h^2 diag(k) + h sum P_i^T S_i P_i,
 //     r = h (f(t1) - D z_p - k q_p - sum P_i^T F_i) - (z_p - z0),        z_p = z0.
-// The tool feels sum Z_i^T F_i(t1), whose parts by dx and dv, with that of the arms, are J and B; the record
-// is handed to the tool's own scheme, which says what dx and dv become, and then dz follows.  Both sides so
-// get the same forces: what the tool loses the bodies gain, in momentum to rounding.
+// The contact wrench on the tool is sum Z_i^T F_i(t1); its derivatives with respect to dx and dv, including
+// those of the arms, are J and B. The record is passed to the tool's integrator, which determines dx and dv,
+// and then dz follows. Both sides receive the same forces: momentum is conserved up to rounding.
 //
-// A point that is held (grasp.cpp) has K, D and F with P in place of its maps to a sample, and besides turns
-// with the tool: of the tool's moment r x F, r changes with the bodies, by h P dz, and F turns.
+// A held point (grasp.cpp) has K, D and F with P in place of its maps to a sample, and its force rotates with
+// the tool: in the tool's moment r x F, r changes with the bodies, by h P dz, and F rotates.
 //
-// A point that sticks has a spring beside friction's damper (friction_anchors.cpp).  Its deflection is that
-// of the model's time and the way that the tool's material point has gone against the bodies' since then, at
-// the tick's start, and is held within the tick: as in a step of one linear solve it is multiplied by no less
-// than 1 - h/tau, so that in a tick longer than tau that length stands for tau.
+// A sticking point has a spring in parallel to the friction damper (friction_anchors.cpp). Its deflection is
+// that at the model's time plus the relative displacement of the material points of tool and bodies since
+// then, evaluated at the tick's start and held constant within the tick: as in a step of one linear solve it
+// is multiplied by no less than 1 - h/tau, so that in a tick longer than tau the length h replaces tau.
 //
-// A is symmetric and positive definite at any h: K_i and D_i are taken without how friction follows pressure,
-// and with friction as affine about a guess of the tick's end (friction.cpp).  Who integrates the tool finds
-// the end that the record leads to, and has the guess improved, until friction is the law's there.
+// A is symmetric and positive definite at any h: K_i and D_i exclude the change of friction with pressure,
+// and friction is affine about a guess of the tick's end (friction.cpp). The integrator of the tool finds the
+// end to which the record leads, and the guess is improved until friction obeys the law there.
 //
-// The sums are most of a tick's work.  They are made in so many modes as the model has, rounded up, with P
-// transposed: then all of them run along the modes, which lie together.
+// The sums are most of a tick's work. They are evaluated with the number of the model's modes, rounded up,
+// and with P transposed, so that all loops run along the modes, which are contiguous.
 namespace {
 
 constexpr int kModes = TouchModel::kMostModes;
@@ -46,7 +46,7 @@ using ModesBySix = Eigen::Matrix<double, kModes, 6>;
 using ModesByThree = Eigen::Matrix<double, kModes, 3>;  ///< P^T
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-/// A touching point of the tick under way, where tool and bodies are carried on to.
+/// Touching point of the present tick, in the extrapolated state of tool and bodies.
 struct TickPoint {
   bool touches = false;
   ContactSample sample;
@@ -63,24 +63,23 @@ PressureLaw law_of_ticks(ContactSpec spec) {
 struct TouchTicks::Impl {
   std::vector<PressureLaw> laws;
   TouchModel model;
-  std::array<ModesByThree, TouchModel::kMostPoints> modes;  ///< of each point
-  /// of each point, where it has friction: the guess of the tick's end, and its motion where it was
-  /// linearised
+  std::array<ModesByThree, TouchModel::kMostPoints> modes;  ///< P^T per point.
+  /// Per point with friction: guess of the tick's end, and the motion at which it was linearised.
   std::array<FrictionGuess, TouchModel::kMostPoints> guess;
   std::array<TickPoint, TouchModel::kMostPoints> tick_point;
   int solves = 0;
   Modes q = Modes::Zero(), z = Modes::Zero();
-  Pose of_model;                  ///< the tool at the model's time
-  double pressed_by_model = 0.0;  ///< sum of area times depth then [m^3]
-  // of the tick under way
+  Pose of_model;                  ///< Pose of the tool at the model's time.
+  double pressed_by_model = 0.0;  ///< Sum of area times depth at the model's time [m^3].
+  // Present tick.
   double h = 0.0, t1 = 0.0;
-  Pose start;                ///< of the tool
-  dynamics::RigidMotion at;  ///< x_p, v
+  Pose start;                ///< Pose of the tool at the tick's start.
+  dynamics::RigidMotion at;  ///< x_p, v.
   Modes dz = Modes::Zero();
   ModesBySix dz_dx = ModesBySix::Zero(), dz_dv = ModesBySix::Zero();
   int pressing = 0;
 
-  /// In the first N modes.
+  /// Linearises with the first N modes.
   template <int N>
   void linearise(dynamics::LinearisedContact& out);
 };
@@ -137,7 +136,7 @@ void TouchTicks::archive(Archive& a) {
 
 namespace {
 
-/// Where tool and bodies are carried on to, and what their points come to there.
+/// Extrapolated state of tool and bodies, and the sums over the points in it.
 template <int N>
 struct Sums {
   using Modes = Eigen::Matrix<double, N, 1>;
@@ -145,8 +144,8 @@ struct Sums {
   using ModesBySix = Eigen::Matrix<double, N, 6>;
   using ModesByThree = Eigen::Matrix<double, N, 3>;
 
-  const dynamics::RigidMotion& tool;  ///< x_p, v
-  const Pose &start, &of_model;       ///< of the tool, at the tick's start and at the model's time
+  const dynamics::RigidMotion& tool;  ///< x_p, v.
+  const Pose &start, &of_model;       ///< Pose of the tool at the tick's start and at the model's time.
   double tau, h;
   Modes q, z;
   Mat3 R = tool.pose.rotation.toRotationMatrix(), R_start = start.rotation.toRotationMatrix(),
@@ -158,11 +157,13 @@ struct Sums {
   Vec6 wrench = Vec6::Zero();
   Mat6 K = Mat6::Zero(), B = Mat6::Zero();
   int pressing = 0;
-  double pressed = 0.0;  ///< sum of area times depth [m^3]
+  double pressed = 0.0;  ///< Sum of area times depth [m^3].
 
-  /// @param P_t  P^T of the point  @param guess  of its friction; made where there is none
+  /// Adds one contact point.
+  /// @param P_t  P^T of the point  @param guess  guess of its friction; created if there is none
   void add_touching(const TouchModel::Point& point, const ModesByThree& P_t, const PressureLaw& law,
                     TickPoint& out, FrictionGuess& guess);
+  /// Adds one held point.
   void add_held(const TouchModel::Point& point, const ModesByThree& P_t);
 
  private:
@@ -172,7 +173,7 @@ struct Sums {
   Vec3 velocity(const TouchModel::Point& point, const ModesByThree& P_t) const {
     return vec(point.velocity) + P_t.transpose() * z;
   }
-  /// Deflection of friction's spring at the tick's start.
+  /// Returns the deflection of the friction spring at the tick's start.
   Vec3 deflection(const TouchModel::Point& point, const Vec3& place_then, const PressureLaw& law) const {
     const Vec3 arm = R_model * vec(point.offset) + vec(point.slide), n = vec(point.normal);
     const Vec3 way = start.translation + R_start * (R_model.transpose() * arm) - place_then -
@@ -181,8 +182,8 @@ struct Sums {
     const double longest = law.retardation * law.regularisation, length = across.norm();
     return length > longest ? Vec3(longest / length * across) : across;
   }
-  /// What is common to both kinds.
-  /// @param Kx, Dv  -dF by the tool's pose and twist
+  /// Adds the terms common to contact points and held points.
+  /// @param Kx, Dv  -dF with respect to the tool's pose and twist
   void add(const ModesByThree& P_t, const Mat36& Z, const Vec3& arm, const Vec3& F, const Mat3& S,
            const Mat36& Kx, const Mat36& Dv);
 };
@@ -190,7 +191,7 @@ struct Sums {
 template <int N>
 void Sums<N>::add(const ModesByThree& P_t, const Mat36& Z, const Vec3& arm, const Vec3& F, const Mat3& S,
                   const Mat36& Kx, const Mat36& Dv) {
-  const ModesByThree PS = P_t.lazyProduct(S);  // S is symmetric
+  const ModesByThree PS = P_t.lazyProduct(S);  // S is symmetric.
   A += (h * PS).lazyProduct(P_t.transpose());
   by_x += P_t.lazyProduct(Kx);
   by_v += P_t.lazyProduct(Dv);
@@ -250,7 +251,8 @@ void Sums<N>::add_held(const TouchModel::Point& point, const ModesByThree& P_t) 
   Kx.leftCols<3>() += F;
   add(P_t, Z, arm, b.force, h * b.K + b.D, Kx, b.D * Z);
   S_by_Z.template leftCols<3>() += h * P_t.lazyProduct(F);
-  // Z^T [F]x dtheta of `add` has - of -dM = ([M]x + [F]x [r]x) dtheta - [F]x dp the part [r]x [F]x
+  // The term Z^T [F]x dtheta from add() contains the part [r]x [F]x of -dM = ([M]x + [F]x [r]x) dtheta - [F]x
+  // dp.
   const Mat3 turn = cross_matrix(arm);
   K.topLeftCorner<3, 3>() += cross_matrix(arm.cross(b.elastic)) + F * turn - turn * F;
   K.topRightCorner<3, 3>() -= F;
@@ -294,9 +296,10 @@ void TouchTicks::Impl::linearise(dynamics::LinearisedContact& out) {
   Eigen::Map<RowMajor6>(out.B.data()) = sums.S_by_Z.transpose() * dz_dv.topRows<N>() - sums.B;
 }
 
-// At the end that the record leads to, each point has moved and changed its velocity, against the bodies, by
-//     Z_i dx - h P_i dz,   V_i dx + Z_i dv - P_i dz
-// from where it was linearised: its pressure and its sliding there are the next guess.
+// At the end to which the record leads, the displacement of each point relative to the bodies and the
+// change of its relative velocity since the linearisation are
+//     Z_i dx - h P_i dz,   V_i dx + Z_i dv - P_i dz.
+// The pressure and the sliding velocity there are the next guess.
 bool TouchTicks::improve(const dynamics::RigidMotion& end, double tolerance) {
   Impl& m = *impl_;
   const Vec6 dx = pose_difference(m.at.pose, end.pose);

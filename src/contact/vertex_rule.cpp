@@ -23,7 +23,7 @@ void VertexRule::collect(const Patch& patch, double side, double share) {
     const auto p = [&](int k) { return patch.uvw.col(corner[k]).head<2>(); };
     const Eigen::Vector2d e = p(1) - p(0), f = p(2) - p(0);
     const double area = 0.5 * side * (e.x() * f.y() - e.y() * f.x());
-    if (!(area > 0.0)) continue;  // turned away
+    if (!(area > 0.0)) continue;  // Turned away.
     for (int k = 0; k < 3; ++k) {
       Vertex& vertex = vertices_[static_cast<std::size_t>(corner[k])];
       vertex.area += share * area / 3.0;
@@ -61,15 +61,16 @@ void VertexRule::find_on_side(const Region& region, bool of_a, std::span<const F
     hit.area = vertex.area;
     out.push_back(hit);
   }
-  // by their places: in whichever order a mesh lists its triangles
+  // Sorted by position, independent of the order of triangles in the mesh.
   std::sort(out.begin() + first, out.end(), [](const Hit& p, const Hit& q) {
     return std::tie(p.at.v, p.at.u, p.at.w_a, p.at.w_b) < std::tie(q.at.v, q.at.u, q.at.w_a, q.at.w_b);
   });
 }
 
-/// The other body's triangle on the line through a vertex, by the pixels around it where its own skin is what
-/// the image shows: a face of the vertex, or one at its height, up to what a pixel cannot resolve.
-/// @return index into the other patch's `visible`; -1: the image shows none, or not the vertex
+/// Finds the other body's triangle on the line through a vertex, from the surrounding pixels at which the
+/// image shows the vertex' skin: a face of the vertex, or a face at its height within the resolution of a
+/// pixel.
+/// @return index into the other patch's `visible`; -1: the image shows no such triangle, or not the vertex
 int VertexRule::opposite(const Region& region, bool of_a, int vertex, std::span<const FacePair> pairs) const {
   const ContactCamera& camera = region.camera;
   const Patch& own = of_a ? region.a : region.b;

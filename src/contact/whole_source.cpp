@@ -15,11 +15,12 @@ std::vector<int> all_faces(const ImageSide& side) {
   return out;
 }
 
-/// One region.
+/// Image-space contact with one region.
 ///
-/// The finder's normal is the shortest way out of each other for the hulls.  Deeper than half of a body that
-/// is out through its other side: followed, the contact would pull the bodies through each other.  So as long
-/// as they have pressed each other since, the normal stays on the side that they came from.
+/// The region finder's normal is the shortest direction out of each other for the hulls. If the overlap is
+/// deeper than half of a body, that direction leads out through its other side, and contact would pull the
+/// bodies through each other. Therefore, as long as the bodies have been pressing continuously, the normal
+/// stays on the side that they came from.
 class WholeSource final : public ImageSource {
  public:
   WholeSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const ImageOptions& options)
@@ -28,7 +29,7 @@ class WholeSource final : public ImageSource {
         faces_b_(all_faces(*context_.b)) {}
 
   long normals_kept() const override { return normals_kept_; }
-  /// The side that the bodies came from is what the last query knew of it.
+  /// Saves or restores also the side that the bodies came from, known from the last query.
   void archive(Archive& a) override {
     ImageSource::archive(a);
     a("finder", finder_);
@@ -65,7 +66,7 @@ class WholeSource final : public ImageSource {
   void take_pressing(std::size_t) override { presses_ = true; }
 
  private:
-  /// Of the thinner body, at the first query [m].
+  /// Returns the thickness of the thinner body at the first query [m].
   double thickness() {
     if (thickness_ < 0.0)
       thickness_ =
@@ -73,11 +74,11 @@ class WholeSource final : public ImageSource {
     return thickness_;
   }
 
-  static constexpr double kSameSide = 0.5;  // cosine
+  static constexpr double kSameSide = 0.5;  // Cosine.
   std::vector<int> faces_a_, faces_b_;
   proxy::RegionFinder finder_;
-  Vec3 normal_ = Vec3::UnitZ();  ///< of the last query
-  bool presses_ = false;         ///< since then
+  Vec3 normal_ = Vec3::UnitZ();  ///< Normal of the last query.
+  bool presses_ = false;         ///< True: the region has pressed since then.
   long normals_kept_ = 0;
   double thickness_ = -1.0;
 };

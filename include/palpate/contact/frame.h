@@ -7,41 +7,44 @@
 
 namespace palpate::contact {
 
-/// A rigid frame that carries one side of a contact: fixed, moving with time, or a block of the State.
+/// Rigid frame that carries one side of a contact: fixed, prescribed in time, or a block of the State.
 class MovingFrame {
  public:
   virtual ~MovingFrame() = default;
-  /// Of the frame in the world at state.time.
+  /// Returns the pose of the frame in the world at state.time.
   virtual Pose pose(const dynamics::StateView& state) const = 0;
-  /// Its velocity there, world axes.
+  /// Returns the twist of the frame at state.time, world axes [rad/s, m/s].
   virtual Twist twist(const dynamics::StateView& state) const = 0;
-  /// False where nothing can move it: forces on it are of no consequence.
+  /// Returns false where the frame cannot move, so that forces on it have no effect.
   virtual bool moves() const { return true; }
-  /// True when it is a block of the State: the contact's tangent then has rows for it.
+  /// Returns true for a block of the State: the contact's tangent then has rows for the frame.
   virtual bool in_state() const { return false; }
-  /// Where its six velocities stand in u, -1 when it is given from outside.
+  /// Returns the offset of its six velocities in u; -1 for a prescribed frame.
   virtual int u_offset(const dynamics::StateView&) const { return -1; }
 };
 
-/// A frame that does not move.
+/// Returns a frame that does not move.
 std::shared_ptr<MovingFrame> fixed_frame(const Pose& pose = {});
 
-/// The free rigid body with that block id (q = qw qx qy qz px py pz, u = angular, linear).
+/// Returns the frame of the free rigid body with that block id (q = qw qx qy qz px py pz, u = angular,
+/// linear).
 std::shared_ptr<MovingFrame> block_frame(int block_id);
 
-/// A frame whose motion over one exchange period is known: cubic Hermite through the poses of the ticks, of
-/// the origin's position and of the rotation vector from each tick's orientation.  Poses and twists at the
-/// ticks are met exactly; between them the pose is of order 4 in the tick and the twist of order 3.  Before
-/// the first knot and behind the last the motion goes on with that knot's twist (an integrator may look a
-/// little ahead).  Each tick rotates by less than half a turn.
+/// Frame with a known motion over one exchange period: cubic Hermite interpolation between the poses at the
+/// ticks, applied to the origin's position and to the rotation vector relative to each tick's orientation.
+/// Poses and twists at the ticks are reproduced exactly; between them the pose is of order 4 in the tick
+/// length and the twist of order 3. Before the first knot and after the last the motion is extrapolated with
+/// that knot's twist, since an integrator may look slightly ahead.
+/// @pre each tick rotates by less than half a turn
 class TrajectoryFrame : public MovingFrame {
  public:
-  /// No knots any more.
+  /// Removes all knots.
   void clear();
-  void append(double t, const Pose& pose, const Twist& twist);  ///< times increase
-  /// @pre at least one knot
+  /// Adds a knot at time t [s]; times must increase.
+  void append(double t, const Pose& pose, const Twist& twist);
+  /// Returns the interpolated pose at state.time. @pre at least one knot
   Pose pose(const dynamics::StateView& state) const override;
-  /// @pre at least one knot
+  /// Returns the interpolated twist at state.time. @pre at least one knot
   Twist twist(const dynamics::StateView& state) const override;
 
  private:

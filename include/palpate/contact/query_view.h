@@ -5,36 +5,37 @@
 
 namespace palpate::contact {
 
-/// The gap over the pixels of one contact region, as a query saw it.
+/// Gap over the pixels of one contact region, as found by a query.
 struct RegionView {
-  Mat3 axes = Mat3::Identity();  ///< columns u, v and the normal from b to a; world
-  Vec3 origin = Vec3::Zero();    ///< of (u, v, w) [m]
-  double u0 = 0.0, v0 = 0.0;     ///< lower left corner of the first pixel [m]
-  double pixel = 0.0;            ///< edge of a pixel [m]
-  int width = 0, height = 0;     ///< [pixels]
-  /// One a pixel's middle, row by row upwards; negative is penetration; NaN: one of the surfaces is not
-  /// there, or they are apart by more than the candidate gap [m].
+  Mat3 axes = Mat3::Identity();  ///< Columns u, v and the normal from b to a, in world axes.
+  Vec3 origin = Vec3::Zero();    ///< Origin of (u, v, w) in the world [m].
+  double u0 = 0.0, v0 = 0.0;     ///< Lower left corner of the first pixel [m].
+  double pixel = 0.0;            ///< Edge length of a pixel [m].
+  int width = 0, height = 0;     ///< Size of the image [pixels].
+  /// Gap at each pixel's centre, row by row upwards [m]; negative is penetration. NaN where one of the
+  /// surfaces is absent, or where the gap exceeds the candidate gap.
   std::vector<double> gap;
-  /// w of a's surface there [m]; that of b is w - gap.
+  /// w of a's surface at the same pixels [m]; for b it is w - gap.
   std::vector<double> height_a;
 };
 
-/// What pictures show of one pair's last query.
+/// Picture data of one pair's last query.
 struct QueryView {
-  std::vector<RegionView> regions;  ///< of images
-  /// Corners of the convex hulls, not inflated, of each proxy in a region where something presses.
+  std::vector<RegionView> regions;  ///< Regions of the images.
+  /// Corners of the convex hulls, not inflated, of the proxies in regions that are under pressure.
   std::vector<Points> proxies_a, proxies_b;
 };
 
-/// A contact sample where it stands now.
+/// Contact sample evaluated at a state.
 struct ContactPoint {
-  Vec3 a, b;        ///< its points on the two surfaces [m]
-  Vec3 normal;      ///< from b to a
-  double gap;       ///< mean of what the point stands for [m], negative is penetration
-  double own_gap;   ///< at the point itself [m]: above 0 where it lies outside, and some of that overlaps
-  double pressure;  ///< [Pa]; 0 of a candidate that is apart
-  double area;      ///< [m^2]
-  int pair;         ///< which [[contact]] of the scene
+  Vec3 a, b;    ///< Its points on the two surfaces [m].
+  Vec3 normal;  ///< Unit normal from b to a.
+  double gap;   ///< Mean gap over the area that the point represents [m]; negative is penetration.
+  /// Gap at the point [m]; positive where it lies outside although part of its area overlaps.
+  double own_gap;
+  double pressure;  ///< Pressure [Pa]; 0 for a candidate that is not in contact.
+  double area;      ///< Area that the point represents [m^2].
+  int pair;         ///< Index of the scene's [[contact]].
 };
 
 }  // namespace palpate::contact

@@ -6,37 +6,38 @@
 #include "palpate/contact/contact_force.h"
 #include "palpate/mesh/mesh.h"
 
-/// What may touch an exact shape: each side of a contact is soft or rigid.
+/// Sides of a contact with an exact shape; each is soft or rigid.
 namespace palpate::contact {
 
-/// A closed surface that a frame carries.
+/// Closed surface carried by a frame.
 struct FrameSurface {
-  TriMesh mesh;                           ///< in the frame's axes, outward
-  int frame = -1;                         ///< index for SurfacePoint::frame
-  std::shared_ptr<MovingFrame> motion{};  ///< moves the frame
+  TriMesh mesh;                           ///< Surface in the frame's axes, oriented outwards.
+  int frame = -1;                         ///< Index for SurfacePoint::frame.
+  std::shared_ptr<MovingFrame> motion{};  ///< Motion of the frame.
 };
 
-/// Material points of a surface, and the triangles between them over which a gap is linear.
+/// Material points of a surface, and the triangles between them over which the gap is linear.
 struct MaterialPoints {
-  std::vector<SurfacePoint> at;           ///< of nodes, counted inside the block; or of a frame
-  Faces triangles;                        ///< their corners
-  VecX area;                              ///< of each triangle, at rest [m^2]
-  VecX edges2;                            ///< of each: sum of its edges' squares, at rest [m^2]
-  int block_id = -1;                      ///< the node block that carries them; -1: a frame does
-  std::shared_ptr<MovingFrame> motion{};  ///< moves the frame
+  std::vector<SurfacePoint> at;  ///< Points: weighted nodes, counted within the block, or points of a frame.
+  Faces triangles;               ///< Corners of the triangles, as indices of points.
+  VecX area;                     ///< Area per triangle at rest [m^2].
+  VecX edges2;                   ///< Sum of squared edge lengths per triangle at rest [m^2].
+  int block_id = -1;             ///< Node block that carries them; -1: a frame does.
+  std::shared_ptr<MovingFrame> motion{};  ///< Motion of the frame.
 };
 
-/// A ball that a frame carries: its surface is exact.
+/// Ball carried by a frame; its surface is exact.
 struct FrameBall {
-  double radius = 0.0;                    ///< [m]
-  Vec3 centre = Vec3::Zero();             ///< in the frame
-  int frame = -1;                         ///< index for SurfacePoint::frame
-  std::shared_ptr<MovingFrame> motion{};  ///< moves the frame
-  /// whether its own surface counts, as material points do, or the overlap's cross-section
+  double radius = 0.0;                    ///< Radius [m].
+  Vec3 centre = Vec3::Zero();             ///< Centre in the frame's axes [m].
+  int frame = -1;                         ///< Index for SurfacePoint::frame.
+  std::shared_ptr<MovingFrame> motion{};  ///< Motion of the frame.
+  /// True: the force is integrated over the ball's surface, as with material points. False: over the
+  /// cross-section of the overlap.
   bool by_surface = false;
 };
 
-/// What one side of a contact may be.
+/// One side of a contact.
 using ContactSide = std::variant<NodeSurface, FrameSurface, MaterialPoints, FrameBall>;
 
 }  // namespace palpate::contact

@@ -10,8 +10,8 @@
 namespace palpate::contact {
 namespace {
 
-/// |x_i| <= h_i in its own axes.  Outside, e_i = max(|x_i| - h_i, 0) is the way from the nearest point, signs
-/// left out.
+/// Box |x_i| <= h_i in its axes. Outside, e_i = max(|x_i| - h_i, 0) is the vector from the nearest point,
+/// without signs.
 class Box {
  public:
   static constexpr const char* kName = "box";
@@ -47,7 +47,7 @@ class Box {
     for (int i = 0; i < 3; ++i) part.cut(a[i], b[i] - a[i], -half_[i], half_[i]);
     return part.s0 < part.s1;
   }
-  // Integral of H dA: half of the edges' lengths, 4 (a + b + c), times their angle pi/2.
+  // Integral of H dA: half of the edges' total length, 4 (a + b + c), times their angle pi/2.
   CharacteristicLengths lengths() const {
     const Vec3 size = 2.0 * half_;
     const double area = 2.0 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
@@ -98,7 +98,7 @@ const ObstacleEntry& box_obstacle() {
       [](const Settings& shape) { return Box(pose_of(shape), size_of(shape)).lengths(); },
       [](const Settings& shape, const Vec3& x) { return nearest_to(Box(pose_of(shape), size_of(shape)), x); },
       picture,
-      // flat, so that points are cut into it; an edge has sixteen parts at most
+      // Flat: points are created by subdivision; an edge has at most sixteen segments.
       [](const Settings& shape, double spacing) {
         std::array<int, 3> cells;
         for (int i = 0; i < 3; ++i)

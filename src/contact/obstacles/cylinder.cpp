@@ -10,14 +10,14 @@
 namespace palpate::contact {
 namespace {
 
-/// x^2 + y^2 <= r^2, |z| <= h in its own axes: in the plane of (radius, |z|) a box of two directions.
+/// Cylinder x^2 + y^2 <= r^2, |z| <= h in its axes: a two-dimensional box in the plane (radius, |z|).
 class Cylinder {
  public:
   static constexpr const char* kName = "cylinder";
   Cylinder(const Pose& pose_in_frame, double radius, double length)
       : in_frame_(pose_in_frame), inverse_(pose_in_frame.inverse()), radius_(radius), half_(0.5 * length) {}
   void move_to(const Pose& pose) { world_ = pose * in_frame_; }
-  // On the axis every radial direction is as near; one is taken.
+  // On the axis all radial directions are equivalent; one is chosen.
   Nearest at(const Vec3& world) const {
     const Vec3 x = world_.inverse() * world;
     const double r = std::hypot(x.x(), x.y()), side = r - radius_, end = std::abs(x.z()) - half_;
@@ -46,13 +46,14 @@ class Cylinder {
     cut_round(a, d, part);
     return part.s0 < part.s1;
   }
-  // Integral of H dA: of the side 2 pi r l / (2 r), of both rims, edges of 90 degrees, 2 pi r pi/2 in all.
+  // Integral of H dA: 2 pi r l / (2 r) for the side, and 2 pi r pi/2 in all for both rims, which are edges of
+  // 90 degrees.
   CharacteristicLengths lengths() const {
     return {2.0 * std::min(radius_, half_),
             2.0 * radius_ * (2.0 * half_ + radius_) / (2.0 * half_ + std::numbers::pi * radius_),
             0.5 / radius_};
   }
-  double curvature() const { return 0.0; }  // of its ends
+  double curvature() const { return 0.0; }  // Curvature of the flat ends.
 
  private:
   // |a + s d|^2 <= r^2 in x and y: A s^2 + 2 B s + C <= 0.
@@ -77,13 +78,13 @@ double length_of(const Settings& shape) { return std::get<double>(shape.at("leng
 
 ObstaclePicture picture(const Settings& shape, const View&) {
   const double radius = radius_of(shape), length = length_of(shape);
-  // as many triangles around, however long or short it is
+  // The number of triangles around does not depend on the length.
   TriMesh surface = mesh::cylinder_surface(radius, radius, radius / 8.0);
   surface.vertices.row(2) *= length / radius;
   return {placed(std::move(surface), shape), {}};
 }
 
-/// Rings of quadrilaterals, each two triangles, and a fan over either end.
+/// Builds rings of quadrilaterals, two triangles each, and a fan over either end.
 TriMesh surface(const Settings& shape, double spacing) {
   const double radius = radius_of(shape), length = length_of(shape), edge = spacing / std::numbers::sqrt2;
   const int around = std::max(8, static_cast<int>(std::ceil(2.0 * std::numbers::pi * radius / edge))),

@@ -5,7 +5,7 @@
 #include "palpate/core/pose.h"
 #include "palpate/mesh/spec.h"
 
-/// Keys that several obstacles have, and their values.
+/// Keys shared by several obstacles, and access to their values.
 namespace palpate::contact {
 
 inline PartKey position_key(const char* meaning) {

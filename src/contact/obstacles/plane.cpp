@@ -23,7 +23,7 @@ class Plane {
     return along > 0.0 ? world_normal_.dot(world_point_ - x) / along
                        : -std::numeric_limits<double>::infinity();
   }
-  bool is_crossed(const Vec3&, const Vec3&) const { return false; }  // whatever is through is inside
+  bool is_crossed(const Vec3&, const Vec3&) const { return false; }  // Beyond the plane everything is inside.
   CharacteristicLengths lengths() const { return {HUGE_VAL, HUGE_VAL, 0.0}; }
   double curvature() const { return 0.0; }
 
@@ -38,7 +38,7 @@ std::string fault_of_normal(const Setting& value) {
   return std::get<Vec3>(value).norm() < 1e-12 ? "has no direction; [0, 0, 1] is up" : "";
 }
 
-/// A square that is centred at the point of the plane nearest to what is looked at.
+/// Makes a square centred at the point of the plane nearest to the centre of the view.
 ObstaclePicture picture(const Settings& shape, const View& view) {
   const Vec3 normal = normal_of(shape).normalized();
   ObstaclePicture out;

@@ -2,7 +2,7 @@
 
 namespace palpate::contact {
 
-/// One line an obstacle: NAME_obstacle() of NAME.cpp.
+/// One line per obstacle: NAME_obstacle() of NAME.cpp.
 #define PALPATE_OBSTACLES(OBSTACLE) \
   OBSTACLE(plane)                   \
   OBSTACLE(sphere)                  \

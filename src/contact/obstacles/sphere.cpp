@@ -14,20 +14,20 @@ class Sphere {
   static constexpr const char* kName = "sphere";
   Sphere(const Vec3& centre, double radius) : centre_(centre), radius_(radius) {}
   void move_to(const Pose& pose) { world_centre_ = pose * centre_; }
-  // At the centre itself every direction is as near; one is taken.
+  // At the centre all directions are equivalent; one is chosen.
   Nearest at(const Vec3& x) const {
     const Vec3 from_centre = x - world_centre_;
     const double distance = from_centre.norm();
     return {distance - radius_, distance > 0.0 ? Vec3(from_centre / distance) : Vec3(Vec3::UnitZ()), radius_};
   }
   static constexpr bool kRound = true;
-  // |p + t n|^2 = r^2, the greater root.
+  // The larger root of |p + t n|^2 = r^2.
   double height(const Vec3& x, const Vec3& n) const {
     const Vec3 p = x - world_centre_;
     const double b = p.dot(n), root2 = b * b - p.squaredNorm() + radius_ * radius_;
     return root2 >= 0.0 ? std::sqrt(root2) - b : -std::numeric_limits<double>::infinity();
   }
-  // The point of the segment nearest to the centre.
+  // Tests the point of the segment nearest to the centre.
   bool is_crossed(const Vec3& a, const Vec3& b) const {
     const Vec3 d = b - a, from_a = centre_ - a;
     const double length2 = d.squaredNorm(),
@@ -53,8 +53,8 @@ ObstaclePicture picture(const Settings& shape, const View&) {
 
 }  // namespace
 
-// An icosahedron's edges are 1.05 R, and the middles of its faces 0.795 R from its centre, so that what is
-// cut there into n parts is 1.32 R/n on the sphere; elsewhere it is less.
+// The edges of an icosahedron are 1.05 R long, and the centres of its faces 0.795 R from its centre, so that
+// an edge divided into n segments has length 1.32 R/n on the sphere there; elsewhere less.
 TriMesh sphere_surface(double radius, double spacing) {
   return mesh::sphere(radius, std::max(4, static_cast<int>(std::ceil(1.33 * radius / spacing))));
 }

@@ -3,18 +3,18 @@
 
 namespace palpate::contact {
 
-/// Whether this build has contact images (PALPATE_WITH_GL); without it method "image" throws Error.
+/// Returns whether this build has contact images (PALPATE_WITH_GL); without them method "image" throws Error.
 bool gpu_available();
 
-/// What draws the images of this process, by its driver's own words.
+/// Renderer of this process's contact images, as its driver reports it.
 struct GpuDevice {
   std::string name, driver;
-  bool software = false;  ///< a rasteriser on the processor
+  bool software = false;  ///< True: software rasteriser on the CPU.
 };
-/// Makes ready what draws them, as the first image does otherwise.
-/// @throws Error where that cannot be, saying why
+/// Initialises the renderer, which the first image does otherwise.
+/// @throws Error where no renderer can be opened, with the reason
 GpuDevice open_gpu();
-/// Empty names where nothing was drawn.
+/// Returns the renderer; empty names where nothing was drawn yet.
 GpuDevice gpu_device();
 
 }  // namespace palpate::contact
