@@ -6,10 +6,10 @@
 
 namespace palpate::distance {
 
-/// Packets of the points of one cluster.
+/// Scratch memory of find_cluster(): packets of the points of one cluster.
 struct SkinContact::Scratch {
   std::vector<Packet> packets;
-  std::vector<int> open;  ///< packets of the cluster that may have points near
+  std::vector<int> open;  ///< Packets of the cluster that may contain points near the other skin.
 };
 
 }  // namespace palpate::distance

@@ -1,4 +1,4 @@
-// Springs of a skin against itself: what of it is looked at, and what counts.
+// Springs of self-contact: which points are searched, and which overlaps count as contact.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +15,8 @@ void SkinContact::find_own(const double* nodes, double near, const Approach& app
   approach_ = {};
 }
 
-/// Whether a point outside may reach its foot before the next query, or is nearer than what is always kept.
+/// Returns whether an outside point may reach its foot before the next query, or is closer than the distance
+/// that is always kept.
 bool SkinContact::may_come_near(const ContactPoint& point, const Foot& foot) const {
   if (!approach_.velocities) return true;
   const Skin& skin = surfaces_[0].skin();
@@ -33,14 +34,15 @@ bool SkinContact::may_come_near(const ContactPoint& point, const Foot& foot) con
   return std::sqrt(foot.at.distance2) < approach_.gap_m + approach_.time_s * relative.norm();
 }
 
-/// Whether a point overlaps that lies behind its foot: always, of another skin.
+/// Returns whether a point behind its foot counts as an overlap. Between two different skins it always does.
 bool SkinContact::overlaps(const ContactPoint& point, const Vec3& x, const Foot& foot) const {
   if (!own_) return true;
   return foot.at.distance2 < own_->depth() * own_->depth() && own_->is_overlap(point, x, foot);
 }
 
-// Which side of the skin a point lies on is only known where its nearest point is near enough.  What is known
-// to be outside needs no look until the skin has moved that far; all else is looked at whenever it is near.
+// The side of the skin on which a point lies is known only where its nearest point is close enough. Points
+// known to be outside need no search until the skin has moved by their distance; all others are searched
+// whenever their cluster is near another one.
 void SkinContact::find_clusters_of_own(double near) {
   mark_near_itself();
   const std::vector<Whereabouts>& where = where_[0];
@@ -49,8 +51,8 @@ void SkinContact::find_clusters_of_own(double near) {
       find_cluster(0, static_cast<int>(c), -1, near);
 }
 
-/// Finds the clusters of a skin that have another one, which they may touch, within the depth of overlaps:
-/// all pairs of boxes from the root of the tree.
+/// Marks the clusters that are within the depth of overlaps of another cluster that they may touch. All
+/// pairs of boxes are traversed from the root of the tree.
 void SkinContact::mark_near_itself() {
   const Surface& own = surfaces_[0];
   const std::vector<ClusterNode>& tree = own.skin().tree;
@@ -58,7 +60,7 @@ void SkinContact::mark_near_itself() {
   std::fill(where.begin(), where.end(), Whereabouts::kOutside);
   const double within2 = own_->depth() * own_->depth();
   const auto apart2 = [&](int i, int j) { return own.box(i).squaredExteriorDistance(own.box(j)); };
-  // each pop adds three at most, and goes down in one of two trees of less than 64 levels
+  // Each pop pushes three entries at most and descends one level in one of two trees of fewer than 64 levels.
   std::array<std::pair<int, int>, 3 * 2 * 64> open;
   std::size_t count = 0;
   open[count++] = {0, 0};

@@ -1,8 +1,9 @@
-// Which points lie inside the other skin, and where their feet are.
+// Search for the contact points that lie inside the other skin or near it, and for their feet.
 //
-// A box of one skin that meets no box of the other's clusters lies as a whole inside or outside.  The signed
-// distance to a closed skin is 1-Lipschitz: what lies outside stays there until the skins have moved against
-// each other by its distance.  No depth is assumed anywhere: points far inside are found as any other.
+// A box of one skin that intersects no cluster box of the other lies entirely inside or entirely outside. The
+// signed distance to a closed skin is 1-Lipschitz: a point outside stays outside until the skins have moved
+// relative to each other by its distance. No maximum depth is assumed: deeply penetrating points are found
+// like all others.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,14 +13,14 @@
 namespace palpate::distance {
 namespace {
 
-/// Part by which a bound is loosened, for the rounding of the few operations that make it.
+/// Relative margin of bounds, for the rounding of the few operations that produce them.
 constexpr double kRounding = 1e-12;
 
 Eigen::AlignedBox3d widened(const Eigen::AlignedBox3d& box, double by) {
   return {box.min() - Vec3::Constant(by), box.max() + Vec3::Constant(by)};
 }
 
-/// The distinct faces of a packet, -1 at the end.
+/// Collects the distinct faces of a packet, padded with -1.
 template <std::size_t count>
 void keep_faces(const Packet& packet, std::array<int, count>& faces) {
   std::size_t kept = 0;
@@ -40,7 +41,7 @@ void SkinContact::move(const double* nodes_a, const double* nodes_b) {
     travelled_ += step;
     return;
   }
-  // the first positions, or after some that were not finite: nothing is known of how far they went
+  // The first positions, or positions that follow non-finite ones: the displacement is unknown.
   for (int side = 0; side < 2; ++side) {
     std::fill(clear_[side].begin(), clear_[side].end(), -1.0);
     std::fill(packets_clear_[side].begin(), packets_clear_[side].end(), -1.0);
@@ -48,8 +49,8 @@ void SkinContact::move(const double* nodes_a, const double* nodes_b) {
   for (Spring& spring : springs_) spring.clear = 0.0;
 }
 
-/// Whether the fourth powers of coordinates, those of areas' squares, are within single precision, which the
-/// search needs.  Bodies of a million kilometres are those of a method that diverges.
+/// Returns whether fourth powers of coordinates, which occur in squared areas, are representable in single
+/// precision, as the search requires. Coordinates of a million kilometres occur only after divergence.
 bool SkinContact::is_searchable() const {
   constexpr double kLargest = 1e9;  // [m]
   for (const Surface& s : surfaces_)
@@ -82,7 +83,7 @@ void SkinContact::find(const double* nodes_a, const double* nodes_b, double near
   integrate();
 }
 
-/// Lists the corners of triangles that overlap, where they are not placed yet, in ascending order.
+/// Lists the corners of overlapping triangles that are not placed yet, in ascending order.
 void SkinContact::list_missing() {
   missing_.clear();
   for (const Triangle& t : triangles_) {
@@ -122,7 +123,7 @@ void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
   integrate();
 }
 
-/// Places some springs, in ascending order: packets of points of one cluster.
+/// Updates the feet of some springs, given in ascending order, in packets of points of one cluster.
 void SkinContact::follow_packets(const std::vector<std::size_t>& springs) {
   const auto cluster = [&](std::size_t i) {
     const Spring& s = springs_[i];
@@ -135,7 +136,7 @@ void SkinContact::follow_packets(const std::vector<std::size_t>& springs) {
   }
 }
 
-/// @param springs  of points of one cluster, at most a packet
+/// Updates the feet of one packet. @param springs  springs with points in one cluster, at most kPacket
 void SkinContact::follow_packet(std::span<const std::size_t> springs) {
   const int side = springs_[springs.front()].side;
   const Surface& other = surfaces_[1 - side];
@@ -172,8 +173,9 @@ void SkinContact::follow_packet(std::span<const std::size_t> springs) {
   }
 }
 
-/// Distance of a box from the clusters' boxes of the other skin, or less than `near` where it is that.
-/// @param near_leaf  in the other tree, what was nearest to the last box, and then to this one
+/// Returns the distance of a box from the cluster boxes of the other skin, or any smaller value than `near`
+/// if it is below `near`.
+/// @param near_leaf  in: leaf nearest to the previous box, tested first; out: leaf nearest to this one
 double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf) const {
   const Surface& other = surfaces_[1 - side];
   double least2 = std::numeric_limits<double>::infinity();
@@ -203,9 +205,10 @@ double SkinContact::gap_of(int side, const Eigen::AlignedBox3d& box, double near
   return std::sqrt(least2) * (1.0 - kRounding);
 }
 
-// No part of the other skin is in a box that has a gap to it: what is in the box lies as a whole inside or
-// outside, and no nearer than that.  Parts of a skin that share a vertex lie on the same side, so that all
-// that hangs together with what is known to be outside is known, too; of the rest one point tells.
+// A box with a gap to the other skin contains no part of it: its contents lie entirely inside or entirely
+// outside, and no nearer than that gap. Parts of a skin that share a vertex lie on the same side, so that
+// everything connected to a part that is known to be outside is outside too. For each remaining component one
+// point is tested.
 void SkinContact::find_side(int side, double near) {
   const Surface& own = surfaces_[side];
   const Eigen::AlignedBox3d reach = widened(surfaces_[1 - side].box(0), near);
@@ -247,7 +250,7 @@ void SkinContact::find_side(int side, double near) {
   }
 }
 
-/// Says where all clusters are that hang together with one, each as a whole on one side.
+/// Classifies all clusters connected to one, each of them entirely on one side, as inside or outside.
 void SkinContact::settle(int side, const Part& part) {
   const Surface& own = surfaces_[side];
   const Surface& other = surfaces_[1 - side];
@@ -276,7 +279,8 @@ void SkinContact::settle(int side, const Part& part) {
   }
 }
 
-/// @return  a face that is near it
+/// Adds the springs of one cluster's points. @param start  initial guess of a near face
+/// @return a face near the cluster
 int SkinContact::find_cluster(int side, int cluster, int start, double near) {
   const Surface& other = surfaces_[1 - side];
   LaneSearch& search = *searches_[1 - side];
@@ -306,10 +310,10 @@ int SkinContact::find_cluster(int side, int cluster, int start, double near) {
     const int p = open[o];
     const auto place = static_cast<std::size_t>(first_packet_[side][c] + p);
     keep_faces(packet, feet_[side][place]);
-    double least = std::numeric_limits<double>::infinity();  // of the points' distances outside
+    double least = std::numeric_limits<double>::infinity();  // Smallest distance of the outside points.
     for (int lane = 0; lane < std::min(kPacket, end - begin - kPacket * p); ++lane) {
       const double distance = std::sqrt(static_cast<double>(packet.distance2[lane])) - 2.0 * search.slack();
-      const bool is_in_front = packet.height[lane] > search.slack();  // of its face
+      const bool is_in_front = packet.height[lane] > search.slack();  // Height above the plane of its face.
       if (packet.face[lane] < 0 || (is_in_front && distance >= near)) {
         least = std::min(least, packet.face[lane] < 0 ? 0.0 : distance);
         continue;
@@ -329,7 +333,7 @@ int SkinContact::find_cluster(int side, int cluster, int start, double near) {
     }
     packets_clear_[side][place] = least > 0.0 ? travelled_ + least * (1.0 - kRounding) : -1.0;
   }
-  clear_[side][c] = std::numeric_limits<double>::infinity();  // it may have no points of its own
+  clear_[side][c] = std::numeric_limits<double>::infinity();  // A cluster may have no points.
   for (int p = first_packet_[side][c]; p < first_packet_[side][c + 1]; ++p)
     clear_[side][c] = std::min(clear_[side][c], packets_clear_[side][static_cast<std::size_t>(p)]);
   return open.empty() || packets[0].face[0] < 0 ? start : packets[0].face[0];

@@ -26,8 +26,8 @@ LaneSearch::LaneSearch(const Surface& surface) : surface_(surface), kernels_(bes
   targets_.box_stride = static_cast<int>(stride);
 }
 
-// A coordinate about the origin is rounded to half a unit in its last place, a plane's normal to a few units,
-// and a height is a sum of four products: 32 units of the largest coordinate cover it.
+// A coordinate relative to the origin is rounded by half a unit in the last place, a plane's normal by a few
+// units, and a height is a sum of four products: 32 units of the largest coordinate bound the error.
 void LaneSearch::begin(const Vec3& origin, const Eigen::AlignedBox3d& box) {
   ++query_;
   tested_ = 0;
@@ -75,7 +75,7 @@ void LaneSearch::start(Packet& packet, const int* faces, int count) {
   tested_ += kernels_.search(packet, targets_);
 }
 
-/// Clusters within the packets' bounds of the box around their points.
+/// Collects the clusters that are within the packets' bounds of the box around their points.
 void LaneSearch::collect(const Packet* packets, int count, const OwnNeighbourhood* neighbours, int own) {
   Eigen::AlignedBox3f points;
   float bound2 = 0.0f;

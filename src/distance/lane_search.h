@@ -7,31 +7,40 @@
 
 namespace palpate::distance {
 
-/// Nearest points of a surface for packets of sixteen points, in single precision about an origin near them.
+/// Nearest-point search on a surface for packets of sixteen points, in single precision relative to an origin
+/// near the points.
 ///
-/// The face that it finds holds the nearest point but for rounding, about 1e-7 of the distance from the
-/// origin; Surface::nearest_around() then gives the point in double precision.  What bounds the search
-/// changes no bit: see SearchKernels::search.
+/// The face found contains the nearest point up to rounding, about 1e-7 of the distance from the origin;
+/// Surface::nearest_around() then computes the point in double precision. Initial bounds on the search do not
+/// change the result, bitwise: see SearchKernels::search.
 class LaneSearch {
  public:
-  static constexpr double kAnywhere = 1e15;  ///< a distance whose square single precision has [m]
-  /// @param surface  outlives the search
+  /// Unbounded search: a distance whose square is finite in single precision [m].
+  static constexpr double kAnywhere = 1e15;
+  /// @param surface  must outlive the search
   explicit LaneSearch(const Surface& surface);
 
-  /// Takes the surface as it is now.  @param box  of all points that will be asked for
+  /// Starts the queries of the current state of the surface.
+  /// @param origin  origin of the single-precision coordinates [m]  @param box  box around all query points
+  ///   [m]
   void begin(const Vec3& origin, const Eigen::AlignedBox3d& box);
-  /// Fills lanes `begin` to `end` of a packet's points, and the rest with the last one.
-  /// @param within  farther faces are not looked for [m]
+  /// Completes a packet whose lanes 0 to used - 1 were set: repeats the last point in the other lanes and
+  /// clears the nearest faces.
+  /// @param within  largest distance of faces to be found [m]
   void finish(Packet& packet, int used, double within = kAnywhere) const;
+  /// Sets the point of one lane [m, world frame].
   void set_point(Packet& packet, int lane, const Vec3& x) const;
-  /// Distances to some faces, which bound what follows.  @param faces  at least one; -1 is left out
+  /// Tests some candidate faces, which bounds the search that follows.
+  /// @param faces  candidates; -1 is skipped
   void start(Packet& packet, const int* faces, int count);
-  /// Nearest faces of some packets that are near each other.  @pre each was started
-  /// @param neighbours  of the surface: searches what may touch `cluster` alone; null: all of it
+  /// Finds the nearest faces for packets of points that are close to each other. @pre start() was called for
+  /// each packet
+  /// @param neighbours  excludes the neighbours of `cluster` (self-contact); null: the whole surface is
+  ///   searched
   void search(Packet* packets, int count, const OwnNeighbourhood* neighbours = nullptr, int cluster = -1);
-  /// Bound on what rounding adds to a height over a plane [m].
+  /// Returns an upper bound on the rounding error of a height above a plane [m].
   double slack() const { return slack_; }
-  long tested() const { return tested_; }
+  long tested() const { return tested_; }  ///< Returns the number of triangles tested since begin().
 
  private:
   void collect(const Packet* packets, int count, const OwnNeighbourhood* neighbours, int own);
@@ -41,12 +50,12 @@ class LaneSearch {
   const SearchKernels& kernels_;
   Vec3 origin_ = Vec3::Zero();
   double slack_ = 0.0;
-  std::vector<float> planes_;
-  std::vector<int> prepared_;  ///< query in which a cluster's planes were made
+  std::vector<float> planes_;  ///< Triangle planes per cluster, see SearchKernels::planes.
+  std::vector<int> prepared_;  ///< Query in which each cluster's planes were computed.
   int query_ = 0;
   Targets targets_;
-  std::vector<int> clusters_;  ///< that may hold a nearest point
-  std::vector<float> boxes_;
+  std::vector<int> clusters_;  ///< Clusters that may contain a nearest point.
+  std::vector<float> boxes_;   ///< Their boxes, see Targets::boxes.
   long tested_ = 0;
 };
 

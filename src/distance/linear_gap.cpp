@@ -5,14 +5,16 @@
 namespace palpate::distance {
 namespace {
 
-// Over all of a triangle of area 1: integral of l_i l_j = (1 + (i = j))/12.
+// Integrates over a whole triangle of area 1: integral of l_i l_j = (1 + delta_ij)/12.
 HatIntegrals over_all(const Vec3& o) {
   return {((o.array() + o.sum()) / 12.0).matrix(), Vec3::Constant(1.0 / 3.0)};
 }
 
-// Where o is positive at corner i alone: on the triangle of i and the zeros of o on its edges, at parts s and
-// t of the way to the other corners j and k; its area is s t.  Against its own hats, of o = (o_i, 0, 0):
-// o_i/12 (2, 1, 1), and l_j = s m_1, l_k = t m_2, l_i = m_0 + (1 - s) m_1 + (1 - t) m_2 in these hats m.
+// Integrates where o is positive at corner i alone. The positive part is the sub-triangle between corner i
+// and the zeros of o on its edges, at fractions s and t of the way to the other corners j and k; its area is
+// s t. With the hats m of the sub-triangle, where o has the corner values (o_i, 0, 0), the mean of o m is
+// o_i/12 (2, 1, 1), and the hats of the whole triangle are l_j = s m_1, l_k = t m_2,
+// l_i = m_0 + (1 - s) m_1 + (1 - t) m_2.
 HatIntegrals around_corner(const Vec3& o, int i) {
   const int j = (i + 1) % 3, k = (i + 2) % 3;
   const double s = o[i] / (o[i] - o[j]), t = o[i] / (o[i] - o[k]), area = s * t;
@@ -41,9 +43,9 @@ HatIntegrals integrate_hats(const Vec3& o) {
   }
 }
 
-// A quadratic of Hessian H is below its interpolation by 1/24 sum over the edges e of e.H e in the mean, and
-// H e is the gradient's change along e.  |n|^2 = 1 likewise: the interpolated n has 1 less 1/12 sum |H e|^2
-// for its mean square.
+// A quadratic function with Hessian H is below its linear interpolation by 1/24 sum over the edges e of e.H e
+// in the mean, and H e is the change of the gradient along e. The same formula applied to |n|^2 = 1 shows
+// that the interpolated n has a mean square of 1 - 1/12 sum |H e|^2.
 Missed missed_by_linear(const Mat3& x, const Mat3& normal) {
   Missed out{0.0, 0.0};
   for (int i = 0; i < 3; ++i) {

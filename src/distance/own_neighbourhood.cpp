@@ -11,7 +11,7 @@
 namespace palpate::distance {
 namespace {
 
-/// The same faces and clusters, with vertices as nodes.
+/// Returns a copy of the skin whose nodes are its vertices.
 Skin of_vertices(const Skin& skin) {
   Skin out = skin;
   out.node_count = skin.vertex_count();
@@ -25,7 +25,7 @@ Skin of_vertices(const Skin& skin) {
   return out;
 }
 
-/// A skin's clusters at rest.
+/// Clusters of a skin at rest, with their centres and extents.
 class Clustered {
  public:
   Clustered(const Skin& skin, const Points& rest)
@@ -43,7 +43,7 @@ class Clustered {
   }
   std::size_t count() const { return static_cast<std::size_t>(skin_.cluster_count()); }
 
-  /// Adds those that are near to one along the skin, itself among them: Dijkstra's shortest paths.
+  /// Adds the clusters that are near `cluster` along the skin, including itself (Dijkstra's shortest paths).
   void along_skin(std::size_t cluster, double radius, std::vector<int>& out) {
     std::vector<std::size_t> seen{cluster};
     using Entry = std::pair<double, std::size_t>;
@@ -57,7 +57,8 @@ class Clustered {
       for (int k = skin_.joined_begin[at]; k < skin_.joined_begin[at + 1]; ++k) {
         const auto next = static_cast<std::size_t>(skin_.joined[static_cast<std::size_t>(k)]);
         const double on = length + (centre_[next] - centre_[at]).norm();
-        if (at == cluster) out.push_back(static_cast<int>(next));  // whatever its length
+        // Clusters that share a vertex are neighbours at any distance.
+        if (at == cluster) out.push_back(static_cast<int>(next));
         if (on >= way_[next] || on > radius + reach_[cluster] + most_) continue;
         if (way_[next] == kFar) seen.push_back(next);
         way_[next] = on;
@@ -70,8 +71,7 @@ class Clustered {
     }
   }
 
-  /// Adds those that are near to one through tissue.
-  /// @pre `out` is in ascending order
+  /// Adds the clusters that are near `cluster` through tissue. @pre `out` is in ascending order
   void through_tissue(std::size_t cluster, double radius, std::vector<int>& out) const {
     const auto known = static_cast<std::ptrdiff_t>(out.size());
     std::vector<int> open{0};
@@ -115,9 +115,9 @@ class Clustered {
   Surface surface_;
   std::vector<Points> vertices_;
   std::vector<Vec3> centre_;
-  std::vector<double> reach_;  ///< from the centre to the farthest vertex [m]
-  double most_ = 0.0;
-  std::vector<double> way_;  ///< of along_skin(): infinite between calls
+  std::vector<double> reach_;  ///< Distance from the centre to the farthest vertex, per cluster [m].
+  double most_ = 0.0;          ///< Largest entry of reach_ [m].
+  std::vector<double> way_;    ///< Path lengths of along_skin(); infinite between calls.
 };
 
 }  // namespace
@@ -131,7 +131,8 @@ OwnNeighbourhood::OwnNeighbourhood(const Skin& skin, const Points& rest, double 
     std::sort(of[c].begin(), of[c].end());
     clusters.through_tissue(c, radius, of[c]);
   }
-  // of two, each is the other's neighbour: of equally near vertices either may be the first
+  // Symmetrises the relation: ties between equally near vertices may have been broken differently for the two
+  // clusters.
   const std::vector<std::vector<int>> found = of;
   for (std::size_t c = 0; c < of.size(); ++c)
     for (const int other : found[c]) of[static_cast<std::size_t>(other)].push_back(static_cast<int>(c));

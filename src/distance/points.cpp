@@ -10,14 +10,15 @@
 namespace palpate::distance {
 namespace {
 
-/// Numbers of the triangles' corners: one at a vertex of the skin, one at each division of an edge by a
-/// number of parts, one inside a face.
+/// Numbering of the triangles' corners: one per vertex of the skin, one per division point of an edge and
+/// number of segments, one per point inside a face.
 class Corners {
  public:
   Corners(const Skin& skin, std::vector<ContactPoint>& out)
       : skin_(skin), out_(out), at_vertex_(static_cast<std::size_t>(skin.vertex_count()), -1) {}
 
-  /// @param i, j  parts of n from the edges opposite to the face's corners 0 and 1
+  /// Returns the index of a corner, and adds the point where it is new.
+  /// @param i, j  distances from the edges opposite to the face's corners 0 and 1, in units of 1/n
   int number(int face, int n, int i, int j) {
     const std::array<int, 3> parts = {i, j, n - i - j};
     const auto zeros = std::count(parts.begin(), parts.end(), 0);
@@ -51,10 +52,10 @@ class Corners {
   const Skin& skin_;
   std::vector<ContactPoint>& out_;
   std::vector<int> at_vertex_;
-  int within_ = -1;                                  ///< the face of those inside
-  std::array<int, kMostCuts * kMostCuts> inside_{};  ///< by i and j
+  int within_ = -1;                                  ///< Face of the points in inside_.
+  std::array<int, kMostCuts * kMostCuts> inside_{};  ///< Points inside that face, by i and j.
   std::map<std::array<int, 4>, int>
-      on_edge_;  ///< lower vertex, higher one, parts of the edge, from the lower
+      on_edge_;  ///< Key: lower vertex, higher vertex, number of segments, segments from the lower vertex.
 };
 
 void collect_fans(ContactMesh& mesh) {
@@ -72,7 +73,7 @@ void collect_fans(ContactMesh& mesh) {
 }  // namespace
 
 int cuts_of(const Skin& skin, int face, double spacing) {
-  // An edge of the spacing itself, but for rounding, is one part.
+  // An edge as long as the spacing, up to rounding, is not divided.
   constexpr double kRounding = 1e-9;
   return static_cast<int>(
       std::clamp(std::ceil(skin.longest_edge[face] / spacing - kRounding), 1.0, double{kMostCuts}));
@@ -83,7 +84,7 @@ ContactMesh contact_mesh(const Skin& skin, double spacing) {
   ContactMesh out;
   Corners corners(skin, out.points);
   for (int face = 0; face < skin.face_count(); ++face) {
-    if (skin.area[face] == 0.0) continue;  // a repetition
+    if (skin.area[face] == 0.0) continue;  // Padding duplicate.
     const int n = cuts_of(skin, face, spacing);
     const auto add = [&](const std::array<std::array<int, 2>, 3>& at) {
       ContactTriangle triangle{.area = skin.area[face] / (n * n)};
@@ -103,9 +104,10 @@ ContactMesh contact_mesh(const Skin& skin, double spacing) {
   return out;
 }
 
-// Over a triangle a surface's height is a quadratic form but for terms of third order, so that its mean is
-// that of the edges' middles.  An area of flat triangles falls short by c e^2: by a quarter of that where
-// each is cut into four at the edges' middles, lifted onto the surface, hence A = (4 A_4 - A_1)/3.
+// Up to third-order terms the height of the surface over a triangle is quadratic, and its mean equals the
+// mean of its values at the edge midpoints. The area of flat triangles falls short of the surface's by c e^2.
+// Subdivision into four triangles at the edge midpoints, lifted onto the surface, reduces the error to a
+// quarter, hence A = (4 A_4 - A_1)/3 (Richardson extrapolation).
 void fit_to_surface(ContactMesh& mesh, const Points& at, const std::function<Vec3(const Vec3&)>& onto) {
   const auto area = [](const Vec3& a, const Vec3& b, const Vec3& c) {
     return 0.5 * (b - a).cross(c - a).norm();

@@ -1,9 +1,10 @@
-// Nearest points of sixteen points at a time.  A triangle's numbers are the same in all lanes; a lane is a
-// point.
+// Nearest-face search for sixteen points at a time. Each lane holds one point; the triangle's data are
+// broadcast to all lanes.
 //
-// With d the distance from the triangle's plane and l the largest distance beyond an edge in that plane,
-// d^2 + max(l, 0)^2 is the squared distance where the foot lies on the face or between an edge's ends, and
-// less than it beyond a corner.  Only where that is below the nearest so far are the edges clamped.
+// Let d be the distance from the triangle's plane and l the largest distance beyond an edge, measured in that
+// plane. d^2 + max(l, 0)^2 is the squared distance where the foot lies on the face or on the inside of an
+// edge, and a lower bound on it where the nearest feature is a corner. Projections are clamped to the edges
+// only if this value is below the smallest distance so far.
 #ifdef __AVX2__
 #include <immintrin.h>
 #endif
@@ -31,7 +32,7 @@ PALPATE_INLINE Floats size(Floats x) { return x < 0.0f ? -x : x; }
 PALPATE_INLINE Four load(const double* p) { return *reinterpret_cast<const FourInMemory*>(p); }
 PALPATE_INLINE void store(double* p, Four x) { *reinterpret_cast<FourInMemory*>(p) = x; }
 
-/// One bit per lane.
+/// Returns one bit per lane.
 PALPATE_INLINE unsigned bits(Ints mask) {
 #if defined(__AVX512DQ__)
   return static_cast<unsigned>(_mm512_movepi32_mask(reinterpret_cast<__m512i&>(mask)));
@@ -84,8 +85,8 @@ void bound(const double* vertices, const int* list, int count, double* low, doub
   store(high, h);
 }
 
-/// A plane so far that nothing is near: lanes without a triangle, and triangles without an area, whose edges
-/// others have as well.
+/// Offset of a plane beyond every search distance: used for lanes without a triangle, and for triangles
+/// without area, whose edges belong to other triangles as well.
 constexpr float kFar = 1e9f;
 
 void planes(const double* vertices, const int* corners, int count, const double* origin, float* out) {
@@ -124,7 +125,7 @@ void planes(const double* vertices, const int* corners, int count, const double*
   }
 }
 
-/// Upper bound on (sqrt(d2) + s)^2: 2 s d <= e d^2 + s^2/e, with e = 1/128.
+/// Returns an upper bound on (sqrt(d2) + s)^2: 2 s d <= e d^2 + s^2/e, with e = 1/128.
 PALPATE_INLINE Floats loosened(Floats distance2, float slack2) {
   return distance2 * (1.0f + 1.0f / 128) + 129.0f * slack2;
 }
@@ -166,7 +167,7 @@ PALPATE_INLINE void test(const Vectors& x, const float* plane, int t, int face, 
   best.face = is_nearer ? all(static_cast<std::int32_t>(face)) : best.face;
 }
 
-/// Bits of the sixteen triangles of which some point of the box c +- h is within the bound.
+/// Returns one bit per triangle, sixteen in all: set where some point of the box c +- h is within the bound.
 PALPATE_INLINE unsigned near_triangles(const float* plane, const float c[3], const float h[3], float bound2) {
   const auto row = [&](int r) -> const Floats& { return floats(plane + 32 * r); };
   const auto middle = [&](int r) {
@@ -187,8 +188,7 @@ long search(Packet& packet, const Targets& targets) {
   const Vectors x = {floats(packet.x[0]), floats(packet.x[1]), floats(packet.x[2])};
   Best best = {floats(packet.distance2), floats(packet.height), ints(packet.face)};
   long tested = 0;
-  // Boxes of four points each: the triangles that are near to one of them are fewer than those near to the
-  // box of all sixteen.
+  // Boxes of four points each: fewer triangles are near one of these than near the box of all sixteen points.
   float c[kQuarters][3], h[kQuarters][3], low[3], high[3];
   if (targets.cluster_count > 0)
     for (int d = 0; d < 3; ++d) {
@@ -205,8 +205,9 @@ long search(Packet& packet, const Targets& targets) {
         high[d] = q && high[d] > most_x ? high[d] : most_x;
       }
     }
-  // Faces first, then the clusters of the nearest faces so far, which bound the rest, then all other
-  // clusters: one copy of test(), so that a distance has the same bits wherever it is computed.
+  // The search order is: single faces, then the clusters of the nearest faces so far, which tighten the
+  // bound, then all other clusters. They share one copy of test(), so that a distance has the same bits
+  // wherever it is computed.
   const int* list = targets.faces;
   int count = targets.face_count, group = -kLanes;
   unsigned open = 0;

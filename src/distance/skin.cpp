@@ -11,8 +11,8 @@
 namespace palpate::distance {
 namespace {
 
-/// Bisects faces across the longest side of their box, at multiples of 32 and then of 16, 8 and 4 faces, so
-/// that all clusters but the last are full and their parts are compact.
+/// Bisects faces across the longest side of their bounding box, at multiples of 32 and then of 16, 8 and 4
+/// faces, so that all clusters except the last are full and their subsets are compact.
 class Bisection {
  public:
   Bisection(const Points& centroids, std::vector<int>& order, std::vector<ClusterNode>& tree)
@@ -48,7 +48,7 @@ class Bisection {
   std::vector<ClusterNode>& tree_;
 };
 
-/// Parts of some faces that hang together by vertices, each in the order of the faces.
+/// Returns the components of some faces that are connected by vertices, each in the order of `faces`.
 std::vector<std::vector<int>> connected_parts(std::vector<int> faces, const Faces& corners) {
   const auto share_vertex = [&](int a, int b) {
     for (const int v : corners.col(a))
@@ -73,7 +73,7 @@ std::vector<std::vector<int>> connected_parts(std::vector<int> faces, const Face
   return parts;
 }
 
-/// Gives each connected part of a cluster a cluster of its own.
+/// Splits each cluster into its connected components, one cluster per component.
 class ConnectedClusters {
  public:
   ConnectedClusters(const Faces& corners, std::vector<int>& order, std::vector<ClusterNode>& tree)
@@ -135,7 +135,7 @@ bool is_repetition(const Skin& skin, int face) {
 }
 
 void join_across_edges(Skin& skin) {
-  std::map<std::pair<int, int>, int> half_edges;  // from, to -> 3 face + opposite corner
+  std::map<std::pair<int, int>, int> half_edges;  // From, to -> 3 face + opposite corner.
   for (int f = 0; f < skin.face_count(); ++f)
     for (int k = 0; k < 3 && !is_repetition(skin, f); ++k) {
       const int from = skin.faces((k + 1) % 3, f), to = skin.faces((k + 2) % 3, f);
@@ -200,7 +200,7 @@ void join_clusters(Skin& skin) {
   }
 }
 
-/// Sets aside a tenth of the vertices, those with the largest sums of |weights|.
+/// Separates the tenth of the vertices with the largest sums of |weights|.
 void set_aside_far(Skin& skin) {
   const VecX sum = skin.weights.cwiseAbs().colwise().sum().transpose();
   std::vector<int> order(static_cast<std::size_t>(skin.vertex_count()));
@@ -267,7 +267,8 @@ Skin make_skin(const TriMesh& rest, Clusters clusters) {
   return build(rest, std::move(nodes), std::move(weights), static_cast<int>(count), clusters);
 }
 
-// The simplex x, y, z >= low, sum of (x - low)/(3 size) <= 1 holds the box: all weights lie in [0, 1].
+// The simplex x, y, z >= low, sum of (x - low)/(3 size) <= 1 contains the bounding box: all weights lie in
+// [0, 1].
 Skin make_rigid_skin(const TriMesh& rest, Points& corners) {
   const Vec3 low = rest.vertices.rowwise().minCoeff(), size = rest.vertices.rowwise().maxCoeff() - low;
   if (!(size.array() > 0.0).all()) fail("contact needs a surface around a volume");

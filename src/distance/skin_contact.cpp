@@ -107,8 +107,9 @@ void SkinContact::add_spring(int side, int point, const Foot& foot, bool is_insi
   set_foot(springs_.back(), foot, is_inside);
 }
 
-// Every triangle with a spring, and a spring at each of its corners, those that lie too far outside to have
-// been found not placed: both in the order of their numbers.  Springs are found in that order, side by side.
+// Collects all triangles that have a spring, and adds a spring at each of their corners; corners too far
+// outside to have been found are not placed. Both lists are sorted by index. The springs found by the search
+// are sorted by side and point.
 void SkinContact::find_triangles() {
   triangles_.clear();
   added_.clear();
@@ -142,7 +143,7 @@ void SkinContact::find_triangles() {
         added_.push_back({.side = side, .point = p});
       }
       for (std::size_t i = before; i < added_.size();
-           ++i)  // one corner was found, and has a face that is near
+           ++i)  // At least one corner was found and has a near face.
         added_[i].face = springs_[static_cast<std::size_t>(known)].face;
     }
     std::sort(added_.begin() + begin_added, added_.end(),
@@ -157,7 +158,7 @@ void SkinContact::find_triangles() {
   for (const Spring& s : springs_) spring_of_[s.side][static_cast<std::size_t>(s.point)] = -1;
 }
 
-/// Merges them into the springs from the end, in place.
+/// Merges `added_` into the springs from the end, in place.
 void SkinContact::merge_added() {
   const auto is_before = [](const Spring& a, const Spring& b) {
     return std::pair(a.side, a.point) < std::pair(b.side, b.point);
@@ -170,7 +171,7 @@ void SkinContact::merge_added() {
   }
 }
 
-/// visit(triangle, overlap at its corners) where one of them overlaps.
+/// Calls visit(triangle, overlap at its corners) for each triangle with at least one overlapping corner.
 template <class Visit>
 void SkinContact::for_each_overlap(const Visit& visit) const {
   for (const Triangle& t : triangles_) {
@@ -202,11 +203,11 @@ void SkinContact::integrate() {
     if (s.force == 0.0) s.stiffness = stiffness_ * points(s.side)[static_cast<std::size_t>(s.point)].area;
 }
 
-// A direction between two points is rounded by the unit in the last place of their coordinates over their
-// distance: 2e-7 at the distance below which the pseudonormal is taken, where the spring has no force to
-// speak of.
+// The relative rounding error of a direction between two points is the unit in the last place of their
+// coordinates divided by their distance: 2e-7 at the distance below which the pseudonormal is used, where the
+// force of the spring is negligible.
 Vec3 SkinContact::outward(const Spring& spring) const {
-  constexpr double kCoincide = 1e-9;  // of the coordinates
+  constexpr double kCoincide = 1e-9;  // Relative to the coordinates.
   const Surface& other = surfaces_[1 - spring.side];
   const double size =
       std::max(other.bound().min().cwiseAbs().maxCoeff(), other.bound().max().cwiseAbs().maxCoeff());

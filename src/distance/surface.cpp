@@ -9,10 +9,10 @@
 namespace palpate::distance {
 namespace {
 
-/// Upper bound on what the squared distance of a box can come out as, where nearest_on_triangle() found
-/// `distance2` for a triangle inside.  A foot is a convex combination of corners, so it lies in the box but
-/// for rounding: a few units in the last place of the coordinates, and of the squares' sum.  Sixteen cover
-/// both.
+/// Returns an upper bound on the squared distance that may be computed for a box containing a triangle for
+/// which nearest_on_triangle() found `distance2`. A foot is a convex combination of corners, so it lies in
+/// the box up to rounding: a few units in the last place of the coordinates and of the sum of squares.
+/// Sixteen units bound both.
 constexpr double kUnit = std::numeric_limits<double>::epsilon();
 double with_rounding(double distance2, double largest_coordinate) {
   const double slack = 16.0 * kUnit * largest_coordinate;
@@ -25,13 +25,13 @@ bool is_before(double distance2, int face, const Foot& foot) {
 
 }  // namespace
 
-// The foot lies inside where all three barycentric coordinates of the projection are positive.  Otherwise it
-// lies on an edge beyond which the projection is: at an edge's inner point the projection lies along its
-// outward normal, and at a corner, p - y = s m + t n with the outward normals of its edges and s, t >= 0, one
-// of (p - y) . m and (p - y) . n is positive unless m = -n.
+// The foot lies inside where all three barycentric coordinates of the projection are positive. Otherwise it
+// lies on an edge with the projection on its outer side: if the foot is an interior point of an edge, the
+// projection lies along that edge's outward normal; if it is a corner, p - y = s m + t n with the outward
+// normals m, n of its edges and s, t >= 0, and one of (p - y) . m and (p - y) . n is positive unless m = -n.
 TrianglePoint nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
   const Vec3 corners[3] = {a, b, c};
-  const Vec3 edge[3] = {c - b, a - c, b - a};  // opposite to each corner
+  const Vec3 edge[3] = {c - b, a - c, b - a};  // Edge opposite to each corner.
   const Vec3 normal = edge[2].cross(-edge[1]);
   const double size2 = normal.squaredNorm();
   TrianglePoint out;
@@ -40,7 +40,8 @@ TrianglePoint nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, c
   if (size2 > 0.0 && inside[0] > 0.0 && inside[1] > 0.0 && inside[2] > 0.0) {
     const double sum = inside[0] + inside[1] + inside[2];
     out.weights = Vec3(inside[0], inside[1], inside[2]) / sum;
-    // From the foot itself rather than along the normal: it lies in the triangle however thin that is.
+    // Measured from the foot rather than along the normal: the foot lies in the triangle, however thin the
+    // triangle is.
     out.away = x - a - (out.weights[1] * edge[2] - out.weights[2] * edge[1]);
     out.distance2 = out.away.squaredNorm();
     return out;
@@ -84,9 +85,9 @@ void Surface::carry_far(const Padded& of_nodes) const {
                                  far_list_.data(), static_cast<int>(far_list_.size()), far_.data());
 }
 
-// A vertex is sum w x over its nodes, sum w = 1 and W = sum |w|.  So are its velocity and its displacement:
-// they differ from `about` by no more than W times the largest difference of a node.  Few vertices have a
-// large W, and those are evaluated.
+// A vertex is at sum w x over its nodes, with sum w = 1 and W = sum |w|. Velocity and displacement follow the
+// same formula: they differ from `about` by no more than W times the largest difference of a node. The few
+// vertices with large W are evaluated explicitly.
 double Surface::farthest(const Padded& of_nodes, const Vec3& about) const {
   const double of_all = (of_nodes.topRows<3>().colwise() - about).colwise().squaredNorm().maxCoeff();
   double most2 = skin_.weight_sum * skin_.weight_sum * of_all;
@@ -101,8 +102,8 @@ double Surface::spread(const double* node_velocities, const Vec3& about) const {
   return farthest(way_, about);
 }
 
-// Weights that sum to 1 have negative ones of -(W - 1)/2 in all: a vertex lies outside the nodes' box by no
-// more than (W - 1)/2 of its edges.
+// If weights sum to 1, their negative entries sum to -(W - 1)/2: a vertex lies outside the nodes' box by no
+// more than (W - 1)/2 times the box's edges.
 void Surface::move(const double* nodes) {
   constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
   const Eigen::Map<const Points> now(nodes, 3, skin_.node_count);
@@ -173,7 +174,7 @@ Foot Surface::nearest(const Vec3& x, int start) const {
   ++count_.searches;
   const double size = std::max(bound_.min().cwiseAbs().maxCoeff(), bound_.max().cwiseAbs().maxCoeff()) +
                       x.cwiseAbs().maxCoeff();
-  int open[64], depth = 0;  // bisection halves the faces: 64 levels are never reached
+  int open[64], depth = 0;  // Bisection halves the faces: 64 levels are never reached.
   open[depth++] = 0;
   while (depth > 0) {
     const int i = open[--depth];
@@ -193,7 +194,7 @@ Foot Surface::nearest(const Vec3& x, int start) const {
 
 Foot Surface::nearest_around(const Vec3& x, int face) const {
   Foot best{face, nearest_on_face(face, x)};
-  for (int seen = -1; seen != best.face;) {  // the pair (distance, face) falls: it ends
+  for (int seen = -1; seen != best.face;) {  // Terminates because the pair (distance, face) decreases.
     seen = best.face;
     const Vec3 w = best.at.weights;
     const auto take = [&](int f) {

@@ -8,47 +8,47 @@
 
 namespace palpate::distance {
 
-/// Largest number of parts of a face's edges: 256 triangles per face.
+/// Largest number of segments per face edge: 256 triangles per face.
 inline constexpr int kMostCuts = 16;
 
-/// A material point of a skin.
+/// Material point of a skin at which the gap is evaluated.
 struct ContactPoint {
-  int face = 0;       ///< that carries it
-  Vec3 weights;       ///< of the face's corners; sum 1
-  double area = 0.0;  ///< integral of its hat: a third of its triangles' area at rest [m^2]
+  int face = 0;       ///< Face that contains the point.
+  Vec3 weights;       ///< Barycentric weights of the face's corners; sum 1.
+  double area = 0.0;  ///< Integral of the point's hat function: a third of its triangles' area at rest [m^2].
 };
 
-/// A part of a face, between three contact points.
+/// Triangle of the contact mesh: part of a face, spanned by three contact points.
 struct ContactTriangle {
-  std::array<int, 3> points{};  ///< in the face's order
-  double area = 0.0;            ///< at rest [m^2]
-  double lowered = 0.0;         ///< how far the surface that it stands for lies above it, in the mean [m]
+  std::array<int, 3> points{};  ///< Contact points, in the orientation of the face.
+  double area = 0.0;            ///< Area at rest [m^2].
+  double lowered = 0.0;  ///< Mean height above the triangle of the curved surface that it approximates [m].
 };
 
-/// The triangles over which a contact takes the gap as linear, and their corners.
+/// Contact mesh of a skin: the triangles over which the gap is interpolated linearly, and their corners.
 struct ContactMesh {
-  std::vector<ContactPoint> points;        ///< ordered by face
-  std::vector<ContactTriangle> triangles;  ///< ordered by face
-  std::vector<int> fan_begin;              ///< of each point, in `fan`, and the end
-  std::vector<int> fan;                    ///< triangles around each point
+  std::vector<ContactPoint> points;        ///< Contact points, ordered by face.
+  std::vector<ContactTriangle> triangles;  ///< Triangles, ordered by face.
+  std::vector<int> fan_begin;  ///< Offset of each point's triangles in `fan`, and its length at the end.
+  std::vector<int> fan;        ///< Triangles around each point.
 };
 
-/// Returns the number n of parts of a face's edges, such that none is longer than `spacing` at rest; 1 where
-/// the face is smaller, at most kMostCuts.
-/// @param spacing  [m]; infinite: every face as it is
+/// Returns the number n of segments into which the edges of a face are divided, so that none is longer than
+/// `spacing` at rest. It is at least 1 and at most kMostCuts.
+/// @param spacing  longest permitted segment [m]; infinite: faces are not divided
 int cuts_of(const Skin& skin, int face, double spacing);
 
-/// Cuts each face into n^2 similar triangles, n of cuts_of().  Their corners are shared by faces that are cut
-/// alike, half a point per triangle; on an edge between faces of different n each has its own.  A point
-/// belongs to the first face that has it.
+/// Divides each face into n^2 similar triangles, with n from cuts_of(). Faces with equal n share the points
+/// on their common edge, about half a point per triangle; on an edge between faces of different n each face
+/// has separate points. A shared point is assigned to the first face that contains it.
 /// @param spacing  longest edge of the triangles [m], as for cuts_of()
 /// @throws Error where the spacing is not positive
 ContactMesh contact_mesh(const Skin& skin, double spacing);
 
-/// Fits triangles to the curved surface that their corners lie on: their areas, and how far it bulges over
-/// them.
-/// @param at    places of the mesh's points [m]
-/// @param onto  the surface's point nearest to x
+/// Corrects areas and mean heights of the triangles (ContactTriangle::area, ContactTriangle::lowered) and the
+/// areas of the points for the curved surface that the triangles' corners lie on.
+/// @param at    positions of the mesh's points [m], one per column
+/// @param onto  returns the point of the surface nearest to x [m]
 void fit_to_surface(ContactMesh& mesh, const Points& at, const std::function<Vec3(const Vec3&)>& onto);
 
 }  // namespace palpate::distance
