@@ -33,10 +33,11 @@ Vec6 coupling_wrench(const CouplingGains& gains, const RigidMotion& tool, const 
   return wrench;
 }
 
-// Q = R_h R_t^T = exp(d).  A rotation of the tool, R_t -> exp(e) R_t, makes it Q exp(-e) = exp(d) exp(-e), a
-// perturbation from the right, so dd = -J_right^-1(d) e, and J_right^-1(d) = J_left^-1(-d).  Hence
+// Q = R_h R_t^T = exp(d). A rotation of the tool, R_t -> exp(e) R_t, changes it to Q exp(-e) =
+// exp(d) exp(-e), a perturbation from the right, so dd = -J_right^-1(d) e, and J_right^-1(d) = J_left^-1(-d).
+// Hence
 //     -d(moment)/de = k_r J_left^-1(-d),
-// whose unsymmetric part is [moment]/2, because increments in world axes are no coordinates.
+// whose unsymmetric part is [moment]/2, because increments in world axes are not coordinates.
 Mat6 coupling_stiffness(const CouplingGains& gains, const Pose& tool, const Pose& handle) {
   Mat6 K = Mat6::Zero();
   K.topLeftCorner<3, 3>() = gains.k_r * left_jacobian_inverse(-pose_difference(tool, handle).head<3>());
@@ -60,7 +61,8 @@ double coupling_dissipation(const CouplingGains& gains, const Twist& tool, const
          gains.b * (handle.linear - tool.linear).squaredNorm();
 }
 
-// The record reads e = rotation vector of R R0^T; a rotation from the left changes it by J_left^-1(e).
+// The record is linear in e, the rotation vector of R R0^T; a rotation from the left changes e by
+// J_left^-1(e).
 Mat6 contact_stiffness(const dynamics::LinearisedContact& record, const Pose& tool) {
   if (is_none(record)) return Mat6::Zero();
   const Pose x0{Quat(record.x0[0], record.x0[1], record.x0[2], record.x0[3]),

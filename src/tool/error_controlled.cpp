@@ -6,29 +6,29 @@
 namespace palpate::tool {
 namespace {
 
-/// Local error that Simbody keeps (RMS over the 13 coordinates and velocities, in SI units).
+/// Accuracy for Simbody's local error control (RMS over the 13 coordinates and velocities, in SI units).
 constexpr double kAccuracy = 1e-10;
-/// Internal steps a tick before giving up.
+/// Limit of internal steps per tick.
 constexpr int kMaxSteps = 100000;
 
-// Semi-explicit Euler, twice with h against once with 2 h:
+// Semi-explicit Euler, two steps of h compared with one step of 2 h:
 //   u1 = u0 + h u'(q0, u0),     q1 = q0 + h N(q0) u1,     and again from (q1, u1), which gives y2;
 //   ub = u0 + 2 h u'(q0, u0),   qb = q0 + 2 h N(q0) ub,   which is yb.
-// y2 - yb = h^2 (u'', ..) + O(h^3) is the error of y2, which is kept (no extrapolation).  Simbody takes it
-// relative to a speed that is not small, and a coupling that oscillates at w has |u''| = w^2 |u|.  A local
-// error T therefore permits steps 2 h ~ 2 sqrt(T)/w, and t/2h steps make a
-//   relative error ~ w t sqrt(T)/2     for     w/(2 sqrt(T)) steps a second.
+// y2 - yb = h^2 (u'', ..) + O(h^3) estimates the error of y2, which is kept (no extrapolation). Simbody
+// scales it by a speed that is not small, and a coupling that oscillates at w has |u''| = w^2 |u|. A local
+// error T therefore permits steps 2 h ~ 2 sqrt(T)/w, and t/2h steps accumulate a
+//   relative error ~ w t sqrt(T)/2     for     w/(2 sqrt(T)) steps per second.
 // For w = 100/s and t = 0.1 s (the damping time):
-//   T = 1e-10   relative error 5e-5   5,000 steps a tick of 1 ms
-//   T = 1e-6    relative error 5e-3      50 steps a tick of 1 ms     (measured at w = 2e4/s: 9,000 a tick)
-// Hence 1e-6: two to three digits, never the eight of the other two integrators.  A tick that oscillates
-// faster than kFirstOrderMaxSteps can follow ends with an error.
+//   T = 1e-10   relative error 5e-5   5,000 steps per tick of 1 ms
+//   T = 1e-6    relative error 5e-3      50 steps per tick of 1 ms   (measured at w = 2e4/s: 9,000 per tick)
+// Hence 1e-6: two to three digits, compared with eight for the other two integrators. A tick whose
+// oscillation needs more than kFirstOrderMaxSteps steps ends with an error.
 constexpr double kFirstOrderAccuracy = 1e-6;
 constexpr int kFirstOrderMaxSteps = 20000;
 
-/// One of Simbody's own integrators, landing on the end of each tick.  Where the input changes between ticks
-/// the later begins with a reinitialisation (a multistep method then begins at order 1); after one, stepTo
-/// may return at once without a step, hence the loop.
+/// Scheme with one of Simbody's integrators, which stops exactly at the end of each tick. If the input
+/// changes between ticks, the next tick begins with a reinitialisation (a multistep method then restarts at
+/// order 1), after which stepTo may return without a step; hence the loop.
 class ErrorControlled : public TickScheme {
  public:
   ErrorControlled(SimbodyBody& body, std::unique_ptr<SimTK::Integrator> integrator,
@@ -52,7 +52,7 @@ class ErrorControlled : public TickScheme {
       result.iterations = integrator_->getNumStepsTaken() - before;
       if (result.iterations > 0) result.h = integrator_->getPreviousStepSizeTaken();
       motion = body_.read(integrator_->getState());
-    } catch (const std::exception& e) {  // Simbody throws where a step fails
+    } catch (const std::exception& e) {  // Simbody throws if a step fails.
       reset();
       result.status = dynamics::StepStatus::kErrorTestFailed;
       result.t = input.t0;
@@ -97,7 +97,7 @@ class ErrorControlled : public TickScheme {
   SimbodyBody& body_;
   std::unique_ptr<SimTK::Integrator> integrator_;
   int max_steps_;
-  TickInput input_;  ///< that the state has
+  TickInput input_;  ///< Input set in the integrator's state.
   bool fresh_ = true;
 };
 

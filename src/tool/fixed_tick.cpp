@@ -17,20 +17,21 @@ dynamics::StepResult done(const TickInput& input, double residual = 0.0) {
   return {dynamics::StepStatus::kOk, input.t0 + input.h, input.h, 1, 1, residual, {}};
 }
 
-// Gyroscopic term of both schemes, written in the body's axes (where I is constant) with L0 = I w0:
-// f = -w x I w is taken as -w1 x L0, so that
+// Gyroscopic term of both schemes, in body axes (where I is constant) with L0 = I w0: f = -w x I w is
+// approximated by -w1 x L0, so that
 //   I (w1 - w0) = -h w1 x L0   gives   w1 . I w1 = w1 . I w0 <= |w1|_I |w0|_I:
-// it never adds energy, at any spin and any tick.  Taken explicitly it does, and diverges where the tool
-// rotates by a radian in a tick.  As -w1 x L0 = L0 x w1, its matrix G = -[L0] is skew: the symmetric part of
-// M + h (B + G) + h^2 K stays positive definite wherever those of K and B are semi-definite.  The components
-// in the world axes of the tick's start serve for body axes: the rotation exp(h w1) does not change w1.
+// it never adds energy, at any spin and any tick. The explicit term adds energy, and diverges if the tool
+// rotates by a radian per tick. As -w1 x L0 = L0 x w1, its matrix G = -[L0] is skew, so the symmetric part of
+// M + h (B + G) + h^2 K is positive definite wherever the symmetric parts of K and B are semi-definite.
+// Components in the world axes at the start of the tick may be used for body axes, because the rotation
+// exp(h w1) does not change w1.
 Mat3 gyroscopic_matrix(const Mat6& M, const Twist& twist) {
   return -cross_matrix(M.topLeftCorner<3, 3>() * twist.angular);
 }
 
 // (M + h G) (u1 - u0) = h f(x0, u0, handle at the start),  x1 = x0 + h u1.
 // For one direction, x1 = z x0:
-//   z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0;   |z| <= 1 until z = -1, that is k = 4 m/h^2 - 2 b/h.
+//   z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0;   |z| <= 1 until z = -1, at k = 4 m/h^2 - 2 b/h.
 class SemiImplicitEuler : public TickScheme {
  public:
   explicit SemiImplicitEuler(SimbodyBody& body) : body_(body) {}
@@ -54,13 +55,13 @@ class SemiImplicitEuler : public TickScheme {
 // Backward Euler with f linearised about (x0, u0):
 //   u1 = u0 + h M^-1 f(x1, u1, handle at the end),   x1 = x0 + h u1;
 //   (M + h (B + G) + h^2 K) (u1 - u0) = h (f0 - h K u0),   K = -df/dx, B = -df/du of coupling and contact.
-// In a translation, and in a rotation about a principal axis, f is linear and this is backward Euler itself:
-// no bound on k.
+// For a translation, and for a rotation about a principal axis, f is linear and the scheme equals backward
+// Euler: k is not bounded.
 StepEquation linearly_implicit_step(SimbodyBody& body, const TickInput& input, const RigidMotion& motion) {
   const double h = input.h;
   const TickInput held = with_handle_held(input, input.handle.pose1, input.handle.twist1);
   const Mat6 M = body.mass_matrix(motion.pose);
-  // the contact record is taken at the tick's end too
+  // The contact record is evaluated at the end of the tick, too.
   const Vec6 f0 = body.right_hand_side(input.t0 + h, motion, held);
 
   const Mat6 K = coupling_stiffness(input.gains, motion.pose, input.handle.pose1) +

@@ -9,13 +9,14 @@
 namespace palpate::tool {
 
 // With R_h = exp(theta) R_0 and J the left Jacobian at theta, the handle turns with omega = J theta', and a
-// moment M on it does the power M . omega: the force along theta is J^T M.  So with (M, F) the coupling's
-// wrench on the tool, the hand's coordinates feel (-J^T M, -F).  With d the rotation vector from tool to
-// handle, J_d its left Jacobian, e a turn of the tool and J' v = d(J v)/dtheta,
+// moment M on it has the power M . omega: the generalised force along theta is J^T M. With (M, F) the
+// coupling's wrench on the tool, the generalised force on the hand is therefore (-J^T M, -F). With d the
+// rotation vector from tool to handle, J_d its left Jacobian, e a rotation of the tool and J' v =
+// d(J v)/dtheta,
 //     dM = k_r (J_d^-1 J dtheta - J_{-d}^-1 e) + b_r (J dtheta'' + J' theta' dtheta - domega_t),
 //     d(J^T M) = J^T dM + (J^T)' M dtheta,
-// in which dtheta'' stands for the change of theta'.  The arm pulls theta, not the rotation: so does that of
-// src/device/hand.cpp, and about one axis the two are the same.
+// where dtheta'' denotes the change of theta'. The arm's spring acts on theta, not on the rotation, as in
+// src/device/hand.cpp; about one axis the two are the same.
 namespace {
 
 using dynamics::BorderedMatrix;
@@ -29,9 +30,9 @@ const dynamics::Block& block_of(const StateView& state, int id) {
   return *block;
 }
 
-/// d(J v)/dtheta (sign = 1), or d(J^T v)/dtheta (sign = -1), of the left Jacobian
+/// Returns d(J v)/dtheta (sign = 1) or d(J^T v)/dtheta (sign = -1) of the left Jacobian
 ///     J = a 1 + b [theta]x + c theta theta^T,   a = sin p/p,  b = (1 - cos p)/p^2,  c = (p - sin p)/p^3,
-/// p = |theta|.  A coefficient's gradient is its derivative by p over p, times theta.
+/// p = |theta|. The gradient of each coefficient is its derivative by p, divided by p, times theta.
 Mat3 jacobian_derivative(const Vec3& theta, const Vec3& v, double sign) {
   const double p = theta.norm(), p2 = p * p;
   double b = 0.5 - p2 / 24.0, c = 1.0 / 6.0 - p2 / 120.0;
@@ -70,7 +71,7 @@ class HandInertia : public dynamics::InertiaTerm {
   Vec6 mass_;
 };
 
-/// Arm and friction, axis by axis.
+/// Force of the arm and friction of the device, axis by axis.
 class ArmTerm : public dynamics::ForceTerm {
  public:
   ArmTerm(int hand_id, const HandBlock& hand)
@@ -112,7 +113,7 @@ class ArmTerm : public dynamics::ForceTerm {
   }
 
  private:
-  /// How far the hand is behind where the arm wants it.
+  /// Lag of the hand behind the arm's target, and its rate.
   struct At {
     int u_offset;
     Vec6 behind, rate, rate_behind;

@@ -13,8 +13,8 @@ using dynamics::rigid_block_of;
 using dynamics::RigidForce;
 using dynamics::StateView;
 
-/// M(q), rows and columns in the order of u: the mobilizer's (angular, linear) in world axes are the block's
-/// own.
+/// M(q) from Simbody, rows and columns in the order of u: the mobilizer's (angular, linear) in world axes
+/// equals the block's.
 class SimbodyInertia : public dynamics::InertiaTerm {
  public:
   SimbodyInertia(int block_id, std::shared_ptr<SimbodyBody> body)
@@ -36,9 +36,9 @@ class SimbodyInertia : public dynamics::InertiaTerm {
   std::shared_ptr<SimbodyBody> body_;
 };
 
-/// The right-hand side f of M u' = f by Simbody, without coupling and contact, which are separate force
-/// terms.  Simbody gives no derivatives; the weight has none, and those of the gyroscopic force of one body
-/// are known.
+/// Right-hand side f of M u' = f by Simbody, without coupling and contact, which are separate force terms.
+/// Simbody provides no derivatives: the weight is constant, and the tangent of a single body's gyroscopic
+/// force is known in closed form.
 class SimbodyForce : public RigidForce {
  public:
   SimbodyForce(int block_id, std::shared_ptr<SimbodyBody> body)
@@ -64,7 +64,7 @@ SimbodyTerms make_simbody_terms(int block_id, const ToolSpec& spec, const Vec3& 
   return {std::make_shared<SimbodyInertia>(block_id, body), std::make_shared<SimbodyForce>(block_id, body)};
 }
 
-// I = 2/5 m r^2 gives r; the rate is sqrt(k/m), or 1/s for a tool that nothing pulls.
+// I = 2/5 m r^2 gives r; the rate is sqrt(k/m), or 1/s for a tool without coupling stiffness.
 dynamics::BlockSpec tool_block(const ToolSpec& spec) {
   const RigidParameters p = rigid_parameters(spec, Vec3::Zero());
   const double length = spec.shape == "sphere" ? spec.radius_m : std::sqrt(2.5 * p.inertia.mean() / p.mass);

@@ -25,8 +25,8 @@ RigidMotion motion_of(const SimTK::Vector& q, const SimTK::Vector& u) {
 
 }  // namespace
 
-/// Coupling and contact as one Simbody force.  The tick's input is a discrete variable of the State: changing
-/// it invalidates what was realised from it, and an integrator's trial states all see the same tick.
+/// Coupling and contact as one Simbody force. The tick's input is a discrete variable of the State: a change
+/// invalidates all results that depend on it, and all trial states of an integrator use the same tick.
 class SimbodyBody::TickForce : public SimTK::Force::Custom::Implementation {
  public:
   TickForce(const SimTK::GeneralForceSubsystem& forces, const SimTK::MobilizedBody& body)
@@ -114,7 +114,7 @@ Mat6 SimbodyBody::calc_mass(const RigidMotion& motion) {
   return M;
 }
 
-// An explicit method that diverges asks at places that are none, where Simbody throws.
+// A diverging explicit method requests motions that Simbody cannot realise and for which it throws.
 bool SimbodyBody::is_somewhere(double t, const RigidMotion& motion) {
   write(state_, t, motion);
   force_->set(state_, {});
@@ -124,8 +124,8 @@ bool SimbodyBody::is_somewhere(double t, const RigidMotion& motion) {
   return true;
 }
 
-// Inverse dynamics gives the residual r = M u' + C(q, u) - f_applied;
-// at u' = 0 the right-hand side of M u' = f is -r.
+// Inverse dynamics returns the residual r = M u' + C(q, u) - f_applied; at u' = 0 the right-hand side of
+// M u' = f is -r.
 Vec6 SimbodyBody::calc_force(double t, const RigidMotion& motion) {
   if (!is_somewhere(t, motion)) return Vec6::Constant(std::numeric_limits<double>::quiet_NaN());
   zero_.resize(6);

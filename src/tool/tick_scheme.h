@@ -8,24 +8,25 @@ namespace palpate::tool {
 
 class SimbodyBody;
 
-/// One way to carry the tool over a tick.
+/// Integrator that advances the tool by one tick.
 class TickScheme {
  public:
   virtual ~TickScheme() = default;
-  /// From `motion` at input.t0 to input.t0 + input.h.  On failure `motion` may hold anything: the caller
-  /// keeps the last good one.
+  /// Advances `motion` from input.t0 to input.t0 + input.h. On failure `motion` is unspecified; the caller
+  /// keeps the last valid one.
   virtual dynamics::StepResult advance(const TickInput& input, RigidMotion& motion) = 0;
-  /// The motion was changed from outside, or the last advance was rejected: forget history.
+  /// Clears history, after the motion was changed from outside or the last advance was rejected.
   virtual void reset() {}
 };
 
-/// Sets the twist to u and moves by it: x1 = x0 + h u1, along a straight line, and rotated by exp(h omega1),
-/// which is exact for a fixed axis.
+/// Sets the twist to u and advances the pose with it: x1 = x0 + h u1 along a straight line, and a rotation by
+/// exp(h omega1), which is exact for a fixed axis.
 void move(RigidMotion& motion, double h, const Vec6& u);
-/// Returns the equation of linearly implicit Euler's method for the change of u in a tick.
+/// Returns the equation of a linearly implicit Euler step for the change of u over a tick.
 StepEquation linearly_implicit_step(SimbodyBody& body, const TickInput& input, const RigidMotion& motion);
 
 using MakeTickScheme = std::unique_ptr<TickScheme> (*)(SimbodyBody&);
+/// Returns the integrators by the name in `tool.integrator`.
 const Registry<MakeTickScheme>& tick_scheme_registry();
 
 std::unique_ptr<TickScheme> make_semi_implicit_euler(SimbodyBody& body);

@@ -26,7 +26,7 @@ struct Tool::Impl {
 namespace {
 
 const ToolSpec& checked(const ToolSpec& spec) {
-  find(tick_scheme_registry(), spec.integrator, "tool integrator");  // before anything costly is built
+  find(tick_scheme_registry(), spec.integrator, "tool integrator");  // fails before anything costly is built
   return spec;
 }
 
@@ -96,9 +96,10 @@ Wrench Tool::coupling_wrench(const Pose& handle, const Twist& handle_twist) cons
   return wrench_of(tool::coupling_wrench(impl_->input.gains, impl_->motion, {handle, handle_twist}));
 }
 
-// Equal and opposite, each about its own origin.  With this pair the coupling takes in b |v_h - v_t|^2 + b_r
-// |omega_h - omega_t|^2 and stores the rest: it is passive at its two ends.  (Moving the force to the other
-// origin instead would add the moment of the damping force, of either sign.)
+// Opposite force and moment, each about the origin of the side on which it acts. With this pair the coupling
+// dissipates b |v_h - v_t|^2 + b_r |omega_h - omega_t|^2 and stores the rest of the energy that it receives:
+// it is passive at both ends. (Moving the force to the other origin would add the moment of the damping
+// force, with either sign.)
 Wrench Tool::wrench_on_hand(const Pose& handle, const Twist& handle_twist) const {
   const Wrench on_tool = coupling_wrench(handle, handle_twist);
   return {-on_tool.moment, -on_tool.force};

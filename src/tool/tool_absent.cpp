@@ -2,7 +2,7 @@
 #include "palpate/tool/simbody_block.h"
 #include "palpate/tool/tool.h"
 
-// Replaces Simbody in a build without it: whatever would need Simbody throws Error.
+// Replaces the Simbody sources in a build without Simbody: every function that needs Simbody throws Error.
 
 namespace palpate::tool {
 namespace {

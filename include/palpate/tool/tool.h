@@ -11,80 +11,85 @@
 
 namespace palpate::tool {
 
-/// The handle's motion over one tick, as the coupling sees it: pose and twist at the tick's end (implicit
-/// schemes) and start.
+/// Motion of the handle over one tick: pose and twist at the start, and at the end (for implicit schemes).
 struct HandleMotion {
-  Pose pose0, pose1;     ///< at the start and at the end of the tick
-  Twist twist0, twist1;  ///< likewise
+  Pose pose0, pose1;     ///< At the start and at the end of the tick.
+  Twist twist0, twist1;  ///< At the start and at the end of the tick.
 };
 
-/// One step of a tool by linearly implicit Euler's method: A du = r, du the change of its twist, angular
-/// first [rad/s, m/s].
+/// Equation of one linearly implicit Euler step of a tool, A du = r, with du the change of the twist, angular
+/// part first [rad/s, m/s].
 struct StepEquation {
-  Mat6 A = Mat6::Zero();  ///< M + h B + h^2 K, gyroscopic terms included
-  Vec6 r = Vec6::Zero();  ///< [N m s, N s]
+  Mat6 A = Mat6::Zero();  ///< M + h B + h^2 K, including gyroscopic terms.
+  Vec6 r = Vec6::Zero();  ///< Right-hand side [N m s, N s].
 };
 
-/// A Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact
-/// (docs/design.md, 4.5).  The Simbody System stays behind the pimpl.
+/// Rigid tool: a Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact
+/// (docs/design.md, 4.5). The Simbody System is hidden behind the pimpl.
 class Tool {
  public:
-  /// @param spec  the [tool] table, checked  @param gravity  [m/s^2], world axes; acts where the spec says so
+  /// Builds the tool at the pose of the spec, at rest at time 0.
+  /// @param spec  the [tool] table, checked
+  /// @param gravity  [m/s^2], world axes; applies only if spec.gravity is set
+  /// @throws Error for a parameter out of range or an unknown integrator, and in a build without Simbody
   Tool(const ToolSpec& spec, const Vec3& gravity);
   ~Tool();
-  /// Moved from, it may only be destroyed or assigned to.
+  /// Moves the tool; the moved-from tool may only be destroyed.
   Tool(Tool&&) noexcept;
 
-  /// End of the last tick [s].
+  /// Returns the end of the last tick [s].
   double time() const;
-  /// Of the tool's frame in the world: origin at its centre of mass.
+  /// Returns the pose of the tool's frame in the world; the origin is the centre of mass.
   Pose pose() const;
-  /// In world axes, of its origin.
+  /// Returns the twist of the tool's origin, in world axes.
   Twist twist() const;
-  /// Puts it there at time t [s], as if it had come so.
+  /// Sets time [s], pose and twist, and resets the integrator's history. All values must be finite.
   void set_state(double t, const Pose& pose, const Twist& twist);
 
-  /// One tick of `h` seconds with the contact linear about its record, by the scheme that the spec names.
+  /// Advances the tool by one tick of `h` seconds, with the scheme that the spec specifies and the contact
+  /// wrench linear about its record. On failure the state is unchanged.
   dynamics::StepResult advance(double h, const HandleMotion& handle,
                                const dynamics::LinearisedContact& contact);
 
-  /// Returns the equation of a tick by linearly-implicit-euler, whatever the spec names; nothing changes.
+  /// Returns the equation of a linearly-implicit-euler tick, whichever integrator the spec specifies. Does
+  /// not change the tool.
   StepEquation step_equation(double h, const HandleMotion& handle,
                              const dynamics::LinearisedContact& contact) const;
-  /// Returns where that tick leads.
-  /// @param h  its length [s]  @param change  solution of the equation
+  /// Returns the motion at the end of that tick.
+  /// @param h  length of the tick [s]  @param change  solution du of the equation
   dynamics::RigidMotion after(double h, const Vec6& change) const;
 
-  /// Wrench that the coupling exerts on the tool about its origin, for a handle pose (before any limit).
+  /// Returns the wrench of the coupling on the tool about the tool's origin, for a handle pose, before any
+  /// limit.
   Wrench coupling_wrench(const Pose& handle, const Twist& handle_twist) const;
-  /// The coupling wrench on the hand: force opposite, moment about the handle's origin.
+  /// Returns the wrench of the coupling on the hand: opposite force, and moment about the handle's origin.
   Wrench wrench_on_hand(const Pose& handle, const Twist& handle_twist) const;
 
-  /// K = -dF/dx and B = -dF/dv of the coupling at the current pose (6x6, angular first): added to the tool's
-  /// rows by `condensed` linearisations and monolithic coupling.
+  /// Computes K = -dF/dx and B = -dF/dv of the coupling at the current pose (6x6, angular first), to be added
+  /// to the tool's rows by `condensed` linearisations and monolithic coupling.
   void coupling_tangent(const Pose& handle, const Twist& handle_twist, Mat6& K, Mat6& B) const;
-  Mat6 mass_matrix() const;  ///< at the current pose, world axes, about the origin
-  /// Of its motion now [J].
+  Mat6 mass_matrix() const;  ///< At the current pose, world axes, about the origin.
+  /// Returns the kinetic energy [J].
   double kinetic_energy() const;
-  double potential_energy(const Pose& handle) const;  ///< of the coupling to a handle, and of the weight [J]
-  double coupling_energy(const Pose& handle) const;   ///< of the coupling's springs to a handle [J]
+  double potential_energy(const Pose& handle) const;  ///< Coupling to a handle, and weight [J].
+  double coupling_energy(const Pose& handle) const;   ///< Springs of the coupling to a handle [J].
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// Names and orders of the tool's own tick schemes.
+/// Name, summary and order of one integrator of the tool's ticks.
 struct ToolIntegratorInfo {
-  std::string name, summary;  ///< as scenes call it, and one line about it
-  int order;                  ///< theoretical order in the tick's length
+  std::string name, summary;  ///< Name in scenes, and a one-line description.
+  int order;                  ///< Theoretical order in the tick length.
 };
-/// All of them, in the order of `palpate list tool-integrators`.
+/// Returns all tool integrators, in the order of `palpate list tool-integrators`.
 const std::vector<ToolIntegratorInfo>& tool_integrators();
 
-/// Whether this was built with Simbody: without it there are no tools and no bones on joints.
+/// Returns whether this build includes Simbody; without it there are no tools and no jointed bones.
 bool available();
-/// Version of the Simbody that this was built with; empty without it.
+/// Returns the version of Simbody in this build; empty without Simbody.
 std::string simbody_version();
 
 }  // namespace palpate::tool

@@ -6,8 +6,8 @@
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/tool/spec.h"
 
-/// A tool as a rigid block of the State: it couples monolithically to soft bodies, under any of their
-/// integrators.  No Simbody here: simbody_block.h has such a block by Simbody.
+/// A tool as a rigid block of the State, for monolithic coupling to soft bodies under any of their
+/// integrators. This header does not need Simbody; simbody_block.h has the block with Simbody terms.
 namespace palpate::tool {
 
 using dynamics::make_gyroscopic;
@@ -15,20 +15,21 @@ using dynamics::make_rigid_inertia;
 using dynamics::make_rigid_weight;
 using dynamics::rigid_block;
 
-/// A handle as a function of time alone.
+/// Pose and twist of a handle at one time.
 struct HandleState {
   Pose pose;
   Twist twist;
+  /// Motion of a handle that depends on time alone.
 };
 using HandlePath = std::function<HandleState(double t)>;
 
-/// Wrench of the virtual coupling on the hand, before any limit: force opposite to that on the tool, moment
-/// about the handle's origin.
+/// Returns the wrench of the virtual coupling on the hand, before any limit: the force is opposite to the
+/// force on the tool, the moment is about the handle's origin.
 Wrench coupling_on_hand(const ToolSpec& spec, const HandleState& tool, const HandleState& handle);
 
-/// The virtual coupling of `spec` to a handle.  `symmetric` keeps the symmetric part of the rotational
-/// stiffness (an inexact Newton matrix, exact where tool and handle have the same orientation) for solvers
-/// that need it; else the tangent is exact and unsymmetric.
+/// Builds the force term of the virtual coupling of `spec` to a handle. With `symmetric`, the tangent keeps
+/// only the symmetric part of the rotational stiffness (an inexact Newton matrix, exact if tool and handle
+/// have the same orientation), for solvers that need symmetry; otherwise it is exact and unsymmetric.
 std::shared_ptr<dynamics::ForceTerm> make_coupling_term(int block_id, const ToolSpec& spec, HandlePath handle,
                                                         bool symmetric = false);
 
