@@ -5,8 +5,9 @@
 
 #include "palpate/core/error.h"
 
-// Butterworth, fourth order: two sections s^2/(s^2 + s/Q + 1) with Q = 1/(2 cos(pi/8)) and 1/(2 cos(3 pi/8)),
-// s in units of the cutoff.  With w = tan(pi f_c T) the bilinear transform is s = (1 - z^-1)/(w (1 + z^-1)):
+// Butterworth high pass, fourth order: two sections s^2/(s^2 + s/Q + 1) with Q = 1/(2 cos(pi/8)) and 1/(2
+// cos(3 pi/8)), s in units of the cutoff. With w = tan(pi f_c T) the bilinear transform is s = (1 - z^-1)/(w
+// (1 + z^-1)):
 //     H = (1 - z^-1)^2/(n (1 + a1 z^-1 + a2 z^-2)),   n = 1 + w/Q + w^2,
 //     a1 = 2 (w^2 - 1)/n,   a2 = (1 - w/Q + w^2)/n.
 

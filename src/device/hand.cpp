@@ -9,29 +9,31 @@
 #include "palpate/device/hand_model.h"
 #include "palpate/device/motors.h"
 
-// A simulated device in the hand of a simulated arm.  The scene's path is where the arm wants to be, x_d(t)
-// (the equilibrium point of Hogan 1985); a spring k and a damper b pull arm and device there.  The grip is
-// rigid, so m is the mass of both.  Along each axis of the scene
+// A simulated device in the hand of a simulated arm. The scene's path is the target motion x_d(t) of the arm
+// (the equilibrium point of Hogan 1985); a spring k and a damper b pull arm and device towards it. The grip
+// is rigid, so m is the mass of both. Along each axis of the scene
 //     m x'' = k (x_d - x) + b (x_d' - x') - c x' - f sgn(x') + F,
-// with c and f the device's viscous and Coulomb friction and F the force of its motors.  Between two ticks F
-// is held (zero-order hold), k x_d + b x_d' is taken as linear, and the rest is exact (ArmAxis).
+// with c and f the device's viscous and Coulomb friction and F the force of its motors. Between two ticks F
+// is held (zero-order hold), k x_d + b x_d' is approximated linearly, and the integration is exact otherwise
+// (ArmAxis).
 //
-// The motors hold what the loop sends, delayed, rounded and cut (Motors).  The loop gets the pose rounded to
-// the encoders' resolution, and a velocity from it: the backward difference through a first-order low pass,
-// v_f += (1 - exp(-2 pi f_c h)) (difference - v_f); with f_c = 0 the exact velocity.  A hand without friction
-// that pushes a wall K at a tick T gains energy from the hold where K T/2 > c + b (Colgate and Schenkel
-// 1994): a loop that is stable here has passed that test.
+// The motors hold the wrench that the loop sends, delayed, rounded and limited (Motors). The loop receives
+// the pose rounded to the encoders' resolution, and a velocity computed from it: the backward difference
+// through a first-order low pass, v_f += (1 - exp(-2 pi f_c h)) (difference - v_f); with f_c = 0, the exact
+// velocity. A hand without friction that pushes a wall of stiffness K with a tick T gains energy from the
+// hold if K T/2 > c + b (Colgate and Schenkel 1994): a loop that is stable with this device has passed that
+// test.
 //
-// Rotations follow the same law on the rotation vector theta from the first orientation, with the torque
-// J(theta)^T tau: exact about one axis, and good to O(theta^2) about several.  It ends at one whole turn,
-// where the rotation vector does.
+// Rotations obey the same law for the rotation vector theta from the first orientation, with the torque
+// J(theta)^T tau: exact about one axis, and with an error of O(theta^2) about several. The model is valid
+// below one whole turn, as is the rotation vector.
 //
-// Defaults of the arm: 0.8 kg, 5.5 N s/m, 568 N/m, which Hulin et al. (2008) quote from Hogan (1989).  Those
-// of the wrist are of the right order, not measured.
+// Defaults of the arm: 0.8 kg, 5.5 N s/m, 568 N/m, which Hulin et al. (2008) quote from Hogan (1989). The
+// defaults of the wrist have the right order of magnitude, but are not measured.
 namespace palpate::device {
 namespace {
 
-/// The rotation vector of q that is nearest to `near`: the same rotation is also a turn more or less.
+/// Returns the rotation vector of q nearest to `near`; rotation vectors are unique up to whole turns.
 Vec3 unwrapped(const Quat& q, const Vec3& near) {
   const Vec3 theta = rotation_vector(q);
   const double angle = theta.norm();
@@ -40,7 +42,7 @@ Vec3 unwrapped(const Quat& q, const Vec3& near) {
   return theta + std::round((near - theta).dot(turn) / turn.squaredNorm()) * turn;
 }
 
-/// What a loop sees of a coordinate: rounded by an encoder, and its filtered rate.
+/// Encoder of a coordinate: rounded values, and their filtered rate.
 class Encoder {
  public:
   Encoder(double step, double cutoff) : step_(step), cutoff_(cutoff) {}
@@ -63,7 +65,7 @@ class Encoder {
   Vec3 value_ = Vec3::Zero(), rate_ = Vec3::Zero();
 };
 
-/// Three axes with the same parameters, pulled by the arm towards where it wants to be.
+/// Three axes with equal parameters, pulled by the arm towards the target.
 class Axes {
  public:
   Axes(const ArmAxis::Parameters& p, double arm_damping)
@@ -71,7 +73,7 @@ class Axes {
   void place(const Vec3& x) {
     for (int i = 0; i < 3; ++i) axes_[i].place(x[i], 0.0);
   }
-  /// What the arm pulls with, but for -k x - b x'.
+  /// Returns the pull of the arm without its part -k x - b x'.
   Vec3 pull(const Vec3& wanted, const Vec3& wanted_rate) const { return k_ * wanted + b_ * wanted_rate; }
   void advance(double h, const Vec3& p0, const Vec3& p1) {
     for (int i = 0; i < 3; ++i) axes_[i].advance(h, p0[i], p1[i]);
@@ -190,10 +192,10 @@ class HandDevice : public Device {
   Motors motors_;
   Axes translation_, rotation_;
   Encoder position_, angle_;
-  Quat first_ = Quat::Identity();                    ///< orientation at the start, from which theta counts
-  Vec3 theta_ = Vec3::Zero();                        ///< where the arm wanted it to be at the last tick
-  Vec3 pull_ = Vec3::Zero(), twist_ = Vec3::Zero();  ///< force and torque of the arm at the last tick
-  std::uint32_t switches_ = 0;                       ///< at time_: fingers do not yield
+  Quat first_ = Quat::Identity();                    ///< Orientation at the start, the origin of theta.
+  Vec3 theta_ = Vec3::Zero();                        ///< Target of theta at the last tick.
+  Vec3 pull_ = Vec3::Zero(), twist_ = Vec3::Zero();  ///< Force and torque of the arm at the last tick.
+  std::uint32_t switches_ = 0;                       ///< At time_; independent of the forces.
   double time_ = 0.0;
   bool started_ = false;
 };

@@ -7,21 +7,21 @@
 namespace palpate::device {
 namespace {
 
-/// How far along a segment one is: s in [0, 1] and its first two derivatives by time.
+/// Position along a segment: s in [0, 1] and its first two time derivatives.
 struct Blend {
   double s = 0.0, s_dot = 0.0, s_ddot = 0.0;
 };
 
-// x = (t - t0)/T.  The quintic with s(0) = 0, s(1) = 1 and s', s'' zero at both ends minimises the integral
-// of the squared jerk (Flash and Hogan 1985): s = 10 x^3 - 15 x^4 + 6 x^5.  Resting at each keyframe, it
-// joins the next segment with C2.
+// x = (t - t0)/T. The quintic with s(0) = 0, s(1) = 1 and s', s'' zero at both ends minimises the integral of
+// the squared jerk (Flash and Hogan 1985): s = 10 x^3 - 15 x^4 + 6 x^5. As it is at rest at each keyframe,
+// the path is C2 there.
 Blend minimum_jerk(double x, double T) {
   const double y = 1.0 - x;
   return {x * x * x * (10.0 - 15.0 * x + 6.0 * x * x), 30.0 * x * x * y * y / T,
           60.0 * x * y * (1.0 - 2.0 * x) / (T * T)};
 }
 Blend linear(double x, double T) { return {x, 1.0 / T, 0.0}; }
-// stays until the next keyframe's own time, where the next segment begins
+// Stays until the time of the next keyframe, where the next segment begins.
 Blend step(double, double) { return {}; }
 
 using MakeBlend = Blend (*)(double x, double T);
@@ -43,9 +43,9 @@ HandleSample at_rest(const KeyframeSpec& key) {
 
 }  // namespace
 
-// With d the rotation vector that carries the first orientation to the second (world axes), R(t) = exp(s d)
-// R0.  The axis d stands still, so the right (and left) Jacobian of SO(3) at s d maps d to itself: omega =
-// J(s d) (s' d) = s' d, and alpha = s'' d.  No approximation.
+// With d the rotation vector from the first orientation to the second (world axes), R(t) = exp(s d) R0. The
+// axis of d is fixed, so the right (and left) Jacobian of SO(3) at s d maps d to itself: omega =
+// J(s d) (s' d) = s' d, and alpha = s'' d. Both are exact.
 HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double t) {
   if (keyframes.empty()) fail("keyframes: the path is empty; give at least one keyframe");
   if (!(t >= keyframes.front().time_s)) return at_rest(keyframes.front());
@@ -85,8 +85,8 @@ void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::stri
           "{}: keyframes[{}]: time_s = {} must be greater than the one before ({}); for a jump use "
           "interpolation = \"step\"",
           where, i, key.time_s, before.time_s);
-    // exp is a contraction from rotation vectors to rotations, so a difference of at most pi can never hide a
-    // longer way round.
+    // exp is a contraction from rotation vectors to rotations, so a difference of at most pi cannot hide a
+    // longer rotation.
     const double angle = (key.rotation_vector_rad - before.rotation_vector_rad).norm();
     if (angle > std::numbers::pi * (1.0 + 1e-12))
       fail(

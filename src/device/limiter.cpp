@@ -12,14 +12,15 @@
 namespace palpate::device {
 namespace {
 
-/// 0 at x <= 0, 1 at x >= 1, C1.
+/// Smoothstep: 0 at x <= 0, 1 at x >= 1, C1.
 double smoothstep(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * (3.0 - 2.0 * x);
 }
 
 // With x = |v|/max, |v| becomes max x / (1 + x^6)^(1/6): smooth everywhere (even power), monotone, below max,
-// and off by 1 - (1 + 2^-6)^(-1/6) = 0.26 % at half the maximum (tanh itself would be off by 7.6 % there).
+// and with a relative deviation of 1 - (1 + 2^-6)^(-1/6) = 0.26 % at half the maximum (tanh would deviate by
+// 7.6 % there).
 Vec3 saturate(const Vec3& v, double max) {
   if (max == 0.0) return Vec3::Zero();
   const double norm = v.stableNorm();
@@ -29,13 +30,14 @@ Vec3 saturate(const Vec3& v, double max) {
   return scale * v;
 }
 
-/// Back inside the ball where rounding left it: never above the maximum, not even in the last digit.
+/// Scales v back into the ball if rounding put it outside: the norm never exceeds the maximum, not even by
+/// rounding.
 Vec3 inside(const Vec3& v, double max) {
   const double norm = v.norm();
   return norm > max ? Vec3(v * (max / norm * (1.0 - 4.0 * std::numeric_limits<double>::epsilon()))) : v;
 }
 
-/// From `from` towards `to`, by at most `reach`.
+/// Returns the point on the way from `from` to `to`, at most `reach` from `from`.
 Vec3 towards(const Vec3& from, const Vec3& to, double reach) {
   const Vec3 way = to - from;
   const double length = way.norm();

@@ -1,15 +1,15 @@
 #pragma once
 #include "palpate/device/device.h"
 
-/// One function a device, each in a file of its own.
+/// One factory per device type, each in a separate file.
 namespace palpate::device {
 
-/// The nearest whole number of steps; as it is where the step is 0.
+/// Returns the value rounded to the nearest whole number of steps; unchanged if the step is 0.
 inline Vec3 to_step(const Vec3& value, double step) {
   return step > 0.0 ? Vec3((value / step).array().round() * step) : value;
 }
 
-/// @throws Error `device: KEY = VALUE ...` for a value out of its range
+/// Checks one parameter.  @throws Error `device: KEY = VALUE ...` for a value out of range
 void check_range(const char* key, double value, const Range& range);
 
 std::unique_ptr<Device> make_script(const DeviceSpec& spec, const std::string& folder);

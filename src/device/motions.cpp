@@ -17,14 +17,14 @@ Displacement stroke(const MotionSpec& m, double s) {
           m.amplitude_m * (-w * w * std::sin(w * s))};
 }
 
-// x = A (1 - cos(w s))/2: from rest to A and back, once a period
+// x = A (1 - cos(w s))/2: from rest to A and back, once per period
 Displacement tap(const MotionSpec& m, double s) {
   const double w = kTurn * m.frequency_per_s;
   return {m.amplitude_m * (0.5 - 0.5 * std::cos(w * s)), m.amplitude_m * (0.5 * w * std::sin(w * s)),
           m.amplitude_m * (0.5 * w * w * std::cos(w * s))};
 }
 
-// x = A (cos(w s) - 1) + B sin(w s): an ellipse with the half axes A and B through where it begins
+// x = A (cos(w s) - 1) + B sin(w s): an ellipse with half axes A and B through the starting point
 Displacement circle(const MotionSpec& m, double s) {
   const double w = kTurn * m.frequency_per_s, c = std::cos(w * s), n = std::sin(w * s);
   return {m.amplitude_m * (c - 1.0) + m.second_amplitude_m * n,

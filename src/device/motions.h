@@ -8,7 +8,8 @@ namespace palpate::device {
 
 using DevicePath = std::function<HandleSample(double t)>;
 
-/// Keyframes, motions and presses of a spec together.  @throws Error for those that are no path
+/// Returns the sum of keyframes and motions of a spec, with its presses.  @throws Error for invalid
+/// parameters
 DevicePath path_of(const DeviceSpec& spec);
 
 }  // namespace palpate::device

@@ -23,7 +23,8 @@ Wrench Motors::shaped(const Wrench& wrench) const {
 }
 
 void Motors::send(double t, const Wrench& wrench) {
-  if (sent_.size() == sent_.capacity()) {  // what has arrived goes, without a new allocation
+  if (sent_.size() ==
+      sent_.capacity()) {  // Discards wrenches that have taken effect, without a new allocation.
     sent_.erase(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(next_));
     next_ = 0;
   }

@@ -7,35 +7,36 @@
 #include "palpate/core/error.h"
 #include "palpate/device/profile.h"
 
-// Why the observer's sum is a test of passivity.  Let the loop be a wall, F = -K x - B (x_k - x_{k-1})/T,
-// with D_k = x_k - x_{k-1} and n ticks of delay.  Then (src/stability/haptic_theory.cpp), with B = 0 or n =
-// 0,
+// The observer's sum as a test of passivity. Let the loop be a wall, F = -K x - B (x_k - x_{k-1})/T, with D_k
+// = x_k - x_{k-1} and n ticks of delay. Then (src/stability/haptic_theory.cpp), for B = 0 or n = 0,
 //     sum -F_{k-1-n} D_k + b D_k^2/T  >=  K/2 (x_N^2 - x_0^2) + (b/T - (2n + 1) K/2 - |B|/T) sum D_k^2,
-// which is not negative for x_0 = 0 and b > (2n + 1) K T/2 + |B|.  Without delay a triangle wave of period 2T
-// and amplitude A attains the bound: a cycle changes the sum by (8 A^2/T)(b - K T/2 - B).
+// which is not negative for x_0 = 0 and b > (2n + 1) K T/2 + |B|. Without delay a triangle wave of period 2T
+// and amplitude A attains the bound: one cycle changes the sum by (8 A^2/T)(b - K T/2 - B).
 //
-// What a controller can guarantee under a delay of n ticks.  At tick k the energy E_k is known, the wrenches
-// f_1 ... f_n of the next n ticks are on their way, and c is sent for the tick after them.  For displacements
-// d_1 ... d_{n+1} of these ticks
+// Guarantee of the controller under a delay of n ticks. At tick k the energy E_k is known, the wrenches f_1
+// ... f_n of the next n ticks have been sent, and c is sent for the tick after them. For displacements d_1
+// ... d_{n+1} in these ticks
 //     E_{k+n+1} = E_k + sum_i (-f_i d_i + b d_i^2/T) - c d_{n+1} + b d_{n+1}^2/T.
-// Let W be the least of it over all d_i in boxes B_i, and W_0 the least of E_{k+n}, without c.  c is the
-// largest share of the wanted wrench with W >= min(0, W_0).  c = 0 always fulfils that, friction takes no
-// energy.  So E >= 0 follows by induction for every motion within the boxes; after a motion beyond them the
-// energy may be below zero, and then only wrenches pass that take energy from all motions within the boxes.
-// A damper instead would have to push against a motion that has ended by the time it acts: from a quarter of
-// a vibration's period on, delayed by n ticks, it drives.  A loop that is passive by the bound above keeps
-// E >= 0 for every motion, so W >= 0 for any boxes, and is left alone.
+// Let W be its minimum over all d_i in boxes B_i, and W_0 the minimum of E_{k+n}, without c. c is the largest
+// fraction of the requested wrench with W >= min(0, W_0). c = 0 always satisfies this, as friction never
+// takes energy from the sum. E >= 0 then follows by induction for every motion within the boxes. After a
+// motion beyond them the energy may be below zero, and then only wrenches pass that take energy from all
+// motions within the boxes. A damper, in contrast, would have to push against a motion that has ended by the
+// time it acts: delayed by n ticks it drives a vibration, once the delay exceeds a quarter of the period. A
+// loop that is passive by the bound above keeps E >= 0 for every motion, so W >= 0 for any boxes, and it is
+// not modified.
 //
-// The boxes.  A tick changes the displacement by T^2 times the acceleration.  Of this, a change of the
-// motors' wrench since the last tick makes at most T^2 |f_i - f_0|/m, m the device alone: a hand that holds
-// it makes it less.  The rest is the hand's, bounded by a_k:
+// The boxes. Over a tick the displacement changes by T^2 times the acceleration. A change of the motors'
+// wrench since the last tick contributes at most T^2 |f_i - f_0|/m, with m the mass of the device alone: a
+// hand that holds the device reduces it. The rest is due to the hand, and bounded by a_k:
 //     B_i:  d_i = D_k +- sum_{j<=i} (a_k + T^2 |f_j - f_0|/m).
-// a_k comes from how the handle moved in the last 4 H ticks at least, H = n + 1.  For x = sin(wt) and a
-// window w W <= pi the largest |x''| of the window is sin(wW/2) at least, and that of the H ticks after it
-// sin(w(W/2 + H)) at most: larger by the factor 1 + 2 H/W.  So 3/2 times the largest of W = 4 H covers every
-// sinusoid, of any frequency.  x'' is taken from neighbouring ticks and from positions H ticks apart: of
-// positions in steps r rounding can make 2 r of the one and 2 r/H^2 of the other, which is taken off.  Steps
-// that rounding adds to a motion within the boxes take |f| r at most: their sum is within r.
+// a_k is derived from the motion of the handle in at least the last 4 H ticks, H = n + 1. For x = sin(wt) and
+// a window W with w W <= pi the largest |x''| in the window is at least sin(wW/2), and in the H ticks after
+// it at most sin(w(W/2 + H)): larger by the factor 1 + 2 H/W. So 3/2 times the maximum over W = 4 H covers
+// every sinusoid of any frequency. x'' is computed from neighbouring ticks and from positions H ticks apart:
+// for positions in steps r, rounding can contribute 2 r to the former and 2 r/H^2 to the latter, which is
+// subtracted. Steps that rounding adds to a motion within the boxes cost at most |f| r: their sum is within
+// r.
 
 namespace palpate::device {
 
@@ -52,12 +53,12 @@ void PassivityObserver::sample(double t, const Pose& handle) {
   started_ = true;
 }
 
-// Positions that are read in steps r are off by r/2 at most, their difference over a tick by r.
+// Positions read in steps r have an error of r/2 at most, their difference over a tick an error of r.
 double PassivityObserver::friction(const Vec6& change, double dt) const {
   return damping_ * (change.tail<3>().array().abs() - resolution_).cwiseMax(0.0).square().sum() / dt;
 }
 
-// Convex along each axis: the least is where -f + 2 b (|d| - r) sgn(d)/dt = 0, or at the nearer end.
+// Convex along each axis: the minimum is at -f + 2 b (|d| - r) sgn(d)/dt = 0, or at the nearer end.
 double PassivityObserver::least_change(const Wrench& wrench, const Vec6& low, const Vec6& high,
                                        double dt) const {
   Vec6 f;
@@ -96,7 +97,7 @@ void AccelerationBound::add(const Vec6& change) {
     std::shift_right(largest_.begin(), largest_.end(), 1);
     largest_.front().setZero();
   }
-  const auto at = [&](long tick) -> Vec6& {  // before the first tick the handle stood still
+  const auto at = [&](long tick) -> Vec6& {  // before the first tick the handle is at rest
     return positions_[static_cast<std::size_t>(tick + 2 * horizon_) % positions_.size()];
   };
   position_ += change;
@@ -191,7 +192,8 @@ double PassivityController::largest_share(const Motors& motors, const Wrench& li
   const double T = observer_.last_tick();
   const Vec6 change = observer_.last_change(), bound = bound_.value(), held = stacked(motors.mean()),
              by_motors = of_axes(T * T / figures_.rotational_inertia, T * T / figures_.mass);
-  // what a span of `ticks` adds to the half width of the boxes, and the least change of the energy over it
+  // Contribution of a span of `ticks` to the half width of the boxes, and the least change of the energy over
+  // it.
   const auto widened = [&](const Wrench& wrench, double ticks) {
     return Vec6(ticks * (bound + by_motors.cwiseProduct((stacked(wrench) - held).cwiseAbs())));
   };

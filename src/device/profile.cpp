@@ -9,19 +9,19 @@
 
 namespace palpate::device {
 
-// None of them drives torque: their motors are three, which move the tip.
+// None of these devices drives torque: three motors move the tip.
 //
-// Figures as the makers' data sheets are commonly quoted; no sheet was at hand.  The drivers of CHAI3D 3.2
-// have the same largest forces, and no torque: src/devices/CPhantomDevices.cpp (Omni 3.3 N; Premium 1.5 8.5
-// N) and src/devices/CDeltaDevices.cpp, of which Force Dimension is an author (omega.3 and omega.6 12 N).
-// Damping is what these drivers recommend at most.  They recommend less stiffness, too: 700, 800 and 5000
-// N/m; here stands the makers', which is that of the weakest direction where three are given.
+// Figures as commonly quoted from the makers' data sheets, which were not at hand. The drivers of CHAI3D 3.2
+// have the same maximum forces, and no torque: src/devices/CPhantomDevices.cpp (Omni 3.3 N; Premium 1.5 8.5
+// N) and src/devices/CDeltaDevices.cpp, with Force Dimension as an author (omega.3 and omega.6 12 N). Damping
+// is the maximum that these drivers recommend. The drivers recommend lower stiffnesses: 700, 800 and 5000
+// N/m; the table has the makers' values, for the weakest direction if three are given.
 //
-// Haply's own are of its driver for CHAI3D (github.com/HaplyHaptics/chai3d, 2019,
-// src/devices/CHaplyDevices.cpp) for the pantograph; those of the Inverse3 of a user's
-// (github.com/jashenlow/chai3d_haply, 2024, likewise).  The former calls them estimates.
+// The Haply figures come from its driver for CHAI3D (github.com/HaplyHaptics/chai3d, 2019,
+// src/devices/CHaplyDevices.cpp) for the pantograph, and from a user's driver for the Inverse3
+// (github.com/jashenlow/chai3d_haply, 2024, same file). The former calls them estimates.
 //
-// None of these devices is said to have a slew: that follows from kAmplifierBandwidth below.
+// No slew rate is published for these devices: it follows from kAmplifierBandwidth below.
 const std::vector<DeviceProfile>& device_profiles() {
   static const std::vector<DeviceProfile> profiles = {
       // SensAble (later Geomagic) PHANTOM Premium 1.5: 381 x 267 x 191 mm, 0.03 mm, backdrive friction
@@ -105,23 +105,23 @@ const std::vector<DeviceProfile>& device_profiles() {
 namespace {
 
 // A motor's amplifier controls its current as a first-order lag of bandwidth B [1/s]: after a step of the
-// command from 0 to the maximum Fmax the force is Fmax (1 - exp(-2 pi B t)), at first with the slope 2 pi B
-// Fmax.  No command that changes faster comes out as it went in.  B = 300 1/s is our choice, not a
-// datasheet's: below the inverse of the electrical time constant L/R, some 0.1 ms, of small coreless motors.
+// command from 0 to the maximum Fmax the force is Fmax (1 - exp(-2 pi B t)), with an initial slope 2 pi B
+// Fmax. A command that changes faster is not reproduced. B = 300 1/s is a choice, not a data sheet value: it
+// is below the inverse of the electrical time constant L/R, about 0.1 ms, of small coreless motors.
 constexpr double kAmplifierBandwidth = 300.0;
 constexpr double kAmplifierSlew = 2.0 * std::numbers::pi * kAmplifierBandwidth;
 
-// In a hand a force must not change faster than touch can make it: a hand meets a surface at about half a
-// metre a second where it taps, so at up to kFastestHand, and the stiffest wall that a device can render
-// raises the force by its stiffness times that speed.  Faster is no contact but a fault: a pose that jumped,
-// say.  Relative to the maximum, so that it serves other maxima; a device without figures is taken for the
-// Omni, whose maximum is the default.
+// The force on a hand must not change faster than touching can change it. A tapping hand meets a surface at
+// about half a metre per second, at most at kFastestHand, and the stiffest wall that a device can render
+// raises the force by its stiffness times that speed. A faster change is not a contact but a fault, such as a
+// jump of the pose. The slew rate is relative to the maximum, so that it applies to other maxima; for a
+// device without figures the Omni's are used, whose maximum is the default.
 constexpr double kFastestHand = 1.0;  // [m/s]
 constexpr double kStiffness = 1020.0;
 constexpr double kRampWhereHeld = 0.2;  // [s]
 
 constexpr double kMaxForce = 3.3, kMaxTorque = 0.2;
-constexpr double kMass = 0.045;  ///< of the lightest device above
+constexpr double kMass = 0.045;  ///< Mass of the lightest device above [kg].
 
 Workspace workspace_of(const DeviceSpec& spec, const DeviceSpecification& figures) {
   check_range("workspace_radius_m", spec.workspace_radius_m, DeviceRanges::workspace_radius_m);
@@ -138,7 +138,8 @@ Workspace workspace_of(const DeviceSpec& spec, const DeviceSpecification& figure
   return out;
 }
 
-/// Maxima a second [1/s] of a device that somebody holds; no less than the watchdog's fall needs.
+/// Returns the slew rate in maxima per second [1/s] of a device that a person holds; at least the slope of
+/// the watchdog's fall.
 double slew_where_held(const DeviceSpecification& figures) {
   const bool stated = figures.max_stiffness && figures.max_force;
   return std::max(
@@ -146,8 +147,8 @@ double slew_where_held(const DeviceSpecification& figures) {
       kLeastSlew);
 }
 
-/// Somebody holds it, who should not be pulled at once: script, recording and simulated hand are the
-/// computer's.
+/// Returns whether a person holds the device, who should not be pulled abruptly; script, recording and
+/// simulated hand are moved by the computer.
 bool is_held(const DeviceSpec& spec) {
   return spec.type != "script" && spec.type != "recording" && spec.type != "hand";
 }

@@ -6,21 +6,22 @@
 
 namespace palpate::device {
 
+/// One line of a recording.
 struct RecordedPose {
-  double time;  ///< the scene's [s]
+  double time;  ///< Scene's time [s].
   Pose pose;
-  std::uint32_t switches = 0;  ///< from then on, as HandleSample has them
+  std::uint32_t switches = 0;  ///< Bits as in HandleSample, from this time on.
 };
 
 /// Reads a CSV file (core/csv.h) with the columns time_s, px_m, py_m, pz_m, qw, qx, qy, qz in any order, or
-/// force.csv of a run; of either, a column "switches" where there is one.  Column names may be in capitals.
-/// Lines of empty cells do not count.
-/// @param clock  from the file's times to the scene's
+/// force.csv of a run; either may have a column "switches". Column names may be in capitals. Lines with only
+/// empty cells are skipped.
+/// @param clock  map from the file's times to the scene's
 /// @throws Error `FILE:LINE: column "NAME": ...`
 std::vector<RecordedPose> read_recording(const std::string& path, const RecordingClock& clock = {});
 
-/// Interpolates between the lines, in each component of the position between those of the two lines; before
-/// the first and after the last it rests there.
+/// Interpolates between the lines, so that each component of the position stays between its values at the two
+/// lines; before the first and after the last line the handle is at rest.
 HandleSample sample_recording(const std::vector<RecordedPose>& poses, double t);
 
 }  // namespace palpate::device

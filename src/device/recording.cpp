@@ -14,7 +14,7 @@
 namespace palpate::device {
 namespace {
 
-/// Names of the columns: without capitals, and without the # that numpy writes before them.
+/// Returns the column names in lower case, without the # that numpy writes before them.
 std::vector<std::string> headers_of(const CsvRow& row) {
   std::vector<std::string> out = row.cells;
   std::string& first = out.front();
@@ -29,11 +29,11 @@ bool is_blank(const CsvRow& row) {
                      [](const std::string& cell) { return cell.empty(); });
 }
 
-/// Where the numbers of a pose stand: a file of poses, or force.csv of an earlier run.
+/// Columns of a pose: in a file of poses, or in force.csv of an earlier run.
 struct Layout {
-  std::vector<std::string> names;   ///< time, position, rotation
-  std::vector<std::size_t> column;  ///< of each
-  bool switches = false;            ///< the last of them are the switches
+  std::vector<std::string> names;   ///< Time, position, rotation.
+  std::vector<std::size_t> column;  ///< Column of each name.
+  bool switches = false;            ///< The last name is the switches.
 };
 const std::vector<std::string> kPoses = {"time_s", "px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz"};
 const std::vector<std::string> kForces = {"time_s",
@@ -74,7 +74,7 @@ std::uint32_t switches_of(double value, const std::string& where) {
   return out;
 }
 
-/// The numbers of one file, which has decimal points or decimal commas.
+/// Reader for the numbers of one file, which has either decimal points or decimal commas.
 class Numbers {
  public:
   double of(const std::string& cell, const std::string& where) {
@@ -92,8 +92,8 @@ class Numbers {
 
  private:
   static const char* name(char mark) { return mark == ',' ? "comma" : "point"; }
-  char mark_ = '\0';  ///< none yet
-  std::string seen_;  ///< the first number that has it
+  char mark_ = '\0';  ///< Decimal mark; '\0': none yet.
+  std::string seen_;  ///< First number with it.
 };
 
 RecordedPose pose_of(const std::vector<double>& v, const Layout& layout, const std::string& where) {
@@ -165,13 +165,13 @@ std::vector<RecordedPose> read_recording(const std::string& path, const Recordin
   return out;
 }
 
-// Position: the cubic of Hermite between neighbours, x = s/T in [0, 1],
+// Position: Hermite cubic between neighbouring lines, x = s/T in [0, 1],
 //     p = (2x^3 - 3x^2 + 1) p0 + (x^3 - 2x^2 + x) T v0 + (3x^2 - 2x^3) p1 + (x^3 - x^2) T v1,
-// with the velocities of the parabola through a line and its two neighbours, v1 = (h0 d1 + h1 d0)/(h0 + h1)
-// of the slopes d0, d1 over h0, h1; at the ends the slope of the only segment.  Where such a velocity would
-// carry a component beyond the two lines, as next to a pause, the nearest one that does not takes its place
-// (monotone_slope).  Rotation: about one fixed axis from line to line, R = exp(x d) R0, so its rate d/T is
-// exact and jumps at the lines.
+// with velocities from the parabola through a line and its two neighbours, v1 = (h0 d1 + h1 d0)/(h0 + h1) for
+// slopes d0, d1 over h0, h1; at the ends the slope of the only segment. If such a velocity would carry a
+// component beyond the two lines, as next to a pause, it is replaced by the nearest one that does not
+// (monotone_slope). Rotation: about a fixed axis per segment, R = exp(x d) R0, so the rate d/T is exact and
+// jumps at the lines.
 HandleSample sample_recording(const std::vector<RecordedPose>& poses, double t) {
   if (poses.empty()) fail("recording: no poses; give at least one");
   HandleSample out;
@@ -200,7 +200,7 @@ HandleSample sample_recording(const std::vector<RecordedPose>& poses, double t) 
   const Vec3 p0 = poses[i].pose.translation, p1 = poses[i + 1].pose.translation, m0 = T * velocity(i),
              m1 = T * velocity(i + 1);
   out.pose.translation = (p0 + x * (m0 + x * ((3.0 - 2.0 * x) * (p1 - p0) + (x - 2.0) * m0 + (x - 1.0) * m1)))
-                             .cwiseMax(p0.cwiseMin(p1))  // rounding
+                             .cwiseMax(p0.cwiseMin(p1))  // limits rounding errors
                              .cwiseMin(p0.cwiseMax(p1));
   out.twist.linear =
       (6.0 * x * (1.0 - x) * (p1 - p0) + (1.0 - x) * (1.0 - 3.0 * x) * m0 + x * (3.0 * x - 2.0) * m1) / T;

@@ -4,7 +4,7 @@
 namespace palpate::device {
 namespace {
 
-/// A hand that follows its path, whatever it feels.
+/// Device that follows its path, whatever wrench acts on it.
 class ScriptDevice : public Device {
  public:
   explicit ScriptDevice(const DeviceSpec& spec)

@@ -26,7 +26,7 @@ sockaddr_in address_of(std::uint32_t host, std::uint16_t port) {
   return out;
 }
 
-// the socket interface's own casts
+// The socket interface requires this cast.
 sockaddr* generic(sockaddr_in& address) { return reinterpret_cast<sockaddr*>(&address); }
 
 }  // namespace
@@ -98,7 +98,7 @@ bool UdpDevice::take(std::span<const unsigned char> bytes, const Address& from, 
 }
 
 void UdpDevice::receive(double t) {
-  // A peer that floods the port delays no tick: the rest waits for the next one.
+  // A peer that floods the port does not delay a tick: remaining packets are read at the next one.
   constexpr int kMostPackets = 256;
   std::array<unsigned char, 512> buffer;
   for (int i = 0; i < kMostPackets; ++i) {
@@ -132,7 +132,7 @@ void UdpDevice::do_await(double t, const std::atomic<bool>* stop) {
                      : "");
     }
     pollfd readable{socket_, POLLIN, 0};
-    ::poll(&readable, 1, 1 + static_cast<int>(std::min(left_ms, 50.0)));  // so that `stop` is seen soon
+    ::poll(&readable, 1, 1 + static_cast<int>(std::min(left_ms, 50.0)));  // short enough to notice `stop`
   }
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint16_t kPose = 1, kWrench = 2;
 
-/// Byte by byte, so that the machine's own order does not matter.
+/// Byte-wise little-endian writer, independent of the host's byte order.
 class Writer {
  public:
   explicit Writer(std::span<unsigned char> out) : out_(out) {}

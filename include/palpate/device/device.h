@@ -17,14 +17,14 @@
 
 namespace palpate::device {
 
-/// The handle as the hand moves it at one instant, in the scene's axes (right-handed) and SI units.
+/// State of the handle at one instant, in the scene's axes (right-handed) and SI units.
 struct HandleSample {
-  Pose pose;                   ///< of the handle: its origin [m] and orientation
+  Pose pose;                   ///< Origin [m] and orientation of the handle.
   Twist twist;                 ///< [rad/s, m/s]
   Twist acceleration;          ///< [rad/s^2, m/s^2]
   bool valid = true;           ///< false: no pose arrived; forces must fall to zero
   std::uint32_t switches = 0;  ///< bit i: switch i is pressed
-  /// Keeps it, or gives it back.
+  /// Writes the sample to an archive, or restores it.
   void archive(Archive& a) {
     a("pose", pose);
     a("twist", twist);
@@ -34,38 +34,39 @@ struct HandleSample {
   }
 };
 
-/// From the times of a recording to the scene's: t = scale * t_file + offset.
+/// Linear map from the times of a recording to the scene's times: t = scale * t_file + offset.
 struct RecordingClock {
   double scale = 1.0;   ///< seconds per unit of the file's times
   double offset = 0.0;  ///< [s]
-  /// As the scene says.  @throws Error for a scale that is not positive or an offset that is not finite
+  /// Returns the clock that the scene specifies.  @throws Error for a scale that is not positive or an offset
+  /// that is not finite
   static RecordingClock of(const DeviceSpec& spec);
-  /// @param t_file  in the file's units  @returns the scene's time [s]
+  /// @param t_file  time in the file's units  @returns the scene's time [s]
   double operator()(double t_file) const { return scale * t_file + offset; }
 };
 
-/// A span of time [s].
+/// Closed interval of time [s].
 struct TimeSpan {
-  double first = 0.0, last = 0.0;  ///< both within it
+  double first = 0.0, last = 0.0;  ///< Both ends are included.
 };
 
-/// Which poses and speeds a handle may have: others are a fault of whoever sent them.
+/// Bounds for poses and speeds of a handle. A pose outside them is an error of its sender.
 struct PoseBounds {
-  Vec3 center = Vec3::Zero();                    ///< [m]
-  double radius = HUGE_VAL;                      ///< of the ball about it that holds each handle [m]
-  double speed = HUGE_VAL, rotation = HUGE_VAL;  ///< largest [m/s, rad/s]
-  /// Whether a handle may be and move like that.
+  Vec3 center = Vec3::Zero();  ///< Centre of the ball [m].
+  double radius = HUGE_VAL;    ///< Radius of the ball that contains all valid handle positions [m].
+  double speed = HUGE_VAL, rotation = HUGE_VAL;  ///< Largest speed [m/s] and angular speed [rad/s].
+  /// Returns whether a pose and twist are within the bounds.
   bool hold(const Pose& pose, const Twist& twist) const;
 };
 
-/// A haptic device: something that a hand holds, whose pose is read and which gives a wrench back.
+/// Haptic device, held by a hand: its pose is read, and a wrench is sent to it.
 ///
-/// Axes are the scene's for every quantity; a device with axes of its own turns them before they come here.
-/// The loop calls `sample` once or more a tick, with times that do not decrease (at the same time it gives
-/// the same sample), and then `feedback` with the wrench that the hand feels until the next one.
-/// The first sample opens the device; the destructor of each device lets go of whatever it holds.
+/// All quantities are in the scene's axes; a device with other axes converts them. The loop calls `sample`
+/// once or more per tick, with times that do not decrease (calls with the same time return the same sample),
+/// and then `feedback` with the wrench on the hand until the next call. The first sample opens the device;
+/// the destructor of each derived device closes it.
 ///
-/// A device of one's own overrides `do_sample` and, where it has motors, `do_feedback`; see docs/devices.md.
+/// A user-defined device overrides `do_sample` and, if it has motors, `do_feedback`; see docs/devices.md.
 class Device {
  public:
   Device() = default;
@@ -73,96 +74,105 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  /// Takes hold of the hardware, socket or file; nothing where it is open.  @throws Error where it cannot
+  /// Opens the hardware, socket or file. No effect if it is open.  @throws Error if that fails
   void open();
-  /// Motors off, and lets go; nothing where it is closed.
+  /// Switches the motors off and releases all resources. No effect if the device is closed.
   void close();
-  /// Whether it holds what it works with.
+  /// Returns whether the device is open.
   bool is_open() const { return open_; }
 
-  /// The handle at time t [s]; opens the device where it is closed.  @throws Error where it cannot be opened
+  /// Returns the state of the handle at time t [s]; opens the device if it is closed.  @throws Error if it
+  /// cannot be opened
   HandleSample sample(double t);
+  /// Sends the wrench of a tick to the motors.
   /// @param t  time of the tick [s]
   /// @param on_hand  force [N] and moment about the handle's origin [N m] on the hand, scene's axes
   void feedback(double t, const Wrench& on_hand);
-  /// `feedback` at the time of the last sample.
+  /// Calls `feedback` with the time of the last sample.
   void set_force_and_torque(const Vec3& force, const Vec3& torque) { feedback(time_, {torque, force}); }
 
-  // of the last sample; at rest in the origin before the first
+  // State at the last sample; before the first, at rest at the origin.
   Vec3 position() const { return last_.pose.translation; }       ///< [m]
-  Quat rotation() const { return last_.pose.rotation; }          ///< handle's axes to the scene's
+  Quat rotation() const { return last_.pose.rotation; }          ///< From the handle's axes to the scene's.
   Vec3 linear_velocity() const { return last_.twist.linear; }    ///< [m/s]
   Vec3 angular_velocity() const { return last_.twist.angular; }  ///< [rad/s]
-  std::uint32_t switches() const { return last_.switches; }      ///< bit i: switch i is pressed
+  std::uint32_t switches() const { return last_.switches; }      ///< Bit i: switch i is pressed.
 
-  /// What it can do; figures that nobody has measured are left out.
+  /// Returns the capabilities of the device; figures that are not known are left empty.
   virtual DeviceSpecification specification() const = 0;
-  /// Its motion as a function of time, valid at any time, where that is known beforehand; empty where a hand
-  /// decides as it goes.  One integrator of tool and bodies needs it.
+  /// Returns the motion as a function of time, valid at any time, if it is known in advance; empty if the
+  /// motion depends on the wrench or on a person. Monolithic integration of tool and bodies requires it.
   virtual std::function<HandleSample(double t)> path() const { return {}; }
 
-  /// When its motion was recorded, by the scene's clock; empty where it is none of a recording.
+  /// Returns the time span of the recording on the scene's clock; empty if the device does not replay a
+  /// recording.
   virtual std::optional<TimeSpan> recorded() const { return {}; }
 
-  /// Whether somebody outside of this program moves it, by the wall's clock: it needs a run in real time.
+  /// Returns whether the device is moved from outside this program in wall-clock time, which requires a run
+  /// in real time.
   virtual bool is_live() const { return false; }
-  /// What it has to wait for before a run, in words: "the first pose at ..."; empty: for nothing.
+  /// Returns a description of the event that a run must wait for, such as "the first pose at ..."; empty:
+  /// none.
   virtual std::string awaited() const { return {}; }
-  /// Opens the device and waits for that, before the clock starts.  Returns early where `stop` is set.
+  /// Opens the device and waits for that event before the clock starts. Returns early if `stop` is set.
   /// @param t  time of the run's start [s]  @param stop  may be null
-  /// @throws Error where it did not come in time
+  /// @throws Error if the event did not occur in time
   void await(double t, const std::atomic<bool>* stop);
-  /// From now on a pose outside of the bounds is dropped, by devices that cannot vouch for theirs.
+  /// Sets bounds outside which poses are dropped, for devices whose poses come from an untrusted source.
   virtual void bound(const PoseBounds&) {}
 
-  /// What it has counted, by name: packets that it dropped, for one.  Read when its loop is over.
+  /// Returns counters by name, such as the number of dropped packets. Read after the loop has ended.
   virtual std::vector<std::pair<std::string, long long>> tallies() const { return {}; }
 
-  /// Whether it can go on later from where it is now: whether archive() knows all of it.  A hand on the other
-  /// side of a network, or of a motor, does not wait.
+  /// Returns whether the device can be resumed from an archive, i.e. whether archive() covers its complete
+  /// state. Devices with a hand beyond a network or a motor cannot.
   virtual bool can_be_archived() const { return false; }
-  /// Keeps where it is, or goes on from there.
-  /// @pre can_be_archived(); where it is given back, nothing was sampled before
+  /// Writes the state to an archive, or restores it.
+  /// @pre can_be_archived(); for restoring, nothing was sampled before
   void archive(Archive& a);
 
  protected:
-  /// Takes hold of what the device works with; nothing for devices without.  @throws Error where it cannot
+  /// Opens the resources of the device; no effect for devices without any.  @throws Error if that fails
   virtual void do_open() {}
-  /// Lets go; called at most once for each do_open().  Must not throw.
+  /// Releases the resources; called at most once per do_open(). Must not throw.
   virtual void do_close() {}
-  /// As await(), of a device that is open; nothing for those that wait for nobody.
+  /// Implements await() for an open device; no effect for devices that need not wait.
   virtual void do_await(double /*t*/, const std::atomic<bool>* /*stop*/) {}
-  /// The handle at time t [s], without waiting; `valid` is false while nothing new has come.
+  /// Returns the state of the handle at time t [s] without waiting; `valid` is false while nothing new has
+  /// arrived.
   virtual HandleSample do_sample(double t) = 0;
-  /// The wrench from t [s] on, about the handle's origin, scene's axes; nothing for devices without motors.
+  /// Applies the wrench from t [s] on, about the handle's origin, scene's axes; no effect for devices without
+  /// motors.
   virtual void do_feedback(double /*t*/, const Wrench& /*on_hand*/) {}
-  /// What it knows beside the last sample.
+  /// Writes or restores the state in addition to the last sample.
   virtual void do_archive(Archive&) {}
 
  private:
   HandleSample last_;
-  double time_ = 0.0;  ///< of the last sample [s]
+  double time_ = 0.0;  ///< Time of the last sample [s].
   bool open_ = false;
 };
 
-/// A device is one file in src/device and one entry here, with the keys of `[device]` that it alone uses;
-/// what limits its force serves every device.
-/// @param folder  where relative paths in the spec start: the scene's
+/// Factory of one device type. A device is one file in src/device and one entry in the registry, with the
+/// keys of `[device]` that only this type uses; the keys that limit the force apply to all types.
+/// @param folder  folder that relative paths in the spec refer to: the scene's
 using MakeDevice = std::unique_ptr<Device> (*)(const DeviceSpec& spec, const std::string& folder);
-/// Devices by the name in `device.type`.
+/// Returns the device types by the name in `device.type`.
 const Registry<MakeDevice>& device_registry();
-/// The device that the spec names.  @throws Error for an unknown name and bad settings
+/// Builds the device that the spec specifies.  @throws Error for an unknown type and invalid settings
 std::unique_ptr<Device> make_device(const DeviceSpec& spec, const std::string& folder = {});
 
-/// The path through keyframes: before the first and after the last it rests there.  Rotations interpolate on
-/// the rotation vector between neighbours (about one fixed axis a segment), so twist and acceleration are the
-/// exact derivatives of the pose.  At a keyframe's own time the segment that starts there counts.  A "step"
-/// or a kink of "linear" has no derivative: the jump is in the pose or the twist alone.
+/// Evaluates the path through keyframes; before the first and after the last keyframe it is at rest.
+/// Rotations interpolate the rotation vector between neighbouring keyframes (a fixed axis per segment), so
+/// twist and acceleration are the exact derivatives of the pose. At the time of a keyframe the segment that
+/// starts there applies. At a "step" or a kink of "linear" there is no derivative: only the pose or the twist
+/// jumps.
 /// @throws Error for an empty path
 HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double t);
 
-/// Checks a path: at least one keyframe, all finite, times strictly ascending, known interpolations, and
-/// rotations of at most half a turn from one keyframe to the next (beyond that the way round is ambiguous).
+/// Checks a path: at least one keyframe, all values finite, times strictly ascending, known interpolations,
+/// and rotations of at most half a turn between neighbouring keyframes (beyond that the direction is
+/// ambiguous).
 /// @throws Error beginning with `where`, e.g. "device"
 void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::string& where);
 

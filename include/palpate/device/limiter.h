@@ -7,67 +7,70 @@ namespace palpate::device {
 
 class Device;
 
-/// The watchdog: up to kHoldTime after the last valid pose its wrench is held (a pose late by a few ticks is
-/// not felt), then it falls smoothly, and from kFallTime on it is zero [s].
+/// Times of the watchdog [s]: the wrench is held for kHoldTime after the last valid pose, so that a pose that
+/// is late by a few ticks has no effect, then decreases smoothly, and is zero from kFallTime on.
 inline constexpr double kHoldTime = 0.010, kFallTime = 0.020;
 
-/// Maxima a second [1/s] of a device that the computer moves, where neither scene nor profile says: thirty of
-/// them in a tick of 1 ms, which it never slows.  Relative to the device's maxima, so that it suits any
-/// device and any units.  A profile's slew is that of an amplifier, 1885 maxima a second; that of a device in
-/// a hand follows from its stiffness, 309 maxima a second by default (profile.cpp).
+/// Default slew rate in maxima per second [1/s] for a device that the computer moves, if neither scene nor
+/// profile specifies one: thirty maxima per tick of 1 ms, so that it never limits. It is relative to the
+/// device's maxima to suit any device and units. The slew of a profile is that of the motor's amplifier, 1885
+/// maxima per second; the slew of a hand-held device follows from its stiffness, 309 maxima per second by
+/// default (profile.cpp).
 inline constexpr double kDefaultSlew = 3e4;
-/// The least slew, in maxima a second: the steepest part of the watchdog's fall, a smoothstep.
+/// Smallest permitted slew rate, in maxima per second: the steepest slope of the watchdog's smoothstep.
 inline constexpr double kLeastSlew = 1.5 / (kFallTime - kHoldTime);
 
-/// The last thing before the motors: never lets a wrench above the device's maximum out (smoothly: |f| ->
-/// fmax tanh-like, C1, identity to within 1 % below half the maximum), ramps in, bounds the slew, fades
-/// outside the device's workspace, and falls from 10 to 20 ms after the last valid pose to zero.
+/// Last stage before the motors. It limits the wrench to the device's maximum (smoothly: |f| -> fmax,
+/// tanh-like, C1, identity to within 1 % below half the maximum), ramps it in, bounds its slew rate, fades it
+/// outside the device's workspace, and lets it fall to zero from 10 to 20 ms after the last valid pose.
 ///
-/// Before the first tick the output is zero, so the first tick gives zero: a slew needs a time span.  After a
-/// fall to zero the wrench ramps in anew. A wrench that is not finite counts as an invalid tick: a NaN never
-/// gets out.  So does a time that is not finite or does not increase; the fall then runs on a clock of its
-/// own, one last good tick at a time, so that a stopped clock cannot hold a force.
+/// The first tick returns zero, because a slew rate needs a time span. After a fall to zero the wrench ramps
+/// in again. A wrench that is not finite counts as an invalid tick, so that no NaN reaches the motors. A time
+/// that is not finite or does not increase also counts as invalid; the fall then runs on a substitute clock,
+/// which advances by the length of the last valid tick per call, so that a stopped clock cannot hold a force.
 class WrenchLimiter {
  public:
-  /// @throws Error for a maximum that is not positive, a negative ramp, or a slew too small to reach zero
-  ///   in time (1.5 maximum / 10 ms)
+  /// @throws Error for a maximum that is not positive, a negative ramp, or a slew rate too small to reach
+  /// zero in time (1.5 maximum / 10 ms)
   WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s, double max_force_slew_n_s,
                 double max_torque_slew_n_m_s);
-  /// Slews of kDefaultSlew maxima a second.
+  /// Limiter with slew rates of kDefaultSlew maxima per second.
   WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s)
       : WrenchLimiter(max_force_n, max_torque_n_m, ramp_s, kDefaultSlew * max_force_n,
                       kDefaultSlew * max_torque_n_m) {}
-  /// From now on a force at a position of the device outside `workspace` is wanted less, by its share.
-  /// @param workspace  where the device can be
-  /// @param device  whose last sample says where the handle is; it must outlive this
+  /// Fades the wrench outside `workspace` from now on, by the factor Workspace::share().
+  /// @param workspace  region that the device can reach
+  /// @param device  its last sample is the position of the handle; it must outlive the limiter
   void confine(const Workspace& workspace, const Device& device);
-  /// @param wanted  force and moment on the hand before the limit
-  /// @param t [s], increasing  @param valid  whether the handle's pose of this tick is valid
+  /// Returns the limited wrench of one tick.
+  /// @param wanted  requested force and moment on the hand
+  /// @param t  time [s], increasing  @param valid  whether the handle's pose of this tick is valid
   Wrench limit(double t, const Wrench& wanted, bool valid);
-  /// The hand was without a wrench since the last tick, for longer than its time says: the next valid one
-  /// ramps in from zero.  Nothing where there is no ramp: nobody holds the device then.
+  /// Restarts the ramp: the next valid wrench ramps in from zero. To be called if no wrench reached the hand
+  /// since the last tick for longer than its times show. No effect without a ramp, as nobody holds the device
+  /// then.
   void restart();
-  /// valid ticks whose wanted force or torque was above its maximum
+  /// Returns the number of valid ticks whose requested force or torque exceeded its maximum.
   long limited_ticks() const { return limited_; }
-  /// ticks with a wrench that was not finite or a time that did not increase
+  /// Returns the number of ticks with a wrench that was not finite or a time that did not increase.
   long rejected_ticks() const { return rejected_; }
-  /// valid ticks outside the workspace
+  /// Returns the number of valid ticks outside the workspace.
   long outside_ticks() const { return outside_; }
-  void archive(Archive& a);  ///< keeps where it is, or goes on from there
+  void archive(Archive& a);  ///< Writes the state to an archive, or restores it.
 
  private:
   Wrench fall(double age);
   Wrench follow(double t, double dt, const Wrench& wanted);
 
   double max_force_, max_torque_, ramp_, force_slew_, torque_slew_;
-  double start_ = 0.0, last_valid_ = 0.0;   ///< first tick of this ramp, last valid tick [s]
-  double last_time_ = 0.0, last_dt_ = 0.0;  ///< last tick whose time increased, and its length [s]
-  double stalled_ = 0.0;                    ///< what the substitute clock counted since then [s]
-  bool started_ = false;                    ///< some tick was seen
-  bool live_ = false;                       ///< a valid pose came within the last kFallTime
-  Wrench last_;                             ///< what went out last
-  Wrench held_;                             ///< what went out at the last valid pose
-  Workspace workspace_;                     ///< unbounded but for confine()
+  double start_ = 0.0, last_valid_ = 0.0;   ///< First tick of this ramp, last valid tick [s].
+  double last_time_ = 0.0, last_dt_ = 0.0;  ///< Last tick whose time increased, and its length [s].
+  double stalled_ = 0.0;                    ///< Time on the substitute clock since then [s].
+  bool started_ = false;                    ///< A tick has been processed.
+  bool live_ = false;                       ///< A valid pose arrived within the last kFallTime.
+  Wrench last_;                             ///< Last output.
+  Wrench held_;                             ///< Output at the last valid pose.
+  Workspace workspace_;                     ///< Unbounded without confine().
   const Device* device_ = nullptr;          ///< null: not confined
   long limited_ = 0, rejected_ = 0, outside_ = 0;
 };

@@ -9,52 +9,53 @@
 
 namespace palpate::device {
 
-/// The wrench that a device's motors hold, from the wrenches that a loop sends: each arrives `delay` later,
-/// its force rounded to steps and cut to the maximum, and is held until the next one arrives.
+/// Model of a device's motors: each wrench that the loop sends takes effect `delay` later, with its force
+/// rounded to steps and limited to the maximum, and is held until the next one takes effect.
 class Motors {
  public:
-  /// Delay, resolution and limits between a loop and the hand.
+  /// Delay, resolution and limits of the motors.
   struct Figures {
     double delay = 0.0;                                           ///< [s]
-    double force_step = 0.0;                                      ///< of each axis; 0: exact [N]
+    double force_step = 0.0;                                      ///< Resolution per axis; 0: exact [N].
     double max_force = std::numeric_limits<double>::infinity();   ///< [N]
     double max_torque = std::numeric_limits<double>::infinity();  ///< [N m]
   };
-  /// A wrench that the motors hold for a while.
+  /// Time span with a constant wrench of the motors.
   struct Span {
     double from, to;  ///< [s]
-    Wrench wrench;    ///< on the hand
+    Wrench wrench;    ///< Wrench on the hand.
   };
 
   Motors() : Motors(Figures{}) {}
-  /// @param figures  of the device
+  /// @param figures  delay, resolution and limits of the device
   explicit Motors(const Figures& figures);
-  /// Rounds and cuts a wrench as the motors do.
-  /// @param wrench  that a loop sends
+  /// Returns the wrench, rounded and limited as by the motors.
+  /// @param wrench  wrench that the loop sends
   Wrench shaped(const Wrench& wrench) const;
-  /// Sends a wrench on its way to the motors.
-  /// @param t  of the sample that led to it [s], not before that of the last one
-  /// @param wrench  as the loop computed it
+  /// Sends a wrench to the motors.
+  /// @param t  time of the sample that led to it [s], not before the time of the last call
+  /// @param wrench  wrench as the loop computed it
   void send(double t, const Wrench& wrench);
-  /// Advances to t and visits what was held on the way, span by span.  The first call only sets the time.
-  /// @param t  [s], not before that of the last call
-  /// @param f  f(const Span&)
+  /// Advances to time t and visits the wrenches held in between, span by span. The first call only sets the
+  /// time.
+  /// @param t  [s], not before the time of the last call
+  /// @param f  visitor f(const Span&)
   template <class F>
   void advance(double t, F&& f);
-  /// Advances to a time.
-  /// @param t  [s], not before that of the last call
+  /// Advances to time t.
+  /// @param t  [s], not before the time of the last call
   void advance(double t) {
     advance(t, [](const Span&) {});
   }
-  /// Returns the mean over the last advance of the wrench that was held.
+  /// Returns the time average of the wrench over the last advance.
   const Wrench& mean() const { return mean_; }
-  /// Visits the wrenches that are held from now on until one that is sent now arrives.
-  /// @param f  f(const Span&)
+  /// Visits the wrenches held from now on until a wrench sent now takes effect.
+  /// @param f  visitor f(const Span&)
   template <class F>
   void coming(F&& f) const;
   double delay() const { return figures_.delay; }  ///< [s]
-  /// Keeps where it is, or resumes from there.
-  /// @param a  either direction
+  /// Writes the state to an archive, or restores it.
+  /// @param a  archive of either direction
   void archive(Archive& a);
 
  private:
@@ -67,12 +68,12 @@ class Motors {
   double time_ = 0.0;
   bool started_ = false;
   Wrench held_, mean_;
-  std::vector<Sent> sent_;  ///< by time; those from next_ on are on their way
+  std::vector<Sent> sent_;  ///< By time; entries from next_ on have not taken effect yet.
   std::size_t next_ = 0;
 };
 
-/// Returns the figures of the motors of a scene's device.
-/// @param spec  of the device  @throws Error for a figure out of range, naming its key
+/// Returns the motor parameters of a scene's device.
+/// @param spec  spec of the device  @throws Error for a parameter out of range, naming its key
 Motors::Figures motor_figures(const DeviceSpec& spec);
 
 template <class F>
@@ -80,7 +81,7 @@ void Motors::advance(double t, F&& f) {
   const double h = started_ ? t - time_ : 0.0;
   if (h > 0.0) {
     mean_ = {};
-    const double rounding = 1e-9 * h;  // ticks and delays are multiples of different decimal numbers
+    const double rounding = 1e-9 * h;  // Ticks and delays are multiples of different decimal numbers.
     for (double from = time_; from < t;) {
       for (; next_ < sent_.size() && sent_[next_].due <= from + rounding; ++next_)
         held_ = sent_[next_].wrench;

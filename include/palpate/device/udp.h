@@ -6,91 +6,95 @@
 
 #include "palpate/device/device.h"
 
-/// A device on the network: a peer sends poses in UDP packets and gets a wrench for each tick.
+/// Network device: a peer sends poses in UDP packets and receives one wrench per tick.
 ///
-/// All numbers are little-endian, without gaps; doubles are IEEE 754.  A pose is 132 bytes, a wrench 72:
+/// All numbers are little-endian, without gaps; doubles are IEEE 754. A pose packet has 132 bytes, a wrench
+/// packet 72:
 ///
 ///   offset  pose (peer to palpate)             offset  wrench (palpate to peer)
 ///   0       magic u32, "PLPT"                  0       magic u32, "PLPT"
 ///   4       version u16, 1                     4       version u16, 1
 ///   6       kind u16, 1                        6       kind u16, 2
-///   8       sequence u64, rises                8       sequence u64, of the last pose that counted
-///   16      time f64 [s], the peer's own       16      time f64 [s], of the tick
+///   8       sequence u64, rises                8       sequence u64, of the last accepted pose
+///   16      time f64 [s], the peer's clock     16      time f64 [s], of the tick
 ///   24      position 3 f64 [m]                 24      force on the hand 3 f64 [N]
 ///   48      rotation w, x, y, z 4 f64          48      torque about the handle's origin 3 f64 [N m]
 ///   80      linear velocity 3 f64 [m/s]
 ///   104     angular velocity 3 f64 [rad/s]
 ///   128     switches u32
 ///
-/// A sequence counts packets, or is the peer's clock, in nanoseconds at the finest.  One that does not rise
-/// is an old packet, or one that is sent again; one that is more than kMostAhead ahead is damaged: neither
-/// counts. Once no pose has counted for kFallTime (limiter.h) the force has fallen to zero, and the peer's
-/// next number counts whatever it is: a peer may start anew, and none locks itself out.  There is no
-/// encryption: whoever can send to the port first moves the handle.
+/// A sequence number counts packets, or is the peer's clock with a resolution of a nanosecond at most. A
+/// number that does not rise belongs to an old or repeated packet, and a number more than kMostAhead ahead to
+/// a damaged one: both are dropped. If no pose was accepted for kFallTime (limiter.h), the force has fallen
+/// to zero, and the next number of the peer is accepted whatever it is: a peer may restart, and none can lock
+/// itself out. There is no encryption: the first sender that reaches the port controls the handle.
 namespace palpate::device {
 
-/// the bytes P L P T
-inline constexpr std::uint32_t kUdpMagic = 0x54504c50;  // the bytes P L P T
-inline constexpr std::uint16_t kUdpVersion = 1;         ///< of both packets
+/// Magic number: the bytes P L P T.
+inline constexpr std::uint32_t kUdpMagic = 0x54504c50;
+inline constexpr std::uint16_t kUdpVersion = 1;  ///< Version of both packets.
 
-/// Largest rise of a sequence from one pose to the next: a second of nanoseconds, far beyond kFallTime.
+/// Largest rise of the sequence number from one pose to the next: one second in nanoseconds, far beyond
+/// kFallTime.
 inline constexpr std::uint64_t kMostAhead = 1'000'000'000;
 
-/// What a peer sends.
+/// Packet from the peer: pose of the handle.
 struct PosePacket {
-  std::uint64_t sequence = 0;  ///< rises from packet to packet
-  double time = 0.0;           ///< the peer's own [s]
-  Pose pose;                   ///< of the handle, scene's axes
+  std::uint64_t sequence = 0;  ///< Rises from packet to packet.
+  double time = 0.0;           ///< The peer's clock [s].
+  Pose pose;                   ///< Pose of the handle, scene's axes.
   Twist twist;                 ///< [rad/s, m/s]
-  std::uint32_t switches = 0;  ///< bit i: switch i is pressed
+  std::uint32_t switches = 0;  ///< Bit i: switch i is pressed.
 };
-/// What it gets back, a packet a tick.
+/// Packet to the peer, one per tick: wrench on the hand.
 struct WrenchPacket {
-  std::uint64_t sequence = 0;  ///< of the last pose that counted
-  double time = 0.0;           ///< of the tick [s]
-  Wrench on_hand;              ///< force and moment about the handle's origin [N, N m]
+  std::uint64_t sequence = 0;  ///< Number of the last accepted pose.
+  double time = 0.0;           ///< Time of the tick [s].
+  Wrench on_hand;              ///< Force and moment about the handle's origin [N, N m].
 };
-/// A pose as it travels.
+/// Serialised pose packet.
 using PoseBytes = std::array<unsigned char, 132>;
-/// A wrench as it travels.
+/// Serialised wrench packet.
 using WrenchBytes = std::array<unsigned char, 72>;
 
-/// Why a packet does not count.
+/// Reason for which decode() rejects a packet.
 enum class PacketFault { kNone, kMalformed, kVersion };
 
-/// The bytes of a packet, as the table above has them.
+/// Serialises a packet in the format of the table above.
 PoseBytes encode(const PosePacket& packet);
-/// The bytes of a packet, as the table above has them.
+/// Serialises a packet in the format of the table above.
 WrenchBytes encode(const WrenchPacket& packet);
-/// Malformed: another size, magic or kind, a number that is not finite, a quaternion whose length is not 1 to
-/// 1e-3.  `out` is written only where there is no fault.
+/// Parses a pose packet. It is malformed if size, magic or kind differ, a number is not finite, or the
+/// norm of the quaternion differs from 1 by 1e-3 or more. `out` is written only if there is no fault.
 PacketFault decode(std::span<const unsigned char> bytes, PosePacket& out);
-/// Likewise, of a wrench.
+/// Parses a wrench packet. It is malformed if size, magic or kind differ or a number is not finite. `out` is
+/// written only if there is no fault.
 PacketFault decode(std::span<const unsigned char> bytes, WrenchPacket& out);
 
-/// Packets by what became of them.
+/// Counters of received and sent packets.
 struct UdpCounts {
-  long accepted = 0, malformed = 0, wrong_version = 0;  ///< packets by what they were
-  long stale = 0;                                       ///< a sequence that did not rise
-  long ahead = 0;                                       ///< a sequence that rose by more than kMostAhead
-  long out_of_bounds = 0;                               ///< a pose or speed beyond PoseBounds
-  long foreign = 0;  ///< from another address than the first that was accepted
-  long unsent = 0;   ///< wrenches that the network did not take
+  long accepted = 0, malformed = 0, wrong_version = 0;  ///< Packets accepted, or rejected by decode().
+  long stale = 0;                                       ///< Sequence number did not rise.
+  long ahead = 0;                                       ///< Sequence number rose by more than kMostAhead.
+  long out_of_bounds = 0;                               ///< Pose or speed beyond PoseBounds.
+  long foreign = 0;                                     ///< Sender is not the accepted peer.
+  long unsent = 0;                                      ///< Wrenches that the network did not accept.
 };
 
-/// The device.  A sample takes what has come, never waits, and repeats the last pose between packets; it is
-/// valid while the last one came at most time_out_s ago, by the loop's clock.  Before the first it is not,
-/// and stands at the workspace's center; await() waits for it for up to wait_s.
+/// The network device. A sample reads the packets received so far, never waits, and repeats the last pose
+/// between packets; it is valid if the last pose arrived at most time_out_s ago on the loop's clock. Before
+/// the first pose the sample is invalid, at the workspace's centre; await() waits for the first pose for up
+/// to wait_s.
 class UdpDevice : public Device {
  public:
-  /// @param spec  its port may be 0: any that is free
+  /// @param spec  spec of the device; port 0 selects any free port
   explicit UdpDevice(const DeviceSpec& spec);
   ~UdpDevice() override { close(); }
   DeviceSpecification specification() const override { return specification_; }
-  /// Since it was made.
+  /// Returns the counters since construction.
   const UdpCounts& counts() const { return counts_; }
   std::vector<std::pair<std::string, long long>> tallies() const override;
-  int port() const { return port_; }  ///< that it is bound to, once it is open
+  int port() const { return port_; }  ///< Bound port, once the device is open.
   bool is_live() const override { return true; }
   std::string awaited() const override;
   void bound(const PoseBounds& bounds) override { bounds_ = bounds; }
@@ -104,12 +108,13 @@ class UdpDevice : public Device {
 
  private:
   struct Address {
-    std::uint32_t host = 0;  ///< network order, as is the port
+    std::uint32_t host = 0;  ///< Network byte order, as for the port.
     std::uint16_t port = 0;
     bool operator==(const Address&) const = default;
   };
+  /// Checks one packet and adopts its pose; returns whether it was accepted.
   bool take(std::span<const unsigned char> bytes, const Address& from, double t);
-  void receive(double t);  ///< what has come by now
+  void receive(double t);  ///< Reads all packets received so far.
 
   std::string address_;
   int port_;
@@ -117,8 +122,8 @@ class UdpDevice : public Device {
   DeviceSpecification specification_;
   int socket_ = -1;
   PosePacket last_;
-  std::optional<Address> peer_;  ///< empty until a packet is accepted
-  double arrived_ = 0.0;         ///< loop's time of the last accepted one [s]
+  std::optional<Address> peer_;  ///< Empty until a packet is accepted.
+  double arrived_ = 0.0;         ///< Loop time of the last accepted packet [s].
   PoseBounds bounds_;
   UdpCounts counts_;
 };

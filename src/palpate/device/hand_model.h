@@ -6,14 +6,14 @@
 
 namespace palpate::device {
 
-/// What [device] type = "hand" simulates: the equations stand in src/device/hand.cpp.
+/// Parameters of the simulated hand, [device] type = "hand" (equations: src/device/hand.cpp).
 struct HandModel {
-  ArmAxis::Parameters translation, rotation;     ///< of hand and device together, an axis each
-  double arm_damping = 0.0;                      ///< the arm's part of it: about where it wants to be [N s/m]
-  double arm_rotational_damping = 0.0;           ///< [N m s/rad]
-  std::function<HandleSample(double t)> wanted;  ///< where the arm wants to be, and the switches
+  ArmAxis::Parameters translation, rotation;  ///< Hand and device together, per axis.
+  double arm_damping = 0.0;                   ///< Damper of the arm, relative to the target motion [N s/m].
+  double arm_rotational_damping = 0.0;        ///< Rotational damper of the arm [N m s/rad].
+  std::function<HandleSample(double t)> wanted;  ///< Target motion of the arm, and the switches.
 };
-/// @throws Error for numbers that no hand can have, naming the key
+/// Returns the parameters of a scene's hand.  @throws Error for invalid parameters, naming the key
 HandModel hand_model(const DeviceSpec& spec);
 
 }  // namespace palpate::device
