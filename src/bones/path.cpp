@@ -17,10 +17,10 @@ dynamics::Path placed_path(const BoneSpec& spec) {
   };
 }
 
-// Keyframes give a rotation Q(t), with rate w and its rate a, and a translation d(t), as if the parent stood
-// where it was at the start.  With j the joint and r = Q (o - j), the bone's origin o is at
+// Keyframes give a rotation Q(t), with rate w and its rate a, and a translation d(t), relative to the
+// parent's initial pose.  With j the joint and r = Q (o - j), the bone's origin o is at
 //     y = j + d + r,   y' = d' + w x r,   y'' = d'' + a x r + w x (w x r).
-// The parent has moved since from (R0, p0) to (R, p), with twist (W, V) and its rate (A, V').  With T = R
+// Since then the parent has moved from (R0, p0) to (R, p), with twist (W, V) and its rate (A, V'). With T = R
 // R0^T and s = T (y - p0):
 //     x = p + s,   v = V + W x s + T y',   x'' = V' + A x s + W x (W x s) + 2 W x T y' + T y'',
 //     rotation T Q,   angular velocity W + T w,   its rate A + T a + W x T w.

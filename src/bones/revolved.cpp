@@ -25,7 +25,7 @@ TriMesh revolved(const std::vector<Eigen::Vector2d>& profile) {
   const int last = n * rings + 1;
   out.vertices.col(last) = Vec3(0.0, 0.0, profile.back().y());
   int f = 0;
-  for (int i = 0; i < n; ++i) {  // the profile goes upwards: seen from outside, rings turn counter-clockwise
+  for (int i = 0; i < n; ++i) {  // the profile goes upwards: rings are counter-clockwise seen from outside
     out.faces.col(f++) << 0, vertex(0, i + 1), vertex(0, i);
     for (int r = 0; r + 1 < rings; ++r) {
       out.faces.col(f++) << vertex(r, i), vertex(r, i + 1), vertex(r + 1, i + 1);

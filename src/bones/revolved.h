@@ -5,8 +5,8 @@
 
 namespace palpate::bones {
 
-/// Surface of revolution about z of a profile (radius, z) from one pole to the other; only the first and last
-/// have radius 0.
+/// Returns the surface of revolution about z of a profile (radius, z) from the lower pole to the upper one;
+/// only the first and last points have radius 0.
 TriMesh revolved(const std::vector<Eigen::Vector2d>& profile);
 
 }  // namespace palpate::bones

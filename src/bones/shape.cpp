@@ -28,14 +28,14 @@ TriMesh capsule_surface(double radius, double length) {
   return revolved(profile);
 }
 
-/// Moments of the shape filled evenly with mass 1, a body of length L along z where it has one.
+/// Returns the moments of the shape filled evenly with mass 1; L is its length along z, if any.
 ///   sphere     2/5 r^2
 ///   box        (b^2 + c^2)/12
 ///   cylinder   axis r^2/2, across (3 r^2 + L^2)/12
-///   capsule    a cylinder and two half spheres, in the ratio of their volumes.  The middle of mass of a half
-///   sphere is 3/8 r from its flat face and its
-///              moment across about it (2/5 - 9/64) r^2; carried to the capsule's middle, over L/2 + 3/8 r,
-///              both make 2/5 r^2 + L^2/4 + 3/8 L r a unit of mass.
+///   capsule    a cylinder and two half spheres, in the ratio of their volumes.  The centre of mass of a half
+///              sphere is 3/8 r from its flat face, and its moment across about it is (2/5 - 9/64) r^2; moved
+///              to the capsule's middle, by L/2 + 3/8 r, both half spheres have 2/5 r^2 + L^2/4 + 3/8 L r
+///              per unit of mass.
 Vec3 unit_moments(const BoneSpec& spec) {
   const double r = spec.radius_m, L = spec.length_m, r2 = r * r;
   if (spec.shape == "sphere") return Vec3::Constant(0.4 * r2);

@@ -8,7 +8,7 @@
 namespace palpate::bones {
 namespace {
 
-/// The scene's table about the joint of each bone; null: none.
+/// Returns the scene's table for the joint of each bone; null: none.
 std::vector<const JointSpec*> joints_of(const Skeleton& skeleton, const SkeletonSpec& spec,
                                         const std::string& body, const std::string& file) {
   std::vector<std::string> names;
@@ -30,13 +30,13 @@ Joint joint_named(const std::string& type) {
   return type == "free" ? Joint::kFree : Joint::kWeld;
 }
 
-/// One joint while the skeleton is planned.
+/// One joint during planning.
 struct Link {
   const Bone& bone;
-  const JointSpec* own;  ///< null: as the skeleton has it
+  const JointSpec* own;  ///< null: the skeleton's defaults
   std::string type;
   bool scripted;
-  std::string where;  ///< for messages
+  std::string where;  ///< place in the scene, for messages
 };
 
 Link link_of(const Bone& bone, const JointSpec* own, const SkeletonSpec& spec, const std::string& body) {
@@ -105,7 +105,7 @@ SkeletonPlan plan_skeleton(const Skeleton& skeleton, const SkeletonSpec& spec, c
             link.where, parent_name());
       check_free_bone(link, spec, body);
       bone.in_tree = static_cast<int>(plan.tree.size());
-      // -1 as well where the parent has a prescribed motion, and stands still
+      // -1 also if the parent has a prescribed motion and is at rest.
       plan.tree.push_back(tree_bone(link, bone, parent ? parent->in_tree : -1, spec, body_axes));
     }
     plan.bones.push_back(std::move(bone));

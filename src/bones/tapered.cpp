@@ -11,19 +11,19 @@ namespace {
 
 using std::numbers::pi;
 
-/// The profile along the axis, x from the head: balls of radii r0 at 0 and r1 at L, and the cone that touches
+/// Profile along the axis, x from the head: balls of radii r0 at 0 and r1 at L, and the cone that touches
 /// both.  With s = (r1 - r0) / L the cone touches the balls where their normals make the angle asin s with
-/// the plane across: at x = c - s r, in a circle of radius r sqrt(1 - s^2).  For |s| >= 1 one ball holds the
-/// other.
+/// the transverse plane: at x = c - s r, in a circle of radius r sqrt(1 - s^2).  For |s| >= 1 one ball
+/// contains the other.
 struct Profile {
-  double r0, r1, length, low, high;  ///< of the whole, from low to high
+  double r0, r1, length, low, high;  ///< extent of the bone, from low to high
   double cone_low, cone_high, cone_r0, cone_r1;
 
   explicit Profile(const Bone& bone)
       : r0(bone.head_radius), r1(bone.tail_radius), length((bone.tail - bone.head).norm()) {
     if (!(r0 > 0.0 && r1 > 0.0)) fail("bone \"{}\": radii {} and {} m must be positive", bone.name, r0, r1);
     const double s = length > 0.0 ? (r1 - r0) / length : (r1 >= r0 ? 1.0 : -1.0);
-    if (s >= 1.0) r0 = 0.0;  // a ball about the tail alone
+    if (s >= 1.0) r0 = 0.0;  // one ball, about the tail
     if (s <= -1.0) r1 = 0.0;
     if (std::abs(s) >= 1.0) {
       const double c = s > 0.0 ? length : 0.0, r = s > 0.0 ? r1 : r0;
@@ -46,7 +46,7 @@ struct Profile {
   }
 };
 
-/// Integrals over x of polynomials up to degree 5 are exact by three points a piece (Gauss).
+/// Integrates over x by three Gauss points per piece, exact for polynomials up to degree 5.
 template <class F>
 double integral(const Profile& p, const F& f) {
   constexpr double kPlace = 0.7745966692414834, kOuter = 5.0 / 9.0, kInner = 8.0 / 9.0;

@@ -36,7 +36,7 @@ void check(const TreeBone& bone, int index) {
          bone.damping);
 }
 
-/// The frame of a joint at the start: a hinge rotates about its z.
+/// Returns the frame of a joint at the start: a hinge rotates about its z axis.
 Pose joint_frame(const TreeBone& bone) {
   if (bone.joint != Joint::kHinge) return {Quat::Identity(), bone.joint_position};
   return {Quat::FromTwoVectors(Vec3::UnitZ(), bone.axis.normalized()), bone.joint_position};
@@ -62,7 +62,7 @@ constexpr int u_count(Joint joint) {
   return joint == Joint::kFree ? 6 : joint == Joint::kBall ? 3 : joint == Joint::kHinge ? 1 : 0;
 }
 
-/// q' = N u joint by joint: the quaternion rate of a free body for quaternions, u itself for the rest.
+/// Computes q' = N u joint by joint: the quaternion rate for quaternions, u itself for the other coordinates.
 class TreeKinematics final : public dynamics::BlockKinematics {
  public:
   explicit TreeKinematics(const std::vector<TreeBone>& bones) {
@@ -157,7 +157,7 @@ void BoneTree::Impl::go_to(const VecX& q, const VecX& u) {
   SimTK::Vector& sq = state.updQ();
   SimTK::Vector& su = state.updU();
   for (int i = 0; i < q_size; ++i) sq[i] = q[i];
-  // a trial state's quaternion is not unit to rounding: its direction counts
+  // The quaternion of a trial state is a unit quaternion only approximately: its direction is used.
   for (std::size_t b = 0; b < bones.size(); ++b) {
     if (q_count(bones[b].joint) < 4) continue;
     const Eigen::Vector4d unit = q.segment<4>(first_q[b]).normalized();
@@ -192,7 +192,7 @@ void BoneTree::Impl::need_bias() {
   matter.calcBiasForSystemJacobian(state, biases);
 }
 
-/// Rotation vector of a ball joint since the start, in the parent's axes.
+/// Returns the rotation vector of a ball joint since the start, in the parent's axes.
 Vec3 BoneTree::Impl::ball_rotation(const VecX& q, std::size_t bone) const {
   const auto r = q.segment<4>(first_q[bone]);
   return rotation_vector(Quat(r[0], r[1], r[2], r[3]).normalized());
@@ -236,7 +236,7 @@ dynamics::BlockSpec BoneTree::block(std::string name, double length, double spee
                            length,
                            speed,
                            std::make_shared<TreeKinematics>(impl_->bones)};
-  // all are angles, but for the position of a free root
+  // All coordinates are angles, except the position of a free root.
   spec.angles_q.assign(static_cast<std::size_t>(q_size()), 1);
   spec.angles_u.assign(static_cast<std::size_t>(u_size()), 1);
   for (std::size_t b = 0; b < impl_->bones.size(); ++b)
@@ -280,8 +280,8 @@ const MatX& BoneTree::mass(const VecX& q) const {
   return i.M;
 }
 
-// Inverse dynamics gives the residual M u' + C(q, u) - f_applied;
-// at u' = 0 the right-hand side is its negative.
+// Inverse dynamics gives the residual M u' + C(q, u) - f_applied; at u' = 0 the right-hand side is its
+// negative.
 VecX BoneTree::force(const VecX& q, const VecX& u) const {
   Impl& i = *impl_;
   i.go_to(q, u);
@@ -296,8 +296,8 @@ VecX BoneTree::force(const VecX& q, const VecX& u) const {
     const TreeBone& bone = i.bones[b];
     const auto at = i.first_u[b];
     if (bone.joint == Joint::kHinge) f[at] -= bone.stiffness * q[i.first_q[b]] + bone.damping * u[at];
-    // The rotation vector is an eigenvector of its own Jacobian: the moment of the energy k |theta|^2 / 2 is
-    // -k theta.
+    // The rotation vector is an eigenvector of its Jacobian: the moment of the energy k |theta|^2 / 2 is -k
+    // theta.
     if (bone.joint == Joint::kBall)
       f.segment<3>(at) -= bone.stiffness * i.ball_rotation(q, b) + bone.damping * u.segment<3>(at);
   }

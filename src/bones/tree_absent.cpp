@@ -1,7 +1,7 @@
 #include "palpate/bones/tree.h"
 #include "palpate/core/error.h"
 
-// Replaces bones on joints in a build without Simbody: whatever would need it throws Error.
+// Stub of bones on joints for a build without Simbody: every function throws Error.
 
 namespace palpate::bones {
 namespace {

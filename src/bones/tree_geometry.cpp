@@ -3,10 +3,10 @@
 namespace palpate::bones {
 namespace {
 
-/// sum (w x r) x f = S w - w tr S of S = sum r f^T, since (w x r) x f = r (w . f) - w (r . f).
+/// Returns sum (w x r) x f = S w - w tr S for S = sum r f^T, since (w x r) x f = r (w . f) - w (r . f).
 Vec3 rotated_moment(const Mat3& S, const Vec3& w) { return S * w - w * S.trace(); }
 
-/// sum r x f of S = sum r f^T.
+/// Returns sum r x f for S = sum r f^T.
 Vec3 moment(const Mat3& S) { return {S(1, 2) - S(2, 1), S(2, 0) - S(0, 2), S(0, 1) - S(1, 0)}; }
 
 }  // namespace
@@ -47,7 +47,7 @@ void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<HeldForc
     S[b] += (t.poses[b].translation - joint) * F[b].transpose();
   }
 
-  const auto before = [&](int a, int b) {  // a is b, or on the way from b to the ground
+  const auto before = [&](int a, int b) {  // a is b or an ancestor of b
     for (; b > a; b = t.bones[static_cast<std::size_t>(b)].parent) {}
     return a == b;
   };

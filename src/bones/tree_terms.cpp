@@ -15,7 +15,7 @@ const Block& block_of(const StateView& state, int block_id, const BoneTree& tree
   return *block;
 }
 
-/// The block's q and u.
+/// q and u of the block.
 struct Coordinates {
   VecX q, u;
   Coordinates(const StateView& state, const Block& block)

@@ -7,54 +7,56 @@
 
 namespace palpate {
 
-/// The `[[bone]]` tables of a scene: a rigid body inside soft ones, which carries nodes of theirs.  Free
-/// unless it is fixed or has keyframes.
+/// A `[[bone]]` table of a scene: a rigid body inside soft ones, which carries some of their nodes.  It moves
+/// freely unless it is fixed or has keyframes.
 struct BoneSpec {
   std::string name;  ///< unique in the scene
-  /// "sphere", "box", "cylinder" or "capsule" (both along z), around its origin; empty: mass and inertia are
-  /// given
+  /// "sphere", "box", "cylinder" or "capsule" (both along z), centred at the bone's origin; empty: mass and
+  /// inertia are given.
   std::string shape;
-  double radius_m = 0.0;  ///< of a sphere, a cylinder, a capsule
-  /// of a cylinder, and of a capsule between the middles of its caps
+  double radius_m = 0.0;  ///< radius of a sphere, a cylinder, a capsule
+  /// Length of a cylinder, or of a capsule between the centres of its caps.
   double length_m = 0.0;
-  Vec3 size_m = Vec3::Zero();  ///< of a box
-  double mass_kg = 0.0;        ///< or density_kg_m3 of the shape
-  double density_kg_m3 = 0.0;  ///< of the shape; then mass_kg is left out
-  /// principal, about the centre of mass; zero: the shape's, filled evenly
+  Vec3 size_m = Vec3::Zero();  ///< edge lengths of a box
+  double mass_kg = 0.0;        ///< mass; alternative: density_kg_m3 with a shape
+  double density_kg_m3 = 0.0;  ///< density of the shape; mass_kg is then omitted
+  /// Principal moments about the centre of mass; zero: moments of the shape, filled evenly.
   Vec3 inertia_kg_m2 = Vec3::Zero();
-  Vec3 position_m = Vec3::Zero();              ///< of its centre of mass, at the start
-  Vec3 rotation_vector_rad = Vec3::Zero();     ///< its orientation at the start
-  Vec3 velocity_m_s = Vec3::Zero();            ///< of its origin at the start, world axes
-  Vec3 angular_velocity_rad_s = Vec3::Zero();  ///< at the start, world axes
-  bool gravity = true;                         ///< false: the bone itself has no weight
-  bool fixed = false;                          ///< stays where it is placed
-  /// moves from where it is placed: by these positions, and by these rotations about its own origin
+  Vec3 position_m = Vec3::Zero();              ///< initial position of the centre of mass
+  Vec3 rotation_vector_rad = Vec3::Zero();     ///< initial orientation
+  Vec3 velocity_m_s = Vec3::Zero();            ///< initial velocity of its origin, world axes
+  Vec3 angular_velocity_rad_s = Vec3::Zero();  ///< initial angular velocity, world axes
+  bool gravity = true;                         ///< false: the bone has no weight
+  bool fixed = false;                          ///< stays at its initial pose
+  /// Prescribed motion from the initial pose: these translations, and these rotations about the bone's
+  /// origin.
   std::vector<KeyframeSpec> keyframes;
 };
 
-/// One joint of a skeleton that differs from the rest, or moves by a script.
+/// Joint of a skeleton that differs from the skeleton's default, or moves by keyframes.
 struct JointSpec {
-  std::string bone;  ///< which hangs on its parent by it
-  /// "weld", "hinge", "ball", of a root also "free"; empty: the skeleton's
+  std::string bone;  ///< bone that this joint attaches to its parent
+  /// "weld", "hinge", "ball", and for a root also "free"; empty: the skeleton's default.
   std::string type;
-  Vec3 axis = Vec3::Zero();         ///< of a hinge, in the body's own axes
-  double stiffness_n_m_rad = -1.0;  ///< negative: the skeleton's
-  double damping_n_m_s_rad = -1.0;  ///< negative: the skeleton's
-  /// rotations about the joint, and shifts, against its parent, in the body's own axes; then it has no type
+  Vec3 axis = Vec3::Zero();         ///< axis of a hinge, in body axes
+  double stiffness_n_m_rad = -1.0;  ///< negative: the skeleton's default
+  double damping_n_m_s_rad = -1.0;  ///< negative: the skeleton's default
+  /// Rotations about the joint, and translations, relative to the parent, in body axes; the joint then has no
+  /// type.
   std::vector<KeyframeSpec> keyframes;
 };
 
-/// The `[body.skeleton]` table: the bones of a model file, on joints, carry the nodes that the file binds to
-/// them.
+/// The `[body.skeleton]` table: the bones of a model file, connected by joints, carry the nodes that the file
+/// binds to them.
 struct SkeletonSpec {
-  /// how bones without a parent hang on the world: "weld", "ball" or "free"
+  /// Joint of bones without a parent to the world: "weld", "ball" or "free".
   std::string root = "weld";
-  std::string others = "weld";  ///< how the others hang on their parents: "weld" or "ball"
-  /// of bones that move freely, on top of the tissue that their nodes weigh
+  std::string others = "weld";  ///< joint of all other bones to their parents: "weld" or "ball"
+  /// Density of bones that move freely, in addition to the tissue mass of their nodes.
   double density_kg_m3 = 0.0;
-  double stiffness_n_m_rad = 0.0;  ///< of hinges and balls, towards the start
-  double damping_n_m_s_rad = 0.0;  ///< of hinges and balls
-  std::vector<JointSpec> joints;   ///< those that differ from the rest
+  double stiffness_n_m_rad = 0.0;  ///< stiffness of hinges and balls, towards the initial pose
+  double damping_n_m_s_rad = 0.0;  ///< damping of hinges and balls
+  std::vector<JointSpec> joints;   ///< joints that differ from the defaults
 };
 
 }  // namespace palpate

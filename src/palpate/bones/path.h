@@ -5,22 +5,23 @@
 #include "palpate/core/pose.h"
 #include "palpate/dynamics/path.h"
 
-/// Bones whose motion is known beforehand.
+/// Prescribed motions of bones.
 namespace palpate::bones {
 
-/// A fixed bone stays where it is placed; keyframes move it from there: X(t) = (R(t) R0, p0 + p(t)).
+/// Returns the path of a fixed bone, which stays at its initial pose, or of a bone with keyframes:
+/// X(t) = (R(t) R0, p0 + p(t)).
 dynamics::Path placed_path(const BoneSpec& spec);
 
-/// A bone with keyframes relative to its parent, which has a prescribed motion as well, or stands still.
+/// Bone with keyframes relative to its parent, which has a prescribed motion too, or is at rest.
 struct PrescribedJoint {
-  Pose start;                           ///< of the bone's own frame, in the world
-  Vec3 position = Vec3::Zero();         ///< of the joint at the start [m]
-  Quat axes = Quat::Identity();         ///< keyframes are in these: the body's own
-  std::vector<KeyframeSpec> keyframes;  ///< empty: goes with its parent
+  Pose start;                           ///< pose of the bone's frame at the start, in the world
+  Vec3 position = Vec3::Zero();         ///< position of the joint at the start [m]
+  Quat axes = Quat::Identity();         ///< orientation of the body axes, in which the keyframes are given
+  std::vector<KeyframeSpec> keyframes;  ///< empty: the bone moves with its parent
 };
 
-/// The bone's path.
-/// @param parent  its parent's path; an empty path: the world
+/// Returns the bone's path.
+/// @param parent        its parent's path; an empty path: the world
 /// @param parent_start  the parent's pose at the start
 dynamics::Path prescribed_path(const PrescribedJoint& joint, dynamics::Path parent, const Pose& parent_start);
 
