@@ -17,24 +17,24 @@ namespace {
 using dynamics::BorderedMatrix;
 using dynamics::SolveStatus;
 
-/// A choice is kept until the matrix has become so many times stiffer or softer: each solver would start
-/// without a past.
+/// A choice is kept until the matrix has become stiffer or softer by this factor, since a newly chosen solver
+/// starts without earlier solutions.
 constexpr double kKept = 4.0;
 constexpr int kSampledRows = 512, kSampledRowsOfStepMatrix = 128;
 
 }  // namespace
 
-// What decides how many iterations a step takes is how far stiffness outweighs mass in A = M + h^2 K.  A
-// rigid translation takes no strain, so block row i of A sums to that of M, and
+// The number of iterations per step depends on the ratio of stiffness to mass in A = M + h^2 K. A rigid
+// translation causes no strain, so block row i of A sums to block row i of M, and
 //     s = sum_i tr(A_ii) / sum_i tr(sum_j A_ij) = 1 + h^2 tr K / tr M,
-// the squared number of grid lengths, times a constant, that a sound wave passes in a step: a pure number
-// that holds step, stiffness, density and mesh size together. Rows of held nodes, and of their neighbours,
-// which miss the held ones' columns, are left out.  Of a large matrix some hundred rows tell it well enough
-// for a choice between factors of four, and looking at every row at every step would cost a reading of the
-// matrix.
+// up to a constant the squared number of grid lengths that a sound wave travels in a step: one dimensionless
+// number that combines step size, stiffness, density and mesh size. Rows of held nodes, and of their
+// neighbours, which lack the held nodes' columns, are left out. A sample of some hundred rows of a large
+// matrix is accurate enough to distinguish factors of four; reading every row in every step would cost one
+// pass over the matrix.
 double squared_courant_number(const dynamics::BlockSparse& A) {
   double own = 0.0, all = 0.0;
-  const int stride = (A.block_rows() / kSampledRows) | 1;  // odd: does not keep in step with a grid's rows
+  const int stride = (A.block_rows() / kSampledRows) | 1;  // odd: not in phase with the rows of a grid
   for (int i = 0; i < A.block_rows(); i += stride) {
     double row = 0.0, diagonal = 0.0;
     bool beside_held = false;
@@ -55,16 +55,16 @@ double squared_courant_number(const dynamics::BlockSparse& A) {
   return all > 0.0 ? own / all : 1.0;
 }
 
-// Block-Jacobi conjugate gradients take a number of iterations that grows as sqrt(s), until it is bounded by
-// the mesh's diameter; with a coarse space the number is bounded by the nodes per cluster, and an iteration
-// costs a third more.  So there is one threshold in s, whatever the number of nodes and the tolerance.
-// Measured (`palpate bench fem`, beams of 81 to 11,172 nodes, linear_rtol of 1e-3 to 1e-9, one thread): from
-// s = 62 on the coarse space pays in every case, by up to a factor of 11; up to s = 13 it costs up to 48 %
-// and never gains more than 14 %; at s = 31 both take the same time within 11 %.  A supernodal Cholesky
-// factor takes 4 to 200 times as long as the slower of the two.
+// Conjugate gradients with block Jacobi take a number of iterations that grows as sqrt(s) until the diameter
+// of the mesh bounds it. With a coarse space the nodes per cluster bound it, and an iteration costs about a
+// third more. Hence one threshold in s, independent of the number of nodes and of the tolerance. Measured for
+// one step with each solver (beams of 81 to 11,172 nodes, linear_rtol of 1e-3 to 1e-9, one thread): for
+// s >= 62 the coarse space is faster in all cases, by up to a factor of 11; for s <= 13 it costs up to 47 %
+// and gains at most 14 %; at s = 31 both agree within 12 %. A Cholesky factor takes at least 2.2 times as
+// long as the faster of the two.
 bool prefers_two_level(double courant_squared) { return courant_squared >= 30.0; }
 
-/// squared_courant_number() of a zero-row-sum matrix, which has its row sums at hand.
+/// Returns squared_courant_number() of a zero-row-sum matrix, whose row sums are stored.
 static double squared_courant_number(const dynamics::ZeroRowSumMatrix& A) {
   double stiffness = 0.0, mass = 0.0;
   const int rows = A.pattern->block_rows(), stride = (rows / kSampledRowsOfStepMatrix) | 1;
@@ -83,10 +83,11 @@ static double squared_courant_number(const dynamics::ZeroRowSumMatrix& A) {
 
 namespace {
 
-/// Conjugate gradients with or without a coarse space, chosen by the matrix's squared Courant number, and
-/// GMRES for unsymmetric matrices.  The number of a whole matrix is computed before a solver takes it.  A
-/// zero-row-sum matrix is written in the order of a solver, so the first goes to kTwoLevel, which serves
-/// stiff and soft ones; its number decides which solver takes the next.
+/// Delegates to conjugate gradients with or without a coarse space, chosen by the matrix's squared Courant
+/// number, and to GMRES for unsymmetric matrices. For a matrix in double precision the number is computed
+/// before a solver takes the matrix. A zero-row-sum matrix is written in the order of one solver, so the
+/// first goes to kTwoLevel, which handles both stiff and soft matrices; each matrix's number decides which
+/// solver takes the next one.
 class AutoSolver final : public dynamics::LinearSolver,
                          public dynamics::MixedPrecisionSolver,
                          public dynamics::StepSolves,
@@ -193,17 +194,17 @@ class AutoSolver final : public dynamics::LinearSolver,
 
   IntegratorSpec spec_;
   std::array<std::unique_ptr<dynamics::LinearSolver>, kNames.size()> made_;
-  std::unique_ptr<dynamics::LinearSolver> unsymmetric_;  ///< made at the first unsymmetric matrix
+  std::unique_ptr<dynamics::LinearSolver> unsymmetric_;  ///< built at the first unsymmetric matrix
   dynamics::LinearSolver* active_ = nullptr;
-  dynamics::MixedPrecisionSolver* mixed_ = nullptr;  ///< capability of active_
-  dynamics::ZeroRowSumMatrix* room_ = nullptr;       ///< of active_
-  double allowed_ = 0.0;                             ///< energy-norm error
+  dynamics::MixedPrecisionSolver* mixed_ = nullptr;  ///< this capability of active_, or null
+  dynamics::ZeroRowSumMatrix* room_ = nullptr;       ///< step matrix storage of active_
+  double allowed_ = 0.0;                             ///< admissible energy-norm error
   std::uint64_t values_version_ = 0;
   int nodes_ = -1;
-  bool provisional_ = false;          ///< active_ was not chosen yet
-  double stiffness_ = 0.0;            ///< that it was chosen by
-  double seen_ = 0.0;                 ///< of the last matrix, where that was a zero-row-sum one
-  dynamics::SolverCounters retired_;  ///< of the provisional one, where another was chosen
+  bool provisional_ = false;          ///< active_ is kProvisional, before the first choice
+  double stiffness_ = 0.0;            ///< number by which active_ was chosen
+  double seen_ = 0.0;                 ///< number of the last matrix if zero-row-sum, else 0
+  dynamics::SolverCounters retired_;  ///< counters of the provisional solver once another was chosen
   mutable dynamics::SolverCounters sum_;
 };
 

@@ -30,7 +30,7 @@ SolveStatus BorderElimination::factor(const BorderedMatrix& A) {
     body_.symmetric = A.symmetric;
     body_.touch();
   }
-  // who shares the body's solver may have given it another matrix since
+  // another user of the body's solver may have factored another matrix since
   if (const SolveStatus status = body_solver_->factor(body_); status != SolveStatus::kOk) {
     values_version_ = 0;
     return border_status_ = status;

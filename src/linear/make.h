@@ -3,7 +3,7 @@
 
 #include "palpate/dynamics/linear_solver.h"
 
-/// The makers that registry.cpp lists.
+/// Factory functions of the solvers that registry.cpp lists.
 namespace palpate::linear {
 
 std::unique_ptr<dynamics::LinearSolver> make_cholmod(const IntegratorSpec&);

@@ -13,43 +13,44 @@ namespace {
 using dynamics::BorderedMatrix;
 using dynamics::SolveStatus;
 
-/// A fresh factor by CHOLMOD and its solve cost as much as some 400 products (measured in one run each at
-/// 3,700 and 11,172 nodes of a beam): far beyond that an iteration is lost.
+/// A new CHOLMOD factor and its solve cost about as much as 400 products (one measured run each at 3,700 and
+/// 11,172 nodes of a beam); an iteration far beyond that is not worthwhile.
 constexpr int kIterationLimit = 1000;
-/// The recurrence of the residual drifts from b - A x by rounding; so often is it set right before the
-/// tolerance counts as out of reach.
+/// The recurrence's residual drifts from b - A x by rounding; it is replaced by the true residual this many
+/// times before the tolerance counts as out of reach.
 constexpr int kResidualReplacements = 3;
-/// The nodes' answer to the border, for the preconditioner: relative residual, and most products a column.
+/// Solves for the coarse space W: relative residual, and most products per column.
 constexpr double kCoarseTolerance = 0.1;
 constexpr int kCoarseLimit = 10;
 
-/// Conjugate gradients (Hestenes and Stiefel 1952).  The preconditioner of
+/// Preconditioned conjugate gradients (Hestenes and Stiefel 1952). The preconditioner of
 ///     A = [ B  R ]   nodes                    P^-1 = [ J^-1  0 ] + Z E^-1 Z^T,     Z = [ W ],   E = Z^T A Z
 ///         [ R' C ]   border (a tool)                 [ 0     0 ]                       [ I ]
-/// is block Jacobi on the nodes, J the 3x3 blocks of B, and a coarse space: each direction of the border with
-/// the displacement W that the nodes answer it with.  With W = -B^-1 R, E is the border's Schur complement,
-/// and P^-1 A has the spectrum of J^-1 B and ones: a tool, however stiff its contacts, costs no iteration.
-/// With the corner C alone (W = 0) the soft directions in which nodes and tool move together would be taken
-/// for as stiff as the contact.  So W is found by conjugate gradients on B, from the last W on, to a tenth
-/// only: Galerkin's E is positive definite at any W where A is.
+/// is block Jacobi on the nodes, J the 3x3 diagonal blocks of B, plus a coarse space: each direction of the
+/// border with the nodes' displacement response W to it. With W = -B^-1 R, E is the border's Schur
+/// complement, and P^-1 A has the spectrum of J^-1 B and ones: a tool costs no iteration, however stiff its
+/// contacts are. With the corner C alone (W = 0) the soft directions in which nodes and tool move together
+/// would be treated as being as stiff as the contact. So W is computed by conjugate gradients on B, from the
+/// last W, to a relative residual of a tenth only: the Galerkin matrix E is positive definite at any W where
+/// A is.
 ///
-/// Warm start: x0 = a y with y the last solution of the same column, and a = (y . b) / (y . A y) the minimum
-/// of the error's A-norm along y; never worse than zero.
+/// Warm start: x0 = a y with y the last solution of the same column and a = (y . b) / (y . A y), the
+/// minimum of the error's A-norm along y; never worse than zero.
 ///
-/// The end: |r| <= rtol |b| in the Euclidean norm, and |r|_{P^-1} <= rtol |b|_{P^-1}, which no choice of
-/// units changes (forces and moments stand in one vector).  Both are checked once more with b - A x itself.
-/// From the second follows for the error e and the condition kappa of P^-1 A
+/// Stopping criterion: |r| <= rtol |b| in the Euclidean norm, and |r|_{P^-1} <= rtol |b|_{P^-1}, which is
+/// invariant under the choice of units (forces and moments share one vector). Both are checked again with the
+/// true residual b - A x. The second implies for the error e and the condition number kappa of P^-1 A
 ///     |e|_A <= rtol sqrt(kappa) |x|_A.
-/// Where rounding alone is larger, eps |A| |x| > rtol |b|, no solver reaches that: kNotConverged.
+/// Where rounding alone is larger, eps |A| |x| > rtol |b|, no solver reaches the tolerance: kNotConverged.
 ///
-/// Under SUNDIALS this is a direct solver: Newton's corrections d are taken as exact, and its rate of
-/// convergence is estimated from their norms, with a failure at a rate of 2, and a correction of 0.1 of the
-/// error test's tolerance accepted at once.  An error of rtol sqrt(kappa) |d| adds at most that much to the
-/// rate.  With kappa < 1e10 the default of 1e-8 keeps it below 1e-3: SUNDIALS cannot tell the difference.
+/// SUNDIALS uses this as a direct solver: it takes Newton's corrections d as exact and estimates the
+/// convergence rate from their norms, fails at a rate of 2, and accepts a correction below 0.1 of the error
+/// test's tolerance at once. An error of rtol sqrt(kappa) |d| adds at most that much to the rate. With kappa
+/// < 1e10 the default of 1e-8 keeps it below 1e-3, which SUNDIALS cannot detect.
 ///
-/// A direction of negative curvature, p . A p <= 0, proves A indefinite: in factor() from a block, in solve()
-/// from a search direction. Counted: a preconditioner as a factorisation; every product with A as an
-/// iteration, those of the coarse space and the check at the end included.
+/// A direction of negative curvature, p . A p <= 0, proves A indefinite: in factor() for a block, in solve()
+/// for a search direction. Counters: one factorisation per preconditioner; one iteration per product with A,
+/// including those of the coarse space and of the final check.
 class Pcg final : public dynamics::LinearSolver {
  public:
   explicit Pcg(double rtol) : rtol_(rtol) { counters::count("integrate.solver.pcg"); }
@@ -113,7 +114,7 @@ class Pcg final : public dynamics::LinearSolver {
       return SolveStatus::kSingular;
     Eigen::LLT<Mat3> block;
     for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-      // symmetric: the order of storage does not matter
+      // symmetric: storage order does not matter
       block.compute(Eigen::Map<const Mat3>(A.body.block(diagonal_[i])));
       if (block.info() != Eigen::Success) return SolveStatus::kIndefinite;
       inverse_[i] = block.solve(Mat3::Identity());
@@ -136,7 +137,8 @@ class Pcg final : public dynamics::LinearSolver {
     return coarse_.info() == Eigen::Success ? SolveStatus::kOk : SolveStatus::kIndefinite;
   }
 
-  /// Column c of W: B w = -R_c, roughly, with the last w for a guess where it is better than none.
+  /// Computes column c of W, B w = -R_c, approximately; the last w is the initial guess where it reduces the
+  /// error.
   SolveStatus answer_of_nodes(const BorderedMatrix& A, Eigen::Index c) {
     auto w = W_.col(c);
     r_ = -A.right.col(c);
@@ -176,7 +178,7 @@ class Pcg final : public dynamics::LinearSolver {
     return SolveStatus::kOk;
   }
 
-  /// z = J^-1 r over the nodes; z has the size of r
+  /// z = J^-1 r on the nodes; z is resized to the size of r.
   void jacobi(const VecX& r, VecX& z) const {
     z.resize(r.size());
     for (std::size_t i = 0; i < inverse_.size(); ++i) {
@@ -205,7 +207,7 @@ class Pcg final : public dynamics::LinearSolver {
                   nodal_ + border_);
   }
 
-  /// Room for the solutions of `count` columns; forgets those of another size.
+  /// Allocates room for the last solutions of `count` columns; a change of system size discards them.
   void remember(Eigen::Index count) {
     if (last_.rows() != nodal_ + border_) last_.setZero(nodal_ + border_, count);
     if (last_.cols() >= count) return;
@@ -221,7 +223,7 @@ class Pcg final : public dynamics::LinearSolver {
 
   SolveStatus solve_column(const double* right_hand_side, double* solution, Eigen::Index column) {
     ++counters_.solves;
-    // a copy: the solution may stand in its place
+    // a copy, since solution and right-hand side may be the same memory
     b_ = Eigen::Map<const VecX>(right_hand_side, nodal_ + border_);
     x_.setZero(b_.size());
     const SolveStatus status = b_.isZero(0.0) ? SolveStatus::kOk : iterate(last_.col(column));
@@ -257,7 +259,7 @@ class Pcg final : public dynamics::LinearSolver {
     return SolveStatus::kNotConverged;
   }
 
-  /// From x and its residual r on, until r as the recurrence has it is below both limits.
+  /// Iterates from x and its residual r until the recurrence's r is below both limits.
   SolveStatus reduce_residual(double limit, double limit_p, long& left) {
     precondition(r_, z_);
     double rho = r_.dot(z_);
@@ -280,14 +282,14 @@ class Pcg final : public dynamics::LinearSolver {
 
   double rtol_;
   dynamics::SolverCounters counters_;
-  const BorderedMatrix* matrix_ = nullptr;  ///< last given to factor()
+  const BorderedMatrix* matrix_ = nullptr;  ///< matrix of the last factor()
   std::uint64_t pattern_version_ = 0, values_version_ = 0;
   Eigen::Index nodal_ = 0, border_ = 0;
   SolveStatus status_ = SolveStatus::kSingular;
-  std::vector<int> diagonal_;  ///< slot of each node's own block
+  std::vector<int> diagonal_;  ///< slot of each node's diagonal block
   std::vector<Mat3> inverse_;
-  MatX W_, AZ_, E_;          ///< coarse space: the nodes' answer to the border; nodes' rows of A Z; Z^T A Z
-  Eigen::LLT<MatX> coarse_;  ///< of E
+  MatX W_, AZ_, E_;          ///< coarse space: nodes' response to the border; nodes' rows of A Z; Z^T A Z
+  Eigen::LLT<MatX> coarse_;  ///< Cholesky factor of E
   MatX last_;                ///< last solution of each column
   VecX b_, x_, r_, z_, p_, Ap_, y_;
 };

@@ -9,7 +9,8 @@ namespace palpate::linear {
 using dynamics::BlockSparse;
 using dynamics::BorderedMatrix;
 
-/// Of sums of some hundred entries, taken in another order on either side of the diagonal.
+/// Relative rounding error of sums of some hundred entries that are added in a different order on either
+/// side of the diagonal.
 static constexpr double kRounding = 0x1p-48;
 
 void SymmetricPart::find_transposed(const BlockSparse& A) {

@@ -8,23 +8,25 @@
 
 namespace palpate::linear {
 
-/// Every linear solver, by the name used in scenes, on the command line and in reports.
+/// Returns all linear solvers by the name used in scenes, on the command line and in reports.
 const dynamics::LinearSolverRegistry& linear_solver_registry();
 
-/// @throws Error for an unknown name and for settings that the solver cannot serve
+/// Builds the solver of this name from the settings in `spec`.
+/// @throws Error for an unknown name and for settings outside the solver's range
 std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name,
                                                            const IntegratorSpec& spec = {});
 
-/// Makes a solver of unsymmetric matrices from a solver of symmetric ones, by GMRES to spec.linear_rtol.
-/// Where `symmetric` is a direct solver it preconditions the body, and the border is eliminated by its Schur
-/// complement; a symmetric body takes the factor alone.  Otherwise "pcg-two-level" preconditions the whole.
-/// @param spec  its settings are the solver's
-/// @param symmetric  outlives the result, whose counters are to be added to its own; what it factors in
-///   between costs another factorisation at the next factor()
+/// Builds a solver for unsymmetric matrices: GMRES to relative tolerance spec.linear_rtol. If `symmetric` is
+/// a direct solver, the border (rigid tool) is eliminated by its Schur complement, and the factor of the
+/// body's symmetric part preconditions GMRES; a symmetric body takes the factor alone. Otherwise
+/// "pcg-two-level" preconditions the whole, and `symmetric` is not used.
+/// @param symmetric  Must outlive the result. The result's counters exclude its counts: add both. If it
+///   factors another matrix in between, the next factor() repeats the factorisation.
+/// @param spec  Settings: linear_rtol, threads.
 std::unique_ptr<dynamics::LinearSolver> make_unsymmetric_solver(dynamics::LinearSolver& symmetric,
                                                                 const IntegratorSpec& spec);
 
-/// The libraries linked here, name and version, for a result's provenance.
+/// Returns the name and version of each linked solver library, for a result's provenance.
 std::vector<std::pair<std::string, std::string>> library_versions();
 
 }  // namespace palpate::linear

@@ -16,12 +16,12 @@
 namespace palpate::linear {
 namespace {
 
-/// Fortran's dgemm: C = alpha A B + beta C.
+/// Fortran BLAS dgemm: C = alpha A B + beta C.
 using Dgemm = void (*)(const char*, const char*, const int*, const int*, const int*, const double*,
                        const double*, const int*, const double*, const int*, const double*, double*,
                        const int*);
 
-/// One small product; larger than what a BLAS computes without its buffer.
+/// Computes one small product, larger than a BLAS computes without its buffer.
 void multiply(Dgemm dgemm) {
   constexpr int n = 64;
   static std::array<double, n * n> a{}, b{}, c{};
@@ -29,8 +29,8 @@ void multiply(Dgemm dgemm) {
   dgemm("N", "N", &n, &n, &n, &one, a.data(), &n, b.data(), &n, &one, c.data(), &n);
 }
 
-/// The child's life: a product takes microseconds; a BLAS that waits for memory ends by the limit on its
-/// time.
+/// Body of the child process: the product takes microseconds; a BLAS that waits for memory is ended by the
+/// limits on its time (1 s of CPU, kLongestWait of wall time).
 [[noreturn]] void try_product(Dgemm dgemm) {
   const rlimit no_core{0, 0}, one_second{1, 1};
   ::setrlimit(RLIMIT_CORE, &no_core);
@@ -42,18 +42,20 @@ void multiply(Dgemm dgemm) {
   ::_exit(0);
 }
 
+/// Whether a product by this BLAS returns, tried in a child process.
 bool comes_back(Dgemm dgemm) {
   const pid_t child = ::fork();
   if (child == 0) try_product(dgemm);
-  if (child < 0) return true;  // no process can be had: it may come back all the same
+  if (child < 0) return true;  // fork failed: assume that it does
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+/// Runs a first product, so that the BLAS allocates its buffers; see reserve_blas_memory().
 void reserve() {
   const auto dgemm = reinterpret_cast<Dgemm>(::dlsym(RTLD_DEFAULT, "dgemm_"));
-  if (!dgemm) return;  // one whose names are others
+  if (!dgemm) return;  // a BLAS with other symbol names
   if (addresses_are_limited() && !comes_back(dgemm)) {
     const AvailableMemory left = available_memory();
     fail(

@@ -2,18 +2,23 @@
 
 namespace palpate::linear {
 
-/// Makes the BLAS take the memory that it works in, once a process, before a run needs it.  OpenBLAS maps
-/// some 128 MiB of addresses at the first product of its calling thread and keeps them; where the system
-/// denies them, it asks again for ever.  So under a limit of addresses a child process tries first.
-/// @throws Error with what is left where the BLAS does not come back
+/// Makes the BLAS allocate its work memory, once per process, before a run needs it. OpenBLAS maps some 128
+/// MiB of address space at the first product of each calling thread and keeps it; where the system denies the
+/// memory, it retries forever. Under an address-space limit the product is therefore tried in a child process
+/// first.
+/// @throws Error with the memory left if the BLAS does not return
 void reserve_blas_memory();
 
-/// Refuses a factor that does not fit, once its size is known exactly and before it is taken.
-/// @param unknowns  of the matrix  @param bytes  of the factor
+/// Rejects a factor that does not fit into memory, once its size is known exactly and before it is allocated.
+/// @param unknowns  Rows of the matrix.
+/// @param bytes  Size of the factor [bytes].
+/// @throws Error with the memory left
 void refuse_factor_beyond_memory(double unknowns, double bytes);
 
-/// Reports that an allocation of the solver failed.
-/// @throws Error with what is left
+/// Reports that an allocation of the solver library failed.
+/// @param call  Library function that failed.
+/// @param unknowns  Rows of the matrix.
+/// @throws Error with the memory left
 [[noreturn]] void fail_without_memory(const char* call, double unknowns);
 
 }  // namespace palpate::linear

@@ -13,39 +13,39 @@ namespace {
 using dynamics::BlockSparse;
 using dynamics::SolveStatus;
 
-// Which ordering?  Minimum degree (AMD) works from one elimination to the next; nested dissection (METIS)
-// cuts the mesh in halves, costs two to three analyses by AMD, and wins where separators are small against
-// what they separate: large and compact meshes.  Each predicts its flops exactly before any number is
-// touched, so both are tried once a pattern, and the cheaper is kept.  METIS sees the graph of the nodes, not
-// of their directions: the same quality for two thirds of its time.  Measured on M + h^2 K of box meshes
-// (five tetrahedra a cell, one thread, median of 7; times as ratios within one run):
+// Choice of the fill-reducing ordering. Minimum degree (AMD) is greedy, elimination by elimination; nested
+// dissection (METIS) bisects the mesh recursively, costs two to three AMD analyses, and wins where separators
+// are small relative to the parts that they separate: large and compact meshes. Both predict their flops
+// exactly before any numeric work, so both are tried once per pattern, and the cheaper is kept. METIS orders
+// the graph of the nodes, not of their directions: the same quality in two thirds of the time. Measured on
+// M + h^2 K of box meshes (five tetrahedra per cell, one thread, median of 7; times as ratios within one run;
+// last column: time of the METIS ordering over the time of the AMD factorisation):
 //
-//   body                       nodes   AMD flops / nnz(A)   flops METIS/AMD   factor METIS/AMD   ordering by
-//   METIS / factor by AMD
-//   beam 1 x 0.25 x 0.25 m      325          150               1.5                0.8-1.0                0.9
-//                             1,225          525               1.7                1.1                    1.0
-//                             3,700        2,700               1.2                1.0-1.1                0.7
-//                             6,480        5,560               0.92               1.0-1.06               0.6
-//                            11,172       11,080               0.71               0.84                   0.4
-//   cube                      1,000        1,210               0.94               0.7-0.85               0.7
-//                             2,197        3,130               0.62               0.73-0.83              0.65
-//                             4,096        7,610               0.48               0.65                   0.4
-//                             9,261       21,250               0.42               0.57                   0.26
+//   body                       nodes   AMD flops / nnz(A)   flops METIS/AMD   factor METIS/AMD   order/factor
+//   beam 1 x 0.25 x 0.25 m      325          150               1.5                0.8-1.0            0.9
+//                             1,225          525               1.7                1.1                1.0
+//                             3,700        2,700               1.2                1.0-1.1            0.7
+//                             6,480        5,560               0.92               1.0-1.06           0.6
+//                            11,172       11,080               0.71               0.84               0.4
+//   cube                      1,000        1,210               0.94               0.7-0.85           0.7
+//                             2,197        3,130               0.62               0.73-0.83          0.65
+//                             4,096        7,610               0.48               0.65               0.4
+//                             9,261       21,250               0.42               0.57               0.26
 //
-// So METIS is tried from kMetisFrom flops an entry on: there its ordering costs less than one factorisation
-// by AMD.  Time falls less than flops (AMD's large supernodes run faster): METIS is taken where it saves a
-// tenth of the flops.
+// METIS is therefore tried from kMetisFrom flops per entry on: there its ordering costs less than one AMD
+// factorisation. Time falls less than flops do (AMD's large supernodes run faster): METIS is taken where it
+// saves a tenth of the flops.
 constexpr double kMetisFrom = 2000.0;
 constexpr double kMetisTaken = 0.9;
 
-// Where contact between bodies comes, goes and rolls on, the pattern changes by a few pairs among many.  The
-// ordering found before is then as good as a new one but for some fill, and costs a fraction of it: it is
-// kept while the factor's flops stay below kStillGood of what they were when it was found.
+// When contact between bodies begins, ends and rolls on, the pattern changes by a few pairs among many. The
+// earlier ordering is then as good as a new one but for some fill, and costs a fraction of it. It is kept
+// while the factor's flops stay below kStillGood times their number when the ordering was computed.
 constexpr double kStillGood = 1.25;
 
 /// Supernodal L L^T (Chen, Davis, Hager, Rajamanickam 2008), ordered by AMD or METIS, whichever is cheaper
 /// for the mesh. Column j of the lower triangle is row j of a symmetric matrix from the diagonal on: the
-/// blocks of BlockSparse are read in their own order.
+/// blocks of BlockSparse are read in their stored order.
 class CholmodFactor final : public BodyFactor {
  public:
   CholmodFactor() {
@@ -90,7 +90,7 @@ class CholmodFactor final : public BodyFactor {
     const double* from = A.values().data();
     for (std::size_t k = 0; k < source_.size(); ++k) values_[k] = from[source_[k]];
     cholmod_sparse lower = view();
-    if (L_->xtype == CHOLMOD_PATTERN)  // the first one since the analysis, which knows its size
+    if (L_->xtype == CHOLMOD_PATTERN)  // first factor since the analysis, which yields its size
       refuse_factor_beyond_memory(static_cast<double>(n_), sizeof(double) * static_cast<double>(L_->xsize));
     cholmod_factorize(&lower, L_, &common_);
     require("cholmod_factorize");
@@ -112,7 +112,8 @@ class CholmodFactor final : public BodyFactor {
   }
 
  private:
-  /// Lower triangle in compressed columns, and for each entry the value of the block matrix that it is.
+  /// Builds the lower triangle in compressed columns, and the index of each entry in the block matrix's
+  /// values.
   void build_map(const BlockSparse& A) {
     n_ = 3 * static_cast<std::size_t>(A.block_rows());
     column_start_.assign(1, 0);
@@ -133,6 +134,7 @@ class CholmodFactor final : public BodyFactor {
     values_.assign(rows_.size(), 0.0);
   }
 
+  /// Analyses the pattern with a given ordering.
   cholmod_factor* analyse_in(std::vector<int>& order, cholmod_sparse& lower) {
     common_.method[0].ordering = CHOLMOD_GIVEN;
     cholmod_factor* out = cholmod_analyze_p(&lower, order.data(), nullptr, 0, &common_);
@@ -141,7 +143,7 @@ class CholmodFactor final : public BodyFactor {
     return out;
   }
 
-  /// Orders the nodes, three directions each in their wake.
+  /// Tries METIS on the graph of the nodes; each node's three directions are ordered consecutively.
   void try_metis(const BlockSparse& A, cholmod_sparse& lower) {
     std::vector<int> start(1, 0), neighbours;
     for (int i = 0; i < A.block_rows(); ++i) {
@@ -174,6 +176,7 @@ class CholmodFactor final : public BodyFactor {
     cholmod_free_factor(&other, &common_);
   }
 
+  /// Returns a CHOLMOD view of the lower triangle; it shares this object's memory.
   cholmod_sparse view() {
     cholmod_sparse lower{};
     lower.nrow = lower.ncol = n_;
@@ -189,7 +192,8 @@ class CholmodFactor final : public BodyFactor {
     return lower;
   }
 
-  /// Not positive definite is data; the rest is the machine's fault or ours.
+  /// Checks the status of a library call. "Not positive definite" is a result, not a failure; other errors
+  /// throw.
   void require(const char* call) const {
     if (common_.status >= CHOLMOD_OK) return;
     if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE)
@@ -201,8 +205,8 @@ class CholmodFactor final : public BodyFactor {
   cholmod_factor* L_ = nullptr;
   cholmod_dense *X_ = nullptr, *Y_ = nullptr, *E_ = nullptr;  // kept: a warm solve allocates nothing
   std::string ordering_;
-  std::vector<int> order_;  ///< as it was last computed
-  double flops_ = 0.0;      ///< of the factor then
+  std::vector<int> order_;  ///< last computed ordering
+  double flops_ = 0.0;      ///< flops of the factor at that time
   long orderings_ = 0;
   std::size_t n_ = 0;
   std::vector<int> column_start_, rows_, source_;

@@ -6,14 +6,18 @@
 
 namespace palpate::linear {
 
-/// Direct solver of a bordered matrix over any BodyFactor.  The border goes by its Schur complement:
-///     [A R] [x]   [b]      W = A^-1 R,  S = C - B W  (once a factor)
-///     [B C] [y] = [c]      z = A^-1 b,  y = S^-1 (c - B z),  x = z - W y  (once a right-hand side)
-/// so the fill of the sparse factor does not depend on how many nodes the tool touches.
-/// A matrix is refused as kSingular when a value is not finite or, by LU, a pivot is zero to rounding; also
-/// when its body alone is singular, even where the border would make the whole regular.
+/// Direct solver of a bordered matrix, for any BodyFactor. The border is eliminated by its Schur complement:
+///     [A R] [x]   [b]      W = A^-1 R,  S = C - B W  (once per factor)
+///     [B C] [y] = [c]      z = A^-1 b,  y = S^-1 (c - B z),  x = z - W y  (once per right-hand side)
+/// so that the fill of the sparse factor does not depend on the number of nodes that the tool touches.
+/// factor() returns kSingular if a value is not finite or, for LU, a pivot is zero to rounding; also if the
+/// body alone is singular, even where the border would make the whole matrix regular.
 class DirectSolver final : public dynamics::LinearSolver {
  public:
+  /// @param name  As in the registry.
+  /// @param unsymmetric  Whether `body` factors unsymmetric matrices (LU); else symmetric positive definite
+  ///   ones.
+  /// @param body  Factor of the sparse part.
   DirectSolver(std::string name, bool unsymmetric, std::unique_ptr<BodyFactor> body);
   std::string name() const override { return name_; }
   bool supports_unsymmetric() const override { return unsymmetric_; }
@@ -37,9 +41,9 @@ class DirectSolver final : public dynamics::LinearSolver {
   Eigen::Index nodal_ = -1, border_ = 0;
   dynamics::SolveStatus status_ = dynamics::SolveStatus::kSingular;
   MatX bottom_, W_, S_;   ///< border: B, A^-1 R, C - B W
-  Eigen::LLT<MatX> llt_;  ///< of S, symmetric
+  Eigen::LLT<MatX> llt_;  ///< Cholesky factor of a symmetric S
   Eigen::PartialPivLU<MatX> lu_;
-  MatX z_, y_;  ///< scratch of a solve
+  MatX z_, y_;  ///< scratch memory of a solve
 };
 
 }  // namespace palpate::linear

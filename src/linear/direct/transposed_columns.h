@@ -5,13 +5,14 @@
 
 namespace palpate::linear {
 
-/// Scalar rows of a BlockSparse read as compressed columns: those of A^T.  An LU library that takes columns
-/// factors A^T, and solves A x = b as its transposed system.
+/// Scalar rows of a BlockSparse interpreted as compressed columns: the compressed columns of A^T. An LU
+/// library with column storage factors A^T and solves A x = b as the transposed system.
 struct TransposedColumns {
   int n = 0;
-  std::vector<int> start, rows, source;  ///< source: which value of the block matrix each entry is
+  std::vector<int> start, rows, source;  ///< source: index of each entry in the block matrix's values
   std::vector<double> values;
 
+  /// Builds the pattern; values are set by fill().
   explicit TransposedColumns(const dynamics::BlockSparse& A) : n(3 * A.block_rows()) {
     start.reserve(static_cast<std::size_t>(n) + 1);
     start.push_back(0);
@@ -30,6 +31,7 @@ struct TransposedColumns {
   }
   TransposedColumns() = default;
 
+  /// Copies the values of A, whose pattern must be that of the constructor.
   void fill(const dynamics::BlockSparse& A) {
     const double* from = A.values().data();
     for (std::size_t k = 0; k < source.size(); ++k) values[k] = from[source[k]];

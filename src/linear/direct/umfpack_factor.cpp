@@ -13,7 +13,7 @@ using dynamics::BlockSparse;
 using dynamics::SolveStatus;
 
 /// Multifrontal LU with threshold pivoting (Davis 2004), symmetric strategy: the pattern is symmetric and the
-/// diagonal strong.
+/// diagonal entries are large.
 class UmfpackFactor final : public BodyFactor {
  public:
   UmfpackFactor() {

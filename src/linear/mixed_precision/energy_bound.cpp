@@ -5,7 +5,7 @@
 namespace palpate::linear {
 namespace {
 constexpr double kBelowRitz = 0.5;
-/// No eigenvalue that single precision tells from zero is so small.
+/// Smallest mu: smaller eigenvalues cannot be distinguished from zero in single precision.
 constexpr double kLeast = 1e-30;
 }  // namespace
 

@@ -17,7 +17,7 @@ bool LaggedMatrixPolicy::sure(double correction) const {
 
 void LaggedMatrixPolicy::seen(double error, double correction) {
   if (age_ == 0 || !(correction > 0.0)) return;
-  const bool again = since_seen_ == 0;  // in one step
+  const bool again = since_seen_ == 0;  // checked before in the same step
   rate_ = std::max(again ? rate_ : 0.0, error / (correction * age_));
   seen_size_ = std::max(again ? seen_size_ : 0.0, correction);
   since_seen_ = 0;

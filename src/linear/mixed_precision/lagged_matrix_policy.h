@@ -2,49 +2,51 @@
 
 namespace palpate::linear {
 
-/// Lagged-matrix policy: how long a matrix serves the steps after its own, and how sure that is.
+/// Lagged-matrix policy: decides how many later steps a matrix serves, and how often its error is checked.
 ///
-/// A correction d = Ao^-1 r by the matrix Ao of an earlier step, where A would be right, has the residual
+/// A correction d = Ao^-1 r with the matrix Ao of an earlier step, where A would be correct, has the residual
 ///     r - A d = (Ao - A) d,   an error e = A^-1 (Ao - A) d,   |e|_A = rho |d|_A.
-/// Ao - A grows with the rotation and strain of bodies since, and rho with it: a step of the matrix's age
-/// adds to it what the one before did, for a motion that goes on as it is (1e-3 to 6e-3 in steps of 1 ms on a
-/// swinging beam of 3,700 nodes, E = 1 MPa, 5e-2 in steps of 10 ms).  d is what the solutions before did not
-/// foresee, 1e-2 or less of the solution where a motion is smooth.  So e is often far below what is asked.
+/// Ao - A grows with the rotation and strain of bodies since, and rho with it: for a uniform motion every
+/// step of the matrix's age adds the same amount to rho (1e-3 to 6e-3 in steps of 1 ms on a swinging beam of
+/// 3,700 nodes, E = 1 MPa; 5e-2 in steps of 10 ms). d is the part of the solution that the initial guess from
+/// earlier solutions misses, 1e-2 of the solution or less where a motion is smooth. So e is often far below
+/// the tolerance.
 ///
-/// It is seen in the residual of the corrected solution, at the price of one more.  So it is looked at now
-/// and then, and taken to be rho |d| for the next kTrusted steps, with kSafety for what is not known of it,
-/// while corrections are of the size that they were of; in every other case it is looked at again, and what
-/// is seen of it is taken off. A step for which it would be too large has a matrix of its own.  All this is
-/// counted in steps and residuals, not in seconds: results do not depend on the machine's mood.
+/// The error is measured from the residual of the corrected solution, at the cost of one residual evaluation.
+/// It is therefore measured now and then, and estimated as rho |d|, with the safety factor kSafety, for the
+/// next kTrusted steps while corrections keep their size. Otherwise it is measured again, and the measured
+/// error is corrected. A step whose estimated error would be too large gets a new matrix. All decisions count
+/// steps and residuals, not seconds, so results do not depend on timing.
 class LaggedMatrixPolicy {
  public:
-  /// Part of a tolerance that may be left to an error which is estimated and not seen.
+  /// Fraction of the tolerance that may be taken up by an error that is estimated, not measured.
   static constexpr double kUnseen = 0.25;
 
   explicit LaggedMatrixPolicy(double rtol) : rtol_(rtol) {}
 
-  /// Whether a next step needs no matrix of its own, as far as is known; where nothing is, it is worth a try.
-  /// Begins that step.
+  /// Begins the next step and returns whether it can use the lagged matrix, by the current estimate; true
+  /// where there is no recent estimate.
   bool serves();
-  /// The step has a matrix of its own.
+  /// The step has a new matrix.
   void renew() { age_ = 0; }
-  /// Whether the error after a correction of this size, both over the solution's, needs no residual check.
+  /// Whether the error after a correction of this size needs no residual check. Sizes are relative to the
+  /// solution, in the energy norm.
   bool sure(double correction) const;
-  /// Such an error was seen.  That of a step's own matrix is its rounding, and says nothing of its age.
+  /// Records a measured error after a correction, both relative to the solution. For a step's new matrix it
+  /// is rounding and is ignored.
   void seen(double error, double correction);
-  /// Whether corrections that leave such an error shrink fast enough to go on.
+  /// Whether corrections that leave this error shrink fast enough to continue.
   static bool converges(double error, double correction) { return error < kSlow * correction; }
-  /// The step has its solution, which was foreseen up to this.
+  /// The step's solution was found; `correction` is the part that the initial guess missed, relative.
   void solved(double correction) { size_ = correction; }
-  /// It has none by this matrix.
+  /// No solution was found with this matrix in this step.
   void failed();
 
  private:
   static constexpr double kSafety = 2.0;
-  static constexpr double kSameSize =
-      2.0;  ///< how far corrections may grow from one residual check to the next
+  static constexpr double kSameSize = 2.0;  ///< most growth of corrections between residual checks
   static constexpr double kSlow = 0.1;
-  static constexpr int kTrusted = 16, kForgotten = 64;  ///< steps from a residual check on
+  static constexpr int kTrusted = 16, kForgotten = 64;  ///< steps after a residual check
 
   bool small_enough(int age, double correction) const {
     return kSafety * rate_ * age * correction <= kUnseen * rtol_;
@@ -52,10 +54,10 @@ class LaggedMatrixPolicy {
 
   double rtol_;
   int age_ = 0;
-  double rate_ = 0.0;  ///< rho, a step of age
+  double rate_ = 0.0;  ///< rho per step of age
   int since_seen_ = kForgotten;
-  double seen_size_ = 0.0;  ///< of the correction then
-  double size_ = 0.0;       ///< of the last one
+  double seen_size_ = 0.0;  ///< correction at the last check
+  double size_ = 0.0;       ///< last correction
 };
 
 }  // namespace palpate::linear

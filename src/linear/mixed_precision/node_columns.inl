@@ -1,9 +1,9 @@
-// A part of node_kernels.inl: a few vectors over the nodes together (response_columns.h), in tiles of so many
-// that their sums stay in registers: each number that is loaded is used as often as the tile is wide.  The
-// zeros behind the last node are part of every vector, and stay zero.
+// Part of node_kernels.inl: operations on several vectors over the nodes at once (response_columns.h), in
+// register tiles: each number that is loaded is used as often as the tile is wide. The zeros after the last
+// node are part of every vector, and stay zero.
 
 constexpr int kTile = 4, kTileAcross = PALPATE_LANES == 16 ? 4 : 2;
-/// Numbers that are summed in single precision before their sum is added to the others.
+/// Numbers that are summed in single precision before the sum is added to a sum in double.
 constexpr std::int64_t kSummedInSingle = 1024;
 
 PALPATE_INLINE Wide take_wide(const float* p) { return *reinterpret_cast<const WideAnywhere*>(p); }
@@ -37,7 +37,7 @@ void inner_products(int rows, int columns, const float* const* V, const float* c
     }
 }
 
-// A tile's columns beyond the last are the last once more: they load and store the same.
+// A tile's columns beyond the last repeat the last one: they load and store the same values.
 void add_columns(int from, int to, const float* const* V, const float* Y, float* const* W,
                  std::int64_t size) {
   for (int j0 = 0; j0 < to; j0 += kTileAcross)

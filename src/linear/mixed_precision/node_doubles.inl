@@ -1,9 +1,9 @@
-// A part of node_kernels.inl: what reads a matrix in double, or packed rows for a product in double.
+// Part of node_kernels.inl: kernels that read a matrix in double, or packed rows for a product in double.
 
 PALPATE_INLINE double sum3(const FourDouble& v) { return (v[0] + v[1]) + v[2]; }
 
 bool convert(const DoubleBlocks& A, double scale, float* out, int first, int last) {
-  Eight probe{};  // 0 x is no number where x is infinite or none
+  Eight probe{};  // 0 x is NaN where x is infinite or NaN
   float probe_last = 0.0f;
   const int end_of_all = A.row_start[last];
   for (int s = A.row_start[first]; s < end_of_all; ++s) {
@@ -36,7 +36,7 @@ void multiply_double(const DoubleBlocks& A, const double* v, double* Av, int fir
         __builtin_prefetch(later + 8);
       }
       double copy[10];
-      if (A.source[s] == A.last_slot) {  // the last row of a block is read with the number behind it
+      if (A.source[s] == A.last_slot) {  // loading a block's last row reads one number past the block
         for (int k = 0; k < 9; ++k) copy[k] = block[k];
         copy[9] = 0.0;
         block = copy;
@@ -51,7 +51,7 @@ void multiply_double(const DoubleBlocks& A, const double* v, double* Av, int fir
   }
 }
 
-// Products of a zero-row-sum matrix in double, half as many rows at a time.
+// Products of a zero-row-sum matrix in double, with half as many rows per vector.
 
 constexpr int kHalf = PALPATE_LANES / 2;
 typedef double Half __attribute__((vector_size(8 * kHalf)));
@@ -176,7 +176,8 @@ void multiply_zero_row_sum(const PackedRows& A, const double* mass, double unit,
   for (std::int64_t k = begin; k < end; ++k) Av[k] = unit * (Av[k] + mass[k] * v[k]);
 }
 
-// By cofactors, eight nodes in lanes.  Positive definite exactly when the leading minors are (Sylvester).
+// Inverses by cofactors, eight nodes in lanes. Positive definite exactly when the leading minors are positive
+// (Sylvester).
 bool invert_diagonal(const double* values, const int* slot, double scale, float* inverse, int first,
                      int last) {
   bool definite = true;

@@ -1,7 +1,7 @@
-// A part of node_kernels.inl: what an iteration does beside its product, on vectors over the nodes and on the
-// dense matrix of the clusters.
+// Part of node_kernels.inl: operations of an iteration other than the matrix product, on vectors over the
+// nodes and on the dense matrix of the clusters.
 
-// Vectors over the nodes, as many nodes as fit a vector at a time; those before and behind, one at a time.
+// Operations on as many nodes as fit a vector register; nodes before and after an aligned range, one by one.
 
 template <int kWidth>
 struct NodesAtATime;
@@ -39,7 +39,8 @@ struct NodesAtATime<PALPATE_LANES> {
   }
 };
 #endif
-/// work(NodesAtATime, first of these nodes); several begin at a multiple of their number.
+/// Calls work(NodesAtATime, first node) over [first, last); groups of nodes begin at a multiple of their
+/// size.
 template <class Work>
 PALPATE_INLINE void over_nodes(int first, int last, Work&& work) {
   using One = NodesAtATime<4>;
@@ -49,7 +50,7 @@ PALPATE_INLINE void over_nodes(int first, int last, Work&& work) {
   for (; i + Several::kNodes <= last; i += Several::kNodes) work(Several{}, i);
   for (; i < last; ++i) work(One{}, i);
 }
-/// A sum over nodes: four numbers, of one node or of several at a time.
+/// Sum over nodes of four numbers per node, for one node or several at a time.
 struct SumOverNodes {
   Four one{};
   Wide several{};
@@ -75,7 +76,7 @@ template <class N>
 PALPATE_INLINE typename N::Numbers cross(N, const typename N::Numbers& a, const typename N::Numbers& b) {
   return N::yzx(a * N::yzx(b) - N::yzx(a) * b);
 }
-/// Row by row: xx x + xy y + xz z is of D r, then of (xy yz xz) (y z x), then of (xz xy yz) (z x y).
+/// D r in three products: (xx yy zz) (x y z), (xy yz xz) (y z x) and (xz xy yz) (z x y).
 template <class N>
 PALPATE_INLINE typename N::Numbers times_inverse(N, const float* inverse, int i,
                                                  const typename N::Numbers& r) {
@@ -126,7 +127,7 @@ void gather_rigid(const float* r, const float* arm, float* y, int first, int las
   }
 }
 
-/// follow(nodes, i, z + rigid motion) of each node.
+/// Calls follow(nodes, i, z + rigid motion) for each node.
 template <class Follow>
 PALPATE_INLINE void with_motion(const float* z, const float* arm, const float* motion, int first, int last,
                                 Follow&& follow) {
@@ -184,8 +185,8 @@ void dense(const float* E, int stride, const float* y, float* w, int first, int 
   }
 }
 
-// Gauss and Jordan without a choice of pivots, which a positive definite matrix does not need: sweep k
-// replaces row and column k's unknown.
+// Gauss-Jordan elimination without pivoting, which a positive definite matrix does not need: sweep k
+// exchanges unknown k with right-hand side k.
 bool invert(float* E, int size, int stride) {
   for (int k = 0; k < size; ++k) {
     float* pivot_row = E + static_cast<std::int64_t>(k) * stride;
@@ -206,7 +207,7 @@ bool invert(float* E, int size, int stride) {
             factor * *reinterpret_cast<const WideAnywhere*>(pivot_row + j);
     }
   }
-  for (int i = 0; i < size; ++i)  // symmetric but for rounding: make it so
+  for (int i = 0; i < size; ++i)  // remove the asymmetry of rounding
     for (int j = 0; j < i; ++j) {
       float &low = E[static_cast<std::int64_t>(i) * stride + j],
             &high = E[static_cast<std::int64_t>(j) * stride + i];

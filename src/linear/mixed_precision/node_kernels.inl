@@ -1,6 +1,6 @@
-// The kernels of node_kernels.h for one instruction set: PALPATE_SET names it, PALPATE_LANES is its width in
-// floats (4, 8, 16). Nothing here calls a function of a library: an inline one, compiled for this set, could
-// be linked into code for another.
+// The kernels of node_kernels.h for one instruction set: PALPATE_SET is its name, PALPATE_LANES its width in
+// floats (4, 8, 16). This file must not call library functions: an inline function compiled for this set
+// could be linked into code for another.
 
 #include "linear/mixed_precision/node_kernels.h"
 
@@ -11,7 +11,7 @@ namespace PALPATE_SET {
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
 #define PALPATE_INLINE_MEMBER [[gnu::always_inline]] inline
 
-// Each uses those before it.
+// Each file uses the ones before it.
 // clang-format off
 #include "linear/mixed_precision/node_lanes.inl"
 #include "linear/mixed_precision/node_products.inl"

@@ -1,5 +1,5 @@
-// A part of node_kernels.inl: vectors, and the way between the numbers of a node and one number of many
-// nodes.
+// Part of node_kernels.inl: vector types, and the transposition between the numbers of a node and one
+// number of many nodes.
 
 typedef float Four __attribute__((vector_size(16)));
 typedef float FourAnywhere __attribute__((vector_size(16), aligned(4), may_alias));
@@ -20,12 +20,13 @@ PALPATE_INLINE double sum(Four v) {
   return (static_cast<double>(v[0]) + v[1]) + (static_cast<double>(v[2]) + v[3]);
 }
 
-// A processor's own guess of what is read next ends at every page of 4 KiB: the blocks of a product are asked
-// for so many numbers before, those of the original, which stand in another order, some rows before.
+// Prefetch distances. The hardware prefetcher stops at every 4 KiB page, so the blocks of a product are
+// prefetched this many numbers ahead, and blocks of the original matrix, which are in another order, some
+// rows ahead.
 constexpr int kFloatsAhead = 1024, kBlocksAhead = 24;
 
-// Four neighbouring lanes are the four numbers of a node, or one number of four nodes: the transposition
-// between the two is made in all quarters of a vector at once.
+// Four neighbouring lanes hold the four numbers of one node, or one number of four nodes. The transposition
+// between the two is done in all quarters of a vector at once.
 
 typedef int WideIndex __attribute__((vector_size(4 * PALPATE_LANES)));
 constexpr int kLanes = PALPATE_LANES, kParts = kLanesOfGroup / kLanes;
@@ -53,7 +54,7 @@ PALPATE_INLINE Wide high_pairs(const Wide& a, const Wide& b) {
   return __builtin_shufflevector(a, b, PALPATE_IN_QUARTERS(2, 3, kLanes + 2, kLanes + 3));
 }
 
-/// Four numbers from at[0], at[4], ... side by side.
+/// Loads four numbers each from at[0], at[4], ... into consecutive lanes.
 PALPATE_INLINE Wide every_fourth(const float* field, const int* at) {
 #if PALPATE_LANES == 4
   return load(field + at[0]);
@@ -73,7 +74,7 @@ PALPATE_INLINE Wide every_fourth(const float* field, const int* at) {
 struct Lanes3 {
   Wide x, y, z;
 };
-/// field[at[l]], field[at[l] + 1], field[at[l] + 2] in lane l.
+/// Loads field[at[l]], field[at[l] + 1], field[at[l] + 2] into lane l of x, y, z.
 PALPATE_INLINE void gather(const float* field, const int* at, Lanes3& v) {
   const Wide a = every_fourth(field, at), b = every_fourth(field, at + 1), c = every_fourth(field, at + 2),
              d = every_fourth(field, at + 3);
@@ -86,7 +87,7 @@ template <int kQuarter>
 PALPATE_INLINE Four quarter(const Wide& v) {
   return __builtin_shufflevector(v, v, 4 * kQuarter, 4 * kQuarter + 1, 4 * kQuarter + 2, 4 * kQuarter + 3);
 }
-/// The way back: put(lane, x y z 0) for each lane.
+/// Inverse of gather(): calls put(lane, x y z 0) for each lane.
 template <class Put>
 PALPATE_INLINE void each_lane(const Lanes3& v, Put&& put) {
   const Wide none{}, xy = low(v.x, v.y), z = low(v.z, none), xy_high = high(v.x, v.y),

@@ -5,32 +5,34 @@
 namespace palpate::linear {
 namespace {
 
-/// Nodes of a cluster, and most clusters: E^-1 is dense, (6 clusters)^2 numbers read in each iteration and (6
-/// clusters)^3 operations a refresh.
+/// Nodes per cluster, and most clusters: E^-1 is dense, with (6 clusters)^2 numbers to be read per iteration
+/// and (6 clusters)^3 operations per refresh.
 constexpr int kNodesOfCluster = 150, kMostClusters = 48;
-/// Nodes of its pieces.  The count of iterations hardly changes from 16 to 64, and with pieces it is with 48
-/// clusters what it is with 96 (beams of 32,400 and 99,238 nodes).
+/// Nodes per piece. The number of iterations hardly changes from 16 to 64; with pieces, 48 clusters need as
+/// many iterations as 96 (beams of 32,400 and 99,238 nodes).
 constexpr int kNodesOfPiece = 32;
-/// Nodes of a part, at most: its share of vectors and of the matrix fits a second-level cache, and few pairs
-/// of nodes are cut.  Parts come in fours, for threads to share; very small matrices have one.
+/// Most nodes per part: its share of vectors and of the matrix fits a second-level cache, and few pairs of
+/// nodes are cut. The number of parts is a multiple of four, for threads to share; very small matrices have
+/// one part.
 constexpr int kNodesOfPart = 3072, kNodesOfOnePart = 512;
 int parts_of(int nodes) {
   return nodes <= kNodesOfOnePart ? 1 : 4 * ((nodes + 4 * kNodesOfPart - 1) / (4 * kNodesOfPart));
 }
 
+/// Recursive bisection of a NodeOrder along breadth-first levels.
 class Bisection {
  public:
   Bisection(const dynamics::BlockSparse& A, NodeOrder& order)
       : A_(A), order_(order), part_(order.node.size(), 0) {}
 
-  /// Cuts nodes [first, last) of the order into `count` and appends their ends.
+  /// Divides nodes [first, last) of the order into `count` sets and appends their ends.
   void cut(int first, int last, int count, std::vector<int>& ends) {
     if (count == 1) {
       ends.push_back(last);
       return;
     }
     breadth_first(first, last, order_.node[static_cast<std::size_t>(first)]);
-    // the last reached lies at an end
+    // the node reached last is peripheral
     breadth_first(first, last, order_.node[static_cast<std::size_t>(last) - 1]);
     const int left = count / 2,
               middle = first + static_cast<int>(static_cast<long>(last - first) * left / count);
@@ -45,8 +47,8 @@ class Bisection {
  private:
   std::size_t node(int k) const { return static_cast<std::size_t>(order_.node[static_cast<std::size_t>(k)]); }
 
-  /// Puts [first, last) in the order in which a search from `root` inside this part reaches them; what hangs
-  /// apart follows from its own first node.
+  /// Sorts [first, last) in breadth-first order from `root` within the current set; other connected
+  /// components follow, each from its first node.
   void breadth_first(int first, int last, int root) {
     queue_.assign(1, root);
     const int part = part_[static_cast<std::size_t>(root)], seen = -1 - part;
@@ -82,7 +84,7 @@ class Bisection {
 NodeOrderSizes two_level_sizes(int nodes) {
   const int clusters = std::min((nodes + kNodesOfCluster - 1) / kNodesOfCluster, kMostClusters);
   int parts = std::min(parts_of(nodes), clusters);
-  // one or two in a part would differ in size by two
+  // else parts would have one or two clusters each, and differ in size by a factor of two
   if (clusters == kMostClusters && parts < clusters && 2 * parts > clusters) parts = clusters / 2;
   return {clusters, parts, nodes / kNodesOfPiece};
 }

@@ -1,10 +1,10 @@
-// A part of node_kernels.inl: what works on packed rows in single precision, products and what fills them.
+// Part of node_kernels.inl: products of packed rows in single precision, and the packing of blocks.
 
 PALPATE_INLINE Wide number(const float* values, int k) {
   return *reinterpret_cast<const WideInMemory*>(values + kLanesOfGroup * k);
 }
 
-/// B v and B^T v of the blocks at `values`.
+/// B v and B^T v for the blocks at `values`.
 PALPATE_INLINE Lanes3 times(const float* values, const Lanes3& v) {
   return {number(values, 0) * v.x + number(values, 3) * v.y + number(values, 6) * v.z,
           number(values, 1) * v.x + number(values, 4) * v.y + number(values, 7) * v.z,
@@ -16,7 +16,7 @@ PALPATE_INLINE Lanes3 transposed_times(const float* values, const Lanes3& v) {
           number(values, 6) * v.x + number(values, 7) * v.y + number(values, 8) * v.z};
 }
 
-/// Q += A P for N vectors by one part of a group; of a zero-row-sum matrix without the mass.
+/// Q += A P for N vectors, for one part of a group; for a zero-row-sum matrix without the mass term.
 template <bool kWhole, int N>
 PALPATE_INLINE void add_group(const PackedRows& A, const float* const* P, float* const* Q, int group,
                               int part) {
@@ -92,7 +92,7 @@ double product(const PackedRows& A, const float* p, float* q) {
   return sum(pq);
 }
 
-/// work(Count<n>) for n columns: their sums stay in registers.
+/// Calls work(Count<n>) for n columns, so that their sums stay in registers.
 template <int N>
 struct Count {
   static constexpr int value = N;
@@ -128,12 +128,12 @@ void multiply(const PackedRows& A, int count, const float* const* V, float* cons
       count, [&](auto n) __attribute__((always_inline)) { multiply_columns<decltype(n)::value>(A, V, AV); });
 }
 
-/// Asks for the blocks of a later place in `offset`.
+/// Prefetches the blocks of a later place in `offset`.
 PALPATE_INLINE void fetch_blocks(const BlockSource& from, std::int64_t at) {
   const int* later = from.offset + kLanesOfGroup * (at + kStepsAhead);
   for (int l = 0; l < kLanesOfGroup; ++l) __builtin_prefetch(from.values + later[l]);
 }
-/// The blocks of one part of a place in `offset`, entry (r, c) at [3 c + r].
+/// Loads the blocks of one part of a place in `offset`; entry (r, c) at [3 c + r].
 PALPATE_INLINE void take_blocks(const BlockSource& from, std::int64_t at, int part, Wide* block) {
   const int* offset = from.offset + kLanesOfGroup * at + kLanes * part;
   for (int c = 0; c < 3; ++c) {
@@ -174,7 +174,7 @@ void pack(const PackedRows& A, const BlockSource& from) {
     move(A.groups + s, A.values, s);
 }
 
-/// xx, yy, zz and yz, xz, xy of symmetric blocks.
+/// Symmetric blocks: xx, yy, zz and yz, xz, xy.
 struct Symmetric {
   Lanes3 diagonal, off;
 };
@@ -183,8 +183,8 @@ PALPATE_INLINE Symmetric symmetric_part(const Wide* block) {
           {0.5f * (block[7] + block[5]), 0.5f * (block[6] + block[2]), 0.5f * (block[3] + block[1])}};
 }
 
-/// By cofactors of the block over its trace.  Positive definite exactly when the leading minors are
-/// (Sylvester).
+/// Inverses by cofactors of the block divided by its trace. Positive definite exactly when the leading minors
+/// are positive (Sylvester).
 PALPATE_INLINE WideIndex invert_own(const Symmetric& own, float* inverse, const int* row) {
   const Wide trace = own.diagonal.x + own.diagonal.y + own.diagonal.z, by = 1.0f / trace;
   const Wide xx = by * own.diagonal.x, yy = by * own.diagonal.y, zz = by * own.diagonal.z,
@@ -208,7 +208,7 @@ PALPATE_INLINE RowStatus complete_columns(const PackedRows& A, const BlockSource
                                           float* inverse, double* trace, const float* const* V,
                                           float* const* AV) {
   set_zero<N>(A, AV);
-  float* off = sums + 4;  // eight numbers a node
+  float* off = sums + 4;  // eight numbers per node
   for (int i = A.first_node; i < A.last_node; ++i) {
     store(sums + 8 * i, Four{});
     store(off + 8 * i, Four{});
@@ -236,11 +236,11 @@ PALPATE_INLINE RowStatus complete_columns(const PackedRows& A, const BlockSource
         if (s < A.single_start[g]) add(A.column + kLanesOfGroup * s + kLanes * part, middle);
       }
       add(A.row + kLanesOfGroup * g + kLanes * part, row);
-      if constexpr (N > 0) add_group<false, N>(A, V, AV, g, part);  // while the blocks are at hand
+      if constexpr (N > 0) add_group<false, N>(A, V, AV, g, part);  // while the blocks are in cache
     }
   add_mass<N>(A, V, AV);
   WideIndex definite = WideIndex{} == 0;
-  Wide probe{};  // 0 x is no number where x is infinite or none
+  Wide probe{};  // 0 x is NaN where x is infinite or NaN
   for (int g = A.first_group; g < A.last_group; ++g)
     for (int part = 0; part < kParts; ++part) {
       const int* row = A.row + kLanesOfGroup * g + kLanes * part;

@@ -1,5 +1,5 @@
-// A part of node_kernels.inl: starts from earlier solutions, and the way between an iteration in single
-// precision and its problem in double.
+// Part of node_kernels.inl: initial guesses from earlier solutions, and transfers between an iteration in
+// single precision and its problem in double.
 
 PALPATE_INLINE void take(const float* p, FourDouble& out) {
   out = __builtin_convertvector(load(p), FourDouble);
@@ -137,7 +137,7 @@ void correct(double by, const float* d, float a, const float* p, double* x, int 
   }
 }
 
-// Between the order here and that of who calls, where a vector has three numbers a node.
+// Transfers between the order here and the caller's, in which vectors have three numbers per node.
 
 double put_nodes(const int* node, const double* x, double* out, int first, int last) {
   FourDouble largest{};

@@ -16,7 +16,7 @@ bool same(const dynamics::PointStiffness::Nodes& a, const dynamics::PointStiffne
          std::equal(a.node.begin(), a.node.begin() + a.count, b.node.begin());
 }
 
-/// A power of two with room for `count` entries that are found by open addressing.
+/// Returns the size of a hash table with open addressing for `count` entries, a power of two.
 std::size_t table_size(std::size_t count) {
   std::size_t size = 16;
   while (size < 2 * count) size *= 2;

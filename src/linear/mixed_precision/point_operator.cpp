@@ -19,7 +19,7 @@ void PointOperator::take(const dynamics::PointStiffness& points, const std::vect
   find_parts(order);
 }
 
-/// Rows of all blocks but the diagonal ones, each pair in both of its rows; C_ii = M_i - sum_j C_ij.
+/// Builds the rows of all off-diagonal blocks, each pair in both of its rows; C_ii = M_i - sum_j C_ij.
 void PointOperator::order_rows(double scale) {
   const std::vector<int>& places = blocks_.places();
   const auto single = [scale](const Mat3& C) {

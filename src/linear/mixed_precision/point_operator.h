@@ -6,34 +6,39 @@
 
 namespace palpate::linear {
 
-/// A PointStiffness as an operator beside a packed matrix, in its units (times a power of two) and in the
-/// order's numbering: products with vectors of four numbers a node, row ranges of one part at a time.  It is
-/// a block matrix of its own, made anew with each matrix: contact couples some hundred nodes where a body has
-/// 60,000 blocks.
+/// Operator form of a PointStiffness, added to the products of a packed matrix, in that matrix's units
+/// (scaled by a power of two) and in the order's numbering: products with vectors of four numbers per node,
+/// on the rows of one part at a time. It is a separate block matrix, rebuilt with each matrix: contact
+/// couples some hundred nodes, where a body has 60,000 blocks.
 ///
-/// Parts write rows of their own: they need no barrier, and results do not depend on the number of threads.
+/// Each part writes only its rows: no barrier is needed, and results do not depend on the number of threads.
 class PointOperator {
  public:
-  /// @param place_of_node  in the order's numbering  @param scale  of the packed matrix
+  /// Builds the operator.
+  /// @param place_of_node  Index of each node in the order's numbering.
+  /// @param scale  Scale of the packed matrix.
   void take(const dynamics::PointStiffness& points, const std::vector<int>& place_of_node,
             const NodeOrder& order, double scale);
+  /// Makes the operator zero.
   void clear();
   bool empty() const { return diagonal_.empty(); }
 
-  /// q += C p on the rows of a part, C in single precision; returns the part's share of p . C p.
-  /// @pre fourth numbers of p are finite
+  /// q += C p on the rows of a part, C in single precision, times `scale`; returns the part's share of
+  /// p . C p.
+  /// @pre The fourth numbers of p are finite.
   double product(std::size_t part, const float* p, float* q) const;
   /// y += C x on the rows of a part, unscaled and in double.
   void product(std::size_t part, const double* x, double* y) const;
 
-  /// What it adds to diagonal blocks, each node once, in the order of nodes.
+  /// Contribution to a diagonal block, times `scale`; one per node, in the order of the nodes.
   struct Diagonal {
     int node;
     Eigen::Matrix3f block;
   };
   const std::vector<Diagonal>& diagonal() const { return diagonal_; }
 
-  /// visit(node i, node j, block C_ij) for all pairs of nodes that it couples, each once.
+  /// Calls visit(node i, node j, block C_ij) for all pairs of nodes that the operator couples, including
+  /// i = j, each ordered pair once; blocks are times `scale`.
   template <class Visit>
   void for_each_block(Visit&& visit) const {
     for (std::size_t row = 0; row < diagonal_.size(); ++row) {
@@ -45,16 +50,18 @@ class PointOperator {
   }
 
  private:
-  /// Columns of four numbers, the last one zero: one multiplication a column in vector registers.
+  /// Block padded to columns of four numbers, the last one zero: one vector multiplication per column.
   using SingleBlock = Eigen::Matrix<float, 4, 3>;
 
+  /// Builds the block rows from blocks_.
   void order_rows(double scale);
+  /// Finds the rows of each part.
   void find_parts(const NodeOrder& order);
 
   PointBlocks blocks_;
   std::vector<Diagonal> diagonal_;
-  std::vector<int> row_start_, column_, part_start_;  ///< part_start_: first row of each part, and the last
-  std::vector<int> next_;                             ///< scratch of order_rows
+  std::vector<int> row_start_, column_, part_start_;  ///< part_start_: first row of each part; parts + 1
+  std::vector<int> next_;                             ///< scratch memory of order_rows()
   std::vector<SingleBlock> single_, single_sum_;      ///< C_ij by row, and M_i
   std::vector<Mat3> double_, double_sum_;
 };

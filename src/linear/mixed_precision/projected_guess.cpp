@@ -6,7 +6,7 @@
 
 namespace palpate::linear {
 namespace {
-/// Binary orders of magnitude between solutions that have something to do with each other.
+/// Most binary orders of magnitude between the magnitudes of related solutions.
 constexpr int kMostOrders = 60;
 }  // namespace
 
@@ -33,7 +33,7 @@ void ProjectedGuess::add_up(std::size_t part, const double* b, int first, int la
   kernels_.gram(used_, of_AV_, at_V_, at_AV_, b, first, last, partial_[part].data());
 }
 
-/// By Cholesky, column by column.  @return y . V^T b for y = of_AV_
+/// Solves by Cholesky, column by column. Returns y . V^T b for y = of_AV_.
 double ProjectedGuess::solve() {
   double* y = of_AV_;
   double L[kMostColumns][kMostColumns] = {}, c[kMostColumns] = {};
@@ -112,7 +112,7 @@ void ProjectedGuess::keep(const double* x, const double* Ax, int first, int last
   if (followed_) kernels_.difference(count_, scale_ * by_, change_, Ax, at_AV_, first, last);
 }
 
-/// The unit is that of the solution before: one pass over x is enough.
+/// The unit of V_ is taken from the solution before, so that one pass over x is enough.
 void ProjectedGuess::end_to_keep(double largest) {
   if (!(largest > 0.0) || !std::isfinite(largest)) return forget();
   next_unit_ = std::ldexp(1.0, std::ilogb(largest));

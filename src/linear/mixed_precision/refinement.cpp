@@ -11,9 +11,9 @@ namespace palpate::linear {
 using dynamics::SolveStatus;
 
 namespace {
-/// Relative tolerance of the solve for the error that comes of the matrix being a lagged one.
+/// Relative tolerance of the solve for the error due to the lagged matrix.
 constexpr double kRoughly = 0.5;
-/// Residuals that are evaluated in one solve, at most.
+/// Most residual evaluations per solve.
 constexpr int kMostResiduals = 4;
 }  // namespace
 
@@ -79,14 +79,13 @@ SolveStatus Refinement::approach(dynamics::ResidualFunction& equations, VecX& x)
   return SolveStatus::kOk;
 }
 
-/// b - A x, into residual_.
 void Refinement::evaluate_residual(dynamics::ResidualFunction& equations, VecX& x) {
   const double start = wall_seconds();
   equations.at(x, residual_);
   residuals_s_ += wall_seconds() - start;
 }
 
-/// b = (b - A x) + Ao x: the right-hand side of the copy's system.
+/// b = (b - A x) + Ao x: right-hand side of the copy's system.
 ProjectedGuess::Start Refinement::begin_with_residual() {
   const int* node = s_.copy.order().node.data();
   s_.team.for_each([&](std::size_t part, int first, int last) {
@@ -98,11 +97,12 @@ ProjectedGuess::Start Refinement::begin_with_residual() {
   return s_.choose();
 }
 
-/// Corrects the error that comes of Ao not being A.  The residual with A is residual_, of which size r is
-/// what the iteration did not solve; the rest is (Ao - A) times the last correction.  A rough solve for that
-/// rest gives its size and most of itself.  The iteration's residual is then what both solves left.
-/// @param stale  its size over the solution's  @param open  in: relative error that the iteration ended
-///   with; out: with the part of this that remains
+/// Corrects the error due to Ao != A. residual_ is the residual with A; `size` times r of it is left by the
+/// iteration, and the rest is (Ao - A) times the last correction. A rough solve for that rest yields its size
+/// and removes most of it. Afterwards the iteration's residual is the sum of what both solves left.
+/// @param stale  Out: size of the error due to the lagged matrix, relative to the solution.
+/// @param open  In: relative error at the end of the iteration. Out: plus the remaining part of the stale
+///   error.
 SolveStatus Refinement::correct_lag(double solution, double& stale, double& open) {
   const int* node = s_.copy.order().node.data();
   float* r = s_.iteration.residual().data();
@@ -126,9 +126,10 @@ SolveStatus Refinement::correct_lag(double solution, double& stale, double& open
   return SolveStatus::kOk;
 }
 
-/// Iterates from the residual that is set, until the error is below rtol of the solution, or single precision
-/// has no more to say.
-/// @param start  as EnergyBound::begin  @param open  the error then, over the solution
+/// Iterates from the residual that is set until the error is below rtol of the solution, or the reduction
+/// reaches the limit of single precision.
+/// @param start  As EnergyBound::begin.
+/// @param open  Out: remaining error relative to the solution.
 template <class Set>
 SolveStatus Refinement::descend(double start, double rtol, double& open, Set&& set_residual) {
   s_.iteration.begin(start);

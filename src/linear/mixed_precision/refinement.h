@@ -7,48 +7,54 @@
 
 namespace palpate::linear {
 
-/// Iterative refinement with a lagged matrix, that of an earlier step.  With Ao for the copy and A for the
-/// matrix of the equations, A x = b is Ao x = b - A x + Ao x: where x on the right is an approximation, this
-/// is a system with the copy for a better one, whose error is A^-1 (Ao - A) times the correction
-/// (lagged_matrix_policy.h).  Ao x needs no product: it is the right-hand side less the residual that the
-/// iteration ended with.
+/// Iterative refinement with a lagged matrix, the matrix of an earlier step. With Ao for the copy and A for
+/// the matrix of the equations, A x = b is Ao x = b - A x + Ao x: with an approximation x on the right this
+/// is a system with the copy for a better approximation, whose error is A^-1 (Ao - A) times the correction
+/// (lagged_matrix_policy.h). Ao x needs no product: it is the right-hand side minus the residual at the
+/// end of the iteration.
 ///
-/// In the same way it solves by a copy of the step's own matrix whose rounding is too coarse for a solution,
-/// but not for a correction; then the residual is checked after every correction.
+/// The same scheme serves a copy of the step's matrix whose rounding is too coarse for a solution but not for
+/// a correction; then the residual is checked after every correction.
 class Refinement {
  public:
   explicit Refinement(SolveState& state) : s_(state), lag_(state.rtol) {}
 
-  /// Memory for the copy's order.
+  /// Allocates memory for the copy's order.
   void prepare();
-  /// The copy is of a new matrix.  @param rounded  too coarsely for a solution: solve() is what solves with
-  /// it
+  /// The copy is now a new matrix.
+  /// @param rounded  Whether its rounding is too coarse for a direct solution, so that solve() must be used.
   void renew(bool rounded = false) {
     lag_.renew();
     rounded_ = own_ = rounded;
   }
-  /// The copy's own equations were solved, up to this correction of the initial guess.
+  /// The copy's equations were solved; `correction` is the relative part that the initial guess missed.
   void solved(double correction) { lag_.solved(correction); }
-  /// Whether there is an initial guess that solves with a rounded copy can begin with.
+  /// Whether there is an initial guess for refinement with a rounded copy.
   bool can_correct() const { return s_.guess.count() > 0 && !s_.iteration.first(); }
-  /// x = A^-1 b for equations whose matrix is close to the copy, with which a solution was found before; or
-  /// for those of a rounded copy.  Counts in solve_s all time but the residual's.  As
+  /// Solves A x = b for equations whose matrix is close to the copy, with which a solution was found before,
+  /// or for the equations of a rounded copy. Adds all time except the residual's to solve_s. Result as for
   /// MixedPrecisionSolver::solve_by_refinement.
   std::optional<dynamics::SolveStatus> solve(dynamics::ResidualFunction& equations, VecX& x);
 
  private:
+  /// Iterates corrections until the error is within the tolerance.
   dynamics::SolveStatus approach(dynamics::ResidualFunction& equations, VecX& x);
+  /// Evaluates residual_ = b - A x.
   void evaluate_residual(dynamics::ResidualFunction& equations, VecX& x);
+  /// Sets the right-hand side of the copy's system, b = residual_ + Ao x.
   ProjectedGuess::Start begin_with_residual();
+  /// Solves for a correction with the copy.
   template <class Set>
   dynamics::SolveStatus descend(double start, double rtol, double& open, Set&& set_residual);
+  /// Measures and corrects the error due to the lagged matrix.
   dynamics::SolveStatus correct_lag(double solution, double& stale, double& open);
 
   SolveState& s_;
   LaggedMatrixPolicy lag_;
-  bool rounded_ = false, own_ = false;  ///< own_: the next equations are the copy's own
-  VecX residual_;                       ///< the last one, in the equations' order
-  Singles open_;                        ///< residual that an iteration before the last one ended with
+  bool rounded_ = false, own_ = false;  ///< own_: the next equations are those of the copy
+  VecX residual_;                       ///< last residual, in the equations' order
+  Singles open_;                        ///< residual at the end of the previous iteration
+  /// Time spent in residual evaluations [s].
   double residuals_s_ = 0.0;
 };
 

@@ -10,7 +10,8 @@
 namespace palpate::linear {
 namespace {
 
-/// Columns that are alike to this, in squares, are one: single precision does not tell them apart.
+/// Smallest relative eigenvalue (squared column norms) of linearly independent columns: single precision
+/// cannot distinguish closer ones.
 constexpr double kAlike = 1e-5;
 
 std::vector<float*> pointers(Columns& columns) {

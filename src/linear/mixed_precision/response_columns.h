@@ -5,11 +5,11 @@
 
 namespace palpate::linear {
 
-/// A few vectors over the nodes (node_kernels.h), and what conjugate gradients on all of them does with them.
-/// Sums are over all nodes in one order: results do not depend on the number of threads.
+/// A few vectors over the nodes (node_kernels.h) with the block operations of conjugate gradients. Sums over
+/// the nodes have a fixed order: results do not depend on the number of threads.
 class Columns {
  public:
-  /// Room for `count` columns of `size` numbers each; what they hold is undefined.
+  /// Resizes to `count` columns of `size` numbers each; their contents are undefined.
   void resize(int count, std::size_t size);
   int count() const { return count_; }
   std::size_t size() const { return size_; }
@@ -20,9 +20,9 @@ class Columns {
   void swap(Columns& other) noexcept;
   void set_zero();
 
-  /// V^T W, count x other.count
+  /// Returns V^T W for V = *this, count x W.count().
   MatX inner(const Columns& W) const;
-  /// this += V Y
+  /// this += V Y, Y of V.count() x count.
   void add(const Columns& V, const MatX& Y);
 
  private:
@@ -32,9 +32,9 @@ class Columns {
   std::size_t size_ = 0;
 };
 
-/// The inverse of a symmetric positive semi-definite matrix on the space where its energy is more than
-/// rounding, in columns scaled to one; zero beside it.  Empty where an entry is not finite or a diagonal one
-/// is far below zero.
+/// Returns the pseudo-inverse of a symmetric positive semi-definite matrix: its inverse on the space where
+/// the energy exceeds rounding, zero on the complement, computed with columns scaled to a unit diagonal.
+/// Returns an empty matrix if an entry is not finite or a diagonal entry is far below zero.
 MatX pseudo_inverse(const MatX& G);
 
 }  // namespace palpate::linear

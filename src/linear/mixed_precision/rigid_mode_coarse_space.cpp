@@ -9,7 +9,7 @@
 namespace palpate::linear {
 namespace {
 
-/// The numbers of the runs that a list of starts makes, for each of their members.
+/// Returns the number of the run that each member belongs to, for runs given by a list of starts.
 std::vector<int> run_of_each(const std::vector<int>& start) {
   std::vector<int> run(static_cast<std::size_t>(start.back()));
   for (std::size_t k = 0; k + 1 < start.size(); ++k)
@@ -17,9 +17,10 @@ std::vector<int> run_of_each(const std::vector<int>& start) {
   return run;
 }
 
+/// Centre and size of a set of nodes.
 struct MeanBall {
   Vec3 centre = Vec3::Zero();
-  double radius = 0.0;  ///< root of the mean square
+  double radius = 0.0;  ///< root mean square distance from the centre
 };
 
 Eigen::Matrix3f skew(const Eigen::Vector3f& a) {
@@ -28,8 +29,9 @@ Eigen::Matrix3f skew(const Eigen::Vector3f& a) {
   return m;
 }
 
-/// A direction that no node moves in (a cluster held whole, a rotation without arms) stands alone; a tiny
-/// share of the diagonal covers rounding in the rotation of a cluster whose nodes lie on a line.
+/// Returns a regularised diagonal entry. A direction in which no node moves (a cluster held entirely, a
+/// rotation without arms) is decoupled; a tiny share of the diagonal covers rounding in the rotation of a
+/// cluster whose nodes are collinear.
 float regular(float own) { return own > 0.0f ? own * (1.0f + 1e-5f) : 1.0f; }
 
 }  // namespace
@@ -46,8 +48,8 @@ void RigidModeCoarseSpace::prepare(const NodeOrder& order) {
   E_.assign(static_cast<std::size_t>(size_) * static_cast<std::size_t>(stride_), 0.0f);
 }
 
-/// In units of the piece's mean radius, and pieces in those of the cluster's, so that rows of forces and of
-/// moments are of one size.
+/// Arms are scaled by the piece's mean radius, and pieces by the cluster's, so that rows of forces and of
+/// moments are of similar magnitude.
 void RigidModeCoarseSpace::place_arms(const NodeOrder& order, const double* positions) {
   const auto position = [&](int k) -> Vec3 {
     return positions
@@ -88,8 +90,8 @@ Eigen::Vector3f RigidModeCoarseSpace::arm_in_cluster(std::size_t node) const {
   return piece.offset + piece.radius * Eigen::Map<const Eigen::Vector3f>(arm_.data() + 4 * node);
 }
 
-/// A held direction's row is that of the identity: a node that hangs on nothing along some axis moves with no
-/// cluster.
+/// Excludes held nodes. The row of a held direction is the identity's: a node without coupling along some
+/// axis moves with no cluster.
 void RigidModeCoarseSpace::leave_out_held(const SingleMatrix& A) {
   const auto leave_out = [&](std::size_t node) {
     std::fill_n(arm_.begin() + 4 * static_cast<std::ptrdiff_t>(node), 4, 0.0f);
@@ -106,7 +108,7 @@ void RigidModeCoarseSpace::leave_out_held(const SingleMatrix& A) {
 }
 
 /// E_IJ = sum over i in I, j in J of T_i^T A_ij T_j with T_i = [I, -[arm_i]x]: for each row first G = sum_j
-/// A_ij T_j, then T_i^T G.  Likewise the blocks of D, with arms in pieces.
+/// A_ij T_j, then T_i^T G. The blocks of D are computed in the same way, with arms about the piece's centre.
 void RigidModeCoarseSpace::assemble(const SingleMatrix& A) {
   const std::vector<int>&row_start = A.row_start(), &column = A.column();
   using Single3 = Eigen::Matrix3f;
@@ -139,7 +141,7 @@ void RigidModeCoarseSpace::assemble(const SingleMatrix& A) {
         own_force += block;
         own_moment.noalias() -= block * skew(Eigen::Map<const Eigen::Vector3f>(arm_.data() + 4 * j));
       }
-      if (J < I) continue;  // the other triangle follows
+      if (J < I) continue;  // the other triangle is copied below
       add(skew(arm_in_cluster(i)), force, moment,
           Eigen::Map<Eigen::Matrix<float, 6, 6, Eigen::RowMajor>, 0, Eigen::OuterStride<>>(
               E_.data() + static_cast<std::size_t>(6 * I) * static_cast<std::size_t>(stride_) +
@@ -156,7 +158,8 @@ void RigidModeCoarseSpace::assemble(const SingleMatrix& A) {
       E_[c * static_cast<std::size_t>(stride_) + r] = E_[r * static_cast<std::size_t>(stride_) + c];
 }
 
-/// Contact resists how clusters and pieces move against each other: its blocks, as those of the matrix.
+/// Adds the stiffness of contact between clusters and between pieces: its blocks, as for the blocks of the
+/// matrix.
 void RigidModeCoarseSpace::add_points(const PointOperator& points) {
   using Block = Eigen::Matrix<float, 6, 6>;
   const auto block_of = [](const Eigen::Vector3f& arm_i, const Eigen::Matrix3f& C,
@@ -189,7 +192,7 @@ void RigidModeCoarseSpace::invert_pieces() {
     if (llt.info() == Eigen::Success)
       piece.inverse = llt.solve(Eigen::Matrix<double, 6, 6>::Identity()).cast<float>();
     else
-      piece.inverse.setZero();  // left to its cluster
+      piece.inverse.setZero();  // this piece has no correction apart from its cluster's
     piece.inverse = (0.5f * (piece.inverse + piece.inverse.transpose())).eval();
   }
 }

@@ -7,12 +7,12 @@
 namespace palpate::linear {
 namespace {
 
-/// Times that pairs may change sides.
+/// Sweeps in which pairs may move to the other row.
 constexpr int kRounds = 4;
 
 struct Entry {
-  int node;                ///< the column
-  int block, mirror = -1;  ///< of the matrix; mirror: in the column's row, where the pair shares one
+  int node;                ///< column
+  int block, mirror = -1;  ///< block indices in the matrix; mirror: in the column's row, for a shared pair
 };
 
 }  // namespace
@@ -111,7 +111,7 @@ void RowPacking::analyse(const NodeOrder& order, const std::vector<int>& row_sta
   for (int& place : place_) place += 2 * kLanesOfGroup * groups_;
   for (std::size_t i = 0; i < own_place_.size(); ++i)
     place_[static_cast<std::size_t>(row_start[i])] = 2 * own_place_[i];
-  constexpr int kReadAhead = 72;  // lines that a product asks for before it gets there
+  constexpr int kReadAhead = 72;  // cache lines that a product prefetches past the end
   own_.assign(9 * static_cast<std::size_t>(groups_), {});
   values_.assign(9 * static_cast<std::size_t>(steps_) + kReadAhead, {});
   prefer_huge_pages(values_);

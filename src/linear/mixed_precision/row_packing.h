@@ -7,29 +7,31 @@
 
 namespace palpate::linear {
 
-/// Memory of PackedRows for one pattern.  A block between two nodes of one part serves both: the shorter of
-/// their rows takes it, so that rows become alike in length and little is filled up.  Between parts each side
-/// has its own, as no one else may write to its rows.
+/// Owns the memory of PackedRows for one pattern. A block between two nodes of one part is stored once: the
+/// shorter of the two rows takes it, so that rows become similar in length and little padding is needed.
+/// Between parts each side stores the block, as a thread may write only to the rows of its parts.
 class RowPacking {
  public:
-  /// @param row_start, column  of the matrix in the order of its nodes, each row's own block first
+  /// Plans the packing for a pattern.
+  /// @param row_start  First block of each row, in the order's numbering.
+  /// @param column  Column of each block; the diagonal block is the first of its row.
   void analyse(const NodeOrder& order, const std::vector<int>& row_start, const std::vector<int>& column);
 
-  /// The rows of one part.
+  /// Returns the rows of one part; mass as in PackedRows.
   PackedRows rows(std::size_t part, const float* mass);
-  /// Blocks that have room, those that fill up included.
+  /// Returns the number of block places, padding included.
   std::size_t places() const { return kLanesOfGroup * static_cast<std::size_t>(groups_ + steps_); }
-  /// Where the k-th block of all rows, one after the other, has its place; and whether it is the transposed
-  /// one that is there.
+  /// Returns the place of the k-th block of all rows; transposed() reports whether its transpose is stored
+  /// there.
   std::size_t place(std::size_t block) const { return static_cast<std::size_t>(place_[block]) / 2; }
   bool transposed(std::size_t block) const { return place_[block] % 2 != 0; }
-  /// Entry (r, c) of it.
+  /// Returns entry (r, c) of a block.
   float entry(std::size_t block, int r, int c) const {
     const std::size_t at = place(block) / kLanesOfGroup, own = static_cast<std::size_t>(groups_);
     return (at < own ? own_[line(at, block, r, c)] : values_[line(at - own, block, r, c)])
         .number[place(block) % kLanesOfGroup];
   }
-  /// The place of a row's own block.
+  /// Returns a reference to entry (r, c) of a row's diagonal block.
   float& own_entry(std::size_t block, int r, int c) {
     return own_[line(place(block) / kLanesOfGroup, block, r, c)].number[place(block) % kLanesOfGroup];
   }

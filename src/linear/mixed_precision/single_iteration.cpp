@@ -49,7 +49,8 @@ void SingleIteration::precondition(std::size_t cluster, int first, int last) {
   partial_[cluster] = kernels_.jacobi(matrix_.inverse(), r_.data(), z_.data(), first, last) + gather(cluster);
 }
 
-/// Forces on a cluster and motions of its pieces; returns these pieces' share of r . P^-1 r.
+/// Sums the forces on a cluster and computes the motions of its pieces; returns these pieces' share of
+/// r . P^-1 r.
 double SingleIteration::gather(std::size_t cluster) {
   return coarse_on() ? clusters_.gather(cluster, matrix_.order(), kernels_, r_.data(), pieces_.data(),
                                         y_.data() + 6 * cluster)
@@ -63,7 +64,7 @@ void SingleIteration::coarse(int thread) {
                  size * (thread + 1) / threads);
 }
 
-/// r . P^-1 r
+/// Returns r . P^-1 r.
 double SingleIteration::squared_residual() const {
   double coarse = 0.0;
   if (coarse_on())
@@ -71,8 +72,8 @@ double SingleIteration::squared_residual() const {
   return sum_of(partial_) + coarse;
 }
 
-/// follow(arms, motion, first, last) on the nodes [first, last) of a cluster: of each piece, its rigid
-/// motion; null where there are none.
+/// Calls follow(arms, motion, first, last) on the nodes [first, last) of each piece of a cluster with the
+/// piece's rigid motion; once with null where there is no coarse space.
 template <class Follow>
 void SingleIteration::over_motions(std::size_t cluster, int first, int last, Follow&& follow) const {
   if (!coarse_on()) return follow(nullptr, nullptr, first, last);
@@ -109,7 +110,7 @@ double SingleIteration::orthogonal_to_last() {
                                         last);
                    });
   for (std::size_t i = 0; i < 4 * order.node.size(); ++i) zq += static_cast<double>(z_[i]) * q_[i];
-  for (Singles* v : {&w_, &pieces_}) std::fill(v->begin(), v->end(), 0.0f);  // are in z now
+  for (Singles* v : {&w_, &pieces_}) std::fill(v->begin(), v->end(), 0.0f);  // they are added to z now
   return pq_ > 0.0 ? -zq / pq_ : 0.0;
 }
 
@@ -117,11 +118,11 @@ SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spen
                                     int left, int& steps) {
   SolveStatus status = SolveStatus::kOk;
   const double rho_start = rho_in_out;
-  const bool follows = pq_ > 0.0;  // a direction that was taken before
+  const bool follows = pq_ > 0.0;  // there is a direction from before
   team_.run([&](int t) {
     EnergyBound& bound = bounds_[static_cast<std::size_t>(t)];
     double rho = rho_start, b = beta;
-    float a = 0.0f;  // the last step's length: that step is taken when its direction is read for the next one
+    float a = 0.0f;  // length of the last step, which is applied when its direction is read for the next one
     for (int k = 1;; ++k) {
       const bool first_one = k == 1 && !follows;
       const auto share = static_cast<float>(b);

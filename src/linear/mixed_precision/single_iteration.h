@@ -7,49 +7,52 @@
 
 namespace palpate::linear {
 
-/// The iteration of conjugate gradients in single precision: (A scale) d = r, from a residual r of order one,
-/// in the units of the copy.  The preconditioner is the inverse diagonal blocks, and rigid clusters where
-/// there are some.  Who drives it says how large r really is, and when the error is small enough.
+/// Conjugate gradients in single precision on (scale A) d = r, for a residual r of order one in the units of
+/// the copy. The preconditioner is block Jacobi plus, where available, the rigid-mode coarse space. The
+/// caller supplies the true magnitude of r and decides when the error is small enough.
 class SingleIteration {
  public:
   SingleIteration(const NodeKernels& kernels, ClusterTeam& team, const SingleMatrix& matrix,
                   const RigidModeCoarseSpace& clusters)
       : kernels_(kernels), team_(team), matrix_(matrix), clusters_(clusters) {}
 
+  /// Allocates memory for the copy's order.
   void prepare();
   Singles& residual() { return r_; }
-  /// Whether it found something: x += by d on nodes [first, last), where x begins with node `first`.
+  /// Whether a correction was found; correct() adds it: x += by d on nodes [first, last), where x begins with
+  /// node `first`.
   bool moved() const { return moved_; }
   void correct(double by, double* x, int first, int last) const {
     kernels_.correct(by, d_.data(), last_length_, p_.data(), x, first, last);
   }
-  /// d = 0, and the search goes on.
+  /// Sets d = 0 and continues the search.
   void clear_correction();
 
-  /// The bound of a new solve.  @param start  as EnergyBound::begin
+  /// Begins the error bound of a new solve. `start` as in EnergyBound::begin.
   void begin(double start);
+  /// Ends the error bound of a solve.
   void end();
   bool first() const { return bounds_[0].first(); }
-  /// Whether the error is below rtol of the solution's lower bound, for rho = r . P^-1 r in units of the
-  /// matrix.
+  /// Whether the error is below rtol of the solution's lower bound, or otherwise allowed, for rho = r . P^-1
+  /// r in units of the matrix.
   bool reached(double rho, double rtol) const { return reached(bounds_[0], rho, rtol); }
-  /// Upper bound of the error of the solution, squared, and lower bound of the solution's own square, for
-  /// such a rho.
+  /// Upper bound of the squared error of the solution, and lower bound of the squared solution, both in the
+  /// energy norm, for rho in units of the matrix.
   double error(double rho) const { return bounds_[0].error(rho); }
   double solution() const { return bounds_[0].solution(); }
-  /// An error whose square is no more than this is small enough too.
+  /// Also accepts an error whose square is at most this.
   void allow(double square) { allowed_ = square; }
-  /// So is one that is no more than this share of the way from the start of the solve.
+  /// Also accepts an error of at most this fraction of the distance from the start of the solve.
   void allow_share(double share) { share_ = share; }
-  /// Whether the error is below rtol of the solution, or allowed, without what allow_share() adds.
+  /// Whether the error is below rtol of the solution or allowed by allow(); allow_share() is ignored.
   bool accurate(double rho, double rtol) const {
     return bounds_[0].error(rho) <= wanted(bounds_[0], rtol) && rho <= floor_;
   }
-  /// Most that rho may be at the end, whatever the bound says.
+  /// Sets an upper limit of rho at the end, in addition to the error bound.
   void set_floor(double rho) { floor_ = rho; }
 
-  /// z = P^-1 r, of an r that set_residual(first node, last node) makes of all nodes, range by range; returns
-  /// r . z.
+  /// Computes z = P^-1 r, where set_residual(first node, last node) sets r range by range over all nodes;
+  /// returns r . z.
   template <class Set>
   double precondition(Set&& set_residual) {
     team_.run([&](int thread) {
@@ -62,19 +65,23 @@ class SingleIteration {
     });
     return squared_residual();
   }
-  /// Nothing was found and no direction has been taken yet.
+  /// Discards the last direction and the correction.
   void restart();
-  /// Iterates from z = P^-1 r until rho falls to `spent` or the error is below rtol of the solution.
-  /// @param rho   in: of precondition(); out: at the end.  @param beta  share of the last direction in the
-  ///   first one
-  /// @param unit  the matrix's energy of a unit of rho.  @param left  most iterations
+  /// Iterates from z = P^-1 r until rho falls to `spent` or reached() holds for rtol.
+  /// @param rho  In: result of precondition(); out: value at the end.
+  /// @param beta  Coefficient of the last direction in the first new one.
+  /// @param spent  Value of rho at which the residual must be recomputed.
+  /// @param unit  Matrix energy per unit of rho.
+  /// @param left  Most iterations.
+  /// @param steps  Out: iterations.
   dynamics::SolveStatus reduce(double& rho, double beta, double spent, double unit, double rtol, int left,
                                int& steps);
-  /// What rounding left in a new residual is not orthogonal to the last direction, on which the length of the
-  /// next step relies: the least error along it makes it so.
+  /// Minimises the error along the last direction after the residual was recomputed: rounding leaves a
+  /// component that is not orthogonal to that direction, on which the length of the next step relies. Returns
+  /// false if there is no last direction.
   bool minimise_along_last();
-  /// The whole of P^-1 r into z, and the share of the last direction that makes the next one orthogonal to
-  /// it: beta = -(z . A p)/(p . A p).
+  /// Applies the preconditioner, z = P^-1 r, and returns the coefficient beta = -(z . A p)/(p . A p) of the
+  /// last search direction p that makes the next one A-orthogonal to it.
   double orthogonal_to_last();
 
  private:
@@ -98,14 +105,14 @@ class SingleIteration {
   const SingleMatrix& matrix_;
   const RigidModeCoarseSpace& clusters_;
   Singles d_, r_, z_, p_, q_;
-  Singles y_, w_;   ///< of the clusters: force and moment, and their motion
-  Singles pieces_;  ///< motion of their pieces
+  Singles y_, w_;   ///< force and moment, and motion, per cluster
+  Singles pieces_;  ///< motion of each piece
   double pq_ = 0.0, floor_ = 0.0, allowed_ = 0.0, share_ = 0.0;
-  bool moved_ = false;        ///< d_ + last_length_ p_ is what was found
-  float last_length_ = 0.0f;  ///< of the last step, which d_ lacks
-  /// one a thread, all alike: each decides for itself, with nothing to wait for
+  bool moved_ = false;        ///< d_ + last_length_ p_ is the correction found
+  float last_length_ = 0.0f;  ///< length of the last step, not yet in d_
+  /// Error bounds, one per thread with identical contents: each thread decides without synchronisation.
   std::vector<EnergyBound> bounds_;
-  std::vector<double> partial_, partial_pq_;  ///< of clusters, of parts
+  std::vector<double> partial_, partial_pq_;  ///< sums per cluster and per part
 };
 
 }  // namespace palpate::linear

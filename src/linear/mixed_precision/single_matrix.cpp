@@ -16,6 +16,7 @@ using dynamics::SolveStatus;
 
 namespace {
 
+/// Pointers to the columns of a product.
 struct BorderColumns {
   const float* V[kMostColumns] = {};
   float* AV[kMostColumns] = {};
@@ -27,7 +28,7 @@ struct BorderColumns {
   }
 };
 
-/// FNV-1a, word by word, of where the block of each pair of nodes stands; never zero.
+/// Returns the FNV-1a hash, word by word, of the place of each pair's block; never zero.
 std::uint64_t key_of(const dynamics::BlockSparse& pattern, const std::vector<int>& slot_map) {
   std::uint64_t key = 0xcbf29ce484222325u;
   const auto add = [&](int word) { key = (key ^ static_cast<std::uint32_t>(word)) * 0x100000001b3u; };
@@ -88,7 +89,7 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Sin
   held_.clear();
   points_.clear();
   if (copy_.empty()) {
-    copy_.assign(9 * static_cast<std::size_t>(block_count() + 1) + kBlockTail, 0.0f);  // and a block of zeros
+    copy_.assign(9 * static_cast<std::size_t>(block_count() + 1) + kBlockTail, 0.0f);  // plus a zero block
     copy_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * block_count());
     for (std::size_t s = 0; s < column_.size(); ++s)
       if (!packing_.transposed(s)) copy_offset_[packing_.place(s)] = 9 * static_cast<int>(s);
@@ -96,7 +97,8 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Sin
     prefer_huge_pages(copy_offset_);
   }
   const double* values = A.body.values().data();
-  // A power of two near 1/(mean of the diagonal): single precision overflows where double does not.
+  // Scale: a power of two near 1/(mean of the diagonal), since single precision overflows where double does
+  // not.
   double mean = 0.0;
   for (const int slot : diagonal_slot_) mean += values[9 * static_cast<std::size_t>(slot)] / nodes();
   if (!std::isfinite(mean)) return SolveStatus::kSingular;
@@ -117,9 +119,9 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Sin
                                                                        : SolveStatus::kIndefinite;
 }
 
-/// Each pair of nodes has one block there: part by part and row by row, the rows in the order of their nodes.
-/// Elements that lie together then write what lies together, and packing meets the blocks of sixteen rows one
-/// after the other in each.
+/// Each pair of nodes has one block there, part by part and row by row, with the rows in the order of their
+/// nodes. Neighbouring elements then write to neighbouring memory, and packing reads the blocks of sixteen
+/// rows as sixteen sequential streams.
 dynamics::ZeroRowSumMatrix& SingleMatrix::room(const dynamics::BlockSparse& pattern) {
   written_.pattern = &pattern;
   if (!mass_single_.empty()) return written_;
@@ -128,7 +130,7 @@ dynamics::ZeroRowSumMatrix& SingleMatrix::room(const dynamics::BlockSparse& patt
   mass_single_.assign(4 * n + kVectorTail, 0.0f);
   sums_.assign(8 * n + kVectorTail, 0.0f);
   const int pairs = (block_count() - nodes()) / 2;
-  written_.values.assign(9 * static_cast<std::size_t>(pairs + 1) + kBlockTail, 0.0f);  // and a block of zeros
+  written_.values.assign(9 * static_cast<std::size_t>(pairs + 1) + kBlockTail, 0.0f);  // plus a zero block
   written_.slot_map.assign(column_.size(), -1);
   written_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * pairs);
   transposed_.assign(packing_.places() / kLanesOfGroup, 0);
@@ -150,7 +152,7 @@ dynamics::ZeroRowSumMatrix& SingleMatrix::room(const dynamics::BlockSparse& patt
       int& number = written_.slot_map[static_cast<std::size_t>(source_[s])];
       if (number < 0) written_.slot_map[static_cast<std::size_t>(pattern.slot(j, i))] = number = next++;
       written_offset_[at] = 9 * number;
-      // row by row is the transposed one, column by column
+      // blocks are written row-major and read column-major, that is, transposed
       if (i < j)
         transposed_[step] = static_cast<std::uint16_t>(transposed_[step] | (1u << at % kLanesOfGroup));
     }
@@ -246,8 +248,9 @@ double SingleMatrix::product(std::size_t part, const float* p, float* q) const {
   return pq;
 }
 
-// Rows and columns of held directions are the identity's: there, vectors are zero and stay so, and products
-// are made zero.  What columns carry is in the diagonal blocks of the neighbours already, as it must be.
+// Held directions: rows and columns are those of the identity. Vectors are zero there and stay so, and
+// products are set to zero. Dropping their columns is consistent: the diagonal blocks of the neighbours
+// already contain them.
 
 void SingleMatrix::find_held() {
   held_.clear();
@@ -277,7 +280,7 @@ void SingleMatrix::take_held(std::size_t part, double* v, double* values) const 
     values[h] = std::exchange(v[held_[h]], 0.0);
 }
 
-/// Own blocks of held nodes and their inverses.
+/// Sets the diagonal blocks of held nodes and their inverses.
 void SingleMatrix::hold(std::size_t part) {
   for (std::size_t h = held_start_[part]; h < held_start_[part + 1];) {
     const std::size_t node = held_[h] / 4, own = static_cast<std::size_t>(row_start_[node]);
@@ -290,7 +293,7 @@ void SingleMatrix::hold(std::size_t part) {
   }
 }
 
-/// The packed one, without what points add.
+/// Returns the packed diagonal block, without the contribution of points.
 Eigen::Matrix3f SingleMatrix::own_block(std::size_t node) const {
   Eigen::Matrix3f out;
   for (int k = 0; k < 9; ++k)
@@ -307,8 +310,8 @@ void SingleMatrix::store_inverse(std::size_t node, const Eigen::Matrix3f& block)
   }
 }
 
-/// Inverses of the own blocks of nodes in contact.  The packed own block stays without the contact's share:
-/// products add that.
+/// Updates the inverse diagonal blocks of nodes in contact. The packed diagonal block excludes the contact's
+/// share, which products add.
 void SingleMatrix::add_points_to_inverse() {
   for (const PointOperator::Diagonal& at : points_.diagonal()) {
     const auto node = static_cast<std::size_t>(at.node);

@@ -10,30 +10,32 @@
 
 namespace palpate::linear {
 
-/// Vectors over the nodes, four numbers a node (node_kernels.h), in the order's numbering.
+/// Vectors over the nodes, four numbers per node (node_kernels.h), in the order's numbering.
 using Singles = std::vector<float>;
 using Doubles = std::vector<double>;
 
-/// A symmetric step matrix in single precision with the inverses of its diagonal blocks, nodes in clusters,
-/// and its product in double precision beside it.  Made from a matrix in double, which stays where it is and
-/// is read by those products; or written by its makers as a ZeroRowSumMatrix, and then no other is needed.
+/// Symmetric step matrix in single precision with the inverses of its diagonal blocks and its nodes ordered
+/// in clusters, together with a product in double precision. The source is either a matrix in double, which
+/// must stay valid and is read by those products, or a ZeroRowSumMatrix that its assembler writes directly;
+/// the latter needs no original.
 class SingleMatrix {
  public:
   SingleMatrix(const NodeKernels& kernels, ClusterTeam& team) : kernels_(kernels), team_(team) {}
 
-  /// Order, rows and memory for a pattern.
+  /// Computes the order, the packing and the memory for a pattern.
   void analyse(const dynamics::BlockSparse& pattern, const NodeOrderSizes& sizes);
   bool analysed(const dynamics::BlockSparse& pattern) const {
     return pattern_version_ != 0 && pattern_version_ == pattern.pattern_version();
   }
 
-  /// The copy, and to[k] = scale A from[k] for `count` columns, in single precision.
+  /// Copies A, and computes to[k] = scale A from[k] for `count` columns, in single precision. Returns
+  /// kSingular if a value is not finite, kIndefinite if a diagonal block is not positive definite.
   dynamics::SolveStatus take(const dynamics::BorderedMatrix& A, int count, Singles* from, Singles* to);
-  /// Room for a zero-row-sum matrix of the pattern.  Its memory is set aside at the first call.
+  /// Returns the storage of a zero-row-sum matrix of the pattern. Its memory is allocated at the first call.
   dynamics::ZeroRowSumMatrix& room(const dynamics::BlockSparse& pattern);
-  /// take() of the matrix that was written there.  Held entries of `from` become zero.
+  /// Prepares the matrix written to room(), otherwise as take(). Held entries of `from` become zero.
   dynamics::SolveStatus take_step_matrix(int count, Singles* from, Singles* to);
-  /// The step matrix with the points that are written there now.
+  /// Replaces the points of the step matrix by those now in room().
   void renew_points();
   /// to[k] = scale A from[k], in single precision.
   void multiply(int count, const Singles* from, Singles* to);
@@ -42,7 +44,7 @@ class SingleMatrix {
 
   const NodeOrder& order() const { return order_; }
   int nodes() const { return static_cast<int>(order_.node.size()); }
-  /// q = A p on the rows of a part, in single precision; returns p . q.
+  /// q = scale A p on the rows of a part, in single precision; returns p . q.
   double product(std::size_t part, const float* p, float* q) const;
   const RowPacking& packing() const { return packing_; }
   const std::vector<int>& row_start() const { return row_start_; }
@@ -50,17 +52,17 @@ class SingleMatrix {
   int block_count() const { return static_cast<int>(column_.size()); }
   const float* inverse() const { return inverse_.data(); }
   bool zero_row_sum() const { return !original_; }
-  double scale() const { return written_.scale; }  ///< a power of two: the copy is scale A
-  /// 1 + h^2 tr K / tr M of a zero-row-sum matrix: mean stiffness of a node, over its mass.
+  double scale() const { return written_.scale; }  ///< power of two: the copy is scale A
+  /// 1 + h^2 tr K / tr M of a zero-row-sum matrix: mean ratio of a node's stiffness to its mass.
   double stiffness() const { return stiffness_; }
-  /// What stands beside the pattern of a zero-row-sum matrix; empty of a whole one.
+  /// Points of a zero-row-sum matrix (contact); empty for a whole matrix.
   const PointOperator& points() const { return points_; }
-  /// The largest stiffness that a node has from there, over its own.
+  /// Largest ratio, over the nodes, of stiffness from points to the node's stiffness in the matrix.
   double point_stiffness() const { return point_stiffness_; }
-  /// Entries of vectors, four a node, of which a zero-row-sum matrix says that each stands alone; none of a
-  /// whole one.
+  /// Indices of held entries of vectors, four per node; rows and columns of a zero-row-sum matrix are the
+  /// identity's there. Empty for a whole matrix.
   const std::vector<std::size_t>& held() const { return held_; }
-  /// Moves held entries of a part: values[h] becomes the entry held()[h] of v, and that entry zero.
+  /// Moves the held entries of a part: values[h] = v[held()[h]], which then becomes zero.
   void take_held(std::size_t part, double* v, double* values) const;
 
  private:
@@ -81,15 +83,15 @@ class SingleMatrix {
   std::uint64_t pattern_version_ = 0;
   NodeOrder order_;
   std::vector<int> place_of_node_, row_start_, column_;
-  std::vector<int> source_, diagonal_slot_;  ///< slots of the original
+  std::vector<int> source_, diagonal_slot_;  ///< slots of the original matrix
   mutable RowPacking packing_;
   const dynamics::BorderedMatrix* original_ = nullptr;  ///< null: a zero-row-sum matrix
-  Singles copy_;                                        ///< of a whole matrix, on the way to its packing
+  Singles copy_;                                        ///< copy of a whole matrix, before packing
   std::vector<int> copy_offset_;
   dynamics::ZeroRowSumMatrix written_;
   std::vector<int> written_offset_;
   std::vector<std::uint16_t> transposed_;
-  std::vector<std::size_t> held_, held_start_;  ///< by part
+  std::vector<std::size_t> held_, held_start_;  ///< held entries, and the first one of each part
   Doubles mass_;
   Singles mass_single_, sums_, inverse_;
   PointOperator points_;

@@ -21,50 +21,49 @@ using dynamics::SolveStatus;
 using dynamics::StepMatrixUse;
 using dynamics::ZeroRowSumMatrix;
 
-/// Tighter than rounding of the residual in double is not asked for.
+/// Smallest relative tolerance: below it the residual in double is rounding.
 constexpr double kTightestSingle = 1e-13;
-/// Rounding of a number in single precision, relative; and how many tolerances the bound below may come to
-/// for a body one element thick.
+/// Relative rounding error of single precision; and the admissible value, in tolerances, of the bound derived
+/// below for a body one element thick.
 constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
-/// Matrices of a pattern, after one that was too coarse, that are asked for in double: what is beside the
-/// pattern may have been the reason, and may be gone.
+/// Number of matrices of a pattern that are requested in double after one that was too coarse. The cause may
+/// have been contact outside the pattern, which may end.
 constexpr int kRefusedFor = 64;
 
-/// Conjugate gradients in single precision on a copy of the matrix (36 bytes a block where double takes 72:
-/// an iteration is one reading of it), right in double:
+/// Conjugate gradients in single precision on a copy of the matrix (36 bytes per block where double takes 72;
+/// an iteration is one pass over it), corrected in double:
 ///     r = b - A x            double, by the original matrix
 ///     A d = r                single: the iteration
 ///     x += d, and again      until the error is small enough
-/// The search goes on across a new residual (the direction is made orthogonal to the last, p . A p_last = 0),
-/// so that nothing is lost by it.  Where the tolerance is a modest reduction of the initial residual (1e-3),
-/// the first r is the last.
+/// The search continues across a new residual (the direction is made orthogonal to the last,
+/// p . A p_last = 0), so that no progress is lost. Where the tolerance is a modest reduction of the initial
+/// residual (1e-3), one residual suffices.
 ///
 /// A zero-row-sum matrix has no original: its off-diagonal blocks are in single precision from the start
-/// (single_matrix.h).  With A~ for A the solution is off by
+/// (single_matrix.h). The solution with A~ in place of A has the error
 ///     |x~ - x|_A <~ |A^-1/2 (A~ - A) A^-1/2| |x|_A.
-/// A~ - A is as indifferent to translations as K, so that of a wave of length l it takes e k (d/l)^2, e =
-/// 2^-24, with k the stiffness of a node against its neighbours at the distance d.  A itself takes m + h^2 k
-/// (d/l)^2 at least, but where the wave bends a body of thickness t, which to first order rotates its parts,
-/// m
-/// + h^2 k (d/l)^4 (t/d)^2.  The ratio is greatest where both terms are equal, and then
+/// A~ - A vanishes on translations, as K does: the energy of a wave of length l in it is e h^2 k (d/l)^2,
+/// e = 2^-24, with k the stiffness of a node against its neighbours at the distance d. In A it is at least
+/// m + h^2 k (d/l)^2, but m + h^2 k (d/l)^4 (t/d)^2 where the wave bends a body of thickness t, which to
+/// first order rotates its parts. The ratio is greatest where both terms are equal, and then
 ///     e sqrt(s) d/(2 t),   s = 1 + h^2 k/m the squared Courant-type number (auto_solver.cpp);
-/// roundings of both signs take off more.  Bodies are several elements thick; where e sqrt(s) exceeds
-/// kRoundingShare tolerances, the matrix is not taken for A: what the equations leave of an approximation is
-/// looked at, as for the matrix of an earlier step (refinement.h), and rounding then touches the corrections
-/// only.  The first approximation is the solution with A~.
+/// roundings of both signs reduce it further. Bodies are several elements thick. Where e sqrt(s) exceeds
+/// kRoundingShare tolerances, the matrix is not taken for A: the residual of the equations at an approximate
+/// solution is evaluated, as for the matrix of an earlier step (refinement.h), and rounding then affects the
+/// corrections only. The first approximation is the solution with A~.
 ///
-/// Tolerance: linear_rtol bounds the error of the solution itself, |x - x*|_A <= linear_rtol |x*|_A, by
-/// energy_bound.h.  In a step A = M + h D + h^2 K, so the norm is that of the kinetic energy of the velocity
-/// change's error plus the elastic energy that its displacement takes; a residual, which peers stop by,
-/// bounds it up to the condition number only.  Who knows an absolute error that does no harm
-/// (EnergyTolerance) is spared the digits below it.
+/// Tolerance: linear_rtol bounds the error of the solution, |x - x*|_A <= linear_rtol |x*|_A, by
+/// energy_bound.h. In a step A = M + h D + h^2 K, so the norm is the kinetic energy of the velocity change's
+/// error plus the elastic energy of its displacement. A residual test, the usual criterion, bounds this error
+/// only up to the condition number. A caller that accepts an absolute error (EnergyTolerance) saves the
+/// digits below it.
 ///
-/// Start: projected_guess.h.  Preconditioner: inverse 3x3 blocks, in `two-level` with rigid clusters beside
-/// them (rigid_mode_coarse_space.h).  Their E is made anew when what its age cost, in iterations above the
-/// fewest since it was made, has reached what a new one costs: counted in operations, not in seconds, so that
-/// results do not depend on the machine's mood.
+/// Initial guess: projected_guess.h. Preconditioner: inverse 3x3 blocks, in `two-level` plus rigid clusters
+/// (rigid_mode_coarse_space.h). Their E is recomputed when its age has cost as many additional iterations,
+/// above the fewest since it was computed, as a new one costs. The cost is counted in operations, not in
+/// seconds, so that results do not depend on timing.
 ///
-/// Results do not depend on the number of threads, bit for bit (cluster_team.h).  They do on the instruction
+/// Results are bitwise independent of the number of threads (cluster_team.h). They depend on the instruction
 /// set, by rounding.
 ///
 /// A border (a tool) changes the problem: such matrices are solved by "pcg", whose coarse space is the
@@ -203,7 +202,7 @@ class SinglePcg final : public dynamics::LinearSolver,
  private:
   int nodes() const { return copy_.nodes(); }
 
-  // --- once a pattern
+  // --- per pattern
   void analyse(const BlockSparse& pattern) {
     if (copy_.analysed(pattern)) return;
     const ScopedTimer timer(counters_.symbolic_s);
@@ -228,12 +227,12 @@ class SinglePcg final : public dynamics::LinearSolver,
     refused_for_ = kRefusedFor;
   }
 
-  /// Contact far stiffer than the nodes that it is between: rounding of its own reaches their motions too.
+  /// Whether contact is so much stiffer than the adjacent nodes that its rounding affects their motions too.
   bool points_are_coarse() const {
     return !(kSingleRounding * copy_.point_stiffness() <= kRoundingShare * rtol_);
   }
 
-  // --- once a matrix
+  // --- per matrix
   SolveStatus use_copy(const double* positions, bool rounded = false) {
     state_.guess.products_are_known(status_ == SolveStatus::kOk);
     refinement_.renew(rounded);
@@ -250,21 +249,21 @@ class SinglePcg final : public dynamics::LinearSolver,
     return coarse ? StepMatrixUse::kRefine : StepMatrixUse::kSolve;
   }
 
-  /// Refinement corrects an initial guess.  Where there is none yet, it is the solution with the rounded
-  /// matrix, whose right-hand side is the residual of zero.
+  /// Refines a first solution: refinement corrects an initial guess, and where there is none yet, the guess
+  /// is the solution with the rounded matrix, whose right-hand side is the residual of zero.
   std::optional<SolveStatus> refine_from_nothing(dynamics::ResidualFunction& equations, VecX& x) {
     x.setZero(3 * nodes());
     equations.at(x, right_hand_side_);
     {
       const ScopedTimer timer(counters_.solve_s);
       const SolveStatus status = solve_.solve(right_hand_side_.data(), x.data(), true);
-      // without a guess even now: the right-hand side is zero, and so is the solution
+      // still no guess: the right-hand side is zero, and so is the solution
       if (status != SolveStatus::kOk || !refinement_.can_correct()) return status;
     }
     return refinement_.solve(equations, x);
   }
 
-  /// Operations of a new E and D over those of an iteration.
+  /// Returns the cost of a new E and D in iterations, by operation counts.
   double price_of_clusters() const {
     if (!coarse_space_.ready()) return 0.0;
     const double size = coarse_space_.size(), blocks = copy_.block_count();
@@ -278,7 +277,7 @@ class SinglePcg final : public dynamics::LinearSolver,
     fewest_ = HUGE_VAL;
   }
 
-  // --- one right-hand side
+  // --- per right-hand side
   void check_right_hand_side(Eigen::Index rows) const {
     PALPATE_CHECK(status_ == SolveStatus::kOk && (matrix_ || use_ == StepMatrixUse::kSolve),
                   "solver {}: solve without a factor", name_);
@@ -297,7 +296,7 @@ class SinglePcg final : public dynamics::LinearSolver,
     return status;
   }
 
-  /// Of a step that solves several times.
+  /// Solves within a step that solves several times.
   Solved approach(const VecX& b, VecX& x, double share, bool again) {
     check_right_hand_side(b.rows());
     const ScopedTimer timer(counters_.solve_s);
@@ -308,7 +307,7 @@ class SinglePcg final : public dynamics::LinearSolver,
     return {status, accurate};
   }
 
-  /// What the age of E costs, for the decision in use_copy().
+  /// Adds up the iterations that the age of E costs, for the decision in use_copy().
   void account(long iterations_before) {
     const auto iterations = static_cast<double>(counters_.iterations - iterations_before);
     if (!two_level_ || iterations == 0.0) return;
@@ -324,21 +323,21 @@ class SinglePcg final : public dynamics::LinearSolver,
   ClusterTeam team_;
   dynamics::SolverCounters counters_;
   mutable dynamics::SolverCounters sum_;
-  std::unique_ptr<dynamics::LinearSolver> bordered_;  ///< made at the first matrix with a border
+  std::unique_ptr<dynamics::LinearSolver> bordered_;  ///< built at the first matrix with a border
   bool delegated_ = false;
 
-  const BorderedMatrix* matrix_ = nullptr;  ///< last given to factor(); null: a zero-row-sum one
+  const BorderedMatrix* matrix_ = nullptr;  ///< matrix of the last factor(); null: a zero-row-sum one
   const ZeroRowSumMatrix* room_ = nullptr;
   std::uint64_t refused_pattern_ = 0;  ///< 0: none
-  int refused_for_ = 0;                ///< so many matrices more
+  int refused_for_ = 0;                ///< matrices left until it is tried again
   VecX right_hand_side_;
   std::uint64_t values_version_ = 0;
-  SolveStatus status_ = SolveStatus::kSingular;  ///< of the copy
-  StepMatrixUse use_ = StepMatrixUse::kNone;     ///< of the zero-row-sum matrix
-  bool refined_ = false;                         ///< the equations of a coarse one were solved
+  SolveStatus status_ = SolveStatus::kSingular;  ///< status of the copy
+  StepMatrixUse use_ = StepMatrixUse::kNone;     ///< use of the zero-row-sum matrix
+  bool refined_ = false;                         ///< the equations of a coarse matrix were solved
   SingleMatrix copy_;
-  RigidModeCoarseSpace coarse_space_;      ///< ready in `two-level` alone
-  double lost_ = 0.0, fewest_ = HUGE_VAL;  ///< since E was made: iterations above the fewest, and these
+  RigidModeCoarseSpace coarse_space_;      ///< ready only in `two-level`
+  double lost_ = 0.0, fewest_ = HUGE_VAL;  ///< since E's refresh: iterations above the fewest, the fewest
   SolveState state_;
   SingleSolve solve_;
   Refinement refinement_;

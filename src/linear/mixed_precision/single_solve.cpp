@@ -9,10 +9,10 @@ namespace palpate::linear {
 using dynamics::SolveStatus;
 
 namespace {
-/// A solve that asks for no more than this reduction needs no residual check in double at its end.
+/// A solve to no more than this reduction needs no final residual check in double.
 constexpr double kReductionUnchecked = 1e-3;
-/// Products of the start are in single precision: their rounding error, some 1e-7 of the solution in
-/// the energy norm, is far below such a tolerance.
+/// Products of the initial guess are in single precision: their rounding error, some 1e-7 of the solution in
+/// the energy norm, is far below this tolerance.
 constexpr double kTrustsSingleStart = 1e-5;
 constexpr int kResidualReplacements = 40;
 }  // namespace
@@ -27,7 +27,8 @@ void SingleSolve::begin(bool warm) {
   s_.begin(warm);
 }
 
-/// False where it is zero.  @param guess  what the initial guess needs of it is summed
+/// Returns false where b is zero.
+/// @param guess  Whether to add up the sums that the initial guess needs.
 bool SingleSolve::take_right_hand_side(const double* b, bool guess) {
   held_.resize(s_.copy.held().size());
   const int* node = s_.copy.order().node.data();
@@ -38,7 +39,7 @@ bool SingleSolve::take_right_hand_side(const double* b, bool guess) {
       double* to = s_.b.data() + 4 * static_cast<std::ptrdiff_t>(k);
       for (int axis = 0; axis < 3; ++axis) {
         to[axis] = from[axis];
-        most = std::max(most, std::abs(from[axis]));  // a value that is not finite is found below
+        most = std::max(most, std::abs(from[axis]));  // values that are not finite are detected below
       }
     }
     s_.largest[part] = most;
@@ -65,7 +66,7 @@ SolveStatus SingleSolve::solve(const double* b, double* x, bool remember) {
     return SolveStatus::kOk;
   }
   if (const SolveStatus status = iterate(); status != SolveStatus::kOk) return status;
-  put_solution(x, remember, s_.copy.zero_row_sum());  // a next step may be solved by a zero-row-sum matrix
+  put_solution(x, remember, s_.copy.zero_row_sum());  // the next step may use a zero-row-sum matrix
   return SolveStatus::kOk;
 }
 
@@ -98,7 +99,8 @@ SolveStatus SingleSolve::iterate() {
   return SolveStatus::kOk;
 }
 
-/// @param start  energy of where it begins
+/// Iterates from the current guess.
+/// @param start  Energy of the start.
 SolveStatus SingleSolve::iterate(double start, bool residual_is_set) {
   if (!std::isfinite(s_.size)) return SolveStatus::kNotConverged;
   s_.iteration.begin(start);
@@ -115,9 +117,10 @@ SolveStatus SingleSolve::iterate(double start, bool residual_is_set) {
   return status;
 }
 
-/// @param rho  r . P^-1 r, of the residual that is set, and at the end
+/// @param rho  In: r . P^-1 r of the residual that is set; out: value at the end.
 SolveStatus SingleSolve::refine(double& rho) {
-  // At a first solve the spectrum is not known: the residual's own norm goes ten times below what is asked.
+  // In the first solve the spectrum is unknown: the preconditioned residual norm must fall to a tenth of the
+  // tolerance.
   s_.iteration.set_floor(s_.iteration.first() ? 0.01 * s_.rtol * s_.rtol * rho * s_.unit() : HUGE_VAL);
   const double unchecked =
       s_.iteration.first() ? HUGE_VAL : kReductionUnchecked * kReductionUnchecked * rho * s_.unit();
@@ -149,12 +152,12 @@ SolveStatus SingleSolve::refine(double& rho) {
   return SolveStatus::kNotConverged;
 }
 
-/// The relative error that is asked for.
+/// Returns the target relative error.
 double SingleSolve::reduction_wanted() const {
   return std::max(s_.rtol, std::sqrt(allowed_ / s_.iteration.solution()));
 }
 
-/// The residual becomes b - A x in double, at the price of about an iteration.
+/// Recomputes the residual b - A x in double, at the cost of about one iteration.
 void SingleSolve::renew_residual() {
   s_.add_correction();
   s_.copy.multiply(s_.x, Ax_);
@@ -168,7 +171,7 @@ void SingleSolve::renew_residual() {
   });
 }
 
-/// No further digit is possible: the residual is the rounding error of its own terms.
+/// Whether no further digit is possible: the residual is the rounding error of its terms.
 bool SingleSolve::at_rounding() const {
   const auto norm = [](const Doubles& v) {
     return Eigen::Map<const VecX>(v.data(), static_cast<Eigen::Index>(v.size())).norm();

@@ -5,8 +5,8 @@
 namespace palpate::linear {
 
 namespace {
-/// Solutions to start from: many for tight tolerances, few for others, where one more saves less in
-/// iterations than it costs.
+/// Solutions kept for the initial guess: many for tight tolerances, few for others, where one more saves
+/// fewer iterations than it costs.
 constexpr double kManyStarts = 1e-4;
 constexpr int kFewColumns = 3;
 }  // namespace

@@ -7,37 +7,38 @@
 
 namespace palpate::linear {
 
-/// One right-hand side of the matrix that a SingleMatrix holds, on its way to a solution: the right-hand
-/// side, the initial guess, the iteration's correction and their sum, in the copy's order.  SingleSolve and
-/// Refinement drive it.
+/// State of one solve with the matrix in a SingleMatrix: right-hand side, initial guess, the iteration's
+/// correction and their sum, in the copy's order. Used by SingleSolve and Refinement.
 class SolveState {
  public:
   SolveState(const NodeKernels& kernels, ClusterTeam& team, SingleMatrix& copy,
              const RigidModeCoarseSpace& coarse_space, double rtol, dynamics::SolverCounters& counters);
 
   static constexpr int kIterationLimit = 1000;
-  /// Single precision keeps a recurrence honest over so much of a reduction; then the residual is computed
-  /// anew, in double.
+  /// Largest residual reduction over which a recurrence in single precision stays accurate; after it the
+  /// residual is recomputed in double.
   static constexpr double kReductionInSingle = 1e-4;
 
-  /// Memory for the copy's order.
+  /// Allocates memory for the copy's order.
   void prepare();
   int nodes() const { return copy.nodes(); }
-  /// A new right-hand side; b and the guess's sums over it are for the caller to make, part by part.
+  /// Begins a new right-hand side; the caller sets b and adds up the guess's sums over it, part by part.
   void begin(bool warm);
-  /// The initial guess and its residual.
+  /// Computes the initial guess and its residual norm.
   ProjectedGuess::Start choose();
-  /// The iteration's residual: b less what the guess accounts for, on nodes [first, last).
+  /// Sets the iteration's residual: b minus A times the guess, divided by `size`, on nodes [first, last).
   void set_residual(int first, int last) {
     guess.residual(1.0 / size, b.data(), iteration.residual().data(), first, last);
   }
-  /// The solution so far into x, which it is accumulated in from now on; the iteration may find more.
+  /// Adds guess and correction to x, where the solution is accumulated from now on; the iteration may
+  /// continue.
   void add_correction();
-  /// The solution in the order and shape of its caller; returns its largest number.  @param keep  as one to
-  /// start from, with its product if `follow`
+  /// Writes the solution in the caller's order, three numbers per node; returns its largest absolute value.
+  /// @param keep  Whether to store it for later starts.
+  /// @param follow  Whether to store its product too.
   double put_solution(double* x, bool keep = false, bool follow = false);
-  /// Energies of the copy's problem (A scale) d = (b - A x)/size in units of the matrix's own: |x|_A^2 =
-  /// scale size^2 |d|^2.
+  /// Factor from energies of the copy's problem (scale A) d = (b - A x)/size to energies of the matrix:
+  /// |x|_A^2 = scale size^2 |d|^2.
   double unit() const { return copy.scale() * size * size; }
 
   const NodeKernels& kernels;
@@ -47,20 +48,19 @@ class SolveState {
   dynamics::SolverCounters& counters;
   ProjectedGuess guess;
   SingleIteration iteration;
-  Doubles b, x;  ///< x: where it is `accumulated`; else guess and correction make the solution
+  Doubles b, x;  ///< x: solution if `accumulated`; else it is guess plus correction
   bool accumulated = false;
-  double size = 0.0;  ///< the iteration's residual times this is b - A x
-  /// The part of the last remembered solution that the guess did not foresee, over the whole, in the energy
-  /// norm.
+  double size = 0.0;  ///< b - A x is this times the iteration's residual
+  /// Part of the last stored solution that the guess missed, over the whole solution, in the energy norm.
   double correction = 0.0;
-  std::vector<double> largest;  ///< one a part
+  std::vector<double> largest;  ///< largest number per part
 
  private:
-  /// Solutions and products are made a block of nodes at a time, in memory that the cache holds, where nobody
-  /// asks for the whole of them.
+  /// Nodes per block: where the whole solution or product is not needed, it is computed block by block in
+  /// cache.
   static constexpr int kNodesOfBlock = 128;
   using Block = std::array<double, 4 * kNodesOfBlock>;
-  /// The solution so far on these nodes: in `block`, or in x where it is at hand.
+  /// Returns the current solution on these nodes: in `block`, or in x where it is stored.
   const double* solution(int first, int last, Block& block) const;
 };
 

@@ -12,21 +12,21 @@
 // Block conjugate gradients (O'Leary 1980) for A X = B in single precision, P^-1 the preconditioner:
 //     Q = A P,  W = P^T Q,  a = W^-1 P^T R,  X += P a,  R -= Q a,
 //     Z = P^-1 R,  b = -W^-1 Q^T Z,  P = Z + P b.
-// Columns that have become alike are left out of a direction by a pseudo-inverse of W.  A step gains the
-// energies diag(P a)^T A (P a) = diag((P^T R)^T W^-1 P^T R), and what is missing,
-//     e_k = |x - x_k|_A^2 = gain_k + gain_k+1 + ...,
+// Linearly dependent columns are removed from a direction by a pseudo-inverse of W. A step gains the energies
+// diag(P a)^T A (P a) = diag((P^T R)^T W^-1 P^T R), and the missing part
+//     e_k = |x - x_k|_A^2 = gain_k + gain_k+1 + ...
 // is bounded column by column as for a single one (energy_bound.h), with gain/rho for the length of the step:
-// the columns help each other, gain/rho is larger than alone, and the smallest eigenvalue is taken for
-// smaller than it may be. A call that ends after a step or two learns nothing of it; what the first one
-// learned stays.
+// columns help each other, so that gain/rho is larger than for a single column, and the smallest eigenvalue
+// is taken to be smaller than it may be. A call that ends after a step or two yields no information on it;
+// the estimate of the first call is kept.
 //
-// Start: X = V (V^T A V)^-1 V^T B with V the solutions of the last call, which a right-hand side that moves
-// slowly has all but the same of, whatever combination of them it asks for.
+// Start: X = V (V^T A V)^-1 V^T B with V the solutions of the last call, which span nearly all of the
+// solutions for slowly changing right-hand sides, whatever combinations of them are requested.
 //
-// How close the bound is, over what was missing after five steps and more: 60 to 100 where a tool presses one
-// body (scrape-pumpkin, 66 columns), 1,000 to 7,000 with friction on a floor besides (two-hands, 774;
-// press-stack, 1,143).  It takes the smallest eigenvalue, which stiff points make small, at full weight,
-// however little of it a column has.
+// Tightness of the bound, relative to the missing part after five steps and more: 60 to 100 where a tool
+// presses one body (scrape-pumpkin, 66 columns), 1,000 to 7,000 with additional friction on a floor
+// (two-hands, 774; press-stack, 1,143). The bound uses the smallest eigenvalue, which stiff points make
+// small, at full weight, however small its component in a column is.
 
 namespace palpate::linear {
 
@@ -34,16 +34,19 @@ using dynamics::SolveStatus;
 
 namespace {
 
-/// Matrices that a coarse space serves.
+/// Matrices per coarse space.
 constexpr int kMatricesOfCoarse = 50;
-/// Stiffness of a node over its mass (SingleMatrix::stiffness) from which on a coarse space is worth its
-/// work: less hardly reaches beyond a node's neighbours.
+/// Ratio of stiffness to mass of a node (SingleMatrix::stiffness) from which a coarse space pays off: below
+/// it coupling hardly extends beyond a node's neighbours.
 constexpr double kWorthACoarseSpace = 8.0;
-/// A call takes one step or two, which say little of the smallest eigenvalue: what is known of it lasts.
+/// Growth of mu per call: a call takes one or two steps, which yield little information on the smallest
+/// eigenvalue, so the estimate is kept.
 constexpr double kRiseOfBound = 1.0;
-/// Before its first step a call knows rho alone, of a right-hand side that no eigenvalue was seen of.
+/// Safety factor of the bound before a call's first step: only rho is known, of a right-hand side in which no
+/// eigenvalue has been seen.
 constexpr double kUnseen = 10.0;
-/// The bound of a call of a step or two is short of what is missing by up to four, as was seen.
+/// Safety factor of the bound after one or two steps: it was observed to be too small by up to a factor of
+/// four.
 constexpr double kSafety = 10.0;
 
 }  // namespace
@@ -57,17 +60,17 @@ struct StepResponse::Impl {
   RigidModeCoarseSpace coarse;
   const dynamics::ZeroRowSumMatrix* room = nullptr;
   int coarse_age = 0;
-  bool products_of_solutions = false;  ///< they are in Q: formed while the matrix was packed and at hand
-  // the block under way
-  double unit = 1.0;  ///< of a product of two columns, in those of the caller
-  VecX norm;          ///< of each column of B: the iteration's ones are B/norm
+  bool products_of_solutions = false;  ///< A X of the last solutions is in Q, formed while packing
+  // current block of right-hand sides
+  double unit = 1.0;  ///< factor from a product of two columns to the caller's units
+  VecX norm;          ///< norm of each column of B; the iteration works on B/norm
   Columns B, R, P, Q, Z;
   MatX S;
   VecX rho, missing;
   Columns solutions;
-  std::vector<EnergyBound> bounds;  ///< of each column
+  std::vector<EnergyBound> bounds;  ///< bound per column
   long products = 0;
-  // scratch of the coarse space
+  // scratch memory of the coarse space
   Singles forces, motions, of_pieces, unused;
 
   std::size_t length() const { return 4 * static_cast<std::size_t>(copy.nodes()); }
@@ -139,7 +142,7 @@ void StepResponse::Impl::multiply(const Columns& from, Columns& to) {
   }
 }
 
-/// z += Z E^-1 Z^T r and the pieces' share (RigidModeCoarseSpace).
+/// z += Z E^-1 Z^T r + Y D^-1 Y^T r (RigidModeCoarseSpace).
 void StepResponse::Impl::precondition_coarse(Singles& r, Singles& z) {
   const NodeOrder& order = copy.order();
   for (std::size_t c = 0; c < static_cast<std::size_t>(order.clusters()); ++c)
@@ -155,7 +158,7 @@ void StepResponse::Impl::precondition_coarse(Singles& r, Singles& z) {
     }
 }
 
-/// Z = P^-1 R
+/// Z = P^-1 R; rho = diag(R^T Z).
 void StepResponse::Impl::precondition() {
   const int nodes = copy.nodes();
   for (int k = 0; k < R.count(); ++k) {

@@ -6,52 +6,57 @@
 
 namespace palpate::linear {
 
-/// How a step matrix A answers a few right-hand sides B, as far as they see it themselves:
-///     S = B^T A^-1 B,
-/// to an error that is small in a product of two answers and need not be in one.  It serves who wants a Schur
-/// complement of a large matrix onto something small (the tool that touches a body), to a percent or so, at
-/// the price of a few readings of the matrix.
+/// Computes the response of a step matrix A, projected onto a few right-hand sides B (size x columns),
+///     S = B^T A^-1 B   (columns x columns),
+/// by a truncated iteration. The error is of second order in the error of the solutions. Use: the Schur
+/// complement of a large matrix onto a small system (a tool that touches a body) to a per cent or so, at the
+/// cost of a few passes over the matrix.
 ///
-/// The method: conjugate gradients on all columns together, in single precision, from the best combination of
-/// the last call's solutions.  With X what has been found and R = B - A X,
-///     S = B^T X + X^T R + E^T A E,     E = X - A^-1 B:
-/// what is left out is quadratic in the error of X, so that columns with a tenth of error leave a hundredth
-/// in S. It is positive: S is approached from below.
+/// Method: block conjugate gradients on all columns together, in single precision, started from the best
+/// combination of the last call's solutions. With the approximate solutions X and the residual R = B - A X,
+///     S = B^T X + X^T R + E^T A E,     E = X - A^-1 B.
+/// The neglected last term is quadratic in the error of X: columns with an error of a tenth leave a hundredth
+/// in S. It is positive semi-definite, so S is approached from below.
 class StepResponse {
  public:
+  /// @param threads  Threads that share the products; results do not depend on their number.
   explicit StepResponse(int threads);
   ~StepResponse();
 
-  /// Room for a matrix of this pattern, to be written and then taken.  The pattern stays where it is until
-  /// the next call.
+  /// Returns the storage of a step matrix of this pattern, to be written by the caller and then prepared by
+  /// take_step_matrix(). `pattern` must stay valid until the next call.
   dynamics::ZeroRowSumMatrix& step_matrix(const dynamics::BlockSparse& pattern);
-  /// kIndefinite: a diagonal block is not positive definite; kSingular: not finite.
+  /// Prepares the matrix that was written to step_matrix() (preconditioner, coarse space). Returns
+  /// kIndefinite if a diagonal block is not positive definite, kSingular if a value is not finite.
   dynamics::SolveStatus take_step_matrix();
 
-  /// What contact (ZeroRowSumMatrix::points) gives a node over what it has without it, in the node where that
-  /// is most: far above one, the iteration is slow and says little of its error.
+  /// Returns the largest ratio, over the nodes, of a node's stiffness from contact (ZeroRowSumMatrix::points)
+  /// to its stiffness without contact. Where it is far above one, the iteration converges slowly and its
+  /// error bound is loose.
   double point_stiffness() const;
 
-  /// Begins with the right-hand sides B, zero along held directions; size x columns.  It starts from the last
-  /// solutions.
-  /// @return kNotConverged where the start is not finite, kIndefinite where the matrix is found to be so
+  /// Starts the iteration for the right-hand sides B, size x columns, zero along held directions, from the
+  /// best combination of the last solutions.
+  /// @returns kNotConverged if the start is not finite, kIndefinite if the matrix turns out indefinite
   dynamics::SolveStatus begin(const MatX& B);
-  /// S so far.
+  /// Returns the current approximation of S, columns x columns.
   const MatX& response() const;
-  /// What S_ii is still short of, at most, as far as is known of the matrix (energy_bound.h); the error of
-  /// S_ij is at most the root of the product of two of them.
+  /// Returns estimated upper bounds of the missing part of each S_ii (energy_bound.h); infinite while nothing
+  /// is known of the spectrum. The error of S_ij is at most the geometric mean of the bounds of S_ii and
+  /// S_jj.
   const VecX& missing() const;
-  /// What S_ii is still short of as the preconditioner has it: R^T P^-1 R, a guess by which it is known
-  /// whether a right-hand side asks for anything at all.
+  /// Returns an estimate of the missing part of each S_ii by the preconditioner, diag(R^T P^-1 R). It serves
+  /// to detect right-hand sides that need no further iteration.
   VecX residual_energies() const;
-  /// One step of the iteration: one reading of the matrix for up to five columns.
+  /// Performs one iteration: one pass over the matrix per five columns. Returns kIndefinite or kNotConverged
+  /// (a value is not finite) as begin().
   dynamics::SolveStatus advance();
-  /// X^T A X of the solutions X as they are.
+  /// Returns X^T A X of the current solutions X.
   MatX energies() const;
-  /// Column k of A^-1 B as far as it is known.
+  /// Writes the current approximation of column k of A^-1 B to x.
   void solution(Eigen::Index k, VecX& x) const;
 
-  /// Readings of the matrix so far, each for up to five columns.
+  /// Returns the number of passes over the matrix so far, each for up to five columns.
   long products() const;
 
  private:
