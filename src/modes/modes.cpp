@@ -10,41 +10,39 @@
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 
-// Free vibration M x'' + K (x - x0) = 0 with x = x0 + phi cos(w t):  K phi = l M phi, l = w^2, on the free
-// directions.
+// Free vibration M x'' + K (x - x0) = 0 with x = x0 + phi cos(w t) yields K phi = l M phi, l = w^2, on the
+// free directions.
 //
-// Shift and invert.  With A = K - s M the pencil becomes  A^-1 M phi = nu phi,  nu = 1/(l - s): the modes
-// nearest to the shift s are the largest nu, and Lanczos iteration finds those first (Ericsson and Ruhe
+// Shift and invert. With A = K - s M the pencil becomes  A^-1 M phi = nu phi,  nu = 1/(l - s): the modes
+// nearest to the shift s have the largest nu, and Lanczos iteration finds these first (Ericsson and Ruhe
 // 1980), orthogonal in the M product, in which A^-1 M is symmetric.
-//   lowest    s below the spectrum: K - s M is positive definite, and a Cholesky factor proves it.  K of a
-//   body at rest is semi-definite, zero
-//             for rigid motions of a free body, so a small negative s will do; where there is no factor (the
-//             state is an unstable
-//             equilibrium) s goes down until there is one.  Nothing then lies below s, so the modes nearest
-//             to it are the lowest.
-//   highest   s above it: s M - K is positive definite.  Doubling and bisection find s within 2 % above the
-//   highest l (Sylvester's law of inertia).
-// The unit of l is |s| and the unit of mass the mean one, so that the iteration's absolute thresholds mean
-// what they should.
+//   lowest    s below the spectrum: K - s M is positive definite, as its Cholesky factor proves.  K of a body
+//             at rest is semi-definite, zero for rigid motions of a free body, so a small negative s is
+//             sufficient; where there is no factor (the state is an unstable equilibrium) s is lowered until
+//             there is one.  No mode is below s, so the modes nearest to it are the lowest.
+//   highest   s above the spectrum: s M - K is positive definite.  Doubling and bisection find s within 2 %
+//             above the highest l (Sylvester's law of inertia).
+// The unit of l is |s| and the unit of mass is the mean mass, so that absolute thresholds of the iteration
+// are meaningful.
 //
-// Repeated modes.  One start vector sees one direction of each eigenspace; its other directions appear by
-// rounding alone, and may be missed. So the search is repeated in the M-complement of what was found, and
-// what appears there before the last one found is taken in, until nothing does.  It ends with Rayleigh-Ritz
-// on A^-1 M X: the modes of the pencil restricted to that space, M-orthonormal to rounding.
+// Repeated modes. A single start vector has a component along one direction of each eigenspace; its other
+// directions arise only by rounding, and may be missed. So the search is repeated in the M-complement of the
+// modes found, and modes found there that precede the last one are added, until there are none. The last step
+// is Rayleigh-Ritz on A^-1 M X: the modes of the pencil restricted to that space, M-orthonormal to rounding.
 //
-// Rounding.  The entries of K phi are sums that cancel: | |K||phi| | is larger than |K phi| by about
-// w_max^2/w^2, and eps times it is what K itself is known to.  A shape whose |K phi| is below 1e-12 of it is
-// a rigid motion, l = 0.
+// Rounding. The entries of K phi are sums that cancel: | |K||phi| | is larger than |K phi| by about
+// w_max^2/w^2, and eps times | |K||phi| | is the accuracy of K phi. A shape whose |K phi| is below 1e-12 of
+// it is a rigid motion, l = 0.
 
 namespace palpate::modes {
 namespace {
 
 using namespace dynamics;
 
-constexpr double kTolerance = 1e-8;  // of the residual
-constexpr double kRounding = 1e-14;  // of | |K||phi| |: below it a residual is no error
-constexpr double kRigid = 1e-12;     // of | |K||phi| |: a force below it is none
-constexpr double kLowShift = 1e-7;   // of the mean of the spectrum, tr K / tr M
+constexpr double kTolerance = 1e-8;  // Limit of the residual, relative to |K phi|.
+constexpr double kRounding = 1e-14;  // Relative to | |K||phi| |: a residual below it is rounding.
+constexpr double kRigid = 1e-12;     // Relative to | |K||phi| |: a force below it is zero.
+constexpr double kLowShift = 1e-7;   // Relative to the mean of the spectrum, tr K / tr M.
 
 /// K and M on the free directions.
 class Pencil {
@@ -71,9 +69,10 @@ class Pencil {
   const BorderedMatrix& K() const { return K_; }
   const BorderedMatrix& M() const { return M_; }
   double mean_mass() const { return trace(M_) / static_cast<double>(size()); }
-  double mean_square() const { return trace(K_) / trace(M_); }  ///< of w, were M a multiple of the identity
+  /// Mean of w^2, if M were a multiple of the identity.
+  double mean_square() const { return trace(K_) / trace(M_); }
 
-  /// | |K||x| |
+  /// Returns | |K||x| |.
   double summands(const VecX& x) const {
     full_.setZero();
     full_(free_) = x.cwiseAbs();
@@ -87,7 +86,7 @@ class Pencil {
     return sum(free_).norm();
   }
 
-  /// A = sign (K - shift M) in full size; driven rows stay an identity.
+  /// Computes A = sign (K - shift M) in full size; driven rows remain identity rows.
   void shifted(double shift, double sign, BorderedMatrix& A) const {
     if (A.body.pattern_version() != K_.body.pattern_version()) A = K_;
     const auto combine = [&](const auto& k, const auto& m) { return sign * (k - shift * m); };
@@ -127,7 +126,7 @@ class Pencil {
   mutable VecX full_, result_;
 };
 
-/// The factor of sign (K - shift M), positive definite, with the shift outside the spectrum.
+/// Factor of sign (K - shift M), positive definite, with the shift outside the spectrum.
 class ShiftedFactor {
  public:
   ShiftedFactor(const Pencil& pencil, ModesOptions::End end)
@@ -139,7 +138,7 @@ class ShiftedFactor {
   }
   double shift() const { return shift_; }
   double sign() const { return sign_; }
-  /// sign (K - shift M)^-1 b on the free directions
+  /// Returns sign (K - shift M)^-1 b on the free directions.
   VecX solve(const VecX& b) const {
     b_(pencil_.free()) = b;
     solver_->solve(b_, x_);
@@ -171,7 +170,7 @@ class ShiftedFactor {
     while (high > 1.02 * low) {
       const double middle = low > 0.0 ? std::sqrt(low * high) : 0.5 * high;
       (definite(middle) ? high : low) = middle;
-      if (high < 1e-12 * mean) break;  // no stiffness at all
+      if (high < 1e-12 * mean) break;  // There is no stiffness.
     }
     definite(high);
   }
@@ -183,7 +182,7 @@ class ShiftedFactor {
   mutable VecX b_, x_;
 };
 
-/// What Spectra asks of (K - shift M)^-1, in units of |shift| and of the mean mass, with the modes already
+/// Operator of (K - shift M)^-1 for Spectra, in units of |shift| and of the mean mass, with the modes already
 /// found projected out.
 class Inverse {
  public:
@@ -207,6 +206,7 @@ class Inverse {
   Eigen::Index size_;
 };
 
+/// Operator of M for Spectra, in units of the mean mass.
 class Mass {
  public:
   using Scalar = double;
@@ -222,14 +222,15 @@ class Mass {
   double unit_;
 };
 
-/// Entries in [-1, 1] without a pattern: fractional parts of multiples of the golden ratio.
+/// Returns entries in [-1, 1] without a pattern: fractional parts of multiples of the golden ratio.
 VecX start_vector(Eigen::Index n) {
   return VecX::NullaryExpr(n, [](Eigen::Index i) {
     return 2.0 * std::fmod(0.6180339887498949 * static_cast<double>((i + 1) * (i + 3)), 1.0) - 1.0;
   });
 }
 
-/// Up to `wanted` modes nearest to the shift in the M-complement of those found; columns M-orthonormal.
+/// Computes up to `wanted` modes nearest to the shift in the M-complement of `found`; the columns are
+/// M-orthonormal.
 MatX lanczos(const Pencil& pencil, const ShiftedFactor& factor, Eigen::Index wanted, const MatX& found) {
   const Eigen::Index n = pencil.size();
   const double unit_mass = pencil.mean_mass();
@@ -246,13 +247,14 @@ MatX lanczos(const Pencil& pencil, const ShiftedFactor& factor, Eigen::Index wan
   return solver.eigenvectors(got) / std::sqrt(unit_mass);
 }
 
-/// l and shapes of the pencil restricted to the span of X, ordered from the shift's end of the spectrum.
+/// Eigenvalues l and shapes of the pencil restricted to a subspace, ordered from the shift's end of the
+/// spectrum.
 struct Pairs {
   VecX squared;
   MatX shapes;
 };
 Pairs ordered(const VecX& squared, const MatX& shapes, bool lowest, Eigen::Index wanted) {
-  const Eigen::Index count = std::min(wanted, squared.size());  // ascending from the dense solver
+  const Eigen::Index count = std::min(wanted, squared.size());  // Ascending from the dense solver.
   if (lowest) return {squared.head(count), shapes.leftCols(count)};
   return {squared.tail(count).reverse(), shapes.rightCols(count).rowwise().reverse()};
 }
@@ -273,7 +275,7 @@ Pairs all_by_dense(const Pencil& pencil, bool lowest, Eigen::Index wanted) {
   return ordered(solver.eigenvalues(), solver.eigenvectors(), lowest, wanted);
 }
 
-/// The search, repeated in the complement of what was found until nothing appears before the last one.
+/// Repeats the search in the complement of the modes found until no mode precedes the last one.
 Pairs by_lanczos(const Pencil& pencil, const ShiftedFactor& factor, bool lowest, Eigen::Index wanted) {
   Pairs pairs =
       rayleigh_ritz(pencil, lanczos(pencil, factor, wanted, MatX(pencil.size(), 0)), lowest, wanted);
@@ -294,7 +296,7 @@ Pairs by_lanczos(const Pencil& pencil, const ShiftedFactor& factor, bool lowest,
   return rayleigh_ritz(pencil, X, lowest, wanted);
 }
 
-/// Directions carried by a master move with it: v = G u_master, the linear part of what the system imposes.
+/// Returns the shape with driven directions: v = G u_master, the linear part of the imposed velocities.
 VecX with_driven(const System& system, const StateView& state, const VecX& shape) {
   if (!system.any_driven()) return shape;
   VecX q = state.q, still = VecX::Zero(shape.size()), moving = shape;
