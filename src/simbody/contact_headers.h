@@ -1,8 +1,8 @@
 #pragma once
 #include "simbody/headers.h"
 
-// Simbody's own contact, which is measured against ours and used for nothing else.  As in headers.h, it must
-// see the setting of NDEBUG that the library was built with.
+// Headers of Simbody's contact model, which is used only for comparison with palpate's. As in headers.h, they
+// must see the setting of NDEBUG that the library was built with.
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #ifdef PALPATE_SIMBODY_NDEBUG

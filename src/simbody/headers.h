@@ -1,9 +1,9 @@
 #pragma once
 
-// Simbody's headers lay out classes by NDEBUG (CacheEntryInfo has members without it), and inline code in
-// them touches objects that the library made: they must see the setting that the library was built with.
-// Debian's is built without NDEBUG; with it here, realizeTopology crashes.  CMake asks the library and sets
-// PALPATE_SIMBODY_NDEBUG.
+// The class layout in Simbody's headers depends on NDEBUG (CacheEntryInfo has members without it), and inline
+// code in them accesses objects made by the library: they must see the setting that the library was built
+// with. Debian's library is built without NDEBUG; if the headers see NDEBUG, realizeTopology crashes. CMake
+// checks the library and sets PALPATE_SIMBODY_NDEBUG.
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #ifdef PALPATE_SIMBODY_NDEBUG
@@ -13,9 +13,9 @@
 
 #include <SimTKcommon/internal/common.h>
 
-// C++20 also tries a == b as b == a, which leaves Simbody 3.7's comparison of two of its index objects
-// ambiguous (each converts to int and has members for every integer type).  An exact match, declared before
-// the headers that need it, settles it.
+// C++20 also tries a == b as b == a, which makes Simbody 3.7's comparison of two of its index objects
+// ambiguous (each converts to int and has members for every integer type). An exact match, declared before
+// the headers that need it, resolves the ambiguity.
 namespace SimTK {
 template <class Index>
 concept UniqueIndex = requires(Index i) {
