@@ -33,8 +33,8 @@ void CondensedNewton::evaluate_matrices() {
   gamma_ = 0.0;
 }
 
-// All three carry the identity in driven rows, which then hold 1 + gamma + gamma^2: any positive number
-// serves there.
+// M, D and K have the identity in driven rows. Their combination holds 1 + gamma + gamma^2 there, which is
+// positive, as required.
 void CondensedNewton::combine(double gamma) {
   if (A_.body.pattern_version() != M_.body.pattern_version() || A_.border_size() != M_.border_size()) A_ = M_;
   const auto map = [](const BorderedMatrix& B) {
@@ -63,19 +63,19 @@ SolveStatus CondensedNewton::factor(double gamma) {
 }
 
 // A = M + gamma D + gamma^2 K is at least M where tangents are not negative, and a consistent mass at least
-// half its diagonal (a tetrahedron's own: 1/20 (I + 1 1^T) over 1/10, eigenvalues from 1/2).  So with masses
-// m
+// half its diagonal (for a tetrahedron: 1/20 (I + 1 1^T) over 1/10, eigenvalues from 1/2). So with masses m
 //     e . A e >= c sum m_i e_i^2,    c = 1, or 1/2 where masses are not lumped,
 //     mean (w e)^2 = 1/n sum (w_u,i^2 + gamma^2 w_q,i^2) e_i^2 <= 1/(c n) max_i ((..)/m_i)  e . A e,
-// and |e|_A <= error sqrt(c n / max) keeps the weighted norm below `error`.  The maximum is that of the
-// lightest node, and elastic parts of e have more energy than their mass: it is a bound, met by a margin.
+// and |e|_A <= error sqrt(c n / max) keeps the weighted norm below `error`. The maximum is attained at the
+// lightest node, and elastic components of e have more energy than their mass alone accounts for: the bound
+// is met with a margin.
 void CondensedNewton::limit_error(const Layout& layout, const double* w, double error) {
   double largest = 0.0;
   for (int i = 0; i < layout.nodal_size; ++i) {
     if (system_.driven_mask()[static_cast<std::size_t>(i)]) continue;
     const double wq = gamma_ * w[i], wu = w[layout.q_size + i],
                  m = M_.body.block(M_.body.diagonal(i / 3))[4 * (i % 3)];
-    if (!(m > 0.0)) return tolerance_->allow_error(0.0);  // no bound
+    if (!(m > 0.0)) return tolerance_->allow_error(0.0);  // No bound.
     largest = std::max(largest, (wq * wq + wu * wu) / m);
   }
   double c = 1.0;
@@ -85,7 +85,8 @@ void CondensedNewton::limit_error(const Layout& layout, const double* w, double 
   tolerance_->allow_error(largest > 0.0 ? error * std::sqrt(c * n / largest) : 0.0);
 }
 
-/// Solves for du_; right_hand_side() writes rhs_ by the matrices that then stand.
+/// Solves for du_. right_hand_side() writes rhs_ from the matrices M, D and K that are current when it is
+/// called.
 template <class RightHandSide>
 SolveStatus CondensedNewton::solve_for(RightHandSide&& right_hand_side) {
   const double gamma = gamma_;
@@ -102,7 +103,7 @@ SolveStatus CondensedNewton::solve_for(RightHandSide&& right_hand_side) {
   return status;
 }
 
-/// theta = N+ r1; zero along driven directions, and with nodes_only on blocks with kinematics.
+/// Computes theta = N+ r1; zero along driven directions, and with nodes_only on blocks with kinematics.
 void CondensedNewton::left_inverse(const Layout& layout, const double* q, const double* r1, bool nodes_only) {
   theta_.resize(layout.u_size);
   for (const Block& b : layout.blocks) {

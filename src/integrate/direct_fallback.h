@@ -5,27 +5,29 @@
 
 namespace palpate::integrate {
 
-/// A chosen linear solver with others behind it, each made at the first matrix that needs it: for unsymmetric
-/// matrices that it does not take, an iteration preconditioned by its factor of the symmetric part
-/// (linear::make_unsymmetric_solver); Cholesky where the matrix has such a factor; LU where it has none.
-/// Knows one matrix at a time and who solves with it; when to fall back is for its owner to say.
+/// A linear solver chosen by the user, with three fallbacks that are made at the first matrix that needs
+/// them. For unsymmetric matrices that the chosen solver does not support: an iteration preconditioned by its
+/// factor of the symmetric part (linear::make_unsymmetric_solver). Cholesky, where the matrix has such a
+/// factor. LU otherwise.
+/// The object holds one matrix at a time and the solver in use; its owner decides when to fall back.
 class DirectFallback {
  public:
   DirectFallback(std::unique_ptr<dynamics::LinearSolver> chosen, const IntegratorSpec& spec);
 
   dynamics::LinearSolver& chosen() { return *chosen_; }
   const dynamics::LinearSolver& chosen() const { return *chosen_; }
-  /// Whether the matrix last factored is the chosen solver's, or the iteration's over it.
+  /// Returns whether the matrix last factored was factored by the chosen solver, or by the iteration that
+  /// uses it.
   bool by_chosen() const { return active_ == chosen_.get() || active_ == unsymmetric_.get(); }
 
-  /// By the chosen solver, or the iteration over it.
+  /// Factors A by the chosen solver, or prepares the iteration that uses it.
   dynamics::SolveStatus factor(const dynamics::BorderedMatrix& A);
-  /// Without iterations: by Cholesky, at a third of LU's time, unless the chosen solver has just found that
-  /// there is no such factor; else by LU.
+  /// Factors A directly: by Cholesky, at a third of LU's time, where A is symmetric and the chosen solver is
+  /// not "cholmod" (whose factorisation has normally failed already); else by LU.
   dynamics::SolveStatus factor_direct(const dynamics::BorderedMatrix& A);
-  /// kIndefinite: a symmetric matrix has no Cholesky factor.
+  /// Factors A by Cholesky. Returns kIndefinite where a symmetric matrix has no such factor.
   dynamics::SolveStatus factor_by_cholesky(const dynamics::BorderedMatrix& A);
-  /// Counted: "integrate.matrices_left_to_lu".
+  /// Factors A by LU. Counted as "integrate.matrices_left_to_lu".
   dynamics::SolveStatus factor_by_lu(const dynamics::BorderedMatrix& A);
 
   template <class Columns>
@@ -33,7 +35,7 @@ class DirectFallback {
     return active_->solve(b, x);
   }
   long left_to_lu() const { return left_to_lu_; }
-  /// Sum over all solvers.
+  /// Returns the sum over all solvers.
   const dynamics::SolverCounters& counters() const;
 
  private:

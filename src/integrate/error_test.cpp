@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kHighestBdf = 5;
 
-/// The power of rtol that a test is held to, (m+1)/p.
+/// Returns the power of rtol in the tolerance of the test, (m+1)/p.
 double bdf_power(const IntegratorSpec& spec) {
   const double k = spec.max_order > 0 ? spec.max_order : kHighestBdf;
   return (k + 1.0) / k;
@@ -21,8 +21,8 @@ const ArkCalibration& calibration(const IntegratorSpec& spec) {
   return ark_calibration(ark_method(spec.name));
 }
 
-/// The rtol whose test is the tightest, to two digits.  Where T is above rtol it is the solution, better than
-/// its test, that meets rounding first.
+/// Returns the rtol at which the test has its tightest tolerance, rounded up to two digits. Where T is above
+/// rtol, the solution is more accurate than the test, and rounding limits the solution first.
 double tightest(double power, double factor = 1.0, double other = 0.0) {
   const double by_test = std::pow(tuning::kTightestErrorTest / factor, 1.0 / power),
                exact = std::max({by_test, tuning::kTightestErrorTest, other}),
@@ -30,7 +30,8 @@ double tightest(double power, double factor = 1.0, double other = 0.0) {
   return std::ceil(exact * scale * (1.0 - 1e-9)) / scale;
 }
 
-/// Steps of h take 1/h roundings of the motion in a radian, and c a h^p = rtol: together a third of rtol.
+/// Returns the rtol at which rounding errors amount to a third of it. A step h causes 1/h roundings of the
+/// motion per radian, and c a h^p = rtol.
 double rounding_of(const ArkCalibration& c) {
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon() / 2.0;
   const double by_step = std::pow(c.error * kUsualMotion, 1.0 / c.order);

@@ -7,19 +7,19 @@ namespace {
 
 using dynamics::Block;
 
-/// Not zero: CVODE inverts the weights when it looks for a first step.
+/// Not zero: CVODE divides by the weights when it selects its first step.
 constexpr double kNoWeight = 1e-30;
 
 bool marked(const std::vector<char>& mask, int i) {
   return !mask.empty() && mask[static_cast<std::size_t>(i)] != 0;
 }
 
-/// The weights of the velocities of a block that are angular, or of those that are not.
+/// Sets the weights of the angular velocities of a block, or of its other velocities.
 void fill_u(const IntegratorSpec& spec, const Block& b, bool angular, const double* u, double* w) {
   const auto weight = [&](double norm, int count, double scale) {
     return 1.0 / (spec.rtol * (spec.atol_u * scale + norm / std::sqrt(static_cast<double>(count))));
   };
-  if (b.angles_u.empty()) {  // nodes: many
+  if (b.angles_u.empty()) {  // Nodes: many entries.
     if (!angular && b.u_size > 0)
       Eigen::Map<VecX>(w, b.u_size)
           .setConstant(weight(Eigen::Map<const VecX>(u, b.u_size).norm(), b.u_size, b.u_scale));

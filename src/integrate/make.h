@@ -2,7 +2,7 @@
 #include "palpate/dynamics/stepper.h"
 #include "palpate/dynamics/system.h"
 
-/// The makers that registry.cpp lists.
+/// Factories of the integrators listed in registry.cpp.
 namespace palpate::integrate {
 
 std::unique_ptr<dynamics::Stepper> make_cvode(dynamics::System&, dynamics::State&, const IntegratorSpec&,

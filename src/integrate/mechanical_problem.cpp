@@ -67,7 +67,7 @@ bool MechanicalProblem::derivative(double t, const double* y, double* y_dot, Sid
     system_.force(at, force_, filter(side));
     if (!all_finite(force_)) return false;
     system_.acceleration_of_force(at, force_, acceleration_);
-    // the drives' own inertia was counted on the other side
+    // The inertia of driven directions belongs to the other side.
     if ((side == Side::kExplicit || side == Side::kFast) && system_.any_driven()) {
       force_.setZero(l.u_size);
       system_.acceleration_of_force(at, force_, driven_part_);
@@ -76,7 +76,7 @@ bool MechanicalProblem::derivative(double t, const double* y, double* y_dot, Sid
     rates(side, at, y_dot);
   }
   Eigen::Map<VecX>(y_dot + l.q_size, l.u_size) = acceleration_;
-  // node blocks come first: one index serves both
+  // Node blocks come first: one index is valid in both.
   for (int dof : system_.driven_dofs()) y_dot[dof] = y_dot[l.q_size + dof] = 0.0;
   return all_finite(Eigen::Map<const VecX>(y_dot, size()));
 }
@@ -91,7 +91,7 @@ SolveStatus MechanicalProblem::solve(const double* y, const double* r, double* d
   return newton_->solve(layout(), y, r, r + nq, d, d + nq, tangent_side_ == Side::kSlow);
 }
 
-// F1 = q' - N(q) u,  F2 = M u' - f on free directions; q' and u' themselves on driven ones.
+// F1 = q' - N(q) u and F2 = M u' - f on free directions; q' and u' on driven ones.
 bool MechanicalProblem::residual(double t, const double* y, const double* y_dot, double* r) {
   const Layout& l = layout();
   {

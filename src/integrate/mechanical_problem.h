@@ -4,16 +4,16 @@
 
 namespace palpate::integrate {
 
-/// A System as y' = f(t, y), y = [q; u], f = [N(q) u; M^-1 (sum of forces)].
+/// Formulates a System as y' = f(t, y), y = [q; u], f = [N(q) u; M^-1 (sum of forces)].
 /// Driven directions keep their places in y with y' = 0 and are never read: before every evaluation the
-/// System writes their exact values into a copy.  So a drive costs no accuracy and no step, and its jumps
-/// stay outside the history.
+/// System writes their exact values into a copy. So a drive costs neither accuracy nor steps, and its jumps
+/// do not enter the history of a multistep method.
 ///
-/// Splits, by what the force terms say of themselves (TermTraits):
-///     implicit   stiff terms and q' = N u         explicit   the others; with explicit_side = "contact"
-///     contact as well
-///     slow       node blocks' q' = u, and terms   fast       contact, terms that say so (a virtual
-///     coupling), rigid blocks' q' = N u
+/// Splits, by the TermTraits of the force terms:
+///     implicit   stiff terms and q' = N u
+///     explicit   all other terms; with explicit_side = "contact" contact as well
+///     slow       all other terms and q' = u of node blocks
+///     fast       contact, terms declared as fast (a virtual coupling), and q' = N u of rigid blocks
 /// Accelerations of driven directions belong to the implicit and to the slow side.
 class MechanicalProblem final : public OdeProblem {
  public:

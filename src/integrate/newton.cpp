@@ -9,8 +9,8 @@ using dynamics::StepStatus;
 
 namespace {
 
-/// Bound of the error after a correction of this size at this contraction (geometric series), at least the
-/// correction itself.
+/// Returns a bound of the error after a correction of this size at this contraction (geometric series), at
+/// least the correction.
 double left_over(double correction, double contraction) {
   return correction * std::max(1.0, contraction < 0.95 ? contraction / (1.0 - contraction) : 20.0);
 }
@@ -19,7 +19,7 @@ double left_over(double correction, double contraction) {
 
 NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, Way way, bool usable) {
   const bool every_time = way != Way::kKeptMatrix;
-  bool earlier = !every_time && usable;  // the factor is
+  bool earlier = !every_time && usable;  // The current factor is from an earlier solve.
   int kept = 0;
   const auto failed = [&](StepStatus status, int iterations, double correction, const char* what) {
     return NewtonResult{status, iterations, correction, what, kept};
@@ -61,7 +61,7 @@ NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, W
         x += e_;
         return {StepStatus::kOk, k, next, "", kept};
       }
-    } else if (!equation.evaluate(x)) {  // the old matrix led astray: back
+    } else if (!equation.evaluate(x)) {  // The old matrix gave no descent: back to x.
       return failed(StepStatus::kNotFinite, k, size, "the force is not finite");
     }
     if (every_time || !taken || kappa > tuning::kSlowContraction) {
@@ -70,7 +70,7 @@ NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, W
       const double seen = taken ? kappa : 0.0;
       if (equation.refresh() != SolveStatus::kOk || !equation.correct(d_, size))
         return failed(StepStatus::kSolverFailed, k, next, "the step matrix is singular or not finite");
-      contraction_ = seen;  // what a fresh matrix does is seen after its first correction
+      contraction_ = seen;  // The effect of the fresh matrix is observed after its first correction.
     } else {
       fresh = false;
       d_.swap(e_);

@@ -15,8 +15,8 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-/// What implicit methods use beside their own; make_registry() adds `rtol` where there is an error test, and
-/// `threads`, which serves any method.
+/// Keys of all implicit methods, in addition to those of each method. make_registry() adds `rtol` where there
+/// is an error test, and `threads`, which any method uses.
 const Keys kImplicit = {"linear_solver", "indefinite"};
 const Keys kFixed = {"step_s", "max_steps"};
 
@@ -26,7 +26,7 @@ Keys together(Keys keys, const Keys& more) {
 }
 std::vector<PartKey> with(const Keys& keys, const Keys& more) { return part_keys(together(keys, more)); }
 
-/// The key `rtol` as an entry takes it with its settings' defaults.
+/// Returns the key `rtol` with the range that the method accepts at the defaults of its other settings.
 PartKey rtol_key(double (*tightest_rtol)(const IntegratorSpec&), const std::string& name) {
   return {.name = "rtol", .range = rtol_range(tightest_rtol({.name = name}))};
 }
@@ -38,7 +38,7 @@ std::vector<PartKey> adaptive_keys(int highest_order, bool implicit) {
   return keys;
 }
 
-/// By error control, or with fixed steps, where newton_rtol takes the place of rtol.
+/// Keys of methods with error control or fixed steps, where newton_rtol replaces rtol.
 std::vector<PartKey> ark_keys(const dynamics::StepperTraits& traits) {
   Keys keys = {"atol_q", "atol_u", "max_steps", "events", "fixed_step", "step_s"};
   if (traits.implicit) keys = together(together(keys, kImplicit), {"newton_rtol"});
@@ -46,7 +46,8 @@ std::vector<PartKey> ark_keys(const dynamics::StepperTraits& traits) {
   return part_keys(keys);
 }
 
-/// In the order in which they are listed and compared: by SUNDIALS, then by hand.
+/// Lists the integrators in the order in which they are listed and compared: SUNDIALS methods, then
+/// hand-written ones.
 dynamics::StepperRegistry make_registry() {
   dynamics::StepperRegistry all = {
       {"cvode-bdf",
@@ -155,7 +156,7 @@ const dynamics::StepperRegistry& stepper_registry() {
 std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynamics::State& state,
                                                 const IntegratorSpec& spec) {
   const auto& entry = find(stepper_registry(), spec.name, "integrator");
-  // a wrong name is refused even where it would not be used
+  // An unknown name is rejected even where it would not be used.
   if (!spec.linear_solver.empty())
     find(linear::linear_solver_registry(), spec.linear_solver, "linear solver");
   const std::string solver = linear_solver_of(spec);

@@ -3,8 +3,8 @@
 
 namespace palpate::integrate {
 
-/// A linear solver that solves every matrix that has an inverse: where the chosen solver, or the iteration
-/// over it for unsymmetric matrices, does not, it is solved directly.
+/// Linear solver for every matrix that has an inverse. Where the chosen solver, or the iteration that uses it
+/// for unsymmetric matrices, fails, the matrix is solved directly.
 class RobustSolver final : public dynamics::LinearSolver {
  public:
   RobustSolver(std::unique_ptr<dynamics::LinearSolver> chosen, const IntegratorSpec& spec)
@@ -22,8 +22,8 @@ class RobustSolver final : public dynamics::LinearSolver {
   dynamics::SolveStatus solve_columns(const Columns& b, Columns& x, Columns& kept);
 
   DirectFallback solvers_;
-  const dynamics::BorderedMatrix* matrix_ = nullptr;  ///< last factored
-  /// right-hand sides of a solve in place, in case it has to be done again
+  const dynamics::BorderedMatrix* matrix_ = nullptr;  ///< Matrix last factored.
+  /// Right-hand sides of a solve in place, in case it has to be repeated.
   MatX kept_columns_;
   VecX kept_column_;
 };

@@ -6,16 +6,17 @@ namespace {
 
 using namespace dynamics;
 
-/// Backward Euler, solved by Newton to its end:
+/// Backward Euler, with Newton's method iterated to convergence:
 ///     M(q1) (u1 - u0)/h = f(q1, u1, t1),     q1 = q0 (+) h u1.
-/// In the unknown a = (u1 - u0)/h a Stage with u1 = u0 + h a, theta = h u0 + h^2 a; matrix M + h D + h^2 K.
+/// In the unknown a = (u1 - u0)/h this is a Stage with u1 = u0 + h a, theta = h u0 + h^2 a and the matrix M +
+/// h D + h^2 K.
 ///
-/// Order 1: the leading error of a mode w is a damping ratio of w h/2 that is not there.
-/// Stability: a linear mode q'' + 2 z w q' + w^2 q = 0 goes with [q; u] <- 1/(1 + 2 z W + W^2) [1 + 2 z W, h;
-/// -w^2 h, 1], W = w h:
-/// determinant 1/(1 + 2 z W + W^2) < 1 at any step (A-stable), and 0 in the limit (L-stable).
-/// Stiff order 1: on u' = -l (u - g) + g' the error obeys e1 = (e0 + h^2 g''/2)/(1 + h l): no reduction (h
-/// g''/(2 l) where l h >> 1).
+/// Order 1: the leading error of a mode w is a spurious damping ratio of w h/2.
+/// Stability: a linear mode q'' + 2 z w q' + w^2 q = 0 is advanced by
+///     [q; u] <- 1/(1 + 2 z W + W^2) [1 + 2 z W, h; -w^2 h, 1],     W = w h:
+/// the determinant is 1/(1 + 2 z W + W^2) < 1 at any step (A-stable), and 0 in the limit (L-stable).
+/// Stiff order 1: on u' = -l (u - g) + g' the error satisfies e1 = (e0 + h^2 g''/2)/(1 + h l): no order
+/// reduction (h g''/(2 l) where l h >> 1).
 class BackwardEuler final : public ImplicitStep {
  public:
   BackwardEuler(System& system, State& state, const IntegratorSpec& spec,

@@ -8,27 +8,28 @@ namespace {
 
 using namespace dynamics;
 
-/// Backward differences of order 2 with a variable step (Hairer, Norsett, Wanner, III.5): r = h/h_before, c =
-/// r^2/(1 + 2 r), g = h (1 + r)/(1 + 2 r),
-///     M(q1) a = f(q1, u1, t1),     u1 = u0 + c (u0 - u_before) + g a,     q1 = q0 (+) [c theta_before + g
-///     u1],
-/// theta_before the displacement of the last step (q0 = q_before (+) theta_before).  At r = 1: c = 1/3, g =
-/// 2h/3. A Stage in the unknown a with theta = c theta_before + g (u0 + c (u0 - u_before)) + g^2 a; matrix M
+/// Backward differences of order 2 with a variable step (Hairer, Norsett, Wanner, III.5): with r =
+/// h/h_before, c = r^2/(1 + 2 r), g = h (1 + r)/(1 + 2 r),
+///     M(q1) a = f(q1, u1, t1),   u1 = u0 + c (u0 - u_before) + g a,   q1 = q0 (+) [c theta_before + g u1],
+/// where theta_before is the displacement of the last step (q0 = q_before (+) theta_before). At r = 1: c =
+/// 1/3, g = 2h/3.
+/// A Stage in the unknown a with theta = c theta_before + g (u0 + c (u0 - u_before)) + g^2 a and the matrix M
 /// + g D + g^2 K. The displacements of a rigid body are rotations relative to q0; their rate differs from w
 /// by O(h^2): order 2 there as well.
 ///
-/// Start, after re-initialisation, where sliding began in the step before (u bends there: of the speed v_r
-/// that friction lets through at once the formula would add a third again, a third of that, ..., v_r/2 for
-/// good), and where r > 1 + sqrt(2) (beyond which steps that keep growing are not zero-stable): one step of
-/// the L-stable SDIRK of order 2 (Alexander 1977), s = 1 - 1/sqrt(2),
-///     u_s = u0 + s h a_s,  q_s = q0 (+) s h u_s;     u1 = u0 + (1 - s) h a_s + s h a,  q1 = q0 (+) [(1 - s)
-///     h u_s + s h u1],
-/// two Stages with the matrix M + s h D + (s h)^2 K: so a restart costs no order, as a backward Euler step at
-/// every exchange would.
+/// A starting step is taken after re-initialisation, where sticking or sliding of friction began in the
+/// previous step, and where r > 1 + sqrt(2) (beyond which steps that keep growing are not zero-stable). At
+/// the onset of sliding u has a kink: the two-step formula would extrapolate the speed v_r, which regularised
+/// friction reaches at once, by v_r/3 + v_r/9 + ... = v_r/2, permanently. The starting step is the L-stable
+/// SDIRK method of order 2 (Alexander 1977), s = 1 - 1/sqrt(2),
+///     u_s = u0 + s h a_s,                          q_s = q0 (+) s h u_s,
+///     u1 = u0 + (1 - s) h a_s + s h a,             q1 = q0 (+) [(1 - s) h u_s + s h u1],
+/// two Stages with the matrix M + s h D + (s h)^2 K. A restart therefore does not reduce the order, as a
+/// backward Euler step at every exchange would.
 ///
-/// Order 2.  Stability: A-stable at constant steps, and L-stable: at z -> infinity both roots of (3/2 - z)
+/// Order 2. Stability: A-stable at constant steps, and L-stable: for z -> infinity both roots of (3/2 - z)
 /// R^2 - 2 R + 1/2 = 0 vanish like z^(-1/2). Stiff order 2: on u' = -l (u - g) + g' with l h >> 1 the error
-/// is the defect over l, h^2 g'''/(3 l) at constant steps: no reduction.
+/// is the defect over l, h^2 g'''/(3 l) at constant steps: no order reduction.
 class Bdf2 final : public ImplicitStep {
  public:
   Bdf2(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
@@ -83,9 +84,9 @@ class Bdf2 final : public ImplicitStep {
     theta_before_.resize(0);
   }
 
-  static constexpr double kLargestRatio = 2.4;  // < 1 + sqrt(2)
+  static constexpr double kLargestRatio = 2.4;  // Less than 1 + sqrt(2).
   double h_before_ = 0.0;
-  bool sticks_ = false, stuck_ = false;  ///< at the start of this step, and of the one before
+  bool sticks_ = false, stuck_ = false;  ///< At the start of this step, and of the previous one.
   VecX u_before_, theta_before_, u_stage_, u_start_;
 };
 

@@ -46,7 +46,7 @@ double FixedStep::steps_in(double interval) const {
   return std::max(1.0, std::ceil(interval / spec_.step_s * (1.0 - tuning::kRoundingOfStep)));
 }
 
-/// Attempts that are forgotten, whatever became of them; two, for solver "auto" chooses by its first matrix.
+/// Makes two attempts and discards their results: the linear solver "auto" chooses by its first matrix.
 void FixedStep::prepare(double interval) {
   if (layout().u_size == 0) return;
   const double h = interval / steps_in(interval);
@@ -63,7 +63,7 @@ StepResult FixedStep::advance_to(double t_end) {
   PALPATE_CHECK(t_end > start, "t_end = {} is not after t = {}", t_end, start);
   StepResult result;
   result.t = t_end;
-  if (layout().u_size == 0) {  // no body: time passes
+  if (layout().u_size == 0) {  // No body: only time advances.
     state_.set_time(t_end);
     return result;
   }
@@ -77,7 +77,7 @@ StepResult FixedStep::advance_to(double t_end) {
   return result;
 }
 
-/// One step to t1, in parts where it has to be.
+/// Takes one step to t1, divided into parts where necessary.
 StepResult FixedStep::cover(double t1, double h, double t_end) {
   int halvings = 0;
   for (double part = h;;) {
@@ -168,8 +168,8 @@ bool FixedStep::acceleration(double t, const double* q, const double* u, VecX& a
   return all_finite(a);
 }
 
-// With s = (t - t0)/h: Hermite's cubic p = (1 - s)^2 (1 + 2s) x0 + s^2 (3 - 2s) x1 + h s (1 - s) ((1 - s) x0'
-// - s x1'), and its rate p' = 6 s (1 - s) (x1 - x0)/h + (1 - s)(1 - 3s) x0' + s (3s - 2) x1'.
+// Hermite's cubic, with s = (t - t0)/h: p = (1 - s)^2 (1 + 2s) x0 + s^2 (3 - 2s) x1 + h s (1 - s) ((1 - s)
+// x0' - s x1'), and its rate p' = 6 s (1 - s) (x1 - x0)/h + (1 - s)(1 - 3s) x0' + s (3s - 2) x1'.
 bool FixedStep::dense_output(double t, VecX& q, VecX& u) const {
   const dynamics::Layout& l = layout();
   if (q0_.size() != l.q_size || t < t0_ || t > t1_ || !(t1_ > t0_)) return false;

@@ -9,34 +9,35 @@ namespace {
 
 using namespace dynamics;
 
-/// Generalized-alpha (Chung and Hulbert 1993) with balance at the end of each step (Arnold and Bruels 2007),
-/// r = spectral_radius the spectral radius at infinite frequency:
+/// Generalized-alpha (Chung and Hulbert 1993) with equilibrium at the end of each step (Arnold and Bruels
+/// 2007), with r = spectral_radius the spectral radius at infinite frequency:
 ///     am = (2 r - 1)/(r + 1),  af = r/(r + 1),  gamma = 1/2 - am + af,  beta = (1 - am + af)^2/4
 ///     u1 = u0 + h ((1 - gamma) a0 + gamma a1),     q1 = q0 (+) [h u0 + h^2 ((1/2 - beta) a0 + beta a1)]
 ///     (1 - am) a1 + am a0 = (1 - af) g1 + af g0,   M(q1) g1 = f(q1, u1, t1).
-/// g is the acceleration, a an auxiliary that lags behind it.  A Stage in the unknown a1, weight 1:
+/// g is the acceleration, a an auxiliary variable that lags behind it. A Stage in the unknown a1, weight 1:
 ///     g1 = c_a a1 + a_c,   c_a = (1 - am)/(1 - af),  a_c = (am a0 - af g0)/(1 - af);
 /// matrix c_a M + gamma h D + beta h^2 K.
 ///
-/// On linear systems that is the method with f at the generalized midpoint, q = (1 - af) q1 + af q0 and u
-/// alike (Kuhl and Crisfield 1999).  Where f bends within a step it is not: the midpoint's friction is
-/// against a velocity that the step does not move by, so that it may give energy, and binds the end as little
-/// as the midpoint's gap does: a block on an incline at 1.01 times its angle of friction was thrown 3 cm
-/// high. Friction of the end is within its cone there, and against u1.
+/// On linear systems this equals the method with f at the generalized midpoint, q = (1 - af) q1 + af q0 and u
+/// alike (Kuhl and Crisfield 1999). Where f has a kink within a step it does not: friction at the midpoint
+/// opposes a velocity that differs from the velocity of the step, so that it may add energy, and constrains
+/// the end as little as a gap at the midpoint does. A block on an incline at 1.01 times its friction angle
+/// was thrown 3 cm high. Friction at the end is within its cone there, and opposes u1.
 ///
-/// Order 2 for any r in [0, 1] (gamma is chosen so).  a0 = u'(t0 + (am - af) h) + O(h^2) (Arnold and Bruels
-/// 2007), so where h changes it is shifted along its last difference by (am - af) times the change (no
-/// further than four old steps); without that uneven steps would leave order 1.  At a start it is M^-1 f0.
-/// Where a query of contact changed the force, and not the state, nothing starts anew: a and g are those of
-/// the force before, and what it changed by, which a query seldom makes large, comes with the next g1.  M^-1
-/// f in their place has no bound where forces are stiff, and the position keeps (1/2 - beta) h^2 of it: a
-/// tool of a millionth of a cube's density was thrown 10^4 of its paths.
+/// Order 2 for any r in [0, 1] (by the choice of gamma). a0 = u'(t0 + (am - af) h) + O(h^2) (Arnold and
+/// Bruels 2007), so where h changes a0 is shifted along its last difference by (am - af) times the change (by
+/// at most four old steps); without this shift uneven steps would reduce the order to 1. At a start a0 is
+/// M^-1 f0, or where friction sticks the acceleration of a backward Euler step
+/// (ImplicitStep::start_acceleration).
+/// Where a contact query changed the force but not the state, the method does not restart: a and g belong to
+/// the previous force, and the change of the force, which is seldom large, enters with the next g1. M^-1 f in
+/// their place is unbounded where forces are stiff, and the position keeps (1/2 - beta) h^2 of it: a tool
+/// with 1e-6 of a cube's density was thrown 1e4 times its path length.
 ///
-/// Stability: A-stable.  At infinite frequency
-/// all three roots are -r: high frequencies fall by r a step, r = 1 keeps them (no damping, Newmark's
-/// method), r = 0 removes them in three steps; damping at low frequencies is the least for that r. Stiff
-/// order 2: e1 = R e0 + O(h^2) with |R| -> r; the defect is smooth and (I - R) invertible there, so it does
-/// not accumulate.
+/// Stability: A-stable. At infinite frequency all three roots are -r: high frequencies decay by r per step, r
+/// = 1 keeps them (no damping, Newmark's method), r = 0 removes them in three steps; damping at low
+/// frequencies is the least possible for that r. Stiff order 2: e1 = R e0 + O(h^2) with |R| -> r; the defect
+/// is smooth and (I - R) is invertible there, so it does not accumulate.
 class GeneralizedAlpha final : public ImplicitStep {
  public:
   GeneralizedAlpha(System& system, State& state, const IntegratorSpec& spec,
@@ -87,9 +88,9 @@ class GeneralizedAlpha final : public ImplicitStep {
 
   static constexpr double kFarthest = 4.0;
   double am_, af_, gamma_, beta_;
-  double last_h_ = 0.0;                ///< that difference_ was taken over
-  VecX start_a_, end_a_, difference_;  ///< a0 and a1 of the last step, a1 - a0
-  VecX end_g_;                         ///< g1 of the last step
+  double last_h_ = 0.0;                ///< Step that difference_ was taken over.
+  VecX start_a_, end_a_, difference_;  ///< a0 and a1 of the last step, and a1 - a0.
+  VecX end_g_;                         ///< g1 of the last step.
 };
 
 }  // namespace

@@ -31,11 +31,12 @@ bool ImplicitStep::sticks() {
   });
 }
 
-// At rest friction is zero by its law, and the acceleration there that of a body without friction.  It
-// becomes mu N within the time v_r/(mu g), which no step resolves, and methods that keep the acceleration of
-// the start (the trapezoidal rule: half of it over h) would add h mu g/2 to the velocity for good.  Backward
-// Euler damps that layer; the acceleration at its end is one within the cone, and off by O(h) else, of one
-// step.  It need not be of the step's length: where Newton's method fails it is halved, as steps are.
+// At rest friction is zero by its law, and the acceleration there is the one without friction. Friction
+// reaches mu N within the time v_r/(mu g), which no step resolves, and methods that use the acceleration at
+// the start (the trapezoidal rule: half of it over h) would add h mu g/2 to the velocity permanently.
+// Backward Euler damps this layer; the acceleration at the end of its step is within the cone, and elsewhere
+// has an error of O(h), in one step only. This step need not have the full length: where Newton's method
+// fails it is halved, as steps are.
 bool ImplicitStep::start_acceleration(double h, double t1, VecX& a) {
   const dynamics::StateView at = now();
   if (sticks()) {

@@ -15,11 +15,11 @@ using dynamics::StepStatus;
 
 namespace {
 
-constexpr double kSameStep = 1e-6;  // relative: steps that differ by rounding
-/// By how much the last but one solve of a step still improves the guess, relative: each squares its error,
-/// and the last leaves less than a thousandth.
+constexpr double kSameStep = 1e-6;  // Relative difference of steps that differ by rounding.
+/// Relative improvement of the guess by the last but one solve of a step. Each solve squares the error of the
+/// guess, and the last one leaves less than a thousandth.
 constexpr double kLastImprovement = 0.02;
-/// Of a solve whose successor goes on from it, at most: its error, over the way that it has come.
+/// Upper limit of the error of a solve that another one continues, relative to the change of the solution.
 constexpr double kRoughly = 0.1;
 
 }  // namespace
@@ -33,10 +33,11 @@ LinearizedStep::LinearizedStep(dynamics::System& system, std::unique_ptr<dynamic
       fused_(system),
       roughly_(std::min(kRoughly, spec.linear_rtol / kLastImprovement)) {}
 
-/// The terms that want the step's end, while they are told of it.
+/// Terms whose force depends on the end of the step. begin_step() and end_step() are called by constructor
+/// and destructor.
 class LinearizedStep::Repeats {
  public:
-  /// @param terms  scratch, so that a step takes no memory
+  /// @param terms  scratch, so that a step allocates no memory
   Repeats(const dynamics::System& system, const dynamics::StateView& at,
           std::vector<dynamics::RepeatedStepTerm*>& terms)
       : at_(at), terms_(terms) {
@@ -52,7 +53,7 @@ class LinearizedStep::Repeats {
   Repeats(const Repeats&) = delete;
   Repeats& operator=(const Repeats&) = delete;
   bool any() const { return !terms_.empty(); }
-  /// Whether all are content with the end.
+  /// Returns whether the guesses of all terms have converged.
   bool improve(const VecX& moved, const VecX& change) {
     bool done = true;
     for (dynamics::RepeatedStepTerm* term : terms_) done = term->improve_step(at_, moved, change) && done;
@@ -79,11 +80,11 @@ StepStatus LinearizedStep::solve(const Equations& e, VecX& du, dynamics::Stepper
   }
 }
 
-/// By one assembly and one packing of what the bodies give: from solve to solve only what stands beside the
-/// pattern changes, with its share of the right-hand side.  A solve that another one follows need not be more
-/// accurate than the guess that it is for: what the last one is left with of its error, it leaves of its own
-/// tolerance too.  All of them together then take little more than one takes alone.  False: nothing was
-/// found, and the step is to be solved otherwise.
+/// Solves with one assembly of the bodies' contribution and one packing of the matrix: from solve to solve
+/// only the part outside the sparsity pattern changes, with its share of the right-hand side. A solve that is
+/// followed by another one need not be more accurate than the guess that it improves. Once the guess has
+/// converged, the last solve continues to the tolerance. All solves together cost little more than one.
+/// Returns false where no solution was found and the step has to be solved otherwise.
 bool LinearizedStep::solve_repeatedly(const Equations& e, VecX& du, Repeats& repeats) {
   if (!mixed_ || !solves_ || !fused_.applies(e.at)) return false;
   dynamics::ZeroRowSumMatrix* A = mixed_->step_matrix(fused_.pattern());
@@ -110,7 +111,7 @@ bool LinearizedStep::solve_repeatedly(const Equations& e, VecX& du, Repeats& rep
   return true;
 }
 
-/// The share that terms beside the pattern have in matrix and right-hand side.
+/// Assembles the contribution of the PointStiffness terms to matrix and right-hand side.
 void LinearizedStep::assemble_beside(const Equations& e, dynamics::PointStiffness& C, VecX& out) {
   const ScopedTimer timer(counters_->tangent_s);
   C.clear();
@@ -137,7 +138,7 @@ StepStatus LinearizedStep::solve_once(const Equations& e, VecX& du) {
   return solve_whole(e, du);
 }
 
-/// The residual of the equations as a function of du.
+/// Residual of the equations as a function of du.
 class LinearizedStep::Residual final : public dynamics::ResidualFunction {
  public:
   Residual(LinearizedStep& of, const Equations& e) : of_(of), e_(e) {}
@@ -148,7 +149,7 @@ class LinearizedStep::Residual final : public dynamics::ResidualFunction {
   const Equations& e_;
 };
 
-/// r = h (f - K (s + h du) - D (dv + du)) - M (dv + du) on free directions.
+/// Computes r = h (f - K (s + h du) - D (dv + du)) - M (dv + du) on free directions.
 void LinearizedStep::evaluate_residual(const Equations& e, const VecX& du, VecX& r) {
   const ScopedTimer timer(counters_->force_s);
   ++counters_->force_evaluations;
@@ -157,7 +158,8 @@ void LinearizedStep::evaluate_residual(const Equations& e, const VecX& du, VecX&
   fused_.residual(e.at, s_of_x_, e.dv_is_zero ? du : dv_of_x_, e.h, r);
 }
 
-/// Whether |u1| > |u0| / (1 - eta) on free directions; u1_ is then u1 there, and zero on driven ones.
+/// Returns whether |u1| > |u0| / (1 - eta) on free directions. Sets u1_ to u1 there, and to zero on driven
+/// ones.
 bool LinearizedStep::is_faster(const Equations& e, const VecX& du) {
   if (!solver_.projects()) return false;
   const auto square_norm = [&](const VecX& v) {
@@ -170,13 +172,13 @@ bool LinearizedStep::is_faster(const Equations& e, const VecX& du) {
   u1_ = e.at.u;
   for (const int dof : system_.driven_dofs()) u1_[dof] = 0.0;
   const double before = square_norm(u1_);
-  u1_ += du;  // zero along driven directions
+  u1_ += du;  // Zero along driven directions.
   speed_ = square_norm(u1_);
   return speed_ > kMost * kMost * before;
 }
 
-/// Of the fused equations.  With s and dv zero on free directions but -u0 for dv, their right-hand side is b
-/// (less what driven directions do to free ones, which belongs to it).
+/// Checks the fused equations. With s and dv zero on free directions except for dv = -u0, their right-hand
+/// side is b (less the effect of driven directions on free ones, which belongs to it).
 bool LinearizedStep::goes_along_negative_curvature(const Equations& e, const VecX& du) {
   if (!is_faster(e, du)) return false;
   const ScopedTimer timer(counters_->force_s);
@@ -191,7 +193,7 @@ bool LinearizedStep::goes_along_negative_curvature(const Equations& e, const Vec
   return u1_.dot(product_) < (1.0 - tuning::kNegativeCurvature) * speed_;
 }
 
-/// Of the whole matrix, which is there: u1.A u1 = u1.M u1 + u1.R u1.
+/// Checks the assembled matrix: u1.A u1 = u1.M u1 + u1.R u1.
 bool LinearizedStep::goes_along_negative_curvature_of(const dynamics::BorderedMatrix& A, const Equations& e,
                                                       const VecX& du) {
   if (!A.symmetric || !is_faster(e, du)) return false;
@@ -207,7 +209,7 @@ bool LinearizedStep::solve_by_lagged_matrix(const Equations& e, VecX& du) {
   return mixed_->solve_by_refinement(residual, du) == SolveStatus::kOk;
 }
 
-/// Force, product and matrix; false where the right-hand side is not finite.
+/// Assembles force, product and matrix; returns false where the right-hand side is not finite.
 bool LinearizedStep::assemble_fused(const Equations& e, dynamics::ZeroRowSumMatrix& A, bool keep) {
   {
     const ScopedTimer timer(counters_->tangent_s);
@@ -252,7 +254,7 @@ bool LinearizedStep::solve_fused(const Equations& e, VecX& du) {
   return true;
 }
 
-/// Its matrix is no lagged matrix for later steps.
+/// Solves with projected tangents. This matrix is not kept as a lagged matrix.
 bool LinearizedStep::solve_fused_projected(const Equations& e, VecX& du, dynamics::ZeroRowSumMatrix& A) {
   {
     const ProjectedTangents projected(system_);
@@ -299,7 +301,7 @@ StepStatus LinearizedStep::solve_whole(const Equations& e, VecX& du) {
   return status == SolveStatus::kOk ? StepStatus::kOk : StepStatus::kSolverFailed;
 }
 
-/// False where it is not finite.
+/// Evaluates the whole right-hand side; returns false where it is not finite.
 bool LinearizedStep::evaluate_right_hand_side(const Equations& e) {
   const ScopedTimer timer(counters_->force_s);
   ++counters_->force_evaluations;
@@ -311,7 +313,7 @@ bool LinearizedStep::evaluate_right_hand_side(const Equations& e) {
   return complete_right_hand_side(e);
 }
 
-/// From f - K s to the whole right-hand side; false where it is not finite.
+/// Completes the right-hand side from f - K s; returns false where it is not finite.
 bool LinearizedStep::complete_right_hand_side(const Equations& e) {
   if (!e.dv_is_zero) {
     product_.setZero(rhs_.size());
@@ -325,7 +327,7 @@ bool LinearizedStep::complete_right_hand_side(const Equations& e) {
     rhs_ -= product_;
   }
   system_.reduce(e.at, rhs_);
-  if (system_.any_driven()) {  // geometric stiffness of the nodes that rigid blocks carry
+  if (system_.any_driven()) {  // Geometric stiffness of the nodes that rigid blocks carry.
     product_.setZero(rhs_.size());
     system_.apply_carried_stiffness(e.at, e.s, product_);
     rhs_ -= e.h * product_;

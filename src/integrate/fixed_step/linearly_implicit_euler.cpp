@@ -8,17 +8,17 @@ namespace {
 
 using namespace dynamics;
 
-/// The step of Baraff and Witkin (1998), as in Galoppo et al. (2007).  M (u1 - u0) = h f(q1, u1),
-/// q1 = q0 + h N u1, with the force linearized about (q0, u0) at the time t1 = t0 + h of the implicit rule,
-/// f1 = f - K h u1 - D (u1 - u0):
+/// Step of Baraff and Witkin (1998), as in Galoppo et al. (2007): M (u1 - u0) = h f(q1, u1), q1 = q0 + h N
+/// u1, with the force linearized about (q0, u0) at the time t1 = t0 + h of the implicit rule, f1 = f - K h u1
+/// - D (u1 - u0):
 ///     free directions:  (M + h D + h^2 K) du = h (f - h K u0)
-/// Driven directions go to x(t1), v(t1) exactly.  Their displacement dx and velocity change dv enter the free
-/// rows as what they are,
-///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv,   s = h u0 on free directions, dx on driven ones;
-///     dv = 0 on free ones,
-/// so a body that moves rigidly with its drive feels no force.  Order 1; L-stable on linear problems with M,
-/// D, K positive.  A value that is not finite ends the step as data.
-/// Dense output is linear within the last step, which has the method's order.
+/// Driven directions move to x(t1), v(t1) exactly. Their displacement dx and velocity change dv enter the
+/// free rows unchanged,
+///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv,
+///     s = h u0 on free directions, dx on driven ones;   dv = 0 on free ones,
+/// so no force acts in a body that moves rigidly with its drive. Order 1; L-stable on linear problems with M,
+/// D, K positive. A value that is not finite is returned as a status.
+/// Dense output is linear within the last step, which has the order of the method.
 class LinearlyImplicitEuler final : public FixedStep {
  public:
   LinearlyImplicitEuler(System& system, State& state, const IntegratorSpec& spec,
@@ -27,14 +27,14 @@ class LinearlyImplicitEuler final : public FixedStep {
         equations_(system, std::move(solver), spec) {}
 
  private:
-  /// s, dv of the derivation above.  A direction carried by a master moves with the master's explicit
-  /// prediction.
+  /// Computes s and dv of the derivation above. A direction carried by a master moves with the master's
+  /// explicit prediction.
   void predict_drives(double t1, double h) {
     shift_ = h * state_.u();
     if (drives_speed_up_ || change_.size() != layout().u_size) change_.setZero(layout().u_size);
     drives_speed_up_ = false;
     if (!system_.any_driven()) return;
-    if (layout().border_size() > 0) {  // masters; without one, what is imposed depends on time alone
+    if (layout().border_size() > 0) {  // Masters; without a master the imposed values depend on time alone.
       q_dot(layout(), state_.q().data(), state_.u().data(), q1_.data());
       q1_ = state_.q() + h * q1_;
       u1_ = state_.u();
@@ -43,11 +43,11 @@ class LinearlyImplicitEuler final : public FixedStep {
     for (int dof : system_.driven_dofs()) {
       shift_[dof] = q1_[dof] - state_.q()[dof];
       change_[dof] = u1_[dof] - state_.u()[dof];
-      drives_speed_up_ = drives_speed_up_ || change_[dof] != 0.0;  // never that of a fixed node
+      drives_speed_up_ = drives_speed_up_ || change_[dof] != 0.0;  // Always false for fixed nodes.
     }
   }
 
-  /// The state after a velocity change du; without a border, in one pass over the vectors.
+  /// Computes the state after a velocity change du; without a border, in one pass over the vectors.
   void move(double h) {
     if (layout().border_size() == 0) {
       const auto q = state_.q(), u = state_.u();
@@ -80,7 +80,7 @@ class LinearlyImplicitEuler final : public FixedStep {
 
   LinearizedStep equations_;
   VecX shift_, change_, du_;
-  bool drives_speed_up_ = false;  ///< change_ is not zero
+  bool drives_speed_up_ = false;  ///< change_ is not zero.
 };
 
 }  // namespace

@@ -6,20 +6,21 @@ namespace {
 
 using namespace dynamics;
 
-/// Newmark (1959) with beta = 1/4, gamma = 1/2, the average acceleration:
-///     M(q1) a1 = f(q1, u1, t1),     u1 = u0 + h (a0 + a1)/2,     q1 = q0 (+) [h u0 + h^2 (a0 + a1)/4] = q0
-///     (+) h (u0 + u1)/2.
-/// A Stage in the unknown a1 with u1 = (u0 + h/2 a0) + h/2 a1, theta = (h u0 + h^2/4 a0) + h^2/4 a1; matrix M
-/// + h/2 D + h^2/4 K. a0 is the last step's a1; at a start and after a re-initialisation it is M^-1 f(q0, u0,
-/// t0).
+/// Newmark (1959) with beta = 1/4, gamma = 1/2, the average acceleration method:
+///     M(q1) a1 = f(q1, u1, t1),     u1 = u0 + h (a0 + a1)/2,
+///     q1 = q0 (+) [h u0 + h^2 (a0 + a1)/4] = q0 (+) h (u0 + u1)/2.
+/// A Stage in the unknown a1 with u1 = (u0 + h/2 a0) + h/2 a1, theta = (h u0 + h^2/4 a0) + h^2/4 a1 and the
+/// matrix M + h/2 D + h^2/4 K. a0 is a1 of the last step; at a start and after a re-initialisation it is M^-1
+/// f(q0, u0, t0), or where friction sticks the acceleration of a backward Euler step
+/// (ImplicitStep::start_acceleration).
 ///
-/// Order 2; on y' = f(y) the trapezoidal rule.  With a0 = M^-1 f0 a linear mode goes as by the implicit
-/// midpoint rule, so its energy is kept.  Of a non-linear system it is the trapezoidal rule's: conjugate to
-/// the midpoint rule, so its energy stays near, without being kept.
+/// Order 2; on y' = f(y) it is the trapezoidal rule. With a0 = M^-1 f0 a linear mode is advanced as by the
+/// implicit midpoint rule, so its energy is conserved. On a non-linear system it is the trapezoidal rule,
+/// which is conjugate to the midpoint rule: the energy error is bounded but not zero.
 /// Stability: A-stable, R(infinity) = -1 (spectral radius 1, no numerical damping).
-/// a is a variable of its own: its rounding costs q (w h)^2 of the machine's, where other methods here lose
-/// none. Stiff order 2: the trapezoidal rule is collocation of stage order 2, e1 = R e0 + O(h^3)/(1 + l h/2);
-/// a deviation at the start alternates, undamped.
+/// a is an independent variable: its rounding causes an error in q of (w h)^2 machine roundings, which the
+/// other methods here do not have. Stiff order 2: the trapezoidal rule is collocation of stage order 2, e1 =
+/// R e0 + O(h^3)/(1 + l h/2); a deviation at the start alternates, undamped.
 class Newmark final : public ImplicitStep {
  public:
   Newmark(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
@@ -48,7 +49,7 @@ class Newmark final : public ImplicitStep {
     start_a_.resize(0);
   }
 
-  VecX start_a_;  ///< a0
+  VecX start_a_;  ///< a0.
 };
 
 }  // namespace

@@ -45,7 +45,8 @@ class RungeKutta4 final : public FixedStep {
     return {};
   }
 
-  /// The next k, at the State plus `step` times the last one, added to the sums with its weight.
+  /// Computes the next k, at the State plus `step` times the last one, and adds it to the sums with its
+  /// weight.
   bool stage(double step, double t, double weight) {
     q1_ = state_.q() + step * rate_;
     u1_ = state_.u() + step * a_;

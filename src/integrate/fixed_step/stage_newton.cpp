@@ -50,12 +50,12 @@ NewtonResult StageNewton::solve(const Stage& stage, const StateView& from, VecX&
     const ProjectedTangents projected(system_);
     second = iterate(tuning::kDefiniteIterations, true);
   }
-  forget();  // the next step wants the true tangent
+  forget();  // The next step uses the true tangent.
   second.iterations += result.iterations;
   return second;
 }
 
-/// q1, u1, theta of an iterate; false where they are not finite.
+/// Computes q1, u1 and theta of an iterate; returns false where they are not finite.
 bool StageNewton::place(const VecX& a) {
   const dynamics::Layout& layout = *from_->layout;
   *u1_ = stage_->u + stage_->c_u * a;
@@ -80,7 +80,7 @@ bool StageNewton::evaluate(const VecX& a) {
   return all_finite(residual_);
 }
 
-/// The stage of the iterate last evaluated.
+/// Returns the stage at the iterate last evaluated.
 StateView StageNewton::at() const {
   const double w = stage_->weight;
   if (w == 1.0) return dynamics::make_view(*from_->layout, stage_->t1, q1_->data(), u1_->data());
@@ -96,7 +96,7 @@ bool StageNewton::usable() const {
          near(stage_->weight * stage_->c_u, d_scale_) && near(stage_->weight * stage_->c_theta, k_scale_);
 }
 
-/// At the iterate last evaluated.
+/// Assembles the matrix at the iterate last evaluated.
 void StageNewton::assemble() {
   const ScopedTimer timer(counters_->tangent_s);
   ++counters_->tangent_evaluations;
@@ -114,7 +114,7 @@ SolveStatus StageNewton::refresh() {
   return status;
 }
 
-/// Weighted norm of the increments of q and u that an increment d of the unknown makes.
+/// Returns the weighted norm of the increments of q and u that an increment d of the unknown causes.
 double StageNewton::norm(const VecX& d) {
   const dynamics::Layout& layout = *from_->layout;
   dq_.resize(layout.q_size);

@@ -9,13 +9,14 @@ using namespace dynamics;
 
 /// Symplectic Euler, velocity first:
 ///     u1 = u0 + h M^-1 f(q0, u0, t0),     q1 = q0 (+) h u1.
-/// One force a step and no tangent: f(q1, u1, t1) is taken at the end of the step, so that no state is
-/// accepted that has none, and serves the next.
+/// One force per step and no tangent: f(q1, u1, t1) is evaluated at the end of the step, so that no state
+/// without a finite force is accepted, and used by the next step.
 ///
-/// Order 1; symplectic on separable systems, so an undamped energy swings by O(h) and does not drift.
-/// Stability: a mode q'' + 2 z w q' + w^2 q = 0 goes with [q; u] <- [1 - W^2, h (1 - 2 z W); -w^2 h, 1 - 2 z
-/// W], W = w h: trace 2 - W^2 - 2 z W, determinant 1 - 2 z W, both roots inside the circle while W < 2
-/// (sqrt(1 + z^2) - z): undamped 2/w.  Damping acts at the old velocity and so shortens the step.
+/// Order 1; symplectic on separable systems, so an undamped energy oscillates by O(h) and does not drift.
+/// Stability: a mode q'' + 2 z w q' + w^2 q = 0 is advanced by
+///     [q; u] <- [1 - W^2, h (1 - 2 z W); -w^2 h, 1 - 2 z W] [q; u],     W = w h:
+/// trace 2 - W^2 - 2 z W, determinant 1 - 2 z W, both roots inside the unit circle while W < 2 (sqrt(1 + z^2)
+/// - z): undamped 2/w. Damping is evaluated at the old velocity and therefore reduces the stable step.
 /// Stiff order 0: a mode that the step does not resolve grows until the force is not finite, which ends the
 /// run.
 class SymplecticEuler final : public FixedStep {

@@ -20,12 +20,12 @@ using dynamics::StepAttempt;
 using dynamics::StepResult;
 using dynamics::StepStatus;
 
-// What their calls return where they end well: these are the same numbers in CVODE, ARKODE and IDA.
+// Successful return values of a step: the same numbers in CVODE, ARKODE and IDA.
 constexpr int kReachedStop = 1, kReachedRoot = 2;
 
-/// A step that collapses to this ends the call with an error: before a force that is not finite from some
-/// time on, steps would shrink towards that time without end.  Far below any physical time scale, above the
-/// rounding of t.
+/// Returns the step length below which a call ends with an error. Ahead of a force that is not finite from
+/// some time on, steps would otherwise shrink towards that time without end. Far below any physical time
+/// scale, above the rounding of t.
 double smallest_step(double t, double t_end) {
   return std::max(tuning::kSmallestStep * (t_end - t), 1e-15 * std::max(std::abs(t), std::abs(t_end)));
 }
@@ -61,7 +61,7 @@ void Adapter::release() {
 }
 
 void Adapter::start() {
-  // between two calls: y_ is the present
+  // Between two calls y_ is the current state.
   if (running_ && finds_roots() && roots_version_ != problem_->events_version()) {
     running_ = false;
     keep_step_ = true;
@@ -93,7 +93,7 @@ void Adapter::start() {
 
 StepResult Adapter::advance_to(double t_end) {
   PALPATE_CHECK(t_end > problem_->time(), "t_end = {} is not after t = {}", t_end, problem_->time());
-  if (problem_->size() == 0) {  // no body: time passes
+  if (problem_->size() == 0) {  // No body: only time advances.
     problem_->set_time(t_end);
     StepResult result;
     result.t = t_end;
@@ -115,8 +115,8 @@ StepResult Adapter::advance_to(double t_end) {
     }
     double reached = t;
     flag = one_step(t_end, reached);
-    if (flag >= 0) t = reached;  // after a failure the time may be that of a stage
-    // On the end of a step a library may return either flag: it depends on the release.
+    if (flag >= 0) t = reached;  // After a failure the time may belong to a stage.
+    // A library may return either flag at the end of a step: it depends on the release.
     if (flag == 0 && t >= t_end) flag = kReachedStop;
     if (trace() && flag >= 0) accept_attempt(before, t, flag == kReachedRoot);
     if (trace() && flag < 0 && attempt_open_)
@@ -143,8 +143,8 @@ StepResult Adapter::advance_to(double t_end) {
   collect();
   context_->log_warnings();
   if (landed) return result(StepStatus::kOk);
-  running_ = false;                            // the next call starts from the State
-  if (interrupted() && n < spec_.max_steps) {  // between two steps, or within one that noticed
+  running_ = false;                            // The next call starts from the State.
+  if (interrupted() && n < spec_.max_steps) {  // Between two steps, or within one that checked the flag.
     StepResult stopped = result(StepStatus::kInterrupted);
     stopped.message = fmt::format("{}: interrupted at t = {}, h = {}", name(), t, stopped.h);
     return stopped;
@@ -154,7 +154,7 @@ StepResult Adapter::advance_to(double t_end) {
 
 StepResult Adapter::failure(int flag, double t, double t_end) {
   StepResult failed = result(flag >= 0 ? StepStatus::kTooManySteps : status_of(flag));
-  // why the iteration could not converge
+  // A force that is not finite is the reason why the iteration could not converge.
   if (!finite_ && failed.status == StepStatus::kNewtonFailed) failed.status = StepStatus::kNotFinite;
   if (flag >= 0) message_ = fmt::format("{} steps before t_end = {}", spec_.max_steps, t_end);
   failed.message =
@@ -191,7 +191,8 @@ const dynamics::StepperCounters& Adapter::counters() const {
   return problem_->counters();
 }
 
-/// The library counts from its last start, we from ours.
+/// Adds the library's counts since the last call. The library counts from its last start, these counters from
+/// construction.
 void Adapter::collect() {
   const Counts now = counts();
   dynamics::StepperCounters& c = problem_->counters();
@@ -215,8 +216,8 @@ void Adapter::restore_state() { Eigen::Map<VecX>(NV_DATA_S(y_), NV_LENGTH_S(y_))
 
 // --- Newton
 
-// The tangent is taken afresh at every factorisation: it costs a fifteenth of one, and spares a failed Newton
-// solve. Where the library would accept an old tangent and gamma is unchanged, the old factor is kept.
+// The tangent is evaluated at every factorisation: it costs a fifteenth of one, and avoids failed Newton
+// solves. Where the library would accept an old tangent and gamma is unchanged, the old factor is kept.
 bool Adapter::prepare_matrix(double t, N_Vector y, bool reuse, double gamma, OdeProblem::Side side) {
   wanted_gamma_ = gamma;
   const bool fresh = !(reuse && gamma == problem_->gamma());
@@ -226,22 +227,22 @@ bool Adapter::prepare_matrix(double t, N_Vector y, bool reuse, double gamma, Ode
 }
 
 int Adapter::setup() {
-  if (interrupted()) return kUnrecoverable;  // a step may take many matrices
+  if (interrupted()) return kUnrecoverable;  // A step may take many matrices.
   rate_ = 1.0;
   return problem_->factor(wanted_gamma_) == SolveStatus::kOk ? 0 : kRecoverable;
 }
 
-// Newton's test of convergence.  With corrections d_0, d_1, .. that contract by rho, what is left after d_m
-// is about rho d_m.  SUNDIALS learns rho as max(0.3 rho, d_m / d_(m-1)) and remembers it until the next
-// factorisation.  On an (almost) linear force the first solves after a fresh factor converge at once, rho
-// falls to nothing, and when gamma then changes by up to 20 or 30 % with the factor kept, a first correction
-// that is wrong by that much is taken for exact: global errors of 1e-3 at rtol 1e-7.  So rho is bounded from
-// below by what the old gamma alone makes of it:
-// on a mode lambda, (1 - g' lambda)^-1 stands for (1 - g lambda)^-1, whose relative error is at most |g / g'
-// - 1| on either end of the spectrum; and by a constant, for a tangent that has aged.
-// A fixed-point iteration has no matrix whose age could be bounded, and is sure of no contraction that it has
-// not seen in this very solve: with the one that SUNDIALS remembers, cvode-adams takes its first correction
-// for exact, and errs by 20 to 130 times rtol where it errs by 5 with this test.
+// Newton's test of convergence. With corrections d_0, d_1, .. that contract by rho, the error left after d_m
+// is about rho d_m. SUNDIALS estimates rho as max(0.3 rho, d_m / d_(m-1)) and keeps it until the next
+// factorisation. On an (almost) linear force the first solves after a fresh factor converge at once, and rho
+// vanishes. When gamma then changes by up to 20 or 30 % with the factor kept, a first correction with an
+// error of that size is accepted as exact: global errors of 1e-3 at rtol 1e-7. So rho is bounded from below
+// by the effect of the old gamma: on a mode lambda, (1 - g' lambda)^-1 is used in place of (1 - g lambda)^-1,
+// with a relative error of at most |g / g' - 1| at either end of the spectrum; and by a constant, for an old
+// tangent.
+// A fixed-point iteration has no matrix whose age could be bounded, and only the contraction observed in the
+// same solve is used. With the rate that SUNDIALS keeps, cvode-adams accepts its first correction as exact,
+// with errors of 20 to 130 times rtol where they are 5 times rtol with this test.
 int Adapter::test_convergence(int iteration, double correction, double tolerance) {
   const double stale =
       fixed_point_ ? tuning::kOldTangent : std::abs(current_gamma() / problem_->gamma() - 1.0);
@@ -260,7 +261,7 @@ SUNNonlinearSolver Adapter::make_newton() {
   newton_ = SUNNonlinSol_Newton(y_, context());
   check(newton_, "SUNNonlinSol_Newton");
   by_library_newton_ = true;
-  // the tolerance comes with the call; our test's data say whose solver it is
+  // The tolerance is an argument of the call; the data of the convergence test identify the adapter.
   newton_->ops->solve = [](SUNNonlinearSolver solver, N_Vector y0, N_Vector correction, N_Vector w,
                            sunrealtype tolerance, sunbooleantype set_up, void* memory) {
     auto* content = static_cast<SUNNonlinearSolverContent_Newton>(solver->content);
@@ -288,8 +289,8 @@ SolveStatus Adapter::solve_newton(const double* y, const double* r, double* d) {
   return problem_->solve(y, r, d);
 }
 
-/// Counts Newton's iterations since the last setup of an earlier solve.  The library counts those of a solve
-/// from 0, also where it begins again after a setup.
+/// Counts Newton iterations with the factor of an earlier solve. The library counts the iterations of a solve
+/// from 0, also where it starts again after a setup.
 void Adapter::count_iteration() {
   int iteration = 0;
   check(SUNNonlinSolGetCurIter(newton_, &iteration), "SUNNonlinSolGetCurIter", problem_->time(), 0.0);

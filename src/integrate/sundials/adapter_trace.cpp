@@ -7,15 +7,15 @@
 #include "integrate/sundials/vector_ops.h"
 #include "palpate/core/finite.h"
 
-// What an Adapter tells of its steps, accepted and not.
+// Trace records of the steps of an Adapter, accepted and rejected.
 
 namespace palpate::integrate::sun {
 
 using dynamics::StepAttempt;
 
-// Inside one call of the library several attempts may fail.  Between two of them its counters of failures
-// grow, which shows at the next evaluation; how far an attempt reached is the latest time that it evaluated
-// at.
+// Several attempts may fail inside one call of the library. Between two of them its failure counters
+// increase, which is seen at the next evaluation; the end of an attempt is the latest time at which it
+// evaluated.
 void Adapter::see_evaluation(double t, N_Vector y, bool finite) {
   finite_ = finite;
   if (!trace()) return;

@@ -24,13 +24,13 @@ using dynamics::StepControl;
 using dynamics::StepStatus;
 using Side = OdeProblem::Side;
 
-constexpr int kInterpolantDegree = 3;  ///< cubic Hermite: no evaluation of its own
-/// a root's state is where the next step starts from: worth two evaluations
+constexpr int kInterpolantDegree = 3;  ///< Cubic Hermite: needs no additional evaluation.
+/// The next step starts from the state at a root: worth two evaluations.
 constexpr int kRootDegree = 5;
 /// Runge-Kutta methods of SUNDIALS ARKODE (Reynolds et al. 2023): explicit, diagonally implicit, or additive
-/// (what is stiff implicit, the rest explicit), by the tables of ark_methods.cpp; step by error control, or
-/// step_s with fixed_step. One-step: a change from outside restarts it without loss, with the step that it
-/// had.
+/// (stiff terms implicit, the others explicit), by the tables of ark_methods.cpp; step by error control, or
+/// step_s with fixed_step. One-step methods: after an external change they restart without loss, with the
+/// previous step size.
 class Ark final : public Adapter {
  public:
   Ark(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec)
@@ -46,12 +46,12 @@ class Ark final : public Adapter {
   ~Ark() override { Ark::destroy(); }
 
  private:
-  /// With a fixed step what the weights serve is Newton alone, and newton_rtol takes the place of rtol.
+  /// With a fixed step the weights are used by Newton's method only, and newton_rtol replaces rtol.
   static double tolerance_of(const IntegratorSpec& spec) {
     return spec.fixed_step ? spec.newton_rtol : error_test_rtol_of_ark(spec);
   }
-  /// Newton's share of the tolerance.  Where the pair's tolerance T is above rtol, the share is of rtol: the
-  /// solution carried on is better than T says, and must not be spoilt by its stages.
+  /// Returns Newton's share of the tolerance. Where the pair's tolerance T is above rtol, the share is
+  /// taken of rtol: the propagated solution is more accurate than T, and must not be degraded by its stages.
   static double newton_share(const IntegratorSpec& spec) {
     const double aim = spec.fixed_step ? spec.newton_rtol : spec.rtol;
     return tuning::kNewtonShare * std::min(1.0, aim / tolerance_of(spec));
@@ -97,7 +97,7 @@ class Ark final : public Adapter {
     check(ARKStepSetMaxNonlinIters(memory_, tuning::kArkNewtonIterations), "ARKStepSetMaxNonlinIters", t,
           0.0);
     check(ARKStepSetNonlinConvCoef(memory_, newton_share(spec())), "ARKStepSetNonlinConvCoef", t, 0.0);
-    // f of a stage from its equation: spares evaluations
+    // Computes f of a stage from its equation: saves evaluations.
     check(ARKStepSetDeduceImplicitRhs(memory_, SUNTRUE), "ARKStepSetDeduceImplicitRhs", t, 0.0);
   }
 
@@ -152,13 +152,14 @@ class Ark final : public Adapter {
     }
   }
 
-  /// Where one step and a part of one are left, two equal ones are made.  A tiny last step would spoil the
-  /// next: f of its last stage is deduced from (z - known) / (h a_ii), with an error of rounding / h, and
-  /// multiplied by the whole h of the step that follows.
-  /// ARKODE shortens a step that would pass the stop time to h (1 - 4 eps), and its controller then offers
-  /// that h again: the second half, which it misses by rounding.  It lands there all the same, as on each
-  /// stop time that a step misses by less than kLanding (|t| + h), so that such a rest is one step.  Halved,
-  /// it would be halved again at each step, until the controller lets h grow.
+  /// Splits the rest of the interval into two equal steps, where one full step and a part of one are left. A
+  /// very short last step would degrade the next one: f of its last stage is deduced from (z - known) / (h
+  /// a_ii), with an error of rounding / h, and multiplied by the full h of the step that follows.
+  /// If the stop time would be passed, ARKODE shortens the step to h (1 - 4 eps), and its controller then
+  /// proposes that h again: the second half, which misses the stop time by rounding. It lands there
+  /// nevertheless, as on each stop time that a step misses by less than kLanding (|t| + h), so that such a
+  /// rest is one step. If it were halved, it would be halved again at each step, until the controller lets h
+  /// grow.
   bool aim_halfway(double t_end) {
     constexpr double kLanding = 100.0 * std::numeric_limits<double>::epsilon();
     double next = 0.0;
@@ -171,7 +172,7 @@ class Ark final : public Adapter {
 
   StepStatus status_of(int flag) const override { return ark_status(flag); }
   std::string flag_name(int flag) const override { return sun::flag_name("ARKStep", flag); }
-  /// With a fixed step no accuracy was asked for: what is out of proportion to the weights is the solution.
+  /// With a fixed step no accuracy was requested: the solution is out of proportion to the weights.
   std::string remedy(int flag) const override {
     if (flag == ARK_CONV_FAILURE && spec().fixed_step)
       return fmt::format("  Not even at h/{}: a smaller step_s, or error control", 1 << tuning::kHalvings);

@@ -8,30 +8,31 @@
 #include "palpate/core/error.h"
 
 // On y' = lambda y a step multiplies by R(z) = 1 + sum_k z^k b^T A^(k-1) 1, where e^z has z^k/k!, and the
-// estimate is sum_k z^k (b - b^)^T A^(k-1) 1.  With c the first coefficient in which R and e^z differ, that
-// of z^(p+1), and d the first of the estimate, that of z^(m+1), a motion of amplitude a (in units of its
-// tolerance at rtol = 1) errs, over a radian of it, by
+// estimate is sum_k z^k (b - b^)^T A^(k-1) 1. Let c be the first coefficient in which R and e^z differ, at
+// z^(p+1), and d the first one of the estimate, at z^(m+1). The error of a motion of amplitude a (in units of
+// its tolerance at rtol = 1), over a radian, is
 //     c a h^p,    d a h^(m+1) = T    =>    c a (T/(d a))^(p/(m+1)).
-// What is asked for is rtol, so
+// Requiring this error to be rtol yields
 //     T = d a (rtol/(c a))^((m+1)/p) = factor rtol^power.
-// For the usual m = p - 1 that is d/c rtol, whatever the amplitude.  Without the factor pairs differ by a
-// hundred: of ARK5(4)8L[2]SA d is made nearly zero, and the test sees a small part of the error.
+// For the usual m = p - 1 this is d/c rtol, whatever the amplitude. Without the factor the errors of pairs
+// differ by a factor of a hundred: in ARK5(4)8L[2]SA d is nearly zero by design, and the test detects a small
+// part of the error.
 //
-// A factor only tightens: where a force has a kink the estimate tells of it what it does, whatever d/c is on
-// smooth motion.  Loosened by d/c, SDIRK 5(3)4 let a ball on an undamped spring gain 4.5e-6 of its energy at
-// rtol 1e-10, and 2.2e-6 at 1e-11.
+// The factor is at most 1: where a force has a kink the estimate does not depend on d/c of smooth motion.
+// Loosened by d/c, SDIRK 5(3)4 let a ball on an undamped spring gain 4.5e-6 of its energy at rtol 1e-10, and
+// 2.2e-6 at 1e-11.
 //
-// Three pairs have m = p on linear motion and p - 1 on others.  The power is half-way between (error_test.h),
-// and the factor such that both agree at kMiddle.
+// Three pairs have m = p on linear motion and p - 1 on others. The power is half-way between (error_test.h),
+// and the factor is chosen so that both agree at kMiddle.
 //
-// Two tables of Cash are given to eleven digits: sum b is 1 + 8e-12, and a motion errs by that share of its
-// amplitude, or more, in every radian, however short the step.
+// Two tables of Cash are given to eleven digits: sum b is 1 + 8e-12, and the error of a motion per radian is
+// that share of its amplitude, or more, however short the step.
 
 namespace palpate::integrate {
 namespace {
 
-constexpr double kMiddle = 1e-6;     // of the tolerances that are asked for
-constexpr double kRounding = 1e-14;  // of a table's coefficients: less is zero
+constexpr double kMiddle = 1e-6;     // Middle of the usual tolerances.
+constexpr double kRounding = 1e-14;  // Coefficients of a table below this are zero.
 
 ArkCalibration calibrate(const ArkMethod& method) {
   const ButcherTable table = leading_table(method);

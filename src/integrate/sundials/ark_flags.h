@@ -5,7 +5,7 @@
 namespace palpate::integrate {
 namespace PALPATE_HIDDEN sun {
 
-/// Return values of ARKStep and MRIStep, which are the same numbers.
+/// Maps return values of ARKStep and MRIStep, which are the same numbers.
 dynamics::StepStatus ark_status(int flag);
 
 }  // namespace sun

@@ -1,4 +1,4 @@
-#include <cstdio>  // SUNDIALS 6.4 forgets it: arkode_butcher.h names FILE
+#include <cstdio>  // SUNDIALS 6.4 omits it: arkode_butcher.h uses FILE.
 
 #include "integrate/sundials/ark_methods.h"
 
@@ -18,26 +18,28 @@ using dynamics::StepperTraits;
 //
 //   z_i = y_n + h sum_j a_ij f(t_n + c_j h, z_j),      y_{n+1} = y_n + h sum_j b_j f(t_n + c_j h, z_j)
 //
-// On y' = lambda y a step multiplies by R(z), z = h lambda, R(z) = 1 + z b^T (I - z A)^-1 1.  A-stable: |R(i
-// y)| <= 1 for all y and the poles right of it; L-stable: R(-inf) = 0 as well.
-// tests/integrate/ark_methods_test.cpp finds both from the tables of the installed version, and that none of
-// its tables is missing here.
+// On y' = lambda y a step multiplies by R(z), z = h lambda, R(z) = 1 + z b^T (I - z A)^-1 1. A-stable: |R(i
+// y)| <= 1 for all y and the poles are right of it; L-stable: R(-inf) = 0 as well.
+// tests/integrate/ark_methods_test.cpp computes both from the tables of the installed version, and checks
+// that none of its tables is missing here.
 //
-// Explicit methods on undamped motion, z = i w h: |R|^2 = 1 + y^4/4 (Heun), 1 - y^4/12 + y^6/36 (order 3), 1
-// - y^6/72 + y^8/576 (order 4) and 1 + y^6/3600 + ... (Cash and Karp, whose R ends in z^6/800).  Orders 3
-//   and 4 are stable up to w_max h = sqrt(3) and sqrt(8); the other two let every mode grow, the highest
-//   first, until the error control cuts the step.
+// Explicit methods on undamped motion, z = i w h, y = w h: |R|^2 is
+//   1 + y^4/4                       Heun
+//   1 - y^4/12 + y^6/36             order 3
+//   1 - y^6/72 + y^8/576            order 4
+//   1 + y^6/3600 + ...              Cash and Karp, whose R ends in z^6/800.
+// Orders 3 and 4 are stable up to w_max h = sqrt(3) and sqrt(8); with the other two every mode grows, the
+// highest first, until the error control reduces the step.
 //
-// Order on a stiff mode (Prothero and Robinson 1974).  A mode with |h lambda| >> 1 follows a smooth
-// equilibrium g(t).  Put g into the stages: with stage order q their defects are d_i = O(h^(q+1) g^(q+1)),
-// and the error of a step is d_0 - z b^T (I - z A)^-1 d -> d_0 - b^T A^-1 d for z -> -inf.
-//   stiffly accurate (b the last row of A, or b A^-1 c^j = 1 for all j > 0): the limit is zero and what
-//   remains is O(h^q / lambda): order q, with a small
-//   constant; but in the velocity of a stiff spring, which is the derivative of its length, O(h^q) without
-//   it;
-//   else: O(h^(q+1)), damped from step to step by R(-inf), |R(-inf)| < 1: order q + 1.
-// A first explicit stage (ESDIRK) allows q = 2, else a diagonal of equal entries has q = 1.  Run, table by
-// table, in ark_methods_test.cpp.
+// Order on a stiff mode (Prothero and Robinson 1974). A mode with |h lambda| >> 1 follows a smooth
+// equilibrium g(t). Inserting g into the stages yields, with stage order q, the defects d_i = O(h^(q+1)
+// g^(q+1)), and the error of a step is d_0 - z b^T (I - z A)^-1 d -> d_0 - b^T A^-1 d for z -> -inf.
+// - Stiffly accurate (b is the last row of A, or b A^-1 c^j = 1 for all j > 0): the limit is zero and the
+//   remainder is O(h^q / lambda): order q, with a small constant; but O(h^q) without it in the velocity of a
+//   stiff spring, which is the derivative of its length.
+// - Otherwise: O(h^(q+1)), damped from step to step by R(-inf), |R(-inf)| < 1: order q + 1.
+// A first explicit stage (ESDIRK) allows q = 2, otherwise a diagonal of equal entries has q = 1. Checked for
+// each table in ark_methods_test.cpp.
 
 StepperTraits implicit(int order, int stiff_order, Stability stability) {
   return {"DIRK", order, stiff_order, StepControl::kEither, stability, true, false, "force, tangent"};
@@ -46,7 +48,7 @@ StepperTraits explicit_(int order) {
   return {"explicit Runge-Kutta", order, 0,     StepControl::kEither,
           Stability::kExplicit,   false, false, "force"};
 }
-// Only what is implicit is L-stable: the explicit side bounds the step as an explicit method does, but it is
+// Only the implicit side is L-stable: the explicit side bounds the step as an explicit method does, but it is
 // not stiff.
 StepperTraits additive(int order) {
   return {"ImEx Runge-Kutta", order, 2,     StepControl::kEither,

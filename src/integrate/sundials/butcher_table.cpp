@@ -1,4 +1,4 @@
-#include <cstdio>  // SUNDIALS 6.4 forgets it: arkode_butcher.h names FILE
+#include <cstdio>  // SUNDIALS 6.4 omits it: arkode_butcher.h uses FILE.
 
 #include "integrate/sundials/butcher_table.h"
 

@@ -18,7 +18,7 @@ namespace palpate::integrate::sun {
 namespace {
 
 using Namer = char* (*)(long);
-/// `name` of a library's own return values, `linear_name` of its linear solver interface's.
+/// One library: `name` for its return values, `linear_name` for its linear solver interface.
 struct Library {
   std::string_view prefix;
   Namer name, linear_name;
@@ -29,7 +29,7 @@ constexpr Library kLibraries[] = {{"CVode", CVodeGetReturnFlagName, CVodeGetLinR
                                   {"IDA", IDAGetReturnFlagName, IDAGetLinReturnFlagName},
                                   {"KIN", KINGetReturnFlagName, KINGetLinReturnFlagName}};
 
-/// CVodeSetLinearSolver, IDASetJacFn and their like; not CVodeSetNonlinearSolver.
+/// CVodeSetLinearSolver, IDASetJacFn and similar; not CVodeSetNonlinearSolver.
 bool is_of_linear_solver(std::string_view call) {
   return call.find("Lin") != call.npos || call.find("Jac") != call.npos;
 }

@@ -24,10 +24,10 @@ constexpr int kHighestBdf = 5, kHighestAdams = 12;
 /// Linear multistep methods of variable order and step by SUNDIALS CVODE (Hindmarsh et al. 2005, Gardner et
 /// al. 2022), in the fixed-leading-coefficient form
 ///     sum_i alpha_i y_{n-i} + h beta_0 f(t_n, y_n) + h sum_i beta_i f_{n-i} = 0.
-/// BDF: i = 0..k, k <= 5; A-stable for k <= 2, A(alpha) above: undamped modes that h does not resolve can
-/// grow from order 3 on (cap: max_order = 2).  Newton by the condensed matrix.
-/// Adams-Moulton: k <= 12, solved by fixed-point iteration: no tangent; steps bounded by about 1 / (largest
-/// rate).
+/// BDF: i = 0..k, k <= 5; A-stable for k <= 2, A(alpha)-stable above: undamped modes that h does not resolve
+/// can grow from order 3 on (to avoid this, max_order = 2). Newton's method with the condensed matrix.
+/// Adams-Moulton: k <= 12, solved by fixed-point iteration: no tangent; steps are bounded by about 1 /
+/// (largest rate).
 class Cvode final : public Adapter {
  public:
   Cvode(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec, int method)
@@ -56,7 +56,7 @@ class Cvode final : public Adapter {
     else
       use_fixed_point(t);
     if (!problem().has_manifold() || method_ != CV_BDF) return;
-    check(CVodeSetProjFn(memory_, project_on_manifold), "CVodeSetProjFn", t, 0.0);  // BDF only
+    check(CVodeSetProjFn(memory_, project_on_manifold), "CVodeSetProjFn", t, 0.0);  // BDF only.
     check(CVodeSetProjErrEst(memory_, SUNFALSE), "CVodeSetProjErrEst", t, 0.0);
   }
 

@@ -20,7 +20,7 @@ Eigen::Map<VecX> entries(N_Vector v) { return {NV_DATA_S(v), NV_LENGTH_S(v)}; }
 
 }  // namespace
 
-/// SUNNonlinearSolver's table of functions.
+/// Function table of SUNNonlinearSolver.
 struct Operations {
   static FixedStepNewton& of(SUNNonlinearSolver solver) {
     return *static_cast<FixedStepNewton*>(solver->content);
@@ -43,10 +43,10 @@ struct Operations {
     of(s).solve_ = f;
     return kSuccess;
   }
-  // the test is Deuflhard's
+  // The test of Deuflhard is used instead.
   static int no_test(SUNNonlinearSolver, SUNNonlinSolConvTestFn, void*) { return kSuccess; }
   static int no_limit(SUNNonlinearSolver, int) { return kSuccess; }
-  // Iterations of the last solve: the library sums them.
+  // Returns the iterations of the last solve; the library sums them.
   template <class Count>
   static int iterations(SUNNonlinearSolver s, Count* n) {
     *n = of(s).iterations_;
@@ -57,7 +57,7 @@ struct Operations {
     return kSuccess;
   }
   static int free(SUNNonlinearSolver s) {
-    s->content = nullptr;  // not ours to free
+    s->content = nullptr;  // Owned by the FixedStepNewton.
     SUNNonlinSolFreeEmpty(s);
     return kSuccess;
   }
@@ -114,7 +114,7 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
     hook_.project_to_psd(true);
     result = newton_.solve(*this, x, tuning::kDefiniteIterations, DampedNewton::Way::kFresh, false);
     hook_.project_to_psd(false);
-    usable_ = false;  // the next solve wants the true tangent
+    usable_ = false;  // The next solve uses the true tangent.
     iterations_ += result.iterations;
   }
   if (result.status != StepStatus::kOk && flag_ >= 0 && leaps_) {
@@ -139,7 +139,7 @@ bool FixedStepNewton::evaluate(const VecX& x) {
 
 bool FixedStepNewton::solved() const { return (entries(residual_).array() == 0.0).all(); }
 
-/// The value of the stage: the unknown is a correction to a prediction of it.
+/// Returns the rounding of the stage's value: the unknown is a correction to its prediction.
 double FixedStepNewton::rounding(const VecX&) {
   const N_Vector stage = hook_.iterate();
   return stage ? tuning::kRounding * N_VWrmsNorm(stage, weights_) / tolerance_ : 0.0;
@@ -147,7 +147,7 @@ double FixedStepNewton::rounding(const VecX&) {
 
 SolveStatus FixedStepNewton::refresh() {
   sunbooleantype current = SUNFALSE;
-  const int flag = set_up_(SUNTRUE, &current, memory_);  // at the state that the library evaluated last
+  const int flag = set_up_(SUNTRUE, &current, memory_);  // At the state that the library evaluated last.
   flag_ = std::min(flag_, flag);
   usable_ = flag == 0;
   return usable_ ? SolveStatus::kOk : SolveStatus::kSingular;

@@ -8,13 +8,13 @@
 namespace palpate::integrate {
 namespace PALPATE_HIDDEN sun {
 
-/// A nonlinear solver of SUNDIALS for fixed steps: a step that cannot be shortened must be solved from
-/// where it starts. The library's own Newton keeps one tangent for all iterations, takes every correction
-/// whole, and where that fails asks for a shorter step.  Where contact closes within the step the tangent
-/// of the start knows nothing of it, and a whole correction leaps to and fro over the kink.  Here it is
-/// DampedNewton in the unknown of the library (the correction of its predicted stage), with the library's
-/// residual, weights and tolerance; the factor is kept while it serves. Where that fails it is tried once
-/// more from the prediction, with a definite tangent and a fresh one in every iteration.
+/// Nonlinear solver of SUNDIALS for fixed steps, which cannot be shortened after a failure. The library's
+/// Newton solver keeps one tangent for all iterations, takes every correction undamped, and where that fails
+/// requires a shorter step. Where contact closes within the step the tangent at the start does not contain
+/// it, and undamped corrections alternate across the kink. This solver is DampedNewton in the unknown of the
+/// library (the correction of its predicted stage), with the library's residual, weights and tolerance; the
+/// factor is kept while it converges. Where this fails the solve is repeated once from the prediction, with
+/// definite tangents, renewed in every iteration.
 class FixedStepNewton : private NewtonEquation {
  public:
   explicit FixedStepNewton(NewtonHook& hook) : hook_(hook) {}
@@ -22,11 +22,12 @@ class FixedStepNewton : private NewtonEquation {
   FixedStepNewton(const FixedStepNewton&) = delete;
   FixedStepNewton& operator=(const FixedStepNewton&) = delete;
 
+  /// Makes the SUNNonlinearSolver, which refers to this object.
   SUNNonlinearSolver make(SUNContext context);
-  /// Whether a solve that finds no descent leaps.  Over a whole step that would often find a solution of
-  /// much more energy; in parts of one it seldom does.
+  /// Sets whether a solve without descent is repeated with undamped corrections. Over a whole step these
+  /// would often find a solution of much higher energy; in parts of a step they seldom do.
   void allow_leaps(bool on) { leaps_ = on; }
-  void release();  ///< its vectors, before the context goes
+  void release();  ///< Frees the vectors, before the context is destroyed.
 
  private:
   int solve(N_Vector correction, N_Vector weights, double tolerance, bool set_up, void* memory);
@@ -43,10 +44,10 @@ class FixedStepNewton : private NewtonEquation {
   SUNNonlinSolLSolveFn solve_ = nullptr;
   bool usable_ = false, leaps_ = false;
 
-  // of the last solve, or the one under way
+  // State of the last solve, or of the current one.
   int iterations_ = 0;
   bool failed_ = false;
-  int flag_ = 0;  ///< of the library's functions; < 0: given up
+  int flag_ = 0;  ///< Flag of the library's functions; < 0: unrecoverable.
   N_Vector x_ = nullptr, residual_ = nullptr, step_ = nullptr, weights_ = nullptr;
   double tolerance_ = 1.0;
   void* memory_ = nullptr;

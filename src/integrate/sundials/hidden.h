@@ -1,4 +1,4 @@
 #pragma once
 
-/// Namespaces that name SUNDIALS' types: no symbol of theirs leaves the library.
+/// Marks namespaces that use SUNDIALS' types: their symbols are not exported from the library.
 #define PALPATE_HIDDEN __attribute__((visibility("hidden")))

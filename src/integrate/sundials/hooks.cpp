@@ -9,7 +9,7 @@ namespace {
 NewtonHook& hook_of(SUNLinearSolver solver) { return *static_cast<NewtonHook*>(solver->content); }
 
 int free_solver(SUNLinearSolver solver) {
-  solver->content = nullptr;  // not ours to free
+  solver->content = nullptr;  // Owned by the caller.
   SUNLinSolFreeEmpty(solver);
   return kSuccess;
 }
@@ -36,7 +36,7 @@ SUNMatrix make_matrix(SUNContext context) {
   SUNMatrix matrix = SUNMatNewEmpty(context);
   check(matrix, "SUNMatNewEmpty");
   matrix->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
-  matrix->ops->zero = [](SUNMatrix) { return kSuccess; };  // IDA clears what it hands out
+  matrix->ops->zero = [](SUNMatrix) { return kSuccess; };  // IDA clears the matrix that it passes on.
   matrix->ops->destroy = free_matrix;
   return matrix;
 }

@@ -22,9 +22,9 @@ constexpr int kHighestOrder = 5;
 
 /// Backward differences of variable order and step on the residual form by SUNDIALS IDA (Hindmarsh et al.
 /// 2005), fixed leading coefficient:
-///     F(t_n, y_n, y'_n) = 0,  y'_n = c_j y_n + (what is known),   F = [q' - N(q) u;  M u' - f(q, u, t)].
-/// No mass is inverted on the way, so a consistent one costs nothing extra (the start alone needs y' and
-/// solves with M once). Newton's matrix dF/dy + c_j dF/dy' is the condensed one with gamma = 1/c_j.
+///     F(t_n, y_n, y'_n) = 0,  y'_n = c_j y_n + (known terms),   F = [q' - N(q) u;  M u' - f(q, u, t)].
+/// No mass is inverted, so a consistent one has no additional cost (only the start needs y' and solves with M
+/// once). Newton's matrix dF/dy + c_j dF/dy' is the condensed one with gamma = 1/c_j.
 class Ida final : public Adapter {
  public:
   Ida(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec) {
@@ -54,7 +54,8 @@ class Ida final : public Adapter {
     check(IDASetJacFn(memory_, jacobian), "IDASetJacFn", t, 0.0);
   }
 
-  /// y' = f(t, y), so that F = 0 at the start.  Where f is not finite the first step says so.
+  /// Sets y' = f(t, y), so that F = 0 at the start. Where f is not finite the first step fails and reports
+  /// it.
   void start_rate_of_change() {
     if (!problem().derivative(problem().time(), NV_DATA_S(y()), NV_DATA_S(y_dot_), Side::kAll))
       N_VConst(0.0, y_dot_);

@@ -27,35 +27,35 @@ namespace {
 using namespace dynamics;
 
 constexpr int kRecoverable = 1;
-constexpr double kSmallest =  // positions and forces below it have lost digits to underflow
+constexpr double kSmallest =  // Positions and forces below it have lost digits to underflow.
     std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
 /// Quasi-static equilibrium, f(q, 0, t) = 0, by Newton's method of SUNDIALS KINSOL with the exact tangent at
-/// every iteration. The State at t_end is the equilibrium that belongs to t_end, reached from the one before;
-/// velocities are zero.
+/// every iteration. The State at t_end is the equilibrium at t_end, reached from the previous one; velocities
+/// are zero.
 ///
-/// Load ladder.  From q0 at t0, which need not be in equilibrium, to t1, the unbalanced force is let go by
-/// rungs s in (0, 1],
+/// Load stepping. From q0 at t0, which need not be in equilibrium, to t1, the unbalanced force is released in
+/// load steps s in (0, 1],
 ///     G(q, s) = f(q, 0, t0 + s (t1 - t0)) - (1 - s) f(q0, 0, t0) = 0,
-/// where s = 0 is solved by q0: loads, drives and what was left over of earlier outputs all grow with s.  A
-/// rung that Newton does not climb is halved.
+/// where s = 0 is solved by q0: loads, drives and the unbalanced force left by earlier outputs all vary with
+/// s. A load step at which Newton's method fails is halved.
 ///
-/// Proximal steps.  Where even a 64th is too much (a strut that buckles, a body that lies on nothing but its
-/// contact) the rung is climbed by
-///     G(q, s) - sigma M (q - q_k) = 0,      sigma falling by ten after a success, rising by ten after a
-///     failure:
-/// steps of backward Euler without inertia, which go downhill in energy, have a definite matrix for sigma
-/// large enough, and end at a stable equilibrium. (KINSOL's own line search stalls here: the norm of the
-/// force is no merit function when an element turns.)
+/// Proximal steps. Where even a load step of 1/64 fails (a strut that buckles, a body supported only by its
+/// contact) it is solved by
+///     G(q, s) - sigma M (q - q_k) = 0,
+/// with sigma reduced by ten after a success and increased by ten after a failure. These are steps of
+/// backward Euler without inertia, which decrease the energy, have a definite matrix for sigma large enough,
+/// and end at a stable equilibrium. (KINSOL's line search stalls here: the norm of the force is no merit
+/// function when an element rotates.)
 ///
-/// When a residual is zero.  Forces are measured by the largest one that any term puts on a free direction,
-/// moments by the largest moment, or that force at the end of an arm as long as what is simulated.  Newton's
-/// method ends at a residual of newton_rtol of that, or at what rounding leaves of it, if that is more: a
-/// position is known to eps of its size, so that the force on direction i is known to
+/// Convergence. Forces are measured by the largest one that any term exerts on a free direction, moments by
+/// the largest moment, or by that force at a lever arm as long as the simulated objects. Newton's method
+/// stops at a residual of newton_rtol relative to that, or at the rounding of the residual, if that is more:
+/// a position is known to eps of its size, so that the force on direction i is known to
 ///     rounding_i = 1e-14 sum_j |K_ij| X_j,      X_j the largest coordinate of any node; 1 for angles.
-/// Small loads meet the second bound.  Such an equilibrium is counted as limited by rounding; corrections
-/// with the last factor then go on while they lower the residual.  No bound knows a unit; the one absolute
-/// figure is where doubles lose digits to underflow, 1e-292 (a State of displacements that is asked for its
-/// equilibrium again and again divides them by 1e16 each time, and gets there).
+/// For small loads the second bound applies. Such an equilibrium is counted as limited by rounding, and
+/// corrections with the last factor continue while they lower the residual. No bound depends on a unit; the
+/// one absolute figure is where doubles lose digits to underflow, 1e-292 (a State of displacements whose
+/// equilibrium is computed repeatedly divides them by 1e16 each time, and reaches it).
 class KinsolStatic final : public Stepper, private NewtonHook {
  public:
   KinsolStatic(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
@@ -111,7 +111,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   }
 
  private:
-  // --- the ladder
+  // --- load steps
   StepResult climb() {
     double s = 0.0, rung = 1.0;
     int flag = KIN_SUCCESS;
@@ -142,7 +142,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     return succeeded(t1_ - t0_, static_cast<int>(iterations));
   }
 
-  /// Proximal steps to the rung s_.  @param flag KINSOL's last
+  /// Takes proximal steps to the load s_.
+  /// @param flag  KINSOL's last flag
   bool go_downhill(int& flag, long& iterations) {
     sigma_ = stiffness_over_mass();
     if (!(sigma_ > 0.0)) return false;
@@ -178,14 +179,13 @@ class KinsolStatic final : public Stepper, private NewtonHook {
 
   double rung_time() const { return t0_ + s_ * (t1_ - t0_); }
 
-  /// One Newton solve for the displacement x_ from base_q_.
+  /// Solves once by Newton's method for the displacement x_ from base_q_.
   int solve(long& iterations) {
     N_VConst(0.0, x_);
     message_.clear();
     finite_ = true;
     set_tolerance(start_tolerance_);
-    // On the way to an equilibrium a step that moves no position is the last; a proximal step may have no
-    // other.
+    // Where sigma = 0 a step that moves no position is the last; proximal steps may be arbitrarily small.
     check(KINSetScaledStepTol(kinsol_, sigma_ == 0.0 ? std::numeric_limits<double>::epsilon() : kSmallest),
           "KINSetScaledStepTol", state_.time(), 0.0);
     int flag = KINSol(kinsol_, x_, KIN_NONE, displacement_scale_, force_scale_);
@@ -200,11 +200,12 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     return flag;
   }
 
-  /// Positions do not move any more: whether what is left of the forces is rounding.
+  /// Returns whether the residual is rounding, after positions stopped moving.
   bool ends_at_rounding() { return residual(NV_DATA_S(x_), sigma_, g_) && size_of(g_) <= tolerance_; }
 
-  /// Where Newton's method ended at rounding: whether it is so by the matrix there (the one that it ended
-  /// with may have stood elsewhere), and corrections by it while they lower the residual.
+  /// Called where Newton's method ended at rounding. Verifies this with the matrix at the solution (the last
+  /// matrix may belong to another state), and applies corrections while they lower the residual. Returns
+  /// false where the residual is more than rounding.
   bool refine() {
     Eigen::Map<VecX> x(NV_DATA_S(x_), g_.size());
     if (!residual(x.data(), sigma_, g_)) return false;
@@ -213,7 +214,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     assemble();
     if (size > rounding()) return false;
     ++counters_.rounding_limited;
-    if (setup() != 0) return true;  // a free body that rests
+    if (setup() != 0) return true;  // A free body at rest.
     for (int k = 0; k < tuning::kRefinements && size > spec_.newton_rtol; ++k) {
       rhs_ = g_;
       if (solve_for_step() != 0) break;
@@ -230,7 +231,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   }
 
   // --- the equations
-  /// q = base_q_ moved by the displacement x along u-directions; drives where they are at time t.
+  /// Sets q to base_q_ moved by the displacement x along u-directions, with driven directions at time t.
   void place(const double* x, double t, VecX& q) {
     q_dot(state_.layout(), base_q_.data(), x, rate_.data());
     q = base_q_ + rate_;
@@ -262,12 +263,12 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   }
 
   // --- the measures
-  /// Whether a direction of u turns something.
+  /// Returns whether a direction of u is a rotation.
   static bool is_angle(const Block& b, int i) {
     return !b.angles_u.empty() && b.angles_u[static_cast<std::size_t>(i)] != 0;
   }
 
-  /// Units of displacements and forces, by direction.
+  /// Sets the units of displacements and forces, by direction.
   void measure() {
     const Layout& layout = state_.layout();
     VecX largest = VecX::Zero(layout.u_size);
@@ -287,7 +288,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     for (const Block& b : layout.blocks)
       for (int i = 0; b.kind != BlockKind::kNodes && i < b.u_size; ++i)
         is_moment[b.u_offset + i] = is_angle(b, i) ? 1.0 : 0.0;
-    // where all are zero any unit serves
+    // Where all are zero any unit is valid.
     const auto positive = [](double x) { return x > 0.0 ? std::max(x, kSmallest) : 1.0; };
     const double force = (largest.array() * (1.0 - is_moment.array())).maxCoeff(),
                  moment = std::max((largest.array() * is_moment.array()).maxCoeff(), force * arm);
@@ -302,7 +303,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     }
   }
 
-  /// The largest force of any one term on each free direction.
+  /// Computes the largest force of any one term on each free direction.
   void add_forces(double t, VecX& largest) {
     VecX f, q = state_.q();
     system_.impose(state_.layout(), t, q.data(), velocity_.data());
@@ -325,7 +326,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     check(KINSetFuncNormTol(kinsol_, tolerance), "KINSetFuncNormTol", state_.time(), 0.0);
   }
 
-  /// What a residual is worth at q0; jacobian() adapts the tolerance to where Newton's method goes.
+  /// Sets the tolerance at q0; jacobian() adapts it to the iterates of Newton's method.
   void measure_rounding() {
     const ScopedTimer timer(counters_.tangent_s);
     ++counters_.tangent_evaluations;
@@ -335,8 +336,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     start_tolerance_ = std::max(spec_.newton_rtol, rounding());
   }
 
-  /// What rounding leaves of the residual, by the matrix that stands in A_. Rows of K sum to what driven
-  /// directions would bring, which are not in A_.
+  /// Returns the rounding of the residual, from the current matrix A_. The entries of a row of A_ sum to the
+  /// negative contribution of driven directions, which are not in A_.
   double rounding() {
     absolute_ = A_;
     for (double& v : absolute_.body.values()) v = std::abs(v);
@@ -348,8 +349,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     return tuning::kRounding * size_of(summands_);
   }
 
-  /// What proximal steps begin with [1/s^2]: the largest stiffness of a node over the largest mass of one,
-  /// and of what is no node, the largest ratio of one direction.
+  /// Returns the initial sigma of proximal steps [1/s^2]: the largest stiffness of a node over the largest
+  /// mass of one, and for directions of other blocks the largest ratio of one direction.
   double stiffness_over_mass() {
     const StateView at = state_.view(rung_time(), base_q_.data(), velocity_.data());
     system_.step_matrix(at, 0.0, 0.0, 1.0, A_);
@@ -367,7 +368,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
       }
     }
     if (heaviest > 0.0) largest = std::max(largest, stiffest / heaviest);
-    // nothing but loads: what would hold them within the distances that there are
+    // Only loads: the stiffness that would balance them within the extent of the objects.
     return largest > 0.0 || !(heaviest * far_ > 0.0) ? largest : force_ / (heaviest * far_);
   }
   VecX diagonal() const {
@@ -383,7 +384,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     KinsolStatic& me = self(data);
     me.finite_ = me.residual(NV_DATA_S(x), me.sigma_, me.g_);
     if (!me.finite_) return kRecoverable;
-    Eigen::Map<VecX>(NV_DATA_S(g), me.g_.size()) = -me.g_;  // its derivative is then K
+    Eigen::Map<VecX>(NV_DATA_S(g), me.g_.size()) = -me.g_;  // Its derivative is then K.
     return 0;
   }
   static int jacobian(N_Vector x, N_Vector, SUNMatrix, void* data, N_Vector, N_Vector) {
@@ -437,17 +438,18 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     force_scale_ = N_VClone(x_);
     kinsol_ = KINCreate(*context_);
     check(kinsol_, "KINCreate");
-    context_->attach(Solver::kKinsol, kinsol_);  // first, so that nothing is ever printed
+    context_->attach(Solver::kKinsol, kinsol_);  // First, so that nothing is printed.
     check(KINInit(kinsol_, equations, x_), "KINInit", t, 0.0);
     check(KINSetUserData(kinsol_, this), "KINSetUserData", t, 0.0);
     linear_solver_ = make_linear_solver(*this, *context_);
     matrix_ = make_matrix(*context_);
     check(KINSetLinearSolver(kinsol_, linear_solver_, matrix_), "KINSetLinearSolver", t, 0.0);
     check(KINSetJacFn(kinsol_, jacobian), "KINSetJacFn", t, 0.0);
-    // a tangent an iteration: with an old one Newton leaves soft bodies
+    // One tangent per iteration: with an old one Newton's method diverges on soft bodies.
     check(KINSetMaxSetupCalls(kinsol_, 1), "KINSetMaxSetupCalls", t, 0.0);
     check(KINSetNumMaxIters(kinsol_, tuning::kStaticIterations), "KINSetNumMaxIters", t, 0.0);
-    check(KINSetMaxNewtonStep(kinsol_, 1e30), "KINSetMaxNewtonStep", t, 0.0);  // the ladder keeps steps short
+    // Load stepping keeps steps short.
+    check(KINSetMaxNewtonStep(kinsol_, 1e30), "KINSetMaxNewtonStep", t, 0.0);
     layout_version_ = state_.layout().version;
   }
 
@@ -468,7 +470,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     self(data).message_ = fmt::format("{}: {}", function, text);
   }
 
-  // --- what is told
+  // --- results
   StepStatus status_of(int flag) const {
     if (!finite_) return StepStatus::kNotFinite;
     return flag == KIN_LSETUP_FAIL || flag == KIN_LSOLVE_FAIL || flag == KIN_LINSOLV_NO_RECOVERY

@@ -14,9 +14,9 @@ namespace {
 // In extended precision: with entries of |Z| = y the sum over the stages cancels to 1/y of its terms.
 using MatL = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// Stage by stage, for every table here is lower triangular:
+/// Computes the step stage by stage, as every table here is lower triangular:
 ///     Y_i = (1 - a_ii Z)^-1 (1 + sum_(j<i) (a_ij Z + a^_ij Z^) Y_j),   R = 1 + sum_i (b_i Z + b^_i Z^) Y_i
-/// with Z, a, b of `table` and Z^, a^, b^ of `other`, an explicit one, or null.
+/// with Z, a, b of `table` and Z^, a^, b^ of `other`, which is explicit, or null.
 MatX runge_kutta_step(const ButcherTable& table, const MatX& Z, const ButcherTable* other = nullptr,
                       const MatX& other_Z = {}) {
   const Eigen::Index n = Z.rows();

@@ -6,7 +6,7 @@
 namespace palpate::integrate {
 namespace PALPATE_HIDDEN sun {
 
-/// The adapters over any OdeProblem; spec.name picks the method.
+/// Factories of the adapters, for any OdeProblem; spec.name selects the method.
 std::unique_ptr<dynamics::Stepper> make_cvode(std::unique_ptr<OdeProblem> problem,
                                               const IntegratorSpec& spec);
 std::unique_ptr<dynamics::Stepper> make_ark(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);

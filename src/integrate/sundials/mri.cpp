@@ -29,14 +29,13 @@ using Side = OdeProblem::Side;
 /// slow and implicit, tool and contact fast. Between two slow stages, c_i and c_(i+1), the fast side is
 /// integrated with the slow one as a polynomial forcing,
 ///     v' = f_F(t, v) + sum_j gamma_ij(t) f_S(z_j),     z_(i+1) = v(t_n + c_(i+1) H),
-/// or, where c_i = c_(i+1), an implicit stage z_(i+1) = z_i + H sum_j gbar_ij f_S(z_j) is solved by Newton
-/// with the slow tangent alone. The slow step is fixed (step_s); the fast side takes the explicit steps of
+/// or, where c_i = c_(i+1), an implicit stage z_(i+1) = z_i + H sum_j gbar_ij f_S(z_j) is solved by Newton's
+/// method with the slow tangent only. The slow step is fixed (step_s). The fast side takes explicit steps of
 /// Bogacki and Shampine under error control: cheap, because no element is evaluated in them, and bounded by
-/// the contact's and the coupling's own rates.  Where a scene has neither, f_F = 0 and the method is an
-/// implicit Runge-Kutta one with needless bookkeeping.
-/// Stable for each side alone.  Where both are stiff in each other (a hard contact on hard tissue, at a step
-/// of several of either's periods) the two together need not be:
-/// multirate_amplification (multirate.h) tells.
+/// the rates of contact and coupling. Where a scene has neither, f_F = 0 and the method is an implicit
+/// Runge-Kutta method with unnecessary overhead.
+/// Stable for each side alone. Where both are stiff and coupled (a hard contact on hard tissue, at a step of
+/// several periods of either) the combination need not be stable: see multirate_amplification (multirate.h).
 class Mri final : public Adapter {
  public:
   Mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec)
@@ -80,7 +79,7 @@ class Mri final : public Adapter {
     check(ARKStepWFtolerances(fast_, fast_weights), "ARKStepWFtolerances", t, 0.0);
     check(ARKStepSetTableNum(fast_, ARKODE_DIRK_NONE, ARKODE_BOGACKI_SHAMPINE_4_2_3), "ARKStepSetTableNum", t,
           0.0);
-    // between two slow stages
+    // Between two slow stages.
     check(ARKStepSetMaxNumSteps(fast_, std::max(tuning::kLeastFastSteps, spec().max_steps)),
           "ARKStepSetMaxNumSteps", t, 0.0);
     check(ARKStepSetMaxErrTestFails(fast_, tuning::kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
@@ -187,7 +186,7 @@ class Mri final : public Adapter {
   }
   static int fast_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     Mri& me = self(data);
-    if (me.interrupted()) return kUnrecoverable;  // a slow step may hold a hundred thousand fast ones
+    if (me.interrupted()) return kUnrecoverable;  // A slow step may contain a hundred thousand fast ones.
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kFast);
     me.see_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
@@ -206,11 +205,12 @@ class Mri final : public Adapter {
 
   const MultirateMethod& method_;
   double now_ = 0.0;
-  bool at_start_ = false;  ///< of a step: nothing was evaluated yet
+  bool at_start_ = false;  ///< At the start of a step, before the first evaluation.
   StepInParts parts_{spec().step_s};
-  std::optional<Context> fast_context_;  ///< its errors are told apart from those of the slow side
+  /// Separate, so that its errors are distinguished from errors of the slow side.
+  std::optional<Context> fast_context_;
   std::string fast_message_;
-  long failures_ = 0;  ///< of a stage's solve: the library counts none
+  long failures_ = 0;  ///< Failed solves of a stage, which the library does not count.
   void *slow_ = nullptr, *fast_ = nullptr;
   MRIStepInnerStepper inner_ = nullptr;
   SUNLinearSolver linear_solver_ = nullptr;

@@ -9,18 +9,17 @@
 #include "palpate/core/error.h"
 #include "palpate/integrate/multirate.h"
 
-// One step H of a multi-rate infinitesimal method (Sandu 2019) from z_1 = y_n, with its abscissae c_i and
-// coupling coefficients g_ij(tau) = sum_k G^k_ij tau^k, takes for each stage
-//     c_i > c_(i-1), T = (c_i - c_(i-1)) H:   v' = F v + H/T sum_j g_ij(s/T) S z_j  from  v(0) = z_(i-1),
-//     z_i = v(T)
-//     c_i = c_(i-1):                          z_i = z_(i-1) + H sum_j gbar_ij S z_j,    gbar_ij = sum_k
-//     G^k_ij/(k + 1)
-// and the last z is y_(n+1).  With  integral_0^T e^(F (T - s)) (s/T)^k ds = T k! phi_(k+1)(T F),
+// One step H of a multi-rate infinitesimal method (Sandu 2019) starts from z_1 = y_n. With its abscissae c_i
+// and coupling coefficients g_ij(tau) = sum_k G^k_ij tau^k, each stage is
+//     c_i > c_(i-1):  v' = F v + H/T sum_j g_ij(s/T) S z_j  from  v(0) = z_(i-1),  T = (c_i - c_(i-1)) H,
+//                     z_i = v(T)
+//     c_i = c_(i-1):  z_i = z_(i-1) + H sum_j gbar_ij S z_j,    gbar_ij = sum_k G^k_ij/(k + 1)
+// and the last z is y_(n+1). With  integral_0^T e^(F (T - s)) (s/T)^k ds = T k! phi_(k+1)(T F),
 //     z_i = e^(T F) z_(i-1) + H sum_jk G^k_ij k! phi_(k+1)(T F) S z_j.
-// phi_1 .. phi_m of X stand in the first row of blocks of exp of the block matrix with X, 1, 0, .. in its
-// first row and ones above its diagonal (Saad 1992):
+// phi_1 .. phi_m of X are in the first block row of exp of the block matrix with X, 1, 0, .. in its first row
+// and ones above its diagonal (Saad 1992):
 //     exp [X 1 0; 0 0 1; 0 0 0] = [e^X phi_1 phi_2; ..].
-// Every z_i = Z_i y_n, and the last Z is the step's matrix.
+// Every z_i = Z_i y_n, and the last Z is the matrix of the step.
 
 namespace palpate::integrate {
 namespace sun {
@@ -30,7 +29,7 @@ constexpr MultirateMethod kMethods[] = {{"ark-mri-2", ARKODE_MRI_GARK_IRK21a, 2}
                                         {"ark-mri-3", ARKODE_MRI_GARK_ESDIRK34a, 3},
                                         {"ark-mri-4", ARKODE_MRI_GARK_ESDIRK46a, 4}};
 
-/// c and G^k of a table, which is freed.
+/// c and G^k of a coupling table.
 struct Coupling {
   VecX c;
   std::vector<MatX> G;
@@ -48,7 +47,7 @@ struct Coupling {
   }
 };
 
-/// e^X, phi_1(X), .., phi_m(X).
+/// Returns e^X, phi_1(X), .., phi_m(X).
 std::vector<MatX> phi_functions(const MatX& X, int m) {
   const Eigen::Index n = X.rows();
   MatX block = MatX::Zero(n * (m + 1), n * (m + 1));

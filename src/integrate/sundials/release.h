@@ -20,29 +20,32 @@
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 
-// Everything in which the tested releases of SUNDIALS differ: 6.4 (Debian 12) and 7.1 (Debian 13).  All other
-// files use names and meanings that both have.
+// All differences between the tested releases of SUNDIALS: 6.4 (Debian 12) and 7.1 (Debian 13). All other
+// files use names and meanings common to both.
 #define PALPATE_SUNDIALS_7 (SUNDIALS_VERSION_MAJOR >= 7)
 
-// 7.1 has one ARKodeSet.. for each ARKStepSet.. and MRIStepSet.., and marks the latter as deprecated, which
-// are the only ones that 6.4 has.
+// 7.1 has one ARKodeSet.. for each ARKStepSet.. and MRIStepSet.., and marks the latter as deprecated; 6.4 has
+// only the latter.
 #pragma GCC diagnostic ignored "-Wdeprecated-declarations"
 
 namespace palpate::integrate {
 namespace PALPATE_HIDDEN sun {
 
-/// SUN_NLS_SUCCESS, SUNLS_SUCCESS and SUNMAT_SUCCESS of 6.x, which 7.0 replaced by SUN_SUCCESS.
+/// SUN_NLS_SUCCESS, SUNLS_SUCCESS and SUNMAT_SUCCESS of 6.x, replaced in 7.0 by SUN_SUCCESS.
 constexpr int kSuccess = 0;
 
-/// ARKStepSetTableNum; each step starts from f of the state that it starts from.
+/// Calls ARKStepSetTableNum such that each step starts from f at its initial state.
 ///
 /// 7.1 takes the last stage of a stiffly accurate table (b is the last row of A) for the solution, and f of
-/// that stage for the first one of the next step, where that is explicit.  The f of an implicit stage is what
-/// Newton's iteration left, and neither knows of a projection in between: what a step does then depends on
-/// whether the method was reset before it.  6.4 evaluates f anew in each first stage.
-/// 7.1 does the same for a b that differs from the last row by more than 100 eps.  Two weights are shifted by
-/// 200 eps, in opposite directions, so that sum b = 1 is kept.  The solution moves by 200 eps h (f_s -
-/// f_(s-1)), less than 5e-14 of what a step changes: a twentieth of the tightest tolerance (tuning.h).
+/// that stage for the first one of the next step, where that is explicit. The f of an implicit stage has the
+/// error left by Newton's iteration, and neither includes a projection in between: the result of a step then
+/// depends on whether the method was reset before it. 6.4 evaluates f again in each first stage.
+/// 7.1 treats a table in the same way as 6.4 where b differs from the last row by more than 100 eps. Two
+/// weights are shifted by 200 eps, in opposite directions, so that sum b = 1 is kept. The solution moves by
+/// 200 eps h (f_s - f_(s-1)), less than 5e-14 of the change in a step: a twentieth of the tightest tolerance
+/// (tuning.h).
+/// @param memory  ARKStep's memory
+/// @param implicit, explicit_  tables, or ARKODE_DIRK_NONE, ARKODE_ERK_NONE
 /// @param projected  a step is post-processed
 /// @return  the flag of the call
 inline int set_tables(void* memory, ARKODE_DIRKTableID implicit, ARKODE_ERKTableID explicit_,
@@ -69,15 +72,17 @@ inline int set_tables(void* memory, ARKODE_DIRKTableID implicit, ARKODE_ERKTable
   return ARKStepSetTableNum(memory, implicit, explicit_);
 }
 
-/// Gives MRIStep's interpolant, of dense output and of root finding, the right-hand side that the step under
-/// way starts from.  To be called by its first evaluation of the slow side.
+/// Sets the right-hand side at the start of the current step in MRIStep's interpolant, which dense output and
+/// root finding use. Must be called by the step's first evaluation of the slow side.
 ///
-/// 7.0 and 7.1 evaluate the slow side there and take the memory for the sum of both sides for current, in
-/// which nothing stands yet, or what stood there a step ago (mended in 7.2): a method of order 4 interpolates
-/// with it (findings/sundials-7.1-mristep-interpolates-unset-memory.sh).  While it is not current an
-/// interpolation evaluates it; a derivative of a higher order than the interpolant has does no more than
-/// that.
+/// 7.0 and 7.1 evaluate the slow side there and take the memory for the sum of both sides as current,
+/// although it is unset, or holds the value of the previous step (fixed in 7.2): a method of order 4
+/// interpolates with it (findings/sundials-7.1-mristep-interpolates-unset-memory.sh). While it is not current
+/// an interpolation evaluates it; requesting a derivative of a higher order than the interpolant has does
+/// only that.
+/// @param memory  MRIStep's memory
 /// @param t  start of the step
+/// @param scratch  receives the derivative, which is not used
 inline void evaluate_start([[maybe_unused]] void* memory, [[maybe_unused]] double t,
                            [[maybe_unused]] N_Vector scratch) {
 #if PALPATE_SUNDIALS_7 && SUNDIALS_VERSION_MAJOR == 7 && SUNDIALS_VERSION_MINOR < 2
@@ -85,16 +90,20 @@ inline void evaluate_start([[maybe_unused]] void* memory, [[maybe_unused]] doubl
 #endif
 }
 
+/// Solver whose errors are redirected.
 enum class Solver { kCvode, kArkStep, kMriStep, kIda, kKinsol };
 
-/// A SUNContext without MPI.  Errors of the solvers that are attached to it go to a handler, warnings to
-/// palpate's log at the level `debug`; SUNDIALS itself prints nothing.
+/// SUNContext without MPI. Errors of the attached solvers are passed to a handler, warnings to palpate's log
+/// at the level `debug`; SUNDIALS prints nothing.
 class Context {
  public:
-  /// @param function  of SUNDIALS, that reports the error
+  /// Handler of errors.
+  /// @param function  the SUNDIALS function that reports the error
+  /// @param text  the message
+  /// @param data  argument of the constructor
   using ErrorHandler = void (*)(const char* function, const char* text, void* data);
 
-  /// @throws InternalError where SUNDIALS makes no context
+  /// @throws InternalError where SUNDIALS creates no context
   Context(ErrorHandler handler, void* data) : handler_(handler), data_(data) {
     const int flag = SUNContext_Create(kNoCommunicator, &context_);
     PALPATE_CHECK(flag == 0, "SUNContext_Create returned flag {}", flag);
@@ -108,18 +117,19 @@ class Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  operator SUNContext() const { return context_; }  // NOLINT: it stands for one
+  operator SUNContext() const { return context_; }  // NOLINT: used in place of a SUNContext
 
 #if PALPATE_SUNDIALS_7
-  // With MPI a SUNComm is MPI_Comm, a pointer in Open MPI: a null one compiles, is no communicator, and MPI
-  // ends the process.
+  // With MPI a SUNComm is an MPI_Comm, which is a pointer in Open MPI: a null pointer compiles, but is not a
+  // communicator, and MPI would terminate the process.
   static inline const SUNComm kNoCommunicator = SUN_COMM_NULL;
 
-  /// Solvers report to their context.
+  /// Does nothing: solvers report to their context.
   void attach(Solver, void*) {}
 
-  /// Warnings pass no handler: the logger writes them to a file of a given name, standard output by default.
-  /// The file is one in memory.  To be called after the calls that may warn.
+  /// Writes the warnings so far to the log. Warnings are not passed to a handler: the logger writes them to a
+  /// file of a given name, standard output by default. Here it is a file in memory. Must be called after
+  /// calls that may warn.
   void log_warnings() {
     SUNLogger logger = nullptr;
     if (warnings_ < 0 || SUNContext_GetLogger(context_, &logger) != 0) return;
@@ -131,7 +141,7 @@ class Context {
 
  private:
   void prepare() {
-    // Handlers are a stack, and each is called: the first one prints to standard error.
+    // Handlers are a stack, all of which are called: the first one prints to standard error.
     SUNContext_ClearErrHandlers(context_);
     SUNContext_PushErrHandler(context_, on_error, this);
     SUNLogger logger = nullptr;
@@ -139,7 +149,7 @@ class Context {
     warnings_ = ::memfd_create("sundials-warnings", MFD_CLOEXEC);
     const std::string name = "/proc/self/fd/" + std::to_string(warnings_);
     if (warnings_ >= 0 && SUNLogger_SetWarningFilename(logger, name.c_str()) == 0) return;
-    SUNLogger_SetWarningFilename(logger, "/dev/null");  // /proc is not mounted
+    SUNLogger_SetWarningFilename(logger, "/dev/null");  // Used where /proc is not mounted.
   }
   static void on_error(int, const char* function, const char*, const char* text, SUNErrCode code, void* data,
                        SUNContext) {
@@ -149,7 +159,7 @@ class Context {
 #else
   static constexpr void* kNoCommunicator = nullptr;
 
-  /// Each solver has a handler, for errors and warnings.
+  /// Sets the handler of a solver, for errors and warnings.
   void attach(Solver solver, void* memory) {
     int flag = 0;
     switch (solver) {

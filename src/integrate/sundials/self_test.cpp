@@ -20,7 +20,7 @@ constexpr double kFailed = std::numeric_limits<double>::quiet_NaN();
 
 void silent(const char*, const char*, void*) {}
 
-/// One equation's worth of SUNDIALS objects.
+/// SUNDIALS objects for one scalar equation.
 struct Scalar {
   sun::Context context{silent, nullptr};
   N_Vector y = nullptr;
@@ -67,9 +67,10 @@ double cvode(double t) {
   return ok ? s.value() : kFailed;
 }
 
-// Without a stop time: where one shortens the last step by less than a fifth, ARKODE 7.1.1 (Debian 13) solves
-// it with the factor of the steps before and takes the first correction for exact, off by up to 4e-4
-// (findings/sundials-7-arkstep-trusts-an-old-factor.sh); without one it is right to 1e-11.
+// Without a stop time: where a stop time shortens the last step by less than a fifth, ARKODE 7.1.1 (Debian
+// 13) solves that step with the factor of the previous steps and accepts the first correction as exact, with
+// an error of up to 4e-4 (findings/sundials-7-arkstep-trusts-an-old-factor.sh); without one the error is
+// 1e-11.
 double arkode(double t) {
   Scalar s;
   void* memory = s.solver ? ARKStepCreate(nullptr, decay, 0.0, s.y, s.context) : nullptr;

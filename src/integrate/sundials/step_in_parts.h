@@ -5,25 +5,25 @@
 namespace palpate::integrate {
 namespace PALPATE_HIDDEN sun {
 
-/// The length of the next fixed step: whole, or where a nonlinear solve failed, the rest of that one step
-/// in halves, quarters, ... down to 1/64, as the hand-written steppers take it (fixed_step/fixed_step.h): a
-/// user who chose h wants the other steps as they are.
+/// Length of the next fixed step. After a failed nonlinear solve the rest of that one step is divided into
+/// halves, quarters, ... down to 1/64, as in the hand-written steppers (fixed_step/fixed_step.h): a user who
+/// chose h expects the other steps unchanged.
 class StepInParts {
  public:
   explicit StepInParts(double step) : step_(step) {}
 
   bool halved() const { return halvings_ > 0; }
-  int halvings() const { return halvings_; }  ///< the step of next() is 1/2^halvings() of a whole one
-  void begin() { halvings_ = 0; }             ///< nothing is left of an earlier step
-  /// From t towards t_end.  What is longer than a step by rounding is one, and a step shorter than rounding
-  /// of the others is none.
+  int halvings() const { return halvings_; }  ///< The step of next() is 1/2^halvings() of a whole one.
+  void begin() { halvings_ = 0; }             ///< Starts a new interval; discards parts of an earlier step.
+  /// Returns the length of the next step from t towards t_end. A length above one step by rounding is taken
+  /// as one step, so that no step is as short as that rounding.
   double next(double t, double t_end) {
     if (halvings_ > 0 && t >= whole_end_ - tuning::kRoundingOfStep * step_) halvings_ = 0;
     const double end = halvings_ > 0 ? whole_end_ : t_end, wanted = halvings_ > 0 ? part_ : step_;
     length_ = end - t <= wanted * (1.0 + tuning::kRoundingOfStep) ? end - t : wanted;
     return length_;
   }
-  /// The step of next() from t has failed: a shorter one; false where it was short enough.
+  /// Shortens the step of next() from t after a failure; returns false where it was the shortest.
   bool shorten(double t) {
     if (halvings_ == 0) whole_end_ = t + length_;
     if (halvings_ == tuning::kHalvings) return false;

@@ -29,7 +29,7 @@ void set_constant(sunrealtype c, N_Vector z) { array(z) = c; }
 int linear_combination(int count, sunrealtype* c, N_Vector* x, N_Vector z) {
   if (count == 1) scale(c[0], x[0], z);
   if (count < 2) return 0;
-  // z may be the first vector only: the pair that holds it goes first.
+  // z may be the first vector only: the pair that contains it is processed first.
   linear_sum(c[0], x[0], c[1], x[1], z);
   for (int i = 2; i < count; ++i) array(z) += c[i] * array(x[i]);
   return 0;
