@@ -13,7 +13,7 @@ std::string at(const char* list, std::size_t i, const std::string& rest = "") {
   return fmt::format("{}[{}]{}{}", list, i, rest.empty() || rest[0] == '[' ? "" : ".", rest);
 }
 
-/// Names become file names, column headers and keys of reports.
+/// Checks a name: it becomes part of file names, column headers and keys of reports.
 void check_name(const Document& doc, const std::string& where, const std::string& name) {
   for (const char letter : name)
     if (const auto c = static_cast<unsigned char>(letter);
@@ -51,7 +51,7 @@ void check_loads(const Document& doc, const Description& d) {
     }
 }
 
-/// How messages call a hand's tool or device: "tool", `hand "left": tool`.
+/// Returns the label of a hand's tool or device in messages: "tool", `hand "left": tool`.
 std::string label_of(const Hand& hand, const std::string& what) {
   return hand.name == "tool" ? what : fmt::format("hand \"{}\": {}", hand.name, what);
 }
@@ -83,7 +83,7 @@ void check_tool(const Document& doc, const Description& d) {
   for (const Hand& hand : hands_of(d)) check_hand(doc, hand);
 }
 
-/// Whether `whole` is a positive whole multiple of `part`, to rounding of decimal input.
+/// Whether `whole` is a positive integer multiple of `part`, to rounding of decimal input.
 bool is_multiple(double whole, double part) {
   const double ratio = whole / part, n = std::round(ratio);
   return n >= 1.0 && std::abs(ratio - n) <= 1e-9 * n;
@@ -105,8 +105,8 @@ void check_period(const Document& doc, const std::string& key, const std::string
                      (n + 1.0) * tick));
 }
 
-/// Between exchanges the tool feels a record of the body as it was: a body with a tool changes where one
-/// begins.
+/// Checks times of material changes.  Between exchanges the tool uses a model of the body taken earlier;
+/// therefore a body touched by a tool changes at the start of an exchange period.
 void check_changes(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.bodies.size(); ++i) {
     const std::string where = fmt::format("body \"{}\": change", d.bodies[i].name);
@@ -138,7 +138,7 @@ void check_changes(const Document& doc, const Description& d) {
   }
 }
 
-/// A period that the run ends before: nothing would be exchanged in it.
+/// Checks that the run is not shorter than the period: otherwise no exchange would take place.
 void check_length(const Document& doc, const std::string& key, const std::string& where, double period,
                   double duration) {
   if (period <= duration * (1.0 + 1e-9)) return;
@@ -167,8 +167,8 @@ void check_periods(const Document& doc, const Description& d) {
   }
 }
 
-/// Exchanges may be on their way one behind the other; later than this the hand is a second away from what it
-/// feels, and each that waits is kept.
+/// Limit of the latency.  Several exchanges may be under way at a time; beyond this the force lags far behind
+/// the hand, and each pending exchange takes memory.
 constexpr double kLongestLatency = 10.0;  // periods
 
 void check_latency(const Document& doc, const Description& d) {
@@ -201,7 +201,7 @@ void check_exchange(const Document& doc, Description& d) {
            fmt::format("shortest_refresh_s = {} must be less than contact_refresh_s = {}: nothing else would "
                        "be refreshed sooner",
                        c.shortest_refresh_s, c.contact_refresh_s));
-  if (c.scheme == "monolithic") return;  // contact is refreshed at a period of its own
+  if (c.scheme == "monolithic") return;  // Contact has an independent refresh period.
   if (!is_multiple(c.exchange_period_s, c.contact_refresh_s))
     refuse(
         location(doc, "exchange.contact_refresh_s"), "exchange",

@@ -8,7 +8,7 @@
 namespace palpate::scene {
 namespace {
 
-/// Keys of a shape, and the shapes that need them.
+/// Key of a shape, and the shapes that need it.
 struct ShapeKey {
   const char* word;
   std::string_view shapes;
@@ -34,7 +34,7 @@ void check_shape(const Document& doc, const std::string& key, const std::string&
   }
 }
 
-/// A bone whose motion is prescribed has no use for what only a free one has.
+/// Rejects keys that apply only to free bones, for a bone whose motion is prescribed.
 void check_prescribed(const Document& doc, const std::string& key, const std::string& where,
                       const BoneSpec& bone) {
   const char* kind = bone.fixed ? "a fixed bone" : "a bone with keyframes";
@@ -101,7 +101,7 @@ void check_target(const Document& doc, const std::string& key, const std::string
            fmt::format("keyframes mean nothing with to: nodes go with \"{}\"; give them to it", a.to));
 }
 
-/// "box", "sphere" or "shape".
+/// Returns the way in which an attachment selects nodes: "box", "sphere" or "shape".
 std::string region_of(const Document& doc, const std::string& key, const std::string& where,
                       const Description& d, const AttachmentSpec& a) {
   if (std::string shape = box_or_sphere(doc, key, where); !shape.empty()) return shape;

@@ -11,7 +11,7 @@
 namespace palpate::scene {
 namespace {
 
-/// What a contact may name.
+/// Names that a contact may refer to.
 struct Sides {
   Names bodies, obstacles, tools;
   bool is_body(const std::string& name) const { return contains(bodies, name); }
@@ -49,8 +49,8 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
         "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool");
 }
 
-/// What there is for nearest points alone.
-/// @param touches  "a body touches itself"
+/// Rejects, for methods other than nearest points, a contact that only nearest points support.
+/// @param touches  description of the contact: "a body touches itself"
 void check_nearest_points(const Document& doc, const std::string& key, const std::string& where,
                           const ContactSpec& c, std::string_view touches) {
   if (c.method == "distance") return;
@@ -118,7 +118,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
            "\"auto\"");
 }
 
-/// A scene whose friction an override takes away keeps what it says of it.
+/// Checks friction_tangent.  A key of the file is accepted where an override sets friction to zero.
 void check_friction(const Document& doc, const std::string& key, const std::string& where,
                     const ContactSpec& c) {
   const std::string tangent = key + ".friction_tangent", friction = key + ".friction";
@@ -132,7 +132,7 @@ void check_friction(const Document& doc, const std::string& key, const std::stri
 
 void check_grasp(const Document& doc, const Description& d, const Hand& hand) {
   if (hand.tool->grasp_switch < 0) return;
-  // a body stands before the tool
+  // In canonical order the body precedes the tool.
   if (std::none_of(d.contacts.begin(), d.contacts.end(),
                    [&](const ContactSpec& c) { return c.second == hand.name && !tool_named(d, c.first); }))
     refuse(

@@ -11,11 +11,11 @@
 namespace palpate::scene {
 namespace {
 
-/// One TOML table of a KindTable: [integrator], or one of several [[contact]].
+/// Table of a scene that a KindTable describes: [integrator], or one of several [[contact]].
 struct Instance {
   const toml::table* table;
-  std::string path;   ///< "contact[1]"
-  std::string where;  ///< of messages: `contact between "ball" and "floor"`
+  std::string path;   ///< Path: "contact[1]".
+  std::string where;  ///< Label in messages: `contact between "ball" and "floor"`.
 };
 
 void find_instances(const toml::table& from, const std::string& dotted, const std::string& path,
@@ -44,12 +44,12 @@ std::string chosen(const KindTable& kinds, const toml::table& table, const Descr
   return kinds.unsaid ? kinds.unsaid(description) : "";
 }
 
-/// The kind that the file names without overrides; empty where it alone is no scene.
+/// Returns the kind that the file selects without overrides; empty where the file alone is no valid scene.
 std::string chosen_before(const KindTable& kinds, const toml::table& table,
                           const std::optional<Description>& before) {
   try {
     return before ? chosen(kinds, table, *before) : "";
-  } catch (const Error&) { return ""; }  // a name that no registry knows
+  } catch (const Error&) { return ""; }  // A name in no registry.
 }
 
 bool from_override(const toml::node& node) {
@@ -70,7 +70,7 @@ Names users_of(const KindTable& kinds, std::string_view key) {
   return users;
 }
 
-/// Whether every kind that uses the key needs it.
+/// Whether every kind that uses the key requires it.
 bool is_always_required(const KindTable& kinds, std::string_view key) {
   bool used = false;
   for (const Kind& kind : kinds.kinds)
@@ -88,14 +88,14 @@ std::string subject(const KindTable& kinds, const std::string& name) {
                             : fmt::format("{} \"{}\"", kinds.what, name);
 }
 
-/// What the selector may say.
+/// Returns the names that the selector accepts.
 Names selectable(const KindTable& kinds) {
   Names out = names(kinds.kinds);
   std::erase(out, kinds.alternative);
   return out;
 }
 
-/// Refuses `key = "name"`, a name of no kind.
+/// Rejects `key = "name"`, a name of no kind.
 [[noreturn]] void refuse_name(const KindTable& kinds, const std::string& at, const std::string& where,
                               const std::string& key, const std::string& name) {
   const std::string given = fmt::format("{} = \"{}\"", key, name);
@@ -106,7 +106,7 @@ Names selectable(const KindTable& kinds) {
   refuse(at, where, given + " is not known" + suggestion(name, selectable(kinds)));
 }
 
-/// Names of kinds in a list elsewhere in the scene.
+/// Checks names of kinds in a list elsewhere in the scene.
 void check_list(const Document& document, const KindTable& kinds, const std::string& dotted) {
   const auto found = toml::at_path(document.root, dotted);
   const toml::array* list = found ? found.node()->as_array() : nullptr;
@@ -119,7 +119,7 @@ void check_list(const Document& document, const KindTable& kinds, const std::str
       refuse_name(kinds, location(node.source()), dotted.substr(0, dot), dotted.substr(dot + 1), name);
 }
 
-/// What one kind says of the keys in its table.
+/// Checks the keys of one table against its kind.
 class KindCheck {
  public:
   KindCheck(const KindTable& kinds, const Instance& at, std::string name, bool replaced)
@@ -164,7 +164,7 @@ class KindCheck {
     refuse(key_location, at_.where, fmt::format("unknown key \"{}\"{}", key, suggestion(key, known)));
   }
 
-  /// `, which takes "step_s", ...`: the keys that depend on the kind; empty where it has none.
+  /// Returns `, which takes "step_s", ...`: the keys specific to the kind; empty where there are none.
   std::string keys_taken() const {
     Names taken;
     for (const PartKey& key : kind_ ? kind_->keys : std::vector<PartKey>{}) taken.push_back(key.name);
@@ -175,7 +175,7 @@ class KindCheck {
     const std::optional<Setting> value = setting_of(node);
     const std::string bad = value          ? fault_of(key, *value)
                             : key.fallback ? type_demand(*key.fallback)
-                                           : std::string();  // of another type: the key's own table reads it
+                                           : std::string();  // Wrong type: reported by the key's table.
     if (!bad.empty())
       refuse(location(node.source()), at_.where, fmt::format("{} = {} {}", key.name, shown(node), bad));
   }
@@ -187,7 +187,7 @@ class KindCheck {
   const Kind* kind_ = nullptr;
 };
 
-/// The file as it was before overrides; null where that alone would not do.
+/// Returns the description of the file before overrides; empty where the file alone is not valid.
 std::optional<Description> read_original(const Document& document) {
   try {
     Description description;
@@ -224,7 +224,7 @@ std::vector<KeyRow> key_rows(const Kinds& kinds) {
     const auto in_table = [&](const KeyRow& row) { return row.table == table.table; };
     for (KeyRow& row : rows) {
       if (!in_table(row)) continue;
-      constexpr std::size_t kWidest = 60;  // longer lists have a `palpate list` of their own
+      constexpr std::size_t kWidest = 60;  // Longer lists have a separate `palpate list`.
       if (row.name == table.selector && choices(selectable(table)).size() <= kWidest)
         row.range = choices(selectable(table));
       const Names users = users_of(table, row.name);

@@ -4,13 +4,13 @@
 
 namespace palpate::scene {
 
-/// A key of the file that is not for what an override put in its kind's place.
+/// Key of the file that does not apply to the kind chosen by an override.
 struct LeftKey {
   std::string table, key;  ///< "contact[1]", "pixels"
 };
 
-/// Refuses names that `kinds` does not know, and keys that the chosen kinds have no use for, lack or do not
-/// take the value of.  @return keys of the file's own kinds, where overrides chose others
+/// Rejects names that `kinds` does not contain, and keys that do not apply to the chosen kinds, are missing,
+/// or have a bad value.  @return keys that apply to the file's kinds only, where overrides chose others
 std::vector<LeftKey> check_kinds(const Document& document, const Description& description,
                                  const Kinds& kinds);
 

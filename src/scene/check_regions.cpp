@@ -6,7 +6,7 @@
 namespace palpate::scene {
 namespace {
 
-/// "box", "sphere" or "file".
+/// Returns the way in which a region selects elements: "box", "sphere" or "file".
 std::string chosen_by(const Document& doc, const std::string& key, const std::string& where,
                       const SoftBodySpec& body) {
   const std::string shape = box_or_sphere(doc, key, where);
@@ -20,7 +20,7 @@ std::string chosen_by(const Document& doc, const std::string& key, const std::st
 
 }  // namespace
 
-// Names of regions stand in the mesh file: whether it has them is checked when it is read.
+// Names of regions are in the mesh file: whether they exist is checked when it is read.
 void check_regions(const Document& doc, Description& d) {
   for (std::size_t i = 0; i < d.bodies.size(); ++i) {
     SoftBodySpec& body = d.bodies[i];

@@ -28,7 +28,7 @@ void check_joint(const Document& doc, const std::string& key, const std::string&
 
 }  // namespace
 
-// Names of bones stand in the model file: what refers to them is checked when it is read.
+// Names of bones are in the model file: references to them are checked when it is read.
 void check_skeletons(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.bodies.size(); ++i) {
     const SoftBodySpec& body = d.bodies[i];

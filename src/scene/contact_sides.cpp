@@ -8,7 +8,7 @@
 namespace palpate::scene {
 namespace {
 
-/// Place of a name in the order; behind all others where the scene has nothing of that name.
+/// Returns the rank of a name in the canonical order; greatest where the name is neither a body nor a tool.
 std::size_t place(const Description& d, const std::string& name) {
   const auto body =
       std::find_if(d.bodies.begin(), d.bodies.end(), [&](const auto& b) { return b.name == name; });

@@ -9,7 +9,7 @@ namespace palpate::scene {
 namespace {
 constexpr std::string_view kOverride = "--set ";
 
-/// The text that describes the scene as it runs: comments survive only where nothing was overridden.
+/// Returns the text of the scene as it runs; comments survive only without overrides.
 std::string effective_source(const toml::table& root, const std::string& text,
                              const std::vector<std::string>& overrides) {
   if (overrides.empty()) return text;

@@ -7,13 +7,12 @@
 
 namespace palpate::scene {
 
-/// A parsed scene with its overrides applied.  Every node knows where it stands: in the file, or in an
-/// override.
+/// Parsed scene with its overrides applied.  Every node carries its location: in the file, or in an override.
 struct Document {
   toml::table root;
-  toml::table original;  ///< before overrides, without locations
-  std::string path;      ///< as messages show it
-  std::string source;    ///< TOML that parses to `root` again
+  toml::table original;  ///< State before overrides, without locations; empty without overrides.
+  std::string path;      ///< Path as shown in messages.
+  std::string source;    ///< TOML that parses to `root` again.
   std::vector<std::string> overrides;
 };
 
@@ -21,16 +20,17 @@ struct Document {
 Document parse_document(const std::string& text, const std::string& path,
                         const std::vector<std::string>& overrides);
 
-/// Takes a key out of a table, "contact[1]", and out of the source.
+/// Removes a key from a table, such as "contact[1]", and from the source.
 void leave_out(Document& document, const std::string& table, const std::string& key);
 
-/// `FILE:LINE:COLUMN`, or `--set PATH=VALUE` for what an override brought.
+/// Returns `FILE:LINE:COLUMN`, or `--set PATH=VALUE` for a node set by an override.
 std::string location(const toml::source_region& region);
 
-/// The location of the deepest part of `at` that exists: `body[1].mesh.radius_m`, else `body[1].mesh`, ...
+/// Returns the location of the deepest part of `at` that exists: `body[1].mesh.radius_m`, else
+/// `body[1].mesh`, ...
 std::string location(const Document& document, std::string at);
 
-/// Whether the scene gives this key.
+/// Whether the scene contains this key.
 bool given(const Document& document, std::string_view at);
 
 /// Sets one value by its dotted path: `body.0.youngs_modulus_pa=1e5`.  @throws Error that begins with the

@@ -5,7 +5,7 @@
 namespace palpate::scene {
 namespace {
 
-/// What every obstacle has; all else is the type's own, by the registry of obstacles (kinds.cpp).
+/// Keys of every obstacle; the other keys depend on the type, by the registry of obstacles (kinds.cpp).
 const KeyTable<ObstacleSpec>& obstacle_keys() {
   static const KeyTable<ObstacleSpec> keys = {
       required(text("name", &ObstacleSpec::name, {}, "what [[contact]] calls it")),
@@ -14,8 +14,7 @@ const KeyTable<ObstacleSpec>& obstacle_keys() {
   return keys;
 }
 
-/// The keys of obstacle_keys() into the spec, every other one into its shape: check_kinds() knows what may
-/// be.
+/// Reads the keys of obstacle_keys() into the spec, and all others into its shape: check_kinds() checks them.
 void read_obstacles(const Value& value, Description& d) {
   for (const toml::table* one : read_table_array(value)) {
     ObstacleSpec& spec = d.obstacles.emplace_back();
@@ -121,7 +120,7 @@ const KeyTable<ToolSpec>& tool_keys() {
   return keys;
 }
 
-/// A table whose keys stand elsewhere already.
+/// Marks a table as documented elsewhere: its keys are not listed again.
 Key<HandSpec> as_elsewhere(Key<HandSpec> key) {
   key.children.clear();
   return required(std::move(key));
@@ -210,7 +209,8 @@ const KeyTable<RecordSpec>& record_keys() {
   return keys;
 }
 
-/// A rung list `rtol = [...]` or `step_s = [...]`; both go into `values`, and `setting` says which it was.
+/// Refinement sequence `rtol = [...]` or `step_s = [...]`; both fill `values`, and `setting` holds which it
+/// was.
 Key<LadderSpec> rungs(const char* name, const char* meaning) {
   return own_key<LadderSpec>(
       name,

@@ -5,12 +5,13 @@
 /// Every key of a scene file, as data.  A field added to a spec gets one line here.
 namespace palpate::scene {
 
-const KeyTable<Description>& description_keys();  ///< the file itself
-const KeyTable<SoftBodySpec>& body_keys();        ///< [[body]]
-const KeyTable<BoneSpec>& bone_keys();            ///< [[bone]]
-const KeyTable<DeviceSpec>& device_keys();        ///< [device]
-const KeyTable<MeshSpec>& mesh_keys();            ///< [body.mesh], [tool.mesh]
-/// [[device.keyframe]], [[body.attachment.keyframe]], [[body.skeleton.joint.keyframe]], [[bone.keyframe]]
+const KeyTable<Description>& description_keys();  ///< Top level of the file.
+const KeyTable<SoftBodySpec>& body_keys();        ///< Table [[body]].
+const KeyTable<BoneSpec>& bone_keys();            ///< Table [[bone]].
+const KeyTable<DeviceSpec>& device_keys();        ///< Table [device].
+const KeyTable<MeshSpec>& mesh_keys();            ///< Tables [body.mesh], [tool.mesh].
+/// Tables [[device.keyframe]], [[body.attachment.keyframe]], [[body.skeleton.joint.keyframe]],
+/// [[bone.keyframe]].
 const KeyTable<KeyframeSpec>& keyframe_keys();
 
 }  // namespace palpate::scene

@@ -15,7 +15,7 @@ Description parse(const std::string& text, const std::string& path, const std::v
   Description description;
   read_table(document.root, "", description_keys(), description);
   std::vector<std::string> not_carried_over;
-  for (;;) {  // a key that is left out may have named a kind
+  for (;;) {  // Removing a key may change the chosen kind.
     const std::vector<LeftKey> left = check_kinds(document, description, kinds);
     if (left.empty()) break;
     for (const LeftKey& one : left) {

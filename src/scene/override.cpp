@@ -25,14 +25,14 @@ std::vector<std::string> split(const std::string& path) {
   return parts;
 }
 
-/// A name or a path: nothing in it has a meaning to TOML outside quotes.
+/// Whether the text is a name or a path: no character has a meaning in TOML outside quotes.
 bool is_bare_word(const std::string& text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) || std::string_view("_-./~").find(static_cast<char>(c)) != std::string_view::npos;
   });
 }
 
-/// The value after `=`.  A bare word or path is a string, because a shell has eaten the quotes:
+/// Parses the value after `=`.  A bare word or path is taken as a string, because a shell removes quotes:
 /// integrator.name=cvode-bdf.
 toml::table parse_value(const std::string& value, const std::string& from) {
   try {
@@ -59,8 +59,8 @@ std::vector<std::string> keys_of(const toml::table& table) {
   return keys;
 }
 
-/// The node called `part` inside `node`; a missing table is made (the reader refuses it later if no such
-/// table exists).
+/// Returns the node called `part` inside `node`; a missing table is created (the reader rejects it later if
+/// no such table is known).
 toml::node& descend(toml::node& node, const std::string& part, const std::string& next,
                     const toml::source_region& region) {
   const std::string& from = *region.path;
@@ -78,7 +78,7 @@ toml::node& descend(toml::node& node, const std::string& part, const std::string
 }
 
 void assign(toml::node& node, const std::string& part, toml::node& value, const toml::source_region& region) {
-  value.visit([&](auto& typed) {  // moved, not copied: only a moved node keeps its location
+  value.visit([&](auto& typed) {  // Moved, not copied: only a moved node keeps its location.
     if (toml::array* array = node.as_array()) {
       const std::size_t index = array_index(*array, part, *region.path);
       array->erase(array->cbegin() + static_cast<std::ptrdiff_t>(index));
@@ -92,7 +92,7 @@ void assign(toml::node& node, const std::string& part, toml::node& value, const 
   });
 }
 
-/// Bytes that no terminal shows, and that would end a message early.
+/// Rejects control characters, which terminals do not show and which would end a message early.
 void refuse_control_characters(const std::string& text) {
   const auto is_control = [](unsigned char c) { return c < ' ' && c != '\t' && c != '\n'; };
   if (std::none_of(text.begin(), text.end(), is_control)) return;

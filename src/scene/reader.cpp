@@ -7,22 +7,23 @@
 namespace palpate::scene {
 namespace {
 
-/// `part` is the value itself, or the element of it that is at fault: the message shows the whole value, at
-/// the location of the part.
+/// Throws Error for a value.  `part` is the faulty element, or null for the value itself: the message shows
+/// the whole value, at the location of the part.
 [[noreturn]] void refuse_value(const Value& v, const std::string& must, const toml::node* part = nullptr) {
   refuse(location((part ? *part : v.node).source()), v.where,
          fmt::format("{} = {} {}", v.key, shown(v.node), must));
 }
 
-/// toml++ gives no double for a whole number that has none; parse_document() has refused those.
+/// Returns a number as double.  toml++ converts no whole number that has no exact double; parse_document()
+/// has rejected those.
 /// @pre node.is_number()
 double double_of(const toml::node& node) {
   const auto* whole = node.as_integer();
   return whole ? static_cast<double>(whole->get()) : node.as_floating_point()->get();
 }
 
-/// One finite number within a range.  Whole numbers are numbers too; NaN and infinity, which TOML can spell,
-/// are not.
+/// Reads one finite number within a range.  Whole numbers are accepted; NaN and infinity, which TOML can
+/// express, are not.
 double number_in(const Value& v, const toml::node& node, const Range& range) {
   if (!node.is_number()) refuse_value(v, "must be a number", &node);
   const double x = double_of(node);

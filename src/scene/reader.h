@@ -11,25 +11,25 @@
 #include "palpate/scene/kinds.h"
 #include "scene/document.h"
 
-/// Reads TOML tables into plain specs by tables of keys.  A key table says everything about a scene table:
-/// the names that may stand in it, their types, units, ranges, defaults and meaning, and whether they must be
-/// there; what is not in it is refused with the nearest name that is.  `palpate list keys` prints it.
+/// Reader of TOML tables into plain specs by tables of keys.  A key table defines a scene table completely:
+/// the names of its keys, their types, units, ranges, defaults and meaning, and whether they are required;
+/// other keys are rejected with a suggestion of the nearest name.  `palpate list keys` prints it.
 namespace palpate::scene {
 
-/// A value on its way into a spec, and how messages speak of it.
+/// Value to be read into a spec, with its labels in messages.
 struct Value {
   const toml::node& node;
-  std::string where;  ///< `body "ball": mesh`; empty at the top
-  std::string key;    ///< `radius_m`
+  std::string where;  ///< Label of the table: `body "ball": mesh`; empty at the top.
+  std::string key;    ///< Name of the key: `radius_m`.
 };
 
-/// A node as messages show it, near to how a person wrote it.
+/// Formats one node as messages show it, close to the user's notation.
 std::string shown(const toml::node& node);
 
-/// A TOML value as a Setting; empty where it is of another type.
+/// Returns a TOML value as a Setting; empty where it is of another type.
 std::optional<Setting> setting_of(const toml::node& node);
 
-/// throw Error `LOCATION: where: what`.
+/// Throws Error `LOCATION: where: what`.
 [[noreturn]] void refuse(const std::string& location, const std::string& where, const std::string& what);
 
 inline Range any() { return {}; }
@@ -47,21 +47,25 @@ using Names = std::vector<std::string>;
 double read_number(const Value& value, const Range& range);
 int read_integer(const Value& value, const Range& range);
 bool read_bool(const Value& value);
-std::string read_text(const Value& value, const Names& allowed);  ///< no names: any text that is not empty
+/// An empty list allows any text that is not empty.
+std::string read_text(const Value& value, const Names& allowed);
 Vec3 read_vec3(const Value& value, const Range& each);
 std::vector<double> read_numbers(const Value& value, const Range& each);
 std::vector<std::string> read_texts(const Value& value);
 const toml::table& read_table_node(const Value& value);
 std::vector<const toml::table*> read_table_array(const Value& value);
 
-/// `body "ball"`, `contact between "ball" and "floor"`, `device: keyframe[2]`: how messages speak of a table.
+/// Returns the label of a table in messages: `body "ball"`, `contact between "ball" and "floor"`, `device:
+/// keyframe[2]`.
 std::string label(const std::string& where, const std::string& key, const toml::table& table,
                   std::optional<std::size_t> index);
 
+/// Rejects keys that are not in `known`.
 void refuse_unknown(const toml::table& table, const std::string& where, const Names& known);
+/// Throws Error for a missing key, at the location of the table.
 void refuse_missing(const toml::table& table, const std::string& where, const std::string& key);
 
-/// What a spec holds, as TOML; empty: nothing that a scene could say.
+/// Returns a spec's value as TOML; empty where no scene can express it.
 inline std::string to_toml(double value) { return palpate::to_toml(value); }
 inline std::string to_toml(int value) { return fmt::format("{}", value); }
 inline std::string to_toml(bool value) { return value ? "true" : "false"; }
@@ -75,17 +79,17 @@ std::string to_toml(const std::vector<Item>& values) {
   return out.empty() ? "" : "[" + out + "]";
 }
 
-/// Pa of "_pa", Pa s/m of "_pa_s_m", ...; empty where the name ends in no unit.
+/// Returns the unit of a key: Pa for "_pa", Pa s/m for "_pa_s_m", ...; empty where the name ends in no unit.
 std::string unit_of(const std::string& key);
-std::string choices(const Names& names);  ///< "a", "b"
+std::string choices(const Names& names);  ///< Names in quotes: "a", "b".
 
-/// One row of a key table: everything that is said of a key, once.
+/// Row of a key table: the only definition of a key.
 template <class Spec>
 struct Key {
   std::string name;
   std::function<void(const Value&, Spec&)> read;
-  KeyRow row;                         ///< but for the name of the table
-  std::vector<KeyRow> children = {};  ///< of a table: the keys in it, their tables dotted from here
+  KeyRow row;                         ///< Documentation, without the name of the table.
+  std::vector<KeyRow> children = {};  ///< For a table: its keys; their table names are relative to this key.
   bool required = false;
 };
 
@@ -99,7 +103,7 @@ Names names_of(const KeyTable<Spec>& keys) {
   return names;
 }
 
-/// Rows of a table and of the tables in it, dotted from `table`.
+/// Returns the documentation of a table and of its subtables, with dotted names that begin with `table`.
 template <class Spec>
 std::vector<KeyRow> rows_of(const std::string& table, const KeyTable<Spec>& keys) {
   std::vector<KeyRow> rows;
@@ -118,11 +122,11 @@ std::vector<KeyRow> rows_of(const std::string& table, const KeyTable<Spec>& keys
   return rows;
 }
 
-/// TOML text as one value; `use` sees it while it stands.
+/// Parses TOML text as one value and calls `use` with it; the value lives only during the call.
 void with_value(const std::string& toml, const std::string& key,
                 const std::function<void(const Value&)>& use);
 
-/// A key whose value goes into one member; its default is the member's own.
+/// Makes a key whose value goes into one member; its default is that of the member.
 template <class Spec, class Member>
 Key<Spec> member_key(const char* name, Member Spec::*member, std::function<Member(const Value&)> read,
                      const char* type, std::string range, const char* meaning) {
@@ -144,7 +148,7 @@ Key<Spec> member_key(const char* name, Member Spec::*member, std::function<Membe
   return key;
 }
 
-/// Without a member of its own: what it means, and what holds where it is not given, in words.
+/// Makes a key without a single member: with its reader, and its default in words.
 template <class Spec>
 Key<Spec> own_key(const char* name, std::function<void(const Value&, Spec&)> read, const char* type,
                   const char* fallback, const char* meaning) {
@@ -160,7 +164,8 @@ Key<Spec> own_key(const char* name, std::function<void(const Value&, Spec&)> rea
   return key;
 }
 
-/// A misspelt key is reported before the key that it leaves missing.
+/// Reads a table.  Unknown keys are reported first: a misspelt key is reported before the key that is missing
+/// because of it.
 template <class Spec>
 void read_table(const toml::table& table, const std::string& where, const KeyTable<Spec>& keys, Spec& spec) {
   refuse_unknown(table, where, names_of(keys));
@@ -175,14 +180,14 @@ Key<Spec> required(Key<Spec> key) {
   key.required = true;
   return key;
 }
-/// A default in words: what holds depends on other keys.
+/// Sets a default in words, for one that depends on other keys.
 template <class Spec>
 Key<Spec> unless(const char* words, Key<Spec> key) {
   key.row.fallback = words;
   key.row.is_value = false;
   return key;
 }
-/// A unit that the name does not tell.
+/// Sets a unit that the name does not contain.
 template <class Spec>
 Key<Spec> in_unit(const char* unit, Key<Spec> key) {
   key.row.unit = unit;
@@ -231,7 +236,7 @@ Key<Spec> texts(const char* name, std::vector<std::string> Spec::*member, const 
   return member_key<Spec, std::vector<std::string>>(name, member, read_texts, "list of texts", "", meaning);
 }
 
-/// [name] whose keys go into a spec of its own.
+/// Makes the key [name], a table whose keys go into a separate spec.
 template <class Spec, class Sub>
 Key<Spec> table(const char* name, Sub Spec::*member, const KeyTable<Sub>& keys, const char* meaning) {
   Key<Spec> key = own_key<Spec>(
@@ -257,7 +262,7 @@ Key<Spec> table(const char* name, std::optional<Sub> Spec::*member, const KeyTab
   return key;
 }
 
-/// [name] whose keys go into the enclosing spec.
+/// Makes the key [name], a table whose keys go into the enclosing spec.
 template <class Spec>
 Key<Spec> group(const char* name, const KeyTable<Spec>& keys, const char* meaning) {
   Key<Spec> key = own_key<Spec>(
@@ -270,7 +275,7 @@ Key<Spec> group(const char* name, const KeyTable<Spec>& keys, const char* meanin
   return key;
 }
 
-/// [[name]], one spec a table.
+/// Makes the key [[name]], one spec per table.
 template <class Spec, class Sub>
 Key<Spec> tables(const char* name, std::vector<Sub> Spec::*member, const KeyTable<Sub>& keys,
                  const char* meaning) {

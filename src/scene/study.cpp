@@ -15,14 +15,14 @@ namespace {
 
 constexpr int kMostRedraws = 1000;
 
-/// What is swept is said by these keys of [study], not by a [[sweep]].
+/// Keys of a scene that are varied by these keys of [study] instead of a [[sweep]].
 const std::vector<std::pair<std::string, std::string>>& keys_of_their_own() {
   static const std::vector<std::pair<std::string, std::string>> all = {{"integrator.name", "integrators"},
                                                                        {"scene.duration_s", "duration_s"}};
   return all;
 }
 
-/// A value for people to read: six significant digits, exactly what the scene then gets.
+/// Rounds a value for readability: six significant digits, exactly the value that the scene gets.
 double rounded(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 class Checker {
@@ -130,10 +130,10 @@ class Checker {
   const Document& document_;
 };
 
-/// A number in [0, 1), of 53 bits: std::uniform_real_distribution is not the same everywhere.
+/// Returns a number in [0, 1) with 53 bits; std::uniform_real_distribution differs between libraries.
 double unit(std::mt19937_64& engine) { return std::ldexp(static_cast<double>(engine() >> 11), -53); }
 
-/// Standard normal, by Box and Muller (1958).
+/// Draws from the standard normal distribution, by Box and Muller (1958).
 double standard_normal(std::mt19937_64& engine) {
   constexpr double kTwoPi = 6.283185307179586;
   const double radius = std::sqrt(-2.0 * std::log(1.0 - unit(engine)));

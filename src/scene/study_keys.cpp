@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMostSeeds = 1000000;
 
-/// A TOML value as text that reads back as it: of what `--set` takes after its `=`.
+/// Returns a TOML value as text that parses to the same value, as `--set` takes it after `=`.
 std::string value_text(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) return to_toml(number->get());
   std::ostringstream out;
@@ -31,7 +31,7 @@ void read_values(const Value& value, SweepSpec& spec) {
   for (const toml::node& one : *array) spec.values.push_back(value_text(one));
 }
 
-/// `seeds = 5` is `seeds = [1, 2, 3, 4, 5]`.
+/// Reads seeds: `seeds = 5` means `seeds = [1, 2, 3, 4, 5]`.
 void read_seeds(const Value& value, StudySpec& spec) {
   if (value.node.is_array()) {
     for (const toml::node& one : *value.node.as_array())

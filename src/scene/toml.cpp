@@ -1,11 +1,11 @@
-// The one compiled copy of toml++ in this library.  Some of its own assertions fail on damaged text, which it
-// then refuses all the same.  With NDEBUG they would be assumptions of the optimiser ([[assume]], by toml++
-// 3.4 and GCC 14); without it they are what this macro says.
+// The only compiled copy of toml++ in this library.  Some of its assertions fail on damaged text, which it
+// rejects in any case.  With NDEBUG they would be assumptions of the optimiser ([[assume]], in toml++ 3.4 and
+// GCC 14); without it they expand to this macro.
 #undef NDEBUG
 #define TOML_ASSERT(expression) static_cast<void>(0)
 #define TOML_IMPLEMENTATION
-// Its tests for whitespace and for characters of keys call letters beyond ASCII unreachable (é, ß, Ж), and
-// are asked for each of them: undefined behaviour.  They are neither.  3.4 renamed the two headers.
+// Its tests for whitespace and for characters of keys mark letters beyond ASCII (é, ß, Ж) as unreachable, but
+// are called with them: undefined behaviour.  Such letters are neither.  Version 3.4 renamed the two headers.
 #include <cstdint>
 #if __has_include(<toml++/impl/preprocessor.hpp>)
 #include <toml++/impl/preprocessor.hpp>

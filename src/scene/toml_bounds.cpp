@@ -9,8 +9,8 @@
 namespace palpate::scene {
 namespace {
 
-/// Walks over the text once, as a lexer of TOML would: comments, four kinds of strings, brackets and keys.
-/// What is no TOML at all is the parser's to refuse.
+/// Scans the text once, as a lexer of TOML would: comments, four kinds of strings, brackets and keys.
+/// Invalid TOML is left to the parser to reject.
 class BoundsCheck {
  public:
   BoundsCheck(const std::string& text, const std::string& from) : text_(text), from_(from) {}
@@ -92,7 +92,7 @@ class BoundsCheck {
     while (at_ < text_.size() && text_[at_] != '\n') ++at_;
   }
 
-  /// One of a line ends with the line at the latest, closed or not.
+  /// Skips a string; a single-line string ends with the line at the latest, closed or not.
   void skip_string(char quote) {
     line_is_blank_ = false;
     const std::size_t first = at_;
@@ -123,9 +123,9 @@ class BoundsCheck {
   const std::string& from_;
   std::size_t at_ = 0, key_bytes_ = 0;
   int line_ = 1, dots_ = 0;
-  bool line_is_blank_ = true;  ///< so far
+  bool line_is_blank_ = true;  ///< The current line so far.
   bool in_header_ = false, in_key_ = true;
-  std::string open_;  ///< brackets of lists and inline tables
+  std::string open_;  ///< Open brackets of lists and inline tables.
 };
 
 }  // namespace
@@ -133,7 +133,7 @@ class BoundsCheck {
 void check_bounds(const std::string& text, const std::string& from) { BoundsCheck(text, from).run(); }
 
 namespace {
-/// What is wrong with one value, in words that follow it; empty: nothing.
+/// Returns the fault of one value, as a text to follow its key; empty for none.
 std::string fault_of(const toml::node& node) {
   if (const auto* number = node.as_integer(); number && beyond_whole(number->get()))
     return fmt::format("= {} {}", number->get(), kWholeDemand);

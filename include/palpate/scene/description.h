@@ -12,102 +12,108 @@
 
 namespace palpate::scene {
 
-/// One point of a work-precision ladder is an integrator with its tolerances or steps.
+/// Refinement sequence of a work-precision diagram: one integrator with several tolerances or steps.
 struct LadderSpec {
-  std::string integrator;  ///< as `palpate list integrators` names it
-  /// which setting `values` are: "rtol" of adaptive methods, "step_s" of fixed-step ones
+  std::string integrator;  ///< Name as in `palpate list integrators`.
+  /// Meaning of `values`: "rtol" for adaptive methods, "step_s" for fixed-step ones.
   std::string setting = "rtol";
-  std::vector<double> values;      ///< descending
-  std::string label{};             ///< what reports call it; empty: the integrator's name
-  std::vector<std::string> set{};  ///< what else is changed in the scene for it: KEY=VALUE, as for `--set`
+  std::vector<double> values;      ///< In descending order.
+  std::string label{};             ///< Name in reports; empty: the integrator's name.
+  std::vector<std::string> set{};  ///< Further changes of the scene: KEY=VALUE, as for `--set`.
 };
 
-/// What `palpate compare --haptic` varies about the scene, one at a time, and the run with tool and bodies as
-/// one system that the force on the hand is held against: the `[compare.haptic]` table.
+/// Settings of `palpate compare --haptic`, the `[compare.haptic]` table: parameters of the scene that are
+/// varied one at a time, and the monolithic reference solution (tool and bodies in one system) for the force
+/// on the hand.
 struct HapticCompareSpec {
-  std::string reference = "cvode-bdf";  ///< the integrator of tool and bodies as one system
-  /// the integrator, of another family, that checks it; empty: one is chosen
+  std::string reference = "cvode-bdf";  ///< Integrator of the monolithic solution.
+  /// Integrator of another family that checks the reference; empty: chosen automatically.
   std::string reference_check;
-  double reference_rtol = 1e-7;       ///< of the reference, under error control
-  double reference_step_s = 5e-4;     ///< of the reference, in fixed steps
-  double reference_refresh_s = 5e-4;  ///< contact refresh of the reference
+  double reference_rtol = 1e-7;       ///< Tolerance of the reference, for error control.
+  double reference_step_s = 5e-4;     ///< Step of the reference, for fixed steps [s].
+  double reference_refresh_s = 5e-4;  ///< Contact refresh period of the reference [s].
   std::vector<double> exchange_periods_s = {0.05,  0.02,  0.01,
-                                            0.005, 0.002, 0.001};  ///< each in turn, all else as in the scene
-  std::vector<double> ticks_s = {0.002, 0.001, 5e-4, 2e-4, 1e-4};  ///< each in turn, all else as in the scene
-  /// along the longer edge of the images of the tool's contacts, where it has any
+                                            0.005, 0.002, 0.001};  ///< Varied; all else as in the scene [s].
+  std::vector<double> ticks_s = {0.002, 0.001, 5e-4, 2e-4, 1e-4};  ///< Varied; all else as in the scene [s].
+  /// Pixels along the longer edge of the images of the tool's contacts, if there are any.
   std::vector<double> pixels = {32, 64, 128, 256};
-  std::vector<double> element_sizes_m;  ///< of every body that a generator meshes; empty: the scene's alone
-  /// each in turn, all else as in the scene
+  /// Applies to every body that a generator meshes [m]; empty: only the scene's.
+  std::vector<double> element_sizes_m;
+  /// Varied; all else as in the scene.
   std::vector<std::string> integrators = {"linearly-implicit-euler", "implicit-midpoint", "cvode-bdf"};
-  std::vector<std::string> linearisations;  ///< empty: every one that there is
+  std::vector<std::string> linearisations;  ///< Values of exchange.linearisation; empty: all.
 };
 
-/// What `palpate compare` does with this scene.
+/// Settings of `palpate compare`, the `[compare]` table.
 struct CompareSpec {
-  std::vector<LadderSpec> ladders;         ///< one for each method that is compared
-  std::vector<double> exchange_periods_s;  ///< for the chart of the exchange period's own error; empty: none
-  std::string reference = "cvode-bdf";     ///< the integrator that makes the reference
-  double reference_rtol = 1e-9;            ///< of the reference
-  std::string reference_check = "ark-erk-5";  ///< the integrator of another family that checks the reference
-  double reference_check_rtol = 1e-8;         ///< of the check
-  /// ways to find the tool's contact, compared with the first; empty: none
+  std::vector<LadderSpec> ladders;  ///< One for each method compared.
+  /// For the convergence chart of the exchange error [s]; empty: none.
+  std::vector<double> exchange_periods_s;
+  std::string reference = "cvode-bdf";        ///< Integrator of the reference solution.
+  double reference_rtol = 1e-9;               ///< Tolerance of the reference.
+  std::string reference_check = "ark-erk-5";  ///< Integrator of another family that checks the reference.
+  double reference_check_rtol = 1e-8;         ///< Tolerance of the check.
+  /// Methods of contact detection for the tool, compared with the first; empty: none.
   std::vector<std::string> contact_methods;
-  /// contact refreshes at which the price of re-initialisation is counted; empty: none
+  /// Contact refresh periods for which the cost of re-initialisation is measured [s]; empty: none.
   std::vector<double> refresh_periods_s;
-  double duration_s = 0.0;   ///< 0: the scene's
-  HapticCompareSpec haptic;  ///< what `--haptic` varies
+  double duration_s = 0.0;   ///< Simulated time [s]; 0: the scene's.
+  HapticCompareSpec haptic;  ///< Settings of `--haptic`.
 };
 
-/// How tool and bodies are simulated together: the `[exchange]` table.  The spring between hand and tool is
-/// another thing, ToolSpec's virtual coupling.
+/// Coupling of tool and bodies in time: the `[exchange]` table.  Not to be confused with the virtual coupling
+/// between hand and tool (ToolSpec).
 struct CosimulationSpec {
-  /// or "monolithic": tool and bodies in one state of one integrator, nothing exchanged
+  /// "partitioned", or "monolithic": tool and bodies in one state of one integrator, without exchange.
   std::string scheme = "partitioned";
-  /// what ticks know of the bodies: "points", contact points over a reduced model of their answer; or a line:
-  /// "condensed", with their answer, "frozen", of bodies that hold still
+  /// Model of the bodies between exchanges: "points", contact points on a reduced model of the bodies'
+  /// response; or a linear model: "condensed", including the bodies' response, or "frozen", with the bodies
+  /// at rest.
   std::string linearisation = "points";
-  /// of "points": by how much at most the reduced bodies are stiffer than they should be, relative; 0: not
+  /// Acceptance limit of "points": relative error of the reduced bodies' response, which is too stiff; 0: no
+  /// reduction.
   double linearisation_error = 0.1;
-  double exchange_period_s = 0.01;  ///< between tool and bodies
-  double contact_refresh_s = 0.01;  ///< a whole fraction of the exchange period
-  /// what is done about bodies so fast that they may go through each other between two refreshes: counted,
-  /// or "substep": contact is refreshed, and exchanged, before a skin has gone farther into what it touches
-  /// than half of its thickness
+  double exchange_period_s = 0.01;  ///< Period of exchange between tool and bodies [s].
+  /// Contact refresh period, an integer fraction of the exchange period [s].
+  double contact_refresh_s = 0.01;
+  /// Treatment of bodies that may pass through each other between two refreshes: "report" counts the events;
+  /// "substep" refreshes contact and exchanges before a skin has penetrated the other body by more than
+  /// half of its thickness.
   std::string tunnelling = "report";
-  double shortest_refresh_s = 1e-5;  ///< "substep" goes no lower
-  /// ticks from an exchange to the first that uses its result, in virtual time: what computing takes in real
-  /// time
+  double shortest_refresh_s = 1e-5;  ///< Lower limit of the refresh period for "substep" [s].
+  /// Number of ticks from an exchange to the first tick that uses its result, in virtual time; models the
+  /// computation time of a real-time run.
   int latency_ticks = 0;
 };
 
-/// One more hand: a `[[hand]]` table of the scene.
+/// Additional hand: a `[[hand]]` table of the scene.
 struct HandSpec {
-  std::string name;   ///< what [[contact]] calls its tool
-  ToolSpec tool;      ///< [hand.tool]
-  DeviceSpec device;  ///< [hand.device]
+  std::string name;   ///< Name of its tool in [[contact]].
+  ToolSpec tool;      ///< Table [hand.tool].
+  DeviceSpec device;  ///< Table [hand.device].
 };
 
-/// A scene file as plain data: everything a run needs, nothing computed.  A part that is absent here is not
-/// built.
+/// Scene file as plain data: everything that a run needs, nothing computed.  A part that is absent here is
+/// not built.
 struct Description {
-  std::string name;                     ///< of the scene, for people
-  std::string path;                     ///< the file it came from; relative mesh paths start at its folder
-  std::string source;                   ///< the file's text with overrides applied, kept with every result
-  double duration_s = 1.0;              ///< of a run, unless it is told another
-  Vec3 gravity_m_s2 = Vec3::Zero();     ///< acts on bodies, bones, and tools that ask for it
-  std::vector<SoftBodySpec> bodies;     ///< the [[body]] tables
-  std::vector<BoneSpec> bones;          ///< the [[bone]] tables
-  std::vector<ObstacleSpec> obstacles;  ///< the [[obstacle]] tables
-  std::vector<ContactSpec> contacts;    ///< the [[contact]] tables
-  std::optional<ToolSpec> tool;         ///< the [tool] table
-  std::optional<DeviceSpec> device;     ///< the [device] table
-  std::vector<HandSpec> hands;          ///< beside that of `tool` and `device`, which is the first
-  CosimulationSpec exchange;            ///< the [exchange] table
-  IntegratorSpec integrator;            ///< the [integrator] table
-  std::optional<RecordSpec> record;     ///< the [record] table; empty: nothing is kept
-  CompareSpec compare;                  ///< the [compare] table
-  /// keys of the file's own integrator (obstacle, method, ...) that the one which an override named has no
-  /// use for: "integrator.rtol"; they are not in `source`
+  std::string name;                  ///< Title of the scene.
+  std::string path;                  ///< Source file; relative mesh paths start at its folder.
+  std::string source;                ///< Text of the file with overrides applied, stored with every result.
+  double duration_s = 1.0;           ///< Default simulated time of a run [s].
+  Vec3 gravity_m_s2 = Vec3::Zero();  ///< Acts on bodies, bones, and tools with `gravity` [m/s^2].
+  std::vector<SoftBodySpec> bodies;  ///< Tables [[body]].
+  std::vector<BoneSpec> bones;       ///< Tables [[bone]].
+  std::vector<ObstacleSpec> obstacles;  ///< Tables [[obstacle]].
+  std::vector<ContactSpec> contacts;    ///< Tables [[contact]].
+  std::optional<ToolSpec> tool;         ///< Table [tool].
+  std::optional<DeviceSpec> device;     ///< Table [device].
+  std::vector<HandSpec> hands;  ///< Tables [[hand]], in addition to the first hand (`tool` and `device`).
+  CosimulationSpec exchange;    ///< Table [exchange].
+  IntegratorSpec integrator;    ///< Table [integrator].
+  std::optional<RecordSpec> record;  ///< Table [record]; empty: nothing is recorded.
+  CompareSpec compare;               ///< Table [compare].
+  /// Keys of the file that apply only to an integrator (obstacle, method, ...) replaced by an override:
+  /// "integrator.rtol"; they are not in `source`.
   std::vector<std::string> not_carried_over;
 };
 

@@ -6,22 +6,22 @@
 
 namespace palpate::scene {
 
-/// A rigid tool, the device that moves it, and the name of both.
+/// Rigid tool, the device that moves it, and their common name.
 struct Hand {
-  std::string name;                    ///< what [[contact]] calls its tool
-  std::string tool_key, device_key;    ///< of their tables: "tool", "hand[0].device"
-  const ToolSpec* tool = nullptr;      ///< in the description
-  const DeviceSpec* device = nullptr;  ///< in the description; null where it is missing
+  std::string name;                    ///< Name of the tool in [[contact]].
+  std::string tool_key, device_key;    ///< Keys of their tables: "tool", "hand[0].device".
+  const ToolSpec* tool = nullptr;      ///< Points into the description.
+  const DeviceSpec* device = nullptr;  ///< Points into the description; null where missing.
 };
 
-/// All hands of a scene: that of [tool] and [device], which is called "tool", then each [[hand]].
+/// Returns all hands of a scene: [tool] and [device], under the name "tool", then each [[hand]].
 std::vector<Hand> hands_of(const Description& description);
 
-/// Returns of each hand the first whose tool meets its tool, by a [[contact]] or by way of others; itself
-/// where none does.
+/// Returns, for each hand, the index of the first hand whose tool is connected to its tool by a chain of
+/// [[contact]]s; its index where there is none.
 std::vector<std::size_t> meeting_tools(const Description& description);
 
-/// The tool that [[contact]] calls so; null where there is none.
+/// Returns the tool of that name in [[contact]]; null where there is none.
 const ToolSpec* tool_named(const Description& description, const std::string& name);
 
 }  // namespace palpate::scene

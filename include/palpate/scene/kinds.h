@@ -6,56 +6,56 @@
 #include "palpate/core/keys.h"
 #include "palpate/scene/description.h"
 
-/// What the parts say of the names in a scene: the loader knows tables and keys, but not the integrators,
-/// obstacles, methods and generators that a name chooses among.  loop::kinds() makes it of the registries.
+/// Names and keys that the parts provide.  The loader only has tables and keys; the integrators, obstacles,
+/// methods and generators that a name selects come from the registries, by loop::kinds().
 namespace palpate::scene {
 
-/// One name that a key may choose, and the keys that go with it.
+/// Name that a key may select, with the keys that apply to it.
 struct Kind {
-  std::string name;                ///< as the scene writes it
-  std::vector<PartKey> keys = {};  ///< that it uses and others do not
+  std::string name;                ///< Name in the scene.
+  std::vector<PartKey> keys = {};  ///< Keys that it uses and some other kinds do not.
 };
 
-/// A name that is no kind, though people try it, and what a message says of it: which one to take.
+/// Name that is commonly tried but does not exist, and the replacement that the message suggests.
 struct AbsentKind {
-  std::string name, answer;  ///< as people write it; what to take in its place
+  std::string name, answer;  ///< Name as commonly written; text that suggests a replacement.
 };
 
-/// The names that one key of one table chooses among.  A key that some kinds of the table use and the chosen
-/// one does not is refused.
+/// Names that one key of one table selects from.  A key that some kinds of the table use is rejected where
+/// the chosen kind does not use it.
 struct KindTable {
-  std::string table;                    ///< dotted: "body.mesh"
-  std::string selector;                 ///< its key that names the kind: "generator"
-  std::string what = {};                ///< of messages: "linear solver"; empty: the selector
-  std::vector<Kind> kinds;              ///< that there are
-  std::vector<AbsentKind> absent = {};  ///< that there are not
-  /// the kind where the selector is not given; empty: none
+  std::string table;                    ///< Dotted: "body.mesh".
+  std::string selector;                 ///< Key that selects the kind: "generator".
+  std::string what = {};                ///< Term in messages: "linear solver"; empty: the selector.
+  std::vector<Kind> kinds;              ///< Existing kinds.
+  std::vector<AbsentKind> absent = {};  ///< Commonly tried names that do not exist.
+  /// Returns the default kind where the selector is not given; empty function: none.
   std::function<std::string(const Description&)> unsaid = {};
-  std::string alternative = {};  ///< a key that names the kind by being there: "file"
-  /// other keys of the scene whose texts are such names: "compare.contact_methods"
+  std::string alternative = {};  ///< Key whose presence selects a kind: "file".
+  /// Other keys of the scene whose texts are names of these kinds: "compare.contact_methods".
   std::vector<std::string> lists = {};
-  /// the kinds bring all keys of the table but its own few: an obstacle's
+  /// Whether the kinds define all keys of the table except name and selector, as for obstacles.
   bool open = false;
 };
-/// All keys that choose a part.
+/// Tables of all keys that select a part.
 using Kinds = std::vector<KindTable>;
 
-/// A key of a scene, for people: one row of documentation.
+/// Documentation of one key of a scene.
 struct KeyRow {
-  std::string table;               ///< dotted: "body.mesh"
-  std::string name;                ///< of the key, in its table
-  std::string type;                ///< "number", "text", "three numbers", ...
-  std::string unit;                ///< "Pa s/m"; empty: none
-  std::string range;               ///< "> 0", "[0, 1]", or the texts that it may hold
-  std::string fallback;            ///< as TOML where `is_value`, else in words; empty: nothing, or required
-  std::string meaning;             ///< one line
-  std::vector<std::string> users;  ///< kinds that use it; empty: all
-  bool required = false, is_value = false;  ///< must be given; `fallback` is a value
-  /// reads a TOML value as this key does, and gives back as TOML what the scene's description then holds
+  std::string table;     ///< Dotted: "body.mesh".
+  std::string name;      ///< Name of the key in its table.
+  std::string type;      ///< Type: "number", "text", "three numbers", ...
+  std::string unit;      ///< Unit: "Pa s/m"; empty: none.
+  std::string range;     ///< Range: "> 0", "[0, 1]", or the admissible texts.
+  std::string fallback;  ///< Default: TOML where `is_value`, else a description; empty: none, or required.
+  std::string meaning;   ///< Description of one line.
+  std::vector<std::string> users;           ///< Kinds that use the key; empty: all.
+  bool required = false, is_value = false;  ///< Whether the key must be given; whether `fallback` is a value.
+  /// Reads a TOML value as this key does, and returns the value in the scene's description as TOML.
   std::function<std::string(const std::string& toml)> read_back = {};
 };
 
-/// Every key that a scene may contain, table by table.
+/// Returns every key that a scene may contain, table by table.
 std::vector<KeyRow> key_rows(const Kinds& kinds);
 
 }  // namespace palpate::scene

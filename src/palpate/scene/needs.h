@@ -6,15 +6,16 @@
 
 namespace palpate::scene {
 
-/// One optional part: in use or left out, and why.
+/// Optional part of a scene: used or left out, with the reason.
 struct Need {
   std::string part;
   bool used = false;
   std::string why;
 };
 
-/// What a scene needs and what it leaves out, from the description alone (`palpate inspect`).
-/// @param linear_solver  that its integrator uses (integrate::linear_solver_of); empty: the integrator is
+/// Returns the optional parts and whether the scene uses them, from the description alone (`palpate
+/// inspect`).
+/// @param linear_solver  solver of its integrator (integrate::linear_solver_of); empty: the integrator is
 ///   explicit
 std::vector<Need> needs(const Description& description, const std::string& linear_solver);
 
