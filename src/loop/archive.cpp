@@ -1,10 +1,10 @@
-// What a checkpoint keeps of a run, and how a run goes on from it (checkpoints.cpp).
+// State of a run in a checkpoint, and how a run resumes from it (checkpoints.cpp).
 //
-// Kept is what the future depends on and nothing else has: the State, hands and their devices, what a tool
-// holds, normals that contact took from earlier queries, records that are on their way to the ticks, sums and
-// counts.  Not kept is what is made of that: matrices and factors, histories of multistep methods, step
-// sizes, initial guesses, samples of contact.  They begin anew, in the run that goes on as in the one that
-// stopped.
+// A checkpoint contains the data that determine the future and are stored nowhere else: the State, hands and
+// their devices, grasps of the tools, normals that contact kept from earlier queries, records not yet in
+// force, sums and counters. It does not contain derived data: matrices and factors, histories of multistep
+// methods, step sizes, initial guesses, contact samples. These restart, in the resumed run as in the run that
+// was interrupted.
 #include <algorithm>
 
 #include "body_side.h"
@@ -71,7 +71,7 @@ void BodySide::look_once_more() {
   if (ledger_) ledger_->after_query();
 }
 
-/// As change_materials() did, one time after the other.
+/// Repeats the changes of change_materials() up to now, in order of time.
 void BodySide::change_materials_so_far() {
   const double last = changed_;
   for (changed_ = 0.0;;) {

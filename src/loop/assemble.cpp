@@ -51,14 +51,14 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& 
   return options;
 }
 
-/// Takes the tetrahedra of a body, from here on numbered in spatial order.
+/// Takes the tetrahedra of a body, renumbered in spatial order.
 void take_tets(TetMesh tets, Body& body) {
   body.file_node = mesh::spatial_order(tets.nodes);
   body.rest = std::move(tets);
   mesh::renumber_nodes(body.rest, body.file_node);
 }
 
-/// Takes the tetrahedra of a native mesh file or of a model, checked.
+/// Takes the tetrahedra of a native mesh file or a model, checked.
 void take_file(TetMesh tets, const std::string& path, double scale, Body& body) {
   tets.nodes *= scale;
   mesh::Provenance from;
@@ -67,7 +67,7 @@ void take_file(TetMesh tets, const std::string& path, double scale, Body& body) 
   take_tets(std::move(tets), body);
 }
 
-/// Takes the tetrahedra of a model, and its data at the nodes.
+/// Takes the tetrahedra of a model and its nodal data.
 void take_model(LayeredModel& model, const std::string& path, double scale, Body& body) {
   take_file(std::move(model.tets), path, scale, body);
   if (model.bone_of_node.empty()) return;
@@ -77,7 +77,7 @@ void take_model(LayeredModel& model, const std::string& path, double scale, Body
   model.bone_of_node = std::move(bone_of_node);
 }
 
-/// Takes the bones, in the body's own axes as yet.
+/// Takes the bones, still in the body's axes.
 void take_skeleton(const SoftBodySpec& spec, const std::string& path, const LayeredModel& model, Body& body) {
   if (model.skeleton.bones.empty())
     fail("body \"{}\": [body.skeleton], but {} has no bones; `palpate model human` writes a file that has",
@@ -91,17 +91,17 @@ void take_skeleton(const SoftBodySpec& spec, const std::string& path, const Laye
   }
 }
 
-/// @param path  of the model's file, for messages
+/// @param path  model file, for messages
 std::shared_ptr<proxy::ProxySet> proxies_of(const LayeredModel& model, const std::string& path) {
   try {
     return std::make_shared<proxy::ProxySet>(model);
   } catch (const Error& e) { fail("{}: {}", path, e.what()); }
 }
 
-/// Loads a body's tetrahedra, and the skin and proxies that the scene names; returns the regions of its file.
-/// From a model file the tetrahedra alone are read where the scene names neither; else the file is read and
-/// checked as a whole, and what is not named is dropped.
-/// @param with_proxies  whether a contact asks for those that the scene names
+/// Loads the tetrahedra of a body, and the skin and proxies that the scene enables; returns the regions of
+/// the file. Without skin and skeleton, only the tetrahedra of a model file are read; otherwise the whole
+/// file is read and checked, and unused parts are dropped.
+/// @param with_proxies  whether a contact requires the proxies that the scene enables
 std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::string& folder, bool with_proxies,
                                       Body& body) {
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
@@ -138,7 +138,7 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
   return regions;
 }
 
-/// Velocity of each node of a body that starts as a rigid one: v + w x (x - centre of mass).
+/// Returns the velocity of each node of a body with rigid initial motion: v + w x (x - centre of mass).
 VecX initial_velocities(const SoftBodySpec& spec, const Points& placed, const VecX& masses) {
   const Vec3 centre = placed * masses / masses.sum();
   Points v(3, placed.cols());
@@ -163,8 +163,8 @@ Body place_body(World& world, const SoftBodySpec& spec, fem::Materials& material
   return body;
 }
 
-/// Errors are asked for in units of strain: lengths by the body's size, velocities by its bar wave speed
-/// sqrt(E/rho), that of its own material.
+/// Returns the block of a body. Error control measures strain: lengths are scaled by the body's size,
+/// velocities by the bar wave speed sqrt(E/rho) of the body's material.
 dynamics::BlockSpec block_of(const SoftBodySpec& spec, const Body& body) {
   dynamics::BlockSpec block;
   block.name = spec.name;
@@ -201,15 +201,17 @@ void add_forces(World& world, Body& body, const SoftBodySpec& spec, const fem::M
                                          body.block_id));
 }
 
-/// Whether a message says by itself which file it is about: what stands before its first colon is one.
-/// @param scene  also where there is no such file
+/// Returns whether a message begins with the file that it refers to: the text before its first colon is a
+/// file.
+/// @param scene  path of the scene, accepted even if there is no such file
 bool begins_with_file(const std::string& message, const std::string& scene) {
   std::error_code none;
   return (!scene.empty() && message.starts_with(scene)) ||
          std::filesystem::exists(message.substr(0, message.find(':')), none);
 }
 
-/// The meshes are small: what is made of them takes the memory.
+/// Checks the memory estimate, after meshing and before assembly: the meshes are small, the assembled system
+/// is large.
 void check_memory(const World& world) {
   std::vector<MeshCounts> counts;
   MeshCounts all;
@@ -300,7 +302,7 @@ std::unique_ptr<World> assemble(const scene::Description& description,
   const bool carries =
       std::any_of(sides.begin(), sides.end(), [](const auto& side) { return !side->ties.empty(); });
   if (carries || !description.contacts.empty()) assemble_contact(*world);
-  if (world->state.layout().blocks.empty()) return world;  // a tool with its own ticks, alone
+  if (world->state.layout().blocks.empty()) return world;  // only a tool with separate ticks
   world->system.prepare(world->state.view());
   world->system.impose(world->state.layout(), 0.0, world->state.q().data(), world->state.u().data());
   world->stepper = integrate::make_stepper(world->system, world->state, description.integrator);

@@ -48,15 +48,15 @@ void check_nodes(const Body& body, const AttachmentSpec& spec, const std::vector
       where, spec.to);
 }
 
-/// Motion of the nodes of an attachment, and the frame that they are fixed in at the start.
+/// Motion of the nodes of an attachment, and the frame in which they are fixed at the start.
 struct Carrier {
-  int block_id = -1;    ///< a rigid block, or
-  dynamics::Path path;  ///< a function of time; neither: they stay
+  int block_id = -1;    ///< Rigid block; -1: none.
+  dynamics::Path path;  ///< Function of time; empty: none. Without either, the nodes are fixed.
   Pose start;
-  std::vector<int>* dofs = nullptr;  ///< where a bone keeps a list of what it carries
+  std::vector<int>* dofs = nullptr;  ///< List of dofs that a bone carries, if any.
 };
 
-/// Keyframes move the region about its own centre: x(t) = centre + position(t) + R(t) (x0 - centre).
+/// Keyframes move the region about its centre: x(t) = centre + position(t) + R(t) (x0 - centre).
 Carrier along_keyframes(const AttachmentSpec& spec) {
   const Vec3 centre = spec.region == "sphere" ? spec.centre_m : Vec3(0.5 * (spec.box_min_m + spec.box_max_m));
   return {
@@ -86,14 +86,14 @@ Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
   return {tool->block_id, {}, start_of(*tool->spec), nullptr};
 }
 
-/// By how much the spring of a node that a tool of ticks carries is stiffer than the tissue about the node.
+/// Stiffness ratio of the spring of a node carried by a tool with ticks to the tissue around the node.
 constexpr double kStiffer = 100.0;
 
-// A tool with ticks of its own is no part of the bodies' State: what it carries is tied to it, node by node.
-// A node of the volume V is held by its neighbours with a stiffness of about E a, a = V^(1/3); a spring k =
-// kStiffer E a, and a damper that is to it what the tissue's is to the tissue.  Seen from the body, a region
-// of the size R, which has (R/a)^2 nodes at least on a cut through it, is as stiff as E R, its springs as
-// kStiffer E a (R/a)^2: they give by a/(kStiffer R) of what the body does.
+// A tool with separate ticks is not a block of the State, so the nodes that it carries are tied to it by
+// springs. A node of volume V is held by its neighbours with a stiffness of about E a, a = V^(1/3). Its
+// spring has k = kStiffer E a, and a damper in the same ratio to the spring as in the tissue. A region of
+// size R, with at least (R/a)^2 nodes on a cut through it, has a stiffness of E R, and its springs have
+// kStiffer E a (R/a)^2: relative to the body, the springs deflect by a/(kStiffer R).
 void tie(const Body& body, const SoftBodySpec& tissue, const std::vector<int>& nodes, int first,
          ToolSide& tool) {
   const Pose from_world = start_of(*tool.spec).inverse();
@@ -105,10 +105,10 @@ void tie(const Body& body, const SoftBodySpec& tissue, const std::vector<int>& n
   }
 }
 
-/// Which attachment of the body holds or drives a direction of a node, by its number among them.
+/// Index of the attachment that holds or drives each direction of the body's nodes.
 using OwnersOfDofs = std::map<int, std::size_t>;
 
-/// @param first  of the body's nodes
+/// @param first  index of the body's first node
 void take_dofs(const Body& body, const std::vector<int>& dofs, int first, std::size_t attachment,
                OwnersOfDofs& owners) {
   for (const int dof : dofs) {
@@ -123,7 +123,7 @@ void take_dofs(const Body& body, const std::vector<int>& dofs, int first, std::s
   }
 }
 
-/// @param number  of the attachment among those of the body
+/// @param number  index of the attachment among those of the body
 void attach(World& world, const Body& body, const SoftBodySpec& tissue, std::size_t number,
             OwnersOfDofs& owners) {
   const AttachmentSpec& spec = tissue.attachments[number];

@@ -9,8 +9,8 @@
 namespace palpate::loop {
 namespace {
 
-/// The block of a free bone, with error scales in the units of the tissue that it carries: an error of its
-/// rotation counts as that of a node a body's size away.
+/// Returns the block of a free bone, with the error scales of the tissue that it carries: a rotation error
+/// counts like the error of a node at a distance of the body's size.
 dynamics::BlockSpec block_of(const World& world, const BoneSpec& spec) {
   double length = 0.0, speed = 0.0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i)
@@ -39,7 +39,7 @@ void add_free(World& world, Bone& bone, const BoneSpec& spec) {
         dynamics::make_rigid_weight(bone.block_id, inertia.mass, world.description.gravity_m_s2));
 }
 
-/// Directions of the nodes that a bone carries, and where they are in its frame.
+/// Directions of the nodes that a bone carries, and their positions in its frame.
 struct Load {
   std::vector<int> dofs;
   VecX x0;
@@ -63,7 +63,7 @@ Load load_of(const World& world, const Body& body, int bone, const Pose& start) 
   return out;
 }
 
-/// The block of all bones that move freely, and its terms; null where there is none.
+/// Adds the block and the terms of all freely moving bones, as one tree; returns null if there are none.
 std::shared_ptr<const bones::BoneTree> add_tree(World& world, const Body& body, const SoftBodySpec& spec,
                                                 std::vector<bones::TreeBone> free, int& block_id) {
   if (free.empty()) return nullptr;

@@ -32,8 +32,8 @@ double mean_edge(const TriMesh& surface) {
 struct Pair {
   const ContactSpec& spec;
   contact::NodeSurface surface;
-  const Points& rest;   ///< of the surface's vertices
-  const TetMesh& body;  ///< at rest
+  const Points& rest;   ///< Vertices of the surface.
+  const TetMesh& body;  ///< Tetrahedra at rest.
   double candidate_gap, look_ahead;
   std::shared_ptr<proxy::ProxySet> proxies{};
 };
@@ -72,7 +72,7 @@ contact::ImageOptions image_options(const Pair& pair) {
 
 contact::DistanceOptions options_of(const Pair& pair) { return distance_options(pair.spec, pair.look_ahead); }
 
-/// Nearest points of a body and another surface, which both have to be closed.
+/// Returns nearest-point contact of a body and another surface; both must be closed.
 template <class... Other>
 std::unique_ptr<contact::SampleSource> distance_source(Pair pair, Other... other) {
   try {
@@ -81,7 +81,7 @@ std::unique_ptr<contact::SampleSource> distance_source(Pair pair, Other... other
   } catch (const Error& error) { refuse_distance(pair.spec, error); }
 }
 
-/// The points of a surface on a shape, and the shape's own.
+/// Adds the sample points of a shape to the source with a surface's points on that shape.
 std::unique_ptr<contact::SampleSource> with_own_points(std::unique_ptr<contact::SampleSource> source,
                                                        const Pair& pair, const Shape& shape) {
   const auto own =
@@ -91,7 +91,7 @@ std::unique_ptr<contact::SampleSource> with_own_points(std::unique_ptr<contact::
       std::move(source), contact::make_distance_source(pair.surface, pair.rest, *own, options_of(pair)));
 }
 
-/// A soft body's points, on a shape of these lengths.
+/// Returns the sample points of a soft body, with a spacing suited to a shape of these lengths.
 contact::MaterialPoints points_on(const Pair& pair, const contact::CharacteristicLengths& lengths) {
   try {
     const auto own = contact::lengths_of({pair.rest, pair.surface.faces});
@@ -100,7 +100,7 @@ contact::MaterialPoints points_on(const Pair& pair, const contact::Characteristi
   } catch (const Error& error) { refuse_distance(pair.spec, error); }
 }
 
-/// Contact of two soft bodies.
+/// Returns contact of two soft bodies.
 std::unique_ptr<contact::SampleSource> pair_source(Pair a, Pair b) {
   if (a.spec.method == "distance") return distance_source(std::move(a), std::move(b.surface), b.rest);
   if (a.spec.method == "analytic")
@@ -116,7 +116,7 @@ std::unique_ptr<contact::SampleSource> pair_source(Pair a, Pair b) {
   return contact::make_image_source(std::move(a.surface), std::move(b.surface), options);
 }
 
-/// A surface made of nodes as a skin in the tetrahedra that have these nodes.
+/// Returns a surface made of nodes as a skin embedded in the tetrahedra.
 contact::NodeSurface in_tetrahedra(contact::NodeSurface surface, const TetMesh& body) {
   if (surface.node_of_vertex.empty()) return surface;
   std::vector<std::pair<int, int>> place_of(static_cast<std::size_t>(body.nodes.cols()));  // tet, corner
@@ -136,7 +136,7 @@ contact::NodeSurface in_tetrahedra(contact::NodeSurface surface, const TetMesh& 
   return surface;
 }
 
-/// Contact of one soft body with itself.
+/// Returns contact of a soft body with itself.
 std::unique_ptr<contact::SampleSource> own_source(Pair pair) {
   if (pair.spec.method != "distance")
     fail("contact {} - {}: a body touches itself by nearest points; use method = \"auto\"", pair.spec.first,
@@ -147,8 +147,8 @@ std::unique_ptr<contact::SampleSource> own_source(Pair pair) {
   } catch (const Error& error) { refuse_distance(pair.spec, error); }
 }
 
-/// Contact of a soft body with a rigid surface in a frame.
-/// @param rigid_proxies  proxies of the surface: made where the body has proxies and these do not exist yet
+/// Returns contact of a soft body with a rigid surface in a frame.
+/// @param rigid_proxies  proxies of the surface; created if the body has proxies and they do not exist yet
 std::unique_ptr<contact::SampleSource> image_source(Pair pair, TriMesh rigid,
                                                     std::shared_ptr<proxy::ProxySet>& rigid_proxies,
                                                     int frame, std::shared_ptr<contact::MovingFrame> motion) {
@@ -187,7 +187,7 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side,
                                      tool.radius_m, pair.candidate_gap, pair.look_ahead);
 }
 
-/// Whether a step of the bodies is one linear solve.
+/// Returns whether a step of the bodies is a single linear solve.
 bool steps_are_linearised(const World& world) {
   const auto& registry = integrate::stepper_registry();
   const auto entry = std::find_if(registry.begin(), registry.end(),
@@ -206,7 +206,7 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
                          pair, shape);
 }
 
-/// Makes what hands a tool of ticks the bodies as it touches or carries them, unless it is there.
+/// Creates the model reduction for a tool with ticks that contacts or carries bodies, unless it exists.
 void make_touch(World& world, ToolSide& side) {
   if (!side.trajectory || side.touch || world.description.exchange.linearisation != "points") return;
   const bool others_ask = steps_are_linearised(world) || ToolSide::all(world).size() > 1;
@@ -214,7 +214,7 @@ void make_touch(World& world, ToolSide& side) {
       std::make_unique<TouchReduction>(world, world.description.exchange.linearisation_error, others_ask);
 }
 
-/// @pre the names are in their order (scene::order_sides)
+/// @pre the names are in canonical order (scene::order_sides)
 std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec& spec) {
   contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
   if (auto source = rigid_source(world, spec)) return source;
@@ -238,11 +238,12 @@ void add_contact(World& world, ContactSpec& given) {
   set_friction_speed(world, given);
   given.friction_retardation_s = friction_retardation(world.description, given);
   ContactSpec spec = given;
-  // In a step of one linear solve the secant is needed, though what is left out of a tool's rows besides
-  // buys no symmetric matrix: else friction that slides turns nodes round in each step and holds nothing.
+  // Steps of a single linear solve need the secant tangent, although it does not make the matrix symmetric if
+  // other parts of a tool's rows are omitted: with the full tangent, sliding friction reverses the nodes'
+  // velocity in each step and does not hold.
   if (spec.friction_tangent == "auto")
     spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
-  // of tools with ticks of their own no step matrix has a part; their ticks are one solve each
+  // No step matrix contains tools with separate ticks; their ticks are a single solve each.
   if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
   world.contact->add_pair(source_of(world, spec), spec);
   ToolSide* const side = ToolSide::named(world, spec.second);

@@ -10,7 +10,7 @@
 namespace palpate::loop {
 namespace {
 
-/// The body's own material.
+/// Returns the material of the body.
 fem::Material material_of(const SoftBodySpec& spec) {
   return {spec.youngs_modulus_pa, spec.poissons_ratio, spec.density_kg_m3, spec.mass_damping_per_s,
           spec.stiffness_damping_s};
@@ -22,7 +22,7 @@ std::vector<std::string> names_of(const std::vector<Region>& regions) {
   return out;
 }
 
-/// Elements whose centroid lies in the box or the sphere.
+/// Returns the elements whose centroid lies in the box or the sphere.
 std::vector<int> elements_in(const RegionSpec& spec, const Points& placed, const Tets& tets) {
   Points centroids(3, tets.cols());
   for (Eigen::Index t = 0; t < tets.cols(); ++t)
@@ -31,7 +31,7 @@ std::vector<int> elements_in(const RegionSpec& spec, const Points& placed, const
                               : fem::nodes_in_sphere(centroids, spec.centre_m, spec.radius_m);
 }
 
-/// The region that a table of the scene names: one of the file, or a new one.
+/// Returns the region for a table of the scene: one of the file, or a new one.
 Region& region_for(const SoftBodySpec& spec, const RegionSpec& wanted, std::vector<Region>& regions,
                    const Body& body) {
   const auto found =
@@ -53,8 +53,8 @@ Region& region_for(const SoftBodySpec& spec, const RegionSpec& wanted, std::vect
   return regions.back();
 }
 
-/// Material of a region: the keys that the scene sets, else those of `base`, the body's times the factors of
-/// a model file.
+/// Returns the material of a region: values set in the scene, else those of `base`, which is the body's
+/// material times the factors of a model file.
 fem::Material material_of(const RegionSpec& wanted, const fem::Material& base) {
   fem::Material out = base;
   if (wanted.youngs_modulus_pa) out.youngs_modulus = *wanted.youngs_modulus_pa;
@@ -65,8 +65,7 @@ fem::Material material_of(const RegionSpec& wanted, const fem::Material& base) {
   return out;
 }
 
-/// Assigns each element to the last of its regions that has a material, else to the smallest region of the
-/// file.
+/// Assigns each element to the last of its regions with a material, else to its smallest region in the file.
 void settle(Body& body) {
   std::vector<int> owner(static_cast<std::size_t>(body.rest.tets.cols()), -1);
   std::vector<std::size_t> order(body.regions.size());
@@ -89,7 +88,7 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
   fem::Materials out(material_of(spec));
   const std::string where = fmt::format("body \"{}\"", spec.name);
   fem::check(out.list[0], where.c_str());
-  std::vector<fem::Material> bases;  // of the regions of the file
+  std::vector<fem::Material> bases;  // one per region of the file
   for (MaterialRegion& region : in_file) {
     const bool named = std::any_of(spec.regions.begin(), spec.regions.end(),
                                    [&](const RegionSpec& r) { return r.name == region.name; });

@@ -18,8 +18,8 @@ namespace palpate::loop {
 
 namespace {
 
-/// The handle as a function of time, which one integrator of tool and bodies needs: it looks ahead of the
-/// tick, and back.
+/// Returns the handle's motion as a function of time. A monolithic integrator requires it, because it
+/// evaluates the motion at times before and after the tick.
 tool::HandlePath path_of(const device::Device& handle, const DeviceSpec& spec) {
   auto path = handle.path();
   if (!path)
@@ -44,7 +44,7 @@ tool::HandBlock hand_of(const device::HandModel& model) {
           }};
 }
 
-/// The hand as a block of the State beside the tool.
+/// Adds the hand to the State, as one block coupled to the tool.
 void assemble_hand(World& world, ToolSide& side, const dynamics::BlockSpec& tool_spec) {
   const scene::Description& d = world.description;
   if (d.record && d.record->energy)
@@ -62,8 +62,8 @@ void assemble_hand(World& world, ToolSide& side, const dynamics::BlockSpec& tool
   world.system.add(terms.coupling);
 }
 
-/// The tool as a block of the State beside the bodies.
-/// @param own_device  the device is that of the scene
+/// Adds the tool to the State, as one block coupled to the bodies.
+/// @param own_device  whether the device is the scene's, not a replacement
 void assemble_block(World& world, ToolSide& side, bool own_device) {
   const ToolSpec& spec = *side.spec;
   if (spec.tick_s != world.description.tool->tick_s)
@@ -83,7 +83,7 @@ void assemble_block(World& world, ToolSide& side, bool own_device) {
   world.system.add(tool::make_coupling_term(block_id, spec, path_of(*side.handle, *side.device_spec)));
 }
 
-/// A recording of the file's kind: HDF5 is the record of another run's hand, which `device` does not know.
+/// Builds the device. A recording in HDF5 is the record of another run's hand, which `device` cannot read.
 std::unique_ptr<device::Device> own_device_of(const DeviceSpec& spec, const std::string& folder) {
   const std::filesystem::path file(spec.file);
   if (spec.type != "recording" || file.extension() != ".h5") return device::make_device(spec, folder);
@@ -92,8 +92,8 @@ std::unique_ptr<device::Device> own_device_of(const DeviceSpec& spec, const std:
   return recorded_hand(std::move(record));
 }
 
-/// Semi-implicit Euler diverges in the coupling alone beyond k = 4 m/h^2 - 2 b/h (tool/fixed_tick.cpp), and
-/// likewise about the axis of the least moment of inertia.
+/// Warns if semi-implicit Euler diverges in the coupling alone, beyond k = 4 m/h^2 - 2 b/h
+/// (tool/fixed_tick.cpp), in translation or about the axis of the smallest moment of inertia.
 void warn_of_limit(const ToolSide& side) {
   const ToolSpec& spec = *side.spec;
   if (spec.integrator != "semi-implicit-euler") return;

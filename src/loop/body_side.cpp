@@ -41,7 +41,7 @@ void BodySide::start() {
   for (Observer* observer : observers) observer->period(world_, 0.0);
 }
 
-// The switch as it was at the last tick.  Within a period the ticks are ahead of the bodies.
+// Uses the switch at the last tick. Within a period the ticks are ahead of the bodies.
 void BodySide::query() {
   for (const auto& side : ToolSide::all(world_))
     if (world_.contact && side->spec && side->spec->grasp_switch >= 0 && side->frame_index >= 0)
@@ -110,7 +110,7 @@ double BodySide::next_query(double t0, double t1) {
 }
 
 void BodySide::advance(double t0, double t1, double refresh_s) {
-  if (!world_.stepper) return world_.state.set_time(t1);  // a tool with ticks of its own, alone
+  if (!world_.stepper) return world_.state.set_time(t1);  // only a tool with separate ticks
   const int parts = world_.contact ? whole_number((t1 - t0) / refresh_s) : 1;
   for (int i = 0; i < parts; ++i) {
     if (i > 0) look();
@@ -125,7 +125,7 @@ void BodySide::advance(double t0, double t1, double refresh_s) {
   }
 }
 
-/// Advances to t, stopping where a body's material changes.
+/// Advances to t, with stops at material changes.
 void BodySide::advance_over_changes(double t) {
   for (;;) {
     const double stop = next_change();

@@ -10,58 +10,60 @@
 
 namespace palpate::loop {
 
-/// The bodies' side of a run: contact queries, linearisations for the tool, steps, and what observers see of
-/// them.  Of the tool it has the poses that it was told.  It owns the World while a run lasts.
+/// Bodies' side of a run: contact queries, linearisations for the tool, steps, and calls of the observers.
+/// Its only information about the tools is the poses passed to follow(). It owns the World's state during a
+/// run.
 class BodySide {
  public:
   BodySide(World& world, const RunOptions& options, RunResult& result);
 
-  /// The length of the run, and of its periods [s].  @throws Error for more than can be counted
+  /// Duration of the run, length and number of its periods [s]. The constructor throws Error for too many
+  /// periods.
   double duration() const { return duration_; }
   double period() const { return period_; }
   int periods() const { return periods_; }
   double period_start(int i) const { return i == periods_ ? duration_ : i * period_; }
 
-  /// At t = 0, before the first period.
+  /// Starts at t = 0, before the first period.
   void start();
-  /// The slow query at an exchange, where the tool grasps and lets go as the handle's switch says; multistep
-  /// integrators then forget their history.
+  /// Queries contact at an exchange, after grasping or releasing according to the handle's switch; multistep
+  /// integrators restart.
   void query();
-  /// The contact as that hand's tool feels it for the coming `period_s`.
+  /// Returns the contact record for that hand's tool, for the next `period_s` seconds.
   ContactRecord linearise(std::size_t hand, double period_s);
-  /// That hand's tool was there, at a later time than all told before; from the last restart on it is a path
-  /// that the bodies follow.
+  /// Appends a pose of that hand's tool, later than all before. From the last restart_path() on, the poses
+  /// form a path that the bodies follow.
   void follow(std::size_t hand, double t, const Pose& pose, const Twist& twist);
-  void restart_path();  ///< of all tools
-  /// That hand felt this.
+  void restart_path();  ///< Restarts the paths of all tools.
+  /// Records one tick of that hand, and passes it to the observers.
   void felt(std::size_t hand, const TickRecord& tick);
-  /// When contact is to be looked for again: at t1, or, with tunnelling = "substep", so soon that no skin has
-  /// gone farther by then into what it touches than half of its thickness (SampleSource::safe_time).
+  /// Returns the time of the next contact query: t1, or, with tunnelling = "substep", early enough that no
+  /// skin penetrates by more than half of the other side's thickness until then (SampleSource::safe_time).
   double next_query(double t0, double t1);
-  /// Bodies go on to t1; contact is refreshed on the way at whole fractions, `refresh_s` apart, not at t0.
+  /// Advances the bodies to t1; contact is refreshed at equal fractions, about `refresh_s` apart, not at t0.
   void advance(double t0, double t1, double refresh_s);
-  /// Stands still to t1; what a tool carries goes with it.  @pre each tool's path reaches from the State's
-  /// time to its known pose
+  /// Advances the time to t1 with the bodies at rest; nodes that a tool carries move with it. @pre each
+  /// tool's path reaches from the State's time to its last known pose
   void stand_still(double t1);
-  /// The period that ends at t1 is over.
+  /// Completes the period that ends at t1.
   void close_period(double t1);
-  /// Whether the run has failed, or was told to stop: then nothing of this period is kept.
+  /// Returns whether the run has failed or was stopped; results of this period are then not kept.
   bool ended();
-  /// Steps go through these ticks, where tool and bodies are one system.
+  /// Routes steps through these ticks, for the monolithic scheme.
   void set_ticks(MonolithicTicks* ticks) { ticks_ = ticks; }
-  /// What stepper, contact, limiters and devices have counted so far, into the result.
+  /// Copies the counters of stepper, contact, limiters and devices to the result.
   void sum_up();
   void finish();
 
-  /// The last query of a World that a checkpoint gives up: what went through since the one before is counted,
-  /// and the balance of energy goes on from the samples that the next World begins with.
+  /// Makes the last query of a World before a checkpoint destroys it: counts the tunnelled vertices since the
+  /// query before, and continues the energy balance with the samples that the next World starts from.
   void look_once_more();
-  /// After a period.  What gives back takes the place of start(): World, ledger and counts are then as they
-  /// were, the integrator begins anew, and contact has been queried at that state.
+  /// Writes or restores the state after a period. Restoring replaces start(): World, ledger and counters are
+  /// restored, the integrator restarts, and contact has been queried at that state.
   void archive(Archive& a);
 
  private:
-  void look();  ///< the query alone
+  void look();  ///< Contact query without grasping.
   void advance_over_changes(double t);
   double next_change() const;
   void change_materials(double time);
@@ -73,24 +75,24 @@ class BodySide {
   RunResult& result_;
   double duration_ = 0.0, period_ = 0.0;
   int periods_ = 0;
-  double changed_ = 0.0;                      ///< time of the last material change [s]
-  dynamics::StepperCounters counted_before_;  ///< by the steppers of Worlds that checkpoints gave up
-  /// Of a hand, as scene::hands_of() counts them.
+  double changed_ = 0.0;                      ///< Time of the last material change [s].
+  dynamics::StepperCounters counted_before_;  ///< By steppers of Worlds before the last checkpoint.
+  /// Data per hand, in the numbering of scene::hands_of().
   struct Felt {
-    std::uint64_t version = 0;         ///< of the last linearisation
-    std::optional<device::Buzz> buzz;  ///< where ticks are fast enough
+    std::uint64_t version = 0;         ///< Version of the last linearisation.
+    std::optional<device::Buzz> buzz;  ///< Only for sufficiently short ticks.
     long ticks = 0;
   };
   std::vector<Felt> felt_;
-  std::optional<EnergyLedger> ledger_;  ///< where an observer wants it
+  std::optional<EnergyLedger> ledger_;  ///< Only if an observer requests it.
   MonolithicTicks* ticks_ = nullptr;
 };
 
-/// The two clocks: each runs the sides to the end.
+/// Run both sides to the end, in virtual or in real time.
 void run_in_virtual_time(World& world, BodySide& bodies, const RunOptions& options, RunResult& result);
 void run_in_real_time(World& world, BodySide& bodies, const RunOptions& options, RunResult& result);
 
-/// Ticks, steps or periods nearest to a ratio, at least one.
+/// Returns the whole number of ticks, steps or periods nearest to a ratio, at least one.
 int whole_number(double ratio);
 
 }  // namespace palpate::loop

@@ -4,9 +4,9 @@
 
 namespace palpate::loop {
 
-// With r and r' a node's places in the tool's axes before and now, equal, and Q the turn of these axes,
+// With equal positions r = r' of a node in the tool's axes before and now, and Q the rotation of these axes,
 //     x' = p' + Q (x - p),      u' = v'(x') + Q (u - v(x)),
-// v the velocity of the tool's material at a place.
+// with v the velocity of the tool's material at a point.
 void carry_along(World& world, const ToolSide& side, const Pose& before, const Twist& twist_before) {
   const KnownTool& now = side.known;
   const Quat turn = now.pose.rotation * before.rotation.conjugate();

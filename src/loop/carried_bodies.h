@@ -3,10 +3,10 @@
 
 namespace palpate::loop {
 
-/// Takes the bodies that a tool of ticks carries along with it, rigidly, over a time that they stand still
-/// in: as they lie in the tool and move against it, they do afterwards.  Of a body that is held elsewhere,
-/// too, the held nodes go back with the next step.
-/// @param before  the tool when the State was last its own; it is at `side.known` now
+/// Moves the bodies that a tool with ticks carries rigidly with it, over a time in which the bodies are held:
+/// their positions and velocities relative to the tool do not change. If a body is held elsewhere, too, the
+/// next step returns the held nodes.
+/// @param before  pose of the tool at the State's time; its current pose is `side.known`
 void carry_along(World& world, const ToolSide& side, const Pose& before, const Twist& twist_before);
 
 }  // namespace palpate::loop

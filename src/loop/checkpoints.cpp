@@ -17,7 +17,7 @@
 namespace palpate::loop {
 namespace {
 
-/// Times of checkpoints and periods are multiples of different decimal numbers.
+/// Tolerance for equal times: times of checkpoints and periods are multiples of different decimal numbers.
 constexpr double kSamePeriod = 1e-9;
 
 bool is_due(const SteppedRun& run, double every_s) {
@@ -26,7 +26,7 @@ bool is_due(const SteppedRun& run, double every_s) {
   return done < run.periods() && before(done) > before(done - 1);
 }
 
-/// What was counted in the process so far.
+/// Counters of the process so far.
 using Counts = std::map<std::string, long>;
 void archive_process(Archive& a, Counts& counts) {
   const Archive::Group group(a, "process");
@@ -135,7 +135,7 @@ RunResult run_with_checkpoints(std::unique_ptr<World>& world, const RunOptions& 
     }
     const ScopedTimer timer(cost.assemble_s);
     run.reset();
-    world.reset();  // before the next one takes memory
+    world.reset();  // frees its memory before the next one is assembled
     world = plan.assemble();
     Archive again(kept.values(), "checkpoint");
     run.emplace(*world, options, again);

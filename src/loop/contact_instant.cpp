@@ -16,9 +16,10 @@ void deepen(double& depth, double other) {
   if (other > 0.0 && !(depth >= other)) depth = other;
 }
 
-/// The depth of a point of either surface between the middles of the four pixels around it, by bilinear
-/// weights over those that see both surfaces; NaN where none does, or where the point is not on what the
-/// camera sees (on the far side of its body): off the heights of these pixels by more than they differ.
+/// Returns the depth at a point of either surface, interpolated bilinearly between the centres of the four
+/// pixels around it that have both surfaces. NaN if no pixel does, or if the point is hidden from the camera
+/// (on the far side of its body): then its height is outside the heights of these pixels by more than their
+/// range plus a pixel.
 double depth_at(const contact::RegionView& region, const Vec3& point) {
   const Vec3 uvw = region.axes.transpose() * (point - region.origin);
   const double x = (uvw.x() - region.u0) / region.pixel - 0.5, y = (uvw.y() - region.v0) / region.pixel - 0.5;
@@ -49,7 +50,7 @@ double depth_at(const contact::RegionView& region, const Vec3& point) {
   return -gap / weights;
 }
 
-/// Vertices by their place: which of them a sample stands at.
+/// Vertices sorted by position, to find the vertex at which a sample lies.
 class Places {
  public:
   explicit Places(const Points& points) : points_(points), order_(static_cast<std::size_t>(points.cols())) {
@@ -57,7 +58,7 @@ class Places {
     std::sort(order_.begin(), order_.end(), [&](int i, int j) { return points(0, i) < points(0, j); });
     same_ = 1e-9 * (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
   }
-  /// -1: none.
+  /// Returns the vertex at x; -1 if there is none.
   int at(const Vec3& x) const {
     auto i = std::lower_bound(order_.begin(), order_.end(), x.x() - same_,
                               [&](int v, double low) { return points_(0, v) < low; });

@@ -16,14 +16,15 @@ Shape round_tool(double radius, int frame, std::shared_ptr<contact::MovingFrame>
           Vec3::Zero()};
 }
 
-// The points of the other surface alone say what overlaps until a shape is passed through its middle, or lies
-// within the other one as a whole.  Where the shape is the thicker one the other one would have been passed
-// through before that; else its own points count as well, each side with half of the weight.
+// The sample points of the other surface alone determine the overlap correctly until the other surface passes
+// the middle of the shape, or contains the whole shape. If the shape is thicker than the other surface, the
+// latter would have been passed through before. Otherwise the shape gets sample points, too, and each side
+// has half of the weight.
 //
-// A hundred thousand triangles at most, with some tens of MiB: a shape that needs more for the wanted error
-// has larger ones, up to ten times that error; one that would err by more, as a table top that is thinner
-// than what lies on it, has none.  The error goes as the edge's square, and the triangles' number as one over
-// it.
+// The number of triangles is limited to a hundred thousand, with some tens of MiB. A shape that needs more
+// for the requested error gets larger triangles, up to ten times that error; a shape with a larger error,
+// such as a table top thinner than the object on it, gets none. The error is proportional to the square of
+// the edge length, and the number of triangles to its inverse.
 std::optional<contact::ShapePoints> own_points(const Shape& shape,
                                                const contact::CharacteristicLengths& other, double error) {
   constexpr double kMostTriangles = 1e5, kMostError = 10.0;
@@ -35,7 +36,7 @@ std::optional<contact::ShapePoints> own_points(const Shape& shape,
     area += 0.5 * (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm();
   }
   const double wanted = contact::shape_spacing(shape.lengths, other, error),
-               least = std::sqrt(area / (0.43 * kMostTriangles));  // 0.43 e^2 of an equilateral triangle
+               least = std::sqrt(area / (0.43 * kMostTriangles));  // triangle area: 0.43 e^2
   if (least * least > kMostError * wanted * wanted) return {};
   const double spacing = std::max(wanted, least);
   return contact::ShapePoints{

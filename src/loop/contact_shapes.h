@@ -8,33 +8,35 @@
 
 namespace palpate::loop {
 
-/// An exact shape that a frame carries: an obstacle, or a round tool.
+/// Exact shape attached to a frame: an obstacle, or a spherical tool.
 struct Shape {
   contact::CharacteristicLengths lengths;
-  std::function<TriMesh(double spacing)> surface{};  ///< null: it has no end
-  std::function<Vec3(const Vec3& x)> onto{};         ///< its point nearest to x, in the frame
+  std::function<TriMesh(double spacing)> surface{};  ///< null: unbounded
+  std::function<Vec3(const Vec3& x)> onto{};         ///< Point of the shape nearest to x, in the frame.
   int frame = -1;
   std::shared_ptr<contact::MovingFrame> motion;
-  std::optional<Vec3> centre{};  ///< of a ball, in the frame
+  std::optional<Vec3> centre{};  ///< Centre of a ball, in the frame.
 };
 
+/// Returns the shape of a spherical tool.
 Shape round_tool(double radius, int frame, std::shared_ptr<contact::MovingFrame> motion);
-/// @param force  takes the obstacle's frame
+/// Returns the shape of an obstacle.
+/// @param force  receives the obstacle's frame
 Shape shape_of(contact::ContactForce& force, const ObstacleSpec& obstacle);
 
-/// Returns the points of a shape's own surface against a closed one, where they count.
-/// @param error  wanted, as contact::point_spacing() has it
+/// Returns sample points on the shape for contact with a closed surface, if they are needed.
+/// @param error  requested quadrature error, as for contact::point_spacing()
 std::optional<contact::ShapePoints> own_points(const Shape& shape,
                                                const contact::CharacteristicLengths& other, double error);
 
-/// Returns contact of a side with an obstacle.
-/// @param shape  the obstacle's
+/// Returns the contact source of a side with an obstacle.
+/// @param shape  shape of the obstacle
 std::unique_ptr<contact::SampleSource> obstacle_source(const Shape& shape, const ContactSpec& spec,
                                                        contact::ContactSide side, double candidate_gap,
                                                        double look_ahead, const ObstacleSpec& obstacle);
 
 contact::DistanceOptions distance_options(const ContactSpec& spec, double look_ahead);
-/// Says of which contact an error of its nearest points is.
+/// Rethrows an error of nearest-point contact with the names of its two sides.
 [[noreturn]] void refuse_distance(const ContactSpec& spec, const Error& error);
 
 }  // namespace palpate::loop

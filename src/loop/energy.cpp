@@ -62,8 +62,8 @@ double EnergyLedger::elastic_energy() const {
   return sum;
 }
 
-// A coupling takes b |v_h - v_t|^2 + b_r |w_h - w_t|^2.  Those of tools in the State are among the System's
-// terms; a tool with ticks of its own is no part of it.
+// A coupling dissipates b |v_h - v_t|^2 + b_r |w_h - w_t|^2. Couplings of tools in the State are terms of the
+// System; a tool with separate ticks is not.
 EnergyLedger::Dissipation EnergyLedger::dissipation() const {
   Dissipation out;
   const dynamics::StateView view = world_.state.view();
@@ -98,7 +98,7 @@ void EnergyLedger::take_stored() {
     const Pose& handle = sides[i]->handle_now.pose;
     balance_.kinetic_of_tools += known.kinetic_energy();
     balance_.coupling += known.coupling_energy(handle);
-    if (!sides[i]->tool) continue;  // the System has them
+    if (!sides[i]->tool) continue;  // terms of the System
     balance_.kinetic += known.kinetic_energy();
     balance_.other += known.potential_energy(handle);
   }

@@ -9,15 +9,15 @@
 namespace palpate::loop {
 namespace {
 
-/// Longest edge of the box about them [m].
+/// Returns the longest edge of the bounding box [m].
 double length_of(const Points& x) { return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff(); }
 
-// The speed below which friction is viscous, where a scene names none.  What sticks creeps with it, and an
-// error-controlled method follows its time, v_r/(mu g), wherever sliding begins or ends: neither may depend
-// on the units of length that a scene happens to have.  Froude's scaling, by which scenes of one shape move
-// alike, leaves v_r = c sqrt(g L).  A block of 20 m that lands and slides under cvode-bdf takes 23,600 steps
-// a second at c = 1.4e-5, 4,300 at 7e-5, 1,160 at 3e-4 and 1,090 at 1e-3: below 3e-4 the friction's own time
-// decides, above it nothing is gained.
+// Default speed v_r below which friction is viscous. Sticking contacts creep with it, and an error-controlled
+// method resolves its time constant, v_r/(mu g), wherever sliding begins or ends: neither may depend on the
+// unit of length of a scene. Froude scaling, under which geometrically similar scenes move alike, gives
+// v_r = c sqrt(g L). A block of 20 m that lands and slides under cvode-bdf takes 23,600 steps per second at
+// c = 1.4e-5, 4,300 at 7e-5, 1,160 at 3e-4 and 1,090 at 1e-3: below 3e-4 the time constant of friction limits
+// the step, above it nothing is gained.
 double friction_speed(const World& world, double length) {
   constexpr double kShare = 3e-4, kGravity = 9.81;
   const double g = world.description.gravity_m_s2.norm();
@@ -32,7 +32,8 @@ double tool_friction_speed(const World& world, const ToolSpec& tool) {
   return friction_speed(world, length);
 }
 
-// A tool decides for its pairs alone, so that its ticks can be repeated without the bodies.
+// For a pair with a tool, the tool alone determines the speed, so that its ticks can be recomputed without
+// the bodies.
 void set_friction_speed(World& world, ContactSpec& contact) {
   if (contact.friction == 0.0 || contact.friction_regularisation_m_s > 0.0) return;
   double length = HUGE_VAL;
@@ -47,9 +48,10 @@ void set_friction_speed(World& world, ContactSpec& contact) {
   contact.friction_regularisation_m_s = friction_speed(world, length);
 }
 
-// Springs tie material points of a body.  (Between rigid things there are none: a ball has no material points
-// there, and what its contact takes from tick to tick is found anew.)  They are as slow as the queries that
-// move their anchors, and as the ticks that hold their deflection for so long.
+// The springs tie material points of a body. (Between rigid objects there are none: a ball has no fixed
+// material points there, and its contact points are computed again at each tick.) Their retardation time is
+// the interval of the queries that move the anchors, or of the ticks, over which the deflection is constant,
+// whichever is longer.
 double friction_retardation(const scene::Description& d, const ContactSpec& contact) {
   const auto is_body = [&](const std::string& name) {
     return std::any_of(d.bodies.begin(), d.bodies.end(), [&](const auto& body) { return body.name == name; });

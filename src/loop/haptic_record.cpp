@@ -10,7 +10,7 @@
 namespace palpate::loop {
 namespace {
 
-// One list of the numbers of a tick, and one of an exchange, serves names, writing and reading.
+// The lists of values of a tick and of an exchange are written once, and used for names, writing and reading.
 template <class F, class P>
 void visit_pose(F& f, const std::string& who, P& pose) {
   f(who + "_qw", pose.rotation.w());
@@ -27,7 +27,8 @@ void visit_pair(F& f, const std::string& first, V& a, const char* unit_a, const 
   for (int i = 0; i < 3; ++i) f(second + "_" + "xyz"[i] + unit_b, b[i]);
 }
 
-/// @param Tick  TickRecord, const or not  @param f  f(name, double or int of 53 bits at most)
+/// Visits the values of a tick.
+/// @param Tick  TickRecord, const or not  @param f  f(name, double or integer of at most 53 bits)
 template <class F, class Tick>
 void visit_tick(F&& f, Tick& t) {
   f("time_s", t.time);
@@ -49,7 +50,7 @@ void visit_tick(F&& f, Tick& t) {
   visit_pair(f, "motors_torque", t.motors.moment, "_n_m", "motors_force", t.motors.force, "_n");
 }
 
-/// The handle before the first tick, of a TickRecord, and what holds for the whole run.
+/// State of the handle before the first tick, as a TickRecord, and data of the whole run.
 struct StartRow {
   TickRecord tick;
   device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
@@ -81,6 +82,7 @@ void visit_all(F& f, const std::string& name, V& values) {
   for (std::size_t i = 0; i < values.size(); ++i) f(name + "_" + std::to_string(i), values[i]);
 }
 
+/// Visits the values of a model, except its points.
 /// @param Row  ModelRow, const or not
 template <class F, class Row>
 void visit_model(F&& f, Row& r) {
@@ -116,10 +118,10 @@ void visit_point(F&& f, Row& r) {
   visit_all(f, "mode", point.modes);
 }
 
-/// Rows of the tables of models: the version says of which exchange.
+/// Rows of the tables of models; the version identifies the exchange.
 struct ModelRow {
   std::uint64_t version = 0;
-  contact::TouchModel model;  ///< its points have rows of their own
+  contact::TouchModel model;  ///< Its points are separate rows.
 };
 struct PointRow {
   std::uint64_t version = 0;
@@ -160,7 +162,7 @@ std::vector<Record> read(Visit visit, Record empty, const std::string& path, con
 
 enum Tables : std::size_t { kStart, kTicks, kExchanges, kModels, kPoints };
 
-/// What the tables of models hold, by exchange; empty where no exchange has points.
+/// Reads the models, one per exchange; empty if no exchange has points.
 std::vector<contact::TouchModel> read_models(const std::string& path, std::size_t exchanges) {
   std::vector<contact::TouchModel> out;
   const std::vector<ModelRow> models = read(kVisitModel, ModelRow{}, path, "models");

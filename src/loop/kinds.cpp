@@ -30,7 +30,7 @@ KindTable mesh_kinds(const char* table, std::vector<Kind> generators) {
   return {.table = table, .selector = "generator", .kinds = std::move(generators), .alternative = "file"};
 }
 
-/// Of [tool] and [device], or, with the prefix "hand.", of each [[hand]]'s.
+/// Adds the tables of [tool] and [device], or, with the prefix "hand.", of each [[hand]].
 void add_hand(const std::string& prefix, scene::Kinds& out) {
   KindTable tool_integrators{.table = prefix + "tool",
                              .selector = "integrator",
@@ -39,7 +39,7 @@ void add_hand(const std::string& prefix, scene::Kinds& out) {
                              .unsaid = [](const Description&) { return ToolSpec{}.integrator; }};
   for (const tool::ToolIntegratorInfo& info : tool::tool_integrators())
     tool_integrators.kinds.push_back({info.name});
-  // without Simbody there are none: assemble says which package brings the tool
+  // Without Simbody there are none: assemble() reports the package that provides tools.
   if (!tool_integrators.kinds.empty()) out.push_back(std::move(tool_integrators));
   out.push_back({.table = prefix + "device",
                  .selector = "type",
@@ -119,7 +119,7 @@ const scene::Kinds& kinds() {
 
 namespace {
 
-/// "model:NAME" becomes the file that keeps it.
+/// Replaces "model:NAME" by the path of the cached file.
 scene::Description with_models(scene::Description d) {
   const auto take = [](MeshSpec& mesh) {
     if (const std::string name = store::model_of(mesh.file); !name.empty())

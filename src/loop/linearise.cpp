@@ -16,37 +16,37 @@ namespace {
 
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-// The contact's wrench on the tool after a time H, with the bodies moved by one linearly implicit Euler step
-// from (x0, u0), while the tool is displaced by dx and its twist changed by dv.  Indices: n all nodes, f
-// free, t tool; c = -df/d(tool), -dF/d(node) as ContactForce::linearise gives them; M, D, K include the
-// contact.  Driven nodes go to x(t0 + H), v(t0 + H), carried ones with their bone (rows and columns reduced
-// onto it by System): s and w are the displacements and velocity changes that are known beforehand,
+// Wrench of the contact on the tool after a time H, with the bodies advanced by one linearly implicit Euler
+// step from (x0, u0), while the tool is displaced by dx and its twist changes by dv. Indices: n all nodes, f
+// free, t tool; c = -df/d(tool), -dF/d(node) from ContactForce::linearise; M, D, K include the contact.
+// Driven nodes move to x(t0 + H), v(t0 + H), carried nodes with their bone (rows and columns are reduced to
+// the bone by System). s and w are the prescribed displacements and velocity changes,
 //     s = H u0 on free directions,  x(t0 + H) - x0 on driven ones,
 //     w = 0    on free directions,  v(t0 + H) - u0 on driven ones.
-// With u1 = u0 + w + du, du = 0 on driven directions, nodes end at x0 + s + H du, and the force there is, to
-// first order,
+// With u1 = u0 + w + du, du = 0 on driven directions, the nodes end at x0 + s + H du, and the force there is,
+// to first order,
 //     f1 = f_n - K_nn (s + H du) - D_nn (w + du) - K_nt dx - B_nt dv.
 // M (u1 - u0) = H f1 on free directions is
 //     A du = H (f_n - K_nn s - D_nn w) - M w - H (K_nt dx + B_nt dv),      A = M + H D + H^2 K,
-// and the tool feels, linearised about the same state,
+// and the wrench on the tool, linearised about the same state, is
 //     F = F_t - K_tt dx - B_tt dv - K_tn (s + H du) - B_tn (w + du)
 //       = [F_t - K_tn s - B_tn w - C g] + J dx + B dv,
 //     C = H K_tn + B_tn,  A g = H (f_n - K_nn s - D_nn w) - M w,
 //     J = -K_tt + H C A^-1 K_nt,  B = -B_tt + H C A^-1 B_nt,
-// which is the Schur complement of the step matrix onto the tool.  One part of K_tt belongs to the contact's
-// force, not to its stiffness: the arms that rotate under it.  It is taken from the forces after the step, at
-// x0 + s + H g, u0 + w + g; to first order that is equal.  It is not where the forces are out of balance: a
-// depth that came about unseen may press with 1e4 N now and with 0.1 N after the step, and a tool that
-// rotated under the first would spin up without end.
+// the Schur complement of the step matrix for the tool. One part of K_tt is geometric and depends on the
+// contact force, not on its stiffness: the rotation of its lever arms. It is computed from the forces after
+// the step, at x0 + s + H g, u0 + w + g. To first order this makes no difference, but it does if the forces
+// are far from balance: an overlap that arose undetected may press with 1e4 N now and with 0.1 N after the
+// step, and a tool that rotates under the former would spin up without bound.
 //
-// H -> 0 gives `frozen`, H -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.  (Forces that depend on
-// time alone are taken at t0.)
+// H -> 0 gives `frozen`, H -> infinity the quasi-static response K_tt - K_tn K^-1 K_nt. (Forces that depend
+// on time alone are evaluated at t0.)
 struct Answer {
   Vec6 wrench;  ///< [F_t - K_tn s - B_tn w - C g]
   Mat6 J, B;
 };
 
-/// q0 moved by a displacement along u-directions.
+/// Returns q0 moved by a displacement along u-directions.
 VecX moved(const World& world, const VecX& displacement) {
   VecX rate(world.state.q().size());
   dynamics::q_dot(world.state.layout(), world.state.q().data(), displacement.data(), rate.data());
@@ -69,7 +69,7 @@ void known_motion(World& world, double H, VecX& s, VecX& w) {
   }
 }
 
-// An other tool goes on with its twist v, which the implicit step meets at its end, H later:
+// Another tool continues with its twist v, and the implicit step uses its position at the end, H later:
 //     f1 = ... - K_no H v,     so that H f gains H^2 rate with rate = -K_no v.
 VecX rate_by_other_tools(const World& world, const ToolSide& mine) {
   VecX rate;
@@ -121,7 +121,7 @@ dynamics::LinearSolver* factored(const dynamics::System& system, ToolSide& side)
 
 namespace {
 
-/// False where the step matrix has no factor.
+/// Computes the response after a time H. Returns false if the step matrix has no factor.
 bool answer_after(World& world, ToolSide& side, double H, const contact::FrameLinearisation& c, Answer& out) {
   world.system.step_matrix(world.state.view(), 1.0, H, H * H, side.condensed_matrix);
   dynamics::LinearSolver* solver = factored(world.system, side);
@@ -162,17 +162,17 @@ bool answer_after(World& world, ToolSide& side, double H, const contact::FrameLi
   return true;
 }
 
-// The wrench on the tool over the period has two parts.  While the tool goes on with its velocity v0, the
-// wrench is a line through the results of one implicit step after one tick and after the period; J and B of
-// the period give the response to any deviation from that motion.  After a time s (tick or period) the first
-// part is w(s) + s J(s) v0:
+// The wrench on the tool over the period has two parts. While the tool continues with its velocity v0, the
+// wrench is linear in time, through the results of one implicit step after one tick and after the period; J
+// and B of the period give the response to any deviation from that motion. After a time s (tick or period)
+// the first part is w(s) + s J(s) v0:
 //     line(s) = W0 + s S,
 //     F = line + J (dx - s v0) + B (v - v0) = W0 + s (S - J v0) + J dx + B (v - v0).
-// A contact whose nodes move within a tick answers it more stiffly than it answers the period, and the tool's
-// own way is where that shows: with J of the period for all of dx, the error stood still between periods of 5
-// and 2.5 ms. A stiff contact that the last period has left out of balance is relaxed within the first tick,
-// as it is in the bodies' own implicit step, where a line that began at the present wrench would press with
-// it for half the period.  Where nothing is stiff, it begins there to O(tick^2).
+// A contact whose nodes respond within a tick is stiffer over a tick than over the period, which matters most
+// along the motion of the tool: with J of the period for all of dx, the error did not decrease between
+// periods of 5 and 2.5 ms. A stiff contact that the last period has left out of balance is relaxed within the
+// first tick, as in the implicit step of the bodies; a line that began at the present wrench would press with
+// it for half the period. Without stiffness, the line begins at the present wrench to O(tick^2).
 bool condense(World& world, ToolSide& side, double period, const contact::FrameLinearisation& c,
               dynamics::LinearisedContact& record) {
   const double tick = side.spec->tick_s;

@@ -14,17 +14,18 @@ namespace {
 
 constexpr double kMiB = 1024.0 * 1024.0;
 
-/// Bytes of a factor over N^(4/3).  Nested dissection of a mesh in space leaves O(N^(4/3)) numbers in the
-/// factor of N nodes (George 1973; Lipton, Rose and Tarjan 1979).  Measured of cholmod: 645 on cubes of 1,331
-/// to 39,304 nodes, 900 to 1,300 on a ball of 8,217 and 600 on one of 33,153; of umfpack 1,600 to 1,800 on
-/// cubes.
+/// Returns the bytes of a factor divided by N^(4/3). Nested dissection of a three-dimensional mesh leaves
+/// O(N^(4/3)) numbers in the factor for N nodes (George 1973; Lipton, Rose and Tarjan 1979). Measured for
+/// cholmod: 645 on cubes of 1,331 to 39,304 nodes, 900 to 1,300 on a ball of 8,217 and 600 on one of 33,153;
+/// for umfpack 1,600 to 1,800 on cubes.
 double factor_constant(const std::string& solver) {
   if (solver == "cholmod") return 800.0;
   if (solver == "umfpack") return 2000.0;
-  return 0.0;  // conjugate gradients keep none
+  return 0.0;  // conjugate gradients have no factor
 }
 
-/// Of a thread: the limit on the main thread's is the default of all others (pthread_create(3)).
+/// Returns the stack size of a thread: the limit for the main thread is the default for all others
+/// (pthread_create(3)).
 double stack_bytes() {
   constexpr double kUsual = 8.0 * kMiB;
   rlimit stack{};
@@ -32,7 +33,7 @@ double stack_bytes() {
   return limited ? static_cast<double>(stack.rlim_cur) : kUsual;
 }
 
-/// Contacts by nearest points that a body has.
+/// Returns the number of nearest-point contacts of a body.
 int contacts_by_points(const scene::Description& d, std::size_t body) {
   return static_cast<int>(std::count_if(d.contacts.begin(), d.contacts.end(), [&](const ContactSpec& c) {
     const std::string& name = d.bodies[body].name;
@@ -40,8 +41,8 @@ int contacts_by_points(const scene::Description& d, std::size_t body) {
   }));
 }
 
-/// A tool that is exchanged with bodies linearised at points has a matrix and a solver of its own beside the
-/// integrator's.
+/// Returns whether a tool exchanges contact linearised at points with bodies; it then has a matrix and a
+/// solver in addition to the integrator's.
 bool touches_at_points(const scene::Description& d) {
   return d.tool && d.exchange.scheme == "partitioned" && d.exchange.linearisation == "points";
 }
@@ -55,9 +56,10 @@ MeshCounts counts_of(const Body& body) {
 
 MemoryEstimate estimate_memory(const scene::Description& description, const std::vector<MeshCounts>& bodies) {
   constexpr double kProgram = 40.0 * kMiB, kTetrahedron = 820.0, kTouched = 640.0, kSkinVertex = 200.0;
-  // three contact points a vertex of 320 bytes each (measured, 600,000 points), where faces are not cut
+  // Three contact points per vertex of 320 bytes each (measured, 600,000 points), if faces are not
+  // subdivided.
   constexpr double kPointsOfVertex = 3.0 * 320.0;
-  constexpr double kBlas = 128.0 * kMiB;  // measured of OpenBLAS 0.3.21, one thread
+  constexpr double kBlas = 128.0 * kMiB;  // measured for OpenBLAS 0.3.21, one thread
   const bool at_points = touches_at_points(description);
   MemoryEstimate out{.program = kProgram};
   const double constant =

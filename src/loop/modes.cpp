@@ -8,7 +8,7 @@
 namespace palpate::loop {
 namespace {
 
-/// Longest edge of the box around all bodies [m].
+/// Returns the longest edge of the bounding box of all bodies [m].
 double size_of(const World& world) {
   Eigen::AlignedBox3d box;
   for (const Body& body : world.bodies)
@@ -16,7 +16,7 @@ double size_of(const World& world) {
   return box.sizes().maxCoeff();
 }
 
-/// Factor that makes a shape visible.
+/// Returns the factor that makes a shape visible.
 double scale_of(const World& world, const VecX& shape) {
   double largest = 0.0;
   for (const Body& body : world.bodies) {
@@ -24,7 +24,7 @@ double scale_of(const World& world, const VecX& shape) {
     const Eigen::Map<const Points> nodes(shape.data() + block.u_offset, 3, body.placed.cols());
     largest = std::max(largest, nodes.colwise().norm().maxCoeff());
   }
-  // a mode of the tool alone moves no body
+  // A mode of the tool alone moves no body.
   return largest > 0.0 ? kModeAmplitude * size_of(world) / largest : 0.0;
 }
 

@@ -6,8 +6,8 @@
 namespace palpate::loop {
 namespace {
 
-/// Ticks and output times are multiples of different decimal numbers: times that differ by less than this
-/// part of a tick are equal.
+/// Tolerance for equal times, relative to a tick: ticks and output times are multiples of different decimal
+/// numbers.
 constexpr double kSameTick = 1e-6;
 
 TickRecord tick_of(const World& world, const ToolSide& side, double t, const dynamics::StateView& state) {

@@ -5,16 +5,16 @@
 
 namespace palpate::loop {
 
-/// The haptic ticks of a monolithic scene: the integrator steps tool and bodies as it likes, and the tool at
-/// each tick, of the first tool's period, is read from its dense output.  An integrator that does not report
-/// its steps is made to land on every tick instead.
+/// Haptic ticks of a monolithic scene. The integrator chooses its steps, and the tools at the ticks (with the
+/// first tool's tick length) are read from its dense output. An integrator without step reports stops at
+/// every tick instead.
 class MonolithicTicks : private dynamics::StepFollower {
  public:
-  /// gets time, tool and the contact's wrench of each hand
+  /// Receives time, tool and contact wrench of each hand.
   using Emit = std::function<void(std::size_t hand, const TickRecord& tick)>;
   MonolithicTicks(World& world, Emit emit);
   ~MonolithicTicks() override;
-  /// Advances the World's stepper to t1 and emits the ticks on the way, the last one at t1 or before.
+  /// Advances the World's stepper to t1 and emits all ticks up to t1.
   dynamics::StepResult advance_to(double t1);
   void archive(Archive& a) { a("count", count_); }
 
@@ -27,7 +27,7 @@ class MonolithicTicks : private dynamics::StepFollower {
   World& world_;
   Emit emit_;
   double tick_s_;
-  long count_ = 0;  ///< ticks so far
+  long count_ = 0;  ///< Ticks so far.
   bool follows_;
   VecX q_, u_;
 };

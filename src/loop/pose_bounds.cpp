@@ -13,7 +13,7 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-constexpr double kArm = 1.0;  ///< a hand reaches that far [m]
+constexpr double kArm = 1.0;  ///< Reach of a hand [m].
 
 void extend(Box& box, const Points& points) {
   if (points.cols() == 0) return;
@@ -21,7 +21,8 @@ void extend(Box& box, const Points& points) {
   box.extend(Vec3(points.rowwise().maxCoeff()));
 }
 
-/// What is there at the start.  A plane has no end: of it counts what a picture of the rest shows.
+/// Returns the bounding box of the scene at the start. An unbounded plane contributes the part that a
+/// picture of the rest shows.
 Box box_of(const World& world, const device::Workspace& workspace) {
   Box box;
   for (const Body& body : world.bodies) extend(box, body.placed);
@@ -40,9 +41,9 @@ Box box_of(const World& world, const device::Workspace& workspace) {
 
 }  // namespace
 
-// A ball holds the scene.  A hand may be as far outside of it as it is wide, which serves scenes of any size,
-// and an arm's length, which serves small ones.  A handle that would cross that region while the watchdog
-// still holds the last force, or turn once, is none that a hand moves.
+// A ball contains the scene. A hand may be outside it by as much as its diameter, which suits scenes of any
+// size, plus an arm's length, which suits small ones. A handle that crosses that region, or rotates by a full
+// turn, while the watchdog still holds the last force is not moved by a hand.
 device::PoseBounds pose_bounds(const World& world, const device::Workspace& workspace) {
   const Box box = box_of(world, workspace);
   const double scene_radius = 0.5 * box.diagonal().norm();

@@ -4,8 +4,8 @@
 
 namespace palpate::loop {
 
-/// Returns the poses that a hand can have in this scene.
-/// @param workspace  of its device
+/// Returns bounds on the poses and speeds of a hand in this scene.
+/// @param workspace  workspace of its device
 device::PoseBounds pose_bounds(const World& world, const device::Workspace& workspace);
 
 }  // namespace palpate::loop

@@ -6,21 +6,22 @@
 #include "palpate/loop/haptic_loop.h"
 #include "tick_side.h"
 
-// What a run does at each tick, with one axis of a device in it.  The device starts at half of its
-// equilibrium under the arm's force, tool and coupling with it.  A motion that decays stays in contact then,
-// so that the one-sided wall acts as a linear one and linear theory applies; one that grows leaves it.
+// Performs the same operations per tick as a run, with one axis of a device. The device starts at half of its
+// equilibrium under the arm's force, with tool and coupling in the corresponding positions. A decaying motion
+// then stays in contact, so that the one-sided wall acts as a linear one and linear theory applies; a growing
+// one leaves it.
 //
-// Growth is measured in the deflection of the coupling, less that of the equilibrium, between the second and
-// the last quarter: where the loop is stable it falls.
+// Growth is measured by the deflection of the coupling, minus its equilibrium value, between the second and
+// the last quarter: it decreases if the loop is stable.
 
 namespace palpate::loop {
 namespace {
 
-constexpr double kUnlimited = 1e9;   ///< of the limiter, which does not belong to the linear loop [N]
-constexpr double kHeld = 1e12;       ///< mass of a tool that does not move [kg]
-constexpr double kPerturbed = 1e-5;  ///< of a loop without a wall [m]
+constexpr double kUnlimited = 1e9;   ///< Limit of the limiter, which is not part of the linear loop [N].
+constexpr double kHeld = 1e12;       ///< Mass of a fixed tool [kg].
+constexpr double kPerturbed = 1e-5;  ///< Initial deflection without a wall [m].
 
-/// The device of one axis, x of the scene, exact between ticks; its velocity is the backward difference.
+/// Device with one axis, x of the scene, exact between ticks; its velocity is the backward difference.
 class AxisHandle : public device::Device {
  public:
   AxisHandle(const HapticLoop& loop, double force)
@@ -28,7 +29,7 @@ class AxisHandle : public device::Device {
         tick_(loop.tick_s),
         force_(force),
         held_(static_cast<std::size_t>(loop.delay_ticks) + 1, 0.0) {}
-  /// At rest, under forces of the motors as if it had stood there for long.
+  /// Sets the position, at rest, with a constant past force of the motors.
   void place(double x, double motors) {
     axis_.place(x, 0.0);
     std::fill(held_.begin(), held_.end(), motors);
@@ -52,7 +53,7 @@ class AxisHandle : public device::Device {
  private:
   device::ArmAxis axis_;
   double tick_, force_, time_ = 0.0;
-  std::vector<double> held_;  ///< forces of the motors; the first acts until the next sample
+  std::vector<double> held_;  ///< Forces of the motors; the first acts until the next sample.
 };
 
 ToolSpec spec_of(const HapticLoop& loop) {
@@ -65,7 +66,7 @@ ToolSpec spec_of(const HapticLoop& loop) {
   return spec;
 }
 
-/// The wall fills x > 0.
+/// Returns the contact record of the wall, which occupies x > 0.
 dynamics::LinearisedContact wall_at(const HapticLoop& loop, double tool_x) {
   dynamics::LinearisedContact record;
   record.version = 1;
@@ -84,7 +85,7 @@ PressedWall press_wall(const HapticLoop& loop, double duration_s, double force_n
   const bool pressed = !loop.tool_held && loop.contact_stiffness_n_m > 0.0;
   const double k = loop.coupling_stiffness_n_m, K = loop.contact_stiffness_n_m;
   const double yielding = pressed ? 1.0 / K + 1.0 / k : 0.0;
-  // of the arm's spring and the wall; the coupling carries what that spring does not
+  // Equilibrium of arm spring and wall; the coupling carries the force that the arm spring does not.
   const double x_end = pressed ? force_n / (1.0 / yielding + loop.device.arm_stiffness_n_m) : 0.0,
                carried = pressed ? x_end / yielding : 0.0;
 
@@ -98,7 +99,7 @@ PressedWall press_wall(const HapticLoop& loop, double duration_s, double force_n
 
   TickSide ticks(spec, side);
   ticks.start(0.0);
-  side.limiter->limit(0.0, {}, true);  // its first output is zero, whatever is wanted
+  side.limiter->limit(0.0, {}, true);  // its first output is zero, whatever is requested
   const int count = static_cast<int>(std::ceil(duration_s / loop.tick_s));
   PALPATE_CHECK(count >= 8, "{} ticks are too few to see a growth", count);
   PressedWall out;

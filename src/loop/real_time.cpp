@@ -22,36 +22,37 @@
 namespace palpate::loop {
 namespace {
 
-// Two threads.  The ticks' thread wakes every tick_s by the machine's clock: device, newest linearised
-// contact, tool, wrench.  The bodies' thread follows one period behind:
+// Two threads. The tick thread wakes every tick_s by the wall clock: device, newest contact record, tool,
+// wrench. The thread of the bodies follows one period later:
 //
 //     ticks   |.........t.........|.........t+P.......|.........t+2P
 //     bodies            | x(t-P) -> x(t), query, linearise at t
 //                                 | x(t) -> x(t+P), query, linearise at t+P
 //
-// Once the ticks of [t, t+P] are over, the tool's path in it is known, and the bodies' step over it is the
-// one of virtual time.  Its linearisation about the instant t+P reaches the ticks as late as it takes to
-// compute; F1 and J carry it on to their own instant.  Virtual time does the same with latency_ticks.
+// After the ticks of [t, t+P], the tool's path in it is known, and the step of the bodies over it is the same
+// as in virtual time. The record for time t+P reaches the ticks after its computation; F1 and J extrapolate
+// it to their time. Virtual time models this delay with latency_ticks.
 //
-// Bodies that fall behind take two to kStretched periods after one query (a query costs more than a step);
-// what is beyond that they stand still in, so that the hand never feels a contact older than that.  A step
-// that is not over by then, counted from the last tick, is given up: a run lasts as long as it was to.
+// Bodies that are late advance by two to kStretched periods after one query (a query costs more than a step).
+// In periods beyond that they are held, so that the contact that the hand receives is never older than that.
+// A step that is not complete by then, counted from the last tick, is interrupted, so that the run ends on
+// time.
 constexpr int kStretched = 4;
 
-// A tick that is late follows the one before at once, and so on until the clock is caught up with.  Beyond
-// kFallTime (limiter.h) a device without a pose has lost its force, and a hand that waited for a wrench for
-// so long is where the tool is not: the ticks up to then are left out, and the clock starts anew.
+// A late tick follows the one before at once, until the ticks have caught up with the clock. Beyond kFallTime
+// (limiter.h) a device without a pose has lost its force, and a hand that waited for a wrench for so long is
+// far from the tool: the ticks up to then are omitted, and the clock is restarted.
 constexpr std::int64_t kStall = std::int64_t(1e9 * device::kFallTime);  // [ns]
 
-/// Ticks that the bodies' thread may leave unread: 16 s at 1 kHz.
+/// Capacity of the queue of ticks to the bodies' thread: 16 s at 1 kHz.
 constexpr std::size_t kQueue = 1 << 14;
-/// From when both threads are ready to the first tick [ns].
+/// Time from readiness of both threads to the first tick [ns].
 constexpr std::int64_t kLead = 20'000'000;
 
 struct TimedTick {
   TickRecord record;
   std::size_t hand = 0;
-  long number = 0;  ///< from 1, the same of all hands
+  long number = 0;  ///< From 1, equal for all hands.
   float lateness_s = 0.0F, work_s = 0.0F;
 };
 
@@ -83,7 +84,7 @@ class RealTime {
     out_.work_s.reserve(static_cast<std::size_t>(count_));
   }
 
-  /// The stepper lives on.
+  /// Restores the stepper's interrupt flag, as the stepper outlives the run.
   ~RealTime() {
     if (world_.stepper) world_.stepper->set_interrupt(options_.stop);
   }
@@ -122,7 +123,7 @@ class RealTime {
   }
 
  private:
-  /// False where the run is over before it begins.
+  /// Returns false if the run was stopped before it began.
   bool await_devices() {
     for (const auto& side : ToolSide::all(world_)) {
       side->handle->open();
@@ -135,10 +136,10 @@ class RealTime {
     return true;
   }
 
-  // --- the ticks' thread: no memory is taken, nothing waited for but the clock
+  // --- Tick thread: it allocates no memory, and waits only for the clock
 
   void tick_to_the_end() {
-    // locking all memory takes a while, in which nobody else gets any: the clock starts behind it
+    // Locking all memory blocks allocations for a while, so the clock starts afterwards.
     claim_real_time(out_);
     start_ns_ = now_ns() + kLead;
     ready_.count_down();
@@ -181,16 +182,17 @@ class RealTime {
         tick_status_ = ticks.tick(t, tick_s_, *contact_of_[timed.hand], timed.record);
         if (!tick_status_.ok()) return;
         timed.record.left_out = static_cast<std::uint32_t>(left_out);
-        timed.work_s = seconds(now_ns() - woke);  // of the last: that of all
+        timed.work_s = seconds(now_ns() - woke);  // for the last hand, the time of all hands
         if (!queue_.push(timed)) unrecorded_.fetch_add(1, std::memory_order_relaxed);
       }
       ticked_.store(i, std::memory_order_release);
     }
   }
 
-  // --- the bodies' thread
+  // --- Thread of the bodies
 
-  /// One exchange: waits for a period's ticks, follows them, and publishes.  False where the run is over.
+  /// Makes one exchange: waits for the ticks of a period, follows them, and publishes. Returns false at the
+  /// end of the run.
   bool one_step() {
     const long wanted = done_ + per_period_;
     if (told_to_stop()) return false;
@@ -236,7 +238,7 @@ class RealTime {
 
   double time_of(long tick) const { return static_cast<double>(tick) * tick_s_; }
 
-  /// The run's time is over, and the bodies' is not: from tick `from` on they stand still.
+  /// Ends a run whose last step was interrupted: the bodies are held from tick `from` on.
   void give_up_steps(long from) {
     done_ = ticked_.load() / per_period_ * per_period_;
     if (done_ <= from) return;
@@ -265,7 +267,7 @@ class RealTime {
     bodies_.advance(t0, t1, periods > 1 ? t1 - t0 : world_.description.exchange.contact_refresh_s);
   }
 
-  /// Takes the ticks up to number `last` of all hands from the queue.
+  /// Reads the ticks up to number `last` of all hands from the queue.
   void drain(long last) {
     const long all = last * static_cast<long>(hands_.size());
     for (TimedTick timed; drained_ < all && queue_.pop(timed);) {
@@ -293,21 +295,21 @@ class RealTime {
   RunResult& result_;
   RealTimeResult& out_;
   std::deque<Hand> hands_;
-  std::vector<TickGroup> groups_;                               ///< of hands_
-  std::vector<const dynamics::LinearisedContact*> contact_of_;  ///< of each hand, in its group
+  std::vector<TickGroup> groups_;                               ///< Groups of hands_.
+  std::vector<const dynamics::LinearisedContact*> contact_of_;  ///< Per hand, in its group.
   int per_period_;
   double tick_s_;
   std::int64_t tick_ns_;
-  std::atomic<std::int64_t> start_ns_{0};  ///< of the clock: changed by the ticks' thread
+  std::atomic<std::int64_t> start_ns_{0};  ///< Start of the clock: changed by the tick thread.
   long count_, done_ = 0, drained_ = 0;
 
   SpscRing<TimedTick> queue_;
-  dynamics::StepResult tick_status_;  ///< of the ticks' thread; read when it is over
+  dynamics::StepResult tick_status_;  ///< Status in the tick thread; read after its end.
   std::atomic<long> ticked_{0}, unrecorded_{0};
   std::atomic<bool> quit_{false}, over_{false};
-  std::atomic<bool> interrupt_{false};  ///< of the bodies' step: nobody waits for it any more
+  std::atomic<bool> interrupt_{false};  ///< Interrupts the bodies' step at the end of the run.
   std::latch ready_{1};                 ///< `start_ns_` is set
-  std::exception_ptr failure_;          ///< of the ticks' thread
+  std::exception_ptr failure_;          ///< Exception in the tick thread.
 };
 
 }  // namespace

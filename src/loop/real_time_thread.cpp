@@ -15,14 +15,14 @@
 namespace palpate::loop {
 namespace {
 
-constexpr int kPriority = 80;              // above interrupt threads' 50 on PREEMPT_RT kernels
-constexpr std::size_t kStack = 256 << 10;  // touched beforehand [bytes]
+constexpr int kPriority = 80;              // above the 50 of interrupt threads on PREEMPT_RT kernels
+constexpr std::size_t kStack = 256 << 10;  // touched in advance [bytes]
 
 void pin(RealTimeResult& out) {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   if (pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed) != 0) return;
-  if (CPU_COUNT(&allowed) < 2) return;  // the bodies need it, too
+  if (CPU_COUNT(&allowed) < 2) return;  // the bodies need a processor, too
   std::size_t last = 0;
   for (std::size_t i = 0; i < CPU_SETSIZE; ++i)
     if (CPU_ISSET(i, &allowed)) last = i;
@@ -43,8 +43,8 @@ void schedule(RealTimeResult& out) {
                         std::strerror(refused), kPriority);
 }
 
-// Pages that are there now: ticks take no new ones.  To lock what comes later, too (MCL_FUTURE), would make
-// allocations of the bodies' thread fail beyond RLIMIT_MEMLOCK.
+// Locks the current pages only: ticks allocate no new ones. Locking future pages (MCL_FUTURE) would make
+// allocations in the bodies' thread fail beyond RLIMIT_MEMLOCK.
 void lock_memory(RealTimeResult& out) {
   out.memory = mlockall(MCL_CURRENT) == 0
                    ? "locked"
@@ -57,7 +57,7 @@ void lock_memory(RealTimeResult& out) {
   for (std::size_t i = 0; i < kStack; i += 1024) p[i] = 0;
 }
 
-// A machine that was suspended has left out time: CLOCK_MONOTONIC does not count it.
+// CLOCK_MONOTONIC does not count time in suspension.
 constexpr clockid_t kClock = CLOCK_BOOTTIME;
 
 }  // namespace

@@ -5,16 +5,16 @@
 
 namespace palpate::loop {
 
-/// Nanoseconds since the machine started, those included in which it was suspended.
+/// Returns the nanoseconds since boot, including time in suspension.
 std::int64_t now_ns();
-/// Sleeps until that clock shows that [ns]; returns at once where it does already.
+/// Sleeps until that clock reaches `due` [ns]; returns at once if it already has.
 void sleep_until_ns(std::int64_t due);
 
-/// Makes the calling thread what a servo loop wants, as far as the system permits: SCHED_FIFO, pinned to the
-/// last processor that this process may use (the first serves most interrupts), pages of the process locked
-/// in memory, its stack touched.  What was not permitted stands in `out` with the reason.
+/// Prepares the calling thread for a servo loop, as far as the system permits: SCHED_FIFO, pinned to the last
+/// processor that this process may use (the first serves most interrupts), memory locked, stack touched.
+/// `out` reports the outcome, with reasons for failures.
 void claim_real_time(RealTimeResult& out);
-/// Pages may be swapped again.
+/// Unlocks the memory of the process.
 void release_memory();
 
 }  // namespace palpate::loop

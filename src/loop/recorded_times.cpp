@@ -8,11 +8,11 @@
 namespace palpate::loop {
 namespace {
 
-constexpr double kUnits[] = {1.0, 1e-3, 1e-6, 1e-9};  ///< seconds, milliseconds, ... that recorders write [s]
+constexpr double kUnits[] = {1.0, 1e-3, 1e-6, 1e-9};  ///< Units of recorders [s].
 
-/// The unit by which a recording of that span lasts most nearly as long as the scene: the ratio of the two
-/// is least, whichever is longer.  A recording in seconds passes for one in milliseconds where it lasts more
-/// than sqrt(1000) = 32 times as long as the scene.
+/// Returns the unit for which the duration of the recording is closest to the scene's, by the absolute
+/// logarithm of their ratio. A recording in seconds is taken for milliseconds if it is more than
+/// sqrt(1000) = 32 times as long as the scene.
 double likeliest_unit(double span, double duration_s) {
   return *std::min_element(std::begin(kUnits), std::end(kUnits), [&](double a, double b) {
     return std::abs(std::log(a * span / duration_s)) < std::abs(std::log(b * span / duration_s));
@@ -32,7 +32,7 @@ void check_recorded_times(const device::Device& handle, const DeviceSpec& spec, 
   std::string remedy;
   if (unit != 1.0)
     remedy = fmt::format("device.time_scale = {:g} if they are in units of {:g} s", unit, unit);
-  const double begin = unit * (first - spec.time_offset_s);  // once it is scaled
+  const double begin = unit * (first - spec.time_offset_s);  // after scaling
   if (apart)
     remedy += fmt::format("{}device.time_offset_s = {:.12g} to begin with the scene",
                           remedy.empty() ? "" : ", and ", 0.0 - begin);

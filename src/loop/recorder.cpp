@@ -28,14 +28,14 @@ std::vector<std::string> energy_headers() {
   return headers;
 }
 
-/// How many periods of the loop pass between two recorded states.
+/// Returns the number of loop periods between two recorded states.
 int periods_between(const scene::Description& d) {
   return std::max(1, static_cast<int>(std::lround(d.record->state_period_s / period_of(d))));
 }
 
 }  // namespace
 
-/// Where the files of a run were at a checkpoint.
+/// Positions in the files of a run at a checkpoint.
 struct Places {
   store::RunFile::Place states;
   std::vector<store::CsvWriter::Place> forces;
@@ -48,21 +48,21 @@ struct Recorder::Impl {
   bool resumable = false, has_bones = false;
   double duration_s = 0.0;
   scene::Description description;
-  std::vector<store::RunPart> parts;  ///< of the file of states, until it is opened
+  std::vector<store::RunPart> parts;  ///< Parts of the state file, until it is opened.
   store::RunInfo info;
   std::unique_ptr<store::RunFile> states;
-  std::vector<std::unique_ptr<store::ForceFile>> forces;  ///< of each hand
-  std::vector<std::unique_ptr<HapticRecorder>> haptic;    ///< likewise
+  std::vector<std::unique_ptr<store::ForceFile>> forces;  ///< Per hand.
+  std::vector<std::unique_ptr<HapticRecorder>> haptic;    ///< Per hand.
   std::unique_ptr<store::BoneFile> bones;
   std::unique_ptr<store::CsvWriter> energy;
-  std::vector<TriMesh> tools;  ///< of each hand, in its own axes
-  int every = 1;               ///< periods between two recorded states
-  long seen = 0;               ///< periods so far
+  std::vector<TriMesh> tools;  ///< Per hand, in the tool's axes.
+  int every = 1;               ///< Periods between two recorded states.
+  long seen = 0;               ///< Periods so far.
   std::vector<std::pair<Pose, Twist>> tool_motions;
   Points points, velocity;
   VecX stress;
 
-  /// What the file of states is of, as the World begins.
+  /// Defines the parts of the state file from the World at the start.
   void take_parts(const World& world) {
     Eigen::Index count = 0;
     for (const Body& body : world.bodies) {
@@ -100,7 +100,7 @@ struct Recorder::Impl {
     return out;
   }
 
-  /// A rigid surface at its pose, from point `first` on; returns where the next part begins.
+  /// Writes a rigid surface at its pose, from point `first` on; returns the index behind it.
   Eigen::Index place(const TriMesh& surface, const Pose& pose, const Twist& twist, Eigen::Index first) {
     const Eigen::Index n = surface.vertices.cols();
     points.middleCols(first, n) = placed(surface, pose);
@@ -138,7 +138,7 @@ struct Recorder::Impl {
   }
 };
 
-/// What was kept so far is on the disk then: no checkpoint is of more than the files hold.
+/// Brings all recorded data to disk and returns the positions: no checkpoint is ahead of the files.
 Places Recorder::Impl::places() {
   Places at;
   const auto safe = [&](const std::string& name) { store::bring_to_disk(path(name)); };
@@ -154,7 +154,7 @@ Places Recorder::Impl::places() {
   return at;
 }
 
-/// @param from  where files go on; null: they begin
+/// Opens the files.  @param from  positions at which files are continued; null: new files
 void Recorder::Impl::open(const Places* from) {
   const scene::Description& d = description;
   if (!parts.empty())
@@ -204,7 +204,7 @@ Recorder::Recorder(const World& world, const std::string& folder, bool goes_on, 
   m.every = periods_between(d);
   m.has_bones = d.record->states && !world.bones.empty();
   if (d.record->states && !world.bodies.empty()) m.take_parts(world);
-  if (goes_on) return;  // archive() opens them
+  if (goes_on) return;  // archive() opens the files
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());

@@ -30,7 +30,8 @@ std::vector<Choice> named(const std::vector<Entry>& registry) {
   return out;
 }
 
-/// What theory says stands behind the summary: family, stability, what steers the step.
+/// Returns the integrators; the summary is followed by their theoretical properties: family, stability, step
+/// control.
 std::vector<Choice> stepper_choices() {
   using dynamics::StepControl;
   std::vector<Choice> out;

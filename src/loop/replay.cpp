@@ -16,9 +16,9 @@
 namespace palpate::loop {
 namespace {
 
-/// The twists at the ends of a segment of length h [s], or the nearest with which motion_between() stays
-/// between the two poses: in each component of the position, and of the rotation vector that carries one
-/// orientation to the other.  A peer's twists need not be the rates of its poses.
+/// Limits the twists at the ends of a segment of length h [s] so that motion_between() stays between the two
+/// poses: in each component of the position, and of the rotation vector from one orientation to the other.
+/// The twists of a peer need not be the rates of its poses.
 void keep_between(dynamics::RigidMotion& from, dynamics::RigidMotion& to, double h) {
   const Vec6 secant = pose_difference(from.pose, to.pose) / h;
   const Vec3 turn = h * secant.head<3>();
@@ -29,7 +29,7 @@ void keep_between(dynamics::RigidMotion& from, dynamics::RigidMotion& to, double
                      device::monotone_slope(left_jacobian_inverse(turn) * to.twist.angular, secant.head<3>());
 }
 
-/// Times of ticks that were counted in another way differ by rounding.
+/// Tolerance for equal times of ticks, which may be computed in different ways.
 constexpr double kSameTime = 1e-10;
 
 class RecordedHand : public device::Device {
@@ -76,7 +76,7 @@ class RecordedHand : public device::Device {
   std::shared_ptr<const HapticRecord> record_;
 };
 
-/// The hands whose tools meet that one's, it among them, in their order.
+/// Returns the hands whose tools meet that hand's tool, including it, in their order.
 std::vector<std::size_t> hands_with(const scene::Description& d, std::size_t hand) {
   const std::vector<std::size_t> first = scene::meeting_tools(d);
   std::vector<std::size_t> out;
@@ -85,7 +85,8 @@ std::vector<std::size_t> hands_with(const scene::Description& d, std::size_t han
   return out;
 }
 
-/// A scene of these tools and the obstacles alone: their contact a record of the bodies leaves to the ticks.
+/// Returns a scene of these tools and the obstacles alone: the contact between them is computed by the ticks,
+/// and is not part of the bodies' records.
 scene::Description tools_alone(const scene::Description& d, const std::vector<std::size_t>& hands) {
   const std::vector<scene::Hand> all = scene::hands_of(d);
   scene::Description out = d;
@@ -149,7 +150,7 @@ std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<Ha
 
 namespace {
 
-/// A hand that goes its recorded way once more.
+/// Hand that repeats its recorded motion.
 struct Retraced {
   Retraced(const scene::Description& recorded, const World& world, const HapticRecord& of, ToolSide& side)
       : record(of),
@@ -167,9 +168,9 @@ struct Retraced {
     }
     return laws;
   }
-  /// The record in force at a tick.
+  /// Returns the record in force at a tick.
   const ContactRecord& in_force(std::size_t tick) {
-    // versions count from 1, one an exchange
+    // Versions count from 1, one per exchange.
     const std::size_t version = record.ticks[tick].record_version;
     if (version > record.exchanges.size())
       fail("replay: the tick at {:g} s used exchange {}, of which there is no record",

@@ -20,7 +20,7 @@ void add_mesh(store::ContentHash& hash, const MeshSpec& mesh, const std::string&
   if (mesh.file.empty()) return;
   const fs::path path = fs::path(folder) / mesh.file;
   hash.add_file(path.string());
-  for (const char* beside : {".node", ".ele"})  // TetGen's pair
+  for (const char* beside : {".node", ".ele"})  // TetGen's pair of files.
     if (path.extension() == ".node" || path.extension() == ".ele")
       hash.add_file(fs::path(path).replace_extension(beside).string());
 }

@@ -21,7 +21,7 @@ std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolSide& side) 
 
 namespace {
 
-/// A tool in a contact, and where its time comes from.
+/// Tool in a contact, with the frame of the ticks or of the World.
 struct RigidSide {
   const ToolSpec& tool;
   int frame;
@@ -33,8 +33,8 @@ struct RigidSide {
   }
 };
 
-/// A tool on an exact shape.
-/// @param source  makes that of what it is given against the shape
+/// Returns contact of a tool with an exact shape.
+/// @param source  returns the source of a given side on the shape
 template <class Source>
 std::unique_ptr<contact::SampleSource> rigid_on_shape(const World& world, const RigidSide& tool,
                                                       const ContactSpec& spec, const Shape& shape,
@@ -57,7 +57,7 @@ std::unique_ptr<contact::SampleSource> rigid_on_shape(const World& world, const 
   } catch (const Error& error) { refuse_distance(spec, error); }
 }
 
-/// @param force  takes the obstacle's frame
+/// @param force  receives the obstacle's frame
 std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, const RigidSide& tool,
                                                         const ContactSpec& spec, const ObstacleSpec& obstacle,
                                                         contact::ContactForce& force) {
@@ -70,7 +70,7 @@ std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, cons
   });
 }
 
-/// Contact of two tools; a round one is an exact shape.
+/// Returns contact of two tools; a spherical tool is an exact shape.
 std::unique_ptr<contact::SampleSource> tool_on_tool(const World& world, const RigidSide& a,
                                                     const RigidSide& b, const ContactSpec& spec) {
   if (spec.method != "distance")
@@ -89,8 +89,8 @@ std::unique_ptr<contact::SampleSource> tool_on_tool(const World& world, const Ri
   } catch (const Error& error) { refuse_distance(spec, error); }
 }
 
-/// Makes a contact once for the ticks, which take it, and once for the World.
-/// @param make  (tools in their order, contact)
+/// Builds one contact twice: for the ticks, which keep it, and for the World, which is returned.
+/// @param make  make(tools in order, contact)
 template <class Make>
 std::unique_ptr<contact::SampleSource> make_for_ticks_and_world(World& world,
                                                                 const std::vector<ToolSide*>& sides,

@@ -1,23 +1,24 @@
-// Tools that meet in a tick.  Under all else tool i has the linearly implicit step A_i du_i = r_i
-// (tool/fixed_tick.cpp).  Contact of tools with each other and with obstacles adds the wrenches
+// Tools that meet in a tick. With all other forces, tool i has the linearly implicit step A_i du_i = r_i
+// (tool/fixed_tick.cpp). Contact of tools with each other and with obstacles adds the wrenches
 //
 //     F_i - sum_j (K_ij dx_j + B_ij du_j),     dx_j = h (u_j + du_j),
 //
-// K and B the negative derivatives of F at the tick's start, obstacles being tools that do not move.  So the
-// ends of all tools follow from one system of 6 equations a tool,
+// with K and B the negative derivatives of F at the start of the tick; obstacles are tools that do not move.
+// The ends of all tools therefore follow from one linear system with 6 equations per tool,
 //
 //     A_i du_i + sum_j (h B_ij + h^2 K_ij) du_j = r_i + h (F_i - h sum_j K_ij u_j),
 //
-// which has no bound on the contact's stiffness without friction.  (Each tool against the others where they
-// were, or where they were going, has: h^2 k < 2 m.  With friction there is one: a box between another one
-// and the floor keeps its motion at 1e10 Pa/m and ticks of 1 ms, and loses it at 1e11, where ticks of 0.2 ms
-// keep it.)  A tool's own scheme then takes a record of its own
-// derivatives, with the others' part a constant:
+// which does not bound the stiffness of contact without friction. (Solving each tool against the present or
+// extrapolated positions of the others requires h^2 k < 2 m. With friction there is a bound: a box between
+// another box and the floor keeps its motion at 1e10 Pa/m and ticks of 1 ms, and loses it at 1e11, where
+// ticks of 0.2 ms keep it.) The record for the scheme of each tool then contains the derivatives by this
+// tool's motion, and the others' part as a constant:
 //
 //     F_i - sum_{j != i} (K_ij dx_j + B_ij du_j) - K_ii dx_i - B_ii du_i.
 //
-// With linearly implicit Euler's method the tick that comes out is the solution of that system: the forces of
-// two tools on each other are opposite to rounding.  Other schemes' are as far as these differ from it.
+// With linearly implicit Euler the resulting tick is the solution of that system: the forces of two tools on
+// each other are opposite to rounding. For other schemes they differ by as much as the scheme differs from
+// linearly implicit Euler.
 #include "rigid_touch.h"
 
 #include <algorithm>
@@ -65,7 +66,7 @@ void RigidTouch::place(double t, std::span<const dynamics::RigidMotion> tools) {
 
 void RigidTouch::begin_tick(double t, std::span<const dynamics::RigidMotion> tools) {
   place(t, tools);
-  // ticks add their lengths up: a query is due at the tick next to its time
+  // Ticks add up their lengths: a query is due at the tick nearest to its time.
   if (t >= due_ - 1e-6 * look_ahead_) {
     contact_.refresh(state_.view());
     due_ = t + look_ahead_;
@@ -126,9 +127,10 @@ bool RigidTouch::touches() const {
                      [](const OneTool& tool) { return tool.contact.active > 0; });
 }
 
-// A record R(t, x, v) that is linear about (x0, v0) is so about the present (x, v) with the same F1, J and B:
+// A record R(t, x, v) that is linear about (x0, v0) is linear about the present (x, v) with the same F1, J
+// and B:
 //     R(t + s, x + dx, v + dv) = R(t, x, v) + s F1 + J dx + B dv,
-// up to the second order in the rotation from x0.
+// up to second order in the rotation from x0.
 dynamics::LinearisedContact RigidTouch::about_now(int tool, const dynamics::LinearisedContact& record) const {
   const auto q = state_.q().segment<7>(7 * tool);
   const auto u = state_.u().segment<6>(6 * tool);

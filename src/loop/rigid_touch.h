@@ -13,65 +13,68 @@
 
 namespace palpate::loop {
 
-/// Contact of tools of ticks with obstacles and with each other.  No body answers it, so that it needs no
-/// exchange: it is linear about the tools as they are at each tick.  It knows no World, and belongs to the
-/// ticks' thread.
+/// Contact of tools with ticks with obstacles and with each other. No soft body is involved, so no exchange
+/// is needed: the contact is linearised about the tools at each tick. It does not depend on the World, and
+/// belongs to the tick thread.
 class RigidTouch {
  public:
-  /// @param look_ahead_s  for how long a query finds what may touch: the next is due then
+  /// @param look_ahead_s  time between queries, for which a query collects contact candidates [s]
   explicit RigidTouch(double look_ahead_s);
-  /// Takes another tool; returns its number, from 0.  Of those in one object any two may meet, and all have
-  /// ticks at the same times.
+  /// Adds one tool and returns its index, from 0. All tools of one object may meet, and have ticks at the
+  /// same times.
   int add(const ToolSpec& tool);
   int size() const { return static_cast<int>(tools_.size()); }
   double look_ahead() const { return look_ahead_; }
 
-  /// Returns the contact that takes pairs; frame() and motion() are a tool's in it.
+  /// Returns the contact to which pairs are added; frame() and motion() refer to it.
   contact::ContactForce& contact() { return contact_; }
   int frame(int tool) const { return tools_[static_cast<std::size_t>(tool)].frame; }
   std::shared_ptr<contact::MovingFrame> motion(int tool) const;
 
-  /// Begins a tick.  Queries follow from its time and from those before, so that the same ticks make the same
-  /// queries; one that finds more than any before takes memory.
-  /// @param t  at its start [s]  @param tools  then, in their order
+  /// Begins one tick. Query times depend only on the times of the ticks, so that equal ticks make equal
+  /// queries. A query that finds more candidates than any before allocates memory.
+  /// @param t  start of the tick [s]  @param tools  motions at t, in the tools' order
   void begin_tick(double t, std::span<const dynamics::RigidMotion> tools);
-  /// Whether something with friction touches in the tick under way.
+  /// Returns whether a contact with friction is active in the current tick.
   bool rubs() const { return rubs_; }
-  /// Whether a tool touches something then.
+  /// Returns whether a tool has contact in the current tick.
   bool touches() const;
-  /// Returns a tool's record of the bodies, linear about the tool's pose and twist at the tick's start.
+  /// Returns the record of the bodies for one tool, linearised about the tool's pose and twist at the
+  /// start of the tick.
   dynamics::LinearisedContact about_now(int tool, const dynamics::LinearisedContact& record) const;
-  /// Solves for the change of all twists over the tick of length h, by linearly implicit Euler's method.
-  /// @param equations  of each tool under all else that acts on it, the bodies' as about_now() made it
+  /// Solves for the changes of all twists over a tick of length h by linearly implicit Euler.
+  /// @param equations  equation per tool with all other forces, for the bodies' record from about_now()
   void solve(double h, std::span<const tool::StepEquation> equations);
-  /// Change of a tool's twist, as solve() found it [rad/s, m/s].
+  /// Returns the change of a tool's twist from solve() [rad/s, m/s].
   Vec6 change(int tool) const { return change_.segment<6>(6 * tool); }
-  /// Takes the tools' ends, as solve() found them, for the next guess of friction.  False: friction is not
-  /// the law's at these ends.
+  /// Updates friction from the ends of the tools that solve() computed. Returns false if friction does not
+  /// yet satisfy its law there.
   bool improve();
-  /// Contact about that guess.
+  /// Linearises contact with the updated friction.
   void again();
-  /// Returns that record with this contact, in which the other tools go where solve() says.
+  /// Returns the record plus this contact, in which the other tools move as solve() computed.
   dynamics::LinearisedContact with(int tool, const dynamics::LinearisedContact& record) const;
+  /// Ends the tick.
   void end_tick();
-  /// The next tick queries, whether a query is due or not: then nothing of the ticks before is needed.
+  /// Makes the next tick query contact, so that it does not depend on the ticks before.
   void query_next() { due_ = -HUGE_VAL; }
 
  private:
   struct OneTool {
     int block_id = -1, frame = -1;
     contact::FrameLinearisation contact;
-    Vec6 by_others = Vec6::Zero();  ///< wrench, for the other tools move within the tick
+    Vec6 by_others = Vec6::Zero();  ///< Wrench due to the motion of the other tools within the tick.
   };
   void place(double t, std::span<const dynamics::RigidMotion> tools);
 
   double look_ahead_, due_ = -HUGE_VAL;
   contact::ContactForce contact_;
-  dynamics::State state_;  ///< a block for each tool
+  dynamics::State state_;  ///< One block per tool.
   std::vector<OneTool> tools_;
-  bool rubs_ = false;     ///< in the tick under way
-  VecX moved_, change_;   ///< of all tools over the tick, along u-directions [rad, m; rad/s, m/s]
-  VecX rhs_, one_, sum_;  ///< scratch
+  bool rubs_ = false;     ///< Friction in the current tick.
+  VecX moved_, change_;   ///< Displacements and twist changes of all tools over the tick, along u-directions
+                          ///< [rad, m; rad/s, m/s].
+  VecX rhs_, one_, sum_;  ///< Scratch.
   dynamics::BorderedMatrix joint_;
   Eigen::PartialPivLU<MatX> lu_;
 };

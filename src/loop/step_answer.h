@@ -4,17 +4,17 @@
 
 namespace palpate::loop {
 
-/// What one linearly implicit step of the bodies over H needs beside its matrix (linearise.cpp): s and w, the
-/// displacements [m] and velocity changes [m/s] that are known beforehand.
+/// Computes the prescribed part of one linearly implicit step of the bodies over H (linearise.cpp):
+/// displacements s [m] and velocity changes w [m/s].
 void known_motion(World& world, double H, VecX& s, VecX& w);
-/// By how much the forces on the nodes change with time as the other tools go on [N/s]; empty: they touch
-/// nothing.
+/// Returns the rate of change of the nodal forces due to the motion of the other tools [N/s]; empty without
+/// contact.
 VecX rate_by_other_tools(const World& world, const ToolSide& mine);
-/// H (f + H rate - K s - D w) - M w on free directions, at the World's state.
-/// @param rate  as above
+/// Returns H (f + H rate - K s - D w) - M w on free directions, at the World's state.
+/// @param rate  from rate_by_other_tools()
 VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w, const VecX& rate);
-/// A factor of ToolSide::condensed_matrix, the system's step matrix: by LU where it is indefinite (an
-/// inverted element, a compressed strut), null where it is singular.
+/// Factors ToolSide::condensed_matrix, the system's step matrix; by LU if it is indefinite (an inverted
+/// element, a compressed strut). Returns null if it is singular.
 dynamics::LinearSolver* factored(const dynamics::System& system, ToolSide& side);
 
 }  // namespace palpate::loop

@@ -44,7 +44,7 @@ bool SteppedRun::next() {
   if (run.over) return false;
   const workers::Count threads(run.world.description.integrator.threads);
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  run.over = true;  // unless the period is gone through: not where something is thrown
+  run.over = true;  // stays true if next() throws
   run.over = !run.clock.next();
   run.result.wall_s += wall_seconds() - wall;
   run.result.cpu_s += cpu_seconds() - cpu;

@@ -21,7 +21,7 @@
 namespace palpate::loop {
 namespace {
 
-/// Adds every number of a run of this type: counts, or times.
+/// Adds all results of one type of number: counts, or times.
 template <class Number>
 void add_numbers(store::SummarySection& s, const RunResult& result) {
   const auto add = [&s]<class T>(const char* name, const T& value) {
@@ -45,7 +45,7 @@ void add_sizes(store::SummarySection& s, const World& world) {
 }
 
 void add_options(store::SummarySection& s, const scene::Description& d) {
-  if (!d.path.empty())  // else it came from no file
+  if (!d.path.empty())  // else the scene was not read from a file
     s.values.emplace_back("scene_path", std::filesystem::absolute(d.path).lexically_normal().string());
   s.values.emplace_back("integrator", d.integrator.name);
   s.values.emplace_back("rtol", d.integrator.rtol);
@@ -68,7 +68,7 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
   s.values.emplace_back("max_torque_n_m", figures.max_torque);
 }
 
-/// Provenance as store collects it, and the libraries that only the parts know.
+/// Returns the provenance from store, with the libraries of the other parts.
 store::Provenance full_provenance() {
   store::Provenance p = store::provenance();
   for (const auto& library : integrate::library_versions()) p.libraries.push_back(library);
@@ -77,7 +77,7 @@ store::Provenance full_provenance() {
   return p;
 }
 
-/// Where the models that the scene names by "model:NAME" are kept.
+/// Adds the cached files of models that the scene specifies by "model:NAME".
 void add_models(store::Summary& summary, const scene::Description& d) {
   const auto add = [&](const std::string& file) {
     const std::string name = store::name_of_cached(file);
@@ -90,8 +90,8 @@ void add_models(store::Summary& summary, const scene::Description& d) {
   for (const scene::Hand& hand : scene::hands_of(d)) add(hand.tool->mesh.file);
 }
 
-/// Adds by how much queries change the resultants on bodies: in images the pairs and normals of the last
-/// query hold until the next.
+/// Adds the changes of the resultants on bodies by queries: with images, the pairs and normals of a query
+/// hold until the next.
 void add_jumps(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   store::SummarySection& s = summary.section("contact");
@@ -141,7 +141,7 @@ void add_answers(store::Summary& summary, const World& world) {
         {"exchanges_factored", static_cast<long long>(e.factored)}};
 }
 
-/// What the tool has grasped.
+/// Adds the grasps of the tools.
 void add_grasps(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   const contact::GraspCounts counts = world.contact->grasp_counts();
@@ -152,7 +152,7 @@ void add_grasps(store::Summary& summary, const World& world) {
                                       {"area_at_the_end_m2", counts.area}};
 }
 
-/// Which contacts have images, and what device makes them.
+/// Adds the contacts with images, and the device that renders them.
 void add_images(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   const auto stages = world.contact->stages();
@@ -173,14 +173,14 @@ void add_images(store::Summary& summary, const World& world) {
   }
 }
 
-/// The balance at the end of the run, where the scene records it.
+/// Adds the energy balance at the end of the run, if the scene records it.
 void add_energy(store::Summary& summary, const RunResult& result) {
   if (!result.energy) return;
   store::SummarySection& s = summary.section("energy");
   visit_energies([&](const char* name, double value) { s.values.emplace_back(name, value); }, *result.energy);
 }
 
-/// What a device felt like, and the energy at its port.
+/// Adds the vibration of a device's force, and the energy at its port.
 void add_feel(store::SummarySection& s, const std::optional<double>& buzz_n,
               const std::optional<PortEnergy>& port) {
   if (buzz_n) s.values.emplace_back("buzz_above_30_hz_rms_n", *buzz_n);
@@ -193,7 +193,7 @@ void add_feel(store::SummarySection& s, const std::optional<double>& buzz_n,
                    {"passivity_controller_ticks", static_cast<long long>(port->controller_ticks)}});
 }
 
-/// What the devices of further hands felt like.
+/// Adds the results of further hands.
 void add_more_hands(store::Summary& summary, const scene::Description& d, const RunResult& result) {
   for (std::size_t i = 0; i < result.more_hands.size(); ++i) {
     const HandResult& hand = result.more_hands[i];
@@ -209,7 +209,7 @@ void add_more_hands(store::Summary& summary, const scene::Description& d, const 
   }
 }
 
-/// What devices counted themselves.
+/// Adds the counters of the devices.
 void add_tallies(store::Summary& summary, const World& world) {
   if (!world.description.tool) return;
   for (std::size_t i = 0; i < scene::hands_of(world.description).size(); ++i)
@@ -218,7 +218,7 @@ void add_tallies(store::Summary& summary, const World& world) {
           .values.emplace_back(name, count);
 }
 
-/// What a run in real time kept of its clock.
+/// Adds the timing of a run in real time.
 void add_real_time(store::Summary& summary, const RunResult& result) {
   if (!result.real_time) return;
   store::SummarySection& s = summary.section("real time");
@@ -229,7 +229,7 @@ void add_real_time(store::Summary& summary, const RunResult& result) {
                   *result.real_time);
 }
 
-/// Work that the proxies of a contact saved the image, over all its queries.
+/// Adds the work that proxies saved in image contact, over all queries.
 void add_pruning(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   const auto counts = world.contact->pruning();
@@ -260,7 +260,7 @@ void add_pruning(store::Summary& summary, const World& world) {
   }
 }
 
-/// Of a side of a contact, along the axes that it was made in [m].
+/// Returns half of the smallest extent of a side of a contact, along the axes in which it was defined [m].
 double half_width(const World& world, const std::string& side) {
   const auto of_points = [](const Points& points) {
     return 0.5 * (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).minCoeff();
@@ -340,7 +340,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
                                                  std::ldexp(1.0, -static_cast<int>(halvings)));
   summary.section("timings").values.emplace_back("assemble_s", assemble_s);
   add_numbers<double>(summary.section("timings"), result);
-  // vertices that went through unseen, for each [[contact]]
+  // Vertices that tunnelled, one value per [[contact]].
   for (std::size_t i = 0; i < result.tunnelled.size(); ++i) {
     const ContactSpec& contact = world.description.contacts[i];
     summary.section("tunnelled")

@@ -25,9 +25,9 @@ std::vector<TickGroup> TickGroup::of(const std::vector<Member>& all) {
   return out;
 }
 
-// A tick's friction is that of its end (contact/friction.h), to which a linearly implicit step of the tools
-// leads under the records; a tool's own scheme then takes the record that came out.  So it does of what the
-// other tools do within the tick.
+// Friction of a tick is evaluated at its end (contact/friction.h), which is predicted by a linearly implicit
+// step of the tools under the records; the scheme of each tool then uses the resulting record. The motion of
+// the other tools within the tick is treated the same way.
 void TickGroup::find(double h) {
   bool rubs = false;
   motions_.clear();
@@ -40,7 +40,7 @@ void TickGroup::find(double h) {
   const bool touches = rigid_ && rigid_->touches();
   if (rubs || (touches && (rigid_->rubs() || members_.size() > 1)))
     while (!solve_and_improve(h)) {
-      // all are about the same guess of the end
+      // All contacts are linearised about the same guess of the end.
       for (const Member& member : members_) member.ticks->again();
       if (touches) rigid_->again();
     }

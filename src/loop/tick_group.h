@@ -5,18 +5,20 @@
 
 namespace palpate::loop {
 
-/// The hands whose tools meet each other, or one hand: the contact of their ticks is found together.
+/// Group of hands whose tools meet each other, or a single hand; the contact of their ticks is solved
+/// together.
 class TickGroup {
  public:
-  /// One of the hands.
+  /// One hand of the group.
   struct Member {
-    std::size_t hand;  ///< as scene::hands_of() counts them
+    std::size_t hand;  ///< In the numbering of scene::hands_of().
     TickSide* ticks;
   };
-  /// @param members  what they point to outlives this; where they share a RigidTouch, all of it, in its order
+  /// @param members  pointees must outlive the group; hands that share a RigidTouch are complete and in its
+  /// order
   explicit TickGroup(std::vector<Member> members);
-  /// Returns one for each set of hands that meet, in the order of the first of each.
-  /// @param hands  all of them, each with `ticks`; they outlive the groups
+  /// Returns one group per set of hands that meet, ordered by the first hand of each.
+  /// @param hands  all hands, each with a member `ticks`; they must outlive the groups
   template <class Hands>
   static std::vector<TickGroup> all(Hands& hands) {
     std::vector<Member> members;
@@ -25,15 +27,15 @@ class TickGroup {
   }
 
   const std::vector<Member>& members() const { return members_; }
-  /// Finds the contact of each in the tick of length h to t, with bodies, obstacles and each other.  Friction
-  /// is that of the tick's end, found by repeated solves.
-  /// @param record_of  returns the record that is in force for a hand
+  /// Computes the contact of each member in the tick of length h that ends at t, with bodies, obstacles and
+  /// each other. Friction is evaluated at the end of the tick, by repeated solves.
+  /// @param record_of  returns the record in force for a hand
   template <class RecordOf>
   void find_contact(double t, double h, const RecordOf& record_of) {
     for (const Member& member : members_) member.ticks->begin_tick(t, h, record_of(member.hand));
     find(h);
   }
-  /// @param i  counts members
+  /// Returns the contact record of a member.  @param i  index of the member
   const dynamics::LinearisedContact& contact(std::size_t i) const { return found_[i]; }
 
  private:
@@ -42,7 +44,7 @@ class TickGroup {
   bool solve_and_improve(double h);
 
   std::vector<Member> members_;
-  RigidTouch* rigid_;  ///< null where these tools meet bodies alone
+  RigidTouch* rigid_;  ///< null if these tools contact only bodies
   std::vector<dynamics::LinearisedContact> found_;
   std::vector<dynamics::RigidMotion> motions_;
   std::vector<tool::StepEquation> equations_;

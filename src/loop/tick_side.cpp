@@ -19,7 +19,7 @@ TickSide::TickSide(const scene::Description& description, ToolSide& side)
 TickSide::~TickSide() {
   try {
     end();
-  } catch (...) {}  // the device failed: it is what the run reports
+  } catch (...) {}  // the device failed, which the run reports
 }
 
 void TickSide::start(double t) { side_.handle_now = handle_ = side_.handle->sample(t); }
@@ -40,9 +40,10 @@ void TickSide::archive(Archive& a) {
   });
 }
 
-// A late record is carried on in strides of several ticks, which Euler's implicit method takes as well: else
-// the tick that takes it up would cost as much as all that it was late by.  Where the tool was at a stride's
-// end is known: the contact is linearised there, as that of a tool that came by its last twist alone.
+// A late record is advanced in strides of several ticks, for which implicit Euler is stable, too; otherwise
+// the tick that adopts it would cost as much as all ticks by which it is late. The tool's motion at the
+// end of a stride is known: the contact is linearised there, as if the tool had moved with its last twist
+// during the stride.
 void TickSide::take_up(const ContactRecord& record) {
   constexpr std::size_t kMostStrides = 8;
   taken_up_ = record.linear.version;

@@ -8,73 +8,75 @@
 
 namespace palpate::loop {
 
-/// A hand's side of an exchange, a tick at a time: device, virtual coupling, tool, limits, passivity.  It
-/// knows no World: of the bodies it has the linearised contact alone, so that it may run in a thread of its
-/// own.
+/// Hand's side of an exchange, advanced tick by tick: device, virtual coupling, tool, limiter, passivity
+/// controller. It does not access the World: its only information about the bodies is the contact record, so
+/// that it may run in a separate thread.
 class TickSide {
  public:
-  /// @param side  the tool, the device and the limiter in it are this object's alone while a run lasts
-  /// @param laws  of contact points; null: no record has any
+  /// @param side  its tool, device and limiter are used by this object alone during a run
+  /// @param laws  contact laws for contact points; null: records have no points
   TickSide(const ToolSpec& spec, ToolSide& side, const std::vector<ContactSpec>* laws = nullptr);
-  /// The same for a scene.
+  /// Builds the tick side of a scene's tool.
   TickSide(const scene::Description& description, ToolSide& side);
-  /// No wrench on the hand any more, however the run ended.
+  /// Sets the wrench on the hand to zero, however the run ended.
   ~TickSide();
   TickSide(const TickSide&) = delete;
   TickSide& operator=(const TickSide&) = delete;
-  /// Takes the handle at the run's start.
+  /// Samples the handle at the start of the run.
   void start(double t);
-  /// Begins the tick of length h to t: samples the handle, and takes the contact with bodies, the record's
-  /// own or what its points come to then.
+  /// Begins the tick of length h that ends at t: samples the handle, and takes the contact with bodies from
+  /// the record, or computes it from the record's points.
   void begin_tick(double t, double h, const ContactRecord& record);
   const dynamics::LinearisedContact& contact_with_bodies() const { return of_bodies_; }
-  /// Whether that has friction of the tick's end (contact/friction.h), found by repeated solves.
+  /// Returns whether that contact has friction evaluated at the end of the tick (contact/friction.h), by
+  /// repeated solves.
   bool rubs() const;
-  /// The tool's step in the tick under way, under coupling and that contact.
+  /// Returns the equation of the tool's step in the current tick, under coupling and that contact.
   tool::StepEquation equation(double h, const dynamics::LinearisedContact& contact) const;
-  /// Takes the end to which that step leads for the next guess of friction.  False: friction is not the law's
-  /// at that end.
+  /// Updates friction from the end of the step with that change of the twist. Returns false if friction does
+  /// not yet satisfy its law there.
   bool improve(double h, const Vec6& change);
-  /// The contact with bodies, about that guess.
+  /// Linearises contact with bodies with the updated friction.
   void again();
   const ToolSide& side() const { return side_; }
-  /// No wrench went out for too long: that of the next tick ramps in from zero.
+  /// Makes the wrench of the next tick ramp in from zero, after too long a gap without a wrench.
   void ramp_in() { ramps_in_ = true; }
-  /// The tool goes on by h to t under coupling and that contact; the wrench goes to the device.
+  /// Advances the tool by h to t under coupling and that contact, and sends the wrench to the device.
   dynamics::StepResult tick(double t, double h, const dynamics::LinearisedContact& contact, TickRecord& out);
-  /// The wrench on the hand for `tick`'s time and tool, to the device; a hand that is a part of the State
-  /// stands in `tick`.
+  /// Computes the wrench on the hand at the time and tool of `tick` and sends it to the device; a hand in the
+  /// State is read from `tick`.
   void feel(TickRecord& tick);
-  /// No wrench on the hand any more.
+  /// Sets the wrench on the hand to zero.
   void end();
-  /// Between two ticks; the ToolSide stands in the archive by itself.  What gives back takes the place of
+  /// Writes or restores the state between two ticks; the ToolSide is archived separately. Restoring replaces
   /// start().
   void archive(Archive& a);
 
  private:
   tool::HandleMotion handle_motion() const;
-  /// With the handle as it is.
+  /// Computes and sends the wrench for the current handle sample.
   void feel_at(TickRecord& tick);
 
-  /// Where the tool was at the end of a tick.
+  /// Motion of the tool at the end of a past tick.
   struct Past {
     double time = -1.0, length = 0.0;
     dynamics::RigidMotion tool;
   };
-  /// A record is of an instant that is over: its bodies follow the tool from there on.
+  /// Adopts the reduced model of a new record. Its time has passed, so the bodies are advanced along the
+  /// tool's path since then.
   void take_up(const ContactRecord& record);
 
   const ToolSpec& spec_;
   ToolSide& side_;
   device::HandleSample handle_;
-  std::optional<device::HandleSample> next_;  ///< of the tick under way
-  dynamics::LinearisedContact of_bodies_;     ///< in it
-  double time_ = 0.0;                         ///< of the last tick [s]
-  bool live_ = false;                         ///< the hand may feel a wrench
-  bool ramps_in_ = false;                     ///< from the next tick on
-  std::optional<contact::TouchTicks> touch_;  ///< where records have points
-  std::uint64_t taken_up_ = 0;                ///< version of the record in `touch_`
-  std::array<Past, 256> past_{};              ///< a ring: ticks that a record may be late by
+  std::optional<device::HandleSample> next_;  ///< Sample of the current tick.
+  dynamics::LinearisedContact of_bodies_;     ///< In the current tick.
+  double time_ = 0.0;                         ///< Time of the last tick [s].
+  bool live_ = false;                         ///< The hand may be under a wrench.
+  bool ramps_in_ = false;                     ///< From the next tick on.
+  std::optional<contact::TouchTicks> touch_;  ///< Only if records have points.
+  std::uint64_t taken_up_ = 0;                ///< Version of the record in `touch_`
+  std::array<Past, 256> past_{};              ///< Ring buffer; bounds the latency of a record in ticks.
   std::size_t ticks_ = 0;
 };
 

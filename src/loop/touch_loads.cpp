@@ -12,12 +12,12 @@ namespace {
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
-/// Squares of loads: what is left out answers a thousandth of what the largest does.
+/// Tolerance for squared loads: an omitted load is below a thousandth of the largest.
 constexpr double kAlikeLoads = 1e-6;
 
-/// By how much each sample is pressed at the period's end if all goes on as it does [m]; where that is
-/// nowhere, of those that are nearest then by how much less they are apart than a tenth of the way to the
-/// farthest.  What is held has none: it presses now.
+/// Returns the predicted depth of each sample at the end of the period, at constant velocities [m]. If no
+/// sample is predicted to press, depths are measured from the smallest gap plus a tenth of the range of gaps,
+/// so that the nearest samples have positive depths. Held samples, which act already, have none.
 VecX coming_depths(const std::vector<TouchSample>& samples, const Twist& tool, const Mat3& R, double H) {
   VecX gaps = VecX::Constant(static_cast<Eigen::Index>(samples.size()), HUGE_VAL);
   double nearest = HUGE_VAL, farthest = -HUGE_VAL;
@@ -69,12 +69,13 @@ MatX load_patterns(const World& world, const ToolSide& side, const std::vector<T
     const double depth = depths[static_cast<Eigen::Index>(j)];
     Mat36 Z;
     Z << -cross_matrix(R * s.offset + s.slide), Mat3::Identity();
-    // what is held is so across the normal, and along it where nothing presses
+    // A held sample is tied across the normal, and along the normal unless it presses.
     const Mat3 along = s.normal * s.normal.transpose(),
                nn = !s.held ? along : Mat3(Mat3::Identity() - (s.gap < 0.0 ? along : Mat3(Mat3::Zero())));
-    // Where friction holds nodes go with the tool, those the most that are pressed hardest; what slides hears
-    // of the tool across its way alone: loads by anything but the tangent have one kind move as the other
-    // does.  (The force that stays, along its way, is among those of the last load.)
+    // Where friction sticks, nodes follow the tool, the more the harder they are pressed. Where it slides,
+    // nodes respond only to tool motion across the sliding direction. Loads weighted by anything but the
+    // friction tangent would make one kind move like the other. (The remaining constant force, along the
+    // sliding direction, is part of the last load.)
     const Mat3 across = Mat3::Identity() - along,
                friction_damping = s.held ? Mat3(Mat3::Zero()) : Mat3(across * tangents[j].D * across);
     Eigen::Matrix<double, 3, 12> load;
@@ -88,11 +89,11 @@ MatX load_patterns(const World& world, const ToolSide& side, const std::vector<T
       }
     }
   }
-  if (friction) {  // both kinds count alike
+  if (friction) {  // equal weight for both kinds of load
     const double along = all.middleCols<3>(3).norm(), across = all.middleCols<3>(9).norm();
     if (across > 0.0) all.rightCols<6>() *= along / across;
   }
-  // rotations count by the displacement that they come to where the tool touches
+  // Scales rotation loads to equal the translation loads in size, i.e. by the displacement at the contact.
   for (Eigen::Index k = 0; k < count; k += 6) {
     const double turn = all.middleCols<3>(k).norm(), push = all.middleCols<3>(k + 3).norm();
     if (turn > 1e-9 * push * tool.pose.translation.norm()) all.middleCols<3>(k) *= push / turn;
@@ -101,7 +102,7 @@ MatX load_patterns(const World& world, const ToolSide& side, const std::vector<T
   const double now = all.norm(), later = coming.norm();
   out << all / (now > 0.0 ? now : 1.0), coming / (later > 0.0 ? later : 1.0);
   const Eigen::SelfAdjointEigenSolver<MatX> gram(MatX(out.transpose() * out));
-  const VecX& size = gram.eigenvalues();  // increasing
+  const VecX& size = gram.eigenvalues();  // ascending
   const Eigen::Index alone = (size.array() > kAlikeLoads * size[size.size() - 1]).count();
   return out * gram.eigenvectors().rightCols(std::min(alone, most));
 }

@@ -4,7 +4,7 @@
 
 namespace palpate::loop {
 
-/// The weighted sum of what X, or x, has for a sample's nodes.
+/// Returns the weighted sum of x over the nodes of a sample; x(node) returns rows of a matrix or a vector.
 auto moved_by(const contact::TouchSample& sample, const auto& x) {
   auto out = (sample.weight[0] * x(sample.node[0])).eval();
   for (std::size_t k = 1; k < static_cast<std::size_t>(sample.count); ++k)
@@ -12,22 +12,25 @@ auto moved_by(const contact::TouchSample& sample, const auto& x) {
   return out;
 }
 
+/// Returns whether a sample exerts a force.
 inline bool presses(const contact::TouchSample& sample) { return sample.held || sample.gap < 0.0; }
 
+/// Returns whether a contact refers to that tool.
 inline bool names(const ContactSpec& contact, const std::string& tool) {
   return contact.first == tool || contact.second == tool;
 }
 
-/// The nodes that samples stand on, each once, in their order.  From then on the samples' are numbered by
-/// them.
+/// Returns the nodes of all samples, each once, ascending, and renumbers the samples' nodes by their index in
+/// this list.
 std::vector<int> number_nodes(std::vector<contact::TouchSample>& samples);
 
-/// Load patterns: what a tool that moves a little does to the nodes through the samples that press; and the
-/// forces of the samples that will press if all goes on as it does, where some of these do not yet: a tool
-/// that comes down touches within the period.  Fewer than six and three, or twice that with friction, where
-/// they are alike: a round tool that turns does nothing.
-/// @param nodes    that samples are numbered by
-/// @param most     columns, at most
+/// Returns the load patterns of the reduction: the nodal forces that small tool motions cause through the
+/// pressing samples; and, if some samples do not press yet but will at constant velocities (a tool that comes
+/// down touches within the period), the forces of all samples that will press then. At most six columns
+/// (twelve with friction) and three for the latter; fewer if columns are linearly dependent, as for a
+/// rotating spherical tool.
+/// @param nodes    number of nodes in the samples' numbering
+/// @param most     largest number of columns
 /// @return  3 nodes x columns
 MatX load_patterns(const World& world, const ToolSide& side, const std::vector<contact::TouchSample>& samples,
                    const std::vector<contact::TouchTangent>& tangents, std::size_t nodes, double H,

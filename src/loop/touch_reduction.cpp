@@ -11,74 +11,79 @@
 
 namespace palpate::loop {
 
-// Galerkin's reduction of the bodies to what the tool can do to them.  X: the answers of their linearly
-// implicit step over the period H (linearise.cpp) to six load patterns, twelve with friction, and to none:
+// Galerkin reduction of the bodies to their possible responses to the tool. X contains the responses in their
+// linearly implicit step over the period H (linearise.cpp) to six load patterns, twelve with friction, and
+// without a load:
 //     X = A^-1 [ sum N_j^T K_j Z_j,  H (f - K s - D w) - M w ],     A = M + H D + H^2 K, the contact in K, D,
-// N_j the map from nodes to sample j.  The first are the directions in which nodes answer a moving tool, with
-// the contact as it is in between; the last is where they go by themselves.  With displacements tau v + X y
-// (v = s/H), tested against X:
+// with N_j the map from nodes to sample j. The former are the directions in which nodes respond to a moving
+// tool, with the contact acting in between; the latter is the motion without tool motion. With displacements
+// tau v + X y (v = s/H), tested with X:
 //     X^T M X y'' + X^T D X y' + X^T K X y = X^T (f - M w/H) - tau X^T (K v + D w/H) + contact,
-// (and + tau X^T rate where other tools press the bodies, rate_by_other_tools in step_answer.h),
-// whose step over H answers as that of all nodes does, exactly, since that is in the span; within the period
-// it knows their inertia.  The samples' own part is taken out of f, K and D again: the ticks put it in, as it
-// is at each of them.
+// (and + tau X^T rate if other tools press the bodies, rate_by_other_tools in step_answer.h). Its step over H
+// equals the step of all nodes exactly, since that is in the span; within the period it includes their
+// inertia. The samples' part is removed from f, K and D: the ticks add it as it is at each tick.
 //
-// X need not be exact: whatever it spans, the reduced bodies are those of a finer constraint, passive, and
-// what they answer less is of second order in the error of X.  So X comes from a few steps of conjugate
-// gradients (step_response.h), which start from the last exchange's.  These give X^T A X besides, and from it
+// X need not be exact: for any span, the reduced bodies are more constrained and passive, and their response
+// is too small by an error of second order in the error of X. X therefore comes from a few steps of conjugate
+// gradients (step_response.h), which start from the last exchange's result. They also give X^T A X, and from
+// it
 //     X^T K X of the elements = (X^T A X - (1 + H a) X^T M X - contact) / (H^2 + H b),     D = a M + b K,
-// a and b of the body that is touched: where materials differ, the step over H is still exact, and what part
-// of it is damping is not.
+// with a and b of the body in contact: if materials differ, the step over H is still exact, but its split
+// into damping and stiffness is not.
 //
-// Friction is in A, K and D as affine about the end of the period (contact/friction.h), as in the ticks and
-// in a linearly implicit step, whatever the bodies' own steps have; A is so symmetric with any friction. That
-// end is where X leads while the tool goes on with its twist v: with K_t, D_t the samples' own,
+// In A, K and D friction is affine about the end of the period (contact/friction.h), as in the ticks and in a
+// linearly implicit step, whichever tangent the steps of the bodies use; A is therefore symmetric with any
+// friction. The end is predicted by X, for a tool that continues with its twist v: with K_t, D_t of the
+// samples,
 //     X^T A X y = X^T [last load] + H X^T N^T (K_t Z H v),
-// and friction about it gives the next A and X, until it is the law's there.  Where samples slide as they
-// slid before, or hold, the first is.  That is sought for the tool's own contact.  All other friction is
-// affine about the state: the velocities of what holds there are below what X resolves, and friction about
-// them would not settle.  Where it begins to slide the tool hears of that at the next exchange.
+// and friction about that end gives the next A and X, until friction satisfies its law there. If samples
+// slide in the same direction as before, or stick, the first X is final. The iteration covers only the tool's
+// contact. All other friction is affine about the state: the velocities of sticking samples there are below
+// the resolution of X, and friction about them would not converge. If sliding begins there, the tool receives
+// it at the next exchange.
 //
-// A body at rest goes nowhere but by rounding: then its own answer, however small, would span a direction of
-// its own, and a random one (the felt force knew by which method the body had come to rest, to 4e-5).  It is
-// left out.
+// A body at rest moves only by rounding. Its response without load, however small, would then span an
+// additional, random direction (the rendered force depended on the method by which the body had come to rest,
+// by 4e-5). It is omitted.
 //
-// A step of linearly implicit Euler over H has the same elements at the same state: what they give is kept
-// for it (dynamics::KeptStep), and for other tools.
+// A linearly implicit Euler step over H uses the same elements at the same state: their results are kept for
+// it (dynamics::KeptStep), and for other tools.
 //
-// Modes: y = S q, S^T X^T M X S = 1, S^T X^T K X S = diag(k).  Directions that are combinations of the others
-// to kAlike are left out; k < 0 (an inverted element) and what D has of negative is taken for zero.
+// Modes: y = S q, S^T X^T M X S = 1, S^T X^T K X S = diag(k). Directions that are linear combinations of the
+// others to kAlike are omitted; k < 0 (an inverted element) and negative parts of D are replaced by zero.
 using contact::TouchModel;
 using contact::TouchSample;
 using contact::TouchTangent;
 
 struct TouchReduction::Answers {
-  std::vector<int> nodes;  ///< that samples stand on
+  std::vector<int> nodes;  ///< Nodes of the samples.
   MatX patterns;           ///< 3 nodes x patterns
-  MatX X;                  ///< u_size x patterns and one
+  MatX X;                  ///< u_size x (patterns + 1)
   MatX work;               ///< X^T A X
-  bool exact;              ///< A X = loads, to rounding
-  MatX loads, product;     ///< scratch, as large as X
+  bool exact;              ///< A X = loads, to rounding.
+  MatX loads, product;     ///< Scratch, as large as X.
   VecX s, w, f;            ///< f: all forces
   VecX stiff;              ///< K s + D w
-  VecX rate;               ///< of f, by other tools; empty: none
-  double still;            ///< what moves by less within the period rests [m]
-  double missing;          ///< of the answers to the loads, relative, at most
+  VecX rate;               ///< Rate of f due to other tools; empty: none.
+  double still;            ///< Smaller displacements within the period count as rest [m].
+  double missing;          ///< Relative error of the responses to the loads, upper bound.
 };
 
 namespace {
 
 constexpr int kModes = TouchModel::kMostModes, kMostIterations = 40;
 
-/// Squares of lengths, of directions scaled to one: of exact answers, and of single precision's.
+/// Tolerances of linear dependence, for squared lengths of directions scaled to one: for exact and for
+/// single-precision responses.
 constexpr double kAlike = 1e-9, kAlikeSingle = 1e-6;
-/// Of the samples' gaps: what moves by less within a period rests.  And of the samples' places, by rounding.
+/// Displacements within a period that count as rest: relative to the samples' gaps, and to their positions
+/// (rounding).
 constexpr double kStill = 1e-9, kStillByRounding = 1e-12;
 
-/// Modes by rows: those that move a node lie together.
+/// Modes by rows, so that the values of one node are contiguous.
 using Rows = Eigen::Matrix<double, kModes, Eigen::Dynamic>;
 
-/// What moves by less than that within a period rests as far as the samples can tell [m].
+/// Returns the displacement within a period below which a body counts as at rest for the samples [m].
 double still_of(const std::vector<TouchSample>& samples) {
   double out = 0.0;
   for (const TouchSample& s : samples)
@@ -86,7 +91,7 @@ double still_of(const std::vector<TouchSample>& samples) {
   return out;
 }
 
-/// How far a displacement of the nodes moves a sample at most [m].
+/// Returns the largest displacement of a sample due to a displacement of the nodes [m].
 double farthest(const std::vector<TouchSample>& samples, const VecX& displacement) {
   double out = 0.0;
   for (const TouchSample& s : samples)
@@ -94,7 +99,7 @@ double farthest(const std::vector<TouchSample>& samples, const VecX& displacemen
   return out;
 }
 
-/// The rows of nodes' directions, node after node.
+/// Returns the rows of the nodes' directions, node after node.
 MatX rows_of(const auto& x, const std::vector<int>& nodes) {
   MatX out(3 * static_cast<Eigen::Index>(nodes.size()), x.cols());
   for (std::size_t k = 0; k < nodes.size(); ++k)
@@ -102,7 +107,7 @@ MatX rows_of(const auto& x, const std::vector<int>& nodes) {
   return out;
 }
 
-/// y = (k K + d D) x of all forces, in nodes' and bones' directions.
+/// Returns y = (k K + d D) x for all forces, in directions of nodes and bones.
 VecX tangent_times(World& world, double k, double d, const VecX& x) {
   VecX out = VecX::Zero(x.size());
   for (const auto& term : world.system.terms())
@@ -113,21 +118,21 @@ VecX tangent_times(World& world, double k, double d, const VecX& x) {
   return out + k * carried;
 }
 
-/// @param scratch  room for as much as X
+/// Returns X^T P X for a linear map P.  @param scratch  becomes P X, as large as X
 MatX products(const MatX& X, MatX& scratch, const auto& product) {
   scratch.resize(X.rows(), X.cols());
   for (Eigen::Index i = 0; i < X.cols(); ++i) scratch.col(i) = product(VecX(X.col(i)));
   return X.transpose() * scratch;
 }
 
-/// Symmetric, with what is negative taken for zero.
+/// Returns the symmetric part, with negative eigenvalues replaced by zero.
 MatX definite(const MatX& A) {
   const Eigen::SelfAdjointEigenSolver<MatX> eigen(MatX(0.5 * (A + A.transpose())));
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
          eigen.eigenvectors().transpose();
 }
 
-/// a and b of the body whose node that is.
+/// Returns the damping coefficients a and b of the body with that node.
 std::pair<double, double> damping_of(const World& world, int node) {
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const dynamics::Block* block = world.state.layout().find(world.bodies[i].block_id);
@@ -167,7 +172,7 @@ TouchReduction::TouchReduction(World& world, double error, bool keep)
 }
 TouchReduction::~TouchReduction() = default;
 
-/// The patterns in all directions, and room for one more, behind them.  @return their number
+/// Writes the patterns in all directions, with an additional column behind them.  @return number of patterns
 Eigen::Index TouchReduction::spread_patterns(Answers& x, Eigen::Index size) {
   const Eigen::Index loads = x.patterns.cols();
   x.loads.setZero(size, loads + 1);
@@ -177,7 +182,7 @@ Eigen::Index TouchReduction::spread_patterns(Answers& x, Eigen::Index size) {
   return loads;
 }
 
-/// False where that is not for this system, or found no end.
+/// Computes X by iteration. Returns false if the system is not supported, or without convergence.
 bool TouchReduction::iterate(World& world, double H, Answers& out) {
   using dynamics::SolveStatus;
   const dynamics::StateView view = world.state.view();
@@ -199,7 +204,7 @@ bool TouchReduction::iterate(World& world, double H, Answers& out) {
   if (out.rate.size() > 0) rhs.rightCols<1>() += H * H * out.rate;
   for (int dof : world.system.driven_dofs()) rhs.row(dof).setZero();
   SolveStatus status = response_->begin(rhs);
-  // the work of the loads, each of length one, on the way that bodies go by themselves, by Cauchy and Schwarz
+  // Cauchy-Schwarz bound on the work of the loads, each of length one, on the motion without load.
   const VecX energy = response_->response().diagonal() + response_->residual_energies();
   if (loads > 0 && H * std::sqrt(energy.head(loads).maxCoeff() * energy[loads]) <= out.still) {
     rhs.rightCols<1>().setZero();
@@ -228,7 +233,7 @@ bool TouchReduction::iterate(World& world, double H, Answers& out) {
   return all_finite(out.X) && all_finite(out.work);
 }
 
-/// False where the step matrix has no factor.
+/// Computes X by factorisation. Returns false if the step matrix has no factor.
 bool TouchReduction::factor(World& world, ToolSide& side, double H, Answers& out) {
   const dynamics::StateView view = world.state.view();
   world.system.step_matrix(view, 1.0, H, H * H, side.condensed_matrix);
@@ -259,18 +264,19 @@ bool TouchReduction::factor(World& world, ToolSide& side, double H, Answers& out
 
 namespace {
 
-/// S, m x modes, of M, K and D in X, and what the model has of it.
+/// Computes the modes S, m x modes, from M, K and D in X, and stores their stiffness and damping in the
+/// model.
 MatX modes_of(const MatX& M, const MatX& K, const MatX& D, double alike, TouchModel& out) {
   VecX scale = M.diagonal();
   for (double& one : scale) one = one > 0.0 ? 1.0 / std::sqrt(one) : 0.0;
   const Eigen::SelfAdjointEigenSolver<MatX> mass(
       MatX(scale.asDiagonal() * (0.5 * (M + M.transpose())) * scale.asDiagonal()));
-  const VecX& lengths = mass.eigenvalues();  // increasing
+  const VecX& lengths = mass.eigenvalues();  // ascending
   const Eigen::Index all = lengths.size(),
                      alone = (lengths.array() > alike * std::max(lengths[all - 1], 0.0)).count(),
                      kept = std::min<Eigen::Index>(kModes, alone);
   out.modes = static_cast<int>(kept);
-  if (kept == 0) return MatX(all, 0);  // every node that answers is held
+  if (kept == 0) return MatX(all, 0);  // every node that responds is held
   MatX S = scale.asDiagonal() * mass.eigenvectors().rightCols(kept) *
            lengths.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
   const MatX k = S.transpose() * K * S;
@@ -282,14 +288,14 @@ MatX modes_of(const MatX& M, const MatX& K, const MatX& D, double alike, TouchMo
   return S;
 }
 
-/// The samples' own part of what is reduced to X.
+/// Contribution of the samples to the reduced system in X.
 struct SampleSums {
   MatX K, D;
-  VecX force;  ///< of the samples on the bodies
+  VecX force;  ///< Force of the samples on the bodies.
   VecX stiff;  ///< K v + D w/H
 };
 
-/// @param X, mean_change  of the samples' nodes alone
+/// @param X, mean_change  rows of the samples' nodes only
 SampleSums sum_of(const std::vector<TouchSample>& samples, const std::vector<TouchTangent>& tangents,
                   const MatX& X, const VecX& mean_change) {
   const Eigen::Index m = X.cols();
@@ -309,12 +315,12 @@ SampleSums sum_of(const std::vector<TouchSample>& samples, const std::vector<Tou
   return out;
 }
 
-/// M, K and D in X of all but the samples.
+/// M, K and D in X, without the samples.
 struct Reduced {
   MatX M, K, D;
 };
 
-/// @param work  X^T A X of X that is not exact: K and D come from it  @param scratch  room for as much as X
+/// @param work  X^T A X if X is not exact: K and D are computed from it  @param scratch  as large as X
 Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, const MatX* work, MatX& scratch,
                 const SampleSums& sums, std::pair<double, double> damping) {
   const dynamics::StateView view = world.state.view();
@@ -333,7 +339,7 @@ Reduced reduced(World& world, const ToolSide& side, double H, const MatX& X, con
         products(X, scratch, [&](const VecX& v) { return tangent_times(world, 0.0, 1.0, v); }) - samples_D;
     return out;
   }
-  // bodies on obstacles, on each other and on other tools
+  // Contact of bodies with obstacles, each other and other tools.
   MatX others_K = MatX::Zero(m, m), others_D = others_K;
   const auto& contacts = world.description.contacts;
   if (!std::all_of(contacts.begin(), contacts.end(),
@@ -370,7 +376,7 @@ void TouchReduction::prepare(World& world, double H) {
 
 namespace {
 
-/// Friction as affine about the end of a period, while it lives.
+/// Scope in which friction is affine about the end of a period.
 struct FrictionOfPeriod {
   FrictionOfPeriod(contact::ContactForce& force, const dynamics::StateView& state)
       : contact_force(force), rubs(force.begin_step(state)) {}
@@ -386,7 +392,8 @@ struct FrictionOfPeriod {
 
 }  // namespace
 
-/// False: friction is not the law's at the end of the period that X leads to, and has a better guess of it.
+/// Updates friction from the end of the period that X predicts. Returns false if friction does not yet
+/// satisfy its law there.
 bool TouchReduction::improve(World& world, const ToolSide& side, double H,
                              const std::vector<TouchSample>& samples,
                              const std::vector<TouchTangent>& tangents) {
@@ -409,8 +416,8 @@ bool TouchReduction::improve(World& world, const ToolSide& side, double H,
   return world.contact->improve_step(world.state.view(), x.s + H * change, x.w + change, tool, error_);
 }
 
-/// Finds X.  @param samples  whose nodes it numbers, and whose velocities it sets  @return false: there is
-/// none
+/// Computes X.  @param samples  renumbers their nodes and sets their velocities  @return false if there is no
+/// X
 bool TouchReduction::answer(World& world, ToolSide& side, double H, std::vector<TouchSample>& samples,
                             const std::vector<TouchTangent>& tangents) {
   Answers& x = *answers_;

@@ -9,33 +9,34 @@ namespace palpate::loop {
 
 struct ToolSide;
 
-/// By how much bodies answered the tool less than they would, relative: bounds, one an exchange
-/// (linear::StepResponse::missing).  Bodies whose step matrix was factored answer exactly.
+/// Upper bounds on the relative error of the reduced response of the bodies to a tool, one per exchange
+/// (linear::StepResponse::missing). Factored solves are exact.
 struct AnswersMissing {
-  long exchanges = 0;      ///< in which they were touched, and answered
-  long factored = 0;       ///< of these
-  long beyond_wanted = 0;  ///< in which the iteration ended beyond exchange.linearisation_error
+  long exchanges = 0;      ///< Exchanges with contact and a response.
+  long factored = 0;       ///< Exchanges with a factored step matrix.
+  long beyond_wanted = 0;  ///< Exchanges whose iteration ended above exchange.linearisation_error.
   double largest = 0.0, sum = 0.0;
   void take(double missing, double wanted);
   void take_factored();
   void archive(Archive& a);
 };
 
-/// Makes the model of the bodies that the tool's ticks touch (touch_reduction.cpp).
+/// Builds the reduced model of the bodies in contact with a tool, for the tool's ticks (touch_reduction.cpp).
 class TouchReduction {
  public:
-  /// @param error  exchange.linearisation_error: of how much the modes may answer less, relative; 0:
-  /// factorise
-  /// @param keep  what the elements give, for others that ask for the same: a step, or another tool
+  /// @param error  exchange.linearisation_error: permitted relative error of the response; 0: factorise
+  /// @param keep  keep the element results for others that need the same: a step, or another tool
   TouchReduction(World& world, double error, bool keep);
   ~TouchReduction();
 
-  /// The bodies as that tool's contact sees them from the World's state on, for about `period_s`.
-  /// @return false, and points without modes (bodies that do not answer), where the step matrix has no factor
+  /// Builds the reduced model of the bodies in contact with this tool at the current state, valid for about
+  /// `period_s`.
+  /// @return false if the step matrix has no factor: `out` then has points without modes (bodies without
+  /// response)
   bool reduce(World& world, ToolSide& side, double period_s, contact::TouchModel& out);
   const AnswersMissing& missing() const { return missing_; }
   void archive(Archive& a) { missing_.archive(a); }
-  /// Makes orders, maps and memory, where at the first touch a hand would wait for them.
+  /// Performs one-time work (orderings, maps, allocation) ahead of the first contact.
   void prepare(World& world, double period_s);
 
  private:
@@ -53,7 +54,7 @@ class TouchReduction {
   bool keep_;
   dynamics::StepAssembly assembly_;
   std::unique_ptr<linear::StepResponse> response_;
-  std::unique_ptr<Answers> answers_;  ///< its room is kept from exchange to exchange
+  std::unique_ptr<Answers> answers_;  ///< Memory is reused from exchange to exchange.
 };
 
 }  // namespace palpate::loop

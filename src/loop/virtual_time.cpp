@@ -49,7 +49,7 @@ void VirtualTime::end() {
 
 void VirtualTime::one_period(double t0, double t1) {
   bodies_.query();
-  // a tool feels the contact that was found before its ticks: these end where the next query is due
+  // Ticks use the contact found before them, so they stop where the next query is due.
   for (double t = t0, next;; t = next) {
     const bool exchanged = world_.has_tool_of_ticks();
     next = exchanged ? bodies_.next_query(t, t1) : t1;
@@ -61,7 +61,7 @@ void VirtualTime::one_period(double t0, double t1) {
   }
 }
 
-/// Hands every hand the record of the bodies, then runs each set of hands that meet through the period.
+/// Passes the bodies' record to every hand, then runs each group of hands that meet through the period.
 void VirtualTime::tick_tools(double t0, double t1) {
   for (std::size_t i = 0; i < hands_.size(); ++i) adopt(hands_[i], bodies_.linearise(i, t1 - t0));
   bodies_.restart_path();
@@ -73,7 +73,7 @@ void VirtualTime::tick_tools(double t0, double t1) {
   }
 }
 
-/// A linearisation is in force from latency_ticks on; the first of a run at once.
+/// A record comes into force after latency_ticks; the first record of a run at once.
 void VirtualTime::adopt(Hand& hand, const ContactRecord& record) {
   const int latency = record.linear.version == 1 ? 0 : world_.description.exchange.latency_ticks;
   if (latency == 0)

@@ -8,21 +8,20 @@
 
 namespace palpate::loop {
 
-/// Both sides in one thread, by turns: the order of everything is fixed, so that every run is the same to the
-/// last bit.
+/// Both sides alternating in one thread: the order of all operations is fixed, so that runs are bitwise
+/// reproducible.
 class VirtualTime {
  public:
-  /// Takes the hands at the start; observers see it.
+  /// Starts a run; observers are called for the start.
   VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result);
-  /// Goes on from where another one was archived, with a World that nothing has gone through; observers are
-  /// told nothing.
+  /// Resumes from an archive, with a World that has not been advanced; observers are not called.
   VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result, Archive& from);
-  /// Goes through one period.  False where there is none, and where it was not gone through to its end.
+  /// Advances by one period. Returns false if no period is left, or if the period was not completed.
   bool next();
-  int periods() const { return periods_; }  ///< gone through
-  /// After a period.  Only the constructor gives back.
+  int periods() const { return periods_; }  ///< Completed periods.
+  /// Writes the state after a period. Only the constructor restores.
   void archive(Archive& a);
-  /// No wrench on the hands any more.
+  /// Sets the wrenches on the hands to zero.
   void end();
 
  private:
@@ -36,14 +35,14 @@ class VirtualTime {
     TickSide ticks;
     ContactRecord in_force;
     std::deque<Coming> coming;
-    long count = 0;  ///< of ticks
+    long count = 0;  ///< Number of ticks.
   };
 
   void make_hands();
   void one_period(double t0, double t1);
   void tick_tools(double t0, double t1);
   void adopt(Hand& hand, const ContactRecord& record);
-  /// The record in force at a hand's next tick.
+  /// Returns the record in force at a hand's next tick.
   const ContactRecord& record_of(Hand& hand);
   void tick(TickGroup& group, double t, double h);
 
@@ -51,10 +50,10 @@ class VirtualTime {
   BodySide& bodies_;
   const RunOptions& options_;
   RunResult& result_;
-  int periods_ = 0;  ///< gone through
+  int periods_ = 0;  ///< Completed periods.
   std::deque<Hand> hands_;
-  std::vector<TickGroup> groups_;         ///< of hands_
-  std::optional<MonolithicTicks> dense_;  ///< where tool and bodies are one system
+  std::vector<TickGroup> groups_;         ///< Groups of hands_.
+  std::optional<MonolithicTicks> dense_;  ///< Monolithic scheme only.
 };
 
 }  // namespace palpate::loop

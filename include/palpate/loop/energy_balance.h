@@ -4,33 +4,33 @@
 
 namespace palpate::loop {
 
-/// Where the energy of a scene is, and where it came from and went since the start [J]:
+/// Energy balance of a scene since its start [J]:
 ///
 ///     stored now = stored at the start + hand + supports + queries + materials - dissipated + unaccounted.
 ///
-/// `unaccounted` is what the integrator, the exchange between tool and bodies, and the quadrature in time of
-/// the three powers leave: the error of this balance.
+/// `unaccounted` is the error of this balance: the residual of the integrator, the exchange between tool and
+/// bodies, and the time quadrature of the powers.
 struct EnergyBalance {
-  double time = 0.0;        ///< [s]
-  double kinetic = 0.0;     ///< of bodies, bones and tools
-  double elastic = 0.0;     ///< of the bodies' elements
-  double contact = 0.0;     ///< of the contact's springs
-  double other = 0.0;       ///< of the virtual coupling, of weight and of joints; zero at the start
-  double hand = 0.0;        ///< work of hands on their couplings, from the start to the last tick
-  double supports = 0.0;    ///< work of what moves held nodes along given paths
-  double queries = 0.0;     ///< change of `contact` by queries, which change its samples at a state
-  double materials = 0.0;   ///< change of `elastic` by changes of material, at a state
-  double dissipated = 0.0;  ///< by the bodies' damping, contact, friction and coupling
-  // of these:
-  double kinetic_of_tools = 0.0;        ///< part of `kinetic`
-  double coupling = 0.0;                ///< part of `other`: the springs of virtual couplings
-  double dissipated_by_contact = 0.0;   ///< part of `dissipated`: its dampers and friction
-  double dissipated_by_coupling = 0.0;  ///< part of `dissipated`; the rest are the bodies' own dampers
-  double unaccounted = 0.0;             ///< see above
-  /// error of the three works by their quadrature, from steps twice as long
+  double time = 0.0;        ///< Time of the balance [s].
+  double kinetic = 0.0;     ///< Bodies, bones and tools.
+  double elastic = 0.0;     ///< Elements of the bodies.
+  double contact = 0.0;     ///< Springs of the contact.
+  double other = 0.0;       ///< Virtual coupling, weight and joints; zero at the start.
+  double hand = 0.0;        ///< Work of the hands on their couplings, up to the last tick.
+  double supports = 0.0;    ///< Work of prescribed motions on the nodes they drive.
+  double queries = 0.0;     ///< Change of `contact` by queries, which change its samples at a fixed state.
+  double materials = 0.0;   ///< Change of `elastic` by material changes at a fixed state.
+  double dissipated = 0.0;  ///< Damping of the bodies, contact, friction and coupling.
+  // Parts of the above:
+  double kinetic_of_tools = 0.0;        ///< Part of `kinetic`
+  double coupling = 0.0;                ///< Part of `other`: springs of virtual couplings.
+  double dissipated_by_contact = 0.0;   ///< Part of `dissipated`: dampers and friction of the contact.
+  double dissipated_by_coupling = 0.0;  ///< Part of `dissipated`; the rest is damping of the bodies.
+  double unaccounted = 0.0;             ///< Error of the balance, see above.
+  /// Estimated quadrature error of the works and the dissipation, from steps of twice the length.
   double quadrature_error = 0.0;
 
-  /// Kinetic and potential energy now.
+  /// Returns the current kinetic and potential energy.
   double stored() const { return kinetic + elastic + contact + other; }
 };
 

@@ -6,14 +6,15 @@
 
 namespace palpate::loop {
 
-/// What the registries of this build know of the names in a scene.
+/// Returns the valid names in scenes and their keys, from the registries of this build.
 const scene::Kinds& kinds();
 
-/// scene::load and scene::parse with kinds(): what a program calls.
+/// Loads a scene file: scene::load() with kinds(), for use by programs.
+/// @param path  scene file  @param overrides  as in scene::load()
 scene::Description load(const std::string& path, const std::vector<std::string>& overrides = {});
-/// As load(), from a text.  @param text  TOML  @param path  for messages and relative paths; there need be no
-/// such file
-/// @param overrides  as of scene::load()
+/// Parses a scene from a text, as load() does from a file.
+/// @param text  TOML  @param path  for messages and relative paths; the file need not exist
+/// @param overrides  as in scene::load()
 scene::Description parse(const std::string& text, const std::string& path,
                          const std::vector<std::string>& overrides = {});
 

@@ -4,42 +4,42 @@
 
 namespace palpate::loop {
 
-/// What a run in real time says of its own clock.
+/// Timing of a run in real time.
 struct RealTimeResult {
-  /// "SCHED_FIFO 80", or "SCHED_OTHER (why not SCHED_FIFO)"
+  /// "SCHED_FIFO 80", or "SCHED_OTHER (reason)".
   std::string scheduling;
-  int cpu = -1;           ///< that the ticks' thread is pinned to; -1: to none
-  std::string memory;     ///< "locked", or "not locked (why)"
-  double tick_s = 0.0;    ///< [s]
-  double period_s = 0.0;  ///< wanted time between two exchanges [s]
+  int cpu = -1;           ///< Processor that the tick thread is pinned to; -1: none.
+  std::string memory;     ///< "locked", or "not locked (reason)"
+  double tick_s = 0.0;    ///< Length of a tick [s].
+  double period_s = 0.0;  ///< Target time between two exchanges [s].
 
-  double stall_s = 0.0;  ///< beyond it a tick that is late starts the clock anew [s]
+  double stall_s = 0.0;  ///< A tick that is later than this restarts the clock [s].
 
-  std::vector<float> lateness_s;  ///< of each tick: from when it was due to when its thread woke [s]
-  std::vector<float> work_s;      ///< of each tick: from there to the wrench on the device [s]
-  /// of each exchange: from the instant that it describes to its publication [s]
+  std::vector<float> lateness_s;  ///< Per tick: from its due time to the wake-up of its thread [s].
+  std::vector<float> work_s;      ///< Per tick: from the wake-up to the wrench on the device [s].
+  /// Per exchange: from the instant that it describes to its publication [s].
   std::vector<float> latency_s;
 
-  long missed_ticks = 0;       ///< late by a tick or more: they follow each other without a pause
-  long left_out_ticks = 0;     ///< of the clock, where they were too late: it started anew behind them
-  long stalls = 0;             ///< longer than the watchdog's, without a wrench: the force set in anew
-  long stretched_periods = 0;  ///< in which the bodies advanced by several periods after one query
-  long dropped_periods = 0;    ///< that the bodies did not simulate: they stand still in them
-  long unrecorded_ticks = 0;   ///< that did not fit the queue to the recorder
-  /// Rate of the bodies, contact included [1/s].
+  long missed_ticks = 0;    ///< Late by a tick or more; they follow each other without a pause.
+  long left_out_ticks = 0;  ///< Ticks omitted where the clock was restarted.
+  long stalls = 0;          ///< Gaps without a wrench beyond the watchdog's time; the force ramped in again.
+  long stretched_periods = 0;  ///< Additional periods that the bodies advanced after one query.
+  long dropped_periods = 0;    ///< Periods in which the bodies were held, not simulated.
+  long unrecorded_ticks = 0;   ///< Ticks that did not fit into the recorder's queue.
+  /// Returns the rate of the bodies, contact included [1/s].
   double exchanges_per_s() const {
     const double lasted = tick_s * static_cast<double>(lateness_s.size());
     return lasted > 0.0 ? static_cast<double>(latency_s.size()) / lasted : 0.0;
   }
-  /// Simulated time that the bodies stood still in [s].
+  /// Returns the simulated time in which the bodies were held [s].
   double dropped_s() const { return static_cast<double>(dropped_periods) * period_s; }
 };
 
-/// Visits the figures of a run in real time by name, units in it: f("tick_late_p99_s", value).
+/// Visits the results of a run in real time by name, with the unit in it: f("tick_late_p99_s", value).
 template <class F>
 void visit_real_time(F&& f, const RealTimeResult& r);
 
-/// Value below which a share `q` of the values lies (nearest rank); 0 of none.
+/// Returns the q-quantile of the values (nearest rank); 0 if there are none.
 double quantile(std::vector<float> values, double q);
 
 template <class F>

@@ -6,23 +6,32 @@
 
 namespace palpate::loop {
 
-/// Keeps what the scene's [record] table asks for, in one folder: run.vtkhdf (VTKHDF time series of all
-/// bodies, bones and the tool) and, once that is closed, run.xdmf (store/xdmf.h), bones.csv (pose of each
-/// bone and wrench of the tissue on it, a line a bone and recorded instant), force.csv (a line a tick),
-/// haptic.h5 (each tick and exchange to the last bit, for replays), both of a further hand force-NAME.csv and
-/// haptic-NAME.h5, energy.csv (a line a period).  Every period on disk is complete: an interrupted run leaves
-/// valid files.  A scene without [record] gets no file.
+/// Records the data that the scene's [record] table specifies, in one folder:
+/// - run.vtkhdf (VTKHDF time series of all bodies, bones and the tool) and, once it is closed, run.xdmf
+/// (store/xdmf.h),
+/// - bones.csv (pose of each bone and wrench of the tissue on it, one line per bone and recorded time),
+/// - force.csv (one line per tick),
+/// - haptic.h5 (each tick and exchange, bitwise, for replays),
+/// - for each further hand, force-NAME.csv and haptic-NAME.h5,
+/// - energy.csv (one line per period).
+///
+/// All periods on disk are complete: an interrupted run leaves valid files. A scene without [record] creates
+/// no file.
 class Recorder : public Observer {
  public:
-  /// Creates the folder and the files.  @throws Error when they cannot be written
+  /// Creates the folder and the files.
+  /// @param world  assembled scene  @param folder  folder of the results
+  /// @throws Error if they cannot be written
   Recorder(const World& world, const std::string& folder);
-  /// Of a run with checkpoints.
-  /// @param world, folder  as above
-  /// @param goes_on     the files are there, and are cut back to the checkpoint when archive() gives back
-  /// @param duration_s  of the run; 0: the scene's
+  /// Recorder of a run with checkpoints.
+  /// @param world  assembled scene  @param folder  folder of the results
+  /// @param goes_on     whether the run is resumed: the files exist, and archive() truncates them to the
+  /// checkpoint
+  /// @param duration_s  duration of the run; 0: the scene's
+  /// @throws Error if the folder or the files cannot be written
   Recorder(const World& world, const std::string& folder, bool goes_on, double duration_s);
   ~Recorder() override;
-  /// Ends the file of states.  The destructor does it too, without a word where the disk refuses.
+  /// Closes the state file. The destructor closes it too, but reports no disk error.
   /// @throws Error
   void close();
   void period(World& world, double t) override;
@@ -30,7 +39,8 @@ class Recorder : public Observer {
   void exchanged_of(std::size_t hand, const ContactRecord& record) override;
   bool wants_energy() const override;
   void energy(const EnergyBalance& balance) override;
-  /// Where its files are; what it kept so far is on the disk then.  @pre made for a run with checkpoints
+  /// Writes or restores the positions in the files; all data recorded so far are on disk afterwards. @pre
+  /// constructed for a run with checkpoints
   void archive(Archive& a) override;
 
  private:

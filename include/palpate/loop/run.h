@@ -15,115 +15,118 @@ namespace palpate::loop {
 
 struct ContactRecord;
 
-/// One haptic tick as it happened.
+/// Record of one haptic tick.
 struct TickRecord {
-  double time = 0.0;               ///< at the tick's end [s]
-  double length = 0.0;             ///< of the tick; 0 where the tool has no ticks of its own [s]
-  Pose handle, tool;               ///< of the hand's handle and of the tool at the tick's end, world axes
-  Twist handle_twist, tool_twist;  ///< of the same two
-  /// on the tool: from the linearised contact, or, monolithic, from the contact itself
+  double time = 0.0;               ///< End of the tick [s].
+  double length = 0.0;             ///< Length of the tick; 0 if the tool has no separate ticks [s].
+  Pose handle, tool;               ///< Poses at the end of the tick, world axes.
+  Twist handle_twist, tool_twist;  ///< Twists of handle and tool.
+  /// Wrench on the tool: from the linearised contact, or, if monolithic, from the contact itself.
   Wrench contact;
-  Wrench wanted;  ///< on the hand, before the limit
-  /// on the hand, as sent to the motors: behind the limit and the passivity controller
+  Wrench wanted;  ///< Wrench on the hand before the limiter.
+  /// Wrench on the hand as sent to the motors: after limiter and passivity controller.
   Wrench device;
-  /// on the hand, as its motors held it over the tick that ends here (device/motors.h): its mean
+  /// Wrench on the hand as held by the motors (device/motors.h): mean over the tick that ends here.
   Wrench motors;
-  bool handle_valid = true;          ///< whether the handle's pose was
-  bool limited = false;              ///< the wrench wanted was above the device's maximum
-  bool ramps_in = false;             ///< the force sets in anew: no wrench was sent for too long before
-  std::uint32_t left_out = 0;        ///< ticks of the machine's clock that were left out before this one
-  std::uint32_t switches = 0;        ///< of the handle: bit i is 1 where switch i is pressed
-  std::uint64_t record_version = 0;  ///< of the contact record that this tick used; 0: none
+  bool handle_valid = true;          ///< Whether the handle's pose is valid.
+  bool limited = false;              ///< The requested wrench exceeded the device's maximum.
+  bool ramps_in = false;             ///< The force ramps in again, after too long a gap without a wrench.
+  std::uint32_t left_out = 0;        ///< Clock ticks omitted before this one (real time).
+  std::uint32_t switches = 0;        ///< Bit i is 1 if switch i of the handle is pressed.
+  std::uint64_t record_version = 0;  ///< Version of the contact record used by this tick; 0: none.
 };
 
-/// Observes a run from outside; whatever keeps something of it implements this.
+/// Observer of a run, called by the loop; recorders and measurements implement it.
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// At the start and after every period.
+  /// Called at the start and after every period.
   virtual void period(World&, double /*t*/) {}
-  /// Of the first hand.
+  /// Called after each tick of the first hand.
   virtual void tick(const TickRecord&) {}
-  /// A tick of any hand, as scene::hands_of() counts them.  What does not ask for it sees those of the first.
+  /// Called after each tick of any hand, in the numbering of scene::hands_of(). Not overridden, it forwards
+  /// the ticks of the first hand.
   virtual void tick_of(std::size_t hand, const TickRecord& tick_record) {
     if (hand == 0) tick(tick_record);
   }
-  /// A record of the contact was made for the coming ticks of the first hand.
+  /// Called for each contact record made for the next ticks of the first hand.
   virtual void exchanged(const ContactRecord&) {}
-  /// Likewise for those of any hand.  What does not ask for it sees those of the first.
+  /// Called for each contact record of any hand. Not overridden, it forwards the records of the first hand.
   virtual void exchanged_of(std::size_t hand, const ContactRecord& record) {
     if (hand == 0) exchanged(record);
   }
-  /// After every contact query, at its state: behind `period` where both come at one time.
+  /// Called after every contact query, at its state; after `period` if both occur at the same time.
   virtual void queried(World&, double /*t*/) {}
-  /// After every period, in runs of which an observer wants it: a run that nobody asks keeps no balance.
+  /// Returns whether energy() is to be called after every period. Without such an observer a run computes no
+  /// balance.
   virtual bool wants_energy() const { return false; }
-  /// What it needs to go on in another process, or in another World, after a period.  What gives back takes
-  /// the place of period(0).
+  /// Writes or restores the state needed to continue in another process or another World, after a period.
+  /// Restoring replaces the call period(0).
   virtual void archive(Archive&) {}
-  /// The balance at the period's end.
+  /// Called with the energy balance at the end of each period.
   virtual void energy(const EnergyBalance&) {}
 };
 
-/// How a run is made; a default is the scene's, or none.
+/// Options of a run; defaults are the scene's values, or none.
 struct RunOptions {
   double duration_s = 0.0;  ///< 0: the scene's
-  /// ticks by the machine's clock, in a thread of their own; else in virtual time
+  /// Ticks by the wall clock in a separate thread; otherwise in virtual time.
   bool real_time = false;
-  /// whether the energy at the device is counted, or also made up for
+  /// Whether the energy at the device's port is observed, or also controlled.
   device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
-  std::vector<Observer*> observers;               ///< called in their order; they outlive the run
-  std::function<void(double fraction)> progress;  ///< called after every period
-  const std::atomic<bool>* stop = nullptr;        ///< set from outside: the run ends after the current step
-  /// called where the run has to wait for a device, with what for
+  std::vector<Observer*> observers;               ///< Called in this order; they must outlive the run.
+  std::function<void(double fraction)> progress;  ///< Called after every period.
+  const std::atomic<bool>* stop = nullptr;        ///< Set from outside: the run ends after the current step.
+  /// Called with a description of the event if the run has to wait for a device.
   std::function<void(const std::string& awaited)> waiting;
 };
 
-/// The energy at the device's port over a run (device/passivity.h) [J].
+/// Energy at the device's port over a run (device/passivity.h) [J].
 struct PortEnergy {
-  double energy = 0.0, least = 0.0;                ///< that the hand has put in: at the end, and at its least
-  double work = 0.0, controller_dissipated = 0.0;  ///< magnitude of the motors' work, part of the controller
-  long controller_ticks = 0;                       ///< in which it acted
+  double energy = 0.0, least = 0.0;  ///< Net energy put in by the hand: at the end, and its minimum.
+  double work = 0.0, controller_dissipated = 0.0;  ///< Magnitude of the motors' work; part of the controller.
+  long controller_ticks = 0;                       ///< Ticks in which the controller reduced the wrench.
 };
 
-/// What a run keeps of each further hand; of the first it stands in the RunResult itself.
+/// Results of one further hand; the results of the first hand are members of RunResult.
 struct HandResult {
-  long ticks = 0;                  ///< of its tool
-  long limited_ticks = 0;          ///< in which the device's limit held the wrench
-  long outside_ticks = 0;          ///< with the handle outside the device's workspace
-  long rejected_ticks = 0;         ///< whose wrench or time was not finite: forces fall to zero
-  std::optional<PortEnergy> port;  ///< where passivity is observed or controlled
-  std::optional<double> buzz_n;    ///< force on the hand above 30 Hz, RMS [N]
+  long ticks = 0;                  ///< Ticks of the tool.
+  long limited_ticks = 0;          ///< Ticks in which the device's limit reduced the wrench.
+  long outside_ticks = 0;          ///< Ticks with the handle outside the device's workspace.
+  long rejected_ticks = 0;         ///< Ticks whose wrench or time was not finite: forces fall to zero.
+  std::optional<PortEnergy> port;  ///< Only if passivity is observed or controlled.
+  std::optional<double> buzz_n;    ///< Force on the hand above 30 Hz, RMS [N].
 };
 
-/// What a run did: where it ended, what it cost, what it counted.
+/// Result of a run: final status, cost and counters.
 struct RunResult {
-  dynamics::StepResult status;          ///< not ok: the integrator gave up; what was recorded stands
-  bool stopped = false;                 ///< `RunOptions::stop` was set
-  double time = 0.0;                    ///< reached [s]
-  double cpu_s = 0.0, wall_s = 0.0;     ///< of the loop, assembly left out
-  double query_s = 0.0;                 ///< wall time in contact queries
-  double linearise_s = 0.0;             ///< wall time in linearising contact for the tool
-  double tool_s = 0.0;                  ///< wall time in the tool's ticks
-  long periods = 0;                     ///< of the loop
-  long ticks = 0;                       ///< of the first hand's tool
-  long contact_queries = 0;             ///< refreshes of all pairs together
-  long limited_ticks = 0;               ///< in which the device's limit held the wrench
-  long outside_ticks = 0;               ///< with the handle outside the device's workspace, where forces fade
-  long rejected_ticks = 0;              ///< whose wrench or time was not finite: forces fall to zero
-  std::vector<long> tunnelled;          ///< vertices that went through unseen, for each [[contact]]
-  std::optional<EnergyBalance> energy;  ///< at the end, where an observer wanted it
-  long sub_steps = 0;                   ///< contact queries that tunnelling = "substep" made besides
-  long shortest_refreshes = 0;  ///< of these, the ones that shortest_refresh_s made later than they were due
-  long frozen_fallbacks = 0;    ///< condensed linearisations that had no factor and were frozen instead
-  dynamics::StepperCounters counters;       ///< of the integrator
-  std::optional<RealTimeResult> real_time;  ///< of the clock, where ticks went by it
-  std::optional<PortEnergy> port;           ///< where passivity is observed or controlled
-  std::optional<double> buzz_n;  ///< force on the hand above 30 Hz, RMS [N]; with a tool of fast enough ticks
-  std::vector<HandResult> more_hands;  ///< of each [[hand]]
+  dynamics::StepResult status;       ///< Not ok: the integrator failed; data recorded so far are valid.
+  bool stopped = false;              ///< `RunOptions::stop` was set
+  double time = 0.0;                 ///< Time reached [s].
+  double cpu_s = 0.0, wall_s = 0.0;  ///< Cost of the loop, without assembly.
+  double query_s = 0.0;              ///< Wall time in contact queries.
+  double linearise_s = 0.0;          ///< Wall time in linearising contact for the tool.
+  double tool_s = 0.0;               ///< Wall time in the tool's ticks.
+  long periods = 0;                  ///< Periods of the loop.
+  long ticks = 0;                    ///< Ticks of the first hand's tool.
+  long contact_queries = 0;          ///< Each refreshes all pairs.
+  long limited_ticks = 0;            ///< Ticks in which the device's limit reduced the wrench.
+  long outside_ticks = 0;       ///< Ticks with the handle outside the device's workspace, where forces fade.
+  long rejected_ticks = 0;      ///< Ticks whose wrench or time was not finite: forces fall to zero.
+  std::vector<long> tunnelled;  ///< Vertices that tunnelled, one entry per [[contact]].
+  std::optional<EnergyBalance> energy;  ///< At the end, if an observer requests it.
+  long sub_steps = 0;                   ///< Additional contact queries for tunnelling = "substep"
+  long shortest_refreshes = 0;          ///< Sub-steps that shortest_refresh_s made longer than required.
+  long frozen_fallbacks = 0;  ///< Linearisations without a factor of the step matrix, frozen instead.
+  dynamics::StepperCounters counters;       ///< Counters of the integrator.
+  std::optional<RealTimeResult> real_time;  ///< Timing, for a run in real time.
+  std::optional<PortEnergy> port;           ///< Only if passivity is observed or controlled.
+  /// Force on the hand above 30 Hz, RMS [N]; only for sufficiently short ticks.
+  std::optional<double> buzz_n;
+  std::vector<HandResult> more_hands;  ///< One entry per [[hand]].
 };
 
-/// Visits every number of a run, as its overload for StepperCounters (dynamics/stepper.h), which it includes.
+/// Visits all numbers of a run by name, including StepperCounters (dynamics/stepper.h).
 template <class F, class... Result>
 requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr void visit_counters(
     F&& f, Result&... r) {
@@ -145,20 +148,21 @@ requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr vo
   dynamics::visit_counters(f, r.counters...);
 }
 
-/// Runs in virtual time: one exchange period after the other, ticks interleaved (docs/design.md, 1); if
-/// monolithic, one refresh after the other, ticks from dense output.  A scene without a tool has periods but
-/// no ticks.  Or in real time: ticks by the machine's clock in a thread of their own, bodies behind them.
-/// It works on the World's own number of threads (integrator.threads), whatever other Worlds have.
-/// @throws Error as check_clock(), and in real time for a device that does not come
+/// Runs a scene in virtual time or in real time. In virtual time one exchange period follows the other, with
+/// interleaved ticks (docs/design.md, 1); if monolithic, one contact refresh follows the other, and ticks are
+/// read from dense output. A scene without a tool has periods but no ticks. In real time the ticks follow the
+/// wall clock in a separate thread, and the bodies follow one period later. The number of threads is the
+/// World's (integrator.threads), whatever other Worlds use.
+/// @throws Error as check_clock(), and in real time if an awaited device does not appear
 RunResult run(World& world, const RunOptions& options);
 
-/// Refuses what a run cannot serve by that clock, before anything is written.
-/// @throws Error in real time for a scene without a tool of ticks, or with hands of different tick_s; in
-///   virtual time for a device that somebody moves by the wall's clock
+/// Rejects scenes that cannot run with that clock, before anything is written.
+/// @throws Error in real time for a scene without a tool with ticks, or with hands of different tick_s; in
+/// virtual time for a device that is moved in wall-clock time
 void check_clock(const World& world, bool real_time);
 
-/// The length of the loop's period for a scene [s]: the exchange period where there is an exchange, else the
-/// contact refresh, else the record's.
+/// Returns the length of the loop's period for a scene [s]: the exchange period if the scene has one, else
+/// the contact refresh period, else the recording period.
 double period_of(const scene::Description& description);
 
 }  // namespace palpate::loop

@@ -5,36 +5,37 @@
 
 namespace palpate::loop {
 
-/// A run in virtual time, a period at a time: for a caller that looks at the World in between.  All periods
-/// together are run(), to the last bit.
+/// Run in virtual time that advances one period per call, for callers that access the World in between. All
+/// periods together equal run(), bitwise.
 class SteppedRun {
  public:
-  /// Observers see the start.
-  /// @param world  outlives this, and no other run goes through it
-  /// @param options  as of run(); `real_time` has no meaning
-  /// @throws Error for a duration that has more periods than can be counted
+  /// Starts a run. Observers are called for the start.
+  /// @param world  must outlive the run, and must not be used by another run meanwhile
+  /// @param options  as for run(); `real_time` is ignored
+  /// @throws Error for a duration with too many periods
   SteppedRun(World& world, RunOptions options);
-  /// Goes on from where another one was archived.  Observers see no start.
-  /// @param world  assembled from the same scene, and nothing has gone through it
-  /// @param options  those of the other one  @param from  what it kept
+  /// Resumes an archived run. Observers are not called for the start.
+  /// @param world  assembled from the same scene, and not yet advanced
+  /// @param options  options of the archived run  @param from  archive of that run
   /// @throws Error for an archive of another scene
   SteppedRun(World& world, RunOptions options, Archive& from);
-  /// No wrench on the hands any more.
+  /// Sets the wrenches on the hands to zero.
   ~SteppedRun();
   SteppedRun(const SteppedRun&) = delete;
   SteppedRun& operator=(const SteppedRun&) = delete;
 
-  /// Goes through one period (period_of()) on the World's own number of threads.  False where there is none:
-  /// the end is reached, the integrator gave up, or `stop` was set, and result() says which.
+  /// Advances by one period (period_of()), with the World's number of threads. Returns false if there was no
+  /// complete period: the end is reached, the integrator failed, or `stop` was set; see result().
   bool next();
-  /// Of all periods so far.
+  /// Returns the result of all periods so far.
   const RunResult& result() const;
-  double duration() const;   ///< of all periods [s]
-  double period() const;     ///< length of each but the last [s]
-  int periods_done() const;  ///< gone through
-  int periods() const;       ///< of the whole run
-  /// Keeps where it is, for the constructor above.  Queries contact once more: do not go on with this one.
-  /// @pre the last next() went through its period, or none was called
+  double duration() const;   ///< Duration of the run [s].
+  double period() const;     ///< Length of each period but the last [s].
+  int periods_done() const;  ///< Number of completed periods.
+  int periods() const;       ///< Number of periods of the whole run.
+  /// Writes the state for the resuming constructor. It makes one more contact query, so this run must not be
+  /// continued.
+  /// @pre the last next() completed its period, or next() was not called
   void archive(Archive& a);
 
  private:

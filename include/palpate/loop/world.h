@@ -33,140 +33,145 @@ namespace palpate::loop {
 
 struct ToolSide;
 
-/// A detailed surface that hangs on a body's tetrahedra.
+/// Detailed surface that is embedded in a body's tetrahedra.
 struct Skin {
-  TriMesh rest;                              ///< in the body's own axes
-  mesh::Embedding embedding;                 ///< of the vertices in the body's tetrahedra
-  std::shared_ptr<proxy::ProxySet> proxies;  ///< null where the scene does not ask for them
+  TriMesh rest;                              ///< In the body's axes.
+  mesh::Embedding embedding;                 ///< Embedding of the vertices in the body's tetrahedra.
+  std::shared_ptr<proxy::ProxySet> proxies;  ///< null if the scene does not enable them
 };
 
-/// Elements of a body that the mesh file or the scene gives a name.
+/// Named set of elements of a body, from the mesh file or the scene.
 struct Region {
-  std::string name;       ///< unique in the body
-  std::vector<int> tets;  ///< ascending; no element in two regions
-  /// number in the list of the body's term; 0: the body's own, as the scene does not set the region
+  std::string name;       ///< Unique in the body.
+  std::vector<int> tets;  ///< Ascending; regions do not overlap.
+  /// Index in the material list of the body's term; 0: the body's material, as the scene does not set the
+  /// region.
   int material = 0;
-  double volume = 0.0;            ///< [m^3]
-  double stiffness_factor = 1.0;  ///< of its Young's modulus over the body's, where it has none of its own
-  bool own_stiffness = false;     ///< whether the scene gives it a Young's modulus
+  double volume = 0.0;            ///< Volume [m^3].
+  double stiffness_factor = 1.0;  ///< Ratio of its Young's modulus to the body's, unless own_stiffness.
+  bool own_stiffness = false;     ///< Whether the scene sets its Young's modulus.
 };
 
-/// One soft body as assembled.
+/// Assembled soft body.
 struct Body {
-  std::string name;   ///< of the scene
-  int block_id = -1;  ///< of its nodes in `state`
-  /// rest positions in the body's own axes; its nodes are numbered in spatial order (mesh/spatial_order.h),
-  /// not as in the mesh's file
+  std::string name;   ///< Name in the scene.
+  int block_id = -1;  ///< Block of its nodes in `state`
+  /// Rest positions in the body's axes; nodes are numbered in spatial order (mesh/spatial_order.h), not as in
+  /// the mesh file.
   TetMesh rest;
-  std::vector<int> file_node;  ///< the number of each node in that file, from zero
-  Points placed;               ///< rest positions placed in the world: the start of the simulation
-  mesh::Boundary boundary;     ///< surface; made for every body
-  std::optional<Skin> skin;    ///< where the scene asks for it
-  /// bones of the model file, placed in the world as at the start, where the scene asks for them; else empty
+  std::vector<int> file_node;  ///< Index of each node in that file, from zero.
+  Points placed;               ///< Rest positions in the world, at the start of the simulation.
+  mesh::Boundary boundary;     ///< Surface of the tetrahedra; always present.
+  std::optional<Skin> skin;    ///< Only if the scene enables it.
+  /// Bones of the model file in the world, at the start, if the scene enables them; else empty.
   Skeleton skeleton;
-  std::vector<int> bone_of_node;         ///< bone of `skeleton` that carries the node, -1: none
-  mesh::MeshReport report;               ///< what the reader or generator found
-  std::vector<Region> regions;           ///< in the order of the file, then of the scene
-  std::vector<int> material_of_element;  ///< in the list of `term`; empty: all are of the body's own material
-  VecX masses;                           ///< lumped, one a node [kg]
-  std::shared_ptr<fem::SoftBody> term;   ///< its elements' force, in `system`
-  std::shared_ptr<fem::NodalDilatation> dilatation;  ///< null where the body's volume is the elements' alone
+  std::vector<int> bone_of_node;  ///< Bone of `skeleton` that carries each node, -1: none.
+  mesh::MeshReport report;        ///< Findings of the mesh reader or generator.
+  std::vector<Region> regions;    ///< First the file's, then the scene's.
+  /// Material index per element, in the list of `term`; empty: the body's material throughout.
+  std::vector<int> material_of_element;
+  VecX masses;                                       ///< Lumped mass per node [kg].
+  std::shared_ptr<fem::SoftBody> term;               ///< Force of the elements, in `system`
+  std::shared_ptr<fem::NodalDilatation> dilatation;  ///< null for element-wise volumetric terms
 
-  /// The surface that is touched and drawn: the skin's, else the boundary's.
+  /// Returns the surface used for contact and pictures: the skin's, else the boundary's.
   const Faces& surface_faces() const { return skin ? skin->rest.faces : boundary.surface.faces; }
-  /// Positions [m] or values at the vertices of that surface, from those of the nodes.
+  /// Interpolates positions [m] or values of the nodes to the vertices of that surface.
   Points surface_points(const Points& nodes) const;
-  /// @param at_nodes  one value a node  @return one a vertex
+  /// Interpolates scalar values to the vertices of that surface.
+  /// @param at_nodes  one value per node  @return one value per vertex
   VecX surface_values(const VecX& at_nodes) const;
-  /// The tetrahedra as numbered in the file.  Everything that leaves the program is numbered so; values of
-  /// the nodes go into out(Eigen::all, file_node).
+  /// Returns the tetrahedra in the file's node numbering, in which all output is written; nodal values go
+  /// into out(Eigen::all, file_node).
   Tets file_tets() const;
-  /// Von Mises stress [Pa], one value a node.
+  /// Returns the von Mises stress [Pa], one value per node.
   VecX nodal_stress(const dynamics::StateView& state) const {
     return dilatation ? dilatation->nodal_stress(state) : term->nodal_stress(state);
   }
 };
 
-/// One bone as assembled: a rigid block of the State, a part of a tree on joints, or a function of time.
+/// Assembled bone: a rigid block of the State, a part of a tree of joints, or a function of time.
 struct Bone {
-  std::string name;                             ///< of the scene or the model
-  int block_id = -1;                            ///< of a free one, or of the tree; else -1
-  std::shared_ptr<const bones::BoneTree> tree;  ///< of one on joints; else null
-  int tree_bone = -1;                           ///< which of its bones
-  int body = -1;                                ///< body whose model file has it; -1: a [[bone]] of the scene
-  dynamics::Path path;                          ///< of one that is fixed or has keyframes; else empty
-  double mass = 0.0;                            ///< of a free one [kg]
-  std::vector<int> dofs;                        ///< u-directions of the nodes that it carries, ascending
-  TriMesh surface;                              ///< in its own axes; empty without a shape
+  std::string name;                             ///< Name in the scene or the model.
+  int block_id = -1;                            ///< Block of a free bone, or of the tree; else -1.
+  std::shared_ptr<const bones::BoneTree> tree;  ///< Tree of a jointed bone; else null.
+  int tree_bone = -1;                           ///< Index in the tree.
+  int body = -1;          ///< Body whose model file contains it; -1: a [[bone]] of the scene.
+  dynamics::Path path;    ///< Motion of a fixed or keyframed bone; else empty.
+  double mass = 0.0;      ///< Mass of a free bone [kg].
+  std::vector<int> dofs;  ///< u-directions of the nodes that it carries, ascending
+  TriMesh surface;        ///< In the bone's axes; empty without a shape.
 };
 
-/// Everything that one scene names, and nothing else.  What is absent is null or empty.
-/// `description` and `folder` are what it was made of; the rest is changed by run(), or by a caller that
-/// steps it itself, and what comes out. The stepper refers to `state` and `system`: a World does not move.
+/// All parts of one assembled scene; absent parts are null or empty. `description` and `folder` are the
+/// input; everything else is changed by run(), or by a caller that steps the World itself. The stepper refers
+/// to `state` and `system`, so a World cannot be copied or moved.
 struct World {
   World();
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  scene::Description description;                  ///< the scene
-  std::string folder;                              ///< of the scene file
-  dynamics::State state;                           ///< coordinates and velocities of everything that moves
-  dynamics::System system;                         ///< what moves them
-  std::vector<Body> bodies;                        ///< in the scene's order
-  std::vector<Bone> bones;                         ///< free, jointed and scripted ones
-  std::shared_ptr<contact::ContactForce> contact;  ///< null where nothing may touch
+  scene::Description description;                  ///< The scene.
+  std::string folder;                              ///< Folder of the scene file.
+  dynamics::State state;                           ///< Coordinates and velocities of all moving parts.
+  dynamics::System system;                         ///< Equations of motion.
+  std::vector<Body> bodies;                        ///< In the scene's order.
+  std::vector<Bone> bones;                         ///< Free, jointed and scripted bones.
+  std::shared_ptr<contact::ContactForce> contact;  ///< null without contact pairs
   std::unique_ptr<dynamics::Stepper> stepper;      ///< null without bodies
 
-  /// Null where there is none of that name.
+  /// Returns the body with that name; null if there is none.
   const Body* find_body(const std::string& name) const;
-  /// Makes a body stiffer or softer from the next step on; its damping goes along (mu_d = beta mu), and so do
-  /// regions without a Young's modulus of their own.
+  /// Sets the Young's modulus of a body from the next step on. Its damping changes in proportion (mu_d = beta
+  /// mu), and so do regions without a specified Young's modulus.
   /// @param body  one of `bodies`  @param youngs_modulus_pa  > 0
-  /// @param region  that region alone, which the scene gives a material  @throws Error for a modulus that
-  ///   is not positive, for a region that is not there
+  /// @param region  change only this region, which must have a material in the scene
+  /// @throws Error for a modulus that is not positive, or an unknown region
   void set_youngs_modulus(Body& body, double youngs_modulus_pa, const std::string& region = {});
-  Points positions(const Body& body) const;  ///< now, world [m]
-  /// Of its own axes in the world, now.
+  Points positions(const Body& body) const;  ///< Current positions, world [m].
+  /// Returns the current pose of the bone's axes in the world.
   Pose bone_pose(const Bone& bone) const;
-  /// World axes, of its origin, now.
+  /// Returns the current twist of the bone's origin, world axes.
   Twist bone_twist(const Bone& bone) const;
-  /// Wrench of the tissue on each bone, moment about its origin: minus the forces that hold the nodes that it
-  /// carries.
+  /// Returns the wrench of the tissue on each bone, moment about the bone's origin: minus the constraint
+  /// forces on the nodes that it carries.
   std::vector<Wrench> wrenches_on_bones();
-  bool monolithic() const;         ///< tools are blocks of the State
-  bool has_tool_of_ticks() const;  ///< there is a tool, and it has ticks of its own
-  /// number of the tool's frame in `contact`; -1 where no contact names it
+  bool monolithic() const;         ///< Tools are blocks of the State.
+  bool has_tool_of_ticks() const;  ///< A tool with separate ticks exists.
+  /// Index of the first tool's frame in `contact`; -1 if no contact refers to the tool.
   int tool_frame_index() const;
-  /// Of the hands as scene::hands_of() counts them.  @pre that one is there
+  /// Returns the current pose of a tool, in the numbering of scene::hands_of(). @pre the hand exists
   Pose tool_pose(std::size_t hand = 0) const;
-  /// Of its origin, world axes, now.
+  /// Returns the current twist of the tool's origin, world axes.
   Twist tool_twist(std::size_t hand = 0) const;
-  /// Asks for the contact anew at the state as it is, tools where they stand.  @pre there is a contact
+  /// Queries contact at the current state, with the tools at their current poses. @pre `contact` is not null
   void refresh_contact();
-  /// kinetic and potential energy of bodies, contact, tool and coupling [J]
+  /// Returns the kinetic and potential energy of bodies, contact, tool and coupling [J].
   double mechanical_energy();
 
  private:
   friend struct ToolSide;
-  std::vector<std::unique_ptr<ToolSide>> tool_sides_;  ///< one at least
+  std::vector<std::unique_ptr<ToolSide>> tool_sides_;  ///< One per hand, at least one.
 };
 
-/// Builds a World: the only function that names concrete parts.  From here on the process works on its number
-/// of threads (core/workers.h): the World assembled last decides for callers that step Worlds themselves;
-/// run() keeps to each World's own.
-/// @throws Error for names that no registry knows, parts not compiled in, meshes refused
+/// Assembles a World from a scene: the only function that depends on concrete parts. It also sets the
+/// number of threads of the process (core/workers.h): the World assembled last determines it for callers that
+/// step Worlds themselves; run() uses each World's number.
+/// @throws Error for unknown names, parts not compiled in, invalid meshes
 std::unique_ptr<World> assemble(const scene::Description& description);
-/// As the scene, but held by another hand (a recording, or a device of one's own); the limits are those of
-/// [device].
+/// Assembles a World whose first hand is replaced by another device (a recording, or a user-defined device);
+/// the limits remain those of [device].
 std::unique_ptr<World> assemble(const scene::Description& description, std::unique_ptr<device::Device> hand);
-/// Likewise, of each hand as scene::hands_of() counts them; null, or not there: the scene's own.
+/// Assembles a World with a device per hand, in the numbering of scene::hands_of(); null or missing: the
+/// scene's.
 std::unique_ptr<World> assemble(const scene::Description& description,
                                 std::vector<std::unique_ptr<device::Device>> hands);
 
-/// The surface of the scene's tool in its own axes, for pictures and records: its mesh, or a sphere.
+/// Returns the surface of the scene's tool in the tool's axes, for pictures and records: its mesh, or a
+/// sphere.
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder);
-/// An obstacle, for pictures.
+/// Returns the picture of an obstacle.
 contact::ObstaclePicture obstacle_picture(const ObstacleSpec& spec, const contact::View& view);
 
 }  // namespace palpate::loop

@@ -6,28 +6,29 @@
 
 namespace palpate::loop {
 
-/// A convex proxy in contact.
+/// Convex proxy in a contact.
 struct ProxyShape {
-  TriMesh surface;   ///< of its hull, not inflated; world [m]
-  bool of_a = true;  ///< of the side that normals point to, else of the other
+  TriMesh surface;   ///< Surface of the hull, not inflated; world [m].
+  bool of_a = true;  ///< Whether it belongs to the side that normals point to.
 };
 
-/// Contact at one query, on the surfaces that pictures show.
+/// Contact state at one query, on the surfaces that pictures show.
 struct ContactInstant {
-  double force_n = 0.0;  ///< sum of pressure times area over all samples
-  /// One a body: how deep each vertex of its surface (Body::surface_points) lies in what it touches [m]; NaN
-  /// where it is outside.  In an image it is read between the four pixels around, as Galoppo et al. (2007)
-  /// do; else it is the samples' own.
+  double force_n = 0.0;  ///< Sum of pressure times area over all samples.
+  /// Per body: penetration depth of each vertex of its surface (Body::surface_points) [m]; NaN outside. With
+  /// images it is interpolated between the four surrounding pixels, as in Galoppo et al. (2007); otherwise it
+  /// is the depth of the contact samples.
   std::vector<VecX> depths;
-  std::vector<ProxyShape> proxies;           ///< in regions where something presses; each pair's own
-  std::vector<contact::RegionView> regions;  ///< of images
+  std::vector<ProxyShape> proxies;           ///< In regions with pressure, one set per contact pair.
+  std::vector<contact::RegionView> regions;  ///< Image regions.
 };
 
-/// What the last query saw, at the World's state, which is that of the query inside Observer::queried.
-/// @pre the contact keeps views (contact::ContactForce::keep_views) since before that query
+/// Returns the contact of the last query at the World's state, which is the query's state inside
+/// Observer::queried.
+/// @pre contact::ContactForce::keep_views was enabled before that query
 ContactInstant contact_instant(const World& world);
 
-/// The deepest penetration that a region shows [m]; 0 where nothing presses.
+/// Returns the deepest penetration in a region [m]; 0 without pressure.
 double deepest(const contact::RegionView& region);
 
 }  // namespace palpate::loop

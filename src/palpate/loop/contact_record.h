@@ -6,11 +6,11 @@
 
 namespace palpate::loop {
 
-/// What the bodies tell the tool's ticks at an exchange.
+/// Contact data sent from the bodies to the tool's ticks at an exchange.
 struct ContactRecord {
-  /// with source = kPoints its instant, pose and twist alone
+  /// Linear contact; with source = kPoints only its time, pose and twist are used.
   dynamics::LinearisedContact linear;
-  contact::TouchModel touch;  ///< of source = kPoints: what ticks make their contact from
+  contact::TouchModel touch;  ///< For source = kPoints: reduced model from which ticks compute their contact.
 };
 static_assert(std::is_trivially_copyable_v<ContactRecord>);
 

@@ -7,8 +7,8 @@
 
 namespace palpate::loop {
 
-/// Integral over time by the trapezoidal rule, and by the same with steps twice as long: a third of their
-/// difference estimates the error of the first (order 2).
+/// Time integral by the trapezoidal rule, and by the same rule with steps of twice the length; a third of
+/// their difference estimates the error of the former (order 2).
 class PowerIntegral {
  public:
   void start(double t, double power);
@@ -23,8 +23,8 @@ class PowerIntegral {
   bool odd_ = false;
 };
 
-/// Keeps the balance of a run: the loop calls it at its start, after each tick and each period, before and
-/// after each query of contact and each change of material.
+/// Energy balance of a run. The loop calls it at the start, after each tick and each period, and before and
+/// after each contact query and each change of material.
 class EnergyLedger {
  public:
   explicit EnergyLedger(World& world);
@@ -33,17 +33,20 @@ class EnergyLedger {
   void after_query();
   void before_material();
   void after_material();
-  /// @param hand  as scene::hands_of() counts them
+  /// Adds the work of a hand over the tick that ends at t [s].
+  /// @param hand  in the numbering of scene::hands_of()  @param on_hand  wrench on the hand  @param handle
+  /// its twist
   void tick(std::size_t hand, double t, const Wrench& on_hand, const Twist& handle);
+  /// Completes the balance at the end of a period, t [s].
   const EnergyBalance& period(double t);
   const EnergyBalance& balance() const { return balance_; }
-  /// Between two periods.  What gives back takes the place of start().
+  /// Writes or restores the state between two periods. Restoring replaces start().
   void archive(Archive& a);
 
  private:
   double contact_energy() const;
   double elastic_energy() const;
-  /// What is dissipated now, and by which [W].
+  /// Dissipated power by cause [W].
   struct Dissipation {
     double bodies = 0.0, contact = 0.0, coupling = 0.0;
   };

@@ -3,7 +3,7 @@
 
 namespace palpate::loop {
 
-/// Keeps the ticks of a run's hands in memory, as HapticRecorder keeps them in files; no exchanges.
+/// Observer that keeps the ticks of all hands in memory, as HapticRecorder does in files; without exchanges.
 class HapticMemory : public Observer {
  public:
   void period(World& world, double t) override;

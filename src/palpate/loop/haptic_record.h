@@ -9,24 +9,29 @@
 
 namespace palpate::loop {
 
-/// What a hand did and felt, to the last bit: each tick, and each contact record that the ticks used.
+/// Bitwise record of one hand: each tick, and each contact record that the ticks used.
 struct HapticRecord {
-  TickRecord start;  ///< of its fields the handle's alone, at the run's start
-  std::vector<TickRecord> ticks;
-  std::vector<dynamics::LinearisedContact> exchanges;
-  std::vector<contact::TouchModel> models;  ///< of each exchange, where they have points; else empty
+  TickRecord start;               ///< State of the handle at the start of the run; other fields are unset.
+  std::vector<TickRecord> ticks;  ///< Ticks in order of time.
+  std::vector<dynamics::LinearisedContact> exchanges;  ///< Contact records, versions 1, 2, ...
+  /// Reduced model per exchange, if exchanges have points; else empty.
+  std::vector<contact::TouchModel> models;
+  /// Mode of the run.
   device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
 };
 
-/// Keeps one hand's HapticRecord in an HDF5 file (haptic.h5: tables "start" with the passivity mode, "ticks",
-/// "exchanges", and where these have points "models" and "points"; one row each, columns by name).
+/// Observer that writes the HapticRecord of one hand to an HDF5 file (haptic.h5: tables "start" with the
+/// passivity mode, "ticks", "exchanges", and, if exchanges have points, "models" and "points"; one row per
+/// entry, columns by name).
 class HapticRecorder : public Observer {
  public:
-  /// @param hand  whose start it keeps; its ticks and exchanges are those that it is given
-  /// @throws Error when the file cannot be made
+  /// @param hand  hand whose initial state is recorded; the caller passes only the ticks and exchanges of
+  /// this hand
+  /// @throws Error if the file cannot be created
   explicit HapticRecorder(const std::string& path, std::size_t hand = 0);
-  /// With a journal beside it (store/table_file.h), from where that is.
+  /// Recorder with a journal next to the file (store/table_file.h), continued from `from`.
   HapticRecorder(const std::string& path, std::size_t hand, const store::TableFile::Journal& from);
+  /// Returns the current position in the journal.
   store::TableFile::Journal place();
   ~HapticRecorder() override;
   void period(World& world, double t) override;
@@ -38,13 +43,13 @@ class HapticRecorder : public Observer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// @throws Error for a file that is none of HapticRecorder's
+/// Reads one record.  @throws Error for a file that was not written by HapticRecorder
 HapticRecord read_haptic_record(const std::string& path);
 
-/// How a run's folder calls the records of a scene's hands: haptic.h5 the first's, haptic-NAME.h5 a further
-/// one's.
+/// Returns the file names of the hands' records in a results folder: haptic.h5 for the first, haptic-NAME.h5
+/// for a further one.
 std::vector<std::string> haptic_files(const scene::Description& description);
-/// Of a run's folder, one for each hand of its scene.  @throws Error as read_haptic_record()
+/// Reads the records of a results folder, one per hand of its scene.  @throws Error as read_haptic_record()
 std::vector<HapticRecord> read_haptic_records(const std::string& folder,
                                               const scene::Description& description);
 

@@ -7,26 +7,28 @@ namespace palpate::loop {
 
 struct Body;
 
+/// Mesh size of one body.
 struct MeshCounts {
   int nodes = 0, tetrahedra = 0, skin_vertices = 0;
 };
+/// Returns the mesh size of an assembled body.
 MeshCounts counts_of(const Body& body);
 
-/// About what a run takes at its peak [bytes], from counts alone.
+/// Estimated peak memory of a run [bytes], from counts alone.
 struct MemoryEstimate {
-  double program = 0.0;   ///< code, libraries, tables
-  double elements = 0.0;  ///< meshes, elements, the step's matrix, vectors
-  double touch = 0.0;     ///< what a tool that is exchanged at points asks for: matrix and solver of its own
-  double skins = 0.0;     ///< with their embedding, proxies and contact points
-  double factor = 0.0;    ///< of a direct solver
-  /// What libraries take of addresses and hardly fill, beside all of it: the buffer of the BLAS where
-  /// something is factored, stacks of threads.  Only limits of addresses and of data (ulimit -v, -d) count
-  /// it.
+  double program = 0.0;   ///< Code, libraries, tables.
+  double elements = 0.0;  ///< Meshes, elements, the step's matrix, vectors.
+  double touch = 0.0;     ///< Separate matrix and solver for a tool that is exchanged at points.
+  double skins = 0.0;     ///< Including embedding, proxies and contact points.
+  double factor = 0.0;    ///< Factor of a direct solver.
+  /// Address space that libraries reserve but hardly use, in addition: the buffer of the BLAS if a
+  /// factorisation is done, and stacks of threads. Only limits on address space and data (ulimit -v, -d)
+  /// include it.
   double addresses = 0.0;
   double total() const { return program + elements + touch + skins + factor; }
 };
-/// Measured peaks were 0.8 to 1.4 of it, from 5,000 to 185,000 tetrahedra (tests/cli/bad_input_test.py holds
-/// it to a factor of 2), with skins 0.8 to 1.3 up to a million vertices.
+/// Estimates the peak memory. Measured peaks were 0.8 to 1.4 of the estimate from 5,000 to 185,000 tetrahedra
+/// (tests/cli/bad_input_test.py checks a factor of 2), and with skins 0.8 to 1.3 up to a million vertices.
 MemoryEstimate estimate_memory(const scene::Description& description, const std::vector<MeshCounts>& bodies);
 
 }  // namespace palpate::loop

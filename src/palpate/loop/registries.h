@@ -6,25 +6,26 @@
 
 namespace palpate::loop {
 
-/// One name that a scene or an option knows.
+/// One valid name in a scene or an option.
 struct Choice {
   std::string name, summary;
-  int order = 0;  ///< theoretical order of accuracy where there is one, else 0
+  int order = 0;  ///< Theoretical order of accuracy; 0: not applicable.
 };
 
-/// Every registry of every part that was compiled in, under the name that `palpate list` knows it by:
-/// "integrators", "linear-solvers", "materials", "tool-integrators", "obstacles", "contact-methods",
-/// "generators", "devices", "parts".
+/// Choices of one registry, under its name in `palpate list`: "integrators", "linear-solvers", "materials",
+/// "tool-integrators", "obstacles", "contact-methods", "contact-springs", "contact-laws", "generators",
+/// "devices", "device-profiles", "motions", "parts".
 struct ChoiceList {
   std::string what, summary;
   std::vector<Choice> choices;
 };
+/// Returns all registries of all parts of this build.
 std::vector<ChoiceList> registries();
 
-/// The integrators of soft bodies with their theoretical properties: comparisons and stability studies run
-/// over them.
+/// Returns the integrators of soft bodies with their theoretical properties, for comparisons and stability
+/// studies.
 const dynamics::StepperRegistry& steppers();
-/// The integrators of the tool's own ticks; empty where tools were not compiled in.
+/// Returns the integrators of the tool's ticks; empty in a build without tools.
 std::vector<Choice> tool_steppers();
 
 }  // namespace palpate::loop

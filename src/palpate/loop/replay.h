@@ -7,21 +7,20 @@
 
 namespace palpate::loop {
 
-/// Sets the record's hand on another clock: its times, and its twists by them.
+/// Maps the times of a record to another clock, and scales its twists accordingly.
 void set_clock(HapticRecord& record, const device::RecordingClock& clock);
-/// The hand of a record, moving as it did: at the times of its ticks to the last bit, between them on the
-/// cubic through poses and twists, or on the nearest that stays between the two ticks; before the first and
-/// after the last it rests.
-/// @throws Error for a record without ticks
+/// Returns a device that repeats the motion of a record: bitwise at the times of its ticks, between them on
+/// the cubic through poses and twists, or on the nearest cubic that stays between the two ticks; before the
+/// first and after the last tick it is at rest.
 std::unique_ptr<device::Device> recorded_hand(HapticRecord record);
-/// Of each hand.
+/// Returns one such device per hand.
 std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<HapticRecord>& records);
 
-/// The ticks of a hand's record again, each with the input and the contact record that it had: no body is
-/// simulated, and of other hands those alone whose tools meet this one's.  Ticks of a run in real time come
-/// out in virtual time as they were, bit for bit.
-/// @param records  of all hands  @param hand  as scene::hands_of() counts
-/// @throws Error for a tool without ticks of its own, for a record with ticks missing
+/// Recomputes the ticks of a hand's record, each from its recorded input and contact record. No body is
+/// simulated, and of the other hands only those whose tools meet this hand's tool. Ticks of a run in real
+/// time are reproduced bitwise in virtual time.
+/// @param records  records of all hands  @param hand  in the numbering of scene::hands_of()
+/// @throws Error for a tool without separate ticks, and for a record with missing ticks
 std::vector<TickRecord> retrace(const scene::Description& description,
                                 const std::vector<HapticRecord>& records, std::size_t hand = 0);
 

@@ -5,16 +5,16 @@
 
 namespace palpate::loop {
 
-/// The scene's text without its [compare] tables: what is compared with what does not change what one run
-/// gives, so that a ladder can be added to a study.  A text with multi-line strings stays as it is.
+/// Returns the scene's text without its [compare] tables, which do not affect the result of a single run, so
+/// that a refinement sequence can be added to a study. A text with multi-line strings is returned unchanged.
 std::string without_compare(const std::string& source);
 
-/// Version and commit of this palpate.  A commit does not name sources that were changed since: there, size
-/// and time of the program and of its own libraries do.
+/// Returns version and commit of this build. For modified or unknown sources the commit is not unique, so
+/// size and modification time of the program and the palpate libraries are appended.
 const std::string& made_by();
 
-/// Name of the result of one run: a hash of the scene's text, the bytes of the mesh files that it names, the
-/// simulated time, this palpate, and `more`.
+/// Returns the key of the result of one run: a hash of the scene's text, the bytes of its mesh files, the
+/// simulated time, this build, and `more`.
 std::string result_key(const scene::Description& description, const std::string& more);
 
 }  // namespace palpate::loop

@@ -5,8 +5,8 @@
 
 namespace palpate::loop {
 
-/// What a method did beside the steps that it was asked for (a step of h that was taken in parts is not one
-/// of h), in words: "3 steps taken in 12 parts, the smallest 1/4, 2 matrices left to LU"; empty: nothing.
+/// Describes the fallbacks of a method, in addition to the requested steps (a step h that was subdivided is
+/// not one step of h): "3 steps taken in 12 parts, the smallest 1/4, 2 matrices left to LU"; empty: none.
 std::string silent_doings(const dynamics::StepperCounters& counters);
 
 }  // namespace palpate::loop
