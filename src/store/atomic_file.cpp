@@ -35,7 +35,8 @@ void write(const std::string& path, std::string_view content, bool durably) {
   std::filesystem::rename(temporary, path, error);
   if (!error) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    if (durably) bring_to_disk(folder.empty() ? "." : folder.string());  // its entry for the new name
+    // The folder's entry for the new name.
+    if (durably) bring_to_disk(folder.empty() ? "." : folder.string());
     return;
   }
   std::error_code ignored;
@@ -61,7 +62,8 @@ void check_can_write(const std::string& path) {
 
 void bring_to_disk(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool done = file >= 0 && (fsync(file) == 0 || errno == EINVAL);  // EINVAL: not that kind of file
+  // EINVAL: the file cannot be synchronised.
+  const bool done = file >= 0 && (fsync(file) == 0 || errno == EINVAL);
   const int reason = errno;
   if (file >= 0) close(file);
   if (!done) fail("{}: cannot be brought to the disk: {}", path, std::strerror(reason));

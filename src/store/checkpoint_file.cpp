@@ -8,10 +8,10 @@
 #include "palpate/store/content_hash.h"
 #include "store/h5.h"
 
-// Group "state" holds one data set a value: doubles, 64-bit integers, or bytes, in their own order.  The
-// attribute "content" is a hash of all of them and of what stands beside them: what HDF5 itself does not see
-// (a byte that changed on the disk) is found by it before any value is used.  The version stands outside:
-// another one is refused as such.
+// Group "state" holds one data set per value: doubles, 64-bit integers, or bytes, in alphabetical order.  The
+// attribute "content" is a hash of all of them, of the time and of the scene: it detects damage that HDF5
+// does not (a byte that changed on the disk) before any value is used.  The version is not part of the hash:
+// a checkpoint of another version is rejected as such.
 namespace palpate::store {
 namespace {
 
@@ -64,7 +64,7 @@ Archive::Value read_value(hid_t group, const std::string& name, const std::strin
   const h5::Id space{H5Dget_space(set), H5Sclose};
   const hssize_t size = H5Sget_simple_extent_npoints(space);
   const std::size_t stored = H5Dget_storage_size(set), width = H5Tget_size(type);
-  // contiguous data are in the file as they are: a size beyond it is damage, and no reason to take memory
+  // Contiguous data are stored as they are: a size beyond the file is damage, and must not allocate memory.
   if (size < 0 || static_cast<std::size_t>(size) > stored / std::max<std::size_t>(width, 1))
     refuse(path, fmt::format("\"{}\" ends before its end", name));
   const auto read = [&]<class T>(T list, hid_t memory) {

@@ -13,7 +13,7 @@ namespace palpate::store {
 //   h = (h xor byte) * p mod 2^128,   p = 2^88 + 2^8 + 0x3b.
 // With h = H 2^64 + L, where H 2^88 2^64 is 0 modulo 2^128:
 //   h p = h 0x13b + (L 2^24 mod 2^64) 2^64.
-// A step is invertible in h whatever the word is: two streams that differ in one word end in different h.
+// A step is invertible in h for every word: two streams that differ in one word have different hashes.
 void ContentHash::mix_word(unsigned long long word) {
   low_ ^= word;
   constexpr unsigned long long kSmall = 0x13b, kMask = 0xffffffffull;

@@ -15,8 +15,7 @@
 namespace palpate::store {
 namespace {
 
-/// RFC 4180: quotes around a cell that read_csv_text() would else take for something else; quotes inside
-/// doubled.
+/// Appends a cell by RFC 4180: in quotes where read_csv_text() would misread it, with inner quotes doubled.
 void append_text(std::string& line, const std::string& text) {
   constexpr std::string_view kBlanks = " \t";
   const bool blank_at_an_end = !text.empty() && (kBlanks.find(text.front()) != std::string_view::npos ||
@@ -36,7 +35,7 @@ void append_number(std::string& line, double value) { fmt::format_to(std::back_i
 
 CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers)
     : path_(path), columns_(headers.size()) {
-  out_.rdbuf()->pubsetbuf(nullptr, 0);  // whole lines at once, gathered here
+  out_.rdbuf()->pubsetbuf(nullptr, 0);  // Unbuffered: complete lines are collected here.
   errno = 0;
   out_.open(path, std::ios::binary | std::ios::trunc);
   if (!out_) fail("{}: cannot be written ({}); is its folder there, writable, and not full?", path, reason());
@@ -122,13 +121,13 @@ void CsvWriter::close() {
 CsvWriter::~CsvWriter() {
   try {
     hand_over();
-  } catch (const Error&) {}  // said at the flush that was asked for, if at all
+  } catch (const Error&) {}  // Reported by an explicit flush, if at all.
 }
 
 CsvTable read_csv(const std::string& path) {
   CsvTable table;
   std::string text = read_file(path);
-  // a line without an end is one that its writer was killed in: what stands there may be half a number
+  // A last line without an end was cut off when its writer was killed, and may hold half a number.
   if (const std::size_t end = text.find_last_of('\n'); end != std::string::npos) text.resize(end + 1);
   for (CsvRow& row : read_csv_text(text, path)) table.rows.push_back(std::move(row.cells));
   if (table.rows.empty()) fail("{}: is empty, must begin with a line of headers", path);

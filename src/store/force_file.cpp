@@ -7,7 +7,8 @@ namespace {
 constexpr std::size_t kColumns = 1 + 6 + 6 + 6 + 2;
 using Row = std::array<double, kColumns>;
 
-/// Rotations stand as rotation vectors: three numbers, no sign to choose, and a plot of them means something.
+/// Packs one row.  Rotations are written as rotation vectors: three numbers, without sign ambiguity, and
+/// plottable.
 Row flatten(const ForceRow& r) {
   const Vec3 handle = rotation_vector(r.handle.rotation), tool = rotation_vector(r.tool.rotation);
   Row row{};

@@ -18,7 +18,7 @@ std::vector<float> floats(const Points& points) {
   return {single.data(), single.data() + single.size()};
 }
 
-/// glTF's colours are linear: the sRGB transfer function (IEC 61966-2-1) undone.
+/// Inverts the sRGB transfer function (IEC 61966-2-1): glTF's colours are linear.
 double linear(std::uint8_t channel) {
   const double s = channel / 255.0;
   return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
@@ -36,14 +36,14 @@ Json material_of(const MovingSurface& s) {
   return out;
 }
 
-/// The document while it grows.
+/// Document under construction.
 struct Document {
   GlbBuffer buffer;
   Json meshes = Json::array(), materials = Json::array(), channels = Json::array(), samplers = Json::array();
-  /// Node 0 turns palpate's z up to glTF's y up; the surfaces are its children, in their order.
+  /// Node 0 turns palpate's z up to glTF's y up; the surfaces are its children, in order.
   Json nodes = Json::array(
       {Json::object({{"name", "z up"}, {"rotation", {-std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)}}})});
-  int times = -1;  ///< accessor of the keyframes; -1: nothing moves
+  int times = -1;  ///< Accessor of the keyframes; -1: nothing moves.
 
   void add(const MovingSurface& s);
   void animate(const char* path, int output) {
@@ -56,7 +56,7 @@ struct Document {
   void animate_poses(const std::vector<Pose>& poses);
 };
 
-/// At keyframe k the weight of target k - 1 is one and all others are zero.
+/// Animates the morph weights: at keyframe k the weight of target k - 1 is one and all others are zero.
 void Document::animate_weights(std::size_t targets) {
   std::vector<float> weights((targets + 1) * targets, 0.0f);
   for (std::size_t k = 1; k <= targets; ++k) weights[k * targets + k - 1] = 1.0f;
@@ -68,7 +68,7 @@ void Document::animate_poses(const std::vector<Pose>& poses) {
   Quat before = poses.front().rotation;
   for (const Pose& pose : poses) {
     Quat q = pose.rotation.normalized();
-    if (q.dot(before) < 0.0) q.coeffs() = -q.coeffs();  // else viewers take the long way round
+    if (q.dot(before) < 0.0) q.coeffs() = -q.coeffs();  // Shorter rotation between keyframes.
     before = q;
     for (int axis = 0; axis < 3; ++axis) translations.push_back(static_cast<float>(pose.translation[axis]));
     for (int i = 0; i < 4; ++i) rotations.push_back(static_cast<float>(q.coeffs()[i]));  // x y z w
@@ -127,7 +127,7 @@ void append_word(std::string& out, std::size_t value) {
   out.append(reinterpret_cast<const char*>(&word), sizeof word);
 }
 
-/// Header and two chunks, each of a whole number of words: JSON filled up with spaces, bytes with zeros.
+/// Assembles the header and two chunks of whole words: JSON padded with spaces, bytes with zeros.
 std::string packed(std::string json, const std::string& bytes) {
   constexpr std::size_t kMagic = 0x46546C67, kVersion = 2, kJson = 0x4E4F534A, kBinary = 0x004E4942;
   json.resize((json.size() + 3) / 4 * 4, ' ');

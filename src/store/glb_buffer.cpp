@@ -8,7 +8,7 @@ namespace palpate::store {
 
 int GlbBuffer::add_accessor(const void* data, std::size_t size, int component, int width, std::size_t count,
                             int target) {
-  // every component has 4 bytes, so views that follow one another are aligned as glTF demands
+  // Every component has 4 bytes, so consecutive views are aligned as glTF requires.
   PALPATE_CHECK(count > 0 && size % 4 == 0 && bytes_.size() % 4 == 0, "{} values in {} bytes", count, size);
   Json view = {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}};
   if (target != kNoTarget) view["target"] = target;

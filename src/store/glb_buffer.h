@@ -5,19 +5,21 @@
 
 namespace palpate::store {
 
-/// The binary chunk of a glTF file with the views and accessors into it.
+/// Binary chunk of a glTF file with its views and accessors.
 class GlbBuffer {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Numbers of glTF and of the OpenGL that it is named after.
+  /// Constants of glTF, equal to OpenGL's enumerants.
   static constexpr int kFloat = 5126, kUnsignedInt = 5125;
   static constexpr int kVertices = 34962, kIndices = 34963, kNoTarget = 0;
 
+  /// Appends values as a new view and accessor.
   /// @param width  1: SCALAR, 3: VEC3, 4: VEC4
-  /// @param bounded  states the least and the greatest value of each component, which glTF demands of
-  ///   positions and keyframe times
-  /// @return number of the accessor
+  /// @param target  kVertices, kIndices or kNoTarget
+  /// @param bounded  stores minimum and maximum of each component, which glTF requires for positions and
+  ///   keyframe times
+  /// @return index of the accessor
   int add(const std::vector<float>& values, int width, int target, bool bounded);
   int add_indices(const std::vector<std::uint32_t>& values);
 

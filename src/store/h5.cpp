@@ -7,8 +7,8 @@
 namespace palpate::store::h5 {
 namespace {
 
-/// After a write that failed (a full disk), HDF5's own clean-up at exit crashes; every handle here has an
-/// owner that closes it, so it is not needed. Must come before any other call of HDF5.
+/// Disables HDF5's clean-up at exit, which crashes after a failed write (a full disk).  It is not needed,
+/// because every handle here has an owner that closes it.  Must precede any other call of HDF5.
 [[maybe_unused]] const herr_t kNoCleanUpAtExit = H5dont_atexit();
 
 herr_t take_description(unsigned n, const H5E_error2_t* error, void* out) {
@@ -16,12 +16,12 @@ herr_t take_description(unsigned n, const H5E_error2_t* error, void* out) {
   return 0;
 }
 
-/// HDF5's error message nearest to the cause.
+/// Returns HDF5's error message nearest to the cause.
 std::string reason() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_description, &text);
   H5Eclear2(H5E_DEFAULT);
-  const std::string quote = "error message = '";  // in a description of several lines, with addresses
+  const std::string quote = "error message = '";  // In a description of several lines, with addresses.
   if (const std::size_t at = text.find(quote); at != std::string::npos) {
     text.erase(0, at + quote.size());
     text.resize(std::min(text.size(), text.find('\'')));
@@ -34,8 +34,8 @@ herr_t look_for_lock(unsigned, const H5E_error2_t* error, void* found) {
   return 0;
 }
 
-/// Whether the last call failed at the lock of another process.  errno does not tell: HDF5 1.14 (Debian 13)
-/// looks for the file elsewhere afterwards, and leaves ENOENT.
+/// Whether the last call failed at the lock of another process.  errno is no indication: HDF5 1.14 (Debian
+/// 13) searches for the file elsewhere afterwards, and leaves ENOENT.
 bool failed_at_lock() {
   bool found = false;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, look_for_lock, &found);
@@ -47,7 +47,8 @@ Id space_of(const std::vector<hsize_t>& shape) {
   return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose};
 }
 
-/// A string of fixed length, as VTK wants its attributes; H5T_STR_NULLPAD needs one byte at least.
+/// Returns a string type of fixed length, as VTK requires for attributes; H5T_STR_NULLPAD needs at least one
+/// byte.
 Id text_type(std::size_t size) {
   Id type{H5Tcopy(H5T_C_S1), H5Tclose};
   H5Tset_size(type, size == 0 ? 1 : size);
@@ -56,14 +57,15 @@ Id text_type(std::size_t size) {
   return type;
 }
 
-/// File locks fail on some network folders, and a lock is not what keeps our files whole.
+/// Returns access properties with optional locking: file locks fail on some network folders, and the files
+/// stay consistent without them.
 Id access_without_need_of_locks() {
   Id access{H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
   H5Pset_file_locking(access, true, true);
   return access;
 }
 
-/// Without the time of day, so that equal content gives equal bytes.
+/// Returns creation properties without time stamps, so that equal content gives equal bytes.
 Id created_without_time(hid_t kind) {
   Id creation{H5Pcreate(kind), H5Pclose};
   H5Pset_obj_track_times(creation, false);
@@ -166,12 +168,12 @@ void write_attribute_text(hid_t object, const std::string& name, const std::stri
 
 namespace {
 
-/// Sizes in a damaged file may be anything: before memory is taken for them, they are held against the bytes
-/// that are there.
+/// Checks sizes against the bytes in the file before memory is allocated for them: a damaged file may hold
+/// any size.
 void check_room(const Opened& set, std::size_t size_of_one, H5T_class_t type_class, hid_t parent,
                 const std::string& name, const std::string& path) {
   constexpr std::size_t kLargestNumber = 16;
-  constexpr double kMostCompressed = 1100;  // deflate reaches 1032
+  constexpr double kMostCompressed = 1100;  // Deflate reaches 1032.
   if (type_class != H5T_STRING && size_of_one > kLargestNumber)
     fail("{}: \"{}\" has numbers of {} bytes; the file is damaged", path, name, size_of_one);
   double bytes = static_cast<double>(size_of_one);

@@ -5,12 +5,12 @@
 #include <utility>
 #include <vector>
 
-/// The few functions of HDF5 that palpate uses, with owners that close and errors that say which file and
-/// what failed.
+/// Functions of HDF5 that palpate uses, with RAII owners, and errors that contain the file and the failed
+/// operation.
 namespace palpate::store::h5 {
 
-/// HDF5 prints its errors on standard error by default; while an object of this class lives, it does not, and
-/// palpate reports them.
+/// Scope in which HDF5 does not print its errors on standard error, as it does by default; palpate reports
+/// them instead.
 class Quiet {
  public:
   Quiet();
@@ -23,8 +23,8 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-/// Owns one HDF5 identifier.  Closing it may write, and fail on a full disk: whoever must know flushes
-/// before.
+/// Owner of one HDF5 identifier.  Closing it may write, and fail on a full disk: flush first where such a
+/// failure must be detected.
 class Id {
  public:
   using Close = herr_t (*)(hid_t);
@@ -48,19 +48,20 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// throw Error `PATH: what: HDF5's own words`.
+/// Throws Error `PATH: what: HDF5's message`.
 [[noreturn]] void fail_at(const std::string& path, const std::string& what);
-/// Passes a good identifier or status through; else fail_at.
+/// Returns a valid identifier or status unchanged; otherwise calls fail_at.
 hid_t check(hid_t id, const std::string& path, const std::string& what);
 
+/// Creates a file, replacing an existing one.
 Id create_file(const std::string& path);
-Id open_file(const std::string& path);  ///< for reading
-/// A file that lives in memory; `path` is its name in messages.  Its bytes, once all is written, are image().
+Id open_file(const std::string& path);  ///< Opens for reading.
+/// Creates a file in memory; `path` is its name in messages.  image() returns its bytes when all is written.
 Id create_in_memory(const std::string& path);
 std::string image(hid_t file, const std::string& path);
 Id create_group(hid_t parent, const std::string& name, const std::string& path);
 
-/// A data set written once, without the time of day.  `type` is the type in memory and in the file.
+/// Writes a data set at once, without time stamps.  `type` is the type in memory and in the file.
 void write(hid_t parent, const std::string& name, hid_t type, const std::vector<hsize_t>& shape,
            const void* data, const std::string& path);
 void write_text(hid_t parent, const std::string& name, const std::string& text, const std::string& path);
@@ -69,15 +70,16 @@ void write_attribute(hid_t object, const std::string& name, hid_t type, const st
 void write_attribute_text(hid_t object, const std::string& name, const std::string& text,
                           const std::string& path);
 
-/// A data set opened for reading, checked for its class of type and number of dimensions.
+/// Data set opened for reading, with checked type class and number of dimensions.
 struct Opened {
   Id id;
   std::vector<hsize_t> shape;
 };
 Opened open(hid_t parent, const std::string& name, H5T_class_t type_class, std::size_t rank,
             const std::string& path);
+/// Reads a whole data set; `out` must have room for it.
 void read(const Opened& data, const std::string& name, hid_t type, void* out, const std::string& path);
-/// Rows [first, first + count) of a data set.
+/// Reads rows [first, first + count) of a data set.
 void read_rows(const Opened& data, const std::string& name, hid_t type, hsize_t first, hsize_t count,
                void* out, const std::string& path);
 std::string read_text(hid_t parent, const std::string& name, const std::string& path);

@@ -9,7 +9,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int kMostNested = 64;
 
-/// A JSON parser's events, checked as they come.
+/// Checks each parser event: nesting depth and size of whole numbers.
 bool check(int depth, Json::parse_event_t event, const Json& value, const std::string& path) {
   if (depth > kMostNested) fail("{}: is no result of palpate: it nests deeper than {}", path, kMostNested);
   if (event != Json::parse_event_t::value || !value.is_number_integer()) return true;

@@ -10,7 +10,7 @@
 namespace palpate::store {
 namespace {
 
-/// The shape of a data set as rows x width, or a refusal.
+/// Returns the number of rows of a data set n x width, or throws Error.
 Eigen::Index rows_of(const h5::Opened& set, const char* name, hsize_t width, const std::string& path) {
   if (set.shape[1] != width)
     fail("{}: \"{}\" is {} x {}, must be n x {}", path, name, set.shape[0], set.shape[1], width);
@@ -23,7 +23,7 @@ Eigen::Index rows_of(const h5::Opened& set, const char* name, hsize_t width, con
 TetMesh mesh_in(const std::string& path) {
   const h5::Quiet quiet;
   const h5::Id file = h5::open_file(path);
-  // a file made by other means may lack it; one that says something else is something else
+  // Files made by other programs may lack the attribute; another value means another format.
   if (H5Aexists(file, "format") > 0)
     if (const std::string format = h5::read_attribute_text(file, "format", path);
         format != kMeshFormat && format != kModelFormat)

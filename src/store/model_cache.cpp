@@ -37,7 +37,7 @@ std::string name_of_cached(const std::string& path) {
   if (!file.is_absolute() || file.extension() != ".h5") return {};
   try {
     return file.parent_path() == cache_folder() / version() ? file.stem().string() : std::string();
-  } catch (const Error&) { return {}; }  // without a cache no file is one of it
+  } catch (const Error&) { return {}; }  // Without a cache no file belongs to it.
 }
 
 }  // namespace palpate::store

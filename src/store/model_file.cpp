@@ -9,7 +9,7 @@
 namespace palpate::store {
 namespace {
 
-/// The file while it is being made, in memory.
+/// Model file under construction, in memory.
 struct ModelWriter {
   std::string path;
 

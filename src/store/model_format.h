@@ -2,7 +2,7 @@
 
 namespace palpate::store {
 
-/// Value of the attribute `format` at the root of each kind of file.
+/// Values of the attribute `format` at the root of mesh and model files.
 inline constexpr const char* kMeshFormat = "palpate tetrahedra 1";
 inline constexpr const char* kModelFormat = "palpate model 1";
 

@@ -14,7 +14,7 @@
 namespace palpate::store {
 namespace {
 
-/// One group of the file; every error message names `FILE: "GROUP/NAME"`.
+/// Group of the file; error messages begin with `FILE: "GROUP/NAME"`.
 class Group {
  public:
   Group(hid_t file, const char* name, const std::string& path) : name_(name), path_(path) {
@@ -26,7 +26,7 @@ class Group {
   explicit operator bool() const { return id_ >= 0; }
   std::string full(const char* name) const { return fmt::format("{}: \"{}/{}\"", path_, name_, name); }
 
-  /// Rows x width; as many rows as wanted, or any number where that is below zero.
+  /// Reads a matrix of `rows` x width; any number of rows where `rows` is negative.
   template <class Matrix>
   Matrix matrix(const char* name, Eigen::Index width, Eigen::Index rows = -1) const {
     constexpr bool real = std::is_same_v<typename Matrix::Scalar, double>;
@@ -61,7 +61,7 @@ class Group {
     }
     return out;
   }
-  /// Offsets that divide `total` entries into `parts`.
+  /// Reads offsets that divide `total` entries into `parts`.
   std::vector<int> offsets(const char* name, Eigen::Index parts, Eigen::Index total) const {
     const std::vector<int> out = column<int>(name, parts + 1);
     if (out.front() != 0 || out.back() != total || !std::is_sorted(out.begin(), out.end()))
@@ -101,7 +101,7 @@ void read_skin(hid_t file, const std::string& path, LayeredModel& model) {
   for (const int tet : model.embedding.tet) embedding.within("tet", tet, 0, model.tets.tets.cols());
   model.embedding.weights =
       embedding.matrix<Eigen::Matrix<double, 4, Eigen::Dynamic>>("weights", 4, model.skin.vertices.cols());
-  // a vertex far outside has large weights, whose sum rounds accordingly
+  // A vertex far outside has large weights, so their sum has a larger rounding error.
   for (Eigen::Index i = 0; i < model.embedding.weights.cols(); ++i)
     if (const double sum = model.embedding.weights.col(i).sum();
         std::abs(sum - 1.0) > 1e-9 * (1.0 + model.embedding.weights.col(i).cwiseAbs().sum()))
@@ -119,7 +119,7 @@ void read_skeleton(hid_t file, const std::string& path, LayeredModel& model) {
                             tail_radii = group.column<double>("tail_radius", count);
   for (std::size_t b = 0; b < names.size(); ++b) {
     const auto at = static_cast<Eigen::Index>(b);
-    group.within("parent", parents[b], -1, at);  // parents stand before their children
+    group.within("parent", parents[b], -1, at);  // Parents precede their children.
     if (!(head_radii[b] > 0 && tail_radii[b] > 0))
       fail("{}: bone \"{}\" has radii {} and {} m, must be positive", path, names[b], head_radii[b],
            tail_radii[b]);

@@ -19,9 +19,9 @@ namespace palpate::store {
 namespace fs = std::filesystem;
 namespace {
 
-/// The process that has locked a folder, by the kernel's list (proc(5), /proc/locks):
+/// Returns the process that holds the lock of a folder, from the kernel's list (proc(5), /proc/locks):
 ///   1: FLOCK  ADVISORY  WRITE 1234 fe:00:131074 0 EOF        device as major:minor in hexadecimal, inode
-/// 0: not to be found, as for a process of another container.
+/// 0 if unknown, as for a process of another container.
 long owner_of_lock(int folder) {
   struct stat status {};
   if (::fstat(folder, &status) != 0) return 0;
@@ -38,7 +38,7 @@ long owner_of_lock(int folder) {
   return 0;
 }
 
-/// The command line of a process, for people.
+/// Returns the command line of a process, for messages.
 std::string command_of(long process) {
   std::ifstream in(fmt::format("/proc/{}/cmdline", process), std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};

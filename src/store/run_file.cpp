@@ -11,7 +11,7 @@
 #include "palpate/store/xdmf.h"
 #include "store/series.h"
 
-// VTKHDF, UnstructuredGrid, temporal, as its reader takes it apart (offsets in rows):
+// Layout of VTKHDF, UnstructuredGrid, temporal, as its reader interprets it (offsets in rows):
 //   points of step s   Points[PointOffsets[s] ... + NumberOfPoints[PartOffsets[s]]]
 //   cells of step s    Offsets[CellOffsets[s] + PartOffsets[s] ... + NumberOfCells + 1]
 //                      Connectivity[ConnectivityIdOffsets[s] ...]
@@ -24,11 +24,11 @@ namespace palpate::store {
 namespace {
 constexpr std::uint8_t kVtkTriangle = 5, kVtkTetra = 10;
 
-/// The cells of all parts as one grid.
+/// Cells of all parts as one grid.
 struct GridCells {
   std::vector<std::int64_t> connectivity, offsets{0};
   std::vector<std::uint8_t> types;
-  std::vector<std::int32_t> body;  ///< which part a cell belongs to
+  std::vector<std::int32_t> body;  ///< Index of the part of each cell.
   void add(const auto& columns, std::uint8_t type, std::int64_t first_point, int part) {
     for (Eigen::Index c = 0; c < columns.cols(); ++c) {
       for (Eigen::Index r = 0; r < columns.rows(); ++r) connectivity.push_back(first_point + columns(r, c));
@@ -60,7 +60,7 @@ struct RunFile::Impl {
   hsize_t capacity = 1;
   std::int64_t steps = 0;
   ContentHash content;
-  /// series with one row a step: time, zeros, offsets; and those with one row a point and step
+  /// Series with one row per step: time, zeros, offsets; and fields with one row per point and step.
   std::vector<Series> values, zeros, offsets, fields;
 
   void write_cells(const std::vector<RunPart>& parts);
@@ -95,8 +95,7 @@ void RunFile::Impl::write_cells(const std::vector<RunPart>& parts) {
   h5::write(data, "body", H5T_NATIVE_INT32, {cells.body.size()}, cells.body.data(), path);
 }
 
-/// Writes what VTK need not know beside its group, where its format leaves room: the scene, and which points
-/// and cells belong to which part.
+/// Writes data outside the VTKHDF group, which VTK ignores: the scene, and the points and cells of each part.
 void RunFile::Impl::write_scene(const std::vector<RunPart>& parts, const RunInfo& info) {
   const h5::Id group = h5::create_group(file, "palpate", path);
   h5::write_attribute_text(group, "version", info.version, path);
@@ -162,7 +161,8 @@ RunFile::RunFile(const std::string& path, const std::vector<RunPart>& parts, con
     n += part.reference.cols();
   }
   std::error_code ignored;
-  std::filesystem::remove(xdmf_path(path), ignored);  // of an earlier run, it would pass for this one's
+  // A sidecar of an earlier run would be taken for this one's.
+  std::filesystem::remove(xdmf_path(path), ignored);
   d.file = h5::create_file(path);
   d.root = h5::create_group(d.file, "VTKHDF", path);
   const std::int64_t version[2] = {2, 0}, none = 0;
@@ -238,7 +238,7 @@ void RunFile::append(double time_s, const Points& points, const Points& velocity
   d.fields[3].write(step, stress.data());
   h5::check(H5Fflush(d.file, H5F_SCOPE_LOCAL), d.path, "cannot be flushed; is the disk full?");
 
-  // the commit: until this number is in the file, the step does not count
+  // Commits the step: readers ignore it until this number is in the file.
   const std::int64_t done = d.steps + 1;
   h5::check(H5Awrite(d.n_steps, H5T_NATIVE_INT64, &done), d.path, "cannot write NSteps");
   h5::check(H5Fflush(d.file, H5F_SCOPE_LOCAL), d.path, "cannot be flushed; is the disk full?");
@@ -269,7 +269,7 @@ RunFile::~RunFile() {
   if (!impl_) return;
   try {
     close();
-  } catch (const std::exception&) {  // what was committed is in the file; a destructor cannot report errors
+  } catch (const std::exception&) {  // Committed steps are in the file; a destructor cannot report errors.
   }
 }
 

@@ -8,7 +8,7 @@
 namespace palpate::store {
 namespace {
 
-/// A 2-d data set as a matrix whose columns are its rows.
+/// Reads a 2-d data set as a matrix whose columns are the rows of the data set.
 template <class Matrix>
 Matrix read_columns(hid_t parent, const char* name, H5T_class_t type_class, hid_t type,
                     const std::string& path) {
@@ -69,7 +69,7 @@ void RunReader::Impl::read_parts(hid_t group) {
   }
 }
 
-/// Only NSteps counts: an unfinished file has room behind it.
+/// Reads the times of NSteps steps: an unfinished file has unused space behind them.
 void RunReader::Impl::read_steps() {
   const h5::Id steps = open_group(root, "Steps", path);
   const long long count = h5::read_attribute_integer(steps, "NSteps", path);
@@ -91,7 +91,7 @@ void RunReader::Impl::rows(const char* name, std::size_t rank, int step, double*
                 static_cast<hsize_t>(n), out, path);
 }
 
-/// The steps of a short run are all read, of a long one the first and the last.
+/// Reads all steps of a short run, and the first and last of a long one.
 void RunReader::read_through() const {
   constexpr double kMostNumbers = 1e7;
   const bool all = 10.0 * static_cast<double>(impl_->n) * steps() < kMostNumbers;

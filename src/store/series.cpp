@@ -6,7 +6,7 @@ namespace palpate::store {
 namespace {
 constexpr hsize_t kSmallChunkBytes = 16u << 10, kLargeChunkBytes = 4u << 20;
 
-/// Rows of a chunk: one step, unless steps are tiny (then several) or huge (then a part).
+/// Returns the rows of a chunk: one step, or several where steps are tiny, or a fraction where they are huge.
 hsize_t chunk_rows(hsize_t rows, hsize_t row_bytes, hsize_t capacity) {
   const hsize_t step_bytes = std::max<hsize_t>(1, rows * row_bytes);
   if (step_bytes > kLargeChunkBytes) return std::max<hsize_t>(1, kLargeChunkBytes / row_bytes);
@@ -28,8 +28,8 @@ Series::Series(hid_t parent, const std::string& name, hid_t type, hsize_t rows, 
   const h5::Id space{H5Screate_simple(static_cast<int>(size.size()), size.data(), most.data()), H5Sclose};
   const h5::Id creation{H5Pcreate(H5P_DATASET_CREATE), H5Pclose};
   H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
-  H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);  // the room is made now, and the file's index with it,
-  H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);    // but no byte of it is written: the file is sparse
+  H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);  // Allocates the space and the chunk index now,
+  H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);    // but writes no byte of it: the file is sparse.
   H5Pset_obj_track_times(creation, false);
   set_ = h5::Id{h5::check(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
                           path, "cannot make " + name),

@@ -3,16 +3,17 @@
 
 namespace palpate::store {
 
-/// A data set that holds the same number of rows for each step.  Its room is allocated in the file when it is
-/// reserved, so that writing a step touches nothing but that step's own bytes.
+/// Data set that holds the same number of rows for each step.  Its space is allocated in the file when it is
+/// reserved, so that writing a step touches only the bytes of that step.
 class Series {
  public:
-  /// @param rows  a step
+  /// Creates the data set with space for `capacity` steps.
+  /// @param rows  number of rows per step
   /// @param width  columns; 0: the data set has one dimension
   /// @param units  attribute, may be empty
   Series(hid_t parent, const std::string& name, hid_t type, hsize_t rows, hsize_t width, hsize_t capacity,
          const std::string& units, const std::string& path);
-  void write(hsize_t step, const void* data);  ///< rows x width values of the type; step < capacity
+  void write(hsize_t step, const void* data);  ///< rows x width values of the type; step < capacity.
   void resize(hsize_t capacity);
 
  private:

@@ -10,10 +10,10 @@
 namespace palpate::store {
 namespace {
 
-constexpr int kBusyMs = 20000;   ///< another program may be reading
-constexpr int kTextColumns = 9;  ///< before the numbers: key ... reason
+constexpr int kBusyMs = 20000;   ///< Another program may be reading.
+constexpr int kTextColumns = 9;  ///< Columns before the numbers: key ... reason.
 
-/// A prepared statement; indices of parameters from 1, of columns from 0, as SQLite counts.
+/// Prepared statement; parameter indices from 1, column indices from 0, as in SQLite.
 class Statement {
  public:
   Statement(sqlite3* db, const std::string& path, const std::string& sql) : db_(db), path_(path) {
@@ -33,7 +33,7 @@ class Statement {
   void bind_blob(int i, const std::string& bytes) {
     check(sqlite3_bind_blob64(statement_, i, bytes.data(), bytes.size(), SQLITE_TRANSIENT));
   }
-  /// True while there is a row.
+  /// Advances; returns whether one more row is available.
   bool step() {
     const int outcome = sqlite3_step(statement_);
     if (outcome != SQLITE_ROW && outcome != SQLITE_DONE) check(outcome);
@@ -87,7 +87,7 @@ struct StudyDb::Impl {
         path, why);
   }
 
-  /// The columns that the table has now, after the texts.
+  /// Returns the number columns that the table has, after the text columns.
   std::vector<std::string> found_columns() {
     Statement columns(db, path, "pragma table_info(run)");
     std::vector<std::string> out;

@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const SummaryValue& value) {
-  // the library writes NaN and infinity as null
+  // The library writes NaN and infinity as null.
   return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
@@ -86,7 +86,7 @@ std::string to_json(const Summary& s) {
                      {"figures", figures},
                      {"provenance", json_of(s.provenance)},
                      {"scene_source", s.scene_source}};
-  // a path need not be UTF-8; the file is
+  // A path need not be UTF-8, but the file must be.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -10,14 +10,14 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the PLY header says so");
 
-/// A comment ends where its line ends.
+/// Replaces control characters: a line break would end the comment.
 std::string one_line(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20) c = ' ';
   return text;
 }
 
-/// An OBJ name ends at the first space in many readers.
+/// Replaces blanks: in many readers an OBJ name ends at the first space.
 std::string one_word(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) <= 0x20) c = '_';
@@ -43,7 +43,7 @@ void append_bytes(std::string& out, auto value) {
 std::string obj_of(const std::vector<SurfaceState>& surfaces, const std::string& title) {
   std::string out = fmt::format("# {}\n# metres\n", one_line(title));
   const auto end = std::back_inserter(out);
-  Eigen::Index first = 1;  // OBJ counts from one, over all objects
+  Eigen::Index first = 1;  // OBJ indices count from one, over all objects.
   for (const SurfaceState& s : surfaces) {
     check(s);
     fmt::format_to(end, "o {}\n", one_word(s.name));

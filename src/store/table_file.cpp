@@ -16,7 +16,7 @@
 namespace palpate::store {
 namespace {
 
-/// Rows that reach the file at once.
+/// Number of rows that are written at a time.
 constexpr std::size_t kBatch = 256;
 
 std::string joined(const std::vector<std::string>& names) {
@@ -35,7 +35,7 @@ std::vector<std::string> split(const std::string& text) {
   return out;
 }
 
-/// A journal is words of 64 bits, all of it.
+/// Returns the hash of a journal, which consists of 64-bit words.
 ContentHash content_of_journal(const std::string& journal, std::int64_t bytes) {
   const std::string rows = read_file(journal);
   std::vector<double> words(static_cast<std::size_t>(bytes) / sizeof(double));
@@ -43,14 +43,14 @@ ContentHash content_of_journal(const std::string& journal, std::int64_t bytes) {
   return ContentHash().add_numbers(words);
 }
 
-/// Before anything is changed.
+/// Checks the journal before anything is changed.
 void check_journal(const std::string& journal, const TableFile::Journal& from) {
   if (from.bytes == 0) return;
   check_reaches(journal, from.bytes);
   check_content(journal, content_of_journal(journal, from.bytes), from.content);
 }
 
-/// Rows wait here for the next batch.
+/// Table with rows that wait for the next batch.
 struct Growing {
   h5::Id set;
   std::string name;
@@ -123,7 +123,7 @@ struct TableFile::Impl {
   void take_journal(const std::string& from, std::int64_t bytes);
 };
 
-/// Rows of a journal, each behind the number of its table, in its first bytes.
+/// Reads the journal's first bytes: rows, each preceded by the index of its table.
 void TableFile::Impl::take_journal(const std::string& from, std::int64_t bytes) {
   std::ifstream in(from, std::ios::binary);
   std::vector<double> row;
@@ -173,7 +173,7 @@ TableFile::Journal TableFile::place() {
 TableFile::~TableFile() {
   try {
     flush();
-  } catch (const Error&) {}  // said at the last flush that was asked for, if at all
+  } catch (const Error&) {}  // Reported by an explicit flush, if at all.
 }
 
 void TableFile::append(std::size_t number, std::span<const double> row) {

@@ -22,7 +22,7 @@ constexpr const char* type_name() {
   if constexpr (std::is_same_v<T, std::uint8_t>) return "UInt8";
 }
 
-/// An array in place: the number of its bytes, then these, as one piece of base64.
+/// Returns an inline array: its number of bytes, then the bytes, as one piece of base64.
 template <class T>
 std::string array(const char* name, int components, const T* data, std::size_t count) {
   const std::uint64_t size = count * sizeof(T);
@@ -35,7 +35,7 @@ std::string array(const char* name, int components, const T* data, std::size_t c
          "\n";
 }
 
-/// The points of some parts out of those of all.
+/// Returns the columns of the chosen parts.
 template <class Matrix>
 Matrix chosen(const RunReader& run, const std::vector<int>& parts, const Matrix& all) {
   Eigen::Index count = 0;
@@ -61,7 +61,7 @@ std::string stress_array(const RunReader& run, const std::vector<int>& parts, co
   return array("stress", 1, some.data(), static_cast<std::size_t>(some.size()));
 }
 
-/// The cells of some parts, as the file wants them.
+/// Cells of the chosen parts, in the layout of the file.
 struct PartCells {
   std::vector<std::int32_t> connectivity, offsets, part;
   std::vector<std::uint8_t> types;

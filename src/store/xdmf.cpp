@@ -10,7 +10,7 @@
 namespace palpate::store {
 namespace {
 
-/// A field at the points, as the run file has it.
+/// Field at the points, as stored in the run file.
 struct PointField {
   const char* name;
   const char* kind;  ///< XDMF's AttributeType
@@ -19,7 +19,7 @@ struct PointField {
 constexpr PointField kPointFields[] = {
     {"displacement", "Vector", 3}, {"velocity", "Vector", 3}, {"stress", "Scalar", 1}};
 
-/// Writes the XML of a run, a line at a time.
+/// Writes the XML of a run line by line.
 class Sidecar {
  public:
   Sidecar(const RunReader& run, const std::string& run_file) : run_(run), file_(escape_markup(run_file)) {
@@ -55,7 +55,7 @@ class Sidecar {
     long first_cell = 0;
     for (std::size_t i = 0; i < run_.parts().size(); ++i) {
       const RunPart& part = run_.parts()[i];
-      // a part is a body of tetrahedra or a surface of triangles
+      // A part is either a body of tetrahedra or a surface of triangles.
       if (part.tets.cols() > 0)
         add_grid(i, step, "Tetrahedron", "tets", 4, part.tets.cols(), first_cell);
       else if (part.faces.cols() > 0)
@@ -91,12 +91,13 @@ class Sidecar {
     line("</Grid>");
   }
 
-  /// Rows [first, first + count) of a data set with `rows` rows; one of one column has one dimension.
+  /// Adds rows [first, first + count) of a data set with `rows` rows; a single column means one dimension.
   ///
-  /// It is said twice.  Readers of XDMF 2 take a hyperslab's two children; those of XDMF 3 know none that
-  /// works, and take the text before them: FILE:DATA SET|start:stride:count:shape.  "Type" rather than
-  /// "ItemType" is what lets both pass: XDMF 2 takes either name, XDMF 3 knows only the second.  ParaView's
-  /// reader of XDMF 2 keeps the grid of the step before where this text is the same, so it must differ.
+  /// The selection is written twice.  Readers of XDMF 2 use a hyperslab's two children; in those of XDMF 3
+  /// that does not work, and they use the text before them: FILE:DATA SET|start:stride:count:shape.  The
+  /// attribute is "Type" instead of "ItemType" because both then accept it: XDMF 2 reads either name, XDMF 3
+  /// only the second. ParaView's reader of XDMF 2 reuses the grid of the previous step where this text is the
+  /// same, so it must differ.
   void add_slab(const std::string& data_set, const char* type, int precision, long first, long count,
                 int width, long rows) {
     const bool flat = width == 1;

@@ -5,66 +5,69 @@
 
 #include "palpate/core/types.h"
 
-/// A run on disk: one HDF5 file in VTKHDF form, version 2.0, UnstructuredGrid with a temporal Steps group.
-/// ParaView (5.12 or newer) opens it as a time series; h5py reads it.  The topology stands once, the points
-/// and their data once a step.  Older ParaViews open the sidecar that is written beside it (xdmf.h).
+/// Run files: one HDF5 file per run in VTKHDF form, version 2.0, UnstructuredGrid with a temporal Steps
+/// group. ParaView (5.12 or newer) opens it as a time series; h5py reads it.  The topology is stored once,
+/// points and point data once per step.  Older ParaViews open the XDMF sidecar written next to it (xdmf.h).
 namespace palpate::store {
 
-/// One object of a run: a soft body by its tetrahedra, or a tool by its triangles.
+/// Object of a run: a soft body given by tetrahedra, or a tool given by triangles.
 struct RunPart {
-  std::string name;  ///< of the object in the scene
-  Points reference;  ///< positions at the start, from which displacements are measured [m]
-  Tets tets;         ///< of a body; indices into its own points
-  Faces faces;       ///< of a tool
+  std::string name;  ///< Name of the object in the scene.
+  Points reference;  ///< Initial positions, the reference for displacements [m].
+  Tets tets;         ///< Tetrahedra of a body; indices into this part's points.
+  Faces faces;       ///< Triangles of a tool; indices into this part's points.
 };
 
-/// What a run says of itself.
+/// Description of a run, stored in its file.
 struct RunInfo {
-  std::string scene_name;    ///< as the scene calls itself
-  std::string scene_source;  ///< the effective TOML
-  std::string version;       ///< of palpate, with its commit
-  /// steps that the file has room for from the start: duration over period.  More can be appended, but a kill
-  /// at the very moment when the file grows (at each doubling) can damage it.
+  std::string scene_name;    ///< Name given in the scene.
+  std::string scene_source;  ///< Effective scene, as TOML.
+  std::string version;       ///< Version of palpate, with its commit.
+  /// Number of steps for which space is allocated at the start: duration over period.  More can be appended,
+  /// but a kill while the file grows (at each doubling) can damage it.
   int expected_steps = 100;
 };
 
-/// Writes a run.  A step is committed by one number, the attribute NSteps, after all else of it is in the
-/// file, and the room for the expected steps is made beforehand; so a process killed while it writes them
-/// leaves a readable file with every committed step.
+/// Writes a run.  A step is committed by one number, the attribute NSteps, after all its data are in the
+/// file, and the space for the expected steps is allocated beforehand; so a process killed while it writes
+/// them leaves a readable file with every committed step.
 class RunFile {
  public:
-  /// @param path  of the file, which is replaced  @param info  kept with it
-  /// @param parts  their points follow one another in this order  @throws Error when the file cannot be made
+  /// Creates the file.
+  /// @param path  file, which is replaced
+  /// @param info  stored with the run
+  /// @param parts  objects; their points are concatenated in this order
+  /// @throws Error when the file cannot be created
   RunFile(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info);
-  /// How far a file was written.
+  /// Progress of a file.
   struct Place {
-    int steps = 0;        ///< that are whole
-    std::string content;  ///< hash of their times, positions, velocities and stresses
+    int steps = 0;        ///< Number of complete steps.
+    std::string content;  ///< Hash of their times, positions, velocities and stresses.
   };
-  /// Where the file is now.
+  /// Returns the present progress.
   Place place() const;
-  /// Goes on with a run's file behind that place: the steps before are brought into a new file, which takes
-  /// the place of the old one.
-  /// @throws Error where the file cannot be read, has fewer steps, other ones than were written, or other
-  /// parts
+  /// Resumes a run's file at that place: copies the earlier steps into a new file, which then replaces the
+  /// old one.
+  /// @throws Error where the file cannot be read, has fewer steps, steps other than those written, or other
+  ///   parts
   static RunFile continued(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info,
                            const Place& place);
   ~RunFile();
-  /// Moved from, it may only be destroyed.
+  /// Moves the file; the source may only be destroyed.
   RunFile(RunFile&&) noexcept;
 
-  /// Appends one instant.
-  /// @param time_s  greater than the last one's
+  /// Appends one step.
+  /// @param time_s  time, greater than in the previous step [s]
   /// @param points, velocity  3 x point_count [m], [m/s]
-  /// @param stress  point_count, von Mises [Pa]; all finite
-  /// @throws Error when the disk refuses; the steps before stay readable
+  /// @param stress  von Mises stress, point_count entries [Pa]; all values must be finite
+  /// @throws Error when writing fails; earlier steps stay readable
   void append(double time_s, const Points& points, const Points& velocity, const VecX& stress);
-  /// Instants so far.
+  /// Returns the number of steps so far.
   int steps() const;
-  /// Points of all parts together.
+  /// Returns the total number of points of all parts.
   int point_count() const;
-  /// Releases room that was not needed, and writes the sidecar for older ParaViews.  Called by the destructor
-  /// too, which swallows errors.
+  /// Releases unused space, and writes the sidecar for older ParaViews.  The destructor calls it too, and
+  /// ignores errors.
   void close();
 
  private:
@@ -72,33 +75,33 @@ class RunFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a run back, finished or not.
+/// Reads a run file, finished or not.
 class RunReader {
  public:
-  explicit RunReader(const std::string& path);  ///< @throws Error when this is no run of ours
+  explicit RunReader(const std::string& path);  ///< @throws Error when the file is no run of palpate
   ~RunReader();
-  /// Moved from, it may only be destroyed.
+  /// Moves the reader; the source may only be destroyed.
   RunReader(RunReader&&) noexcept;
 
-  /// Complete instants in the file.
+  /// Returns the number of complete steps in the file.
   int steps() const;
-  /// Points of all parts together.
+  /// Returns the total number of points of all parts.
   int point_count() const;
-  /// Of each instant [s].
+  /// Returns the time of each step [s].
   const std::vector<double>& times_s() const;
-  /// What was kept with it.
+  /// Returns the description that was stored with the run.
   const RunInfo& info() const;
-  /// As they were given to RunFile.
+  /// Returns the parts as they were given to RunFile.
   const std::vector<RunPart>& parts() const;
-  int first_point(int part) const;  ///< where a part's points begin
+  int first_point(int part) const;  ///< Index of a part's first point.
 
-  /// Positions [m], 3 x point_count.
+  /// Returns the positions, 3 x point_count [m].
   Points points(int step) const;
-  /// From the reference positions [m], 3 x point_count.
+  /// Returns the displacements from the reference positions, 3 x point_count [m].
   Points displacement(int step) const;
-  /// [m/s], 3 x point_count.
+  /// Returns the velocities, 3 x point_count [m/s].
   Points velocity(int step) const;
-  /// Von Mises stress at the points [Pa].
+  /// Returns the von Mises stress at the points [Pa].
   VecX stress(int step) const;
 
  private:

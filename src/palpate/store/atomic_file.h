@@ -7,31 +7,33 @@
 
 namespace palpate::store {
 
-/// Writes a small file whole or not at all: a temporary file beside it, then a rename.
-/// A reader never sees half of it.
+/// Writes a small file completely or not at all: writes a temporary file in the same folder, then renames it.
+/// A reader never sees an incomplete file.
 void write_atomically(const std::string& path, std::string_view content);
 
-/// Whether write_atomically() would find a folder that takes a file of this name: for what is computed for
-/// long before it is written.  Leaves nothing behind.  @throws Error where it would not
+/// Checks that write_atomically() could create a file of this name, ahead of a long computation of its
+/// content.  Leaves nothing behind.  @throws Error where it could not
 void check_can_write(const std::string& path);
 
-/// As write_atomically(), and on the disk when it returns: a loss of power leaves the old file or the new
-/// one.
+/// Writes as write_atomically() does, and returns only when the content is on disk.  After a loss of power,
+/// the old or the new file is present.
 void write_durably(const std::string& path, std::string_view content);
 
-/// What was written to a file so far is on the disk when it returns.  @throws Error where the disk refuses
+/// Brings the data written to a file so far to the disk (fsync).  @throws Error where that fails
 void bring_to_disk(const std::string& path);
 
-/// @throws Error where a file that a run goes on with is not there, or has fewer bytes than at its checkpoint
+/// Checks a file that a run resumes.  @throws Error where it is missing, or shorter than at the checkpoint
 void check_reaches(const std::string& path, std::int64_t bytes);
-/// Cuts a file off behind so many bytes.  @throws Error where it is not there or shorter
+/// Truncates a file to that many bytes.  @throws Error where it is missing or shorter
 void cut_to(const std::string& path, std::int64_t bytes);
 
-/// For a run that goes on: @throws Error where a file does not hold what its run had written by the
-/// checkpoint
-/// @param found, written  of its content
+/// Checks that a file to be resumed contains the data that its run had written by the checkpoint.
+/// @param path  for messages
+/// @param found, written  hashes of the content now and at the checkpoint
+/// @throws Error where they differ
 void check_content(const std::string& path, const ContentHash& found, const std::string& written);
 
-std::string read_file(const std::string& path);  ///< @throws Error
+/// Returns the content of a file.  @throws Error where it cannot be read
+std::string read_file(const std::string& path);
 
 }  // namespace palpate::store

@@ -7,23 +7,23 @@
 
 namespace palpate::store {
 
-/// One bone at one recorded instant: where it is, and what the tissue exerts on it.
+/// State of one bone at one recorded time, with the load that tissue exerts on it.
 struct BoneRow {
-  double time_s = 0.0;
-  int bone = 0;  ///< in the order of the scene, from 0
-  Pose pose;
-  Twist twist;
-  Wrench from_tissue;  ///< moment about the bone's origin
+  double time_s = 0.0;  ///< [s]
+  int bone = 0;         ///< Index of the bone in the scene.
+  Pose pose;            ///< Pose of the bone in the world.
+  Twist twist;          ///< Velocity of the bone.
+  Wrench from_tissue;   ///< Load by tissue, moment about the bone's origin.
 };
 
-/// Headers of bones.csv, units included.
+/// Returns the headers of bones.csv, units included.
 const std::vector<std::string>& bone_headers();
 
-/// bones.csv, a line a bone and recorded instant.
+/// Writer of bones.csv, one line per bone and recorded time.
 class BoneFile {
  public:
   explicit BoneFile(const std::string& path) : csv_(path, bone_headers()) {}
-  /// Goes on with a file, as CsvWriter does.
+  /// Resumes a file, as CsvWriter does.
   BoneFile(const std::string& path, const CsvWriter::Place& place) : csv_(path, bone_headers(), place) {}
   CsvWriter::Place place() { return csv_.place(); }
   void append(const BoneRow& row);
@@ -33,6 +33,7 @@ class BoneFile {
   CsvWriter csv_;
 };
 
+/// Reads bones.csv.  @throws Error where the file is missing or malformed
 std::vector<BoneRow> read_bones(const std::string& path);
 
 }  // namespace palpate::store

@@ -3,15 +3,16 @@
 
 #include "palpate/mesh/mesh.h"
 
-/// The native mesh file (.h5): `nodes`, n x 3 doubles [m], and `tets`, m x 4 integers from 0, in one HDF5
-/// file. The tetrahedra of a model file (model_file.h) are read by the same function.
+/// Native mesh file (.h5): `nodes`, n x 3 doubles [m], and `tets`, m x 4 integers from 0, in one HDF5 file.
+/// read_mesh() also reads the tetrahedra of a model file (model_file.h).
 namespace palpate::store {
 
+/// Writes a mesh file.  @throws Error where it cannot be written
 void write_mesh(const std::string& path, const TetMesh& mesh);
 
-/// @throws Error with the file, the data set, and what was expected: wrong shape or type, an index out of
-///   range, a number that is not finite.
-/// Orientation and quality are the mesh part's to check.
+/// Reads the tetrahedra of a mesh or model file.  Orientation and quality are checked by the mesh part.
+/// @throws Error with the file, the data set and the expectation, for a wrong shape or type, an index out of
+///   range, a number that is not finite
 TetMesh read_mesh(const std::string& path);
 
 }  // namespace palpate::store

@@ -3,15 +3,16 @@
 
 namespace palpate::store {
 
-/// Scenes name models that palpate makes from formulas by "model:NAME" in place of a file.  They are made
-/// once and kept: in $PALPATE_MODELS, else $XDG_CACHE_HOME/palpate, else ~/.cache/palpate, by version.
+/// Cache of models that palpate generates from formulas, which scenes reference by "model:NAME" instead of a
+/// file. Folder: $PALPATE_MODELS, else $XDG_CACHE_HOME/palpate, else ~/.cache/palpate, each with a subfolder
+/// per version.
 
-/// "model:head": "head"; empty where the name is a file's.
+/// Returns the name from such a reference, "head" from "model:head"; empty where `file` is a file name.
 std::string model_of(const std::string& file);
-/// Where that model is kept, or will be.
-/// @throws Error where there is no home to keep it in
+/// Returns the path of that model in the cache, whether or not it exists yet.
+/// @throws Error where none of these folders is defined
 std::string cached_model(const std::string& name);
-/// The name of the model that is kept at that path, "head"; empty where the path is not one of the cache.
+/// Returns the name of the model cached at that path, "head"; empty where the path is outside the cache.
 std::string name_of_cached(const std::string& path);
 
 }  // namespace palpate::store

@@ -5,13 +5,13 @@
 
 namespace palpate::store {
 
-/// The triangles that a part of a run shows.
+/// Triangles by which a part of a run is displayed.
 struct PartSurface {
-  std::vector<int> node_of_vertex;  ///< which of the part's points each vertex is
-  Faces faces;                      ///< indices of vertices, counter-clockwise seen from outside
+  std::vector<int> node_of_vertex;  ///< Index of the part's point for each vertex.
+  Faces faces;                      ///< Vertex indices, counter-clockwise seen from outside.
 };
 
-/// The boundary of a body's tetrahedra, or a tool's triangles as they are.
+/// Returns the boundary of a body's tetrahedra, or a tool's triangles unchanged.
 PartSurface part_surface(const RunPart& part);
 
 }  // namespace palpate::store

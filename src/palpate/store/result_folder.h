@@ -4,18 +4,20 @@
 
 namespace palpate::store {
 
-/// A folder that a command writes its results into, and nobody else while it does: two runs into one folder
-/// would mix their files.  The lock (flock on the folder itself) goes with the process, however it ends, and
-/// leaves no file behind.  Where the file system has no locks, there is none.
+/// Output folder of a command, locked against other processes: two runs into one folder would mix their
+/// files. The lock (flock on the folder itself) ends with the process, however it ends, and leaves no file
+/// behind. File systems without locks are used without one.
 class ResultFolder {
  public:
   ResultFolder() = default;
-  /// kShared: others may share it, each writing files of its own, and nobody has it alone.
+  /// kShared: several processes may share the folder, each writing distinct files, and none can lock it
+  /// alone.
   enum class Access { kAlone, kShared };
-  /// Makes the folder where it is missing, and locks it.
-  /// @throws Error where it cannot be made or written, or another process has it: that one is named
+  /// Creates the folder where it is missing, and locks it.
+  /// @throws Error where it cannot be created or written, or where another process holds it; the message
+  ///   identifies that process
   explicit ResultFolder(const std::string& path, Access access = Access::kAlone);
-  /// Makes the folder, and takes no lock.  @throws Error where it cannot be made or written
+  /// Creates the folder, without a lock.  @throws Error where it cannot be created or written
   static void make(const std::string& path);
   ~ResultFolder();
   ResultFolder(ResultFolder&& other) noexcept : lock_(std::exchange(other.lock_, -1)) {}

@@ -2,13 +2,13 @@
 #include <string>
 #include <vector>
 
-/// Columns of the tables that a comparison leaves in its folder, units in their names.  compare writes them,
-/// followed by every other number of a run; report reads them.
+/// Columns of the tables in a comparison's folder; names carry units.  compare writes them, followed by all
+/// other numbers of a run; report reads them.
 namespace palpate::store {
 
-/// compare.csv: one line a point.
+/// Returns the columns of compare.csv: one line per point.
 const std::vector<std::string>& compare_columns();
-/// restarts.csv: what contact refreshes cost each integrator.
+/// Returns the columns of restarts.csv: cost of contact refreshes for each integrator.
 const std::vector<std::string>& restart_columns();
 
 }  // namespace palpate::store

@@ -8,32 +8,35 @@
 
 namespace palpate::store {
 
-/// A number that is not finite is written as null: JSON has no NaN.
+/// Value in a summary.  Numbers that are not finite are written as null: JSON has no NaN.
 using SummaryValue = std::variant<bool, long long, double, std::string, std::vector<double>>;
 
-/// A named group of figures; names carry units: {"timings", {{"total_s", 1.2}}}.
+/// Named group of figures; names carry units: {"timings", {{"total_s", 1.2}}}.
 struct SummarySection {
   std::string name;
   std::vector<std::pair<std::string, SummaryValue>> values;
 };
 
-/// summary.json: the command, scene, provenance and results of a run.
+/// Content of summary.json: command, scene, provenance and results of a run.
 struct Summary {
-  std::string command;  ///< as a person would type it again
+  std::string command;  ///< Command line that repeats the run.
   std::string scene;
   std::string scene_source;
   std::vector<std::string> overrides;
   std::string outcome = "finished";  ///< "finished", "interrupted", "failed"
-  std::string message;               ///< why not finished
-  std::vector<std::string> remarks;  ///< warnings and verdicts, as standard output had them
+  std::string message;               ///< Reason, where not finished.
+  std::vector<std::string> remarks;  ///< Warnings and verdicts, as on standard output.
   Provenance provenance;
-  std::vector<SummarySection> sections;  ///< options, counts, timings, errors, ...
+  std::vector<SummarySection> sections;  ///< Options, counts, timings, errors, ...
 
-  SummarySection& section(const std::string& name);  ///< made on first use
+  /// Returns the section of that name, created on first use.
+  SummarySection& section(const std::string& name);
 };
 
+/// Returns the summary as JSON.
 std::string to_json(const Summary& summary);
-void write_summary(const std::string& path, const Summary& summary);  ///< atomically
+void write_summary(const std::string& path, const Summary& summary);  ///< Writes atomically.
+/// Reads summary.json.  @throws Error where the file is missing or is no summary
 Summary read_summary(const std::string& path);
 
 }  // namespace palpate::store

@@ -7,34 +7,35 @@
 
 namespace palpate::store {
 
-/// A table's name and its columns; names carry units.
+/// Name of a table and its columns; names carry units.
 struct TableSpec {
   std::string name;
   std::vector<std::string> columns;
 };
 
-/// An HDF5 file of tables that grow by rows of doubles, each a data set (rows, columns) with the attribute
-/// "columns".  What was flushed is whole, whatever happens to the process later.
+/// HDF5 file of tables that grow by rows of doubles; each is a data set (rows, columns) with the attribute
+/// "columns".  Flushed rows are complete, whatever happens to the process later.
 class TableFile {
  public:
-  /// @throws Error when the file cannot be made
+  /// Creates the file.  @throws Error when that fails
   TableFile(const std::string& path, const std::vector<TableSpec>& tables);
 
-  /// With a journal, PATH.rows: every row stands there too, one behind the other.  A kill while HDF5 changes
-  /// its file can leave that unreadable; a journal that was cut off is whole up to there, and the file is
-  /// made anew from it.
+  /// Position in the journal, PATH.rows, which holds every row in order of writing.  A kill while HDF5
+  /// changes its file can make that file unreadable; a truncated journal is valid up to its end, and the file
+  /// is rebuilt from it.
   struct Journal {
-    std::int64_t bytes = 0;  ///< of the journal so far; 0: from the start
-    std::string content;     ///< hash of these bytes
+    std::int64_t bytes = 0;  ///< Size of the journal; 0: start anew.
+    std::string content;     ///< Hash of these bytes.
   };
-  /// @param from  where rows go on: those before are taken from the journal, what is behind is cut off
-  /// @throws Error where the journal does not reach to there, or is not what was written
+  /// Opens the file with a journal.
+  /// @param from  place to resume at: earlier rows are restored from the journal, later ones discarded
+  /// @throws Error where the journal is shorter, or differs from the data written
   TableFile(const std::string& path, const std::vector<TableSpec>& tables, const Journal& from);
-  /// Flushes both.  @throws Error when the disk refuses
+  /// Flushes file and journal, and returns the position.  @throws Error when writing fails
   Journal place();
   static std::string journal_path(const std::string& path) { return path + ".rows"; }
   ~TableFile();
-  /// @param table  its number in the list  @throws Error when the disk refuses
+  /// Appends one row.  @param table  index in the list of tables  @throws Error when writing fails
   void append(std::size_t table, std::span<const double> row);
   void flush();
 
@@ -43,7 +44,7 @@ class TableFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A table as read: row-major.
+/// Content of a table, row-major.
 struct Table {
   std::vector<std::string> columns;
   std::vector<double> values;
@@ -53,7 +54,7 @@ struct Table {
   }
 };
 
-/// @throws Error for a file without it
+/// Reads a table.  @throws Error where the file has none of that name
 Table read_table(const std::string& path, const std::string& name);
 
 }  // namespace palpate::store
