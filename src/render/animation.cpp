@@ -19,7 +19,7 @@ namespace palpate::render {
 namespace {
 
 constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
-constexpr long kCountAt = 8 + 25;  ///< where acTL begins: behind the signature and IHDR
+constexpr long kCountAt = 8 + 25;  ///< Position of acTL: behind the signature and IHDR.
 constexpr std::size_t kChannels = 4;
 
 void put_16(std::string& out, std::uint32_t value) {
@@ -35,7 +35,7 @@ bool same_pixel(const Picture& a, const Picture& b, int x, int y) {
   return std::memcmp(a.pixel(x, y), b.pixel(x, y), kChannels) == 0;
 }
 
-/// Around all pixels that differ; one pixel where none does.
+/// Returns the bounding rectangle of all pixels that differ; one pixel where none does.
 Rectangle difference(const Picture& a, const Picture& b) {
   int left = a.width, right = -1, top = a.height, bottom = -1;
   for (int y = 0; y < a.height; ++y)
@@ -52,7 +52,7 @@ std::uint8_t paeth(int left, int up, int corner) {
   return static_cast<std::uint8_t>(a <= b && a <= c ? left : b <= c ? up : corner);
 }
 
-/// A row under one of PNG's five filters.  @param above  the row above, or zeros
+/// Filters one row by one of PNG's five filters.  @param above  preceding row, or zeros
 void filter(const std::uint8_t* row, const std::uint8_t* above, std::size_t bytes, int kind,
             std::uint8_t* out) {
   for (std::size_t i = 0; i < bytes; ++i) {
@@ -67,7 +67,7 @@ void filter(const std::uint8_t* row, const std::uint8_t* above, std::size_t byte
   }
 }
 
-/// Each row under the filter that leaves the least sum of magnitudes, its number before it.
+/// Filters each row by the filter with the least sum of magnitudes, and puts the filter's number before it.
 std::string filtered(const std::vector<std::uint8_t>& pixels, std::size_t row_bytes, std::size_t rows) {
   std::string out;
   out.reserve(rows * (row_bytes + 1));
@@ -104,7 +104,8 @@ std::string deflated(const std::string& bytes) {
   return out;
 }
 
-/// The rectangle of the picture as PNG's compressed rows; what `shown` holds already is transparent there.
+/// Returns a rectangle of the picture as PNG's compressed rows; pixels equal to those of `shown` are
+/// transparent.
 std::string encoded(const Picture& picture, const std::optional<Picture>& shown, const Rectangle& r) {
   const std::size_t row_bytes = kChannels * static_cast<std::size_t>(r.width);
   std::vector<std::uint8_t> pixels(row_bytes * static_cast<std::size_t>(r.height), 0);
@@ -129,8 +130,8 @@ struct AnimationWriter::Impl {
   std::filesystem::path path;
   Fraction delay;
   std::FILE* file = nullptr;
-  std::optional<Picture> shown;            ///< the picture before
-  std::uint32_t pictures = 0, number = 0;  ///< number: of the next fcTL or fdAT
+  std::optional<Picture> shown;            ///< Previous picture.
+  std::uint32_t pictures = 0, number = 0;  ///< number: sequence number of the next fcTL or fdAT.
 
   ~Impl() {
     if (file) std::fclose(file);
@@ -158,7 +159,8 @@ struct AnimationWriter::Impl {
     std::string header;
     put_32(header, static_cast<std::uint32_t>(first.width));
     put_32(header, static_cast<std::uint32_t>(first.height));
-    header += {8, 6, 0, 0, 0};  // bits a channel; RGBA; the only compression and filters; no interlacing
+    // 8 bits per channel; RGBA; default compression and filter methods; no interlacing.
+    header += {8, 6, 0, 0, 0};
     chunk("IHDR", header);
     write_count();
   }
@@ -166,7 +168,7 @@ struct AnimationWriter::Impl {
   void write_count() {
     std::string count;
     put_32(count, pictures);
-    put_32(count, 0);  // plays, for ever
+    put_32(count, 0);  // Number of plays: endless.
     chunk("acTL", count);
   }
 
@@ -176,7 +178,8 @@ struct AnimationWriter::Impl {
     for (const int side : {r.width, r.height, r.x, r.y}) put_32(control, static_cast<std::uint32_t>(side));
     put_16(control, static_cast<std::uint32_t>(delay.numerator));
     put_16(control, static_cast<std::uint32_t>(delay.denominator));
-    control += {0, static_cast<char>(shown ? 1 : 0)};  // stays; over what is there, the first instead of it
+    // Dispose: none; blend: over the previous frame, or source for the first.
+    control += {0, static_cast<char>(shown ? 1 : 0)};
     chunk("fcTL", control);
   }
 };

@@ -13,7 +13,7 @@ namespace {
 double to_linear(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
 double to_screen(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; }
 
-// of the inverse's table: less than half a screen step everywhere, zero included
+// Size of the inverse's table: error less than half a screen step everywhere, zero included.
 constexpr int kSteps = 8192;
 
 struct Tables {

@@ -3,9 +3,9 @@
 
 namespace palpate::render {
 
-/// The mean of each square of `samples` x `samples` pixels,
-/// taken in linear light (a mean of screen values darkens edges).
-/// @param rgba  (samples width) x (samples height) pixels, rows from below as OpenGL gives them
+/// Averages each square of `samples` x `samples` pixels in linear light (averaging screen values darkens
+/// edges).
+/// @param rgba  (samples width) x (samples height) pixels, rows from bottom to top as OpenGL returns them
 Picture average(const std::vector<std::uint8_t>& rgba, int width, int height, int samples);
 
 }  // namespace palpate::render

@@ -12,7 +12,8 @@ Mat3 camera_axes(const Vec3& backwards, const Vec3& up) {
   Mat3 axes;
   axes.col(2) = backwards.normalized();
   Vec3 right = up.cross(axes.col(2));
-  if (right.norm() < 1e-9) right = Vec3::UnitY().cross(axes.col(2));  // looking straight along `up`
+  // The line of sight is parallel to `up`.
+  if (right.norm() < 1e-9) right = Vec3::UnitY().cross(axes.col(2));
   if (right.norm() < 1e-9) right = Vec3::UnitX();
   axes.col(0) = right.normalized();
   axes.col(1) = axes.col(2).cross(axes.col(0));
@@ -26,11 +27,12 @@ Vec3 backwards_of(const View& view) {
           std::sin(elevation)};
 }
 
-// In the axes of the camera about the middle of the points, with its target at (cx, cy, 0) and the eye a
-// distance d behind, a point p appears at x = (px - cx) / ((d - pz) t), t the tangent of half the image's
-// angle.  |x| <= 1 for all points means px + t pz - cx <= t d and -px + t pz + cx <= t d: with R and L the
-// maxima of px + t pz and -px + t pz, the nearest eye has d = (R + L) / (2 t) at cx = (R - L) / 2.  Likewise
-// upwards; the larger d serves both. Margins shrink t, and shift the image by their difference.
+// In camera axes about the middle of the points, with its target at (cx, cy, 0) and the eye a distance d
+// behind, a point p appears at x = (px - cx) / ((d - pz) t), where t is the tangent of half the image's
+// angle. |x| <= 1 for all points means px + t pz - cx <= t d and -px + t pz + cx <= t d: with R and L the
+// maxima of px + t pz and -px + t pz, the nearest eye has d = (R + L) / (2 t) at cx = (R - L) / 2.  The
+// vertical direction is analogous; the larger d serves both.  Margins shrink t, and shift the image by their
+// difference.
 Camera framed(const Points& points, const View& view, double aspect, const Margins& margins) {
   PALPATE_CHECK(points.cols() > 0 && points.allFinite(), "{} points to frame", points.cols());
   const double degree = std::numbers::pi / 180.0;
@@ -64,7 +66,7 @@ Camera framed(const Points& points, const View& view, double aspect, const Margi
   camera.target = middle + axes * centre;
   camera.eye = middle + axes * (centre + Vec3(0, 0, distance));
   camera.near = std::max(0.5 * (distance - front), 1e-3 * distance);
-  camera.far = distance - behind + 40.0 * depth;  // the ground goes on behind the scene
+  camera.far = distance - behind + 40.0 * depth;  // The ground extends behind the scene.
   return camera;
 }
 

@@ -3,10 +3,10 @@
 
 namespace palpate::render {
 
-/// Columns: right, up, backwards (from the scene to the eye).
+/// Returns the camera axes; columns: right, up, backwards (from the scene to the eye).
 Mat3 camera_axes(const Vec3& backwards, const Vec3& up);
 
-/// From the scene to the eye; of length one.
+/// Returns the unit vector from the scene to the eye.
 Vec3 backwards_of(const View& view);
 
 }  // namespace palpate::render

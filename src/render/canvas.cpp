@@ -6,7 +6,7 @@
 
 namespace palpate::render {
 
-// cairo keeps a pixel as one native 32-bit word, 0xXXRRGGBB.
+// cairo stores a pixel as one native 32-bit word, 0xXXRRGGBB.
 Canvas::Canvas(const Picture& picture)
     : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width, picture.height)) {
   PALPATE_CHECK(cairo_surface_status(surface_) == CAIRO_STATUS_SUCCESS, "cairo: {}",
@@ -22,7 +22,7 @@ Canvas::Canvas(const Picture& picture)
     }
   cairo_surface_mark_dirty(surface_);
   pen_ = cairo_create(surface_);
-  // Glyphs are to be the same on every machine: grey antialiasing, no hinting to a screen's pixels.
+  // Glyphs must be equal on every machine: grey antialiasing, no hinting to a screen's pixels.
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);

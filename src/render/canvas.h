@@ -7,8 +7,8 @@
 
 namespace palpate::render {
 
-/// A picture under cairo's pen: drawing goes onto a copy, `result` gives it back.
-/// Lengths are pixels, y downwards.
+/// Drawing surface by cairo on a copy of a picture; result() returns the copy.  Lengths are in pixels, y
+/// downwards.
 class Canvas {
  public:
   explicit Canvas(const Picture& picture);
@@ -22,7 +22,7 @@ class Canvas {
 
   void set_colour(Rgb colour, double opacity = 1.0);
   void fill_rectangle(double x, double y, double width, double height);
-  /// Text with its baseline at y; `anchor` 0: begins at x, 1: ends there.
+  /// Draws text with its baseline at y; `anchor` 0: begins at x, 1: ends at x.
   void text(const std::string& text, double x, double y, double size, double anchor = 0.0, bool bold = false);
   double text_width(const std::string& text, double size, bool bold = false);
 

@@ -7,9 +7,9 @@
 namespace palpate::render {
 namespace {
 
-// Polynomials of degree 6 in t, one a channel: our least-squares fit, exact at both ends, to eleven of
-// the 256 published values of viridis (S. van der Walt, N. Smith, "A better default colormap for
-// Matplotlib", SciPy 2015; the values are in the public domain, CC0). They miss those eleven by at
+// Polynomials of degree 6 in t, one per channel: a least-squares fit by palpate, exact at both ends, to
+// eleven of the 256 published values of viridis (S. van der Walt, N. Smith, "A better default colormap for
+// Matplotlib", SciPy 2015; the values are in the public domain, CC0).  At these eleven values the error is at
 // most 0.014 (red), 0.003 (green), 0.007 (blue).
 constexpr std::array<std::array<double, 7>, 3> kViridis = {{
     {0.26700, 0.21199, -0.61084, -5.05401, 9.02738, 0.91960, -3.76787},

@@ -7,7 +7,7 @@
 namespace palpate::render {
 namespace {
 
-/// Faces around each point, in compressed rows.
+/// Faces around each point, in compressed-row format.
 struct FacesOfPoint {
   std::vector<int> begin, faces;
 };
@@ -25,7 +25,7 @@ FacesOfPoint faces_of_point(const Surface& surface) {
   return out;
 }
 
-/// Twice the area times the normal of each face.
+/// Returns for each face its normal, scaled by twice the area.
 Points face_vectors(const Surface& surface) {
   Points vectors(3, surface.faces.cols());
   for (int f = 0; f < surface.faces.cols(); ++f) {

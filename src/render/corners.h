@@ -5,15 +5,16 @@
 
 namespace palpate::render {
 
-/// What the GPU takes for one corner of a triangle.
+/// Vertex data for one corner of a triangle, as sent to the GPU.
 struct Corner {
-  /// value: 0 at the scale's low end, 1 at its high end; below -1: plain
+  /// value: 0 at the scale's low end, 1 at its high end; below -1: plain colour.
   float position[3], normal[3], value;
 };
 
-/// Three corners a face.  A corner's normal is the area-weighted mean over the faces around its point that
-/// lie within the crease angle of its own face: smooth where the surface is, sharp at edges.
-/// @param origin  subtracted from the positions, so that float holds them
+/// Returns three corners per face.  The normal at a corner is the area-weighted mean over the faces around
+/// its point whose normals are within the crease angle of its face: smooth where the surface is, sharp at
+/// edges.
+/// @param origin  subtracted from the positions to limit rounding in single precision
 std::vector<Corner> corners(const Surface& surface, const ColourScale& scale, const Vec3& origin);
 
 }  // namespace palpate::render

@@ -33,7 +33,7 @@ void check(const Options& options) {
     fail("picture: supersampling = {} must be 1 to 8", options.supersampling);
 }
 
-/// The points of all surfaces side by side.
+/// Returns the points of all surfaces, concatenated.
 Points all_points(const Scene& scene) {
   Eigen::Index count = 0;
   for (const Surface& s : scene.surfaces) count += s.points.cols();

@@ -26,7 +26,7 @@ void paint(Canvas& canvas, const Field& field, const ColourScale& scale, int lef
     }
 }
 
-/// A bar as long as a round length, about a quarter of the field, and that length.
+/// Draws a length scale: a bar of a round length, about a quarter of the field's width, with its label.
 void draw_length(Canvas& canvas, double metres_per_pixel, double left, double baseline, double width) {
   double length = round_up(0.125 * width * metres_per_pixel);
   if (length / metres_per_pixel > 0.5 * width) length = 0.5 * width * metres_per_pixel;

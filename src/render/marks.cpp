@@ -10,7 +10,7 @@
 namespace palpate::render {
 namespace {
 
-/// The surface so far, by its points and triangles.
+/// Surface under construction, as points and triangles.
 struct Pieces {
   std::vector<Vec3> points;
   std::vector<Eigen::Vector3i> faces;
@@ -25,7 +25,7 @@ struct Pieces {
   }
 };
 
-/// A bar of square section between two points, open at its ends.
+/// Adds a bar of square section between two points, open at its ends.
 void add_bar(Pieces& pieces, const Vec3& from, const Vec3& to, double width) {
   const Vec3 along = to - from;
   if (!(along.norm() > 0.0)) return;
@@ -70,7 +70,7 @@ Surface dots(const Points& points, double size) {
     for (int axis = 0; axis < 3; ++axis)
       for (const double sign : {1.0, -1.0})
         pieces.points.push_back(points.col(i) + sign * size / 2 * Vec3::Unit(axis));
-    // tips +x -x +y -y +z -z: a face for each octant, outward
+    // Tips +x -x +y -y +z -z: one outward face per octant.
     for (int octant = 0; octant < 8; ++octant) {
       const int x = first + (octant & 1), y = first + 2 + (octant >> 1 & 1),
                 z = first + 4 + (octant >> 2 & 1);

@@ -11,23 +11,24 @@ namespace palpate::render {
 namespace {
 
 constexpr Rgb kInk = {0.13f, 0.16f, 0.19f}, kQuiet = {0.38f, 0.42f, 0.46f}, kPlate = {0.968f, 0.973f, 0.980f};
-constexpr double kDesignHeight = 900.0;  // lengths below are pixels of a picture this high
+constexpr double kDesignHeight = 900.0;  // Lengths below are pixels of a picture of this height.
 
-constexpr double kScaleEdge = 32.0, kPlateEdge = 8.0;  ///< between the scale and the image's edge; of a plate
+/// From the colour bar to the image's edge; padding of a plate.
+constexpr double kScaleEdge = 32.0, kPlateEdge = 8.0;
 
-/// "displacement [mm]"
+/// Returns the label with its unit: "displacement [mm]".
 std::string label_of(const ColourScale& scale) {
   const ScaledUnit unit = scaled_unit(scale.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
   return unit.name.empty() ? scale.label : fmt::format("{} [{}]", scale.label, unit.name);
 }
 
-/// Of the colour scale with its label and its ticks [pixels].
+/// Returns the width of the colour bar with label and ticks [pixels].
 double width_of_scale(Canvas& canvas, const ColourScale& scale, double u) {
   return std::max(canvas.text_width(label_of(scale), 18 * u), 110 * u);
 }
 
-/// Where a part of a scene is framed the rest may reach under a text: a pale plate keeps that legible.  On
-/// the background of a whole scene it is not seen.
+/// Draws a pale plate that keeps a text legible where the scene extends under it, which happens when only a
+/// part is framed.  On the background of a whole scene it is invisible.
 void draw_plate(Canvas& canvas, double x, double y, double width, double height, double u) {
   canvas.set_colour(kPlate, 0.8);
   canvas.fill_rectangle(x - kPlateEdge * u, y - 4 * u, width + 2 * kPlateEdge * u, height + 8 * u);
@@ -39,7 +40,8 @@ void draw_names(Canvas& canvas, const Scene& scene, double grid_spacing, double 
   for (const Surface& surface : scene.surfaces) {
     if (surface.name.empty() || surface.values.size() > 0) continue;
     draw_plate(canvas, x, baseline - 15 * u, 23 * u + canvas.text_width(surface.name, size), 20 * u, u);
-    canvas.set_colour(surface.colour, std::max(surface.opacity, 0.4));  // or nobody knows which
+    // Faint colours would not be recognisable.
+    canvas.set_colour(surface.colour, std::max(surface.opacity, 0.4));
     canvas.fill_rectangle(x, baseline - 13 * u, 15 * u, 15 * u);
     canvas.set_colour(kInk);
     canvas.text(surface.name, x + 23 * u, baseline, size);

@@ -20,9 +20,9 @@ void copy_into(Picture& to, const Picture& from, int left, int top) {
     std::memcpy(to.pixel(left, top + y), from.pixel(0, y), 4 * static_cast<std::size_t>(from.width));
 }
 
-/// The plot of a curve: world to pixels.
+/// Axes of a plot: maps time and value to pixels.
 struct Axes {
-  double left, top, width, height;  ///< of the plot [pixels]
+  double left, top, width, height;  ///< Plot area [pixels].
   double t0, t1, low, high;
   double x(double t) const { return left + width * (t - t0) / (t1 - t0); }
   double y(double v) const { return top + height * (high - v) / (high - low); }
@@ -35,7 +35,7 @@ void draw_axes(Canvas& canvas, const Axes& axes, const Curve& curve, double text
   for (double k = std::ceil(axes.low / step - 1e-9); k * step <= axes.high * (1.0 + 1e-9); k += 1.0) {
     canvas.set_colour(kPanelQuiet, 0.5);
     canvas.fill_rectangle(axes.left, axes.y(k * step) - 0.5, axes.width, 1.0);
-    canvas.set_colour(kPanelInk);  // + 0: never "-0"
+    canvas.set_colour(kPanelInk);  // Adding 0 avoids "-0".
     canvas.text(fmt::format("{:g}", k * step * unit.factor + 0.0), axes.left - 8,
                 axes.y(k * step) + 0.36 * text, text, 1.0);
   }
@@ -85,7 +85,7 @@ Picture with_curve(const Picture& picture, const Curve& curve, double now, int h
             .low = 0.0,
             .high = 0.0};
   for (const double v : curve.values) axes.low = std::min(axes.low, v), axes.high = std::max(axes.high, v);
-  if (!(axes.high > axes.low)) axes.high = axes.low + 1.0;  // nothing but zero: any scale will do
+  if (!(axes.high > axes.low)) axes.high = axes.low + 1.0;  // All values are zero: any range will do.
   if (!(axes.t1 > axes.t0)) axes.t1 = axes.t0 + 1.0;
   draw_axes(canvas, axes, curve, text);
   cairo_t* pen = canvas.pen();

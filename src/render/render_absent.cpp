@@ -6,7 +6,7 @@
 #include "palpate/render/panels.h"
 #include "palpate/render/scene.h"
 
-// What stands in for pictures in a build without OpenGL.
+// Replacements of the drawing functions in a build without OpenGL.
 
 namespace palpate::render {
 

@@ -7,10 +7,10 @@
 
 #include "camera_axes.h"
 
-// Seen along the line of sight, a subject covers some pixels of a small image.  Where the nearest point of an
-// opaque surface lies before the nearest point of the subject, it hides that pixel.  Both depths come from
-// triangles sampled at the pixels' middles; triangles beside the subjects' rectangle are passed over, so a
-// direction costs little more than turning the points.
+// Visible share by orthographic depth images: a subject covers some pixels of a small image; where the
+// nearest opaque surface is in front of the nearest point of the subject, it hides that pixel.  Both depths
+// come from triangles sampled at the pixel centres; triangles outside the subjects' rectangle are skipped, so
+// a view direction costs little more than rotating the points.
 namespace palpate::render {
 namespace {
 
@@ -18,7 +18,7 @@ constexpr int kPixels = 64;
 constexpr double kEnough = 1.0 / 3.0, kWorthTurning = 1.5;
 constexpr double kFar = -std::numeric_limits<double>::infinity();
 
-/// A rectangle across the line of sight, and for each of its pixels the depth of what is nearest to the eye.
+/// Rectangle across the line of sight, with the depth nearest to the eye for each of its pixels.
 class DepthImage {
  public:
   DepthImage(const Eigen::Vector2d& low, const Eigen::Vector2d& high)
@@ -29,7 +29,7 @@ class DepthImage {
     depth_.assign(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]), kFar);
   }
 
-  /// @param p  in the axes of the camera: right, up, towards the eye
+  /// Draws faces.  @param p  points in camera axes: right, up, towards the eye
   void draw(const Points& p, const Faces& faces) {
     for (Eigen::Index f = 0; f < faces.cols(); ++f)
       triangle(p.col(faces(0, f)), p.col(faces(1, f)), p.col(faces(2, f)));
@@ -37,7 +37,7 @@ class DepthImage {
   const std::vector<double>& depth() const { return depth_; }
 
  private:
-  /// The range of pixels along an axis whose middles may lie between two coordinates.
+  /// Returns the range of pixels along an axis whose centres may lie between two coordinates.
   std::array<int, 2> range(int axis, double low, double high) const {
     const int last = size_[static_cast<std::size_t>(axis)] - 1;
     const double from = std::ceil((low - low_[axis]) / pixel_ - 0.5),

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kShadowSize = 2048;
 
-/// A surface on the GPU.
+/// Vertex data of a surface on the GPU.
 struct Drawable {
   Drawable(const std::vector<Corner>& corners, const Surface* of)
       : surface(of), count(static_cast<int>(corners.size())) {
@@ -61,7 +61,7 @@ gl::Texture colour_table() {
 
 Eigen::Vector3f vector_of(Rgb c) { return {c.r, c.g, c.b}; }
 
-/// The drawing of one picture; owns what it needs on the GPU.
+/// Draws one picture; owns its GPU objects.
 class Shader {
  public:
   Shader(const Scene& scene, const Staging& staging, const Options& options);
@@ -130,7 +130,7 @@ void Shader::draw_ground() {
   ground_.set("spacing", static_cast<float>(staging_.grid_spacing));
   ground_.set("fade_radius", 5.0f * static_cast<float>(staging_.radius));
   ground_.set("shadow_radius", 0.045f);
-  // A little behind where it is, so that what just touches it stays in sight.
+  // Offset backwards in depth, so that surfaces that touch the ground stay visible.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.0f, 4.0f);
   ground_square(*scene_.ground, staging_).draw();
@@ -153,8 +153,8 @@ void Shader::draw_surface(const Drawable& drawable) {
   drawable.draw();
 }
 
-/// Depth first, then colour where depth is equal:
-/// only the layer nearest to the eye is blended, in whatever order triangles come.
+/// Draws depth first, then colour where depth is equal: only the layer nearest to the eye is blended, in any
+/// order of triangles.
 void Shader::draw_transparent(const Drawable& drawable) {
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   draw_surface(drawable);
@@ -167,7 +167,7 @@ void Shader::draw_transparent(const Drawable& drawable) {
   glDisable(GL_BLEND);
 }
 
-/// What blends with what is behind it comes after that: by the middle of each surface, the farthest first.
+/// Returns translucent surfaces sorted back to front by their centroids, for blending.
 std::vector<const Drawable*> Shader::transparent_from_behind() const {
   std::vector<std::pair<double, const Drawable*>> order;
   const Vec3 forward = (camera_.target - camera_.eye).normalized();
@@ -181,7 +181,7 @@ std::vector<const Drawable*> Shader::transparent_from_behind() const {
   return out;
 }
 
-/// Whoever drew before in this context may have left anything.
+/// Sets the whole GL state that drawing depends on; earlier users of the context may have left any other.
 void set_state() {
   for (const int off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL})
     glDisable(static_cast<GLenum>(off));

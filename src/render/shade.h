@@ -3,17 +3,17 @@
 
 namespace palpate::render {
 
-/// All that shading needs beyond the scene, decided before.
+/// Data that shading needs beyond the scene.
 struct Staging {
-  ColourScale scale;  ///< both ends known
+  ColourScale scale;  ///< Both ends known.
   Camera camera;
-  Vec3 centre;              ///< of the scene's surfaces [m]
-  double radius = 1.0;      ///< of a ball about the centre that holds them [m]
-  double grid_spacing = 0;  ///< [m]; 0: no ground
+  Vec3 centre;              ///< Centre of the scene's surfaces and of the framed points [m].
+  double radius = 1.0;      ///< Radius of a ball about the centre that contains them [m].
+  double grid_spacing = 0;  ///< Spacing of the grid [m]; 0: no ground.
 };
 
-/// The scene without any text, at width x height of the options:
-/// drawn `supersampling` times larger and averaged.
+/// Renders the scene without text, at width x height of the options; drawn `supersampling` times larger and
+/// averaged.
 Picture shade(const Scene& scene, const Staging& staging, const Options& options);
 
 }  // namespace palpate::render

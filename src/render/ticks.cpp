@@ -35,7 +35,7 @@ std::vector<Tick> ticks(double low, double high, const ScaledUnit& unit) {
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 12);
   std::vector<Tick> out;
   for (double k = std::ceil((first - slack) / step); k * step <= last + slack; k += 1.0) {
-    const double value = k == 0.0 ? 0.0 : k * step;  // never "-0"
+    const double value = k == 0.0 ? 0.0 : k * step;  // Avoids "-0".
     const bool plain = std::abs(last) < 1e5 && decimals <= 6;
     out.push_back({value / unit.factor,
                    plain ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.3g}", value)});

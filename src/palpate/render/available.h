@@ -2,9 +2,9 @@
 
 namespace palpate::render {
 
-/// Whether this build draws pictures (PALPATE_WITH_GL).
+/// Whether this build can draw pictures (PALPATE_WITH_GL).
 bool available();
-/// @throws Error where it does not, with what to configure
+/// Checks that this build can draw pictures.  @throws Error with the configure option, where it cannot
 void check_available();
 
 }  // namespace palpate::render

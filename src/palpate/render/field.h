@@ -7,16 +7,16 @@
 
 namespace palpate::render {
 
-/// Values on a regular grid: a map of penetration depth.
+/// Values on a regular grid, such as a map of penetration depth.
 struct Field {
   int width = 0, height = 0;
-  /// width x height, rows from below as OpenGL reads them; NaN: no value, drawn pale
+  /// width x height values, rows from bottom to top as OpenGL reads them; NaN: no value, drawn pale.
   std::vector<double> values;
-  double cell = 0.0;  ///< edge of a value's square [m], for the bar that shows a length; 0: none
+  double cell = 0.0;  ///< Edge of a value's square [m], for the length scale; 0: no length scale.
 };
 
-/// A picture of a field, each value a square of `magnify` pixels (0: chosen so that the longer side is about
-/// 800), with its colour scale, a title and a line under it.  No GPU is used. Counts "render.picture".
+/// Draws a field, each value as a square of `magnify` pixels (0: such that the longer side has about 800),
+/// with colour bar, title and subtitle.  Needs no GPU.  Counts "render.picture".
 Picture draw_field(const Field& field, const ColourScale& scale, const std::string& title, int magnify = 0,
                    const std::string& subtitle = {});
 

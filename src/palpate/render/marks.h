@@ -3,15 +3,16 @@
 
 namespace palpate::render {
 
-/// Surfaces that stand for lines and points: they are hidden, lit and framed as any other surface is.
+/// Lines and points as surfaces: hidden, lit and framed as any other surface.
 
-/// The edges of a surface that are sharper than `least_deg`, and its borders, as thin bars; of a convex hull
-/// its edges without the cuts of its flat facets.
-/// @param width  of a bar [m]
+/// Returns the edges of a surface that are sharper than `least_deg`, and its borders, as thin bars; for a
+/// convex hull, its edges without the triangulation of its flat facets.
+/// @param width  width of a bar [m]
+/// @param least_deg  least angle between the normals of adjacent faces [degrees]
 Surface outline(const Points& points, const Faces& faces, double width, double least_deg = 1.0);
 
-/// A small octahedron about each point.
-/// @param size  from tip to tip [m]
+/// Returns a small octahedron about each point.
+/// @param size  tip-to-tip size [m]
 Surface dots(const Points& points, double size);
 
 }  // namespace palpate::render
