@@ -14,7 +14,7 @@ Trajectory felt_in(const loop::HapticRecord& record) {
   return recorder.trajectory();
 }
 
-/// What each hand felt of one run.
+/// Records the wrenches on each hand.
 class EachHand : public loop::Observer {
  public:
   explicit EachHand(std::size_t hands) : of_(hands) {}

@@ -12,7 +12,7 @@ constexpr std::array<PointStatus, 7> kStatuses = {
     PointStatus::kOk,      PointStatus::kFailed,   PointStatus::kOutOfTime, PointStatus::kCrashed,
     PointStatus::kRefused, PointStatus::kNotTried, PointStatus::kMissing};
 
-// One list of the members of each record serves writing, reading and naming.
+// One list of members per record serves writing, reading and naming.
 template <class Error, class Visit>
 void visit_error(Error& e, Visit visit) {
   visit("position_error_rel_l2", e.position_rel_l2);
@@ -24,9 +24,9 @@ void visit_error(Error& e, Visit visit) {
   visit("energy_error_j", e.energy_j);
 }
 
-// Beside its numbers a RunResult holds a status, a flag (padded to a word), what put_result writes by hand,
-// and what a comparison has not: the clock of real time (it runs in virtual time), the energy at the device's
-// port, buzz, and what is known of further hands.
+// A RunResult contains, in addition to its numbers, a status, a flag (padded to a word), the members that
+// put_result writes explicitly, and members that a comparison does not have: the real-time clock (runs are in
+// virtual time), the energy at the device port, buzz, and the results of further hands.
 static_assert(dynamics::bytes_of_counters<loop::RunResult>() + sizeof(dynamics::StepResult) + sizeof(double) +
                       sizeof(std::vector<long>) + sizeof(std::optional<loop::EnergyBalance>) +
                       sizeof(std::string) + sizeof(dynamics::StepperCounters::most_halvings) +

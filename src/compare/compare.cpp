@@ -24,8 +24,8 @@ PointStatus status_of(Outcome::End end) {
   return PointStatus::kCrashed;
 }
 
-/// A study as it proceeds.  All results pass through the database's rows, whether they were made now or
-/// before: a study that was killed and started again gives the same table.
+/// Study in progress.  All results pass through the database's rows, whether new or resumed: a study that was
+/// killed and restarted gives the same table.
 class Study {
  public:
   Study(const std::vector<scene::Description>& scenes, const CompareOptions& options,
@@ -46,7 +46,7 @@ class Study {
         open |= !task.done;
       }
       if (!open) break;
-      if (moved) continue;  // what was settled makes others ready
+      if (moved) continue;  // Results may have made other tasks ready.
       PALPATE_CHECK(!pool_.idle(), "nothing runs, and nothing can be started");
       pool_.wait(0.2);
     }
@@ -58,7 +58,7 @@ class Study {
  private:
   bool stopped() const { return options_.stop && options_.stop->load(); }
 
-  /// Advances one task as far as possible now; true where that may let others proceed.
+  /// Advances one task as far as possible now; returns true where that may let others proceed.
   bool proceed(Task& task) {
     if (task.started) return false;
     if (ledger_.is_pointless(task)) return task.done = true;
@@ -73,13 +73,13 @@ class Study {
     return true;
   }
 
-  /// Where nobody asked for a number of jobs, what is timed has the machine for itself.
+  /// Whether a task may start now: unless a number of jobs is requested, timed runs run alone.
   bool has_room_for(const Task& task) const {
     if (options_.jobs > 0 || task.is_reference()) return pool_.has_room() && !timed_runs_;
     return pool_.idle();
   }
 
-  /// Takes the result of an earlier study.
+  /// Takes the result of an earlier study, if it is still valid.
   void resume(Task& task) {
     if (!task.is_point()) {
       const auto kept = database_.artefact(ledger_.artefact_key(task));
@@ -111,7 +111,7 @@ class Study {
                 [this, at](const Outcome& outcome) { done(*at, outcome); });
   }
 
-  /// Input of the process of the run.
+  /// Encodes the input of the run's process.
   std::string order(const Task& task) {
     const SceneWork& scene = ledger_.work[task.scene];
     const double limit_s = ledger_.limit_of(task);
@@ -128,10 +128,10 @@ class Study {
                     ledger_.reference_of(task));
   }
 
-  /// Called in the study's own process: keeps the result, then uses it.
+  /// Stores and uses a result; runs in the study's process.
   void done(Task& task, const Outcome& outcome) {
     timed_runs_ = false;
-    if (stopped()) return;  // it may have been cut short
+    if (stopped()) return;  // The run may have been interrupted.
     task.done = true;
     if (task.is_point())
       keep(task, row_of(task, outcome));
@@ -190,7 +190,7 @@ class Study {
         }
       }
     }
-    // a longer limit tries again
+    // A longer limit causes a new attempt.
     if (kept.status == to_string(PointStatus::kOutOfTime)) kept.cpu_s = options_.reference_limit_s;
     return kept;
   }
@@ -211,17 +211,18 @@ class Study {
   const CompareOptions& options_;
   bool timed_runs_ = false;
   int jobs_;
-  ProcessPool pool_;  ///< first: where it cannot be had, nothing was opened
+  ProcessPool pool_;  ///< Before the database: where the pool cannot be created, no file has been opened.
   store::StudyDb database_;
   Ledger ledger_;
 };
 
-/// A solver that makes the error of a ladder's first one larger than so many times is not considered, however
-/// fast.  Under error control any other rounding takes other steps, and errors scatter by that much.
+/// Acceptance limit of the error of a solver, relative to the error with the first (direct) solver of the
+/// sequence.  Under error control, different rounding leads to different steps, and errors scatter by that
+/// much.
 constexpr double kSameError = 2.0;
 
-/// The fastest solver of each ladder that was tried, of those whose error is no worse than the first (direct)
-/// one's.
+/// Returns the fastest solver of each sequence tried, among those whose error is accepted against the first
+/// (direct) one's.
 SolverChoice fastest_of(const std::vector<ComparePoint>& trials) {
   SolverChoice out;
   std::map<std::string, const ComparePoint*> first, best;

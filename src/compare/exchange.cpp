@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kRtol = 1e-6;
 const std::string kMethod = "cvode-bdf", kCheck = "ark-dirk-esdirk547", kCheckSolver = "umfpack";
-constexpr int kTicks = 10;  ///< in an exchange period
+constexpr int kTicks = 10;  ///< Ticks per exchange period.
 
-/// The longest time that every period is a multiple of: a whole fraction of the shortest.
+/// Returns the longest time of which every period is a multiple: an integer fraction of the shortest.
 double common_refresh(const std::vector<double>& periods) {
   const double shortest = *std::min_element(periods.begin(), periods.end());
   for (int parts = 1; parts <= 1000; ++parts) {
@@ -38,7 +38,7 @@ scene::Description with_scheme(scene::Description d, const std::string& scheme, 
   return d;
 }
 
-/// The same by the check's method.
+/// Returns the scene with the check's method.
 scene::Description checked(scene::Description d) {
   d.integrator.name = kCheck;
   d.integrator.linear_solver = kCheckSolver;

@@ -16,7 +16,8 @@ namespace {
 
 using loop::TickRecord;
 
-/// Voluntary motion, tremor, and what only an unstable loop or a rough contact adds.
+/// Edges of the bands [Hz]: voluntary motion, tremor, and frequencies that only an unstable loop or rough
+/// contact excites.
 constexpr std::array<double, 5> kEdges = {0.0, 10.0, 30.0, 100.0, 500.0};
 
 Vec6 felt(const TickRecord& tick) {
@@ -25,7 +26,7 @@ Vec6 felt(const TickRecord& tick) {
   return out;
 }
 
-/// The device's wrench at a time within the run, straight between ticks.
+/// Device wrench at a time within the run, interpolated linearly between ticks.
 class Wrenches {
  public:
   explicit Wrenches(const std::vector<TickRecord>& ticks) : ticks_(ticks) {}
@@ -44,10 +45,11 @@ class Wrenches {
   std::size_t next_ = 0;
 };
 
-// Mean square of x in a band by its periodogram under Hann's window w, which keeps a tone in its own band: by
-// Parseval, sum_k |X_k|^2 = N sum_n |w x|^2.  The window weighs the middle of a run more than its ends, by
-// how much depends on where x is large: this gain, sum |w x|^2 over the mean square of x, is taken out, so
-// that the bins |X_k|^2 add up to the mean square.  The mean is kept, in the lowest bins.
+// Mean square of x per frequency bin, by its periodogram under Hann's window w, which limits leakage of a
+// tone to neighbouring bins: by Parseval, sum_k |X_k|^2 = N sum_n |w x|^2.  The window weights the middle of
+// a run more than its ends, with an effect that depends on where x is large: this gain, sum |w x|^2 over the
+// mean square of x, is divided out, so that the bins |X_k|^2 add up to the mean square.  The mean is kept, in
+// the lowest bins.
 VecX power(const VecX& x) {
   const Eigen::Index n = x.size();
   VecX windowed(n);
@@ -103,13 +105,14 @@ FeltSeries series_of(const MatX& reference, const MatX& other, double rate, doub
   return out;
 }
 
-// Rounding of a sum of a million terms of perceptible size, 1.1e-16 of each with random signs: 1.1e-13; ten
-// times that for the error which later ticks carry on.  Below it no share is given.
+// Rounding error of a sum of a million terms of perceptible size, 1.1e-16 each with random signs, is 1.1e-13;
+// ten times that accounts for propagation over later ticks.  Below it no relative figure is given.
 constexpr double kRounding = 1e-12;
 
-/// @param least  what fingers notice where there is none [the unit]
+/// Returns the printed lines of one quantity.
+/// @param least  magnitude below which the perception threshold is constant [unit]
 std::string line_of(const char* what, const FeltSeries& s, const char* unit, double weber, double least) {
-  const bool none = s.peak <= kRounding * least;  // of the reference
+  const bool none = s.peak <= kRounding * least;  // In the reference.
   if (none && s.max <= kRounding * least)
     return fmt::format("{}: none in either run beyond rounding (at most {:.1g} {})\n", what,
                        std::max(s.peak, s.max), unit);

@@ -38,7 +38,7 @@ const std::vector<std::string> kMethodColumns = {"scene",
 
 CsvCell number(long n) { return static_cast<double>(n); }
 
-/// The columns that reports know, then every other number of a run.
+/// Returns the columns that reports use, followed by all other numbers of a run.
 std::vector<std::string> with_every_number(std::vector<std::string> columns) {
   const loop::RunResult none;
   loop::visit_counters(
@@ -49,7 +49,7 @@ std::vector<std::string> with_every_number(std::vector<std::string> columns) {
   return columns;
 }
 
-/// A run's numbers and the cells given, in the order of the columns.
+/// Returns a run's numbers and the given cells, in the order of the columns.
 Row in_order(const std::vector<std::string>& columns, const loop::RunResult& result,
              std::map<std::string, CsvCell> cells) {
   loop::visit_counters(
@@ -140,7 +140,7 @@ Row method_row(const std::vector<std::string>&, const std::string& scene, const 
           p.cpu_s};
 }
 
-/// One table over all scenes; no file where it would be empty (and none stays from before).
+/// Writes one table over all scenes; an empty table gives no file, and removes an old one.
 template <class Point>
 void write_table(const Comparison& comparison, const fs::path& path, const std::vector<std::string>& columns,
                  const std::vector<Point>& (*points)(const SceneComparison&),
@@ -151,7 +151,7 @@ void write_table(const Comparison& comparison, const fs::path& path, const std::
   for (const SceneComparison& scene : comparison.scenes)
     for (const Point& point : points(scene)) {
       if constexpr (std::is_same_v<Point, ComparePoint>)
-        if (point.status == PointStatus::kMissing) continue;  // stopped before it
+        if (point.status == PointStatus::kMissing) continue;  // Stopped before it.
       if (!csv) csv.emplace(path.string(), columns);
       csv->row(to_row(columns, scene.scene, point));
     }

@@ -20,19 +20,19 @@ namespace {
 
 using Outcome = ProcessPool::Outcome;
 
-/// What became of one run.
+/// Outcome of one run.
 struct Ended {
   PointStatus status = PointStatus::kMissing;
   std::string reason;
-  Run run;  ///< where the status is kOk
+  Run run;  ///< Valid where the status is kOk.
 };
 
-/// One run that is to be made.
+/// Run to be made.
 struct Job {
   const scene::Description* description;
   int repeat;
   std::function<void(const Ended&)> take;
-  std::function<bool()> wanted = {};  ///< asked when its time has come; empty: yes
+  std::function<bool()> wanted = {};  ///< Evaluated when the job is due; empty: always run.
 };
 
 PointStatus status_of(const std::string& text) {
@@ -42,7 +42,7 @@ PointStatus status_of(const std::string& text) {
   return PointStatus::kCrashed;
 }
 
-/// Runs jobs, and keeps what they gave.
+/// Runs jobs and stores their results.
 class Runner {
  public:
   Runner(const CompareOptions& options, long jobs_in_all)
@@ -53,7 +53,9 @@ class Runner {
   bool stopped() const { return options_.stop && options_.stop->load(); }
   long reused() const { return reused_; }
 
-  /// @param side_by_side  how many at a time  @param limit_s  CPU seconds of each
+  /// Runs jobs to their end.
+  /// @param side_by_side  number of parallel jobs
+  /// @param limit_s  CPU limit per job [s]
   void run(std::deque<Job> jobs, int side_by_side, double limit_s) {
     ProcessPool pool(side_by_side);
     while (!stopped() && !(jobs.empty() && pool.idle())) {
@@ -77,7 +79,7 @@ class Runner {
     }
     pool.start(do_order, order_of(WorkKind::kHaptic, *job.description, limit_s, nullptr), limit_s,
                [this, job, key, limit_s](const Outcome& outcome) {
-                 if (stopped()) return;  // it may have been cut short
+                 if (stopped()) return;  // The run may have been interrupted.
                  const store::StudyArtefact made = artefact_of(key, outcome, limit_s);
                  database_.put(made);
                  finish(job, made);
@@ -106,7 +108,7 @@ class Runner {
                  fmt::format("{}: {}", dynamics::to_string(result.status.status), result.status.message));
       }
     }
-    // a longer limit tries again
+    // A longer limit causes a new attempt.
     if (out.status == to_string(PointStatus::kOutOfTime)) out.cpu_s = limit_s;
     return out;
   }
@@ -133,7 +135,7 @@ ReferenceRun reference_run_of(const Ended& ended) {
   return {std::nullopt, ended.reason};
 }
 
-/// Runs reference and check; the reference's trajectory where there is one.
+/// Runs reference and check; returns the trajectory of the reference if there is one.
 std::optional<Trajectory> run_references(const scene::Description& d, Runner& runner,
                                          const CompareOptions& options, HapticComparison& out) {
   const MonolithicScene primary = monolithic_scene(d), check = monolithic_scene(d, 2.0);
@@ -162,14 +164,14 @@ void take(HapticPoint& point, int repeat, const Ended& ended, const std::optiona
   try {
     point.error = wrench_distance(ended.run.trajectory, *reference);
     if (!std::isfinite(point.error.force_rms_n)) fail("not finite: the hand felt no usable force");
-  } catch (const Error& e) {  // or ticks that are no multiples of each other
+  } catch (const Error& e) {  // Or there are no common ticks.
     point.error = no_distance();
     point.status = PointStatus::kFailed;
     point.reason = e.what();
   }
 }
 
-/// Whether a point is worth running once more for the spread of its time.
+/// Whether a point is repeated, to measure the spread of its time.
 bool is_short(const HapticPoint& point, double limit_s) {
   double spent = 0.0;
   for (const double s : point.cpu_s) spent += s;
@@ -189,7 +191,7 @@ std::deque<Job> jobs_of(std::vector<HapticPoint*> points, const CompareOptions& 
   return jobs;
 }
 
-/// The scene's own setting is one run, and a point of every variable.
+/// Copies the point with the scene's settings, which is run once, to all variables.
 void copy_own(std::vector<HapticPoint>& points, const HapticPoint& own) {
   for (HapticPoint& point : points) {
     if (!point.own) continue;
@@ -204,7 +206,7 @@ void copy_own(std::vector<HapticPoint>& points, const HapticPoint& own) {
 }  // namespace
 
 HapticComparison compare_haptic(const scene::Description& description, const CompareOptions& options) {
-  const scene::Description d = with_overrides(description, {});  // the text alone decides
+  const scene::Description d = with_overrides(description, {});  // Only the text counts.
   refuse_against_monolithic(d);
   HapticComparison out;
   out.scene = d.name;

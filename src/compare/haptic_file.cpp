@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using store::CsvCell;
 
-/// Name and cell of one point, in the order of the columns.
+/// Returns names and cells of one point, in the order of the columns.
 std::vector<std::pair<std::string, CsvCell>> cells_of(const HapticComparison& c, const HapticPoint& p) {
   const bool ran = p.status == PointStatus::kOk;
   const auto time = [ran](double s) { return CsvCell(ran ? s : kEmpty); };
@@ -57,7 +57,7 @@ void write(const HapticComparison& c, const std::string& folder) {
   for (const auto& [name, cell] : cells_of(c, {})) columns.push_back(name);
   store::CsvWriter csv((fs::path(folder) / "haptic.csv").string(), columns);
   for (const HapticPoint& p : c.points) {
-    if (p.status == PointStatus::kMissing) continue;  // stopped before it
+    if (p.status == PointStatus::kMissing) continue;  // Stopped before it.
     std::vector<CsvCell> row;
     for (auto& [name, cell] : cells_of(c, p)) row.push_back(std::move(cell));
     csv.row(row);

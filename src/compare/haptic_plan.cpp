@@ -17,12 +17,12 @@ namespace {
 
 using scene::Description;
 
-/// Ticks of "exchange alone" in a period.
+/// Ticks per period for "exchange alone".
 constexpr int kTicksAlone = 10;
 /// Tolerance of the reference's iterative linear solver.
 constexpr double kLinearRtol = 1e-8;
 
-/// The texts that a key may hold, from its row of documentation ("\"condensed\", \"frozen\"").
+/// Returns the texts that a key may have, parsed from its documentation ("\"condensed\", \"frozen\"").
 std::vector<std::string> texts_of(const std::string& table, const std::string& key) {
   std::vector<std::string> out;
   for (const scene::KeyRow& row : scene::key_rows(loop::kinds())) {
@@ -38,7 +38,7 @@ std::vector<std::string> texts_of(const std::string& table, const std::string& k
   return out;
 }
 
-/// The longest time up to `most` that a period is a multiple of.
+/// Returns the longest time up to `most` of which `period` is a multiple.
 double fraction_of(double period, double most) {
   return period / std::max(1.0, std::ceil(period / most - 1e-9));
 }
@@ -68,8 +68,8 @@ const dynamics::StepperEntry& method_of(const Description& d, const char* name, 
   return entry;
 }
 
-/// The method that checks a reference: the scene's, or one of another family, with error control or without
-/// as the reference has it.
+/// Returns the method that checks a reference: the scene's, or one of another family, under error control or
+/// with fixed steps, as the reference.
 const dynamics::StepperEntry& check_of(const Description& d, const dynamics::StepperEntry& reference) {
   constexpr const char* kKey = "compare.haptic.reference_check";
   const std::string& named = d.compare.haptic.reference_check;
@@ -88,8 +88,9 @@ const dynamics::StepperEntry& check_of(const Description& d, const dynamics::Ste
   return check;
 }
 
-/// What makes tool and bodies one system, with contact found every `refresh`.
-/// @param coarser  above 1: the check, so many times as coarse, of another family, with another factorisation
+/// Returns the overrides of the monolithic solution except the scheme: integrator, tolerance or step, and
+/// contact refresh.
+/// @param coarser  above 1: the check, coarser by that factor, of another family, with another factorisation
 std::vector<std::string> monolithic_overrides(const Description& d, double coarser) {
   const scene::HapticCompareSpec& h = d.compare.haptic;
   const dynamics::StepperEntry& reference = method_of(d, h.reference.c_str(), "compare.haptic.reference");
@@ -98,8 +99,8 @@ std::vector<std::string> monolithic_overrides(const Description& d, double coars
   ladder.integrator = entry.name;
   const bool fixed = entry.traits.control == dynamics::StepControl::kFixed;
   if (fixed) ladder.setting = "step_s";
-  // an error of first order in the refresh, and of one in the tolerance: both then fall well below the
-  // check's
+  // The error is of first order in the refresh period and in the tolerance: the reference's errors are then
+  // well below the check's.
   std::vector<std::string> out = overrides_of(
       ladder, fixed ? coarser * h.reference_step_s : std::pow(coarser, std::log2(10.0)) * h.reference_rtol);
   out.push_back(assign("exchange.contact_refresh_s", coarser * h.reference_refresh_s));
@@ -109,7 +110,8 @@ std::vector<std::string> monolithic_overrides(const Description& d, double coars
   return out;
 }
 
-/// The error of the linear solver, which no key of [compare.haptic] names.
+/// Returns the scene with overrides, and with the linear tolerance of the reference, which no key of
+/// [compare.haptic] sets.
 Description as_tight_as_the_reference(const Description& d, std::vector<std::string> overrides) {
   Description out = with_overrides(d, overrides);
   if (out.integrator.linear_rtol <= kLinearRtol) return out;
@@ -117,12 +119,12 @@ Description as_tight_as_the_reference(const Description& d, std::vector<std::str
   return with_overrides(d, overrides);
 }
 
-/// Points as they are planned.
+/// Plan of the points.
 class Plan {
  public:
   explicit Plan(const Description& d) : scene_(d) {}
 
-  /// @param own  whether the value is the scene's own: then nothing is changed
+  /// Adds one point.  @param own  whether the value is the scene's: then nothing is changed
   void add(const char* variable, const std::string& value, double setting, bool own,
            const std::vector<std::string>& overrides) {
     HapticPoint point;
@@ -137,14 +139,15 @@ class Plan {
         point.description = as_tight_as_the_reference(scene_, overrides);
       else
         point.description = with_overrides(scene_, overrides);
-    } catch (const Error& e) {  // one period that is no multiple of the tick ends nothing else
+    } catch (const Error& e) {  // A period that is no multiple of the tick rejects only this point.
       point.status = PointStatus::kRefused;
       point.reason = e.what();
     }
     points.push_back(std::move(point));
   }
 
-  /// Numbers from coarse to fine, the scene's own among them.  @param make  overrides of one
+  /// Adds numbers from coarse to fine, including the scene's value.  @param make  returns the overrides for
+  /// one value
   template <class Make>
   void add_numbers(const char* variable, std::vector<double> values, double own, bool finer_is_less,
                    std::string (*text)(double), Make make) {
@@ -172,7 +175,7 @@ std::vector<std::string> period_overrides(double period, double refresh) {
           assign("exchange.contact_refresh_s", fraction_of(period, refresh))};
 }
 
-/// Exchange and tick are all that is left of the error: the rest is as in the reference.
+/// Returns overrides that leave only exchange and tick as sources of error: the rest is as in the reference.
 std::vector<std::string> alone_overrides(const Description& d, double period) {
   std::vector<std::string> out = monolithic_overrides(d, 1.0);
   out.back() = assign("exchange.contact_refresh_s",
@@ -208,7 +211,7 @@ void add_resolution(Plan& plan, const Description& d) {
       });
 }
 
-/// Least-squares slope of log y over log x; NaN with fewer than two points.
+/// Returns the least-squares slope of log y over log x; NaN with fewer than two points.
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
   if (x.size() < 2) return kEmpty;
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
@@ -260,7 +263,7 @@ std::vector<HapticPoint> plan_haptic(const Description& d, const std::vector<std
 }
 
 void summarise(HapticPoint& point, const TrajectoryError& own) {
-  // NaN is never unresolved
+  // NaN is never unresolved.
   point.force_unresolved = point.error.force_rms_n < kResolution * own.force_rms_n;
   point.torque_unresolved = point.error.torque_rms_n_m < kResolution * own.torque_rms_n_m;
   if (point.cpu_s.empty()) return;

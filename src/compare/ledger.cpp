@@ -16,7 +16,7 @@ Ledger::Ledger(const std::vector<scene::Description>& scenes, const CompareOptio
 
 void Ledger::plan(const scene::Description& d, const SolverChoice& choice) {
   SceneWork own;
-  own.description = with_overrides(d, {});  // the text alone decides
+  own.description = with_overrides(d, {});  // Only the text counts.
   SceneComparison comparison;
   comparison.scene = d.name;
   comparison.path = d.path;
@@ -35,7 +35,8 @@ void Ledger::plan(const scene::Description& d, const SolverChoice& choice) {
   out.scenes.push_back(std::move(comparison));
 }
 
-// References; the ladders' first rungs, then their second ones, over all scenes; further charts; repeats.
+// Order: references; the first levels of all sequences over all scenes, then their second levels; further
+// charts; repeats.
 void Ledger::add_tasks() {
   std::size_t most = 0;
   for (std::size_t s = 0; s < work.size(); ++s) {
@@ -72,7 +73,8 @@ const ComparePoint* Ledger::coarser(const Task& task, std::size_t by) const {
              : nullptr;
 }
 
-// Two rungs in a row whose errors the reference cannot tell: nothing finer can be judged.
+// Whether the two preceding levels both have errors that the reference does not resolve: nothing finer can be
+// judged.
 bool Ledger::is_at_the_end(const Task& task) const {
   const SceneComparison& scene = out.scenes[task.scene];
   const TrajectoryError& own = scene.reference.own_error;
@@ -134,7 +136,7 @@ std::string Ledger::artefact_key(const Task& task) const {
   }
 }
 
-// ---- which task may run, and which is not worth it ----
+// ---- conditions for running a task ----
 
 bool Ledger::is_ready(const Task& task) {
   if (task.kind != Task::Kind::kPoint) return true;
@@ -148,7 +150,7 @@ bool Ledger::is_pointless(const Task& task) {
   if (task.kind != Task::Kind::kPoint) return false;
   ComparePoint& point = point_of(task);
   if (task.repeat > 0) {
-    if (point.status == PointStatus::kMissing) return false;  // later
+    if (point.status == PointStatus::kMissing) return false;  // Decided later.
     double spent = 0.0;
     for (double s : point.cpu_s) spent += s;
     return point.status != PointStatus::kOk || spent > 0.2 * options_.limit_s;

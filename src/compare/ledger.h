@@ -7,16 +7,16 @@
 
 namespace palpate::compare {
 
-/// Why a rung was left out that nobody misses; it is in no table.
+/// Reason of a level that was skipped as unnecessary; such levels are in no table.
 inline const std::string kNotNeeded = "the reference cannot tell finer errors";
 
-/// One run that is to be made.
+/// Run to be made.
 struct Task {
   enum class Kind { kPrimary, kCheck, kPoint, kRestart, kExchange, kMethods };
   Kind kind;
   std::size_t scene, point = 0;
   int repeat = 0;
-  bool looked_up = false, started = false, done = false;  ///< looked_up: in the database
+  bool looked_up = false, started = false, done = false;  ///< looked_up: in the database.
 
   bool is_point() const { return kind == Kind::kPoint || kind == Kind::kRestart; }
   bool is_reference() const { return kind == Kind::kPrimary || kind == Kind::kCheck; }
@@ -35,52 +35,54 @@ struct SceneWork {
 /// All runs of a study, and their results so far.
 class Ledger {
  public:
-  /// @param choices  of each scene  @param trials  instead of ladders and charts: which solver is fastest
+  /// Plans the runs.
+  /// @param choices  linear solvers per scene
+  /// @param trials  plans trials of linear solvers instead of sequences and charts
   Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options,
          const std::vector<SolverChoice>& choices, bool trials);
 
-  std::deque<Task> tasks;       ///< in the order in which they are wanted; a task stays where it is
-  std::vector<SceneWork> work;  ///< of each scene
+  std::deque<Task> tasks;       ///< In order of preference; addresses of tasks are stable.
+  std::vector<SceneWork> work;  ///< Per scene.
   Comparison out;
 
   const CompareOptions& options() const { return options_; }
   ComparePoint& point_of(const Task& task);
-  /// the rung so many before it, or null
+  /// Returns the level that is `by` levels coarser in the same sequence, or null.
   const ComparePoint* coarser(const Task& task, std::size_t by) const;
-  const std::string& key_of(const Task& task) const;  ///< of a point's runs in the database
-  std::string artefact_key(const Task& task) const;   ///< of all else
+  const std::string& key_of(const Task& task) const;  ///< Key of a point's runs in the database.
+  std::string artefact_key(const Task& task) const;   ///< Key of all other results in the database.
+  /// Returns the CPU limit of a task [s].
   double limit_of(const Task& task) const {
     return task.is_point() ? options_.limit_s : options_.reference_limit_s;
   }
 
-  /// Whether all that the task needs is there: the reference, the rung before it, the first of its repeats.
+  /// Whether all inputs of the task are available: the reference, the next coarser level, the first of its
+  /// repeats.
   bool is_ready(const Task& task);
-  /// Settles a point that needs no run of its own; true where the task is to be left out.
+  /// Settles one point that needs no run; returns true where the task is to be skipped.
   bool is_pointless(const Task& task);
 
-  /// Takes a run's result, from the database or on its way there.
+  /// Takes a run's result, whether resumed or new.
   void take(const Task& task, const store::StudyRun& row);
   void take(const Task& task, const store::StudyArtefact& kept);
-  /// False for a chart that lacks something: what was missing (a library, a display) may be there today, so
-  /// the chart is made again.
+  /// Returns false for a chart with missing parts: the cause (a library, a display) may be resolved by now,
+  /// so the chart is made again.
   static bool is_whole(const Task& task, const store::StudyArtefact& kept);
-  /// What a point's error is measured against: the reference, or its check where the method is of the
-  /// reference's own family, and shares what error it has; and the other where one failed.
+  /// Returns the reference for a point's error: the primary one, or its check where the method is of the
+  /// primary's family and shares its errors; the other one where one failed.
   ReferenceUsed reference_used(const Task& task) const;
-  const Trajectory* reference_of(const Task& task) const;  ///< null: there is none
+  const Trajectory* reference_of(const Task& task) const;  ///< Null where there is none.
 
-  /// Once a scene's two reference runs have ended, decides which is the reference and how far it can be
-  /// trusted.
+  /// Decides, for scenes whose two reference runs have ended, which one is the reference, and its error.
   void settle_references();
-  /// Computes medians, marks and texts, once nothing is left to run.  @param jobs  number of runs side by
-  /// side
+  /// Computes medians, marks and texts, when no run is left.  @param jobs  number of parallel runs
   void finish(int jobs);
 
  private:
   void plan(const scene::Description& description, const SolverChoice& choice);
   void add_tasks();
   void take_chart(const Task& task, const store::StudyArtefact& kept);
-  /// how many rungs of the same ladder come before it
+  /// Returns the number of coarser levels in the same sequence.
   std::size_t rung(std::size_t scene, std::size_t point) const;
   bool reference_tasks_done(std::size_t scene) const;
   bool is_at_the_end(const Task& task) const;

@@ -14,7 +14,7 @@ scene::Description with_method(scene::Description d, const std::string& method) 
   return d;
 }
 
-/// The largest number of samples at one time.
+/// Records the largest number of contact samples at one time.
 class SampleCount : public loop::Observer {
  public:
   void period(loop::World& world, double) override {
@@ -23,8 +23,8 @@ class SampleCount : public loop::Observer {
   long most = 0;
 };
 
-/// One run with one method; false where it was stopped.
-/// @throws Error where the method is not available or the run gives up
+/// Runs the scene with one method; returns false where it was stopped.
+/// @throws Error where the method is not available or the run fails
 bool run_method(const scene::Description& d, const std::string& method, const std::atomic<bool>* stop,
                 Trajectory& trajectory, MethodPoint& point) {
   const auto world = loop::assemble(with_method(d, method));
@@ -59,7 +59,7 @@ std::vector<MethodPoint> compare_contact_methods(const scene::Description& d, co
       if (first.period_times.empty()) first = trajectory;
       point.difference = distance(trajectory, first);
       out.push_back(point);
-    } catch (const Error& e) {  // what was compared before this stands
+    } catch (const Error& e) {  // Earlier results are kept.
       MethodPoint point;
       point.method = method;
       point.trouble = e.what();

@@ -15,7 +15,7 @@ using dynamics::Stability;
 using dynamics::StepControl;
 using dynamics::StepperEntry;
 
-/// What kBest tries: the direct solver and the iterative ones.
+/// Solvers tried by kBest: the direct solver and the iterative ones.
 const std::vector<std::string> kTriedSolvers = {"cholmod", "pcg-single", "pcg-two-level"};
 const std::string kOtherDirectSolver = "umfpack";
 
@@ -27,8 +27,8 @@ bool contains(const std::vector<std::string>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-/// Whether the user's list asks for a ladder: by its label, or by its integrator where no ladder has that
-/// name for a label.
+/// Whether the user's list contains a sequence: by its label, or by its integrator where no sequence has that
+/// name as label.
 bool is_named(const std::vector<std::string>& wanted, const scene::LadderSpec& ladder,
               const std::vector<scene::LadderSpec>& all) {
   if (contains(wanted, label_of(ladder))) return true;
@@ -40,7 +40,7 @@ bool is_named(const std::vector<std::string>& wanted, const scene::LadderSpec& l
 
 constexpr double kLoosestRtol = 0.1;
 
-/// The first setting of a method that makes sense: a tenth of the motion; a whole period in one step.
+/// Whether a setting is the coarsest meaningful one: an rtol of 0.1, or a step of a whole period.
 bool is_coarsest(const scene::Description& d, const scene::LadderSpec& ladder, double value) {
   if (ladder.setting == "rtol") return value >= (1.0 - 1e-9) * kLoosestRtol;
   return ladder.setting == "step_s" && value >= (1.0 - 1e-9) * loop::period_of(d);
@@ -51,9 +51,9 @@ bool takes_rtol(const StepperEntry& entry, double rtol) {
                      [&](const PartKey& key) { return key.name != "rtol" || key.range.holds(rtol); });
 }
 
-/// Default rungs: from the first that makes sense to rounding, decades of rtol under error control, else
-/// halvings of the loop's period.  How far down they are run the time limit says, or the reference, when it
-/// cannot tell the errors any more.
+/// Fills in default levels: from the coarsest meaningful setting down to rounding, in decades of rtol under
+/// error control, else by halving the loop's period.  The actual end is set by the time limit, or by the
+/// reference when it no longer resolves the errors.
 void fill_by_default(const scene::Description& d, const StepperEntry& entry, scene::LadderSpec& ladder) {
   if (entry.traits.control != StepControl::kFixed) {
     ladder.setting = "rtol";
@@ -73,7 +73,7 @@ scene::LadderSpec default_ladder(const scene::Description& d, const StepperEntry
   return ladder;
 }
 
-/// Ladder of ticks: whole fractions of the exchange period.
+/// Returns a sequence of ticks: integer fractions of the exchange period.
 scene::LadderSpec tick_ladder(const scene::Description& d, const std::string& integrator) {
   scene::LadderSpec ladder;
   ladder.integrator = integrator;
@@ -95,7 +95,7 @@ void check_ladder(const scene::Description& d, const scene::LadderSpec& ladder) 
          label_of(ladder), entry.name, ladder.setting);
 }
 
-/// The ladders that are wanted: the scene's own first, in its order.
+/// Returns the requested sequences: the scene's first, in their order.
 std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const CompareOptions& options) {
   const std::vector<std::string>& wanted = options.integrators;
   const bool everything = wanted.empty() || options.all, tool_only = d.bodies.empty();
@@ -142,7 +142,7 @@ bool uses(const StepperEntry* entry, const std::string& name) {
                               [&](const PartKey& key) { return key.name == name; });
 }
 
-/// The change to the scene that gives a ladder its linear solver; none where it keeps its own.
+/// Returns the override that sets a sequence's linear solver; none where the scene's is kept.
 std::vector<std::string> solver_of(const scene::LadderSpec& ladder, const SolverChoice& choice) {
   if (!uses(find_stepper(ladder.integrator), "linear_solver")) return {};
   const auto chosen = choice.by_label.find(label_of(ladder));
@@ -174,7 +174,7 @@ ComparePoint point_of(const scene::Description& d, const scene::LadderSpec& ladd
   return point;
 }
 
-/// Whether a ladder's rungs are not the scene's own.
+/// Whether a sequence has default levels instead of levels from the scene.
 bool is_by_default(const scene::Description& d, const scene::LadderSpec& ladder) {
   return std::none_of(d.compare.ladders.begin(), d.compare.ladders.end(), [&](const auto& own) {
     return !own.values.empty() && label_of(own) == label_of(ladder);
@@ -251,7 +251,7 @@ std::vector<ComparePoint> plan_trials(const scene::Description& d, const Compare
     for (const scene::LadderSpec& ladder : ladders_of(d, options)) {
       if (d.bodies.empty() || !uses(find_stepper(ladder.integrator), "linear_solver")) continue;
       scene::LadderSpec middle = ladder;
-      // of a default ladder the end is open: its third rung
+      // A default sequence has no fixed end: the third level is used.
       middle.values = {
           ladder.values[is_by_default(d, ladder) ? std::min<std::size_t>(2, ladder.values.size() - 1)
                                                  : ladder.values.size() / 2]};
@@ -325,7 +325,7 @@ PlannedReference plan_reference(const scene::Description& d, const std::vector<C
   };
   out.primary = made(c.reference, c.reference_rtol, "");
   const std::string solver = solver_name(out.primary, c.reference);
-  // An implicit check is solved by another factorisation: LU for Cholesky.
+  // An implicit check uses another factorisation: LU for Cholesky.
   const std::string other = !uses(find_stepper(c.reference_check), "linear_solver") ? ""
                             : solver == kOtherDirectSolver                          ? "cholmod"
                                                                                     : kOtherDirectSolver;

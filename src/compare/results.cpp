@@ -109,7 +109,7 @@ void Ledger::finish(int jobs) {
     for (auto* points : {&scene.points, &scene.restarts})
       for (ComparePoint& point : *points) summarise(point, scene.reference.own_error);
     std::erase_if(scene.points, [](const ComparePoint& p) { return p.reason == kNotNeeded; });
-    // A method that refuses the scene says so once.
+    // A method that rejects the scene is listed once.
     std::set<std::string> refused;
     std::erase_if(scene.points, [&](const ComparePoint& p) {
       return p.status == PointStatus::kRefused && !refused.insert(p.label).second;

@@ -10,7 +10,7 @@
 namespace palpate::compare {
 namespace {
 
-/// Adds the CPU time of its own life to a sum.
+/// Adds the CPU time of its lifetime to a sum [s].
 class Spent {
  public:
   explicit Spent(double& sum) : sum_(sum), start_(thread_cpu_seconds()) {}
@@ -27,26 +27,26 @@ VecX nodal_positions(const loop::World& world) {
   return world.state.q().head(world.state.layout().nodal_size);
 }
 
-/// Nodes of all bodies; of a scene without any, the tool's origin.
+/// Returns the nodes of all bodies; for a scene without bodies, the tool's origin.
 VecX positions_of(const loop::World& world, const Vec3& tool_origin) {
   if (world.bodies.empty() && world.description.tool) return tool_origin;
   return nodal_positions(world);
 }
 
-/// The mean distance of ascending times; of a single one its own distance from zero.
+/// Returns the mean spacing of ascending times; for a single time its absolute value.
 double spacing(const std::vector<double>& times) {
   if (times.size() < 2) return times.empty() ? 0.0 : std::abs(times[0]);
   return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
 }
 
-/// The larger of two numbers; NaN stays, where std::max would drop it.
+/// Returns the larger of two numbers; NaN is kept, where std::max would drop it.
 double worse(double a, double b) { return b > a || std::isnan(b) ? b : a; }
 
-/// Times are multiples of the two runs' periods: equal where they differ by less than this share of the
-/// shorter one, far above their rounding and far below any ratio of periods.
+/// Tolerance of equal times, relative to the shorter spacing.  Times are multiples of the two runs' periods:
+/// this is far above their rounding and far below any ratio of periods.
 constexpr double kSameTime = 1e-6;
 
-/// Calls visit(i, j) for every pair of equal times of two ascending lists; returns how many there were.
+/// Calls visit(i, j) for every pair of equal times of two ascending lists; returns the number of pairs.
 template <class Visit>
 int for_common_times(const std::vector<double>& a, const std::vector<double>& b, Visit visit) {
   std::size_t i = 0, j = 0;
@@ -65,7 +65,8 @@ int for_common_times(const std::vector<double>& a, const std::vector<double>& b,
   return common;
 }
 
-/// Mass-weighted square of what is left of a state's displacement without each body's rigid motion.
+/// Returns the mass-weighted sum of squares of a state's displacement after removal of each body's rigid
+/// motion.
 double deformation2(const Trajectory& t, const VecX& x) {
   double sum = 0.0;
   for (const Trajectory::Body& body : t.bodies) {
@@ -85,7 +86,7 @@ double deformation2(const Trajectory& t, const VecX& x) {
 /// A deformation below this share of the displacement is rounding.
 constexpr double kLeastDeformation = 1e-9;
 
-/// Returns the number of common ticks; without any, the errors stay as they are.
+/// Adds force and torque errors; returns the number of common ticks.  Without any, the errors are unchanged.
 int add_wrench_distance(const Trajectory& computed, const Trajectory& reference, TrajectoryError& error) {
   double force2 = 0.0, torque2 = 0.0, force_max = 0.0, torque_max = 0.0;
   const int ticks =
@@ -178,7 +179,7 @@ TrajectoryError no_distance() {
 
 namespace {
 
-/// @param Recorder  an observer with a trajectory()
+/// Assembles and runs a description.  @tparam Recorder  observer with a trajectory()
 template <class Recorder>
 Run run_with(const scene::Description& description, double duration_s, const std::atomic<bool>* stop,
              const std::function<void(loop::World&)>& spoil = {}) {

@@ -12,145 +12,151 @@ namespace palpate::compare {
 /// Outcome of a point.
 enum class PointStatus {
   kOk,
-  kFailed,  ///< the integrator gave up
+  kFailed,  ///< The integrator failed.
   kOutOfTime,
-  kCrashed,   ///< its process ended by a signal
-  kRefused,   ///< the integrator cannot run this scene with these settings
-  kNotTried,  ///< a coarser rung ran out of time
-  kMissing,   ///< the study was stopped before it
+  kCrashed,   ///< Its process was ended by a signal.
+  kRefused,   ///< The integrator cannot run this scene with these settings.
+  kNotTried,  ///< A coarser level of its refinement sequence ran out of time.
+  kMissing,   ///< The study was stopped before it ran.
 };
-/// For tables: "ok", "failed".
+/// Returns the name for tables: "ok", "failed".
 const char* to_string(PointStatus status);
 
-/// One point of the work-precision chart: one integrator at one tolerance or step.
+/// Point of the work-precision diagram: one integrator at one tolerance or step.
 struct ComparePoint {
-  std::string label;                          ///< what reports call its ladder; unique in a scene
-  std::string integrator, family, stability;  ///< of the method, as the registry has them
-  int order = 0;                              ///< theoretical
-  bool multistep = false;                     ///< it forgets its history at each exchange
-  std::string setting_name;                   ///< "rtol", "step_s" or "tick_s"
-  double setting = 0.0;                       ///< its value
-  /// relative tolerance of the method's own error test; NaN where it has none
+  std::string label;  ///< Name of its refinement sequence in reports; unique in a scene.
+  std::string integrator, family, stability;  ///< Properties of the method, from the registry.
+  int order = 0;                              ///< Theoretical order.
+  bool multistep = false;    ///< A multistep method, which restarts its history at each exchange.
+  std::string setting_name;  ///< "rtol", "step_s" or "tick_s".
+  double setting = 0.0;      ///< Value of the setting.
+  /// Relative tolerance of the method's error test; NaN where it has none.
   double error_test_rtol = std::numeric_limits<double>::quiet_NaN();
-  bool coarsest = false;      ///< a coarser setting makes no sense
-  bool open_ended = false;    ///< of a default ladder, which ends where the reference cannot tell errors
-  std::string linear_solver;  ///< empty: it solves no linear systems
-  std::string against;        ///< integrator of the reference that it is held against: not its own method
-  scene::Description description;              ///< the scene with everything set for this point
-  PointStatus status = PointStatus::kMissing;  ///< how it ended
-  std::string reason;                          ///< where the status is not kOk
-  /// NaN throughout where the status is not kOk, or where there is no reference
+  bool coarsest = false;  ///< No coarser setting is meaningful.
+  /// Level of a default sequence, which ends where the reference no longer resolves errors.
+  bool open_ended = false;
+  std::string linear_solver;  ///< Empty: the method solves no linear systems.
+  /// Integrator of the reference used; its family differs from the point's where possible.
+  std::string against;
+  scene::Description description;              ///< Scene with all settings of this point.
+  PointStatus status = PointStatus::kMissing;  ///< Outcome.
+  std::string reason;                          ///< Reason, where the status is not kOk.
+  /// Error against the reference; NaN throughout where the status is not kOk, or without a reference.
   TrajectoryError error;
-  loop::RunResult result;     ///< of the first repeat; counts are the same in all
-  std::vector<double> cpu_s;  ///< of each repeat: the loop's, without assembly and recording
-  double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;  ///< of all repeats
-  double setup_s = 0.0, record_s = 0.0;  ///< of the first repeat: assembly; recording and the bodies' energy
-  /// of the first repeat: the loop without contact queries, linearisations and ticks
+  loop::RunResult result;     ///< Result of the first repeat; counts are equal in all repeats.
+  std::vector<double> cpu_s;  ///< CPU time of each repeat [s]: the loop without assembly and recording.
+  double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;  ///< Over all repeats [s].
+  /// First repeat [s]: assembly; recording, including the bodies' energy.
+  double setup_s = 0.0, record_s = 0.0;
+  /// Returns the CPU time of the first repeat's loop minus the wall times of contact queries, linearisations
+  /// and ticks [s].
   double method_s() const { return result.cpu_s - result.query_s - result.linearise_s - result.tool_s; }
-  /// whether the position error is less than kResolution times the reference's own: not to be trusted
+  /// Whether the position error is less than kResolution times the reference error: not to be trusted.
   bool unresolved = false;
-  bool force_unresolved = false;   ///< likewise for the RMS of the force on the hand
-  bool torque_unresolved = false;  ///< likewise for that of the torque
+  bool force_unresolved = false;   ///< As `unresolved`, for the RMS error of the force on the hand.
+  bool torque_unresolved = false;  ///< As `unresolved`, for the RMS error of the torque.
 };
 
-/// The reference that the points are compared with, and how far it can be trusted.
+/// Reference solution that the points are compared with, and its accuracy.
 struct Reference {
-  std::string description;  ///< integrators of the reference and of its check
-  std::string trouble;      ///< what is missing of the two, and why; empty: nothing
-  bool available = false;   ///< without one no point has an error
-  /// distance of two families at tight tolerance; NaN where there was no check
+  std::string description;  ///< Integrators of the reference and of its check.
+  std::string trouble;      ///< Which of the two is missing, and why; empty: none.
+  bool available = false;   ///< Without a reference no point has an error.
+  /// Reference error: distance of two method families at tight tolerance; NaN without a check.
   TrajectoryError own_error = no_distance();
-  double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< on the hand
-  double cpu_s = 0.0;                                ///< of the reference and its check
+  double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< Peaks on the hand.
+  double cpu_s = 0.0;                                ///< CPU time of the run that serves as reference [s].
 };
 
-/// One method of finding the tool's contact, compared with the first of the scene's list: how far the choice
-/// of method moves the result.
+/// Result of one contact method for the tool, compared with the first method of the scene's list: shows the
+/// effect of the choice of method.
 struct MethodPoint {
-  std::string method;                 ///< as `contact.method` names it
-  TrajectoryError difference;         ///< zero for the first
-  double peak_force_n = 0.0;          ///< on the hand
-  long most_samples = 0;              ///< contact samples at one time
-  double query_s = 0.0, cpu_s = 0.0;  ///< of the contact queries; of the loop
-  std::string trouble{};              ///< why the scene could not be run with it; empty: it was
+  std::string method;                 ///< Value of `contact.method`.
+  TrajectoryError difference;         ///< Zero for the first method.
+  double peak_force_n = 0.0;          ///< Peak of the force on the hand.
+  long most_samples = 0;              ///< Largest number of contact samples at one time.
+  double query_s = 0.0, cpu_s = 0.0;  ///< Wall time of contact queries; CPU time of the loop [s].
+  std::string trouble{};              ///< Reason why the scene could not be run with it; empty: it could.
 };
 
-/// A chart, or a part of one, that could not be made.
+/// Chart, or part of one, that could not be made.
 struct MissingChart {
-  std::string of;   ///< "the contact methods", "the contact method \"gpu\""
-  std::string why;  ///< in words, with what to do
-  /// One sentence.
+  std::string of;   ///< Subject: "the contact methods", "the contact method \"gpu\"".
+  std::string why;  ///< Reason, with the remedy.
+  /// Returns one sentence.
   std::string text() const { return "no chart of " + of + ": " + why; }
 };
 
-/// Everything about one scene.
+/// Comparison of one scene.
 struct SceneComparison {
-  std::string scene, path;           ///< its name, and its file
-  bool tool = false;                 ///< whether it has a tool
-  Reference reference;               ///< what errors are distances from
-  std::vector<ComparePoint> points;  ///< every rung of every ladder
-  /// setting "contact_refresh_s": what re-initialisation costs; empty where the scene asks for none
+  std::string scene, path;           ///< Name, and file.
+  bool tool = false;                 ///< Whether the scene contains a [tool].
+  Reference reference;               ///< Reference of all errors.
+  std::vector<ComparePoint> points;  ///< Every level of every refinement sequence.
+  /// Setting "contact_refresh_s": cost of re-initialisation; empty where the scene requests none.
   std::vector<ComparePoint> restarts;
-  /// error of the exchange period itself; empty where the scene asks for none
+  /// Error of the exchange period alone; empty where the scene requests none.
   ExchangeStudy exchange;
-  std::vector<MethodPoint> methods;          ///< those that could be run; empty where the scene names none
-  std::vector<MissingChart> missing_charts;  ///< and why they are missing
-  /// what LinearSolvers::kBest tried: each method's middle rung, by each solver; labels are the ladders'
+  std::vector<MethodPoint> methods;          ///< Methods that could be run; empty where the scene lists none.
+  std::vector<MissingChart> missing_charts;  ///< With their reasons.
+  /// Trials of LinearSolvers::kBest: the middle level of each sequence with each solver; labels are the
+  /// sequences' labels, followed by the solver.
   std::vector<ComparePoint> trials;
 };
 
-/// What `palpate compare` found.
+/// Result of `palpate compare`.
 struct Comparison {
-  std::vector<SceneComparison> scenes;  ///< in the order in which they were given
-  std::string rules;                    ///< how runs were repeated and limited, in words
-  long reused = 0;                      ///< runs that an earlier, unfinished study had done
-  bool stopped = false;                 ///< from outside: the rest of the points is missing
+  std::vector<SceneComparison> scenes;  ///< In the order given.
+  std::string rules;                    ///< Text that describes how runs were repeated and limited.
+  long reused = 0;                      ///< Number of runs taken from an earlier, unfinished study.
+  bool stopped = false;                 ///< Stopped from outside: the remaining points are missing.
 };
 
-/// Which linear solver each implicit method is given.
+/// Choice of the linear solver of implicit methods.
 enum class LinearSolvers {
-  kSame,   ///< one for all (`linear_solver`), so that methods alone are compared
-  kBest,   ///< each method's fastest, found by trying them at the middle rung of its ladder
-  kNamed,  ///< the scene's own, or else what the method takes by itself
+  kSame,   ///< One solver for all (`linear_solver`), so that only methods are compared.
+  kBest,   ///< Fastest solver of each method, measured at the middle level of its sequence.
+  kNamed,  ///< Solver of the scene, or else the method's default.
 };
 
-/// How `palpate compare` works.
+/// Options of `palpate compare`.
 struct CompareOptions {
-  LinearSolvers linear_solvers = LinearSolvers::kSame;  ///< which one a method gets
-  std::string linear_solver = "cholmod";                ///< of kSame: a direct one leaves no error of its own
-  /// at most; a point is repeated only while its runs together took less than a fifth of the limit
+  LinearSolvers linear_solvers = LinearSolvers::kSame;  ///< Choice of linear solvers.
+  std::string linear_solver = "cholmod";                ///< Solver for kSame: a direct one adds no error.
+  /// Maximum number of repeats; a point is repeated only while its runs together took less than a fifth of
+  /// the limit.
   int repeats = 3;
-  double limit_s = 10.0;             ///< CPU seconds a point
-  double reference_limit_s = 120.0;  ///< CPU seconds of a reference, of its check, and of each further chart
-  /// runs side by side; 0: references on all cores, and what is timed with nothing beside it
+  double limit_s = 10.0;             ///< CPU seconds per point.
+  double reference_limit_s = 120.0;  ///< CPU seconds each for a reference, its check, and each further chart.
+  /// Number of parallel runs; 0: references on all cores, and timed runs one at a time.
   int jobs = 0;
-  /// names or labels; empty: the scene's ladders and all else that is not static
+  /// Names or labels; empty: the scene's sequences and all other integrators that are not static.
   std::vector<std::string> integrators;
-  bool all = false;      ///< every integrator that is not static, beside those named
-  std::string database;  ///< file to keep results in and to go on from; empty: none
-  /// called after each run
+  bool all = false;      ///< Also every integrator that is not static.
+  std::string database;  ///< File for results, from which a study resumes; empty: none.
+  /// Called after each run.
   std::function<void(double fraction, const std::string& what)> progress;
-  const std::atomic<bool>* stop = nullptr;  ///< set from outside: runs that have begun are ended
+  const std::atomic<bool>* stop = nullptr;  ///< Set from outside: active runs are ended.
 };
 
-/// Runs every ladder of every scene at the scene's fixed exchange period against the scene's tight reference
-/// (a method of the reference's own family against its check), each run in a process of its own; repeats are
-/// interleaved over all points, so that a noisy machine hurts all alike.  The processes come from core's
-/// ProcessPool: a program that has started threads or drawn a picture by now must have called
-/// ProcessPool::prepare() before.
-/// @param options  what is compared, how often, and within which limits
-/// @param scenes  from loop::load or loop::parse: their text is what results are kept under
-/// @throws Error for ladders that make no sense
+/// Runs every refinement sequence of every scene at the scene's fixed exchange period, and compares it with
+/// the scene's tight reference (methods of the reference's family are compared with its check).  Each run has
+/// a separate process; repeats are interleaved over all points, so that disturbances of the machine affect
+/// all alike.  The processes come from core's ProcessPool: a program that has started threads or drawn a
+/// picture must have called ProcessPool::prepare() before.
+/// @param options  selection, repeats and limits
+/// @param scenes  from loop::load or loop::parse: results are stored under a hash of their text
+/// @throws Error for invalid refinement sequences
 Comparison run(const std::vector<scene::Description>& scenes, const CompareOptions& options);
 
-/// Runs the scene with the tool's contact found by each method of `compare.contact_methods`, at the scene's
-/// own integrator settings.  A method that is not available, or whose run gives up, is a point with its
-/// trouble.
+/// Runs the scene with each contact method of `compare.contact_methods` for the tool, at the scene's
+/// integrator settings.  A method that is not available, or whose run fails, is reported in
+/// `trouble` of its point.
 std::vector<MethodPoint> compare_contact_methods(const scene::Description& description,
                                                  const std::atomic<bool>* stop = nullptr);
 
-/// Writes compare.csv, restarts.csv, exchange.csv, methods.csv and reference.json into `folder`: report reads
-/// its tables, fitted orders and plots from them.
+/// Writes compare.csv, trials.csv, restarts.csv, exchange.csv, methods.csv and reference.json into `folder`:
+/// report takes its tables, fitted orders and plots from them.
 void write(const Comparison& comparison, const std::string& folder);
 
 }  // namespace palpate::compare

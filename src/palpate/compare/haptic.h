@@ -8,100 +8,106 @@
 
 namespace palpate::compare {
 
-/// One run of the scene, in which one thing differs from it.
+/// Run of the scene with one parameter changed.
 struct HapticPoint {
-  /// "exchange period", "exchange alone" (period, tick a tenth of it, all else as in the reference), "tick",
-  /// "pixels", "element size", "integrator", "linearisation"
+  /// Parameter that differs: "exchange period", "exchange alone" (exchange period with a tick of a tenth of
+  /// it, all else as in the reference), "tick", "pixels", "element size", "integrator", "linearisation".
   std::string variable;
-  std::string value;     ///< of it, for people: "10 ms", "cvode-bdf"
-  double setting = 0.0;  ///< of it, where it is a number; else NaN
-  bool own = false;      ///< it is the scene's own: nothing differs
+  std::string value;     ///< Its value as text: "10 ms", "cvode-bdf".
+  double setting = 0.0;  ///< Its value, where it is a number; else NaN.
+  bool own = false;      ///< The value is the scene's: nothing differs.
   scene::Description description;
   PointStatus status = PointStatus::kMissing;
-  std::string reason;  ///< where the status is not kOk
-  /// of the wrench on the hand; NaN where the status is not kOk, or where there is no reference
+  std::string reason;  ///< Reason, where the status is not kOk.
+  /// Error of the wrench on the hand; NaN where the status is not kOk, or without a reference.
   TrajectoryError error = no_distance();
-  bool force_unresolved = false, torque_unresolved = false;  ///< see kResolution
-  loop::RunResult result;                                    ///< of the first repeat
-  std::vector<double> cpu_s;                                 ///< of each repeat
+  bool force_unresolved = false, torque_unresolved = false;  ///< See kResolution.
+  loop::RunResult result;                                    ///< Result of the first repeat.
+  std::vector<double> cpu_s;                                 ///< CPU time of each repeat [s].
   double cpu_median_s = 0.0;
-  /// wall time of all but queries, linearisations and ticks
+  /// Returns the wall time of everything except queries, linearisations and ticks [s].
   double bodies_s() const { return result.wall_s - result.query_s - result.linearise_s - result.tool_s; }
 };
 
-/// Slope of log error over log setting of one variable.
+/// Slope of log error over log setting, for one variable.
 struct HapticOrder {
   std::string variable;
-  double force = 0.0, torque = 0.0;  ///< NaN with fewer than two points
+  double force = 0.0, torque = 0.0;  ///< NaN with fewer than two points.
   int force_points = 0, torque_points = 0;
 };
 
-/// How far the force on the hand is from that of tool and bodies as one system.
+/// Error of the force on the hand against the monolithic solution.
 struct HapticComparison {
   std::string scene, path;
-  Reference reference;                               ///< of its own errors those of force and torque
-  double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< of the reference
-  std::vector<HapticPoint> points;                   ///< by variable; coarse to fine
-  std::vector<HapticOrder> orders;                   ///< of exchange period, exchange alone and tick
-  std::string rules;                                 ///< how runs were repeated and limited, in words
-  long reused = 0;                                   ///< runs that an earlier study had done
+  Reference reference;                               ///< Only force and torque of its `own_error` are set.
+  double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< Peaks of the reference.
+  std::vector<HapticPoint> points;                   ///< By variable; from coarse to fine.
+  std::vector<HapticOrder> orders;                   ///< For exchange period, exchange alone and tick.
+  std::string rules;  ///< Text that describes how runs were repeated and limited.
+  long reused = 0;    ///< Number of runs taken from an earlier study.
   bool stopped = false;
 };
 
-/// A peak below this is rounding [N], [N m]: a scene without torque has no error of it in percent,
-/// and no order.
+/// A peak below this is rounding [N], [N m]: a scene without torque has no relative torque error, and no
+/// order.
 inline constexpr double kLeastPeak = 1e-12;
 
-/// Share of a peak; NaN where there is none.
+/// Returns the error relative to the peak; NaN where the peak is at most kLeastPeak.
 double share_of_peak(double error, double peak);
 
-/// Points whose error is above this share of the reference's peak enter no fitted order: of a force that is
-/// wrong throughout, no power of the period is left.
+/// Acceptance limit of points for fitted orders, relative to the reference's peak: larger errors are beyond
+/// the asymptotic range.
 inline constexpr double kOrderPeakShare = 0.1;
 
 /// Varies exchange period, tick, contact resolution, integrator and linearisation about the scene, one at a
-/// time, and measures the wrench on the hand against the scene with tool and bodies as one system
-/// (`[compare.haptic]`).  Each run has a process of its own: references side by side, the points, whose time
-/// is measured, one at a time unless `options.jobs` says otherwise.
-/// @param options  integrators: only these in place of the scene's list; all: no meaning
+/// time, and measures the error of the wrench on the hand against the monolithic solution
+/// (`[compare.haptic]`). Each run has a separate process: references run in parallel, the timed points one at
+/// a time unless `options.jobs` specifies otherwise.
+/// @param options  integrators: replaces the scene's list; all: not used
 /// @throws Error for a scene without a tool or without bodies
 HapticComparison compare_haptic(const scene::Description& description, const CompareOptions& options);
 
-/// Writes haptic.csv into `folder`: report reads its table and charts from it and from summary.json.
+/// Writes haptic.csv into `folder`: report takes its table and charts from it and from summary.json.
 void write(const HapticComparison& comparison, const std::string& folder);
 
-/// The scene with tool and bodies as one system, by the integrator and contact refresh of `[compare.haptic]`.
+/// Scene with tool and bodies as one system, with the integrator and contact refresh of `[compare.haptic]`.
 struct MonolithicScene {
   scene::Description description;
-  std::string made_by;  ///< in words
+  std::string made_by;  ///< Description for reports.
 };
-/// @param coarser  how many times the step (the refresh; ten times as often the tolerance) is that of the key
+/// Makes the monolithic scene.
+/// @param coarser  factor on step and refresh period of the keys; the tolerance is multiplied by
+///   coarser^log2(10), ten for 2.  Above 1, the integrator is the check's.
 MonolithicScene monolithic_scene(const scene::Description& description, double coarser = 1.0);
 
-/// Of what one hand felt.
+/// Error of the wrench on one hand.
 struct FeltError {
   TrajectoryError error = no_distance();
-  double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< of the reference
+  double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< Peaks of the reference.
 };
 
-/// A run that was made, against its scene as one system under the same hands; of the first hand its own
-/// figures.
+/// Result of comparing a completed run with its monolithic solution under the same hand motion; the inherited
+/// members refer to the first hand.
 struct AgainstMonolithic : FeltError {
-  std::string made_by;         ///< the reference, in words
-  bool recorded_hand = false;  ///< held by the hands as they were recorded, not by the scene's own paths
-  double cpu_s = 0.0;          ///< of the reference
-  std::vector<FeltError> more_hands;  ///< of each [[hand]]
+  std::string made_by;  ///< Description of the reference.
+  /// The reference was driven by the recorded hands instead of the scene's prescribed paths.
+  bool recorded_hand = false;
+  double cpu_s = 0.0;                 ///< CPU time of the reference [s].
+  std::vector<FeltError> more_hands;  ///< Errors of each [[hand]].
   bool stopped = false;
-  std::string trouble{};  ///< why there is no error
+  std::string trouble{};  ///< Reason why there is no error.
 };
-/// Repeats a run as monolithic_scene().  One in real time, and one of a hand whose path nobody knows
-/// beforehand, is held by the hands as they were recorded.
-/// @param world  of the run  @param records  of each hand  @param real_time  whether the run was
-/// @throws Error for what refuse_against_monolithic() refuses
+/// Repeats a run with monolithic_scene().  For a run in real time, and for a hand without a prescribed path,
+/// the recorded hands drive the reference.
+/// @param world  World of the run
+/// @param records  records of each hand
+/// @param real_time  whether the run was in real time
+/// @throws Error as refuse_against_monolithic()
 AgainstMonolithic against_monolithic(const loop::World& world, const std::vector<loop::HapticRecord>& records,
                                      bool real_time, const std::function<void(double)>& progress,
                                      const std::atomic<bool>* stop);
-/// @throws Error for a scene without a tool or without bodies, and for one that is monolithic itself
+/// Checks that a scene has a monolithic counterpart.  @throws Error for a scene without a tool or without
+/// bodies, and for one that is monolithic itself
 void refuse_against_monolithic(const scene::Description& description);
 
 }  // namespace palpate::compare
