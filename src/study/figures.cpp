@@ -14,8 +14,8 @@ namespace {
 
 using Times = std::vector<std::pair<std::string, std::vector<double>>>;
 
-/// What a study keeps of a run: the largest force and torque on any hand, how far nodes went, and the state
-/// at the end.
+/// Collects a study's figures of a run: the largest force and torque on any hand, the largest displacement of
+/// a node, and the final state.
 class FigureObserver : public loop::Observer {
  public:
   explicit FigureObserver(bool energy) : energy_(energy) {}
@@ -25,7 +25,7 @@ class FigureObserver : public loop::Observer {
     if (start_.size() != now.size()) start_ = now;
     for (Eigen::Index i = 0; i + 3 <= now.size(); i += 3) {
       const double moved = (now.segment<3>(i) - start_.segment<3>(i)).norm();
-      if (!(moved <= largest_displacement_m)) largest_displacement_m = moved;  // NaN stays
+      if (!(moved <= largest_displacement_m)) largest_displacement_m = moved;  // Also taken where it is NaN.
     }
   }
   void tick_of(std::size_t hand, const loop::TickRecord& tick) override {
@@ -37,7 +37,7 @@ class FigureObserver : public loop::Observer {
   }
   bool wants_energy() const override { return energy_; }
 
-  /// Hash of bodies and tools at the end: equal where every bit is.
+  /// Returns a hash of the final state of bodies and tools: equal for bitwise equal states.
   std::string end_state(const loop::World& world) const {
     store::ContentHash hash;
     add(hash, world.state.q());
@@ -110,7 +110,7 @@ double median(std::vector<double> values) {
   return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
-/// One run: its status and figures; its times are added to `times`.
+/// Runs the scene once; returns its status and figures, and adds its times to `times`.
 Json run_once(const scene::Description& d, const std::atomic<bool>& out_of_time, Times& times) {
   const double start = wall_seconds();
   const auto world = loop::assemble(d);
@@ -120,7 +120,7 @@ Json run_once(const scene::Description& d, const std::atomic<bool>& out_of_time,
   options.observers = {&seen};
   options.stop = &out_of_time;
   const loop::RunResult result = loop::run(*world, options);
-  // where the time ran out is no property of the scene
+  // The point where time ran out is not a property of the scene.
   if (result.stopped) return {{"status", "out of time"}, {"reason", ""}, {"figures", Json::object()}};
   add_times(times, result, assemble_s);
   Json out = {{"status", "ok"}, {"reason", ""}, {"figures", figures_of(*world, result, seen)}};

@@ -21,7 +21,7 @@ constexpr std::size_t kMostTasks = 1000000;
 
 using Varied = std::vector<std::pair<std::string, std::string>>;
 
-/// One way to set something: the overrides that do it, and the columns that say it.
+/// Choice of one setting: its overrides, and the columns that record it.
 struct Choice {
   std::vector<std::string> overrides;
   Varied varied;
@@ -33,7 +33,7 @@ bool uses(const StepperEntry& entry, const std::string& name) {
                      [&](const PartKey& key) { return key.name == name; });
 }
 
-/// Whether an integrator goes by rtol with this scene.
+/// Whether an integrator uses error control by rtol with this scene.
 bool by_error_control(const StepperEntry& entry, const IntegratorSpec& spec) {
   return entry.traits.control == StepControl::kAdaptive ||
          (entry.traits.control == StepControl::kEither && !spec.fixed_step);
@@ -43,8 +43,8 @@ Choice set_to(const std::string& key, const std::string& value) {
   return {{key + "=" + value}, {{key, value}}};
 }
 
-/// The tolerances or the steps of a method: the list that it understands; of one that can do both the
-/// tolerances.  Without one it keeps the scene's own.
+/// Returns the tolerances or the steps of a method: the list that applies to it, or the tolerances where both
+/// do.  Without a list it keeps the scene's setting.
 Choices settings_of(const scene::StudySpec& spec, const StepperEntry& entry) {
   const StepControl control = entry.traits.control;
   Choices out;
@@ -60,7 +60,7 @@ Choices settings_of(const scene::StudySpec& spec, const StepperEntry& entry) {
   return out;
 }
 
-/// Sweeps that move together are one list of choices.
+/// Returns the sweeps; sweeps that vary together form one list of choices.
 std::vector<Choices> sweeps_of(const scene::StudySpec& spec) {
   std::vector<Choices> out;
   for (const scene::SweepSpec& sweep : spec.sweeps) {
@@ -94,7 +94,7 @@ std::string scene_path(const scene::StudySpec& spec, const std::string& name, co
   return fs::absolute(is_file ? beside.string() : help.find_scene(name)).lexically_normal().string();
 }
 
-/// Appends the product of all lists to the plan, the last list the fastest.
+/// Appends the Cartesian product of all lists to the plan; the last list varies fastest.
 void add_product(Plan& plan, const Task& base, const std::vector<Choices>& lists) {
   std::size_t count = 1;
   for (const Choices& list : lists) {
@@ -161,7 +161,7 @@ Plan list_tasks(const scene::StudySpec& spec, const PlanHelp& help) {
   plan.spec.path = fs::absolute(spec.path).lexically_normal().string();
   for (const std::string& name : spec.scenes) {
     const std::string path = scene_path(plan.spec, name, help);
-    loop::load(path);  // its own message where it is no scene
+    loop::load(path);  // Throws its message where it is no scene.
     plan.scenes.push_back({name, path, store::read_file(path)});
   }
   const std::vector<Choices> sweeps = sweeps_of(plan.spec);

@@ -13,9 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPart = ".part";  ///< while it is written
+constexpr const char* kPart = ".part";  ///< Suffix while the file is written.
 
-/// A number so that it reads back exactly; a text as it is; empty for what JSON writes for NaN.
+/// Returns a number such that it reads back exactly, a text unchanged, and "nan" for null, which JSON writes
+/// for NaN.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number_integer()) return fmt::format("{}", value.get<long long>());
@@ -39,7 +40,7 @@ void put_all(std::vector<std::string>& names, std::vector<std::string>& cells, c
   for (const auto& [name, value] : object.items()) put(cells, column_of(names, name), text_of(value));
 }
 
-/// A TOML text without its quotes; all else as it is.
+/// Returns a TOML string without its quotes, and other values unchanged.
 std::string unquoted(const std::string& value) {
   const bool quoted = value.size() > 1 && value.front() == '"' && value.back() == '"';
   return quoted ? value.substr(1, value.size() - 2) : value;
@@ -56,7 +57,7 @@ void add_settings(const Plan& plan, const Task& task, Results& out, Row& row) {
   for (const auto& [name, value] : task.varied) set(name, unquoted(value));
 }
 
-/// Columns that no row has anything in say nothing.
+/// Removes columns without any entry.
 void drop_empty(std::vector<std::string>& names, std::vector<Row>& rows) {
   for (std::size_t c = names.size(); c-- > 0;) {
     if (std::any_of(rows.begin(), rows.end(), [&](const Row& row) { return !row.settings[c].empty(); }))

@@ -20,10 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 using Outcome = ProcessPool::Outcome;
 
-/// What the process of a task answers where it found no memory.
+/// Answer of a task's process that ran out of memory.
 constexpr const char* kNoMemory = "no memory";
 
-/// One task as bytes, for a process that knows nothing of the study.
+/// Encodes one task for a process that has no access to the study.
 std::string order_of(const Plan& plan, const Task& task) {
   const StudyScene& scene = plan.scenes[task.scene];
   ByteWriter out;
@@ -32,7 +32,7 @@ std::string order_of(const Plan& plan, const Task& task) {
   return out.take();
 }
 
-/// A ProcessPool::Work: runs what order_of() said.
+/// Runs a task encoded by order_of(); a ProcessPool::Work.
 std::string do_order(const std::string& order, const std::atomic<bool>& out_of_time) {
   ByteReader in(order);
   const auto text = in.get<std::string>(), path = in.get<std::string>();
@@ -49,8 +49,8 @@ Json without_figures(const char* status, const std::string& reason) {
   return {{"status", status}, {"reason", reason}, {"figures", Json::object()}, {"times", Json::object()}};
 }
 
-/// Signals by which a process is ended from outside: a node that goes down, an administrator, the kernel that
-/// needs its memory.  All others are its own crashes.
+/// Whether the process was ended from outside: by a node that goes down, an administrator, or the kernel when
+/// it runs out of memory.  Other signals are crashes of the task.
 bool is_from_outside(int signal) { return signal == SIGKILL || signal == SIGTERM || signal == SIGHUP; }
 
 class Runner {
@@ -78,7 +78,7 @@ class Runner {
   }
 
   void done(const Task& task, const Outcome& outcome) {
-    if (stopped()) return;  // it may have been cut short
+    if (stopped()) return;  // The task may have been interrupted.
     ++ended_;
     if (options_.progress)
       options_.progress(static_cast<double>(ended_) / static_cast<double>(most_),
@@ -116,7 +116,7 @@ class Runner {
   std::size_t ended_ = 0, most_ = 0;
 };
 
-/// As many as there are cores for the threads that the tasks ask for.
+/// Returns the number of parallel tasks: cores over the largest number of threads of a task.
 int jobs_for(const Plan& plan, const std::vector<std::size_t>& open, const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
   int threads = 1;
@@ -154,7 +154,7 @@ RunOutcome run_tasks(Plan& plan, const std::vector<std::size_t>& indices, const 
 }
 
 void forget_results(const std::string& folder) {
-  // the folder itself stays: its lock is on it
+  // The folder itself is kept: it carries the lock.
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(fs::path(folder) / "tasks", error)) {
     std::error_code failed;

@@ -20,16 +20,16 @@ namespace palpate::study {
 namespace {
 
 constexpr std::size_t kDefaultArraySize = 1001;
-constexpr const char* kPackage = "slurm-client";  // Debian's, with sbatch, squeue and scontrol
+constexpr const char* kPackage = "slurm-client";  // Debian package with sbatch, squeue and scontrol.
 
-/// A path in an #SBATCH line, where % begins a field.
+/// Returns the opening quote and a path for an #SBATCH line, where % begins a field.
 std::string sbatch_path(const std::string& path) {
   std::string out = "\"";
   for (const char c : path) out += c == '%' ? std::string("%%") : std::string(1, c);
   return out;
 }
 
-/// The name of a job: one word.
+/// Returns the name of a job: one word.
 std::string job_name(const std::string& name) {
   std::string out = "palpate-";
   for (const char c : name) out += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
@@ -140,13 +140,13 @@ std::string submit(const std::string& script) {
     fail("sbatch did not take {} (exit status {}):\n{}", script, answer.status,
          trimmed(answer.err + answer.out));
   const std::string job = trimmed(answer.out);
-  return job.substr(0, job.find(';'));  // "7;cluster"
+  return job.substr(0, job.find(';'));  // Output may be "7;cluster".
 }
 
 JobState job_state(const std::string& job) {
   const Answer answer = ask({"squeue", "--noheader", "--jobs", job, "--format", "%T"});
   if (answer.status == 0) return trimmed(answer.out).empty() ? JobState::kOver : JobState::kWaiting;
-  // Slurm forgets a job some minutes after its end
+  // Slurm deletes a job from its records some minutes after its end.
   if (answer.err.find("Invalid job id") != std::string::npos) return JobState::kOver;
   return JobState::kUnknown;
 }

@@ -19,7 +19,7 @@ std::string host_name() {
   return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
 }
 
-/// The command line that runs this task alone, and keeps what its scene records.
+/// Returns the command line that runs this task alone and keeps the recorded files.
 std::string command_of(const Plan& plan, const Task& task) {
   std::string out = "palpate run " + quoted(plan.scenes[task.scene].path);
   for (const std::string& change : task.overrides) out += " --set " + quoted(change);
@@ -70,7 +70,7 @@ std::optional<Json> read_task_file(const std::string& folder, const Task& task) 
   Json file;
   try {
     file = store::parse_json(store::read_file(path), path);
-  } catch (const Error&) { return {}; }  // cut off, or of no task: it is run again
+  } catch (const Error&) { return {}; }  // Truncated, or not a result: the task is run again.
   const bool whole = file.is_object() && file.value("key", "") == task.key && file.contains("status") &&
                      file.contains("figures") && file["figures"].is_object() && file.contains("times") &&
                      file.contains("machine") && file.contains("limit_s");

@@ -6,21 +6,22 @@
 
 namespace palpate::study {
 
-/// The file of a task: what was run, where, and what came of it.
+/// Returns the content of a task's file: settings, machine and result.
 /// @param result  "status", "reason", "figures", "times"
 Json task_file(const Plan& plan, const Task& task, const Json& result);
 
-/// Reads it; nothing where there is none, or it is no result of this task (a disk that lost it): the task is
-/// then run again.
+/// Reads a task's file; empty where there is none, or it is no result of this task (after a disk failure):
+/// the task is then run again.
 std::optional<Json> read_task_file(const std::string& folder, const Task& task);
 
-/// Whether a result stays: one that ran out of time does not where more time is now allowed.
+/// Whether a result is final: one that ran out of time is not where more time is now allowed.
 bool is_final(const Plan& plan, const Json& file);
 
-/// Of the limit as it is now: a task that had more and did not end in it does not end in less.
+/// Returns the reason text, with the present limit: a task that exceeded a larger limit also exceeds a
+/// smaller one.
 std::string out_of_time_reason(const Plan& plan);
 
-/// A word of a command line, quoted for a shell.
+/// Quotes a word for a shell.
 std::string quoted(const std::string& word);
 
 }  // namespace palpate::study

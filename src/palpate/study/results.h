@@ -4,30 +4,32 @@
 
 #include "palpate/study/plan.h"
 
-/// Merges the files of all tasks into one table.
+/// Merges the result files of all tasks into one table.
 namespace palpate::study {
 
-/// One row of the table.  Figures that a task has not are empty.
+/// Row of the table.  Figures that a task does not have are empty.
 struct Row {
   std::string status;  ///< "ok", "failed", "refused", "out of time", "crashed", "missing"
   std::string reason;
   std::vector<std::string> settings, figures, times;
 };
 
-/// The whole study, a row a task in the order of the tasks.
+/// Table of the whole study, one row per task, in the order of the tasks.
 struct Results {
-  std::vector<std::string> settings, figures, times;  ///< names of the columns, with their units
+  std::vector<std::string> settings, figures, times;  ///< Names of the columns, with their units.
   std::vector<Row> rows;
-  std::vector<std::size_t> missing;  ///< tasks without a result
+  std::vector<std::size_t> missing;  ///< Tasks without a result.
 
+  /// Returns the number of rows with that status.
   std::size_t count(const std::string& status) const;
 };
 
-/// Reads what is there.  @pre every task is settled
+/// Reads the existing results.  @pre every task is settled
 Results merge(const Plan& plan, const std::string& folder);
 
-/// Writes study.csv (settings, status and figures: the same bytes whichever machines ran it, in any order, at
-/// one go or not), study-times.csv (times and machines) and study.toml (the study itself).
+/// Writes study.csv (settings, status and figures: the same bytes on whichever machines, in any order, and in
+/// however many runs the tasks were run), study-times.csv (times and machines) and study.toml (the study
+/// itself).
 void write(const Plan& plan, const Results& results, const std::string& folder);
 
 }  // namespace palpate::study
