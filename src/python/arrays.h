@@ -5,11 +5,12 @@
 #include <utility>
 #include <vector>
 
-/// NumPy arrays that look at memory of C++, read-only: nothing is copied.
+/// Read-only NumPy arrays that are views of C++ memory: nothing is copied.
 namespace palpate::python {
 
-/// @param shape, strides  rows and what follows; strides in bytes
-/// @param owner  a Python object that keeps the memory alive; the array keeps it
+/// Makes a read-only array that is a view of `data`.
+/// @param shape, strides  per dimension, rows first; strides in bytes
+/// @param owner  Python object that keeps the memory alive; the array holds a reference to it
 template <class T>
 pybind11::array view(const T* data, std::vector<pybind11::ssize_t> shape,
                      std::vector<pybind11::ssize_t> strides, const pybind11::handle& owner) {
@@ -18,13 +19,14 @@ pybind11::array view(const T* data, std::vector<pybind11::ssize_t> shape,
   return out;
 }
 
-/// n values, one row each.
+/// Makes an array of n values.
 template <class T>
 pybind11::array rows(const T* data, pybind11::ssize_t n, const pybind11::handle& owner) {
   return view(data, {n}, {sizeof(T)}, owner);
 }
 
-/// n rows of `width` values, one after the other: a column-major matrix of `width` rows.
+/// Makes an array of n contiguous rows with `width` values: the transpose of a column-major matrix with
+/// `width` rows.
 template <class T>
 pybind11::array rows(const T* data, pybind11::ssize_t n, pybind11::ssize_t width,
                      const pybind11::handle& owner) {
@@ -32,7 +34,7 @@ pybind11::array rows(const T* data, pybind11::ssize_t n, pybind11::ssize_t width
   return view(data, {n, width}, {width * size, size}, owner);
 }
 
-/// Keeps a value alive as long as arrays look at it; get() is where it then is.
+/// Keeps a value alive as long as arrays refer to it; get() returns it at its final address.
 template <class T>
 class Kept {
  public:

@@ -1,7 +1,7 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
-/// One function a file of bindings; module.cpp calls them in this order.
+/// Binding functions, one per source file; module.cpp calls them in this order.
 namespace palpate::python {
 
 void bind_scene(pybind11::module_& module);

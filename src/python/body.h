@@ -8,7 +8,7 @@
 
 namespace palpate::python {
 
-/// One body of a simulation.
+/// Body of a simulation, by index.
 struct BodyOf {
   std::shared_ptr<Simulation> simulation;
   std::size_t index;
@@ -17,7 +17,7 @@ struct BodyOf {
   pybind11::object owner() const { return pybind11::cast(simulation); }
 };
 
-/// @throws Error for a body that is not there
+/// Returns the body of that name.  @throws Error where the scene has none
 BodyOf find_body(const std::shared_ptr<Simulation>& self, const std::string& name);
 
 }  // namespace palpate::python

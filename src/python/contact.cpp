@@ -15,7 +15,7 @@ ContactNow contact_of(const std::shared_ptr<Simulation>& self) {
 
 namespace {
 
-/// One row a sample: `width` values of a member of its record; width 0: one value.
+/// Makes an array with one row per sample: `width` values of a record's member; width 0: one value.
 template <class T>
 py::array sample_rows(const ContactNow& self, const T& (*member)(const contact::ContactPoint&),
                       py::ssize_t width) {

@@ -26,7 +26,8 @@ TickLists::List ticks_of(const HandOf& hand) {
   return hand.simulation->ticks().of(hand.index);
 }
 
-/// One row a tick: what `member` finds in its record, `width` numbers; width 0: one number.
+/// Makes an array with one row per tick: `width` numbers that `member` selects from its record; width 0: one
+/// number.
 template <class Member>
 py::array tick_rows(const HandOf& hand, const Member& member, py::ssize_t width = 3) {
   const Kept<TickLists::List> kept(ticks_of(hand));
@@ -39,7 +40,7 @@ py::array tick_rows(const HandOf& hand, const Member& member, py::ssize_t width 
   return view(data, {n, width}, {step, static_cast<py::ssize_t>(sizeof(double))}, kept.owner());
 }
 
-/// Of the last tick; zero before the first.
+/// Returns a vector of the last tick; zero before the first.
 template <class Member>
 py::array last_tick(const HandOf& hand, const Member& member) {
   const TickLists::List list = ticks_of(hand);

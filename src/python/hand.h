@@ -8,17 +8,17 @@
 
 namespace palpate::python {
 
-/// One hand of a simulation.
+/// Hand of a simulation, by index.
 struct HandOf {
   std::shared_ptr<Simulation> simulation;
   std::size_t index;
   std::string name;
 };
 
-/// @throws Error for a hand that is not there
+/// Returns the hand of that name.  @throws Error where the scene has none
 HandOf find_hand(const std::shared_ptr<Simulation>& self, const std::string& name);
 
-/// On that hand at its last tick, (3,) [N], [N m]; zero before the first.
+/// Returns force or torque on that hand at its last tick, (3,) [N], [N m]; zero before the first.
 pybind11::array last_force(const HandOf& hand);
 pybind11::array last_torque(const HandOf& hand);
 

@@ -5,12 +5,13 @@
 
 namespace palpate::python {
 
-/// While it lives, Ctrl-C sets a flag, and tells Python that its own handler is due.  Python's handler alone
-/// would run only after the call into C++ has returned.
+/// Scope in which Ctrl-C sets a flag and marks Python's handler as pending.  Python's handler alone would run
+/// only after the call into C++ has returned.
 class Interrupt {
  public:
+  /// Installs the handler of SIGINT.
   /// @param stop  set to true by SIGINT
-  /// @param wanted  false in a thread that gets no signals, where this does nothing
+  /// @param wanted  false in a thread that receives no signals; the object then has no effect
   Interrupt(std::atomic<bool>& stop, bool wanted);
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
@@ -21,9 +22,10 @@ class Interrupt {
   struct sigaction before_ = {};
 };
 
-/// Whether this thread is Python's main one.  @pre the GIL is held
+/// Whether this thread is Python's main thread.  @pre the GIL is held
 bool is_main_thread();
-/// Runs Python's handlers that are due; throws what they raise (KeyboardInterrupt).  @pre the GIL is held
+/// Runs pending Python handlers; throws the exception that they raise (KeyboardInterrupt).  @pre the GIL is
+/// held
 void run_due_handlers();
 
 }  // namespace palpate::python

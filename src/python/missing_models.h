@@ -3,8 +3,9 @@
 
 namespace palpate::python {
 
-/// The program makes models on first use ("model:gear"); the module only takes what is there.
-/// @throws Error that names the command, for a model that was not made yet
+/// Checks that all models exist.  The program generates models on first use ("model:gear"); the module uses
+/// existing ones only.
+/// @throws Error with the command to run, for a model that does not exist yet
 void refuse_missing_models(const scene::Description& description);
 
 }  // namespace palpate::python

@@ -1,4 +1,4 @@
-// The extension module palpate._palpate.  What a user imports is the package around it (palpate/__init__.py).
+// Extension module palpate._palpate.  Users import the package around it (palpate/__init__.py).
 #include "bindings.h"
 #include "palpate/core/error.h"
 #include "simulation.h"

@@ -39,7 +39,7 @@ void Scene::set(const std::vector<std::string>& more) {
 
 namespace {
 
-/// TOML of Python's values, by the package's own writer.
+/// Converts Python values to TOML with the package's writer.
 std::string toml_of(const char* writer, const py::object& value) {
   return py::module_::import("palpate._toml").attr(writer)(value).cast<std::string>();
 }

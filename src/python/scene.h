@@ -6,18 +6,19 @@
 
 namespace palpate::python {
 
-/// A scene's text with changes on top, checked as the program checks it.
+/// Text of a scene with changes applied, checked as the program checks it.
 class Scene {
  public:
-  /// @throws Error as loop::load() and loop::parse()
+  /// Reads a scene file.  @throws Error as loop::load()
   static Scene load(const std::string& path);
+  /// Makes a scene from TOML text.  @throws Error as loop::parse()
   static Scene parse(const std::string& text, const std::string& path,
                      const std::vector<std::string>& changes = {});
 
-  /// Changes, each `PATH=VALUE` as --set takes it, checked together.  @throws Error, and then nothing has
-  /// changed
+  /// Applies changes, each `PATH=VALUE` as in --set; they are checked together.  @throws Error, and then
+  /// leaves the scene unchanged
   void set(const std::vector<std::string>& more);
-  const std::string& text() const { return text_; }  ///< before the changes
+  const std::string& text() const { return text_; }  ///< Text before changes.
   const std::vector<std::string>& changes() const { return changes_; }
   const scene::Description& description() const { return description_; }
 

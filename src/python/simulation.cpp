@@ -21,7 +21,7 @@ void TickLists::tick_of(std::size_t hand, const loop::TickRecord& tick) {
   if (list->size() == list->capacity()) {
     auto longer = std::make_shared<std::vector<loop::TickRecord>>();
     longer->reserve(2 * list->size());
-    *longer = *list;  // within its capacity
+    *longer = *list;  // Within the reserved capacity.
     list = std::move(longer);
   }
   list->push_back(tick);

@@ -9,14 +9,14 @@
 
 namespace palpate::python {
 
-/// An integrator gave up.
+/// Failure of an integrator.
 class GaveUp : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The ticks of each hand so far.  A list that is full is copied to one twice as long, and whoever looks at
-/// the old one keeps it: what was there when it was asked for stays where it is.
+/// Tick records per hand so far.  A full list is copied to one of twice the capacity; arrays that refer to
+/// the old list keep it alive, so records never move while an array refers to them.
 class TickLists : public loop::Observer {
  public:
   using List = std::shared_ptr<const std::vector<loop::TickRecord>>;
@@ -29,30 +29,34 @@ class TickLists : public loop::Observer {
   std::vector<std::shared_ptr<std::vector<loop::TickRecord>>> lists_;
 };
 
-/// A scene that is being simulated, period by period, in virtual time.
+/// Simulation of a scene, advanced period by period in virtual time.
 class Simulation {
  public:
-  /// @param duration_s  0: the scene's
+  /// Assembles the scene.  @param duration_s  simulated time [s]; 0: the scene's
   Simulation(const scene::Description& description, double duration_s);
 
-  /// Goes through one period; false at the end.
-  /// @throws GaveUp where the integrator did, now or before; Error where it was stopped, or is in use
+  /// Advances by one period; returns false at the end.
+  /// @throws GaveUp where the integrator has failed, now or before; Error where the run was stopped, or is in
+  ///   use
   bool step();
-  /// Goes on until `seconds` of simulated time have passed, or the end is reached: whole periods.
-  /// @throws Error for a time that is not positive
+  /// Advances by whole periods until `seconds` of simulated time have passed, or to the end.
+  /// @throws Error for a time that is not positive, and as step()
   void advance(double seconds);
+  /// Advances to the end.  @throws GaveUp, Error as step()
   void run();
 
+  /// Flag that stops the run when set.
   std::atomic<bool>& stop() { return stop_; }
-  /// @pre leased, where another thread may be stepping; likewise for world() and ticks()
+  /// Results so far.  @pre leased, where another thread may be stepping; the same holds for world() and
+  /// ticks()
   const loop::RunResult& result() const { return run_->result(); }
-  double time() const { return time_; }  ///< simulated so far [s]; any thread may ask
+  double time() const { return time_; }  ///< Simulated time so far [s]; may be called from any thread.
   bool finished() const;
   double duration() const { return run_->duration(); }
   loop::World& world() { return *world_; }
   const TickLists& ticks() const { return *ticks_; }
 
-  /// The World is one thread's at a time.  @throws Error where another has it
+  /// Exclusive access to the World for one thread.  @throws Error where another thread has it
   class Lease {
    public:
     explicit Lease(Simulation& simulation);

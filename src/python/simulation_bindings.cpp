@@ -1,5 +1,5 @@
-// Simulation for Python.  Arrays of the state are views of the simulation's own memory: they keep it alive,
-// and show what the next steps make of it.
+// Bindings of Simulation.  Arrays of the state are views of the simulation's memory: they keep it alive, and
+// change with the next steps.
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using Shared = std::shared_ptr<Simulation>;
 
-/// Calls a step without the GIL; Ctrl-C ends it after the integrator's current step.
+/// Runs one step without the GIL; Ctrl-C ends it after the integrator's current step.
 template <class Step>
 auto interruptible(Simulation& self, const Step& step) {
   const bool main = is_main_thread();
@@ -31,7 +31,7 @@ auto interruptible(Simulation& self, const Step& step) {
     }();
     if (main) run_due_handlers();
     return out;
-  } catch (const Error&) {  // where Ctrl-C is the reason, what Python's handler raises comes first
+  } catch (const Error&) {  // If Ctrl-C caused it, the exception of Python's handler takes precedence.
     if (main) run_due_handlers();
     throw;
   }

@@ -1,4 +1,4 @@
-// Comparisons of integrators and cases with a known answer, for Python.
+// Bindings of integrator comparisons and of validation cases with known solutions.
 #include <pybind11/stl.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@ namespace py = pybind11;
 namespace palpate::python {
 namespace {
 
-/// Writes the files of a comparison into `folder`; gives what no file has.
+/// Writes the files of a comparison into `folder`; returns the figures that are in none of them.
 /// @pre this process has no other thread, or has prepared a pool of processes (core/process_pool.h)
 py::dict compare_into(const std::string& folder, const Scene& scene,
                       const std::vector<std::string>& integrators, double limit_s, double reference_limit_s,
@@ -54,7 +54,7 @@ py::dict compare_into(const std::string& folder, const Scene& scene,
   return out;
 }
 
-/// One measured quantity of a case.
+/// Measured quantity of a case.
 struct Measured {
   std::string name;
   validation::Measurement measurement;
