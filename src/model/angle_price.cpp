@@ -15,8 +15,8 @@
 // K of a linear tetrahedron with the gradients g_a of its shape functions:
 //   K_ab = V (lambda g_a g_b^T + mu g_b g_a^T + mu (g_a . g_b) I),
 // with Lame's constants lambda and mu.  M^-1/2 K M^-1/2 has the eigenvalues of M^-1 K and is symmetric, as
-// the Lanczos method asks.  Without reorthogonalisation the largest eigenvalue comes out right all the same
-// (Paige 1976); slivers stand far off from the rest of the spectrum, so that few steps do.
+// the Lanczos method requires.  The largest eigenvalue converges without reorthogonalisation (Paige 1976);
+// slivers separate it from the rest of the spectrum, so that few steps suffice.
 namespace palpate::model {
 namespace {
 
@@ -28,7 +28,7 @@ struct Element {
 
 struct Matrix {
   std::vector<Element> elements;
-  VecX inverse_root_mass;  ///< of each node
+  VecX inverse_root_mass;  ///< per node
 
   VecX times(const VecX& x) const {
     constexpr double kLambda = AnglePrice::kYoungsModulus * AnglePrice::kPoissonsRatio /
@@ -36,7 +36,7 @@ struct Matrix {
                      kMu = AnglePrice::kYoungsModulus / (2 * (1 + AnglePrice::kPoissonsRatio));
     VecX out = VecX::Zero(x.size());
     for (const Element& e : elements) {
-      Mat3 gradient = Mat3::Zero();  // of the displacement
+      Mat3 gradient = Mat3::Zero();  // displacement gradient
       for (std::size_t a = 0; a < 4; ++a)
         gradient += inverse_root_mass[e.nodes[a]] * x.segment<3>(3 * e.nodes[a]) * e.gradients[a].transpose();
       const Mat3 stress =

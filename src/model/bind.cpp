@@ -8,13 +8,13 @@
 
 namespace palpate::model {
 
-// The ball at place t in [0, 1] of the axis has its centre at t L and the radius r0 + t (r1 - r0).  A point
-// at x along the axis and y beside it is
-//   f(t) = D(t) - r0 - t (r1 - r0),   D = sqrt((x - t L)^2 + y^2)
-// from it, and the bone's distance is the least f.  f is convex (a norm less a line), so that its stationary
-// point, clamped, is the place:
+// The ball at parameter t in [0, 1] of the axis has its centre at t L and the radius r0 + t (r1 - r0).  Its
+// distance from a point at x along the axis and y off it is
+//   f(t) = D(t) - r0 - t (r1 - r0),   D = sqrt((x - t L)^2 + y^2),
+// and the bone's distance is the minimum of f.  f is convex (a norm minus a linear function), so the minimum
+// is at its stationary point, clamped to [0, 1]:
 //   f' = 0:  (x - t L) / D = -s,  s = (r1 - r0) / L,   hence  D = y / sqrt(1 - s^2),  t L = x + s D.
-// With |s| >= 1 one end's ball holds the other, and f falls all the way to the larger one.
+// With |s| >= 1 one end's ball contains the other, and f falls monotonically to the larger one.
 double distance_to_bone(const Bone& bone, const Vec3& p) {
   const Vec3 axis = bone.tail - bone.head;
   const double length = axis.norm(), growth = bone.tail_radius - bone.head_radius;
@@ -43,7 +43,7 @@ std::vector<int> bind_nodes(const Points& nodes, const Skeleton& skeleton, doubl
     double least = std::numeric_limits<double>::infinity();
     std::size_t nearest = count;
     for (std::size_t i = 0; i < count; ++i) {
-      if (owner[i] >= 0) continue;  // another bone's: taking it could leave that one without
+      if (owner[i] >= 0) continue;  // belongs to another bone, which could be left without a node
       if (const double d = distance_to_bone(skeleton.bones[static_cast<std::size_t>(b)],
                                             nodes.col(static_cast<Eigen::Index>(i)));
           d < least) {

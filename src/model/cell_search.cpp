@@ -9,14 +9,14 @@
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/quality.h"
 
-// A bound c on circumradii gives N = k V / c^3 tetrahedra and edges of about 1.3 c, k about 5 but for the
-// shape.  Each mesh made tells k anew, and the next bound follows by c <- c (N / wanted)^(1/3), or c <- c
-// wanted / found for edges.  Optimisation takes a few in a hundred cells away again (exuded slivers), by a
-// share that hardly depends on c: it is guessed at first, measured afterwards.
-// Where a number of nodes is wanted too, facets of size s are refined apart from cells.  On a slender body
-// nearly all nodes are boundary nodes: their number goes as s^-1.3 and hardly with c, and coarser cells leave
-// fewer nodes inside, which raises nodes per tetrahedron by about c^0.2 (measured on a standing figure: 0.1
-// to 0.3).
+// A bound c on circumradii gives N = k V / c^3 tetrahedra and edges of about 1.3 c, where k is about 5 and
+// depends on the shape.  Each mesh gives a new estimate of k, and the next bound is c <- c (N /
+// target)^(1/3), or c <- c target / found for edges.  Optimisation removes a few per cent of the cells
+// (exuded slivers), a share that hardly depends on c: it is estimated at first, measured afterwards. If a
+// number of nodes is requested too, facets of size s are refined independently of cells.  On a slender body
+// nearly all nodes are boundary nodes: their number scales as s^-1.3 and hardly with c, and coarser cells
+// leave fewer nodes inside, which raises nodes per tetrahedron by about c^0.2 (measured on a standing human
+// figure: 0.1 to 0.3).
 namespace palpate::model {
 namespace {
 
@@ -24,17 +24,17 @@ constexpr double kCellsPerVolume = 5.0, kEdgePerCell = 1.3, kLeftByOptimising = 
 constexpr double kTolerance = 0.03;
 constexpr int kLargestNumber = 20'000'000;
 
-/// How much too many (or too long) a mesh has, as the factor on the cell size that would set it right.
+/// Deviation of a mesh from the target, as the factor on the cell size that would correct it.
 struct Aim {
   const TetrahedraOptions& options;
-  double left = kLeftByOptimising;  ///< share of the cells that optimising leaves
+  double left = kLeftByOptimising;  ///< share of the cells that remain after optimisation
 
   bool by_size() const { return options.element_size_m > 0; }
   double correction(const CellCount& found, double share) const {
     if (by_size()) return options.element_size_m / found.mean_edge;
     return std::cbrt(std::max(found.tetrahedra, 1) * share / options.tetrahedra);
   }
-  /// The relative error of the number, or of the edge.
+  /// Returns the relative error of the number, or of the edge length.
   double error(const CellCount& found, double share) const {
     return by_size() ? std::abs(found.mean_edge / options.element_size_m - 1)
                      : std::abs(found.tetrahedra * share / options.tetrahedra - 1);
@@ -50,7 +50,7 @@ CellCount count_of(const TetMesh& mesh) {
           edges / (6.0 * std::max<double>(static_cast<double>(mesh.tets.cols()), 1.0))};
 }
 
-/// Sizes of cells and facets, and how they follow from what a mesh has.
+/// Sizes of cells and facets, and their correction from the counts of a mesh.
 struct Sizes {
   const TetrahedraOptions& options;
   double cell, facet, largest;
@@ -59,7 +59,7 @@ struct Sizes {
   double node_error(const CellCount& found) const {
     return by_nodes() ? std::abs(static_cast<double>(found.nodes) / options.nodes - 1) : 0.0;
   }
-  /// @param left  share of the tetrahedra found that optimising will leave
+  /// @param left  share of the tetrahedra found that remain after optimisation
   void correct(const Aim& aim, const CellCount& found, double left) {
     if (!by_nodes()) {
       cell = facet = std::min(cell * std::clamp(aim.correction(found, left), 0.4, 2.5), largest);
@@ -95,7 +95,7 @@ void check(const TetrahedraOptions& options, double volume) {
          wanted, kPointsPerCell * wanted, options.limits.points);
 }
 
-/// Optimises; where a stage fails, the mesh of these sizes is made again, and optimised without that stage.
+/// Optimises; if a stage fails, remakes the mesh of these sizes and optimises it without that stage.
 void optimised(CellMesher& mesher, double cell, double facet, const Progress& progress) {
   constexpr int kStages = 2;
   for (int failed = 0;; ++failed) try {
@@ -106,18 +106,17 @@ void optimised(CellMesher& mesher, double cell, double facet, const Progress& pr
     }
 }
 
-/// Tetrahedra that a sheet of thickness t takes, about.
+/// Estimates the number of tetrahedra that a sheet of thickness t needs.
 double least_number(double volume, double thickness) {
   return thickness > 0 ? kCellsPerVolume * volume / (thickness * thickness * thickness) : 0.0;
 }
 
-/// What the attempts of a search found.
+/// History of the attempts of a search.
 class Attempts {
  public:
   explicit Attempts(const TetrahedraOptions& options) : options_(options) {}
 
-  /// @returns false where more attempts are in vain: larger cells gave no fewer tetrahedra, and still too
-  /// many
+  /// @returns false if more attempts are futile: larger cells gave no fewer tetrahedra, and still too many
   bool add(double cell, const CellCount& found) {
     constexpr double kLarger = 1.1, kAsMany = 0.95, kTooMany = 1.3;
     const bool by_number = options_.element_size_m <= 0 && options_.nodes == 0 && !options_.at_least;
@@ -149,7 +148,7 @@ class Attempts {
   int last_ = 0, nearest_ = 0;
 };
 
-/// Takes away where the boundary touches itself, and says so.
+/// Removes tetrahedra where the boundary touches itself, with a note.
 void part(FittedMesh& made, double volume, std::vector<std::string>& notes) {
   constexpr double kLargestShare = 0.02;
   const ManifoldReport report = make_boundary_manifold(made);
@@ -168,13 +167,13 @@ void part(FittedMesh& made, double volume, std::vector<std::string>& notes) {
 
 // Two bounds.  A sheet of thickness t has the area 2 V / t on both its sides.  A tetrahedron with an angle of
 // 8 degrees or more between its faces along the sheet has edges up to about t / tan(8 degrees) = 7 t, and a
-// triangle of these, 0.43 (7 t)^2 large, stands for three tetrahedra through the sheet.
+// triangle of these, with area 0.43 (7 t)^2, represents three tetrahedra through the sheet.
 //
-// And the ball about a point of one side through the corners of its boundary face must not reach the other
-// side, or faces join both sides and are split again: circumradii are at most about t, as long as no least
+// Second, the ball about a point of one side through the corners of its boundary face must not reach the
+// other side, or faces join both sides and are split again: circumradii are at most about t, unless a least
 // size ends that, and then N = k V / t^3.  (A washer of 2 mm: none below 6,300 tetrahedra; 8,200 by the
-// formula.)  2 V / A is less than the thickness of bodies with sides, a third of the edge of a cube: only
-// what is far below is refused.
+// formula.) 2 V / A is less than the thickness of bodies with lateral faces, a third of the edge for a cube:
+// only targets far below the bound are rejected.
 void refuse_too_thin(const BodySize& size, const Vec3& place, const TetrahedraOptions& options) {
   constexpr double kLongestEdge = 7.0, kTriangle = 0.43, kThrough = 3.0, kTooMany = 2.0, kFarBelow = 4.0;
   check(options, size.volume);
@@ -192,14 +191,14 @@ void refuse_too_thin(const BodySize& size, const Vec3& place, const TetrahedraOp
 
 Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const TetrahedraOptions& options,
                         const Progress& progress) {
-  // of the first guess, where creases may bring more than the wanted number: cells beside them stay as small
-  // as they should be
+  // Relative to the first estimate, if creases may require more than the target number: cells near them stay
+  // at their intended size.
   constexpr double kLargestCell = 1.3;
   constexpr double kClose = 0.012;
   constexpr int kRounds = 3;
   const int attempts = options.nodes > 0 ? 16 : 7;
-  // One round is the rule and has nine tenths of the bar; each further one has nine tenths of what is left,
-  // so that it never runs back.
+  // Normally there is one round, which gets nine tenths of the progress bar; each further round gets nine
+  // tenths of the remainder, so that progress never decreases.
   double begun = 0.0, left_of_bar = 1.0;
   const auto tell = [&](double fraction) {
     if (progress) progress(begun + left_of_bar * fraction);

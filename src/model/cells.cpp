@@ -17,7 +17,7 @@ void check_corners(const std::vector<int>& corners, std::size_t element, const C
            cells.points.size());
 }
 
-/// Elements with corners in the numbering of the points that they use, which go to `points`.
+/// Renumbers the elements' corners to the points in use, which are stored in `points`.
 template <std::size_t N>
 Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(
     const std::vector<std::array<int, N>>& elements, const Cells& cells, const std::string& path,

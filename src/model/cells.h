@@ -10,26 +10,28 @@
 
 namespace palpate::model {
 
-/// Gathers the cells of a foreign file: linear triangles and tetrahedra are taken, quadrangles and polygons
-/// cut into triangles, points and lines passed over, all else counted.
+/// Collects the cells of a foreign file: linear triangles and tetrahedra are stored, quadrangles and polygons
+/// are cut into triangles, points and lines are skipped, all other cells are counted as unread.
 class Cells {
  public:
   explicit Cells(std::string path) : path_(std::move(path)) {}
 
   std::vector<Vec3> points;
-  std::vector<long> point_numbers;  ///< of the file; empty: from 0
-  std::vector<double> labels;       ///< number of the region of each tetrahedron; empty: none
-  /// Ascending tetrahedra of each group, in place of labels: groups may overlap.
+  std::vector<long> point_numbers;  ///< numbers in the file; empty: 0, 1, ...
+  std::vector<double> labels;       ///< region number per tetrahedron; empty: none
+  /// Tetrahedra of each group, ascending, in place of labels: groups may overlap.
   std::map<double, std::vector<int>> groups;
-  std::map<double, std::string> label_names;  ///< of labels or groups
+  std::map<double, std::string> label_names;  ///< names of labels or groups
 
+  /// Adds a polygon by its corners, indices into `points`.
   void polygon(std::vector<int> corners) { polygons_.push_back(std::move(corners)); }
+  /// Adds a tetrahedron by its corners, indices into `points`.
   void tetrahedron(int a, int b, int c, int d) { tets_.push_back({a, b, c, d}); }
   std::size_t tetrahedra() const { return tets_.size(); }
-  void unread(std::string_view what);  ///< "hexahedra", for the refusal
+  void unread(std::string_view what);  ///< counts an unread cell, e.g. "hexahedra", for the error message
 
-  /// Tetrahedra where there are any, else the triangles; points that they do not use go.  @throws Error for
-  /// neither, unread cells, indices out of range
+  /// Returns the tetrahedra if there are any, else the triangles, without unused points.
+  /// @throws Error for neither, unread cells, indices out of range
   SourceFile finish(std::string format) const;
 
  private:
@@ -39,14 +41,15 @@ class Cells {
   std::vector<std::pair<std::string, int>> unread_;
 };
 
-std::string lower(std::string text);  ///< in small letters, of ASCII
+std::string lower(std::string text);  ///< converts ASCII letters to lower case
 
+/// Readers of the formats in foreign_files.h; `format` is the name for messages.
 SourceFile read_by_gmsh(const std::string& path, const std::string& format);
 SourceFile read_by_cgal(const std::string& path, const std::string& format);  ///< .ply .off .stl
 SourceFile read_meshb(const std::string& path);
 SourceFile read_vtk(const std::string& path);
 SourceFile read_vtk_xml(const std::string& path);  ///< .vtu .vtp
-/// A cell of VTK's numbering of types.
+/// Adds a cell of a VTK cell type.
 void take_vtk_cell(Cells& cells, int type, const std::vector<int>& corners);
 
 }  // namespace palpate::model

@@ -8,9 +8,8 @@
 
 namespace palpate::model {
 
-/// Returns the reason that CGAL gives for an exception, on one line: it writes several, with its files.  The
-/// debugging information is left out: it has addresses in memory, with which the note in a model would differ
-/// from run to run.
+/// Returns the reason that CGAL gives for an exception, on one line.  Its debugging information is omitted:
+/// it contains memory addresses, with which the note in a model would differ from run to run.
 inline std::string reason_of(const std::exception& e) {
   const auto* const failure = dynamic_cast<const CGAL::Failure_exception*>(&e);
   std::string text = failure ? failure->message() : e.what();

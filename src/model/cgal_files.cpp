@@ -15,8 +15,9 @@
 namespace palpate::model {
 namespace {
 
-/// CGAL knows the keywords of a text in small letters alone.  A file of bytes has a head of 80 and a count,
-/// and 50 bytes for each triangle, and may begin with "solid" too.
+/// Converts an ASCII STL file to lower case, because CGAL recognises only lower-case keywords.  A binary file
+/// has a header of 80 bytes, a count, and 50 bytes per triangle; it may begin with "solid" too and is left
+/// unchanged.
 std::string lower_keywords(std::string stl) {
   constexpr std::size_t kHead = 80, kTriangle = 50;
   std::uint32_t triangles = 0;

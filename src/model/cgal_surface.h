@@ -1,5 +1,5 @@
 #pragma once
-// A soup as CGAL's surface mesh and back, with the places in the file kept.
+// Conversion of a soup to CGAL's surface mesh and back, with the places in the file kept.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 
@@ -10,13 +10,15 @@
 namespace palpate::model {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+/// CGAL's surface mesh; the places in the file are the properties "v:source" and "f:source".
 using CgalSurface = CGAL::Surface_mesh<Kernel::Point_3>;
 
-/// @pre faces agree in their turning and every edge has one or two of them
+/// Builds CGAL's mesh of a soup.
+/// @pre faces are oriented consistently, and every edge has one or two of them
 CgalSurface cgal_of(const Soup& soup);
-Soup soup_of(CgalSurface& mesh, const mesh::Provenance& from);  ///< collects what was removed first
+Soup soup_of(CgalSurface& mesh, const mesh::Provenance& from);  ///< collects removed elements first
 
-/// Runs what calls CGAL; what CGAL finds impossible becomes an Error.
+/// Runs work that calls CGAL; converts CGAL's failures to Error.
 template <class Work>
 auto guarded(const Soup& soup, Work work) {
   try {

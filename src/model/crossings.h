@@ -5,8 +5,8 @@
 
 namespace palpate::model {
 
-/// Faces that go through others, rising; empty: none.
-/// @pre faces agree in their turning, and every edge has one or two of them
+/// Returns the faces that intersect others, ascending; empty: none.
+/// @pre faces are oriented consistently, and every edge has one or two of them
 std::vector<int> crossing_faces(const Soup& soup);
 
 }  // namespace palpate::model

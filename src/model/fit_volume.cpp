@@ -8,16 +8,15 @@
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/quality.h"
 
-// A mesh whose boundary nodes lie on a curved surface cuts its bulges off: the gap g between a flat facet and
-// the surface is e^2 / (8 R) in the middle, and at edges of a tenth of a limb's radius that takes 1 % of its
-// volume.  Let d be the movement of the boundary along its normals, linear over each facet.  The d that is
-// nearest to g, with the mass matrix lumped, is
-//   d_v = (sum over facets around v of integral g phi_v) / (sum of integral phi_v),      integral by the rule
-//   of three points (2/3, 1/6, 1/6), exact for quadratics.
-// Where the surface is flat g = 0 and nothing moves: the sides of a box stay its sides.  The volume is a
-// cubic of the scale s in x_v + s d_v n_v; three steps of the secant method meet the wanted one.  Where
-// elements would be spoiled, their nodes' movement is halved until they are not, and the others make up for
-// it.
+// A mesh whose boundary nodes lie on a curved surface loses volume: the gap g between a flat facet and the
+// surface is e^2 / (8 R) in the middle, and edges of a tenth of a limb's radius lose 1 % of its volume.  Let
+// d be the movement of the boundary along its normals, linear over each facet.  The d that is nearest to g,
+// with the mass matrix lumped, is
+//   d_v = (sum over facets around v of integral g phi_v) / (sum of integral phi_v),
+// with integrals by the three-point rule (2/3, 1/6, 1/6), exact for quadratics. Where the surface is flat g =
+// 0 and nothing moves: the sides of a box stay in place.  The volume is a cubic of the scale s in x_v + s d_v
+// n_v; three steps of the secant method meet the target.  Where elements would become too flat, their nodes'
+// movement is halved until they are not, and the other nodes compensate for the volume.
 namespace palpate::model {
 namespace {
 
@@ -25,10 +24,10 @@ constexpr double kReach = 0.5, kFarthest = 0.15;  // in cell sizes
 
 struct Movement {
   mesh::Boundary boundary;
-  Points step;  ///< of each boundary vertex [m]
+  Points step;  ///< per boundary vertex [m]
 };
 
-/// Signed gap along the outward normal at p, 0 where the surface is not found near.
+/// Returns the signed gap along the outward normal at p [m]; 0 if the surface is not found nearby.
 double gap(const SurfaceQuery& surface, const Vec3& p, const Vec3& normal, double reach) {
   double best = 0, nearest = reach;
   for (const double side : {1.0, -1.0})
@@ -93,7 +92,7 @@ double smallest_dihedral(const TetMesh& mesh, int tet) {
   return *std::min_element(angles.begin(), angles.end());
 }
 
-/// The scale that meets the volume, as near as it may.
+/// Returns the scale that meets the volume, as nearly as its limits allow.
 double scale_for(const Movement& by, double volume) {
   constexpr double kLargestScale = 2.0;
   double s0 = 0.0, v0 = volume_of(by, 0.0), s1 = 1.0, v1 = volume_of(by, 1.0);
@@ -105,7 +104,8 @@ double scale_for(const Movement& by, double volume) {
   return s1;
 }
 
-/// Halves the movement of the nodes of elements with angles below `bearable`; false: there are none.
+/// Halves the movement of the nodes of elements with angles below `bearable`; returns false if there are
+/// none.
 bool hold_back(const TetMesh& moved, double bearable, const std::vector<int>& vertex_of_node, Movement& by) {
   std::vector<char> held(static_cast<std::size_t>(by.step.cols()), 0);
   bool any = false;

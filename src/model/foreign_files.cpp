@@ -34,7 +34,8 @@ SourceFile of_tets(mesh::TetFile file, std::string format) {
   return out;
 }
 
-/// Gmsh's ASCII formats 2 and 4.1 have a reader of ours, which names lines; it takes tetrahedra only.
+/// Reads Gmsh's ASCII formats 2 and 4.1 by palpate's reader, which reports lines and reads tetrahedra only;
+/// all other files by libgmsh.
 SourceFile read_msh(const std::string& path) {
   std::ifstream in(path);
   std::string section, version;

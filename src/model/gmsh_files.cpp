@@ -12,8 +12,8 @@
 #include "palpate/core/error.h"
 #include "palpate/core/rehearsal.h"
 
-// libgmsh takes 0.12 s and 48 MB to load, so that it is opened by name at the first file that needs it, and
-// only its C interface is used.
+// libgmsh takes 0.12 s and 48 MB to load.  It is therefore opened by dlopen at the first file that needs it,
+// and only its C interface is used.
 namespace palpate::model {
 namespace {
 
@@ -21,7 +21,7 @@ class Gmsh {
  public:
   Gmsh() : handle_(::dlopen(PALPATE_GMSH_LIBRARY, RTLD_NOW | RTLD_LOCAL)) {
     if (!handle_) {
-      std::string package = PALPATE_GMSH_LIBRARY;  // Debian's: libgmsh4.8 of libgmsh.so.4.8
+      std::string package = PALPATE_GMSH_LIBRARY;  // Debian's name: libgmsh4.8 for libgmsh.so.4.8
       if (const std::size_t at = package.find(".so."); at != std::string::npos) package.erase(at, 4);
       fail("{} cannot be loaded ({}); the package {} brings it", PALPATE_GMSH_LIBRARY, ::dlerror(), package);
     }
@@ -33,7 +33,7 @@ class Gmsh {
   }
   ~Gmsh() {
     int error = 0;
-    // the library stays loaded: it does not survive being unloaded
+    // The library stays loaded, because it crashes when it is unloaded.
     function<decltype(gmshFinalize)>("gmshFinalize")(&error);
   }
   Gmsh(const Gmsh&) = delete;
@@ -45,7 +45,7 @@ class Gmsh {
     PALPATE_CHECK(symbol, "{} has no {}", PALPATE_GMSH_LIBRARY, name);
     return reinterpret_cast<Signature*>(symbol);
   }
-  /// What Gmsh says went wrong last.
+  /// Returns Gmsh's last error message.
   std::string last_error() const {
     char* text = nullptr;
     int error = 0;
@@ -60,7 +60,7 @@ class Gmsh {
   void* handle_;
 };
 
-/// An array that Gmsh allocated.
+/// Array allocated by Gmsh, freed on destruction.
 template <class T>
 struct Array {
   explicit Array(const Gmsh& owner) : gmsh(owner) {}
@@ -72,9 +72,10 @@ struct Array {
   std::size_t size = 0;
 };
 
+/// Gmsh element type.
 struct Kind {
   int type;
-  std::size_t corners;  ///< 0: it is not read
+  std::size_t corners;  ///< 0: not read
   const char* name;
 };
 constexpr Kind kKinds[] = {{2, 3, "triangles"},
@@ -85,7 +86,7 @@ constexpr Kind kKinds[] = {{2, 3, "triangles"},
                            {9, 0, "triangles of second order"},
                            {11, 0, "tetrahedra of second order"}};
 
-/// Physical volumes of each volume of the model, with their names.
+/// Returns the physical volumes of each volume of the model, and stores their names.
 std::map<int, std::vector<int>> groups_of_volumes(const Gmsh& gmsh, Cells& cells) {
   int error = 0;
   Array<int> entities(gmsh);
@@ -109,18 +110,18 @@ std::map<int, std::vector<int>> groups_of_volumes(const Gmsh& gmsh, Cells& cells
   return out;
 }
 
-/// The elements of one type in one entity (-1: in all): tags, and tags of their nodes.
+/// Elements of one type in one entity (-1: in all): tags, and tags of their nodes.
 struct Elements {
   Elements(const Gmsh& gmsh, int type, int entity) : tags(gmsh), nodes(gmsh) {
     int error = 0;
     gmsh.function<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType")(
         type, &tags.data, &tags.size, &nodes.data, &nodes.size, entity, 0, 1, &error);
-    if (error) tags.size = nodes.size = 0;  // none of this type
+    if (error) tags.size = nodes.size = 0;  // no elements of this type
   }
   Array<std::size_t> tags, nodes;
 };
 
-/// Corners of element `e`, as places in the list of points.
+/// Returns the corners of element `e` as indices into the list of points.
 std::vector<int> corners_of(const Elements& elements, std::size_t e, std::size_t count,
                             const std::map<std::size_t, int>& place, const std::string& path) {
   std::vector<int> out;
@@ -134,8 +135,8 @@ std::vector<int> corners_of(const Elements& elements, std::size_t e, std::size_t
   return out;
 }
 
-/// Tetrahedra, volume by volume, with their groups: the volumes themselves where there are no groups.  In
-/// versions 1 and 2 an element stands in the file once for each of its groups.
+/// Reads the tetrahedra, volume by volume, with their groups; without groups the volumes are the groups.  In
+/// versions 1 and 2 an element is listed once for each of its groups.
 void read_tetrahedra(const Gmsh& gmsh, const std::map<std::size_t, int>& place, const std::string& path,
                      Cells& cells) {
   const std::map<int, std::vector<int>> volumes = groups_of_volumes(gmsh, cells);
@@ -166,7 +167,7 @@ SourceFile mesh_in(const std::string& path, const std::string& format) {
   if (error) fail("{}: cannot be read as {}: Gmsh says: {}", path, format, gmsh.last_error());
 
   Cells cells(path);
-  // tags may be sparse and in any order; sorted, they give the same numbering whatever the file's order
+  // Tags may be sparse and in any order; sorting makes the numbering independent of the file's order.
   std::map<std::size_t, int> place;
   {
     Array<std::size_t> tags(gmsh);

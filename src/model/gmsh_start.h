@@ -2,8 +2,8 @@
 
 namespace palpate::model {
 
-/// Calls gmshInitialize without arguments and without the user's settings: in 4.8 its words end with whether
-/// these are read, from 4.9 on with whether to run as a program.
+/// Calls gmshInitialize without arguments and without the user's settings.  The last option is whether to
+/// read these in 4.8, and whether to run as a program from 4.9 on.
 inline void start_gmsh(void (*initialize)(int, char**, int, int*), int* error) {
   initialize(0, nullptr, 0, error);
 }

@@ -15,7 +15,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using ImplicitDomain = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_domain_3<Kernel>>;
 
-/// Volume of the inside by counting the points of a lattice, good enough to start the search [m^3].
+/// Estimates the volume of the inside from lattice points, accurate enough to start the search [m^3].
 double lattice_volume(const std::function<double(const Vec3&)>& f, const Vec3& centre, double radius) {
   constexpr int kCells = 48;
   const double width = 2 * radius / kCells;
@@ -37,12 +37,12 @@ Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec
     fail("the implicit function is {} at the centre ({}, {}, {}) m, must be negative inside", f(centre),
          centre.x(), centre.y(), centre.z());
   const auto value = [&f](const Kernel::Point_3& p) { return f(Vec3(p.x(), p.y(), p.z())); };
-  constexpr double kRelativeError = 1e-7;  // of a point on the surface, by bisection, in radii
+  constexpr double kRelativeError = 1e-7;  // error of surface points found by bisection [radii]
   try {
     CGAL::Random random(0);
     namespace P = CGAL::parameters;
     const Kernel::Sphere_3 ball(Kernel::Point_3(centre.x(), centre.y(), centre.z()), radius * radius);
-#if CGAL_VERSION_MAJOR >= 6  // parameters are chained; 5.5 has them as objects alone
+#if CGAL_VERSION_MAJOR >= 6  // parameters are chained from 6 on, and objects in 5.5
     ImplicitDomain domain = ImplicitDomain::create_implicit_mesh_domain(
         value, ball, P::relative_error_bound(kRelativeError).p_rng(&random));
 #else

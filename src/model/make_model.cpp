@@ -17,7 +17,7 @@
 namespace palpate::model {
 namespace {
 
-/// Runs steps under their names, keeps how long each took, and begins none when the time is over.
+/// Runs named steps, records their times, and starts none when the time is over.
 class Steps {
  public:
   Steps(Watcher& watcher, Made& made, const std::string& source, double limit)
@@ -75,8 +75,8 @@ TriMesh mended(Input& input, const Options& options, std::vector<std::string>& n
   return std::move(repaired.surface);
 }
 
-/// Tetrahedra that a person brought: sound as they are, or refused.  Returns the boundary; mended as any
-/// other surface where it is to be filled anew.
+/// Takes a user's tetrahedra: they must be sound, or are rejected.  Returns their boundary, mended like any
+/// other surface if it is to be filled anew.
 TriMesh take_tets(Input& input, const Options& options, std::vector<std::string>& notes,
                   const Progress& progress, Watcher& watcher) {
   const mesh::MeshReport report = mesh::check_tets(input.tets, input.from);
@@ -101,7 +101,7 @@ std::optional<double> crease_angle_of(const TriMesh& surface, const Input& input
   return crease_angle(surface);
 }
 
-/// Regions of the file and those asked for, with what they hold.
+/// Adds the regions of the file and the requested ones, with their volumes.
 void find_regions(Input& input, const Options& options, const TetMesh* old, Made& made) {
   LayeredModel& model = made.file.model;
   std::vector<MaterialRegion> regions =
@@ -170,7 +170,7 @@ Input input_of_file(const std::string& path) {
   out.tets = std::move(file.tets);
   out.regions = std::move(file.regions);
   mesh::Provenance place = out.from;
-  place.source = out.source;  // no folder of this machine stands in the record
+  place.source = out.source;  // the record must not contain a folder of this machine
   for (const auto& text :
        {mesh::warped_text(file.polygons, place), mesh::crossing_text(file.polygons, place)})
     if (!text.empty()) out.notes.push_back(text);
@@ -179,7 +179,7 @@ Input input_of_file(const std::string& path) {
 
 namespace {
 
-/// What is filled, how, and what may be said of it.
+/// Surface to fill, with its input and options.
 struct Filling {
   const TriMesh& surface;
   const Input& input;
@@ -207,7 +207,7 @@ Tetrahedra filled(const Filling& filling, std::optional<double> crease_deg, doub
   return out;
 }
 
-/// Fills the surface; creases that no one asked for are given up where they cannot be kept.
+/// Fills the surface; automatically detected creases are dropped if they cannot be kept.
 TetMesh fill(const Filling& filling, const Steps& steps, const Progress& progress, Made& made) {
   std::vector<std::string>& notes = made.file.record.notes;
   const bool automatic = filling.options.creases == Creases::kAuto;
@@ -233,7 +233,8 @@ TetMesh fill(const Filling& filling, const Steps& steps, const Progress& progres
   return std::move(out.mesh);
 }
 
-/// @throws Error where the tetrahedra are too coarse for the skin, with the way out
+/// Embeds the skin.
+/// @throws Error with a remedy if the tetrahedra are too coarse for the skin
 mesh::Embedding embedded(const LayeredModel& model, const std::string& source,
                          mesh::EmbeddingReport& report) {
   try {

@@ -13,7 +13,7 @@ namespace {
 
 using TetList = std::vector<int>;
 
-/// Groups of tetrahedra, or of faces, that were joined.
+/// Disjoint sets of tetrahedra or of face corners.
 class Groups {
  public:
   explicit Groups(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0u); }
@@ -30,7 +30,8 @@ class Groups {
   std::vector<std::size_t> root_;
 };
 
-/// The tetrahedra of a list that hang together by faces which hold all of `at`; each group rising.
+/// Returns the groups of a list's tetrahedra that are connected by faces containing all of `at`; each group
+/// ascending.
 std::vector<TetList> fans(const TetMesh& mesh, const TetList& list, const std::vector<int>& at) {
   std::map<std::array<int, 3>, std::size_t> first;
   Groups groups(list.size());
@@ -57,7 +58,7 @@ double volume_of(const TetMesh& mesh, const TetList& list) {
   return out;
 }
 
-/// Marks all fans but the largest; false: there is one only.
+/// Marks all fans but the largest; returns false if there is only one.
 bool mark_lesser(const TetMesh& mesh, const std::vector<TetList>& fans, std::vector<char>& marked) {
   if (fans.size() < 2) return false;
   std::size_t largest = 0;
@@ -69,7 +70,7 @@ bool mark_lesser(const TetMesh& mesh, const std::vector<TetList>& fans, std::vec
   return true;
 }
 
-/// Where the boundary touches itself: edges (two nodes) and nodes (one).
+/// Returns the places where the boundary touches itself: edges (two nodes) and nodes (one).
 std::vector<std::vector<int>> touching(const TetMesh& mesh) {
   const mesh::Boundary boundary = mesh::boundary(mesh);
   const Faces& faces = boundary.surface.faces;
@@ -82,7 +83,7 @@ std::vector<std::vector<int>> touching(const TetMesh& mesh) {
   const auto node = [&](int v) { return boundary.node_of_vertex[static_cast<std::size_t>(v)]; };
   std::vector<std::vector<int>> out;
   std::vector<char> at_edge(boundary.node_of_vertex.size(), 0);
-  // Corners of faces are joined along edges around their vertex: each vertex is to have one group.
+  // Corners of faces are joined along edges around their vertex; a manifold vertex has one group.
   Groups corners(static_cast<std::size_t>(3 * faces.cols()));
   const auto corner = [&](std::size_t f, int v) {
     const auto face = static_cast<Eigen::Index>(f);
@@ -105,17 +106,17 @@ std::vector<std::vector<int>> touching(const TetMesh& mesh) {
       if (known == static_cast<std::size_t>(-1)) known = group;
       if (known == group || at_edge[static_cast<std::size_t>(v)]) continue;
       out.push_back({node(v)});
-      at_edge[static_cast<std::size_t>(v)] = 1;  // once
+      at_edge[static_cast<std::size_t>(v)] = 1;  // report each vertex once
     }
   return out;
 }
 
-/// The smallest tetrahedron of a list that has a face of the boundary at the place.
+/// Returns the smallest tetrahedron of a list that has a boundary face at the place.
 int smallest_outer(const TetMesh& mesh, const TetList& list, const std::vector<int>& at) {
   int best = list[0];
   double least = std::numeric_limits<double>::infinity();
   for (const int tet : list) {
-    int inner = 0;  // faces at the place that another of the list has, too
+    int inner = 0;  // faces at the place that are shared with another tetrahedron of the list
     for (const int other : list)
       if (other != tet && fans(mesh, {tet, other}, at).size() == 1) ++inner;
     if (const double volume = mesh::tet_volume(mesh, tet);
@@ -158,7 +159,7 @@ void remove(FittedMesh& mesh, const std::vector<char>& marked, ManifoldReport& r
   mesh.on_crease = std::move(on_crease);
 }
 
-/// The tetrahedra that hold all of `at`, for each entry of a list of places.
+/// Returns for each place of a list the tetrahedra that contain all of its nodes.
 std::vector<TetList> tetrahedra_at(const TetMesh& mesh, const std::vector<std::vector<int>>& places) {
   std::map<int, TetList> around;
   for (const std::vector<int>& at : places)
@@ -185,7 +186,7 @@ std::vector<TetList> tetrahedra_at(const TetMesh& mesh, const std::vector<std::v
 
 ManifoldReport make_boundary_manifold(FittedMesh& mesh) {
   ManifoldReport report;
-  // Each round takes at least one tetrahedron away, so that there is an end.
+  // Each round removes at least one tetrahedron, so the loop ends.
   for (;;) {
     const std::vector<std::vector<int>> places = touching(mesh.mesh);
     if (places.empty()) break;
@@ -193,7 +194,7 @@ ManifoldReport make_boundary_manifold(FittedMesh& mesh) {
     std::vector<char> marked(static_cast<std::size_t>(mesh.mesh.tets.cols()), 0);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const auto taken = [&](int tet) { return marked[static_cast<std::size_t>(tet)] != 0; };
-      if (std::any_of(there[i].begin(), there[i].end(), taken)) continue;  // looked at again
+      if (std::any_of(there[i].begin(), there[i].end(), taken)) continue;  // checked again in the next round
       if (!mark_lesser(mesh.mesh, fans(mesh.mesh, there[i], places[i]), marked))
         marked[static_cast<std::size_t>(smallest_outer(mesh.mesh, there[i], places[i]))] = 1;
     }

@@ -20,7 +20,7 @@ namespace palpate::model {
 namespace {
 namespace PMP = CGAL::Polygon_mesh_processing;
 
-/// A property map that is there, which CGAL 5.5 returns as the first of a pair and 6.0 as an optional.
+/// Returns an existing property map, which CGAL 5.5 returns as the first of a pair and 6.0 as an optional.
 template <class Found>
 auto map_of(const Found& found) {
   if constexpr (requires { found.first; })
@@ -29,16 +29,16 @@ auto map_of(const Found& found) {
     return *found;
 }
 
-/// A hole in a surface.
+/// Hole in a surface.
 struct Hole {
   CgalSurface::Halfedge_index border;
   int edges = 0;
-  double across = 0.0;      ///< [m]
-  double least_area = 0.0;  ///< of what closes it [m^2]
+  double across = 0.0;      ///< largest distance of a border vertex from the first [m]
+  double least_area = 0.0;  ///< lower bound on the area of its closure [m^2]
 };
 
-/// The area of a surface is at least the length of its area vector, which its border alone determines: half
-/// the sum of p x q over the border's edges.
+/// Measures a hole.  The area of a surface is at least the length of its area vector, which its border alone
+/// determines: half the sum of p x q over the border's edges.
 Hole hole_at(const CgalSurface& mesh, CgalSurface::Halfedge_index border) {
   Hole out{border};
   const auto start = mesh.point(mesh.target(border));
@@ -53,8 +53,8 @@ Hole hole_at(const CgalSurface& mesh, CgalSurface::Halfedge_index border) {
   return out;
 }
 
-/// Closes all holes, or refuses the surface before the first is closed where they are plainly too large.  The
-/// bound is on all of them together: of loose triangles each can be closed by itself.
+/// Closes all holes, or rejects the surface before the first is closed if they are plainly too large.  The
+/// bound applies to all of them together, because loose triangles could each be closed separately.
 int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& faces_added) {
   std::vector<CgalSurface::Halfedge_index> borders;
   PMP::extract_boundary_cycles(mesh, std::back_inserter(borders));
@@ -87,7 +87,7 @@ int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& 
   double added = 0.0;
   for (const Hole& hole : holes) {
     std::vector<CgalSurface::Face_index> patch;
-    // A patch that could not be smoothed is flat: closed all the same.
+    // A patch that could not be faired is flat, and is accepted.
 #if CGAL_VERSION_MAJOR >= 6
     PMP::triangulate_refine_and_fair_hole(mesh, hole.border,
                                           CGAL::parameters::face_output_iterator(std::back_inserter(patch)));
@@ -104,7 +104,7 @@ int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& 
   return static_cast<int>(holes.size());
 }
 
-/// The faces that are too flat for any use, after CGAL collapsed what it could.
+/// Removes faces that are too flat: those that CGAL can collapse exactly, then needles and caps.
 void collapse_degenerate(CgalSurface& mesh, const mesh::Provenance& from) {
   PMP::remove_degenerate_edges(mesh);
   PMP::remove_degenerate_faces(mesh);
@@ -131,7 +131,7 @@ void collapse_degenerate(CgalSurface& mesh, const mesh::Provenance& from) {
 #endif
 }
 
-/// One shell at a time: faces of different shells that cross are no fault of a shell's.
+/// Builds the mesh of one shell, so that intersections between different shells are not attributed to it.
 CgalSurface shell_mesh(const Soup& soup, const std::vector<int>& faces) {
   Soup one = soup;
   one.faces.clear();
@@ -154,7 +154,7 @@ void append(Soup& all, const Soup& one) {
 
 int turn(Soup& soup) {
   std::vector<Kernel::Point_3> points;
-  // CGAL doubles the vertices where it parts the surface: the new ones stand where old ones do
+  // CGAL duplicates vertices where it separates the surface; the copies have the coordinates of old vertices.
   std::map<std::array<double, 3>, int> source;
   for (std::size_t v = 0; v < soup.vertices.size(); ++v) {
     points.emplace_back(soup.vertices[v].x(), soup.vertices[v].y(), soup.vertices[v].z());
@@ -171,8 +171,8 @@ int turn(Soup& soup) {
     soup.vertices.push_back(position(v));
     soup.vertex_source.push_back(source.at({points[v].x(), points[v].y(), points[v].z()}));
   }
-  // A face that was turned has its corners in the other order, whatever vertices they were given: their
-  // places tell.
+  // A turned face lists its corners in the other order, whatever vertices they were given, so its normal
+  // reverses.
   std::vector<char> turned;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto before = [&](int k) -> const Vec3& {

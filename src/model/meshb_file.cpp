@@ -10,7 +10,7 @@
 #include "palpate/store/atomic_file.h"
 
 // Medit's binary form (Marechal, "Handling unstructured meshes and solutions", libMeshb's manual):
-//   int32 1 in the writer's order of bytes; int32 version; then blocks:  int32 keyword, position of the next
+//   int32 1 in the writer's byte order; int32 version; then blocks:  int32 keyword, position of the next
 //   block (0: the last), content.
 //   Version 1 has float coordinates, 2 and above double; positions are int32 up to version 2, int64 from 3;
 //   counts and indices are int32 up to 3, int64 in 4.
@@ -75,10 +75,10 @@ class Meshb {
         cells.unread(keyword == kPrisms ? "prisms" : keyword == kHexahedra ? "hexahedra" : "pyramids");
     }
   }
-  /// An element's points, from 0; keeps its reference.
+  /// Reads the points of one element, counted from 0, and stores its reference.
   std::vector<int> corners(int number_of_them) {
     std::vector<int> out;
-    // Cells refuses what is out of range
+    // Cells::finish rejects indices out of range.
     for (int k = 0; k < number_of_them; ++k)
       out.push_back(static_cast<int>(std::clamp<std::int64_t>(index(), 0, 2'000'000'000)) - 1);
     reference_ = index();

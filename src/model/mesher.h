@@ -1,6 +1,6 @@
 #pragma once
-// One mesh of one domain by CGAL's Mesh_3, as a template over the kind of domain.  Heavy to compile: included
-// by polyhedral.cpp and implicit.cpp alone.
+// Mesh of a domain by CGAL's Mesh_3, as a template over the kind of domain.  Heavy to compile: include it
+// only in polyhedral.cpp and implicit.cpp.
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
@@ -21,7 +21,7 @@
 
 namespace palpate::model {
 
-/// Two points on both sides of the surface; refinement starts where the line between them meets it.
+/// Two points on both sides of the surface; refinement starts where the segment between them meets it.
 using Seed = std::array<Vec3, 2>;
 
 template <class Domain>
@@ -45,12 +45,12 @@ class Mesher : public CellMesher {
         stage_(options.stage),
         optimisation_(options.optimisation) {}
 
-  // A boundary that nowhere touches itself cannot be had by refinement at an edge that is much sharper than a
-  // right angle and not protected as a crease: however small the facets are there, both sides meet in some of
-  // them, and they are split without end.  Where facets vanish or points run away so, refinement begins anew
-  // without that condition and with a least size of facets and cells, below which none is split.  Each point
-  // is then at least a fixed distance from all others, so that their number is bounded; what still touches
-  // itself is taken away afterwards (manifold.h).
+  // Refinement cannot produce a manifold boundary at an edge that is much sharper than a right angle and not
+  // protected as a crease: however small the facets are there, both sides meet in some of them, and they are
+  // split without end.  When facets vanish or the number of points runs away, refinement restarts without
+  // that condition and with a least size of facets and cells, below which none is split.  Each point is then
+  // at least a fixed distance from all others, so that their number is bounded; places where the boundary
+  // still touches itself are removed afterwards (manifold.h).
   CellCount refine(double cell_size, double facet_size, const Progress& progress) override {
     if (stage_) stage_(kRefining);
     const double expected = size_.points(cell_size, facet_size);
@@ -79,7 +79,7 @@ class Mesher : public CellMesher {
   void optimise(const Progress& progress) override {
     using Sliver = CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation>;
     using Perturber = CGAL::Mesh_3::Sliver_perturber<Complex, Domain, Sliver, Told>;
-    constexpr double kWantedDeg = 12.0;  // the bound is raised degree by degree up to this one
+    constexpr double kWantedDeg = 12.0;  // the bound is raised degree by degree up to this value
     stage(kMovingVertices, optimisation_.move_vertices, optimisation_.why_not_moved, [&] {
       const Sliver sliver(kWantedDeg, complex_.triangulation());
       Perturber perturber(complex_, domain_, sliver);
@@ -96,10 +96,10 @@ class Mesher : public CellMesher {
     if (progress) progress(1.0);
   }
 
-  /// The tetrahedra, numbered in the order in which they were made; `on_crease` a node.
+  /// Returns the tetrahedra, numbered in the order in which they were made.
   FittedMesh take() override {
     const Triangulation& all = complex_.triangulation();
-    // looked up only: its order is never used
+    // Used for look-up only, so its order does not affect the result.
     std::unordered_map<typename Triangulation::Vertex_handle, int> number;
     for (auto cell = complex_.cells_in_complex_begin(); cell != complex_.cells_in_complex_end(); ++cell)
       for (int k = 0; k < 4; ++k) number.emplace(cell->vertex(k), -1);
@@ -134,7 +134,7 @@ class Mesher : public CellMesher {
     return out;
   }
 
-  /// Where the line from a to b meets the surface.
+  /// Returns the point where the segment from a to b meets the surface.
   std::optional<Vec3> crossing(const Vec3& a, const Vec3& b) const override {
     const Segment line(point(a), point(b));
     if (!domain_.do_intersect_surface_object()(line)) return std::nullopt;
@@ -144,13 +144,15 @@ class Mesher : public CellMesher {
   }
 
  private:
-  /// Points beyond a share of those expected (creases and thin places ask for more) tell a runaway.
+  /// Limits beyond which a refinement counts as a runaway: points, as a constant plus a multiple of the
+  /// estimate (creases and thin places need more than the estimate).
   static constexpr double kRunawayAlways = 20'000, kRunawayFactor = 6.0;
-  static constexpr double kVanishing = 1e-3;  ///< so do facets of this share of the wanted size
-  static constexpr double kLeastSize = 0.1;   ///< of cells and facets that are split, of the wanted one
+  static constexpr double kVanishing = 1e-3;  ///< facets below this share of the target size
+  static constexpr double kLeastSize = 0.1;   ///< least size of cells and facets that are split, in target
+                                              ///< sizes
 
-  /// One stage of optimisation.  Where CGAL throws in it, the complex is no longer to be trusted: the stage
-  /// is left out from now on.
+  /// Runs one stage of optimisation.  If CGAL throws in it, the complex is in an undefined state: the stage
+  /// is skipped from now on.
   template <class Work>
   void stage(const char* name, bool& wanted, std::string& why_not, const Work& work) {
     if (!wanted) return;
@@ -166,12 +168,12 @@ class Mesher : public CellMesher {
     }
   }
 
-  /// One refinement from nothing, or where it ran away.
+  /// Refines from nothing; returns where it ran away, if it did.
   std::optional<Runaway> refined(double cell_size, double facet_size, double largest, bool manifold) {
     namespace P = CGAL::parameters;
-    // Angles of at least 25 degrees on the surface end provably (up to 30); a facet may leave the surface by
-    // a tenth of its size, what is left of that in volume fit_volume() takes away.  Edges of creases are as
-    // long as those beside them.
+    // Surface angles of at least 25 degrees are reached provably (up to 30).  A facet may deviate from the
+    // surface by a tenth of its size; fit_volume() removes the remaining volume error.  Crease edges are as
+    // long as facets.
     const double least = manifold ? 0.0 : kLeastSize, vanishing = manifold && !creased_ ? kVanishing : 0.0;
     const Criteria criteria(MeteredEdges<Triangulation>(facet_size, meter_),
                             MeteredFacets<Triangulation>({25.0, facet_size, 0.1 * facet_size},
@@ -201,6 +203,7 @@ class Mesher : public CellMesher {
     return std::nullopt;
   }
 
+  /// Throws Error: the creases need more points than the limit.
   [[noreturn]] void refuse_creases() const {
     const Runaway at = crowded();
     fail(
@@ -209,16 +212,17 @@ class Mesher : public CellMesher {
         meter_.points(), at.place.x(), at.place.y(), at.place.z(), at.size);
   }
 
+  /// Counts the present mesh.
   CellCount counted() const {
     CellCount out;
     out.tetrahedra = static_cast<int>(complex_.number_of_cells_in_complex());
-    // a few of them may belong to no tetrahedron
+    // A few of these vertices may belong to no tetrahedron.
     out.nodes = static_cast<int>(complex_.triangulation().number_of_vertices());
     out.mean_edge = mean_edge();
     return out;
   }
 
-  /// The middle of the shortest edge, and its length.
+  /// Returns the midpoint of the shortest edge, and its length.
   Runaway crowded() const {
     const Triangulation& all = complex_.triangulation();
     Runaway out{Vec3::Zero(), std::numeric_limits<double>::infinity()};
@@ -230,7 +234,7 @@ class Mesher : public CellMesher {
     return out;
   }
 
-  /// Hears from the perturber when a bound was reached [degrees].
+  /// Visitor of the perturber; receives each bound that was reached [degrees].
   struct Told {
     const Progress* progress = nullptr;
     double wanted = 1.0;
@@ -243,6 +247,7 @@ class Mesher : public CellMesher {
   static Point point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
   static Vec3 at(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
+  /// Inserts the intersections of the seeds with the surface as first vertices.
   void sow() {
     for (const Seed& seed : seeds_) {
       const Segment line(point(seed[0]), point(seed[1]));
@@ -251,13 +256,16 @@ class Mesher : public CellMesher {
       if (std::get<2>(met) == 0) continue;
       const auto vertex =
           complex_.triangulation().insert(typename Triangulation::Weighted_point(std::get<0>(met)));
-      if (vertex == typename Triangulation::Vertex_handle()) continue;  // hidden by the ball of a crease
+      if (vertex == typename Triangulation::Vertex_handle())
+        continue;  // hidden by the protecting ball of a
+                   // crease
       if (complex_.in_dimension(vertex) >= 0 && complex_.in_dimension(vertex) < 2) continue;
       complex_.set_dimension(vertex, 2);
       complex_.set_index(vertex, std::get<1>(met));
     }
   }
 
+  /// Returns the mean edge length over all tetrahedra [m].
   double mean_edge() const {
     double sum = 0;
     for (auto cell = complex_.cells_in_complex_begin(); cell != complex_.cells_in_complex_end(); ++cell)

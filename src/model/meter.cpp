@@ -35,8 +35,8 @@ void Meter::look(std::size_t points, const Vec3& place) {
         "surface there",
         limits_.seconds, place.x(), place.y(), place.z(), points);
   if (!progress_) return;
-  // Half of it where all expected points are there, the rest for those beyond; it never runs back where
-  // refinement begins anew.
+  // The first half when all estimated points are present, the rest for points beyond the estimate; progress
+  // never decreases when refinement restarts.
   const double done = static_cast<double>(points) / expected_;
   reported_ = std::max(reported_, done / (1.0 + done));
   progress_(reported_);

@@ -1,17 +1,18 @@
 #pragma once
-// CGAL's criteria of refinement, which report to a meter and accept what is small enough.
+// CGAL's refinement criteria, extended by reports to a meter and by least sizes.
 #include <CGAL/Mesh_criteria_3.h>
 
 #include "meter.h"
 
 namespace palpate::model {
 
+/// Converts a CGAL point.
 template <class Point>
 Vec3 position(const Point& p) {
   return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
 }
 
-/// Length of the edges of creases.
+/// Length of crease edges.
 template <class Triangulation>
 class MeteredEdges : public CGAL::Mesh_edge_criteria_3<Triangulation> {
   using Base = CGAL::Mesh_edge_criteria_3<Triangulation>;
@@ -28,14 +29,14 @@ class MeteredEdges : public CGAL::Mesh_edge_criteria_3<Triangulation> {
   Meter* meter_;
 };
 
-/// Facets shrink without end somewhere.
+/// Exception: facets shrink without end at a place.
 struct Runaway {
   Vec3 place;
   double size;  ///< [m]
 };
 
-/// A facet is as good as it can be where its vertices are nearer than `least` [m] to its surface centre.
-/// Throws Runaway after many facets with vertices nearer than `vanishing` [m].
+/// Accepts a facet whose vertices are nearer than `least` [m] to its surface centre.  Throws Runaway after
+/// more than kVanished facets with vertices nearer than `vanishing` [m].
 template <class Triangulation>
 class MeteredFacets : public CGAL::Mesh_facet_criteria_3<Triangulation> {
   using Base = CGAL::Mesh_facet_criteria_3<Triangulation>;
@@ -55,13 +56,14 @@ class MeteredFacets : public CGAL::Mesh_facet_criteria_3<Triangulation> {
   }
 
  private:
+  /// Number of vanishing facets that is tolerated.
   static constexpr int kVanished = 200;
   double least_, vanishing_;
   Meter* meter_;
-  mutable int vanished_ = 0;  ///< of this copy
+  mutable int vanished_ = 0;  ///< count of this copy
 };
 
-/// A cell is as good as it can be where its longest edge is below `least` [m].
+/// Accepts a cell whose longest edge is below `least` [m].
 template <class Triangulation>
 class MeteredCells : public CGAL::Mesh_cell_criteria_3<Triangulation> {
   using Base = CGAL::Mesh_cell_criteria_3<Triangulation>;
@@ -93,6 +95,7 @@ class MeteredCells : public CGAL::Mesh_cell_criteria_3<Triangulation> {
 };
 
 template <class Triangulation>
+/// Criteria of refinement for Mesher.
 using MeteredCriteria = CGAL::Mesh_criteria_3<Triangulation, MeteredEdges<Triangulation>,
                                               MeteredFacets<Triangulation>, MeteredCells<Triangulation>>;
 

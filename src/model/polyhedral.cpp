@@ -41,8 +41,8 @@ double area(const TriMesh& surface) {
   return out;
 }
 
-/// Lines through the faces of each shell, spread over it: refinement finds a shell only where it starts on
-/// it.
+/// Returns segments through the faces of each shell, spread over it: refinement finds a shell only if it
+/// starts on it.
 std::vector<Seed> seeds_of(const TriMesh& surface) {
   constexpr std::size_t kEach = 16;
   std::vector<Seed> out;

@@ -20,8 +20,8 @@ std::vector<Polyline> cut_at_corners(const std::vector<Polyline>& lines) {
       piece = {line[i]};
     }
     out.push_back(piece);
-    // A closed line with a corner where it begins, and nowhere else, would pass for a smooth one: it is cut
-    // in the middle, and begins at a node.
+    // A closed line with its only corner at its start would be taken for a smooth one: it is cut in the
+    // middle, so that the corner is an end.
     if (const Polyline& last = out.back();
         last.size() == line.size() && line.size() > 3 && line.front() == line.back() &&
         (line[1] - line[0]).normalized().dot((line.back() - line[line.size() - 2]).normalized()) < least) {

@@ -5,8 +5,8 @@
 
 namespace palpate::model {
 
-/// The lines cut where they turn by more than 30 degrees, so that these places become nodes.  A line that
-/// closes smoothly stays whole.
+/// Cuts lines where they turn by more than 30 degrees, so that these places become nodes.  A smooth closed
+/// line stays whole.
 std::vector<Polyline> cut_at_corners(const std::vector<Polyline>& lines);
 
 }  // namespace palpate::model

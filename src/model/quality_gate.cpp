@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// Longest edge over 2 sqrt(6) times the inscribed radius 3 V / (sum of the faces' areas); the regular
-/// tetrahedron has the radius edge / (2 sqrt 6).
+/// Returns the longest edge over 2 sqrt(6) times the inscribed radius 3 V / (sum of the faces' areas); the
+/// regular tetrahedron has the radius edge / (2 sqrt 6).
 double aspect(const TetMesh& mesh, int tet) {
   double area = 0, longest = 0;
   for (const auto& face : mesh::kTetFaces) {
@@ -34,7 +34,7 @@ Vec3 middle(const TetMesh& mesh, int tet) {
   return sum / 4;
 }
 
-/// The vertex of a surface that is farthest from all nodes.
+/// Returns the vertex of a surface that is farthest from all nodes.
 Vec3 farthest_vertex(const TriMesh& surface, const TetMesh& mesh) {
   Vec3 out = Vec3::Zero();
   double most = -1;
@@ -105,8 +105,8 @@ void pass_gate(const TetMesh& mesh, const TetQuality& quality, const QualityGate
   }
 }
 
-// Both tetrahedra are positive, so that each sees the shared face from its own side when it lists it
-// outwards: two on different sides list it in opposite senses.
+// Both tetrahedra are positive, so each lists the shared face outwards as seen from its interior: two on
+// different sides list it in opposite orders.
 void check_sides(const TetMesh& mesh, const std::string& source) {
   struct Seen {
     int tet;

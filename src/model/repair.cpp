@@ -16,16 +16,17 @@
 namespace palpate::model {
 namespace {
 
-constexpr double kWeld = 1e-6;                                 // of the diagonal
-constexpr double kWrapAlpha = 0.01, kWrapOffset = 1.0 / 1500;  // of the diagonal
-// of the volume, by cutting crossing faces out; beyond, the wrap is nearer to what was meant
+constexpr double kWeld = 1e-6;                                 // [diagonals]
+constexpr double kWrapAlpha = 0.01, kWrapOffset = 1.0 / 1500;  // [diagonals]
+// Largest share of the volume that cutting out intersecting faces may change; beyond it, the wrap is closer
+// to the intended shape.
 constexpr double kLargestRemoval = 0.05;
 
 void note(std::vector<std::string>& notes, int count, const std::string& what) {
   if (count > 0) notes.push_back(fmt::format("{} {}", count, what));
 }
 
-/// Edges of one face only.
+/// Returns the number of edges with one face.
 int open_edges(const Soup& soup) {
   std::map<std::array<int, 2>, int> faces_at;
   for (const auto& f : soup.faces)
@@ -35,8 +36,8 @@ int open_edges(const Soup& soup) {
       std::count_if(faces_at.begin(), faces_at.end(), [](const auto& edge) { return edge.second == 1; }));
 }
 
-/// Welds what lies closer than rounding of single precision only where the surface is open without that:
-/// seams of parts written one by one.
+/// Merges vertices that are closer than single-precision rounding, only if the surface is otherwise open and
+/// the merge closes edges: seams between separately written parts.
 int weld_seams(Soup& soup) {
   const int before = open_edges(soup);
   if (before == 0) return 0;

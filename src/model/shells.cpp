@@ -10,11 +10,11 @@
 namespace palpate::model {
 namespace {
 
-constexpr double kSpeck = 1e-4;  // of the largest shell's volume
+constexpr double kSpeck = 1e-4;  // [volumes of the largest shell]
 
 struct Shell {
   std::vector<int> faces;
-  double volume = 0.0;       // signed: positive when it turns outwards
+  double volume = 0.0;       // signed: positive if oriented outwards
   std::vector<int> holders;  // shells around it
 };
 
@@ -61,7 +61,7 @@ std::string bodies_text(const Soup& soup, const std::vector<Shell>& shells,
 
 std::vector<std::vector<int>> shells_of(const TriMesh& surface) {
   const auto faces = static_cast<std::size_t>(surface.faces.cols());
-  std::vector<std::array<int, 3>> edges;  // the two vertices, rising, and the face
+  std::vector<std::array<int, 3>> edges;  // two vertices, ascending, and the face
   for (int f = 0; f < static_cast<int>(faces); ++f)
     for (int k = 0; k < 3; ++k) {
       const int a = surface.faces(k, f), b = surface.faces((k + 1) % 3, f);

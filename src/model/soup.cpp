@@ -10,7 +10,7 @@
 namespace palpate::model {
 namespace {
 
-/// Keeps the faces that `keep` holds; returns how many went.
+/// Keeps the faces for which `keep` is true; returns how many were dropped.
 template <class Keep>
 int keep_faces(Soup& soup, Keep keep) {
   std::size_t kept = 0;
@@ -59,7 +59,7 @@ std::string Soup::face_name(int f) const {
 }
 
 Soup soup_of(const TriMesh& faces, const mesh::Provenance& from) {
-  constexpr double kLargest = 1e30;  // [m]; a volume beyond it overflows
+  constexpr double kLargest = 1e30;  // [m]; volumes beyond it overflow
   if (faces.faces.cols() == 0) fail("{}: the surface has no faces", from.source);
   Soup out;
   out.from = &from;
@@ -83,8 +83,8 @@ Soup soup_of(const TriMesh& faces, const mesh::Provenance& from) {
   return out;
 }
 
-// Sorted by x, each vertex is compared with those after it until x is farther than the tolerance; the first
-// in the file's order is kept.
+// Sorted by x, each vertex is compared with its successors until x exceeds the tolerance; the first in the
+// file's order is kept.
 int weld(Soup& soup, double tolerance) {
   const std::size_t count = soup.vertices.size();
   std::vector<int> order(count), target(count);
@@ -95,7 +95,7 @@ int weld(Soup& soup, double tolerance) {
     const std::array<double, 3> p{at(a).x(), at(a).y(), at(a).z()}, q{at(b).x(), at(b).y(), at(b).z()};
     return p != q ? p < q : a < b;
   });
-  // targets are never larger than what points at them, so that following them ends
+  // Each target is at most its source, so following targets ends.
   const auto root = [&](int v) {
     while (target[static_cast<std::size_t>(v)] != v) v = target[static_cast<std::size_t>(v)];
     return v;

@@ -8,8 +8,7 @@
 
 namespace palpate::model {
 
-/// Triangles on their way to a surface, which remember where in the file each stood: -1 for what repair
-/// added.
+/// Unconnected triangles, each with its place in the source file; -1 for elements that repair added.
 struct Soup {
   std::vector<Vec3> vertices;
   std::vector<std::array<int, 3>> faces;
@@ -17,19 +16,20 @@ struct Soup {
   const mesh::Provenance* from = nullptr;
 
   TriMesh surface() const;
-  double diagonal() const;               ///< of the bounding box [m]
-  std::string vertex_name(int v) const;  ///< `liver.obj:12: vertex 11 at (1, 2, 3) m`
-  std::string face_name(int f) const;    ///< with the coordinates of its middle
+  double diagonal() const;               ///< diagonal of the bounding box [m]
+  std::string vertex_name(int v) const;  ///< e.g. `liver.obj:12: vertex 11 at (1, 2, 3) m`
+  std::string face_name(int f) const;    ///< with the coordinates of its centroid
 };
+/// Builds a soup; `from` must outlive it.
 /// @throws Error for numbers that are not finite, no faces, indices out of range
 Soup soup_of(const TriMesh& faces, const mesh::Provenance& from);
 
-/// Vertices within `tolerance` [m] of each other along every axis become the first of them (0: exactly equal
-/// ones).  Returns how many went.
+/// Merges vertices within `tolerance` [m] of each other along every axis into the first of them (0: exactly
+/// equal vertices).  Returns how many were merged.
 int weld(Soup& soup, double tolerance);
-int drop_collapsed(Soup& soup);  ///< faces with a vertex twice
-/// of faces with the same three vertices, all but the first, whichever way they turn
+int drop_collapsed(Soup& soup);  ///< drops faces with a repeated vertex; returns their number
+/// Drops faces with the same three vertices, in any orientation, except the first; returns their number.
 int drop_duplicates(Soup& soup);
-int drop_unused(Soup& soup);  ///< vertices of no face
+int drop_unused(Soup& soup);  ///< drops vertices of no face; returns their number
 
 }  // namespace palpate::model

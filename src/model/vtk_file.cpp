@@ -21,16 +21,16 @@
 //     SCALARS name type [components] / LOOKUP_TABLE name, values;   VECTORS name type, values; ...
 //   FIELD name k, k times: name components tuples type, values
 //   METADATA, lines up to an empty one
-// Binary values are big-endian and begin on the line after.
+// Binary values are big-endian and begin on the next line.
 namespace palpate::model {
 namespace {
 
-/// Bytes of a value in a binary file; 0: of no fixed size, or unknown.
+/// Returns the bytes per value in a binary file; 0: variable size, or unknown.
 std::size_t bytes_of(const std::string& type) {
   if (type == "double" || type == "long" || type == "unsigned_long" || type == "vtktypeint64" ||
       type == "vtktypeuint64")
     return 8;
-  // the type of indices is written as int
+  // vtkIdType is written as int.
   if (type == "float" || type == "int" || type == "unsigned_int" || type == "vtkidtype" ||
       type == "vtktypeint32" || type == "vtktypeuint32")
     return 4;
@@ -58,7 +58,7 @@ class Legacy {
     while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
     return text_.substr(begin, at_ - begin);
   }
-  /// The next word in lower case, which is taken if it is `wanted`.
+  /// Reads the next word in lower case; consumes it only if it is `wanted`.
   bool take(const char* wanted) {
     const std::size_t before = at_;
     if (lower(word()) == wanted) return true;
@@ -78,15 +78,15 @@ class Legacy {
     return next == std::string::npos || text_[next] == '\n';
   }
   void line() { at_ = std::min(text_.find('\n', at_), text_.size() - 1) + 1; }
-  /// To the first empty line.
+  /// Skips to the first empty line.
   void skip_block() {
     for (line(); at_ < text_.size(); line())
       if (at_line_end()) return;
   }
-  /// `n` values of the type that is named in lower case; those of texts are passed over.
+  /// Reads `n` values of the type, whose name is given in lower case; strings are skipped.
   std::vector<double> values(std::size_t n, const std::string& type) {
     std::vector<double> out;
-    const bool texts = type == "string" || type == "variant";  // in text, one a line
+    const bool texts = type == "string" || type == "variant";  // in ASCII, one per line
     if (binary_ || texts) line();
     if (texts) {
       for (std::size_t i = 0; i < n; ++i) {
@@ -106,7 +106,7 @@ class Legacy {
     }
     return out;
   }
-  /// `n` values of the type that is named next, which must be one of numbers.
+  /// Reads `n` values of the type whose name follows, which must be numeric.
   std::vector<double> numbers(std::size_t n) {
     const std::string type = lower(word());
     std::vector<double> out = values(n, type);
@@ -126,8 +126,8 @@ class Legacy {
       fail("{}: \"{}\" stands where a number is expected", path_, w.substr(0, 40));
     return value;
   }
-  /// The two highest bits of the first byte say in how many bytes the length stands: 3 in 1, 2 in 2, 1 in 4,
-  /// 0 in 8.
+  /// Skips a string.  The two highest bits of the first byte encode the number of length bytes: 3 for 1, 2
+  /// for 2, 1 for 4, 0 for 8.
   void skip_text() {
     if (at_ >= text_.size()) fail("{}: ends before its time", path_);
     const auto first = static_cast<unsigned char>(text_[at_]);
@@ -167,11 +167,11 @@ class Legacy {
 
 using CellList = std::vector<std::vector<int>>;
 
-/// The corners of cells, after the keyword that names their kind.
+/// Reads the corners of cells, after the keyword of their kind.
 CellList read_cells(Legacy& file, const std::string& path) {
   const std::size_t n = file.count(), size = file.count();
   std::vector<double> corners;
-  std::vector<std::size_t> ends;  // of each cell in `corners`
+  std::vector<std::size_t> ends;  // end of each cell in `corners`
   const auto bound = [&](double value, std::size_t largest) {
     if (!(value >= 0 && value <= static_cast<double>(largest)))
       fail("{}: a cell ends at {} of {} entries", path, value, largest);
@@ -205,7 +205,7 @@ CellList read_cells(Legacy& file, const std::string& path) {
   return out;
 }
 
-/// Rank of an array's name among those that are known; their number where it is not.
+/// Returns the rank of an array's name among the known names; their number if it is unknown.
 std::size_t rank_of(const std::string& name) {
   const std::vector<std::string>& known = known_region_arrays();
   return static_cast<std::size_t>(
@@ -214,7 +214,7 @@ std::size_t rank_of(const std::string& name) {
       known.begin());
 }
 
-/// The sections after the dataset's kind.
+/// Reads the sections after the header.
 class Sections {
  public:
   Sections(const std::string& path, Cells& cells) : path_(path), file_(path), cells_(cells) {}
@@ -226,7 +226,7 @@ class Sections {
       if (!take_geometry(section) && !take_values(section)) {
         if (cells_.points.empty() || lists_.empty())
           fail("{}: \"{}\" stands where a section is expected", path_, section.substr(0, 40));
-        break;  // the surface or the tetrahedra are there; after something else nothing can be found for sure
+        break;  // the mesh is complete; the content after an unknown section cannot be located
       }
     }
     add_cells();
@@ -312,7 +312,8 @@ class Sections {
   }
 
   void add_cells() {
-    // arrays of cells count vertices, lines, polygons and strips in this order, whatever that of the sections
+    // Cell arrays count vertices, lines, polygons and strips in this order, whatever the order of the
+    // sections.
     std::stable_sort(lists_.begin(), lists_.end(), [](const auto& a, const auto& b) {
       const auto rank = [](int type) { return type == 6 ? 8 : type; };
       return rank(a.first) < rank(b.first);
@@ -336,7 +337,7 @@ class Sections {
   std::string path_;
   Legacy file_;
   Cells& cells_;
-  std::vector<std::pair<int, CellList>> lists_;  ///< by the type of cells
+  std::vector<std::pair<int, CellList>> lists_;  ///< by cell type
   std::vector<double> types_, labels_;
   std::size_t best_ = known_region_arrays().size(), per_ = 0;
   bool of_cells_ = false;
@@ -369,7 +370,7 @@ void take_vtk_cell(Cells& cells, int type, const std::vector<int>& corners) {
     cells.polygon(corners);
   else if (type == kPixel && corners.size() == 4)  // row by row
     cells.polygon({corners[0], corners[1], corners[3], corners[2]});
-  else if (type == kStrip)  // every other triangle turns the other way
+  else if (type == kStrip)  // every other triangle has the opposite orientation
     for (std::size_t i = 0; i + 2 < corners.size(); ++i)
       cells.polygon({corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
   else if (type > kLastLine && type != kQuadraticEdge)

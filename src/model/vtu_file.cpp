@@ -14,11 +14,11 @@
 #include "palpate/store/atomic_file.h"
 
 // VTK's XML files (VTK User's Guide 11, "VTK file formats"): arrays as text, as base64 in place, or appended
-// (base64 or raw) at an offset; bytes are
-//   [size][data]                                                        as they are, or
+// (base64 or raw) at an offset; the bytes are
+//   [size][data]                                                        uncompressed, or
 //   [blocks][size of a block][size of the last, 0: whole][sizes when compressed ...][compressed blocks ...]
-// with all sizes of type header_type.  In base64 the sizes may be encoded apart from the data, each ending
-// with its own padding: decoding goes on after padding.
+// with all sizes of type header_type.  In base64 the sizes may be encoded separately from the data, each
+// ending with padding: decoding continues after padding.
 namespace palpate::model {
 namespace {
 
@@ -26,11 +26,12 @@ struct Document {
   std::string path;
   pugi::xml_document xml;
   std::string kind;      ///< "UnstructuredGrid" or "PolyData"
-  std::string appended;  ///< what stands after the underscore
+  std::string appended;  ///< the data after the underscore
   bool appended_raw = false, compressed = false, wide_header = false, swap = false;
 };
 
-/// Bytes of base64 text from `begin` on, until `wanted` are there or the text ends.
+/// Decodes base64 text up to its end or the first character that is neither base64 nor white space; continues
+/// after padding.
 std::string decode_base64(std::string_view text) {
   const auto value = [](char c) -> int {
     if (c >= 'A' && c <= 'Z') return c - 'A';
@@ -45,7 +46,7 @@ std::string decode_base64(std::string_view text) {
     const int v = value(c);
     if (v == -2) {
       if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
-      break;  // the end of appended data
+      break;  // end of appended data
     }
     bits = (bits << 6) | static_cast<std::uint32_t>(v < 0 ? 0 : v);
     padding += v < 0;
@@ -72,7 +73,7 @@ std::uint64_t header_at(const Document& document, const std::string& bytes, std:
                               : value_at<std::uint32_t>(document, bytes, 4 * number, what);
 }
 
-/// The array's own bytes, without sizes, uncompressed.
+/// Returns the array's bytes, without sizes, uncompressed.
 std::string payload(const Document& document, const std::string& bytes, const std::string& what) {
   const std::size_t word = document.wide_header ? 8 : 4;
   if (!document.compressed) {
@@ -171,7 +172,7 @@ std::vector<Out> numbers(const Document& document, const pugi::xml_node& array, 
   return out;
 }
 
-/// Appended raw bytes are no XML: they are taken out before the rest is parsed.
+/// Loads the document.  Appended raw bytes are not XML and are removed before the rest is parsed.
 void load(Document& document) {
   std::string text = store::read_file(document.path);
   if (const std::size_t tag = text.find("<AppendedData"); tag != std::string::npos) {
@@ -198,7 +199,7 @@ void load(Document& document) {
                   (std::endian::native == std::endian::big);
 }
 
-/// Numbers of the regions of a piece's cells; empty: it has no array that is known for that.
+/// Returns the region numbers of a piece's cells; empty if it has no known region array.
 std::vector<double> labels_of(const Document& document, const pugi::xml_node& piece, std::size_t cells) {
   for (const std::string& known : known_region_arrays())
     for (const pugi::xml_node& array : piece.child("CellData").children("DataArray")) {
@@ -213,7 +214,7 @@ std::vector<double> labels_of(const Document& document, const pugi::xml_node& pi
   return {};
 }
 
-/// Cells of one kind, as connectivity and the ends of the cells in it.
+/// Reads the cells of one section, from their connectivity and end offsets.
 std::vector<std::vector<int>> cells_in(const Document& document, const pugi::xml_node& section, int first,
                                        std::size_t points) {
   const auto array = [&](const char* name) {
@@ -275,7 +276,7 @@ SourceFile read_vtk_xml(const std::string& path) {
   Cells cells(path);
   for (const pugi::xml_node& piece : root.child(document.kind.c_str()).children("Piece")) {
     const int first = static_cast<int>(cells.points.size());
-    // an empty piece may have no array
+    // An empty piece may have no arrays.
     if (piece.attribute("NumberOfPoints").as_ullong() == 0) continue;
     const auto x = numbers<double>(document, piece.child("Points").child("DataArray"), "points");
     for (std::size_t i = 0; i + 2 < x.size(); i += 3) cells.points.emplace_back(x[i], x[i + 1], x[i + 2]);

@@ -3,8 +3,8 @@
 
 namespace palpate::model {
 
-/// A closed surface around everything, without self-intersections, at `offset` [m] outside of it; openings
-/// narrower than 2 `alpha` [m] are closed over.
+/// Returns a closed surface around all faces, without self-intersections, at `offset` [m] outside of them;
+/// openings narrower than 2 `alpha` [m] are closed.
 Soup wrapped(const Soup& soup, double alpha, double offset);
 
 }  // namespace palpate::model

@@ -2,11 +2,11 @@
 
 namespace palpate::model {
 
-/// What a model may take: it is made within these bounds, or refused.
+/// Limits on the construction of a model; beyond them it fails with an Error.
 struct Limits {
   double seconds = 600.0;  ///< wall time, from the first step on
-  double spent = 0.0;      ///< of those seconds, in the steps before
-  int points = 1'000'000;  ///< vertices that refinement may make, those outside of the body with them
+  double spent = 0.0;      ///< wall time already spent in earlier steps [s]
+  int points = 1'000'000;  ///< vertices that refinement may create, including those outside of the body
 };
 
 }  // namespace palpate::model

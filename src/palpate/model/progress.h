@@ -4,7 +4,7 @@
 
 namespace palpate::model {
 
-/// Called with how far the step at hand is, in [0, 1]; may be empty.
+/// Receives the completed fraction of the current step, in [0, 1]; may be empty.
 using Progress = std::function<void(double fraction)>;
 
 }  // namespace palpate::model

@@ -8,31 +8,32 @@
 
 namespace palpate::model {
 
+/// Options of `repair`.
 struct RepairOptions {
-  double largest_hole = 0.15;  ///< a hole is closed when that adds no more than this share of the surface
-  bool largest_shell = false;  ///< several bodies in one file: keep the largest instead of refusing
-  bool wrap = true;            ///< what cannot be mended locally is wrapped, and said so
-  /// is called where a piece of work begins that may take long; may be empty
+  double largest_hole = 0.15;  ///< holes are closed if that adds no more than this share of the surface's
+                               ///< area in total
+  bool largest_shell = false;  ///< several bodies in one file: keep the largest instead of failing
+  bool wrap = true;            ///< a surface that cannot be mended locally is wrapped, with a note
+  /// Is called at the start of an operation that may take long; may be empty.
   std::function<void(const std::string& where)> place = {};
 };
 
-/// A surface that bounds one body: closed, oriented outwards, no face through another; and what had to be
-/// done for that.
+/// Surface that bounds one body: closed, oriented outwards, without self-intersections; and the repairs that
+/// were made.
 struct RepairedSurface {
   TriMesh surface;
-  std::vector<std::string> notes;  ///< one sentence each; empty: it was sound
+  std::vector<std::string> notes;  ///< one sentence per repair; empty: the surface was sound
 };
 
-/// Makes a body's surface of triangles as people have them, in this order, each step counted in a note:
-/// vertices at one place become one; collapsed and double faces go; faces are turned to agree; small holes
-/// are closed by a smooth patch; needles and flat faces are collapsed; faces that go through each other are
-/// cut out and the place is closed anew; shells are sorted: inside another one and turned outwards, it goes
-/// (the body is solid there); turned inwards, it stays (a cavity); specks of less than 1e-4 of the volume go.
-/// What then still has faces through each other (shells that overlap, a knot) is wrapped: a surface at a
-/// 600th of the diagonal around it (Portaneri et al. 2022, alpha wrapping), with the change of volume said.
+/// Turns a user's triangles into a body's surface.  The steps, each counted in a note: coincident vertices
+/// are merged; collapsed and duplicate faces are dropped; faces are oriented consistently; small holes are
+/// closed by a smooth patch; needles and flat faces are collapsed; faces that intersect are cut out and the
+/// place is closed anew; shells are sorted: one inside another and oriented outwards is dropped (the body is
+/// solid there), one oriented inwards is kept (a cavity); specks of less than 1e-4 of the volume are dropped.
+/// A surface that still intersects itself (overlapping shells, a knot) is wrapped: a surface at a 1500th of
+/// the diagonal around it (Portaneri et al. 2022, alpha wrapping), with the change of volume in a note.
 /// @throws Error with the place (line, vertex or face, and coordinates) for: no closed body (too large a
-///   hole), a one-sided surface, several bodies, numbers
-/// that are not finite, no volume
+///   hole), a one-sided surface, several bodies, numbers that are not finite, no volume
 RepairedSurface repair(const TriMesh& faces, const mesh::Provenance& from, const RepairOptions& options = {},
                        const Progress& progress = {});
 
