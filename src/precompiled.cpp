@@ -1,1 +1,1 @@
-// Compiled for its precompiled header alone: see palpate_add_precompiled in the top CMakeLists.txt.
+// Source of the precompiled header: see palpate_add_precompiled in the top CMakeLists.txt.

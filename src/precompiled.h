@@ -1,5 +1,5 @@
-// What nearly every source includes, parsed once (CMake's precompiled headers).  Every source still includes
-// what it uses: PALPATE_PRECOMPILE=OFF builds without this file.
+// Headers that nearly every source includes, parsed once (CMake's precompiled headers).  Every source still
+// includes all headers that it uses: PALPATE_PRECOMPILE=OFF builds without this file.
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/SparseCore>
