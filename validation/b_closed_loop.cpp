@@ -8,8 +8,8 @@
 #include "palpate/core/error.h"
 #include "plates.h"
 
-// Contact by nearest points is the gradient of an energy (docs/design.md 4.4): around a closed loop it does
-// no work, whatever the two skins are.  The upper of two corrugated plates goes around
+// Contact by nearest points is the gradient of an energy (docs/theory/contact.md): around a closed loop it
+// does no work, whatever the two skins are.  The upper of two corrugated plates goes around
 //     (x1, h1) -> (x1, h2) -> (x2, h2) -> (x2, h1) -> (x1, h1);
 // the net work is measured over the largest force times the loop's length, and what is left is the quadrature
 // along the loop.  An image has one normal n and k V of force along it, V the overlap: no part of it along

@@ -20,7 +20,7 @@
 // triangles are cut there.
 //
 // The tangent leaves out what a flat contact's triangles have in common and is too stiff against tilting, by
-// 2/n^2 of the restoring part where the base is n triangles wide (docs/design.md 4.4).
+// 2/n^2 of the restoring part where the base is n triangles wide (docs/theory/contact.md).
 //
 // The restoring part is 0.2 N m/rad and the toppling part a third of it: a wrong sign, or a moment that lacks
 // the arm, shows.

@@ -10,7 +10,7 @@
 
 // Patch test (Irons 1966): boundary nodes are put to x = A X + t, interior nodes are free.  A linear
 // tetrahedron holds every affine field, so the field is reproduced inside, with the stress P(A) everywhere,
-// on any mesh: exact, no order involved.  With A = R S (docs/design.md, 4.1)
+// on any mesh: exact, no order involved.  With A = R S (docs/theory/elasticity.md)
 //     P = 2 mu (A - R) + lambda tr(S - I) R.
 
 namespace palpate::validation {

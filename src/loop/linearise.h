@@ -4,8 +4,8 @@
 
 namespace palpate::loop {
 
-/// Linearises contact for a tool at the State's time and pose, for the next period (docs/design.md, 4.5):
-/// `frozen`, `condensed` or `points`, as the scene specifies.
+/// Linearises contact for a tool at the State's time and pose, for the next period
+/// (docs/theory/haptic-loop.md): `frozen`, `condensed` or `points`, as the scene specifies.
 /// @param version  version of the record  @param frozen_fallbacks  incremented if the step matrix has no
 /// factor
 /// @param hand  hand of the tool, in the numbering of scene::hands_of(); other tools continue with their

@@ -57,11 +57,14 @@ class Links(unittest.TestCase):
 
 
 class Lists(unittest.TestCase):
-    """A page that is added to docs/ is added to the three lists of them."""
-    names = {file.stem for file in DOCS.glob("*.md")}
+    """Every page of docs/ is in the index and in the navigation of the site. All but docs/theory are in
+    `palpate help`."""
+    names = {file.relative_to(DOCS).with_suffix("").as_posix() for file in DOCS.rglob("*.md")}
+    theory = {name for name in names if name.startswith("theory/")}
 
     def test_index_has_every_page(self):
-        linked = {Path(target.partition("#")[0]).stem for target in links((DOCS / "index.md").read_text())
+        linked = {target.partition("#")[0].removesuffix(".md")
+                  for target in links((DOCS / "index.md").read_text())
                   if target.partition("#")[0].endswith(".md")}
         self.assertEqual(self.names - {"index"}, linked)
 
@@ -69,10 +72,16 @@ class Lists(unittest.TestCase):
         listed = re.findall(r"(\S+)\.md\s*$", (TREE / "mkdocs.yml").read_text(), re.M)
         self.assertEqual(sorted(listed), sorted(self.names))
 
-    def test_help_has_every_page(self):
+    def test_help_has_every_page_but_theory(self):
         text = (TREE / "src/cli/CMakeLists.txt").read_text()
         listed = re.search(r"set\(PALPATE_PAGES ([^)]*)\)", text).group(1).split()
-        self.assertEqual(sorted(listed), sorted(self.names - {"index"}))
+        self.assertEqual(sorted(listed), sorted(self.names - self.theory - {"index"}))
+
+    def test_every_theory_page_is_linked_from_the_design_page(self):
+        linked = {target.partition("#")[0].removesuffix(".md")
+                  for target in links((DOCS / "design.md").read_text())}
+        self.assertGreaterEqual(len(self.theory), 10)
+        self.assertEqual(self.theory - linked, set())
 
 
 class Short(unittest.TestCase):

@@ -9,7 +9,7 @@ GENERATED = ("keys", "study-keys", "names", "commands")  # by the program: gener
 
 def pages():
     """Name -> text of README.md and every page of docs/."""
-    files = [TREE / "README.md", *sorted(DOCS.glob("*.md"))]
+    files = [TREE / "README.md", *sorted(DOCS.rglob("*.md"))]
     return {file.relative_to(TREE).as_posix(): file.read_text(encoding="utf-8") for file in files}
 
 

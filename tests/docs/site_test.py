@@ -35,8 +35,10 @@ def lost_places(site):
 
 def check(site):
     """What is wrong with the site; empty: nothing."""
-    made = {page.parent.name for page in site.rglob("index.html") if page.parent != site}
-    missing = {page.stem for page in (TREE / "docs").glob("*.md")} - made - {"index"}
+    made = {page.parent.relative_to(site).as_posix() for page in site.rglob("index.html")}
+    docs = TREE / "docs"
+    missing = ({page.relative_to(docs).with_suffix("").as_posix() for page in docs.rglob("*.md")} - made
+               - {"index"})
     return [f"not in the site: {name}" for name in sorted(missing)] + lost_places(site)
 
 

@@ -24,7 +24,7 @@ namespace palpate::contact {
 
 /// Surface carried by nodes of the State. Its vertices are either nodes (vertex i is node
 /// `node_of_vertex[i]`, counted within the block) or points of an embedded skin (vertex i is interpolated
-/// from the nodes of the tetrahedron `tets.col(embedding.tet[i])` with four weights; docs/design.md 4.2).
+/// from the nodes of the tetrahedron `tets.col(embedding.tet[i])` with four weights; docs/theory/proxies.md).
 struct NodeSurface {
   int block_id = -1;                ///< Node block that carries the surface.
   std::vector<int> node_of_vertex;  ///< Node of each vertex; empty for a skin.
@@ -168,7 +168,7 @@ struct FrameStep {
 /// Selects samples of a frame by the other side: nodes, another frame, or both.
 enum class Partners { kAll, kNodes, kFrames };
 
-/// All contacts of a scene as one force term (docs/design.md 4.4).
+/// All contacts of a scene as one force term (docs/theory/contact.md).
 class ContactForce : public dynamics::ForceTerm,
                      public dynamics::PointStiffnessTerm,
                      public dynamics::RepeatedStepTerm {

@@ -25,7 +25,7 @@ struct StepEquation {
 };
 
 /// Rigid tool: a Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact
-/// (docs/design.md, 4.5). The Simbody System is hidden behind the pimpl.
+/// (docs/theory/haptic-loop.md). The Simbody System is hidden behind the pimpl.
 class Tool {
  public:
   /// Builds the tool at the pose of the spec, at rest at time 0.

@@ -18,8 +18,8 @@ namespace palpate::contact {
 inline Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 /// Reduced contact model of one tool: the points at which the tool touches or may soon touch, and the
-/// response of the bodies there, reduced to a few modes (docs/design.md, 4.5). At the time tau after `time`
-/// the bodies are displaced from their positions at `time` by
+/// response of the bodies there, reduced to a few modes (docs/theory/haptic-loop.md). At the time tau after
+/// `time` the bodies are displaced from their positions at `time` by
 ///     tau v + sum of q_k mode_k,       q'' + D q' + diag(stiffness) q = force + tau force_rate + contact,
 /// with q = 0 and q' = 0 at `time`. v is the velocity of the nodes at `time` (for driven nodes the mean over
 /// the coming period), and the modes are orthonormal with respect to the mass of the bodies. All members are

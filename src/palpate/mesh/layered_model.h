@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// One convex proxy at rest (docs/design.md, 4.2), which covers the skin vertices `members`.  Every vertex
+/// One convex proxy at rest (docs/theory/proxies.md), which covers the skin vertices `members`.  Every vertex
 /// belongs to at least one proxy, and may belong to several.
 struct ProxyHull {
   Points corners;            ///< 3 x at most 32, in convex position, at rest [m]

@@ -35,7 +35,7 @@ struct DecomposeReport {
   double largest_outside = 0.0, largest_gap = 0.0;  ///< over all hulls [m]
 };
 
-/// Decomposes one body into convex proxies (docs/design.md, 4.2).  The skin is clustered by bone, then by
+/// Decomposes one body into convex proxies (docs/theory/proxies.md).  The skin is clustered by bone, then by
 /// position and normal (k-means).  Each cluster takes the tetrahedra behind it, and its hull is spanned by at
 /// most `max_corners` of its points, added greedily: the point farthest outside the current hull is next.
 ///

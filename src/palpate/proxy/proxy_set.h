@@ -62,8 +62,8 @@ struct ProxyBranch {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
 };
 
-/// The convex proxies of one body at its present positions (docs/design.md, 4.2). The bounds are derived in
-/// proxy_set.cpp.
+/// The convex proxies of one body at its present positions (docs/theory/proxies.md). The bounds are derived
+/// in proxy_set.cpp.
 ///
 /// After an update every vertex of the skin lies in the inflated hull of each proxy that it is a member of,
 /// for any motion of the nodes, and so do its faces (hulls are convex) and the tetrahedra that the proxy

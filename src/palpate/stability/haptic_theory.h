@@ -2,7 +2,7 @@
 #include "palpate/core/types.h"
 #include "palpate/loop/haptic_loop.h"
 
-/// What theory says of one axis of a haptic loop (docs/design.md, 4.5).  K and B below are stiffness and
+/// What theory says of one axis of a haptic loop (docs/theory/passivity.md).  K and B below are stiffness and
 /// damping of the coupling; with the tool held they are those of the virtual wall.
 namespace palpate::stability {
 

@@ -7,9 +7,9 @@
 
 #include "palpate/dynamics/stepper.h"
 
-/// The stability matrix (docs/design.md, 5): stiff and extreme cases against every integrator.  What each
-/// cell must show is written down from theory, as a function of what the registry says of the method; the
-/// cell is then run and held against it.
+/// The stability matrix (docs/theory/verification.md): stiff and extreme cases against every integrator. What
+/// each cell must show is written down from theory, as a function of what the registry says of the method;
+/// the cell is then run and held against it.
 namespace palpate::stability {
 
 /// How a cell ended, best first.  The first four are acceptable ends; the others are failures, but for growth

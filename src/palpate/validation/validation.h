@@ -40,7 +40,7 @@ struct Fault {
 /// A case with a known answer.  Stands in validation/ as one file; `registry.cpp` lists it.
 struct ValidationCase {
   std::string name;     ///< "patch-test"
-  std::string section;  ///< of docs/design.md, 5: "C"
+  std::string section;  ///< of docs/theory/verification.md: "C"
   std::string summary;  ///< one line: what is measured
   std::string why;      ///< why it matters, and the source of the exact answer
   bool slow = false;    ///< minutes; ctest label `slow`
