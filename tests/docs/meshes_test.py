@@ -55,7 +55,7 @@ def messages(heading):
 
 class Refusals(unittest.TestCase):
     def test_of_a_scene(self):
-        quoted = messages("When a scene refuses a mesh")
+        quoted = messages("Errors in scenes")
         self.assertGreaterEqual(len(quoted), 15)
         with tempfile.TemporaryDirectory() as folder:
             for file in (TREE / "tests/mesh/broken").iterdir():
@@ -71,7 +71,7 @@ class Refusals(unittest.TestCase):
                     self.assertEqual(done.stderr.strip(), "palpate: error: " + message)
 
     def test_of_palpate_model(self):
-        quoted = messages("When `palpate model` refuses a surface")
+        quoted = messages("Errors of `palpate model`")
         self.assertGreaterEqual(len(quoted), 12)
         files = [*(TREE / "src/model").glob("*.cpp"), *(TREE / "src/cli/model_program").glob("*.cpp")]
         text = re.sub(r'"\s*"', "", "\n".join(file.read_text() for file in files))

@@ -8,7 +8,7 @@
 namespace palpate::contact {
 namespace {
 
-/// All that is nearer than r to the segment from (0, 0, -h) to (0, 0, h) of its own axes.
+/// The points within distance r of the segment from (0, 0, -h) to (0, 0, h), in local axes.
 class Capsule {
  public:
   static constexpr const char* kName = "capsule";
@@ -22,8 +22,8 @@ class Capsule {
     const Vec3 normal = distance > 0.0 ? Vec3(d / distance) : Vec3(Vec3::UnitX());
     return {distance - radius_, world_.rotation * normal, radius_};
   }
-  /// Where the line leaves: the gap along it falls and rises again, so that its last zero is found by
-  /// halving.
+  /// Returns where the line leaves the capsule.  The gap along the line falls and rises again; bisection
+  /// finds its last zero.
   double height(const Vec3& world, const Vec3& n) const {
     const Vec3 x = world_.inverse() * world, d = world_.rotation.conjugate() * n;
     const double far = x.norm() + half_ + radius_;
@@ -40,17 +40,17 @@ class Capsule {
     const Vec3 a = inverse_ * a_frame, b = inverse_ * b_frame;
     return gap(a) > 0.0 && gap(b) > 0.0 && gap(a + lowest(a, b - a, 0.0, 1.0) * (b - a)) < 0.0;
   }
-  // The mean curvature's integral is pi (length + 4 radius).
+  // The integral of the mean curvature is pi (length + 4 radius).
   CharacteristicLengths lengths() const {
     const double radius = 4.0 * radius_ * (half_ + radius_) / (2.0 * half_ + 4.0 * radius_);
     return {2.0 * radius_, radius, 1.0 / radius};
   }
-  double curvature() const { return 0.0; }  // it is not the same all over
+  double curvature() const { return 0.0; }  // not constant
 
  private:
   Vec3 from_axis(const Vec3& x) const { return x - Vec3(0.0, 0.0, std::clamp(x.z(), -half_, half_)); }
   double gap(const Vec3& x) const { return from_axis(x).norm() - radius_; }
-  /// The distance from a convex set is convex along a line: thirds close in on its least place.
+  /// The distance to a convex set is convex along a line; ternary search finds its minimum.
   double lowest(const Vec3& x, const Vec3& d, double low, double high) const {
     for (int i = 0; i < 120; ++i) {
       const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;

@@ -5,14 +5,14 @@
 namespace palpate::device {
 namespace {
 
-/// A handle that circles, 1 cm around the origin, whatever it feels; it keeps the last force, as motors
-/// would.
+/// A handle that moves on a circle of 1 cm around the origin, independent of the force.  It stores the last
+/// force, as motors hold it.
 class CirclingDevice : public Device {
  public:
   DeviceSpecification specification() const override { return {}; }
 
  protected:
-  void do_open() override {}  // take hold of the hardware; fail("device: ...") where it does not answer
+  void do_open() override {}  // open the hardware; fail("device: ...") if it does not respond
   void do_close() override { on_hand_ = {}; }
   HandleSample do_sample(double t) override {
     constexpr double kRadius = 0.01, kRate = 2.0;  // [m], [rad/s]

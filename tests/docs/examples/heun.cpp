@@ -29,7 +29,7 @@ class Heun final : public FixedStep {
   }
   void forget(ReinitReason) override {}
 
-  /// q1 = q0 (+) shift; driven directions as they are at t1.
+  /// q1 = q0 (+) shift; prescribed directions take their values at t1.
   bool move(const StateView& from, const VecX& shift, double t1) {
     if (!displace(layout(), from.q.data(), shift.data(), q1_.data(), scratch_)) return false;
     project(layout(), q1_.data());

@@ -5,13 +5,13 @@
 #include "palpate/mesh/generators.h"
 #include "palpate/validation/validation.h"
 
-// A body's own forces come from an energy that no rigid motion changes: they have no sum, and no moment about
-// any point, however the body is deformed (Newton's third law).
+// The internal forces of a body derive from an energy that is invariant under rigid motion.  Their sum and
+// their moment about any point are zero for any deformation (Newton's third law).
 
 namespace palpate::validation {
 namespace {
 
-/// The library with a defect: one node's force is lost.
+/// A defect of the library: the force of one node is lost.
 class LostForce : public DecoratedTerm {
  public:
   using DecoratedTerm::DecoratedTerm;
