@@ -68,7 +68,7 @@ void check_free_bone(const Link& link, const SkeletonSpec& spec, const std::stri
   if (!(spec.density_kg_m3 > 0.0))
     fail(
         "body \"{}\": skeleton: density_kg_m3 is missing: \"{}\" moves freely; bone has about 800 kg/m^3 "
-        "more than the tissue that its nodes weigh",
+        "more than the tissue whose mass its nodes have",
         body, link.bone.name);
 }
 
@@ -89,8 +89,8 @@ SkeletonPlan plan_skeleton(const Skeleton& skeleton, const SkeletonSpec& spec, c
     const bool parent_prescribed = !parent || parent->in_tree < 0, parent_moves = parent && parent->moves;
     if (link.scripted && !parent_prescribed)
       fail(
-          "{}: it has keyframes, but \"{}\", which it hangs on, moves freely; give keyframes or weld all the "
-          "way up to the root",
+          "{}: it has keyframes, but its parent \"{}\" moves freely; give keyframes to all bones up to the "
+          "root, or weld them",
           link.where, parent_name());
     if ((link.scripted || link.type == "weld") && parent_prescribed) {
       bone.moves = link.scripted || parent_moves;
@@ -100,8 +100,8 @@ SkeletonPlan plan_skeleton(const Skeleton& skeleton, const SkeletonSpec& spec, c
     } else {
       if (parent_prescribed && parent_moves)
         fail(
-            "{}: a bone that moves freely cannot hang on \"{}\", which moves by keyframes; weld one of the "
-            "two",
+            "{}: a bone that moves freely cannot have the parent \"{}\", which moves by keyframes; weld one "
+            "of the two",
             link.where, parent_name());
       check_free_bone(link, spec, body);
       bone.in_tree = static_cast<int>(plan.tree.size());

@@ -26,9 +26,9 @@ Pose from(const SimTK::Transform& X) {
 void check(const TreeBone& bone, int index) {
   const std::string where = fmt::format("bone \"{}\"", bone.name);
   dynamics::check_inertia(bone.mass, bone.inertia, where.c_str());
-  PALPATE_CHECK(bone.parent < index, "{}: its parent {} stands after it", where, bone.parent);
+  PALPATE_CHECK(bone.parent < index, "{}: its parent {} comes after it", where, bone.parent);
   if (bone.joint == Joint::kFree && bone.parent >= 0)
-    fail("{}: a free joint is for a root; it hangs on another bone: use \"ball\", \"hinge\" or \"weld\"",
+    fail("{}: a free joint is for a root, but this bone has a parent; use \"ball\", \"hinge\" or \"weld\"",
          where);
   if (bone.joint == Joint::kHinge && !(bone.axis.norm() > 0.0)) fail("{}: a hinge needs an axis", where);
   if (!(bone.stiffness >= 0.0 && bone.damping >= 0.0))
@@ -145,7 +145,7 @@ BoneTree::Impl::Impl(std::vector<TreeBone> bones_in, const Vec3& gravity_in)
     if (q_count(bones[i].joint) > 0)
       PALPATE_CHECK(
           bodies[i].getFirstQIndex(state) == first_q[i] && bodies[i].getFirstUIndex(state) == first_u[i],
-          "Simbody orders its coordinates in another way");
+          "Simbody orders its coordinates differently");
   poses.resize(bones.size());
   twists.resize(bones.size());
 }

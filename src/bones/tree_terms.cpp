@@ -11,7 +11,7 @@ using dynamics::StateView;
 const Block& block_of(const StateView& state, int block_id, const BoneTree& tree) {
   const Block* block = state.layout->find(block_id);
   PALPATE_CHECK(block && block->kind == dynamics::BlockKind::kArticulated && block->u_size == tree.u_size(),
-                "block {} is no tree of bones of this State", block_id);
+                "block {} is not a tree of bones of this State", block_id);
   return *block;
 }
 

@@ -45,11 +45,12 @@ bool all_paths_known(const loop::World& run) {
 }  // namespace
 
 void refuse_against_monolithic(const scene::Description& d) {
-  if (!d.tool) fail("{}: there is no [tool]; nothing is felt that could be compared", d.path);
+  if (!d.tool) fail("{}: there is no [tool], so there is no force on a hand to compare", d.path);
   if (d.bodies.empty())
-    fail("{}: there is no [[body]]: nothing is exchanged; `palpate compare` compares the ticks", d.path);
+    fail("{}: there is no [[body]], so nothing is exchanged; `palpate compare` compares tick periods",
+         d.path);
   if (d.exchange.scheme == "monolithic")
-    fail("{}: exchange.scheme = \"monolithic\" is the reference itself; take \"partitioned\"", d.path);
+    fail("{}: exchange.scheme = \"monolithic\" is the reference itself; use \"partitioned\"", d.path);
 }
 
 AgainstMonolithic against_monolithic(const loop::World& run, const std::vector<loop::HapticRecord>& records,

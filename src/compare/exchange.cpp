@@ -22,7 +22,7 @@ double common_refresh(const std::vector<double>& periods) {
       return refresh;
   }
   fail(
-      "compare: exchange_periods_s have no common divisor to refresh the contact at; use multiples of the "
+      "compare: exchange_periods_s have no common divisor as contact refresh period; use multiples of the "
       "shortest, {} s",
       shortest);
 }

@@ -133,7 +133,7 @@ std::string line_of(const char* what, const FeltSeries& s, const char* unit, dou
 
 FeltDifference felt_difference(const std::vector<TickRecord>& reference,
                                const std::vector<TickRecord>& other) {
-  if (reference.empty() || other.empty()) fail("a run without ticks has nothing that a hand felt");
+  if (reference.empty() || other.empty()) fail("a run without ticks has no force on a hand");
   std::vector<const TickRecord*> at;
   for (const TickRecord& tick : reference)
     if (tick.time >= other.front().time && tick.time <= other.back().time) at.push_back(&tick);
@@ -162,7 +162,7 @@ FeltDifference felt_difference(const std::vector<TickRecord>& reference,
 
 std::string text_of(const FeltDifference& d) {
   std::string out = fmt::format("{} ticks compared, {:g} to {:g} s{}\n", d.ticks, d.from_s, d.to_s,
-                                d.identical ? ": identical to the last bit" : "");
+                                d.identical ? ": bitwise identical" : "");
   if (d.identical) return out;
   return out + line_of("force", d.force, "N", kForceWeber, kLeastForce) +
          line_of("torque", d.torque, "N m", kTorqueWeber, kLeastTorque);

@@ -186,7 +186,7 @@ nlohmann::ordered_json reference_of(const SceneComparison& scene) {
 void write(const Comparison& comparison, const std::string& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
+  if (failed) fail("{}: the results' folder cannot be created: {}", folder, failed.message());
   const fs::path base(folder);
   const std::vector<std::string> columns = with_every_number(store::compare_columns());
   using Scene = const SceneComparison&;

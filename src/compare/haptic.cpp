@@ -163,7 +163,7 @@ void take(HapticPoint& point, int repeat, const Ended& ended, const std::optiona
   if (!reference) return;
   try {
     point.error = wrench_distance(ended.run.trajectory, *reference);
-    if (!std::isfinite(point.error.force_rms_n)) fail("not finite: the hand felt no usable force");
+    if (!std::isfinite(point.error.force_rms_n)) fail("not finite: the force on the hand is not usable");
   } catch (const Error& e) {  // Or there are no common ticks.
     point.error = no_distance();
     point.status = PointStatus::kFailed;
@@ -231,9 +231,9 @@ HapticComparison compare_haptic(const scene::Description& description, const Com
   out.stopped = runner.stopped();
   out.reused = runner.reused();
   out.rules = fmt::format(
-      "Each run had a process of its own, {} at a time, and at most {:g} CPU seconds ({:g} for the reference "
-      "and its check). A point was run up to {} times, again only while its runs together took less than "
-      "{:g} CPU seconds; times are medians.",
+      "Each run had a separate process, {} at a time, and at most {:g} CPU seconds ({:g} for the reference "
+      "and its check). A point was run up to {} times, as long as its runs took less than {:g} CPU seconds "
+      "in total; times are medians.",
       jobs, options.limit_s, options.reference_limit_s, options.repeats, 0.2 * options.limit_s);
   return out;
 }

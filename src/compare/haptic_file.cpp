@@ -52,7 +52,7 @@ std::vector<std::pair<std::string, CsvCell>> cells_of(const HapticComparison& c,
 void write(const HapticComparison& c, const std::string& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
+  if (failed) fail("{}: the results' folder cannot be created: {}", folder, failed.message());
   std::vector<std::string> columns;
   for (const auto& [name, cell] : cells_of(c, {})) columns.push_back(name);
   store::CsvWriter csv((fs::path(folder) / "haptic.csv").string(), columns);

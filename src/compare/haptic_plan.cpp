@@ -64,7 +64,7 @@ std::vector<std::size_t> image_contacts(const Description& d) {
 const dynamics::StepperEntry& method_of(const Description& d, const char* name, const char* key) {
   const dynamics::StepperEntry& entry = find(loop::steppers(), name, key);
   if (entry.traits.stability == dynamics::Stability::kStatic)
-    fail("{}: {}: {} cannot make a reference: it does not move in time", d.path, key, name);
+    fail("{}: {}: {} cannot be a reference: it is a static solver", d.path, key, name);
   return entry;
 }
 
@@ -83,8 +83,8 @@ const dynamics::StepperEntry& check_of(const Description& d, const dynamics::Ste
                                                           : other("ark-dirk-esdirk437", "cvode-bdf"),
                                                   kKey);
   if (check.traits.family == reference.traits.family)
-    fail("{}: {}: {} and {} are of one family, {}: the two would err alike", d.path, kKey, check.name,
-         reference.name, check.traits.family);
+    fail("{}: {}: {} and {} belong to the same family, {}, so their errors may be alike; choose another",
+         d.path, kKey, check.name, reference.name, check.traits.family);
   return check;
 }
 
@@ -236,7 +236,7 @@ MonolithicScene monolithic_scene(const Description& d, double coarser) {
   const IntegratorSpec& made = out.description.integrator;
   const bool fixed = find_stepper(made.name)->traits.control == dynamics::StepControl::kFixed;
   out.made_by = fmt::format(
-      "tool and bodies as one system by {} {}{}, contact refreshed every {}", made.name,
+      "monolithic solution by {} {}{}, contact refreshed every {}", made.name,
       fixed ? "in steps of " + milliseconds(made.step_s) : fmt::format("at rtol {:.2g}", made.rtol),
       coarser > 1.0 ? " by " + made.linear_solver : std::string(),
       milliseconds(out.description.exchange.contact_refresh_s));

@@ -166,7 +166,7 @@ bool Ledger::is_pointless(const Task& task) {
     settle_untried(PointStatus::kRefused, before->reason);
   else if (before->status == PointStatus::kOutOfTime ||
            (before->status == PointStatus::kNotTried && before->reason != kNotNeeded))
-    settle_untried(PointStatus::kNotTried, "not tried: a coarser rung ran out of time");
+    settle_untried(PointStatus::kNotTried, "not tried: a coarser level ran out of time");
   else if (point.open_ended && (before->reason == kNotNeeded || is_at_the_end(task)))
     settle_untried(PointStatus::kNotTried, kNotNeeded);
   return point.status != PointStatus::kMissing;

@@ -8,7 +8,7 @@
 namespace palpate::compare {
 
 /// Reason of a level that was skipped as unnecessary; such levels are in no table.
-inline const std::string kNotNeeded = "the reference cannot tell finer errors";
+inline const std::string kNotNeeded = "the reference cannot resolve finer errors";
 
 /// Run to be made.
 struct Task {

@@ -88,8 +88,8 @@ void check_ladder(const scene::Description& d, const scene::LadderSpec& ladder) 
   if (ladder.values.empty()) return;
   const StepControl control = entry.traits.control;
   if (control == StepControl::kAdaptive && ladder.setting != "rtol")
-    fail("{}: [[compare.ladder]] \"{}\": {} steps under error control; give rtol = [...] instead of {}",
-         d.path, label_of(ladder), entry.name, ladder.setting);
+    fail("{}: [[compare.ladder]] \"{}\": {} has error control; give rtol = [...] instead of {}", d.path,
+         label_of(ladder), entry.name, ladder.setting);
   if (control == StepControl::kFixed && ladder.setting != "step_s")
     fail("{}: [[compare.ladder]] \"{}\": {} takes fixed steps; give step_s = [...] instead of {}", d.path,
          label_of(ladder), entry.name, ladder.setting);
@@ -305,7 +305,7 @@ PlannedReference plan_reference(const scene::Description& d, const std::vector<C
           d, {"tool.integrator=\"" + integrator + "\"", "tool.tick_s=" + toml_number(0.5 * finest)});
     };
     out.made_by = fmt::format("simbody-rkmerson at ticks of {:g} s", 0.5 * finest);
-    out.checked_by = "simbody-cpodes at the same";
+    out.checked_by = "simbody-cpodes at the same ticks";
     out.primary = made("simbody-rkmerson");
     out.check = made("simbody-cpodes");
     out.made_with = "simbody-rkmerson";
@@ -316,7 +316,7 @@ PlannedReference plan_reference(const scene::Description& d, const std::vector<C
   const auto made = [&](const std::string& integrator, double rtol, const std::string& solver) {
     const StepperEntry& entry = find(loop::steppers(), integrator, "reference integrator");
     if (entry.traits.control == StepControl::kFixed || entry.traits.stability == Stability::kStatic)
-      fail("{}: compare: {} cannot make a reference: it has no error control", d.path, integrator);
+      fail("{}: compare: {} cannot be a reference: it has no error control", d.path, integrator);
     scene::LadderSpec ladder;
     ladder.integrator = integrator;
     std::vector<std::string> overrides = overrides_of(ladder, rtol);

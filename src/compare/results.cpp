@@ -66,7 +66,7 @@ void Ledger::take_chart(const Task& task, const store::StudyArtefact& kept) {
   } else if (exchange) {
     comparison.exchange = exchange_of(kept.bytes);
     if (!comparison.exchange.trouble.empty())
-      note("the exchange period's own error", comparison.exchange.trouble);
+      note("the error of the exchange period", comparison.exchange.trouble);
     for (const ExchangePoint& point : comparison.exchange.points)
       if (!point.trouble.empty())
         note(fmt::format("the exchange period at {:g} s", point.exchange_period_s), point.trouble);
@@ -120,21 +120,20 @@ void Ledger::finish(int jobs) {
   static const std::map<LinearSolvers, std::string> kSolvers = {
       {LinearSolvers::kSame, "All implicit methods solved their linear systems by {}."},
       {LinearSolvers::kBest,
-       "Each implicit method had the linear solver that was fastest at a rung of its "
-       "ladder."},
+       "Each implicit method used the linear solver that was fastest at one level of its refinement "
+       "sequence."},
       {LinearSolvers::kNamed,
-       "Each implicit method had the linear solver that the scene names, or its own."}};
+       "Each implicit method used the linear solver that the scene specifies, or its default."}};
   const std::string solvers =
       fmt::format(fmt::runtime(kSolvers.at(options_.linear_solvers)), options_.linear_solver);
   out.rules = fmt::format(
-      "{} Each run had a process of its own, {}, and at most {:g} CPU seconds ({:g} for references "
-      "and further charts). A point was run "
-      "up to {} times, again only while its runs together took less than {:g} CPU seconds, the repeats "
-      "interleaved over all points; times are medians of the loop's CPU time, without assembly and "
-      "recording.",
+      "{} Each run had a separate process, {}, and at most {:g} CPU seconds ({:g} for references and further "
+      "charts). A point was run up to {} times, as long as its runs took less than {:g} CPU seconds in "
+      "total, the repeats interleaved over all points; times are medians of the loop's CPU time, without "
+      "assembly and recording.",
       solvers,
       options_.jobs > 0 ? fmt::format("{} at a time", jobs)
-                        : fmt::format("references {} at a time, all else with nothing beside it", jobs),
+                        : fmt::format("references {} at a time, all others one at a time", jobs),
       options_.limit_s, options_.reference_limit_s, options_.repeats, 0.2 * options_.limit_s);
 }
 

@@ -42,12 +42,12 @@ Reference settle(const PlannedReference& planned, const ReferenceRun& primary, c
     out.own_error = measure(check.run->trajectory, primary.run->trajectory);
   } else if (primary.run) {
     out.description = planned.made_by + ", not checked";
-    out.trouble = fmt::format("the check by {} failed ({}): the reference's own error is not known",
+    out.trouble = fmt::format("the check by {} failed ({}): the error of the reference is unknown",
                               planned.checked_by, check.trouble);
   } else if (check.run) {
     out.description = planned.checked_by + ", not checked";
     out.trouble =
-        fmt::format("the reference by {} failed ({}): the check replaces it, and its own error is not known",
+        fmt::format("the reference by {} failed ({}): the check replaces it, and its error is unknown",
                     planned.made_by, primary.trouble);
   } else {
     out.description = "none";

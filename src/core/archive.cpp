@@ -13,7 +13,7 @@ Archive::Archive(Values values, std::string where)
 void Archive::check_all_given_back() const {
   for (const auto& [name, value] : values_)
     if (!asked_.contains(name))
-      fail("{}: holds \"{}\", which this run has no use for; the scene is another one", where_, name);
+      fail("{}: unexpected entry \"{}\"; the file belongs to another scene", where_, name);
 }
 
 void Archive::keep(std::string_view name, Value value) {
@@ -24,19 +24,19 @@ void Archive::keep(std::string_view name, Value value) {
 const Archive::Value& Archive::given_value(std::string_view name) {
   const std::string whole = full(name);
   const auto at = values_.find(whole);
-  if (at == values_.end()) fail("{}: \"{}\" is missing; the scene is another one", where_, whole);
+  if (at == values_.end()) fail("{}: \"{}\" is missing; the file belongs to another scene", where_, whole);
   asked_[whole] = true;
   return at->second;
 }
 
 void Archive::refuse_kind(std::string_view name) const {
-  fail("{}: \"{}\" is of another kind than it must be", where_, full(name));
+  fail("{}: \"{}\" has the wrong type", where_, full(name));
 }
 
 void Archive::check_count(std::string_view name, std::size_t kept, std::size_t wanted) const {
   if (kept != wanted)
-    fail("{}: \"{}\" has {} numbers, must have {}; the scene is another one", where_, full(name), kept,
-         wanted);
+    fail("{}: \"{}\" has {} numbers, must have {}; the file belongs to another scene", where_, full(name),
+         kept, wanted);
 }
 
 void Archive::numbers(std::string_view name, std::span<double> values) {

@@ -18,7 +18,7 @@ std::string_view check_encoding(std::string_view text, const std::string& path) 
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     fail("{}:1: the file is in UTF-16; save it as CSV in UTF-8", path);
   if (text.find('\0') != std::string_view::npos)
-    fail("{}: holds bytes of zero, so it is no CSV text; check the path", path);
+    fail("{}: contains null bytes, so it is not CSV text; check the path", path);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   return text;
 }
@@ -64,7 +64,7 @@ class Splitter {
         cell_ += c;
       line_ += c == '\n' || (c == '\r' && next != '\n');
     }
-    if (quoted_) fail("{}:{}: a quote is never closed", path_, opened_);
+    if (quoted_) fail("{}:{}: unterminated quote", path_, opened_);
     end_row();
     return std::move(rows_);
   }

@@ -52,8 +52,8 @@ Instructions choose_instructions(std::string_view wanted, Instructions widest) {
   }
   const bool exists = std::any_of(std::begin(kAll), std::end(kAll),
                                   [&](Instructions known) { return wanted == name_of(known); });
-  fail("PALPATE_INSTRUCTIONS = \"{}\": {}; there are {}: name one of these, or unset the variable", wanted,
-       exists ? "this processor does not have it" : "is no set of instructions that palpate knows", there);
+  fail("PALPATE_INSTRUCTIONS = \"{}\": {}; set it to one of {}, or unset it", wanted,
+       exists ? "this processor does not support it" : "unknown instruction set", there);
 }
 
 Instructions best_instructions() {

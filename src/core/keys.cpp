@@ -81,7 +81,7 @@ Settings complete(const std::vector<PartKey>& keys, const Settings& given, const
   for (const PartKey& key : keys) names.push_back(key.name);
   for (const auto& [name, value] : given)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      fail("{}: {} means nothing to it{}", what, name, suggestion(name, names));
+      fail("{}: unknown key \"{}\"{}", what, name, suggestion(name, names));
   Settings out;
   for (const PartKey& key : keys) {
     const auto found = given.find(key.name);

@@ -82,10 +82,10 @@ void take_addresses(AvailableMemory& least, const fs::path& root, double address
   rlimit most{};
   if (is_limited(RLIMIT_AS, most))
     take(least, static_cast<double>(most.rlim_cur) - page * pages[0] - addresses,
-         "the limit of addresses, ulimit -v");
+         "the limit on address space, ulimit -v");
   if (is_limited(RLIMIT_DATA, most))
     take(least, static_cast<double>(most.rlim_cur) - page * pages[5] - addresses,
-         "the limit of data, ulimit -d");
+         "the limit on data, ulimit -d");
 }
 
 }  // namespace
@@ -116,12 +116,14 @@ void refuse_beyond_memory(const std::string& what, double needed, const std::str
   const AvailableMemory available = available_memory("/", addresses);
   if (needed <= available.bytes) return;
   const std::string libraries =
-      addresses > 0.0 && available.limited_by.starts_with("the limit of")
-          ? fmt::format(" beside {} of addresses for libraries", memory_text(addresses))
+      addresses > 0.0 && available.limited_by.starts_with("the limit on")
+          ? fmt::format(" after reserving {} of address space for libraries", memory_text(addresses))
           : "";
-  fail("{} need about {} of memory{}, and {} are available{} ({}); {}; --beyond-memory goes on all the same",
-       what, memory_text(needed), parts.empty() ? "" : " (" + parts + ")", memory_text(available.bytes),
-       libraries, available.limited_by, advice);
+  fail(
+      "{} need about {} of memory{}, but only {} are available{} ({}); {}, or continue anyway with "
+      "--beyond-memory",
+      what, memory_text(needed), parts.empty() ? "" : " (" + parts + ")", memory_text(available.bytes),
+      libraries, available.limited_by, advice);
 }
 
 }  // namespace palpate

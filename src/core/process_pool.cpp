@@ -35,9 +35,9 @@ ProcessPool::~ProcessPool() {
 }
 
 void ProcessPool::start(Work work, const std::string& bytes, double limit_s, Done done) {
-  PALPATE_CHECK(has_room(), "{} pieces of work run already", children_.size());
+  PALPATE_CHECK(has_room(), "{} jobs are already running", children_.size());
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) fail("no pipe can be made: {}", std::strerror(errno));
+  if (pipe2(ends, O_CLOEXEC) != 0) fail("cannot create a pipe: {}", std::strerror(errno));
   const std::uint64_t id = next_id_++;
   const std::string folder = std::filesystem::current_path().string();
   const Request request{Request::Kind::kStart, id, work, limit_s, folder.size(), bytes.size()};
@@ -55,11 +55,11 @@ void ProcessPool::start(Work work, const std::string& bytes, double limit_s, Don
   const int why = child->status;
   close(child->pipe);
   children_.erase(child);
-  if (lost) fail("no process can be started: the server of this pool has died");
-  if (why != 0) fail("no process can be started: {}", std::strerror(why));
+  if (lost) fail("cannot start a process: the server of this pool has died");
+  if (why != 0) fail("cannot start a process: {}", std::strerror(why));
   fail(
-      "the work is a function of a library that was loaded after the helper process was made: load it, then "
-      "call palpate::ProcessPool::prepare()");
+      "the job's function is in a library that was loaded after the helper process had started; load the "
+      "library first, then call palpate::ProcessPool::prepare()");
 }
 
 bool ProcessPool::take_notice() {
@@ -102,7 +102,7 @@ void ProcessPool::finish(std::list<Child>::iterator at) {
   Outcome outcome;
   const bool timed_out = child.killed || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU);
   if (child.lost) {
-    outcome = {Outcome::End::kCrash, "lost: the process that had started it has died", SIGKILL};
+    outcome = {Outcome::End::kCrash, "lost: the process that started it has died", SIGKILL};
   } else if (timed_out) {
     outcome = {Outcome::End::kOutOfTime, fmt::format("out of time: {:g} s", child.limit_s)};
   } else if (WIFSIGNALED(status)) {

@@ -14,7 +14,7 @@ std::string program_path() {
   if (const fs::path here = fs::canonical("/proc/self/exe", error); !error) return here.string();
   const auto* started_by = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
   if (const fs::path here = fs::canonical(started_by ? started_by : "", error); !error) return here.string();
-  fail("palpate does not find its own program: /proc is not mounted, and \"{}\" is no file: {}",
+  fail("cannot locate the palpate executable: /proc is not mounted, and \"{}\" is not a file: {}",
        started_by ? started_by : "", error.message());
 }
 
@@ -23,8 +23,8 @@ std::string temporary_folder() {
   const fs::path folder = fs::temp_directory_path(error);
   if (!error) return folder.string();
   const char* named = std::getenv("TMPDIR");
-  fail("{}: no folder for temporary files ({}); set TMPDIR to a folder that can be written",
-       named ? named : "/tmp", error.message());
+  fail("{}: cannot be used for temporary files ({}); set TMPDIR to a writable folder", named ? named : "/tmp",
+       error.message());
 }
 
 }  // namespace palpate

@@ -95,7 +95,7 @@ bool ends_endless_work(int signal) { return signal == SIGXCPU || signal == SIGKI
 
 std::string death(int status) {
   if (WIFSIGNALED(status))
-    return ends_endless_work(WTERMSIG(status)) ? "it does not come to an end" : ::strsignal(WTERMSIG(status));
+    return ends_endless_work(WTERMSIG(status)) ? "it does not terminate" : ::strsignal(WTERMSIG(status));
   return fmt::format("status {}", WEXITSTATUS(status));
 }
 
@@ -104,12 +104,12 @@ std::string death(int status) {
 void rehearse(const std::string& path, const char* library, const std::function<void()>& read) {
   if (unwanted > 0) return;
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) fail("{}: no pipe can be opened: {}", path, std::strerror(errno));
+  if (::pipe2(ends, O_CLOEXEC) != 0) fail("{}: cannot create a pipe: {}", path, std::strerror(errno));
   const pid_t child = ::fork();
   if (child < 0) {
     const std::string why = std::strerror(errno);
     ::close(ends[0]), ::close(ends[1]);
-    fail("{}: no process can be started that reads it: {}", path, why);
+    fail("{}: cannot start a process to read it: {}", path, why);
   }
   if (child == 0) live(ends[1], path, read);
   ::close(ends[1]);
@@ -120,8 +120,9 @@ void rehearse(const std::string& path, const char* library, const std::function<
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == kRead) return;
   if (code == kRefused && !message.empty()) throw Error(message);
-  if (code == kNoMemory) fail("{}: asks for more memory than there is; it is damaged, or too large", path);
-  fail("{}: is damaged: {} does not survive reading it ({}); copy it again, or make it anew", path, library,
+  if (code == kNoMemory)
+    fail("{}: reading it takes more memory than is available; it is damaged or too large", path);
+  fail("{}: is damaged: {} fails while reading it ({}); copy it again, or recreate it", path, library,
        death(status));
 }
 

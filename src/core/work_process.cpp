@@ -67,7 +67,8 @@ void run_work(const Request& request, const std::string& folder, const std::stri
   limit_cpu(request.limit_s);
   std::string answer;
   try {
-    if (chdir(folder.c_str()) != 0) fail("{}: cannot be entered: {}", folder, std::strerror(errno));
+    if (chdir(folder.c_str()) != 0)
+      fail("{}: cannot be made the working directory: {}", folder, std::strerror(errno));
     answer = kGood + request.work(input, out_of_time);
   } catch (const std::exception& e) { answer = kBad + std::string(e.what()); }
   const itimerval off{};

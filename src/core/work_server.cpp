@@ -196,7 +196,7 @@ long thread_count() {
 /// Makes two connected sockets.
 void make_pair(int (&ends)[2]) {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    fail("no socket can be made: {}", std::strerror(errno));
+    fail("cannot create a socket: {}", std::strerror(errno));
 }
 
 void make_helper(Helper& own) {
@@ -208,7 +208,7 @@ void make_helper(Helper& own) {
   if (pid < 0) {
     const int why = errno;
     for (const int end : ends) close(end);
-    fail("no process can be started: {}", std::strerror(why));
+    fail("cannot start a process: {}", std::strerror(why));
   }
   if (pid == 0) {
     close(ends[0]);
@@ -221,8 +221,8 @@ void make_helper(Helper& own) {
     close(ends[0]);
     while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {}
     fail(
-        "runs in processes of their own cannot be started any more: this process has {} threads, and a copy "
-        "of it would inherit their locks without them; call palpate::ProcessPool::prepare() at the start of "
+        "runs in separate processes can no longer be started: this process has {} threads, and a fork of it "
+        "would inherit their locks but not the threads; call palpate::ProcessPool::prepare() at the start of "
         "main(), before anything starts a thread or opens a picture",
         threads);
   }

@@ -58,8 +58,7 @@ class Pool {
       } catch (const std::system_error& e) {
         fail(
             "thread {} of {} cannot be started ({}); lower integrator.threads, or raise the limits on "
-            "addresses "
-            "(ulimit -v) and processes (ulimit -u)",
+            "address space (ulimit -v) and processes (ulimit -u)",
             worker + 1, count, e.code().message());
       }
       size_ = worker + 1;

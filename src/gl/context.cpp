@@ -150,7 +150,7 @@ Context::Context() : handles_(std::make_unique<Handles>()) {
     break;
   }
   if (handles_->context == EGL_NO_CONTEXT)
-    fail("no EGL device gives OpenGL 4.3 without a display (tried {}); {}", tried.empty() ? "none" : tried,
+    fail("no EGL device supports OpenGL 4.3 without a display (tried {}); {}", tried.empty() ? "none" : tried,
          kMesaPackages);
   make_current();
   info_.vendor = gl_string(GL_VENDOR);
@@ -190,7 +190,7 @@ void Context::release() {
 void check_context(const char* what) {
   // Needs OpenGL 4.5; older versions report a reset only through errors.
   if (epoxy_gl_version() < 45 || glGetGraphicsResetStatus() == GL_NO_ERROR) return;
-  throw ContextLost(fmt::format("{}: the GPU {} was reset by its driver, and what was on it is lost", what,
+  throw ContextLost(fmt::format("{}: the GPU {} was reset by its driver, and its data are lost", what,
                                 Context::shared().info().renderer));
 }
 

@@ -37,7 +37,7 @@ int max_texture_size() {
 Texture::Texture(int width, int height, Format format) : width_(width), height_(height), format_(format) {
   const int largest = max_texture_size();
   if (width < 1 || height < 1 || width > largest || height > largest)
-    fail("an image of {} x {} pixels cannot be made: this OpenGL device allows 1 to {} an edge", width,
+    fail("an image of {} x {} pixels cannot be created: this OpenGL device allows 1 to {} per edge", width,
          height, largest);
   // Classic binding calls: direct state access needs 4.5.
   glGenTextures(1, &id_);
@@ -146,7 +146,7 @@ void Framebuffer::clear_depth(float depth) {
 }
 
 const Texture& Framebuffer::depth() const {
-  PALPATE_CHECK(!depth_.empty(), "this framebuffer was made without depth");
+  PALPATE_CHECK(!depth_.empty(), "this framebuffer has no depth");
   return depth_[0];
 }
 
@@ -184,7 +184,7 @@ std::vector<float> Framebuffer::read_float(int attachment) const {
 }
 
 std::vector<float> Framebuffer::read_depth() const {
-  PALPATE_CHECK(!depth_.empty(), "this framebuffer was made without depth");
+  PALPATE_CHECK(!depth_.empty(), "this framebuffer has no depth");
   std::vector<float> pixels(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   read_pixels(-1, GL_DEPTH_COMPONENT, GL_FLOAT, pixels.data());
   return pixels;

@@ -12,7 +12,8 @@ namespace palpate::gl {
 MappedBuffer::MappedBuffer(For use) : use_(use) {
   if (epoxy_gl_version() < 44 && !epoxy_has_gl_extension("GL_ARB_buffer_storage"))
     fail(
-        "contact on the GPU needs buffers that stay mapped (OpenGL 4.4), which {} has not; update its driver",
+        "contact on the GPU needs persistently mapped buffers (OpenGL 4.4), which {} lacks; update its "
+        "driver",
         Context::shared().info().renderer);
 }
 

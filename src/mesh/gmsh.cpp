@@ -79,7 +79,7 @@ int major_version(TextFile& file) {
   }
   if (section == "$NOD") file.fail("this is Gmsh format 1 ($NOD), which palpate does not read; {}", convert);
   if (section != "$MeshFormat")
-    file.fail("a Gmsh mesh starts with $MeshFormat, found \"{}\"; is this a .msh of Gmsh?",
+    file.fail("a Gmsh mesh starts with $MeshFormat, found \"{}\"; check that this is a .msh file of Gmsh",
               printable(section));
   file.require_line("the format's version");
   const double version = file.real("version");

@@ -182,8 +182,8 @@ void append_polygon(const std::vector<Vec3>& points, const std::vector<int>& pol
 std::string warped_text(const PolygonReport& report, const Provenance& from) {
   if (report.warped == 0) return {};
   return fmt::format(
-      "{}: this polygon is not planar, by {:.2g} % of its extent{}; diagonals between its corners stand for "
-      "it",
+      "{}: this polygon deviates from a plane by {:.2g} % of its extent{}; it is split along diagonals "
+      "between its corners",
       from.element(report.most_warped), 100 * report.largest_warp,
       report.warped == 1 ? "" : fmt::format(" (the largest of {})", report.warped));
 }

@@ -21,7 +21,7 @@ std::vector<int> region_of_element(const std::vector<MaterialRegion>& regions, i
   std::vector<int> out(static_cast<std::size_t>(tets), -1);
   for (const int r : by_falling_size(regions))
     for (const int tet : regions[static_cast<std::size_t>(r)].tets) {
-      PALPATE_CHECK(tet >= 0 && tet < tets, "region \"{}\" names element {} of {}",
+      PALPATE_CHECK(tet >= 0 && tet < tets, "region \"{}\" refers to element {} of {}",
                     regions[static_cast<std::size_t>(r)].name, tet, tets);
       out[static_cast<std::size_t>(tet)] = r;
     }

@@ -22,8 +22,8 @@ void require_sizes(const MeshSpec& spec, const Vec3& edges) {
   const double elements = 5 * (edges / h).cwiseMax(1.0).prod();
   if (elements > kMaxElements)
     fail(
-        "generator \"{}\": element_size_m = {} would make about {:.1e} elements, more than {:.0e}; use a "
-        "larger one",
+        "generator \"{}\": element_size_m = {} gives about {:.1e} elements, more than {:.0e}; use a larger "
+        "size",
         spec.generator, h, elements, kMaxElements);
 }
 
@@ -84,7 +84,7 @@ std::vector<PartKey> cylinder_keys() {
 
 const Registry<MakeTets>& tet_generators() {
   static const Registry<MakeTets> out = {
-      {"box", "box of size_m around the origin, five tetrahedra a cell", 0, make_box, box_keys()},
+      {"box", "box of size_m around the origin, five tetrahedra per cell", 0, make_box, box_keys()},
       {"ball", "ball of radius_m around the origin, icosahedral shells", 0, make_ball,
        generator_keys({"radius_m", "element_size_m"}, {"grading"})},
       {"cylinder", "cylinder of radius_m and length_m around z, centred", 0, make_cylinder, cylinder_keys()},

@@ -37,8 +37,8 @@ TetFile read_tets(const std::string& path) {
   if (kind == ".node" || kind == ".ele") return read_tetgen(path);
   if (kind == ".obj")
     fail(
-        "{}: an .obj holds a surface, a soft body needs tetrahedra (.msh, .node/.ele); make a model of it: "
-        "palpate model {} -o MODEL.h5",
+        "{}: an .obj contains a surface, but a soft body needs tetrahedra (.msh, .node/.ele); convert it to "
+        "a model: palpate model {} -o MODEL.h5",
         path, path);
   fail(
       "{}: unknown ending \"{}\" for tetrahedra; .msh (Gmsh), .node and .ele (TetGen) and models (.h5) are "
@@ -57,8 +57,8 @@ void check_size(const MeshSpec& spec, const Points& points, const std::string& p
   if (spec.scale) return;
   if (const auto doubt = doubt_about_size(points))
     fail(
-        "{}: the {} is {:.3g} m large: is that meant? Then write scale = 1 beside file = \"{}\"; a file in "
-        "{} takes scale = {}",
+        "{}: the {} is {:.3g} m large; if this is intended, add scale = 1 to file = \"{}\", or if the file "
+        "is in {}, scale = {}",
         path, what, doubt->size_m, spec.file, doubt->other_unit, doubt->factor);
 }
 

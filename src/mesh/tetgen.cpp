@@ -12,7 +12,7 @@ namespace {
 /// Requires consecutive numbers, as TetGen writes them: element lines refer to them.
 void require_next(const TextFile& file, std::string_view what, long number, long expected) {
   if (number != expected)
-    file.fail("{} {} found where {} is expected; numbers must run on without gaps", what, number, expected);
+    file.fail("{} {} found where {} is expected; numbers must be consecutive", what, number, expected);
 }
 
 void read_nodes(TextFile& file, TetFile& out, long& first) {

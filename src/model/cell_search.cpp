@@ -84,14 +84,14 @@ void check(const TetrahedraOptions& options, double volume) {
     if (const double number = kCellsPerVolume * volume / std::pow(options.element_size_m / kEdgePerCell, 3);
         number > kLargestNumber || number < 20)
       fail(
-          "--element-size-m {} would make about {:.2g} tetrahedra of {:.4g} m^3, must make between 20 and "
-          "{}; is the unit right? --scale changes it",
+          "--element-size-m {} gives about {:.2g} tetrahedra in {:.4g} m^3, must give between 20 and {}; "
+          "check the unit of length, which --scale changes",
           options.element_size_m, number, volume, kLargestNumber);
   const double wanted = options.element_size_m > 0
                             ? kCellsPerVolume * volume / std::pow(options.element_size_m / kEdgePerCell, 3)
                             : options.tetrahedra;
   if (kPointsPerCell * wanted > options.limits.points)
-    fail("{:.3g} tetrahedra have about {:.3g} points, more than the {} of the budget: raise it with --points",
+    fail("{:.3g} tetrahedra have about {:.3g} points, more than the limit of {}; raise it with --points",
          wanted, kPointsPerCell * wanted, options.limits.points);
 }
 
@@ -135,11 +135,10 @@ class Attempts {
     fail("no mesh of {} tetrahedra within 3 % was found, the nearest has {}; {}", options_.tetrahedra,
          nearest_,
          nearest_ > options_.tetrahedra
-             ? fmt::format(
-                   "where the body is thinner than its elements they grow no larger: ask for {:.2g} or more "
-                   "with --tetrahedra, leave creases out with --creases none, or thicken it",
-                   least)
-             : std::string("ask for more with --tetrahedra"));
+             ? fmt::format("elements cannot be larger where the body is thin; set --tetrahedra to {:.2g} or "
+                           "more, drop creases with --creases none, or thicken the body",
+                           least)
+             : std::string("increase --tetrahedra"));
   }
 
  private:
@@ -154,12 +153,11 @@ void part(FittedMesh& made, double volume, std::vector<std::string>& notes) {
   const ManifoldReport report = make_boundary_manifold(made);
   if (report.taken == 0) return;
   const std::string what = fmt::format(
-      "{} tetrahedra, {:.2g} % of the volume, were taken away where the boundary touched itself, first at "
+      "{} tetrahedra, {:.2g} % of the volume, were removed where the boundary touched itself, first at "
       "({:.4g}, {:.4g}, {:.4g}) m",
       report.taken, 100 * report.volume / volume, report.place.x(), report.place.y(), report.place.z());
   if (report.volume > kLargestShare * volume)
-    fail("the body is thinner than its elements: {}; ask for more with --tetrahedra, or thicken it there",
-         what);
+    fail("the body is thinner than its elements: {}; increase --tetrahedra, or thicken the body there", what);
   notes.push_back(what);
 }
 
@@ -185,7 +183,7 @@ void refuse_too_thin(const BodySize& size, const Vec3& place, const TetrahedraOp
   if (flat <= kTooMany * options.tetrahedra && !(exactly && least > kFarBelow * options.tetrahedra)) return;
   fail(
       "the body is about {:.2g} m thick, with a surface of {:.3g} m^2, at ({:.4g}, {:.4g}, {:.4g}) m and "
-      "elsewhere: it takes about {:.2g} tetrahedra; ask for that many with --tetrahedra, or thicken it",
+      "elsewhere: it needs about {:.2g} tetrahedra; set --tetrahedra to that, or thicken the body",
       thickness, size.area, place.x(), place.y(), place.z(), least);
 }
 
@@ -251,7 +249,7 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
   out.notes.insert(out.notes.begin(), given_up.begin(), given_up.end());
   if (aim.error(last, 1.0) > kTolerance && !enough(last, 1.0)) {
     if (aim.by_size())
-      fail("no mesh with edges of {} m within 3 % was found, the nearest has {:.4g} m; ask for another size",
+      fail("no mesh with edges of {} m within 3 % was found, the nearest has {:.4g} m; choose another size",
            options.element_size_m, last.mean_edge);
     attempts_made.refuse(volume, mesher.thickness());
   }

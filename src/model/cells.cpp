@@ -13,8 +13,8 @@ void check_corners(const std::vector<int>& corners, std::size_t element, const C
                    const std::string& path) {
   for (const int corner : corners)
     if (corner < 0 || static_cast<std::size_t>(corner) >= cells.points.size())
-      fail("{}: element {} counted from 0 names point {}, the file has {}", path, element, corner,
-           cells.points.size());
+      fail("{}: element {} (counted from 0) refers to point {}, but the file has {} points", path, element,
+           corner, cells.points.size());
 }
 
 /// Renumbers the elements' corners to the points in use, which are stored in `points`.
@@ -62,8 +62,9 @@ void Cells::unread(std::string_view what) {
 
 SourceFile Cells::finish(std::string format) const {
   if (!unread_.empty())
-    fail("{}: holds {} {}, which are not read; linear tetrahedra or a surface of linear triangles are", path_,
-         unread_[0].second, unread_[0].first);
+    fail(
+        "{}: contains {} {}, which are not supported; use linear tetrahedra or a surface of linear triangles",
+        path_, unread_[0].second, unread_[0].first);
   if (tets_.empty() && polygons_.empty())
     fail("{}: holds neither tetrahedra nor triangles ({} points)", path_, points.size());
   SourceFile out;

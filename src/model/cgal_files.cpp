@@ -39,7 +39,7 @@ SourceFile soup_in(const std::string& path, const std::string& format) {
     }
   } catch (const std::exception&) { good = false; }
   if (!good || points.empty())
-    fail("{}: cannot be read as {}; is it whole, and of that format?", path, format);
+    fail("{}: cannot be read as {}; check that it is complete and of that format", path, format);
   Cells cells(path);
   for (const auto& p : points) cells.points.emplace_back(p.x(), p.y(), p.z());
   for (const auto& face : faces) {

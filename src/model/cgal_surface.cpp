@@ -24,7 +24,7 @@ CgalSurface cgal_of(const Soup& soup) {
     if (face == CgalSurface::null_face())
       fail(
           "{}: this face cannot be joined to its neighbours: more than two faces meet at an edge, or they "
-          "touch in a point only",
+          "touch at a point only",
           soup.face_name(static_cast<int>(f)));
     face_source[face] = soup.face_source[f];
   }

@@ -24,7 +24,7 @@ auto guarded(const Soup& soup, Work work) {
   try {
     return work();
   } catch (const CGAL::Failure_exception& e) {
-    fail("{}: the surface cannot be mended; CGAL says: {}", soup.from->source, reason_of(e));
+    fail("{}: the surface cannot be repaired; CGAL reports: {}", soup.from->source, reason_of(e));
   }
 }
 

@@ -23,7 +23,7 @@ class Gmsh {
     if (!handle_) {
       std::string package = PALPATE_GMSH_LIBRARY;  // Debian's name: libgmsh4.8 for libgmsh.so.4.8
       if (const std::size_t at = package.find(".so."); at != std::string::npos) package.erase(at, 4);
-      fail("{} cannot be loaded ({}); the package {} brings it", PALPATE_GMSH_LIBRARY, ::dlerror(), package);
+      fail("{} cannot be loaded ({}); install the package {}", PALPATE_GMSH_LIBRARY, ::dlerror(), package);
     }
     int error = 0;
     start_gmsh(function<decltype(gmshInitialize)>("gmshInitialize"), &error);
@@ -129,7 +129,7 @@ std::vector<int> corners_of(const Elements& elements, std::size_t e, std::size_t
     const std::size_t tag = elements.nodes.data[e * count + k];
     const auto at = place.find(tag);
     if (at == place.end())
-      fail("{}: element {} names node {}, which the file does not have", path, elements.tags.data[e], tag);
+      fail("{}: element {} refers to node {}, which is not in the file", path, elements.tags.data[e], tag);
     out.push_back(at->second);
   }
   return out;
@@ -164,7 +164,7 @@ SourceFile mesh_in(const std::string& path, const std::string& format) {
   const Gmsh gmsh;
   int error = 0;
   gmsh.function<decltype(gmshOpen)>("gmshOpen")(path.c_str(), &error);
-  if (error) fail("{}: cannot be read as {}: Gmsh says: {}", path, format, gmsh.last_error());
+  if (error) fail("{}: cannot be read as {}: Gmsh reports: {}", path, format, gmsh.last_error());
 
   Cells cells(path);
   // Tags may be sparse and in any order; sorting makes the numbering independent of the file's order.
@@ -176,7 +176,7 @@ SourceFile mesh_in(const std::string& path, const std::string& format) {
         &tags.data, &tags.size, &coordinates.data, &coordinates.size, &parameters.data, &parameters.size, -1,
         -1, 0, 0, &error);
     if (error || coordinates.size != 3 * tags.size)
-      fail("{}: its nodes cannot be read: Gmsh says: {}", path, gmsh.last_error());
+      fail("{}: its nodes cannot be read: Gmsh reports: {}", path, gmsh.last_error());
     std::vector<std::size_t> order(tags.size);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),

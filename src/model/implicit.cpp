@@ -61,7 +61,8 @@ Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec
                                   meter);
     return search_cells(mesher, volume, false, options, progress);
   } catch (const CGAL::Failure_exception& e) {
-    fail("the inside of the implicit surface cannot be filled with tetrahedra; CGAL says: {}", reason_of(e));
+    fail("the inside of the implicit surface cannot be filled with tetrahedra; CGAL reports: {}",
+         reason_of(e));
   }
 }
 

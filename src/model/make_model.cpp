@@ -26,7 +26,7 @@ class Steps {
   template <class Work>
   void operator()(const char* name, Work work) {
     if (left() <= 0)
-      fail("{}: no model within {:.3g} s: \"{}\" was still to do; give more with --limit-s", source_, limit_,
+      fail("{}: the time limit of {:.3g} s ended before \"{}\"; raise it with --limit-s", source_, limit_,
            name);
     watcher_.begin(name);
     const double start = wall_seconds();
@@ -80,7 +80,8 @@ TriMesh mended(Input& input, const Options& options, std::vector<std::string>& n
 TriMesh take_tets(Input& input, const Options& options, std::vector<std::string>& notes,
                   const Progress& progress, Watcher& watcher) {
   const mesh::MeshReport report = mesh::check_tets(input.tets, input.from);
-  if (report.flipped > 0) notes.push_back(fmt::format("{} tetrahedra were turned round", report.flipped));
+  if (report.flipped > 0)
+    notes.push_back(fmt::format("{} inverted tetrahedra were reoriented", report.flipped));
   if (!options.remesh) {
     check_sides(input.tets, input.source);
     return mesh::boundary(input.tets).surface;
@@ -108,7 +109,7 @@ void find_regions(Input& input, const Options& options, const TetMesh* old, Made
       old ? carried_over(*old, input.regions, model.tets) : std::move(input.regions);
   if (old && !regions.empty())
     made.file.record.notes.emplace_back(
-        "the regions of the file are carried over to the new tetrahedra by their middles");
+        "the regions of the file were transferred to the new tetrahedra by centroid");
   std::vector<RegionSource> sources = options.regions;
   for (RegionSource& source : sources) source.surface.vertices *= options.scale;
   std::vector<double> surface_volumes;
@@ -239,7 +240,7 @@ mesh::Embedding embedded(const LayeredModel& model, const std::string& source,
                          mesh::EmbeddingReport& report) {
   try {
     return mesh::embed(model.tets, model.skin.vertices, &report);
-  } catch (const Error& e) { fail("{}: {}; ask for more with --tetrahedra", source, e.what()); }
+  } catch (const Error& e) { fail("{}: {}; increase --tetrahedra", source, e.what()); }
 }
 
 }  // namespace
@@ -262,7 +263,7 @@ Made make_model(Input input, const Options& given_options, Watcher& watcher) {
 
   TriMesh surface;
   const bool given = input.tets.tets.cols() > 0;
-  step(given ? "check the tetrahedra" : "mend the surface", [&] {
+  step(given ? "check the tetrahedra" : "repair the surface", [&] {
     surface = given ? take_tets(input, options, record.notes, progress, watcher)
                     : mended(input, options, record.notes, progress, watcher);
   });

@@ -65,8 +65,8 @@ int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& 
     const int source = map_of(mesh.property_map<CgalSurface::Vertex_index, int>("v:source"))[vertex];
     const auto at = mesh.point(vertex);
     fail(
-        "{} at ({:.6g}, {:.6g}, {:.6g}) m: the surface is open there: a hole of {} edges, {:.3g} m across, "
-        "{}; a body's surface is closed",
+        "{} at ({:.6g}, {:.6g}, {:.6g}) m: the surface has a hole of {} edges, {:.3g} m across, {}; the "
+        "surface of a body must be closed",
         source >= 0 ? soup.from->node(source) : soup.from->source, at.x(), at.y(), at.z(), hole.edges,
         hole.across, why);
   };
@@ -96,7 +96,7 @@ int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& 
     PMP::triangulate_refine_and_fair_hole(mesh, hole.border, std::back_inserter(patch),
                                           std::back_inserter(fresh));
 #endif
-    if (patch.empty()) refuse(hole, "which no triangles close");
+    if (patch.empty()) refuse(hole, "which cannot be triangulated");
     added += PMP::area(patch, mesh);
     refuse_beyond(hole, added);
     faces_added += static_cast<int>(patch.size());

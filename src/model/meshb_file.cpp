@@ -29,7 +29,7 @@ class Meshb {
     const auto order = number<std::int32_t>();
     swap_ = order == 0x01000000;
     if (!swap_ && order != 1)
-      fail("{}: is no binary file of Medit: it does not start with the number 1", path_);
+      fail("{}: is not a binary Medit file: it does not start with the number 1", path_);
     version_ = number<std::int32_t>();
     if (version_ < 1 || version_ > 4) fail("{}: has version {}, 1 to 4 are read", path_, version_);
   }
@@ -45,7 +45,7 @@ class Meshb {
       if (more && next < static_cast<std::int64_t>(at_))
         fail("{}: the block of keyword {} ends at byte {}, its content at {}", path_, keyword, next, at_);
       if (more && next > static_cast<std::int64_t>(bytes_.size()))
-        fail("{}: ends before its time: a block would stand at byte {} of {}", path_, next, bytes_.size());
+        fail("{}: is truncated: a block is expected at byte {} of {}", path_, next, bytes_.size());
       if (more) at_ = static_cast<std::size_t>(next);
     }
     return cells.finish("Medit binary");
@@ -89,12 +89,12 @@ class Meshb {
   std::int64_t count() {
     const std::int64_t n = index();
     if (n < 0 || n > static_cast<std::int64_t>(bytes_.size()))
-      fail("{}: announces {} entries in {} bytes", path_, n, bytes_.size());
+      fail("{}: declares {} entries in {} bytes", path_, n, bytes_.size());
     return n;
   }
   template <class T>
   T number() {
-    if (at_ + sizeof(T) > bytes_.size()) fail("{}: ends before its time, at byte {}", path_, bytes_.size());
+    if (at_ + sizeof(T) > bytes_.size()) fail("{}: is truncated at byte {}", path_, bytes_.size());
     std::array<char, sizeof(T)> raw;
     std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
     at_ += sizeof(T);

@@ -63,14 +63,14 @@ class Mesher : public CellMesher {
       const Vec3& at = runaway->place;
       note_ = fmt::format(
           "at ({:.4g}, {:.4g}, {:.4g}) m the surface is too sharp or too thin for boundary faces of {:.2g} "
-          "m: they had shrunk to {:.2g} m; refinement began anew with none below {:.0f} % of the wanted size",
+          "m: they shrank to {:.2g} m; refinement was restarted with none below {:.0f} % of the target size",
           at.x(), at.y(), at.z(), facet_size, runaway->size, 100 * kLeastSize);
     }
     if (const std::optional<Runaway> runaway = refined(cell_size, facet_size, meter_.points(), false)) {
       const Vec3& at = runaway->place;
       fail(
-          "the tetrahedra need more than {} points, the most of them around ({:.4g}, {:.4g}, {:.4g}) m, "
-          "where edges are as short as {:.3g} m: take larger elements, or give more with --points",
+          "the tetrahedra need more than {} points, most of them around ({:.4g}, {:.4g}, {:.4g}) m, where "
+          "edges are as short as {:.3g} m; use larger elements, or raise --points",
           meter_.points(), at.x(), at.y(), at.z(), runaway->size);
     }
     return counted();
@@ -127,7 +127,8 @@ class Mesher : public CellMesher {
     std::vector<std::string> out;
     if (!note_.empty()) out.push_back(note_);
     const auto left_out = [&](bool done, const char* stage, const std::string& why) {
-      if (!done) out.push_back(fmt::format("without \"{}\", in which CGAL failed: {}", stage, why));
+      if (!done)
+        out.push_back(fmt::format("the step \"{}\" was skipped, because CGAL failed in it: {}", stage, why));
     };
     left_out(optimisation_.move_vertices, kMovingVertices, optimisation_.why_not_moved);
     left_out(optimisation_.exude_slivers, kExudingSlivers, optimisation_.why_not_exuded);
@@ -207,8 +208,8 @@ class Mesher : public CellMesher {
   [[noreturn]] void refuse_creases() const {
     const Runaway at = crowded();
     fail(
-        "the creases ask for more than {} points, the most of them around ({:.4g}, {:.4g}, {:.4g}) m, where "
-        "they are as short as {:.3g} m: keep fewer with --creases, or give more with --points",
+        "the creases need more than {} points, most of them around ({:.4g}, {:.4g}, {:.4g}) m, where they "
+        "are as short as {:.3g} m; keep fewer with --creases, or raise --points",
         meter_.points(), at.place.x(), at.place.y(), at.place.z(), at.size);
   }
 

@@ -21,8 +21,8 @@ double Meter::seconds_left() const { return std::max(limits_.seconds - (wall_sec
 void Meter::check(const char* what) const {
   if (wall_seconds() - start_ < limits_.seconds) return;
   fail(
-      "the surface was not filled with tetrahedra within {:.3g} s: the time was over {}; give more with "
-      "--limit-s, or ask for fewer with --tetrahedra",
+      "the surface was not filled with tetrahedra within {:.3g} s: the time ran out {}; raise --limit-s, or "
+      "reduce --tetrahedra",
       limits_.seconds, what);
 }
 
@@ -30,9 +30,8 @@ void Meter::look(std::size_t points, const Vec3& place) {
   if (place_) place_(place);
   if (wall_seconds() - start_ >= limits_.seconds)
     fail(
-        "the surface was not filled with tetrahedra within {:.3g} s: refinement stood at ({:.4g}, {:.4g}, "
-        "{:.4g}) m, with {} points; give more with --limit-s, ask for fewer with --tetrahedra, or smooth the "
-        "surface there",
+        "the surface was not filled with tetrahedra within {:.3g} s: refinement was at ({:.4g}, {:.4g}, "
+        "{:.4g}) m, with {} points; raise --limit-s, reduce --tetrahedra, or smooth the surface there",
         limits_.seconds, place.x(), place.y(), place.z(), points);
   if (!progress_) return;
   // The first half when all estimated points are present, the rest for points beyond the estimate; progress

@@ -86,7 +86,7 @@ Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& optio
   } catch (const Error&) { throw; } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {
-    fail("at ({:.4g}, {:.4g}, {:.4g}) m the surface cannot be filled with tetrahedra; CGAL says: {}",
+    fail("at ({:.4g}, {:.4g}, {:.4g}) m the surface cannot be filled with tetrahedra; CGAL reports: {}",
          last.x(), last.y(), last.z(), reason_of(e));
   }
 }

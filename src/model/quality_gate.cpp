@@ -80,26 +80,25 @@ void pass_gate(const TetMesh& mesh, const TetQuality& quality, const QualityGate
     const Vec3 at = farthest_vertex(surface, mesh);
     fail(
         "{}: no tetrahedron was made; the surface is too thin for this element size, at ({:.4g}, {:.4g}, "
-        "{:.4g}) m and everywhere: ask for more with --tetrahedra",
+        "{:.4g}) m and everywhere: increase --tetrahedra",
         source, at.x(), at.y(), at.z());
   }
   if (!(quality.smallest_dihedral_deg >= gate.smallest_dihedral_deg)) {
     const Vec3 at = middle(mesh, quality.worst_tet);
     fail(
         "{}: tetrahedron {} at ({:.4g}, {:.4g}, {:.4g}) m has a dihedral angle of {:.2f} degrees, must have "
-        "{:g}: the mesh is refused; {}",
+        "at least {:g}; {}",
         source, quality.worst_tet, at.x(), at.y(), at.z(), quality.smallest_dihedral_deg,
         gate.smallest_dihedral_deg,
-        gate.given ? "fill its boundary anew with --remesh, or take the tetrahedra as they are, at a price "
-                     "that is printed, with --accept-angles"
-                   : "ask for another number with --tetrahedra, or smooth the surface there");
+        gate.given ? "refill its boundary with --remesh, or accept the tetrahedra with --accept-angles, "
+                     "which prints what they cost"
+                   : "change --tetrahedra, or smooth the surface there");
   }
   if (!(quality.volume_error <= gate.volume_error)) {
     const Vec3 at = farthest_vertex(surface, mesh);
     fail(
-        "{}: the tetrahedra fill {:.6g} m^3 of the surface's {:.6g} m^3, {:.2f} % off, must lie within {:g} "
-        "%: the mesh is refused; ask for more with --tetrahedra: what they miss most is at ({:.4g}, {:.4g}, "
-        "{:.4g}) m",
+        "{}: the tetrahedra fill {:.6g} m^3 of the surface's {:.6g} m^3, an error of {:.2f} %, must be "
+        "within {:g} %; increase --tetrahedra; the largest gap is at ({:.4g}, {:.4g}, {:.4g}) m",
         source, quality.volume, quality.surface_volume, 100 * quality.volume_error, 100 * gate.volume_error,
         at.x(), at.y(), at.z());
   }
@@ -127,7 +126,7 @@ void check_sides(const TetMesh& mesh, const std::string& source) {
       const Vec3 at = middle(mesh, t);
       fail(
           "{}: tetrahedra {} and {} lie on the same side of the face that they share, at ({:.4g}, {:.4g}, "
-          "{:.4g}) m: one of them is inverted; mend the file, or fill its boundary anew with --remesh",
+          "{:.4g}) m: one of them is inverted; repair the file, or refill its boundary with --remesh",
           source, old->second.tet, t, at.x(), at.y(), at.z());
     }
 }

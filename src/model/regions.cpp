@@ -36,10 +36,10 @@ std::vector<char> inside(const RegionSource& source, const TetMesh& tets, const 
                          const Skeleton& skeleton, double& volume) {
   if (source.skeleton) {
     if (skeleton.bones.empty())
-      fail("--region {}=skeleton: the model has no bones; of the shapes, human has some", source.name);
+      fail("--region {}=skeleton: the model has no bones; of the shapes, human has bones", source.name);
     std::vector<char> out = inside_bones(skeleton, points);
     if (std::find(out.begin(), out.end(), 1) == out.end())
-      fail("--region {}=skeleton: no tetrahedron has its middle in a bone; ask for more tetrahedra",
+      fail("--region {}=skeleton: no tetrahedron has its centroid in a bone; increase --tetrahedra",
            source.name);
     return out;
   }
@@ -48,8 +48,8 @@ std::vector<char> inside(const RegionSource& source, const TetMesh& tets, const 
   std::vector<char> out = inside_of(surface, points);
   if (std::find(out.begin(), out.end(), 1) == out.end())
     fail(
-        "--region {}={}: no tetrahedron has its middle inside: the surface reaches from {}, the tetrahedra "
-        "from {}; it is scaled as the body is (--scale), and a thin one needs more tetrahedra",
+        "--region {}={}: no tetrahedron has its centroid inside: the surface extends from {}, the tetrahedra "
+        "from {}; --scale applies to both, and a thin surface needs more tetrahedra",
         source.name, source.from.source, box_of(surface.vertices), box_of(tets.nodes));
   return out;
 }
@@ -65,7 +65,7 @@ std::vector<MaterialRegion> add_regions(const TetMesh& tets, const Skeleton& ske
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const std::string& name = sources[s].name;
     if (std::any_of(regions.begin(), regions.end(), [&](const MaterialRegion& r) { return r.name == name; }))
-      fail("--region {}=...: there is a region of this name already; choose another", name);
+      fail("--region {}=...: there is already a region of this name; choose another", name);
     const std::vector<char> in = inside(sources[s], tets, points, skeleton, surface_volumes[s]);
     for (MaterialRegion& region : regions)
       std::erase_if(region.tets, [&](int tet) { return in[static_cast<std::size_t>(tet)] != 0; });

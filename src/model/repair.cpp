@@ -58,17 +58,17 @@ Soup wrap(const Soup& soup, const std::vector<int>& crossing, const RepairOption
           std::vector<std::string>& notes) {
   if (!options.wrap)
     fail(
-        "{}: this face and {} others go through each other, and cutting them out did not help; mend the "
-        "surface there, or leave --no-wrap out",
+        "{}: this face and {} others intersect, and cutting them out did not help; repair the surface there, "
+        "or omit --no-wrap",
         soup.face_name(crossing[0]), crossing.size() - 1);
   if (options.place) options.place(soup.face_name(crossing[0]));
   const double diagonal = soup.diagonal(), before = absolute_volume(soup);
   Soup out = wrapped(soup, kWrapAlpha * diagonal, kWrapOffset * diagonal);
   if (out.faces.empty())
-    fail("{}: this face and {} others go through each other, and nothing could be wrapped around them",
+    fail("{}: this face and {} others intersect, and the surface could not be wrapped",
          soup.face_name(crossing[0]), crossing.size() - 1);
   notes.push_back(
-      fmt::format("the surface still went through itself at {} faces, first {}: it was wrapped at {:.3g} m, "
+      fmt::format("the surface still intersected itself at {} faces, first {}: it was wrapped at {:.3g} m, "
                   "which smooths details below {:.3g} m; volume {:.6g} -> {:.6g} m^3",
                   crossing.size(), soup.face_name(crossing[0]), kWrapOffset * diagonal, kWrapAlpha * diagonal,
                   before, absolute_volume(out)));
@@ -84,14 +84,14 @@ RepairedSurface repair(const TriMesh& faces, const mesh::Provenance& from, const
   };
   RepairedSurface out;
   Soup soup = soup_of(faces, from);
-  note(out.notes, weld(soup, 0.0), "vertices at the place of another were merged");
-  note(out.notes, drop_collapsed(soup), "collapsed faces were dropped");
-  note(out.notes, drop_duplicates(soup), "double faces were dropped");
-  note(out.notes, drop_unused(soup), "vertices of no face were dropped");
+  note(out.notes, weld(soup, 0.0), "coincident vertices were merged");
+  note(out.notes, drop_collapsed(soup), "collapsed faces were removed");
+  note(out.notes, drop_duplicates(soup), "duplicate faces were removed");
+  note(out.notes, drop_unused(soup), "unused vertices were removed");
   if (soup.faces.empty()) fail("{}: no face has three different corners", from.source);
   note(out.notes, weld_seams(soup), "vertices along seams were merged, 1e-6 of the diagonal apart at most");
   tell(0.2);
-  note(out.notes, turn_to_agree(soup), "faces were turned to agree with their neighbours");
+  note(out.notes, turn_to_agree(soup), "faces were reoriented to agree with their neighbours");
   const double meant = absolute_volume(soup);
   Mended mended = mend(soup, options.largest_hole, options.place);
   if (mended.holes > 0)
@@ -106,14 +106,13 @@ RepairedSurface repair(const TriMesh& faces, const mesh::Provenance& from, const
   if (!crossing.empty()) {
     soup = wrap(wrap_original ? soup : mended.soup, crossing, options, out.notes);
   } else {
-    note(out.notes, mended.crossings,
-         "faces that went through each other were cut out and the place closed anew");
+    note(out.notes, mended.crossings, "intersecting faces were cut out and the holes closed");
     soup = std::move(mended.soup);
   }
   soup = keep_one_body(soup, options.largest_shell, out.notes);
   tell(0.9);
   out.surface = soup.surface();
-  mesh::check_surface(out.surface, mesh::surface_provenance(from.source + " (mended)"));
+  mesh::check_surface(out.surface, mesh::surface_provenance(from.source + " (repaired)"));
   tell(1.0);
   return out;
 }

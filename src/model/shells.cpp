@@ -101,11 +101,11 @@ Soup keep_one_body(const Soup& soup, bool largest, std::vector<std::string>& not
   for (const Shell& shell : shells) most = std::max(most, std::abs(shell.volume));
   const double rounding = 1e-12 * std::pow(soup.diagonal(), 3);
   if (!(most > rounding))
-    fail("{}: the surface encloses no volume ({:.3g} m^3); a body's surface has an inside", soup.face_name(0),
-         most);
+    fail("{}: the surface encloses no volume ({:.3g} m^3); the surface of a body must enclose one",
+         soup.face_name(0), most);
   if (const auto specks =
           std::erase_if(shells, [&](const Shell& s) { return std::abs(s.volume) < kSpeck * most; }))
-    notes.push_back(fmt::format("{} shells smaller than 1e-4 of the largest were dropped", specks));
+    notes.push_back(fmt::format("{} shells smaller than 1e-4 of the largest were removed", specks));
   find_holders(surface, shells);
 
   std::vector<std::size_t> bodies;
@@ -116,14 +116,14 @@ Soup keep_one_body(const Soup& soup, bool largest, std::vector<std::string>& not
   });
   if (bodies.size() > 1 && !largest)
     fail(
-        "{}: the surface is {} separate bodies: {}; a model is one: give a file of its own to each, or "
-        "--largest-shell to keep the largest",
+        "{}: the surface is {} separate bodies: {}; a model has one: put each into a separate file, or keep "
+        "the largest with --largest-shell",
         soup.from->source, bodies.size(), bodies_text(soup, shells, bodies));
   if (bodies.size() > 1)
-    notes.push_back(fmt::format("of {} separate bodies the largest was kept", bodies.size()));
+    notes.push_back(fmt::format("the largest of {} separate bodies was kept", bodies.size()));
   const int body = static_cast<int>(bodies[0]);
   const bool inside_out = shells[bodies[0]].volume < 0;
-  if (inside_out) notes.emplace_back("the surface was turned outwards");
+  if (inside_out) notes.emplace_back("the surface was reoriented outwards");
 
   Soup out = soup;
   out.faces.clear();
@@ -147,8 +147,9 @@ Soup keep_one_body(const Soup& soup, bool largest, std::vector<std::string>& not
       ++solid;
     }
   }
-  if (solid > 0) notes.push_back(fmt::format("{} inner shells were dropped: the body is solid there", solid));
-  if (cavities > 0) notes.push_back(fmt::format("{} inner shells turn inwards and stay: cavities", cavities));
+  if (solid > 0) notes.push_back(fmt::format("{} inner shells were removed: the body is solid there", solid));
+  if (cavities > 0)
+    notes.push_back(fmt::format("{} inner shells face inwards and were kept as cavities", cavities));
   drop_unused(out);
   return out;
 }

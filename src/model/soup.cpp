@@ -75,7 +75,7 @@ Soup soup_of(const TriMesh& faces, const mesh::Provenance& from) {
   for (int f = 0; f < static_cast<int>(faces.faces.cols()); ++f) {
     for (int k = 0; k < 3; ++k)
       if (const int v = faces.faces(k, f); v < 0 || v >= static_cast<int>(faces.vertices.cols()))
-        fail("{} names vertex {} counted from 0, the surface has {}", from.element(f), v,
+        fail("{} refers to vertex {} (counted from 0), but the surface has {} vertices", from.element(f), v,
              faces.vertices.cols());
     out.faces.push_back({faces.faces(0, f), faces.faces(1, f), faces.faces(2, f)});
     out.face_source.push_back(f);

@@ -43,7 +43,7 @@ class Legacy {
  public:
   explicit Legacy(const std::string& path) : path_(path), text_(store::read_file(path)) {
     if (!lower(text_.substr(0, 32)).starts_with("# vtk datafile"))
-      fail("{}: is no legacy VTK file: its first line must begin with \"# vtk DataFile Version\"", path_);
+      fail("{}: is not a legacy VTK file: its first line must begin with \"# vtk DataFile Version\"", path_);
     line();
     line();
     const std::string form = lower(word());
@@ -70,7 +70,7 @@ class Legacy {
     std::size_t value = 0;
     if (const auto [end, code] = std::from_chars(w.data(), w.data() + w.size(), value);
         code != std::errc() || end != w.data() + w.size() || value > text_.size())
-      fail("{}: \"{}\" stands where a count is expected", path_, w.substr(0, 40));
+      fail("{}: found \"{}\" where a count is expected", path_, w.substr(0, 40));
     return value;
   }
   bool at_line_end() const {
@@ -90,7 +90,7 @@ class Legacy {
     if (binary_ || texts) line();
     if (texts) {
       for (std::size_t i = 0; i < n; ++i) {
-        if (at_end()) fail("{}: ends before its time", path_);
+        if (at_end()) fail("{}: is truncated", path_);
         binary_ ? skip_text() : line();
       }
     } else if (type == "bit") {
@@ -101,7 +101,7 @@ class Legacy {
     } else {
       const std::size_t size = bytes_of(type);
       if (size == 0) fail("{}: unknown type \"{}\"", path_, type.substr(0, 40));
-      if (n > (text_.size() - at_) / size) fail("{}: ends before its time", path_);
+      if (n > (text_.size() - at_) / size) fail("{}: is truncated", path_);
       for (std::size_t i = 0; i < n; ++i) out.push_back(binary_value(type));
     }
     return out;
@@ -110,7 +110,7 @@ class Legacy {
   std::vector<double> numbers(std::size_t n) {
     const std::string type = lower(word());
     std::vector<double> out = values(n, type);
-    if (out.size() != n) fail("{}: type \"{}\" stands where numbers are expected", path_, type);
+    if (out.size() != n) fail("{}: found type \"{}\" where numbers are expected", path_, type);
     return out;
   }
   bool binary() const { return binary_; }
@@ -123,20 +123,19 @@ class Legacy {
     double value = 0;
     if (const auto [end, code] = std::from_chars(begin, w.data() + w.size(), value);
         code != std::errc() || end != w.data() + w.size())
-      fail("{}: \"{}\" stands where a number is expected", path_, w.substr(0, 40));
+      fail("{}: found \"{}\" where a number is expected", path_, w.substr(0, 40));
     return value;
   }
   /// Skips a string.  The two highest bits of the first byte encode the number of length bytes: 3 for 1, 2
   /// for 2, 1 for 4, 0 for 8.
   void skip_text() {
-    if (at_ >= text_.size()) fail("{}: ends before its time", path_);
+    if (at_ >= text_.size()) fail("{}: is truncated", path_);
     const auto first = static_cast<unsigned char>(text_[at_]);
     const std::size_t bytes = std::size_t{8} >> (first >> 6);
     std::uint64_t length = first & 63u;
     for (std::size_t i = 1; i < bytes && at_ + i < text_.size(); ++i)
       length = length << 8 | static_cast<unsigned char>(text_[at_ + i]);
-    if (length > text_.size() - at_ || bytes > text_.size() - at_ - length)
-      fail("{}: ends before its time", path_);
+    if (length > text_.size() - at_ || bytes > text_.size() - at_ - length) fail("{}: is truncated", path_);
     at_ += bytes + length;
   }
   template <class T>
@@ -191,7 +190,7 @@ CellList read_cells(Legacy& file, const std::string& path) {
       ends.push_back(corners.size());
       at += 1 + count;
     }
-    if (ends.size() != n) fail("{}: announces {} cells, and lists {}", path, n, ends.size());
+    if (ends.size() != n) fail("{}: declares {} cells, but lists {}", path, n, ends.size());
   }
   CellList out;
   std::size_t begin = 0;
@@ -225,7 +224,7 @@ class Sections {
       if (section.empty()) continue;
       if (!take_geometry(section) && !take_values(section)) {
         if (cells_.points.empty() || lists_.empty())
-          fail("{}: \"{}\" stands where a section is expected", path_, section.substr(0, 40));
+          fail("{}: found \"{}\" where a section is expected", path_, section.substr(0, 40));
         break;  // the mesh is complete; the content after an unknown section cannot be located
       }
     }

@@ -60,7 +60,7 @@ std::string decode_base64(std::string_view text) {
 
 template <class T>
 T value_at(const Document& document, const std::string& bytes, std::size_t at, const std::string& what) {
-  if (at + sizeof(T) > bytes.size()) fail("{}: {} ends before its time", document.path, what);
+  if (at + sizeof(T) > bytes.size()) fail("{}: {} is truncated", document.path, what);
   std::array<char, sizeof(T)> raw;
   std::memcpy(raw.data(), bytes.data() + at, sizeof(T));
   if (document.swap) std::reverse(raw.begin(), raw.end());
@@ -79,7 +79,7 @@ std::string payload(const Document& document, const std::string& bytes, const st
   if (!document.compressed) {
     const std::uint64_t size = header_at(document, bytes, 0, what);
     if (size > bytes.size() - word)
-      fail("{}: {} ends before its time: {} of {} bytes", document.path, what, bytes.size() - word, size);
+      fail("{}: {} is truncated: {} of {} bytes", document.path, what, bytes.size() - word, size);
     return bytes.substr(word, size);
   }
   const std::uint64_t blocks = header_at(document, bytes, 0, what),
@@ -90,8 +90,7 @@ std::string payload(const Document& document, const std::string& bytes, const st
   std::size_t at = (3 + blocks) * word;
   for (std::uint64_t b = 0; b < blocks; ++b) {
     const std::uint64_t packed = header_at(document, bytes, 3 + b, what);
-    if (at > bytes.size() || packed > bytes.size() - at)
-      fail("{}: {} ends before its time", document.path, what);
+    if (at > bytes.size() || packed > bytes.size() - at) fail("{}: {} is truncated", document.path, what);
     uLongf size = b + 1 == blocks && last != 0 ? last : whole;
     constexpr std::uint64_t kMostCompressed = 1100;  // deflate reaches 1032
     if (size > kMostCompressed * (packed + 1))
@@ -99,7 +98,7 @@ std::string payload(const Document& document, const std::string& bytes, const st
     std::string block(size, '\0');
     if (::uncompress(reinterpret_cast<Bytef*>(block.data()), &size,
                      reinterpret_cast<const Bytef*>(bytes.data() + at), packed) != Z_OK)
-      fail("{}: {} cannot be uncompressed", document.path, what);
+      fail("{}: {} cannot be decompressed", document.path, what);
     out.append(block, 0, size);
     at += packed;
   }
@@ -124,7 +123,7 @@ std::vector<Out> from_text(const Document& document, std::string_view text, cons
     Out value{};
     const auto [next, code] = std::from_chars(at, end, value);
     if (code != std::errc())
-      fail("{}: {}: \"{}\" is no number", document.path, what,
+      fail("{}: {}: \"{}\" is not a number", document.path, what,
            std::string_view(at, std::min<std::size_t>(20, static_cast<std::size_t>(end - at))));
     out.push_back(value);
     at = next;
@@ -184,15 +183,15 @@ void load(Document& document) {
     text = text.substr(0, tag) + "</VTKFile>";
   }
   if (const pugi::xml_parse_result parsed = document.xml.load_buffer(text.data(), text.size()); !parsed)
-    fail("{}: is no XML at byte {}: {}", document.path, parsed.offset, parsed.description());
+    fail("{}: is not valid XML at byte {}: {}", document.path, parsed.offset, parsed.description());
   const pugi::xml_node root = document.xml.child("VTKFile");
   document.kind = root.attribute("type").as_string();
   if (document.kind != "UnstructuredGrid" && document.kind != "PolyData")
-    fail("{}: is no VTK file of an unstructured grid or a surface (PolyData), but of \"{}\"", document.path,
-         document.kind);
+    fail("{}: is not a VTK file of an unstructured grid or a surface (PolyData), but of \"{}\"",
+         document.path, document.kind);
   const std::string compressor = root.attribute("compressor").as_string();
   if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-    fail("{}: is compressed by {}, vtkZLibDataCompressor is read", document.path, compressor);
+    fail("{}: is compressed by {}; only vtkZLibDataCompressor is supported", document.path, compressor);
   document.compressed = !compressor.empty();
   document.wide_header = std::string(root.attribute("header_type").as_string("UInt32")) == "UInt64";
   document.swap = (std::string(root.attribute("byte_order").as_string("LittleEndian")) == "BigEndian") !=
@@ -231,7 +230,7 @@ std::vector<std::vector<int>> cells_in(const Document& document, const pugi::xml
     for (; begin < offsets[c]; ++begin) {
       const long long corner = connectivity[static_cast<std::size_t>(begin)];
       if (corner < 0 || corner >= static_cast<long long>(points))
-        fail("{}: cell {} names point {}, the piece has {}", document.path, c, corner, points);
+        fail("{}: cell {} refers to point {}, but the piece has {} points", document.path, c, corner, points);
       corners.push_back(first + static_cast<int>(corner));
     }
   }

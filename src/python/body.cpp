@@ -46,7 +46,7 @@ void bind_body(py::module_& module) {
   using Body = BodyOf;
   py::class_<Body>(module, "Body",
                    "One body of a simulation.  Nodes are in the order of the state; file_node has their "
-                   "numbers in the mesh's file and in what the program writes.")
+                   "numbers in the mesh file and in output files.")
       .def_property_readonly("name", [](const Body& self) { return self.body().name; })
       .def_property_readonly(
           "positions",
@@ -54,56 +54,55 @@ void bind_body(py::module_& module) {
             return node_rows(self, self.simulation->world().state.q().data() + self.block().q_offset,
                              self.block().q_size);
           },
-          "Of the nodes, in the world, (n, 3) [m]: a view that follows the simulation.")
+          "Positions of the nodes in the world, (n, 3) [m]: a view that follows the simulation.")
       .def_property_readonly(
           "velocities",
           [](const Body& self) {
             return node_rows(self, self.simulation->world().state.u().data() + self.block().u_offset,
                              self.block().u_size);
           },
-          "Of the nodes, (n, 3) [m/s]: a view that follows the simulation.")
+          "Velocities of the nodes, (n, 3) [m/s]: a view that follows the simulation.")
       .def_property_readonly(
           "rest_positions",
           [](const Body& self) {
             return rows(self.body().placed.data(), self.body().placed.cols(), 3, self.owner());
           },
-          "Of the nodes at the start, in the world, (n, 3) [m].")
+          "Initial positions of the nodes in the world, (n, 3) [m].")
       .def_property_readonly(
           "masses",
           [](const Body& self) {
             return rows(self.body().masses.data(), self.body().masses.size(), self.owner());
           },
-          "Lumped, (n,) [kg].")
+          "Lumped masses of the nodes, (n,) [kg].")
       .def_property_readonly("forces", &node_forces,
-                             "Sum of elastic, damping, contact and weight forces on each node as it is now, "
-                             "(n, 3) [N]; computed when it is asked for.")
+                             "Sum of elastic, damping, contact and weight forces on each node at present, "
+                             "(n, 3) [N]; computed on access.")
       .def_property_readonly(
           "tetrahedra",
           [](const Body& self) {
             const Tets& tets = self.body().rest.tets;
             return rows(tets.data(), tets.cols(), 4, self.owner());
           },
-          "Node numbers, (m, 4).")
+          "Node numbers of each tetrahedron, (m, 4).")
       .def_property_readonly(
           "file_node",
           [](const Body& self) {
             const std::vector<int>& numbers = self.body().file_node;
             return rows(numbers.data(), static_cast<py::ssize_t>(numbers.size()), self.owner());
           },
-          "Number of each node in the mesh's file, (n,): out[file_node] = values reorders.")
+          "Number of each node in the mesh file, (n,): out[file_node] = values reorders.")
       .def_property_readonly(
           "has_skin", [](const Body& self) { return self.body().skin.has_value(); },
-          "Whether the surface is a skin's, else that of the tetrahedra.")
+          "Whether the surface is a skin, and not the boundary of the tetrahedra.")
       .def_property_readonly(
           "surface_faces",
           [](const Body& self) {
             const Faces& faces = self.body().surface_faces();
             return rows(faces.data(), faces.cols(), 3, self.owner());
           },
-          "Of the surface that is touched and drawn: vertex numbers, (k, 3).")
-      .def_property_readonly(
-          "surface_positions", &surface_positions,
-          "Of that surface's vertices as they are now, (v, 3) [m]; computed when asked for.")
+          "Faces of the surface for contact and pictures: vertex numbers, (k, 3).")
+      .def_property_readonly("surface_positions", &surface_positions,
+                             "Present positions of that surface's vertices, (v, 3) [m]; computed on access.")
       .def("__repr__", [](const Body& self) {
         return fmt::format("<palpate.Body \"{}\" of {} nodes>", self.body().name, self.body().placed.cols());
       });

@@ -43,50 +43,50 @@ void bind_contact(py::module_& module) {
   using Point = contact::ContactPoint;
   using Now = ContactNow;
   py::class_<Now>(module, "Contact",
-                  "The contact samples of the last query at the state when they were asked for, a row a "
-                  "sample; those that are still apart included.")
+                  "Contact samples of the last query, evaluated at the state on access: one row per sample, "
+                  "including samples that are still apart.")
       .def_property_readonly(
           "positions",
           [](const Now& self) {
             return sample_rows<double>(
                 self, [](const Point& p) -> const double& { return p.a[0]; }, 3);
           },
-          "On the surface that normals push away, (s, 3) [m].")
+          "Positions on the surface that the normals push away, (s, 3) [m].")
       .def_property_readonly(
           "opposite_positions",
           [](const Now& self) {
             return sample_rows<double>(
                 self, [](const Point& p) -> const double& { return p.b[0]; }, 3);
           },
-          "On the other surface, (s, 3) [m].")
+          "Positions on the other surface, (s, 3) [m].")
       .def_property_readonly(
           "normals",
           [](const Now& self) {
             return sample_rows<double>(
                 self, [](const Point& p) -> const double& { return p.normal[0]; }, 3);
           },
-          "Unit vectors, (s, 3).")
+          "Unit normals, (s, 3).")
       .def_property_readonly(
           "gaps",
           [](const Now& self) {
             return sample_rows<double>(
                 self, [](const Point& p) -> const double& { return p.gap; }, 0);
           },
-          "(s,) [m]; negative is penetration.")
+          "Gaps, (s,) [m]; negative is penetration.")
       .def_property_readonly(
           "areas",
           [](const Now& self) {
             return sample_rows<double>(
                 self, [](const Point& p) -> const double& { return p.area; }, 0);
           },
-          "(s,) [m^2].")
+          "Areas of the samples, (s,) [m^2].")
       .def_property_readonly(
           "pressures",
           [](const Now& self) {
             return sample_rows<double>(
                 self, [](const Point& p) -> const double& { return p.pressure; }, 0);
           },
-          "(s,) [Pa]; 0 where it is apart.")
+          "Pressures, (s,) [Pa]; 0 where the surfaces are apart.")
       .def_property_readonly("forces", &sample_forces,
                              "Pressure times area along the normal, (s, 3) [N]; without friction.")
       .def_property_readonly(
@@ -95,7 +95,7 @@ void bind_contact(py::module_& module) {
             return sample_rows<int>(
                 self, [](const Point& p) -> const int& { return p.pair; }, 0);
           },
-          "Which [[contact]] of the scene, (s,).")
+          "Index of the [[contact]] in the scene, (s,).")
       .def("__len__", [](const Now& self) { return self.size(); });
 }
 

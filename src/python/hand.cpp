@@ -57,7 +57,7 @@ py::array last_force(const HandOf& hand) { return last_tick(hand, force_of); }
 py::array last_torque(const HandOf& hand) { return last_tick(hand, torque_of); }
 
 void bind_hand(py::module_& module) {
-  py::class_<HandOf>(module, "Hand", "What one hand did and felt, a row a tick, so far.")
+  py::class_<HandOf>(module, "Hand", "Motion of one hand and force on it so far, one row per tick.")
       .def_readonly("name", &HandOf::name)
       .def_property_readonly(
           "times",
@@ -65,34 +65,35 @@ void bind_hand(py::module_& module) {
             return tick_rows(
                 self, [](const loop::TickRecord& tick) { return &tick.time; }, 0);
           },
-          "At each tick's end, (t,) [s].")
+          "Time at the end of each tick, (t,) [s].")
       .def_property_readonly(
           "forces",
           [](const HandOf& self) {
             return tick_rows(self, [](const loop::TickRecord& tick) { return force_of(tick).data(); });
           },
-          "On the hand, as the device gives them, (t, 3) [N].")
+          "Forces on the hand, as rendered by the device, (t, 3) [N].")
       .def_property_readonly(
           "torques",
           [](const HandOf& self) {
             return tick_rows(self, [](const loop::TickRecord& tick) { return torque_of(tick).data(); });
           },
-          "On the hand, (t, 3) [N m].")
+          "Torques on the hand, (t, 3) [N m].")
       .def_property_readonly(
           "handle_positions",
           [](const HandOf& self) {
             return tick_rows(self,
                              [](const loop::TickRecord& tick) { return tick.handle.translation.data(); });
           },
-          "(t, 3) [m].")
+          "Positions of the handle, (t, 3) [m].")
       .def_property_readonly(
           "tool_positions",
           [](const HandOf& self) {
             return tick_rows(self, [](const loop::TickRecord& tick) { return tick.tool.translation.data(); });
           },
-          "Of the tool's origin, (t, 3) [m].")
-      .def_property_readonly("force", &last_force, "At the last tick, (3,) [N]; zero before the first.")
-      .def_property_readonly("torque", &last_torque, "At the last tick, (3,) [N m]; zero before the first.")
+          "Positions of the tool's origin, (t, 3) [m].")
+      .def_property_readonly("force", &last_force, "Force at the last tick, (3,) [N]; zero before the first.")
+      .def_property_readonly("torque", &last_torque,
+                             "Torque at the last tick, (3,) [N m]; zero before the first.")
       .def("__len__", [](const HandOf& self) { return ticks_of(self)->size(); });
 }
 

@@ -13,7 +13,8 @@ void refuse_missing(const std::string& file) {
   const std::string name = store::name_of_cached(file);
   if (!name.empty() && !std::filesystem::exists(file))
     fail(
-        "the model \"{}\" was not made yet; run `palpate model {} -o {}` once, or the scene by `palpate run`",
+        "the model \"{}\" has not been made yet; run `palpate model {} -o {}` once, or run the scene with "
+        "`palpate run`",
         name, name, file);
 }
 

@@ -7,11 +7,11 @@ namespace py = pybind11;
 using namespace palpate;
 
 PYBIND11_MODULE(_palpate, module) {
-  module.doc() = "Scenes, simulations and studies of palpate; SI units, arrays of one row a point.";
+  module.doc() = "Scenes, simulations and studies of palpate; SI units, arrays with one row per point.";
   py::register_exception<Error>(module, "Error", PyExc_ValueError).doc() =
-      "A scene, a name or a value is refused; the message says what, where, and what to do.";
+      "A scene, a name or a value is invalid; the message says what is wrong, where, and what to do.";
   py::register_exception<python::GaveUp>(module, "IntegratorError", PyExc_RuntimeError).doc() =
-      "An integrator gave up; the state is its last good one.";
+      "An integrator failed; the state is the last valid one.";
   python::bind_scene(module);
   python::bind_body(module);
   python::bind_hand(module);

@@ -47,10 +47,10 @@ std::string toml_of(const char* writer, const py::object& value) {
 }  // namespace
 
 void bind_scene(py::module_& module) {
-  py::class_<Scene>(module, "Scene",
-                    "A scene: what a TOML file says, or a dict of the same shape.\n\n"
-                    "Scene({\"scene\": {\"duration_s\": 0.1}, \"body\": [{...}]}); meshes are looked for in "
-                    "`folder`.")
+  py::class_<Scene>(
+      module, "Scene",
+      "A scene, given by a TOML file or by a dict of the same structure.\n\n"
+      "Scene({\"scene\": {\"duration_s\": 0.1}, \"body\": [{...}]}); meshes are looked for in `folder`.")
       .def(py::init([](const py::dict& tables, const std::filesystem::path& folder) {
              return Scene::parse(toml_of("document", tables), (folder / "dict").string());
            }),
@@ -65,7 +65,7 @@ void bind_scene(py::module_& module) {
           },
           py::arg("path"), py::arg("value"),
           "Changes one key by its dotted path, as --set does: scene.set(\"body.0.youngs_modulus_pa\", 2e4).\n"
-          "A change that is refused leaves the scene as it was.")
+          "A rejected change leaves the scene unchanged.")
       .def(
           "set_all",
           [](Scene& self, const std::map<std::string, py::object>& values) {
@@ -75,7 +75,7 @@ void bind_scene(py::module_& module) {
           },
           py::arg("values"), "Changes several keys, {path: value}, that are checked together.")
       .def(
-          "copy", [](const Scene& self) { return self; }, "Another one, to be changed by itself.")
+          "copy", [](const Scene& self) { return self; }, "An independent copy.")
       .def_property_readonly("name", [](const Scene& self) { return self.description().name; })
       .def_property_readonly("path", [](const Scene& self) { return self.description().path; })
       .def_property_readonly("duration_s", [](const Scene& self) { return self.description().duration_s; })
@@ -83,10 +83,10 @@ void bind_scene(py::module_& module) {
           "toml", [](const Scene& self) { return self.description().source; },
           "The scene as TOML, changes applied.")
       .def_property_readonly("text", &Scene::text, "The TOML before changes.")
-      .def_property_readonly("changes", &Scene::changes, "What set() was told, as PATH=VALUE.")
+      .def_property_readonly("changes", &Scene::changes, "Changes made by set(), as PATH=VALUE.")
       .def_property_readonly(
           "not_carried_over", [](const Scene& self) { return self.description().not_carried_over; },
-          "Keys that are left out, as what set() names has no use for them.")
+          "Keys that are ignored, because they do not apply to the choices made by set().")
       .def("__repr__", [](const Scene& self) {
         return "<palpate.Scene \"" + self.description().name + "\" of " + self.description().path + ">";
       });

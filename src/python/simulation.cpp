@@ -56,7 +56,7 @@ bool Simulation::next() {
                     "(integrator.rtol, integrator.step_s)",
                     world_->description.integrator.name, last.t, last.message));
   if (result().stopped)
-    fail("the simulation was stopped at t = {:g} s, within a period; make a new one", result().time);
+    fail("the simulation was stopped at t = {:g} s, within a period; create a new one", result().time);
   return false;
 }
 

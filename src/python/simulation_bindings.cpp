@@ -65,30 +65,31 @@ void bind_simulation(py::module_& module) {
            "Assembles a scene.  duration_s: 0 for the scene's.")
       .def(
           "step", [](Simulation& self) { return interruptible(self, [&] { return self.step(); }); },
-          "Goes through one period of the scene's loop.  False at the end, where nothing is done.")
+          "Advances by one period of the scene's loop.  Returns False at the end, without advancing.")
       .def(
           "advance",
           [](Simulation& self, double seconds) {
             interruptible(self, [&] { return self.advance(seconds), 0; });
           },
-          py::arg("seconds"), "Steps until so much simulated time has passed, or to the end.")
+          py::arg("seconds"), "Advances by this simulated time, or to the end.")
       .def(
           "run", [](Simulation& self) { interruptible(self, [&] { return self.run(), 0; }); },
-          "Steps to the end.")
-      .def_property_readonly("time", &Simulation::time, "Simulated so far [s].")
-      .def_property_readonly("duration", &Simulation::duration, "Of the whole [s].")
+          "Advances to the end.")
+      .def_property_readonly("time", &Simulation::time, "Simulated time so far [s].")
+      .def_property_readonly("duration", &Simulation::duration, "Duration of the whole simulation [s].")
       .def_property_readonly("finished", &Simulation::finished)
       .def_property_readonly("bodies", &all_bodies)
       .def("body", &find_body, py::arg("name"), "The body of that name.")
       .def("hand", &find_hand, py::arg("name") = "tool",
-           "What the hand with that tool did and felt: \"tool\" is that of [tool], a [[hand]] has its name.")
+           "Motion of a hand and force on it, by name: \"tool\" is the hand of [tool], a [[hand]] has its "
+           "name.")
       .def_property_readonly(
           "force", [](const Shared& self) { return last_force(find_hand(self, "tool")); },
-          "On the first hand at the last tick, (3,) [N].")
+          "Force on the first hand at the last tick, (3,) [N].")
       .def_property_readonly(
           "torque", [](const Shared& self) { return last_torque(find_hand(self, "tool")); },
-          "On the first hand at the last tick, (3,) [N m].")
-      .def_property_readonly("contact", &contact_of, "The contact samples now.")
+          "Torque on the first hand at the last tick, (3,) [N m].")
+      .def_property_readonly("contact", &contact_of, "The present contact samples.")
       .def_property_readonly("counters", &counters_of, "Counts and times [s] of the run so far, by name.")
       .def("__repr__", [](const Simulation& self) {
         return fmt::format("<palpate.Simulation at {:g} of {:g} s>", self.time(), self.duration());

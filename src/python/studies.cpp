@@ -102,7 +102,7 @@ void bind_studies(py::module_& module) {
                (m.measurement.passed() ? ", passed>" : ", failed>");
       });
   module.def("validate", &validate, py::arg("cases"),
-             "Runs cases with a known answer by their names; a list of Measurement.");
+             "Runs cases with a known answer by name; returns a list of Measurement.");
 }
 
 }  // namespace palpate::python

@@ -15,14 +15,14 @@ void check(const Surface& surface, std::size_t index) {
   const std::string name = surface.name.empty() ? fmt::format("{}", index) : "\"" + surface.name + "\"";
   if (surface.faces.size() > 0 &&
       (surface.faces.minCoeff() < 0 || surface.faces.maxCoeff() >= surface.points.cols()))
-    fail("picture: surface {}: a face names point {} of {}", name,
+    fail("picture: surface {}: a face refers to point {} of {}", name,
          surface.faces.minCoeff() < 0 ? surface.faces.minCoeff() : surface.faces.maxCoeff(),
          surface.points.cols());
   if (!surface.points.allFinite())
     fail("picture: surface {}: a position is not finite: the simulation has diverged; take a smaller step",
          name);
   if (surface.values.size() != 0 && surface.values.size() != surface.points.cols())
-    fail("picture: surface {}: {} values for {} points; give one a point or none", name,
+    fail("picture: surface {}: {} values for {} points; give one per point or none", name,
          surface.values.size(), surface.points.cols());
 }
 
@@ -61,7 +61,7 @@ Picture draw(const Scene& scene, const Options& options) {
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) check(scene.surfaces[i], i);
   const Points points = all_points(scene);
   if (points.cols() == 0) fail("picture: there is nothing to show: no surface has a point");
-  if (!options.frame.allFinite()) fail("picture: a point of its frame is not finite");
+  if (!options.frame.allFinite()) fail("picture: a point of the camera frame is not finite");
   counters::count("render.picture");
 
   Staging staging;

@@ -30,11 +30,12 @@ void check_names(const Document& doc, const Description& d) {
     const std::string where = fmt::format("{} \"{}\"", kind, name);
     check_name(doc, key, name);
     if (name == "tool")
-      refuse(location(doc, key), where, "name \"tool\" is kept for the tool; choose another");
+      refuse(location(doc, key), where, "name \"tool\" is reserved for [tool]; choose another");
     if (!seen.insert(name).second)
-      refuse(location(doc, key), where,
-             fmt::format("name \"{}\" is taken; bodies, bones, obstacles and hands need names of their own",
-                         name));
+      refuse(
+          location(doc, key), where,
+          fmt::format("name \"{}\" is already taken; bodies, bones, obstacles and hands need distinct names",
+                      name));
   };
   for (std::size_t i = 0; i < d.bodies.size(); ++i) check_one("body", i, d.bodies[i].name);
   for (std::size_t i = 0; i < d.bones.size(); ++i) check_one("bone", i, d.bones[i].name);
@@ -62,24 +63,24 @@ void check_hand(const Document& doc, const Hand& hand) {
   const Vec3& inertia = hand.tool->inertia_kg_m2;
   const std::string key = hand.tool_key + ".inertia_kg_m2", where = label_of(hand, "tool");
   if (hand.tool->shape == "mesh" && inertia.isZero(0.0))
-    refuse(location(doc, key), where, "inertia_kg_m2 is missing: shape = \"mesh\" has no inertia of its own");
+    refuse(location(doc, key), where, "inertia_kg_m2 is missing: shape = \"mesh\" has no default inertia");
   const double largest = inertia.maxCoeff();
   if (!inertia.isZero(0.0) && (inertia.minCoeff() <= 0.0 || 2.0 * largest > inertia.sum() * (1.0 + 1e-9)))
     refuse(location(doc, key), where,
-           fmt::format("inertia_kg_m2 = [{}, {}, {}] belongs to no rigid body: all must be positive and none "
-                       "larger than the other two together",
+           fmt::format("inertia_kg_m2 = [{}, {}, {}] is not the inertia of a rigid body: all must be "
+                       "positive and none larger than the sum of the other two",
                        inertia[0], inertia[1], inertia[2]));
 }
 
 void check_tool(const Document& doc, const Description& d) {
   if (d.tool && !d.device)
-    refuse(location(doc, "tool"), "tool", "a tool needs a hand: add [device] with [[device.keyframe]]");
+    refuse(location(doc, "tool"), "tool", "a tool needs a device: add [device] with [[device.keyframe]]");
   if (d.device && !d.tool)
     refuse(location(doc, "device"), "device",
            "a device needs something to move: add [tool], or remove [device]");
   if (!d.hands.empty() && !d.tool)
     refuse(location(doc, "hand[0]"), fmt::format("hand \"{}\"", d.hands[0].name),
-           "the first hand is [tool] and [device]; name one more hand only beside them");
+           "[[hand]] adds further hands to that of [tool] and [device], which are missing; add them");
   for (const Hand& hand : hands_of(d)) check_hand(doc, hand);
 }
 
@@ -94,13 +95,13 @@ void check_period(const Document& doc, const std::string& key, const std::string
   const double most = 1e6;
   if (period / tick > most)
     refuse(location(doc, tick_key), where,
-           fmt::format("tick_s = {} of the tool makes {:.3g} ticks of one exchange period of {} s, at most "
-                       "{:g} are possible; a haptic device asks for 0.001",
+           fmt::format("tick_s = {} of the tool gives {:.3g} ticks per exchange period of {} s, at most {:g} "
+                       "are possible; haptic devices use 0.001",
                        tick, period / tick, period, most));
   if (is_multiple(period, tick)) return;
   const double below = std::floor(period / tick), n = std::max(1.0, below);
   refuse(location(doc, key), where,
-         fmt::format("{} = {} must be a whole number of the tool's ticks of {} s; use {:.9g} or {:.9g}",
+         fmt::format("{} = {} must be a multiple of the tool's tick of {} s; use {:.9g} or {:.9g}",
                      where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, tick, n * tick,
                      (n + 1.0) * tick));
 }
@@ -117,21 +118,23 @@ void check_changes(const Document& doc, const Description& d) {
       const std::string key = at("body", i, at("change", j, "time_s"));
       if (j > 0 && time < d.bodies[i].changes[j - 1].time_s)
         refuse(location(doc, key), where,
-               fmt::format("time_s = {} must be greater than the one before ({})", time,
+               fmt::format("time_s = {} must be greater than the previous one ({})", time,
                            d.bodies[i].changes[j - 1].time_s));
       for (std::size_t k = 0; k < j; ++k)
         if (d.bodies[i].changes[k].time_s == time &&
             d.bodies[i].changes[k].region == d.bodies[i].changes[j].region)
           refuse(location(doc, key), where,
-                 fmt::format("time_s = {} must be greater than the one before ({}): both change the same",
-                             time, time));
+                 fmt::format(
+                     "time_s = {} must be greater than the previous one ({}): both change the same elements",
+                     time, time));
       if (time >= d.duration_s)
-        refuse(location(doc, key), where,
-               fmt::format("time_s = {} is not before the end of the run, {} s", time, d.duration_s));
+        refuse(
+            location(doc, key), where,
+            fmt::format("time_s = {} must be less than the duration of the run, {} s", time, d.duration_s));
       if (d.tool && !is_multiple(time, period))
         refuse(location(doc, key), where,
-               fmt::format("time_s = {} must be a whole number of {} of {} s: between them the tool feels "
-                           "the body as it was",
+               fmt::format("time_s = {} must be a whole number of {} of {} s: between them the tool uses a "
+                           "model of the body made before the change",
                            time, d.exchange.scheme == "monolithic" ? "contact refreshes" : "exchange periods",
                            period));
     }
@@ -144,7 +147,7 @@ void check_length(const Document& doc, const std::string& key, const std::string
   if (period <= duration * (1.0 + 1e-9)) return;
   refuse(location(doc, key), where,
          fmt::format(
-             "{} = {} is longer than the whole run of {} s; use at most {}, a tenth of it or less is usual",
+             "{} = {} is longer than the run of {} s; use at most {}, usually a tenth of the run or less",
              where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, duration, duration));
 }
 
@@ -176,7 +179,7 @@ void check_latency(const Document& doc, const Description& d) {
   const std::string key = location(doc, "exchange.latency_ticks");
   if (!d.tool || c.scheme == "monolithic")
     refuse(key, "exchange",
-           "latency_ticks belongs to a tool with ticks of its own: scheme = \"partitioned\" and [tool]");
+           "latency_ticks applies only to a tool that steps separately: scheme = \"partitioned\" and [tool]");
   if (const double longest = kLongestLatency * c.exchange_period_s / d.tool->tick_s;
       static_cast<double>(c.latency_ticks) > longest * (1.0 + 1e-9))
     refuse(key, "exchange",
@@ -198,17 +201,16 @@ void check_exchange(const Document& doc, Description& d) {
   if (c.latency_ticks > 0) check_latency(doc, d);
   if (c.tunnelling == "substep" && !(c.shortest_refresh_s < c.contact_refresh_s))
     refuse(location(doc, "exchange.shortest_refresh_s"), "exchange",
-           fmt::format("shortest_refresh_s = {} must be less than contact_refresh_s = {}: nothing else would "
-                       "be refreshed sooner",
+           fmt::format("shortest_refresh_s = {} must be less than contact_refresh_s = {}: otherwise "
+                       "\"substep\" has no effect",
                        c.shortest_refresh_s, c.contact_refresh_s));
   if (c.scheme == "monolithic") return;  // Contact has an independent refresh period.
   if (!is_multiple(c.exchange_period_s, c.contact_refresh_s))
-    refuse(
-        location(doc, "exchange.contact_refresh_s"), "exchange",
-        fmt::format("contact_refresh_s = {} must be a whole fraction of exchange_period_s = {}; use {:.9g}",
-                    c.contact_refresh_s, c.exchange_period_s,
-                    c.exchange_period_s /
-                        std::max(1.0, std::ceil(c.exchange_period_s / c.contact_refresh_s - 1e-9))));
+    refuse(location(doc, "exchange.contact_refresh_s"), "exchange",
+           fmt::format("contact_refresh_s = {} must divide exchange_period_s = {} evenly; use {:.9g}",
+                       c.contact_refresh_s, c.exchange_period_s,
+                       c.exchange_period_s /
+                           std::max(1.0, std::ceil(c.exchange_period_s / c.contact_refresh_s - 1e-9))));
 }
 
 }  // namespace
@@ -217,10 +219,10 @@ void check_keyframes(const Document& doc, const std::string& key, const std::str
                      const std::vector<KeyframeSpec>& frames) {
   for (std::size_t i = 1; i < frames.size(); ++i)
     if (frames[i].time_s <= frames[i - 1].time_s)
-      refuse(location(doc, fmt::format("{}[{}].time_s", key, i)), fmt::format("{}: keyframe[{}]", where, i),
-             fmt::format(
-                 "time_s = {} must come after {}, the keyframe before; put keyframes in the order of time",
-                 frames[i].time_s, frames[i - 1].time_s));
+      refuse(
+          location(doc, fmt::format("{}[{}].time_s", key, i)), fmt::format("{}: keyframe[{}]", where, i),
+          fmt::format("time_s = {} must come after {}, the previous keyframe; put keyframes in order of time",
+                      frames[i].time_s, frames[i - 1].time_s));
 }
 
 void check_box(const Document& doc, const std::string& key, const std::string& where, const Vec3& low,

@@ -24,10 +24,9 @@ void check_shape(const Document& doc, const std::string& key, const std::string&
     if (has && !fits)
       refuse(location(doc, key + "." + word), where,
              bone.shape.empty()
-                 ? fmt::format("{} means nothing without a shape; add shape = \"capsule\" (sphere, box, "
-                               "cylinder, capsule)",
+                 ? fmt::format("{} needs a shape; add shape = \"capsule\" (sphere, box, cylinder, capsule)",
                                word)
-                 : fmt::format("{} means nothing to shape = \"{}\"; remove it", word, bone.shape));
+                 : fmt::format("{} does not apply to shape = \"{}\"; remove it", word, bone.shape));
     if (fits && !has)
       refuse(location(doc, key), where,
              fmt::format("{} is missing: shape = \"{}\" needs it", word, bone.shape));
@@ -42,7 +41,7 @@ void check_prescribed(const Document& doc, const std::string& key, const std::st
        {"mass_kg", "density_kg_m3", "inertia_kg_m2", "velocity_m_s", "angular_velocity_rad_s", "gravity"})
     if (given(doc, key + "." + word))
       refuse(location(doc, key + "." + word), where,
-             fmt::format("{} means nothing to {}; remove it", word, kind));
+             fmt::format("{} does not apply to {}; remove it", word, kind));
 }
 
 void check_free(const Document& doc, const std::string& key, const std::string& where, const BoneSpec& bone) {
@@ -56,16 +55,16 @@ void check_free(const Document& doc, const std::string& key, const std::string& 
            "density_kg_m3 needs a shape; give mass_kg and inertia_kg_m2 instead");
   if (!mass && !density)
     refuse(location(doc, key), where,
-           "mass_kg (or density_kg_m3 of its shape) is missing; a bone that shall not move needs fixed = "
-           "true or a [[bone.keyframe]]");
+           "mass_kg (or density_kg_m3 of its shape) is missing; a bone that does not move needs fixed = true "
+           "or a [[bone.keyframe]]");
   if (bone.shape.empty() && !inertia)
     refuse(location(doc, key), where,
-           "inertia_kg_m2 is missing: without a shape a bone has no inertia of its own");
+           "inertia_kg_m2 is missing: a bone without a shape has no default inertia");
   const Vec3& I = bone.inertia_kg_m2;
   if (inertia && 2.0 * I.maxCoeff() > I.sum() * (1.0 + 1e-9))
     refuse(location(doc, key + ".inertia_kg_m2"), where,
-           fmt::format("inertia_kg_m2 = [{}, {}, {}] belongs to no rigid body: none may be larger than the "
-                       "other two together",
+           fmt::format("inertia_kg_m2 = [{}, {}, {}] is not the inertia of a rigid body: none may be larger "
+                       "than the sum of the other two",
                        I[0], I[1], I[2]));
 }
 
@@ -95,10 +94,11 @@ void check_target(const Document& doc, const std::string& key, const std::string
   }
   if (given(doc, key + ".axes"))
     refuse(location(doc, key + ".axes"), where,
-           "axes means nothing with to: what goes with a bone is held in all directions; remove it");
+           "axes does not apply with to: nodes carried by a bone are held in all directions; remove it");
   if (!a.keyframes.empty())
     refuse(location(doc, key + ".keyframe"), where,
-           fmt::format("keyframes mean nothing with to: nodes go with \"{}\"; give them to it", a.to));
+           fmt::format("keyframes do not apply with to: the nodes move with \"{}\"; give the keyframes to it",
+                       a.to));
 }
 
 /// Returns the way in which an attachment selects nodes: "box", "sphere" or "shape".
@@ -107,13 +107,13 @@ std::string region_of(const Document& doc, const std::string& key, const std::st
   if (std::string shape = box_or_sphere(doc, key, where); !shape.empty()) return shape;
   if (a.to.empty())
     refuse(location(doc, key), where,
-           "box_min_m is missing: say which nodes, by box_min_m and box_max_m, or by centre_m and radius_m");
+           "box_min_m is missing; select nodes by box_min_m and box_max_m, or by centre_m and radius_m");
   const auto bone =
       std::find_if(d.bones.begin(), d.bones.end(), [&](const BoneSpec& b) { return b.name == a.to; });
   if (bone != d.bones.end() ? bone->shape.empty() : tool_named(d, a.to)->shape != "sphere")
     refuse(location(doc, key), where,
-           fmt::format("say which nodes, by box_min_m and box_max_m, or by centre_m and radius_m: \"{}\" has "
-                       "no shape to take those inside of",
+           fmt::format("the nodes are not selected, as \"{}\" has no shape; give box_min_m and box_max_m, or "
+                       "centre_m and radius_m",
                        a.to));
   return "shape";
 }
@@ -135,7 +135,7 @@ void check_bones(const Document& doc, const Description& d) {
     check_keyframes(doc, key + ".keyframe", where, bone.keyframes);
     if (!carries(d, bone.name))
       refuse(location(doc, key), where,
-             fmt::format("carries nothing: give a body a [[body.attachment]] with to = \"{}\"", bone.name));
+             fmt::format("carries no nodes; give a body a [[body.attachment]] with to = \"{}\"", bone.name));
   }
 }
 

@@ -37,12 +37,12 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
   for (const std::string& name : {c.first, c.second}) {
     const std::string at = location(doc, fmt::format("{}.between[{}]", key, side++));
     if (sides.known(name)) continue;
-    if (name == "tool") refuse(at, where, "\"tool\" is named, but the scene has no [tool]");
+    if (name == "tool") refuse(at, where, "\"tool\" is given, but the scene has no [tool]");
     refuse(at, where, fmt::format("nothing is called \"{}\"{}", name, suggestion(name, sides.all())));
   }
   const std::string at = location(doc, key + ".between");
   if (c.first == c.second && !sides.is_body(c.first))
-    refuse(at, where, "only a soft body may touch itself; name two");
+    refuse(at, where, "only a soft body may touch itself; give two different names");
   if (sides.is_obstacle(c.first) && sides.is_obstacle(c.second))
     refuse(
         at, where,
@@ -50,14 +50,14 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
 }
 
 /// Rejects, for methods other than nearest points, a contact that only nearest points support.
-/// @param touches  description of the contact: "a body touches itself"
+/// @param touches  description of the contact: "contact of a body with itself"
 void check_nearest_points(const Document& doc, const std::string& key, const std::string& where,
                           const ContactSpec& c, std::string_view touches) {
   if (c.method == "distance") return;
   const std::string method = key + ".method";
   refuse(location(doc, given(doc, method) ? method : key + ".between"), where,
-         fmt::format("{} by nearest points; method = \"{}\" has none: leave out what asks for it, or write "
-                     "\"distance\"",
+         fmt::format("{} requires method = \"distance\", not \"{}\"; write \"distance\", or remove the key "
+                     "that selects the other",
                      touches, c.method));
 }
 
@@ -71,34 +71,31 @@ void check_method(const Document& doc, const std::string& key, const std::string
     if (const std::string pixels = key + ".pixels"; given(doc, pixels)) {
       if (obstacle)
         refuse(location(doc, pixels), where,
-               "pixels means nothing here: an obstacle has exact gaps; remove it");
+               "pixels does not apply to an obstacle, whose gaps are exact; remove it");
       c.method = "image";
     }
   }
   if (c.spring == "per_point" && first_tool && second_tool)
-    refuse(
-        location(doc, key + ".spring"), where,
-        "spring = \"per_point\" is a spring at each colliding vertex, and two tools touch by nearest points, "
-        "which stand for areas; remove it");
+    refuse(location(doc, key + ".spring"), where,
+           "spring = \"per_point\" does not apply to two tools, whose contact is at nearest points that "
+           "represent areas, not at vertices; remove it");
   if (c.spring == "per_point" && c.method == "distance")
-    refuse(
-        location(doc, key + ".spring"), where,
-        "spring = \"per_point\" is a spring at each colliding vertex, and method = \"distance\" has points "
-        "that stand for areas; remove it");
+    refuse(location(doc, key + ".spring"), where,
+           "spring = \"per_point\" does not apply to method = \"distance\", whose points represent areas, "
+           "not vertices; remove it");
   if (c.spring == "per_point" && first_tool && first_tool->shape == "sphere")
-    refuse(
-        location(doc, key + ".spring"), where,
-        "spring = \"per_point\" is a spring at each colliding vertex, and a tool with shape = \"sphere\" has "
-        "none; remove it");
+    refuse(location(doc, key + ".spring"), where,
+           "spring = \"per_point\" does not apply to a tool with shape = \"sphere\", which has no vertices; "
+           "remove it");
   if (is_in_images(c) && obstacle)
     refuse(location(doc, key + ".method"), where,
            fmt::format("method = \"{}\" is for tools and soft bodies: an obstacle has exact gaps; use "
                        "\"analytic\" or \"distance\"",
                        c.method));
   if (c.first == c.second)
-    check_nearest_points(doc, key, where, c, "a body touches itself");
+    check_nearest_points(doc, key, where, c, "contact of a body with itself");
   else if (first_tool && second_tool)
-    check_nearest_points(doc, key, where, c, "two tools touch");
+    check_nearest_points(doc, key, where, c, "contact of two tools");
   else if (sides.is_body(c.second)) {
     if (c.method == "analytic")
       refuse(location(doc, key + ".method"), where,
@@ -110,7 +107,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
     };
     if (is_in_images(c) && proxies(c.first) != proxies(c.second))
       refuse(location(doc, key + ".between"), where,
-             fmt::format("proxies = true stands in \"{}\" alone; both need it, or neither",
+             fmt::format("proxies = true is set for \"{}\" alone; set it for both bodies or for neither",
                          proxies(c.first) ? c.first : c.second));
   } else if (c.method == "analytic" && !obstacle && !sphere_tool)
     refuse(location(doc, key + ".method"), where,
@@ -127,7 +124,7 @@ void check_friction(const Document& doc, const std::string& key, const std::stri
       !location(doc, tangent).starts_with("--set "))
     return;
   refuse(location(doc, tangent), where,
-         "friction_tangent means nothing where friction = 0; remove it, or set friction");
+         "friction_tangent does not apply where friction = 0; remove it, or set friction");
 }
 
 void check_grasp(const Document& doc, const Description& d, const Hand& hand) {
@@ -161,7 +158,7 @@ void check_contacts(const Document& doc, Description& d) {
     check_method(doc, key, where, sides, d, c);
     check_friction(doc, key, where, c);
     if (!seen.emplace(c.first, c.second).second)
-      refuse(location(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
+      refuse(location(doc, key + ".between"), where, "this pair has two [[contact]] tables; remove one");
   }
   for (const Hand& hand : hands_of(d)) check_grasp(doc, d, hand);
 }

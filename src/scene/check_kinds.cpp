@@ -154,7 +154,7 @@ class KindCheck {
         left.push_back({at_.path, key});
       else if (kind_ || kinds_.unsaid)
         refuse(location(node.source()), at_.where,
-               fmt::format("{} means nothing to {}{}; remove it (used by {})", key, subject(kinds_, name_),
+               fmt::format("{} does not apply to {}{}; remove it (used by {})", key, subject(kinds_, name_),
                            keys_taken(), fmt::join(users, ", ")));
       return;
     }
@@ -260,7 +260,7 @@ std::vector<KeyRow> key_rows(const Kinds& kinds) {
           std::string out;
           with_value(toml, key.name, [&](const Value& v) {
             const auto value = setting_of(v.node);
-            if (!value || !fault_of(key, *value).empty()) fail("{} = {} is refused", key.name, toml);
+            if (!value || !fault_of(key, *value).empty()) fail("{} = {} is rejected", key.name, toml);
             out = palpate::to_toml(*value);
           });
           return out;

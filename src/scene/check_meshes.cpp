@@ -27,10 +27,10 @@ void check_tool_mesh(const Document& doc, const Hand& hand) {
         fmt::format("shape = \"mesh\" needs a [{}]", hand.name == "tool" ? "tool.mesh" : "hand.tool.mesh"));
   if (shape != "mesh" && given(doc, key))
     refuse(location(doc, key), where,
-           fmt::format("mesh means nothing to shape = \"{}\"; write shape = \"mesh\", or remove it", shape));
+           fmt::format("mesh does not apply to shape = \"{}\"; write shape = \"mesh\", or remove it", shape));
   if (shape == "mesh" && given(doc, hand.tool_key + ".radius_m"))
     refuse(location(doc, hand.tool_key + ".radius_m"), where,
-           "radius_m means nothing to shape = \"mesh\"; the mesh has its own size");
+           "radius_m does not apply to shape = \"mesh\", which has the size of its mesh; remove it");
 }
 
 }  // namespace
@@ -49,12 +49,13 @@ void check_meshes(const Document& doc, const Description& d) {
     const std::string where = fmt::format("body \"{}\"", d.bodies[i].name),
                       at = location(doc, fmt::format("body[{}].proxies", i));
     if (!d.bodies[i].skin)
-      refuse(at, where, "proxies = true needs skin = true: a proxy stands for a part of the skin");
+      refuse(at, where, "proxies = true needs skin = true: proxies represent parts of the skin");
     if (std::none_of(d.contacts.begin(), d.contacts.end(), [&](const ContactSpec& c) {
           return (c.first == d.bodies[i].name || c.second == d.bodies[i].name) && c.method != "analytic";
         }))
-      refuse(at, where,
-             "proxies = true, but no [[contact]] of this body is in image space, which alone uses them");
+      refuse(
+          at, where,
+          "proxies = true, but only contact in image space uses proxies and this body has none; remove it");
   }
   for (const Hand& hand : hands_of(d)) check_tool_mesh(doc, hand);
 }

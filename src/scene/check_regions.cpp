@@ -12,7 +12,7 @@ std::string chosen_by(const Document& doc, const std::string& key, const std::st
   const std::string shape = box_or_sphere(doc, key, where);
   if (shape.empty() && body.mesh.file.empty())
     refuse(location(doc, key), where,
-           fmt::format("box_min_m is missing: generator = \"{}\" makes no regions; say which elements, by "
+           fmt::format("box_min_m is missing: generator = \"{}\" defines no regions; select elements by "
                        "box_min_m and box_max_m, or by centre_m and radius_m",
                        body.mesh.generator));
   return shape.empty() ? "file" : shape;
@@ -32,15 +32,15 @@ void check_regions(const Document& doc, Description& d) {
       region.region = chosen_by(doc, key, where, body);
       check_box(doc, key, where, region.box_min_m, region.box_max_m);
       if (std::find(names.begin(), names.end(), region.name) != names.end())
-        refuse(location(doc, key + ".name"), where, "this is its second table; one says all");
+        refuse(location(doc, key + ".name"), where, "this region has two tables; merge them");
       names.push_back(region.name);
       if (!region.youngs_modulus_pa && !region.poissons_ratio && !region.density_kg_m3 &&
           !region.mass_damping_per_s && !region.stiffness_damping_s &&
           std::none_of(body.changes.begin(), body.changes.end(),
                        [&](const MaterialChangeSpec& c) { return c.region == region.name; }))
         refuse(location(doc, key), where,
-               "says nothing of its material: give youngs_modulus_pa, poissons_ratio, density_kg_m3, "
-               "mass_damping_per_s or stiffness_damping_s, or remove it");
+               "sets no material: give youngs_modulus_pa, poissons_ratio, density_kg_m3, mass_damping_per_s "
+               "or stiffness_damping_s, or remove it");
     }
     for (std::size_t j = 0; j < body.changes.size(); ++j) {
       const std::string& region = body.changes[j].region;

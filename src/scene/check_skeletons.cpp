@@ -14,16 +14,16 @@ void check_joint(const Document& doc, const std::string& key, const std::string&
     for (const char* word : {"type", "axis", "stiffness_n_m_rad", "damping_n_m_s_rad"})
       if (has(word))
         refuse(location(doc, key + "." + word), where,
-               fmt::format("{} means nothing to a joint with keyframes; remove it", word));
+               fmt::format("{} does not apply to a joint with keyframes; remove it", word));
   if (joint.type == "hinge" && !(joint.axis.norm() > 0.0))
     refuse(location(doc, key), where,
-           "axis is missing: a hinge rotates about one, in the body's own axes, for example [1.0, 0.0, 0.0]");
+           "axis is missing: a hinge needs an axis in the body frame, for example [1.0, 0.0, 0.0]");
   if (has("axis") && joint.type != "hinge")
-    refuse(location(doc, key + ".axis"), where, "axis means nothing but to type = \"hinge\"; remove it");
+    refuse(location(doc, key + ".axis"), where, "axis applies only to type = \"hinge\"; remove it");
   for (const char* word : {"stiffness_n_m_rad", "damping_n_m_s_rad"})
     if (has(word) && (joint.type == "weld" || joint.type == "free"))
       refuse(location(doc, key + "." + word), where,
-             fmt::format("{} means nothing to type = \"{}\"; remove it", word, joint.type));
+             fmt::format("{} does not apply to type = \"{}\"; remove it", word, joint.type));
 }
 
 }  // namespace
@@ -45,8 +45,7 @@ void check_skeletons(const Document& doc, const Description& d) {
       const std::string at = fmt::format("{}.joint[{}]", key, j),
                         of = fmt::format("body \"{}\": joint of \"{}\"", body.name, joint.bone);
       if (!seen.insert(joint.bone).second)
-        refuse(location(doc, at + ".bone"), of,
-               "a bone hangs on its parent by one joint; this is its second table");
+        refuse(location(doc, at + ".bone"), of, "this bone has two joint tables; remove one");
       check_joint(doc, at, of, joint);
     }
   }

@@ -40,7 +40,7 @@ Document parse_document(const std::string& text, const std::string& path,
 
 void leave_out(Document& document, const std::string& table, const std::string& key) {
   const auto found = toml::at_path(document.root, table);
-  PALPATE_CHECK(found && found.is_table(), "{} is no table", table);
+  PALPATE_CHECK(found && found.is_table(), "{} is not a table", table);
   found.as_table()->erase(key);
   document.source = effective_source(document.root, "", document.overrides);
 }

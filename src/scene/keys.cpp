@@ -8,7 +8,7 @@ namespace {
 /// Keys of every obstacle; the other keys depend on the type, by the registry of obstacles (kinds.cpp).
 const KeyTable<ObstacleSpec>& obstacle_keys() {
   static const KeyTable<ObstacleSpec> keys = {
-      required(text("name", &ObstacleSpec::name, {}, "what [[contact]] calls it")),
+      required(text("name", &ObstacleSpec::name, {}, "name used in [[contact]]")),
       required(text("type", &ObstacleSpec::type, {}, "its shape")),
   };
   return keys;
@@ -36,7 +36,7 @@ void read_between(const Value& value, ContactSpec& spec) {
   const std::vector<std::string> names = read_texts(value);
   if (names.size() != 2)
     refuse(location(value.node.source()), value.where,
-           fmt::format("between must name two things, [\"ball\", \"floor\"], not {}", names.size()));
+           fmt::format("between must list two names, as in [\"ball\", \"floor\"], not {}", names.size()));
   spec.first = names[0];
   spec.second = names[1];
 }
@@ -44,10 +44,10 @@ void read_between(const Value& value, ContactSpec& spec) {
 const KeyTable<ContactSpec>& contact_keys() {
   using Ranges = ContactRanges;
   static const KeyTable<ContactSpec> keys = {
-      required(own_key<ContactSpec>(
-          "between", read_between, "list of texts", "",
-          "two names, in any order: bodies, \"tool\", other hands, obstacles; a body twice: with itself")),
-      text("method", &ContactSpec::method, {}, "how gaps are found"),
+      required(own_key<ContactSpec>("between", read_between, "list of texts", "",
+                                    "two names in any order: bodies, \"tool\", other hands, obstacles; the "
+                                    "same body twice: self-contact")),
+      text("method", &ContactSpec::method, {}, "how gaps are computed"),
       text("spring", &ContactSpec::spring, {},
            "per_area: forces do not depend on the mesh; per_point: the same spring at each colliding vertex"),
       number("stiffness_pa_m", &ContactSpec::stiffness_pa_m, Ranges::stiffness_pa_m,
@@ -59,23 +59,24 @@ const KeyTable<ContactSpec>& contact_keys() {
       number("damping_n_s_m", &ContactSpec::damping_n_s_m, Ranges::damping_n_s_m,
              "force of a colliding vertex per rate of penetration"),
       number("hunt_crossley_s_m", &ContactSpec::hunt_crossley_s_m, Ranges::hunt_crossley_s_m,
-             "damping over stiffness: the pressure times (1 + 3/2 c rate)"),
-      text("law", &ContactSpec::law, {}, "pressure by depth and rate"),
+             "ratio c of damping to stiffness: the pressure is multiplied by (1 + 3/2 c rate)"),
+      text("law", &ContactSpec::law, {}, "law of the pressure as a function of depth and rate"),
       number("onset_width_m", &ContactSpec::onset_width_m, Ranges::onset_width_m,
-             "depth over which the pressure sets in smoothly; 0: at once, with a kink"),
+             "depth over which the pressure sets in smoothly; 0: abruptly, with a kink"),
       number("friction", &ContactSpec::friction, Ranges::friction, "coefficient of Coulomb friction"),
-      unless("3e-4 sqrt(g L), L the tool's length, else the smaller body's; g 9.81 without gravity",
-             number("friction_regularisation_m_s", &ContactSpec::friction_regularisation_m_s,
-                    Ranges::friction_regularisation_m_s, "sliding speed below which friction is viscous")),
+      unless(
+          "3e-4 sqrt(g L), with L the length of the tool or of the smaller body; without gravity g is 9.81",
+          number("friction_regularisation_m_s", &ContactSpec::friction_regularisation_m_s,
+                 Ranges::friction_regularisation_m_s, "sliding speed below which friction is viscous")),
       boolean("friction_anchors", &ContactSpec::friction_anchors,
-              "what sticks is held by springs between material points (not between rigid things)"),
+              "hold sticking contact by springs between material points (not between rigid objects)"),
       text("friction_tangent", &ContactSpec::friction_tangent, {"auto", "full", "secant", "symmetric"},
-           "symmetric, secant: without its change by pressure; secant: of a step's end, by repeated solves"),
+           "symmetric, secant: no derivative by pressure; secant: at the step's end, by repeated solves"),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, Ranges::candidate_gap_m,
-             "samples with a smaller positive gap are kept as well; 0: chosen from the mesh"),
-      integer("pixels", &ContactSpec::pixels, Ranges::pixels, "longer edge of the image"),
+             "samples with a positive gap below this are kept as candidates; 0: chosen from the mesh"),
+      integer("pixels", &ContactSpec::pixels, Ranges::pixels, "pixels along the longer edge of the image"),
       number("quadrature_error", &ContactSpec::quadrature_error, Ranges::quadrature_error,
-             "of nearest points: what they may err in the force, relative; chooses how many there are"),
+             "acceptable relative error of the force by nearest points; determines their number"),
   };
   return keys;
 }
@@ -97,25 +98,26 @@ const KeyTable<VirtualCouplingSpec>& coupling_keys() {
 const KeyTable<ToolSpec>& tool_keys() {
   static const KeyTable<ToolSpec> keys = {
       text("shape", &ToolSpec::shape, {"sphere", "mesh"}, "a ball with exact gaps, or any closed surface"),
-      number("radius_m", &ToolSpec::radius_m, ToolRanges::radius_m, "of shape = \"sphere\""),
-      table("mesh", &ToolSpec::mesh, mesh_keys(),
-            "closed surface of shape = \"mesh\", in the tool's own axes"),
+      number("radius_m", &ToolSpec::radius_m, ToolRanges::radius_m, "radius for shape = \"sphere\""),
+      table("mesh", &ToolSpec::mesh, mesh_keys(), "closed surface for shape = \"mesh\", in the tool's frame"),
       number("mass_kg", &ToolSpec::mass_kg, positive(), "mass of the tool"),
       vec3("inertia_kg_m2", &ToolSpec::inertia_kg_m2,
-           at_least(0.0,
-                    "it is the principal inertia about the centre of mass; [0, 0, 0] is a solid sphere's"),
-           "principal inertia about the centre of mass; [0, 0, 0]: a solid sphere's"),
-      vec3("position_m", &ToolSpec::position_m, any(), "centre of mass at the start"),
+           at_least(
+               0.0,
+               "it is the principal inertia about the centre of mass; [0, 0, 0] is that of a solid sphere"),
+           "principal inertia about the centre of mass; [0, 0, 0]: that of a solid sphere"),
+      vec3("position_m", &ToolSpec::position_m, any(), "initial position of the centre of mass"),
       vec3("rotation_vector_rad", &ToolSpec::rotation_vector_rad, any(),
-           "orientation at the start: along the axis, as long as the angle"),
-      boolean("gravity", &ToolSpec::gravity, "whether the tool has weight; a device holds its own"),
+           "initial orientation, as rotation axis times angle"),
+      boolean("gravity", &ToolSpec::gravity,
+              "whether gravity acts on the tool; off, as a device carries its weight"),
       table("coupling", &ToolSpec::coupling, coupling_keys(),
-            "virtual coupling: the spring and damper that pull the tool after the handle"),
+            "virtual coupling: spring and damper between handle and tool"),
       number("tick_s", &ToolSpec::tick_s, ToolRanges::tick_s,
-             "period of the tool's own steps and of the force on the hand"),
-      text("integrator", &ToolSpec::integrator, {}, "of the tool's own steps: palpate list tool-integrators"),
+             "period of the tool's steps and of the force output to the hand"),
+      text("integrator", &ToolSpec::integrator, {}, "integrator of the tool: palpate list tool-integrators"),
       integer("grasp_switch", &ToolSpec::grasp_switch, ToolRanges::grasp_switch,
-              "switch of the handle that grasps what presses on the tool; -1: none"),
+              "switch of the handle with which the tool grasps bodies that it touches; -1: none"),
   };
   return keys;
 }
@@ -128,9 +130,10 @@ Key<HandSpec> as_elsewhere(Key<HandSpec> key) {
 
 const KeyTable<HandSpec>& hand_keys() {
   static const KeyTable<HandSpec> keys = {
-      required(text("name", &HandSpec::name, {}, "what [[contact]] calls its tool")),
-      as_elsewhere(table("tool", &HandSpec::tool, tool_keys(), "its tool; the keys of [tool]")),
-      as_elsewhere(table("device", &HandSpec::device, device_keys(), "its device; the keys of [device]")),
+      required(text("name", &HandSpec::name, {}, "name of its tool in [[contact]]")),
+      as_elsewhere(table("tool", &HandSpec::tool, tool_keys(), "tool of this hand, with the keys of [tool]")),
+      as_elsewhere(table("device", &HandSpec::device, device_keys(),
+                         "device of this hand, with the keys of [device]")),
   };
   return keys;
 }
@@ -138,23 +141,25 @@ const KeyTable<HandSpec>& hand_keys() {
 const KeyTable<CosimulationSpec>& exchange_keys() {
   static const KeyTable<CosimulationSpec> keys = {
       text("scheme", &CosimulationSpec::scheme, {"partitioned", "monolithic"},
-           "tool and bodies step by themselves and exchange forces, or are one system"),
+           "step tool and bodies separately and exchange forces, or advance both by one integrator"),
       text("linearisation", &CosimulationSpec::linearisation, {"points", "condensed", "frozen"},
-           "what the tool feels between exchanges: points of contact and the bodies' answer, or lines"),
+           "contact model between exchanges: contact points with the bodies' response, or a linear force "
+           "model"),
       number("linearisation_error", &CosimulationSpec::linearisation_error,
              Range::closed(0.0, 0.5, "0 factors the step matrix"),
-             "\"points\": by how much the bodies may answer more stiffly than they do, relative"),
+             "\"points\": acceptable relative error by which the reduced bodies are too stiff"),
       number("exchange_period_s", &CosimulationSpec::exchange_period_s, positive("5 to 20 ms is usual"),
              "time between exchanges; a whole number of ticks"),
       unless("exchange_period_s",
              number("contact_refresh_s", &CosimulationSpec::contact_refresh_s, positive(),
-                    "time between searches for contact; a whole fraction of the period")),
+                    "time between searches for contact; the exchange period divided by a whole number")),
       text("tunnelling", &CosimulationSpec::tunnelling, {"report", "substep"},
-           "bodies that may go through each other between two refreshes: count what did, or refresh sooner"),
+           "bodies that may pass through each other between two refreshes: report them, or refresh sooner"),
       number("shortest_refresh_s", &CosimulationSpec::shortest_refresh_s, positive(),
-             "\"substep\" refreshes no sooner than this"),
-      integer("latency_ticks", &CosimulationSpec::latency_ticks, at_least(0),
-              "ticks from an exchange to the first that uses its result, in virtual time; up to ten periods"),
+             "shortest time between two refreshes for \"substep\""),
+      integer(
+          "latency_ticks", &CosimulationSpec::latency_ticks, at_least(0),
+          "ticks from an exchange to the first that uses its result, in virtual time; at most ten periods"),
   };
   return keys;
 }
@@ -164,35 +169,35 @@ const KeyTable<IntegratorSpec>& integrator_keys() {
   static const KeyTable<IntegratorSpec> keys = {
       text("name", &IntegratorSpec::name, {}, "the method: palpate list integrators"),
       number("rtol", &IntegratorSpec::rtol, Ranges::rtol,
-             "relative tolerance of error control; what a step is held to stands in the summary"),
+             "relative tolerance of error control; summary.json has the resulting error limit per step"),
       number("atol_q", &IntegratorSpec::atol_q, Ranges::atol_q,
              "absolute tolerance of positions: this times rtol times the body's size"),
       number("atol_u", &IntegratorSpec::atol_u, Ranges::atol_u,
              "absolute tolerance of velocities: this times rtol times the body's wave speed"),
       number("step_s", &IntegratorSpec::step_s, Ranges::step_s, "length of a fixed step"),
-      boolean("fixed_step", &IntegratorSpec::fixed_step, "steps of step_s in place of error control"),
+      boolean("fixed_step", &IntegratorSpec::fixed_step, "take steps of step_s instead of error control"),
       integer("factor_kept_steps", &IntegratorSpec::factor_kept_steps, Ranges::factor_kept_steps,
-              "steps that one factor serves; 1: full Newton"),
+              "steps that share one factorisation; 1: full Newton"),
       number("newton_rtol", &IntegratorSpec::newton_rtol, Ranges::newton_rtol,
-             "Newton ends when its correction, in the units of rtol, is below this"),
+             "Newton stops when its correction, in units of rtol, is below this"),
       number("spectral_radius", &IntegratorSpec::spectral_radius, Ranges::spectral_radius,
-             "amplification of what the step cannot resolve: 0 damps it at once, 1 not at all"),
+             "spectral radius at infinite frequency: 0 damps unresolved modes in one step, 1 not at all"),
       text("events", &IntegratorSpec::events, {"error-control", "root-finding"},
-           "how a kink of the force is met: by short steps, or by a restart at it"),
+           "treatment of kinks of the force: short steps, or a restart at the kink"),
       text("explicit_side", &IntegratorSpec::explicit_side, {"loads", "contact"},
-           "what is explicit: loads, or contact and loads"),
+           "forces integrated explicitly: loads, or contact and loads"),
       text("indefinite", &IntegratorSpec::indefinite, {"project", "lu"},
-           "a step matrix that is not positive definite: projected tangents first, or LU at once"),
+           "for a step matrix that is not positive definite: projected tangents first, or LU at once"),
       number("linear_rtol", &IntegratorSpec::linear_rtol, Ranges::linear_rtol,
              "relative accuracy of an iterative linear solver"),
       integer("max_order", &IntegratorSpec::max_order, Ranges::max_order,
-              "cap on the order; 0 leaves it to the method"),
+              "maximum order; 0: that of the method"),
       integer("max_steps", &IntegratorSpec::max_steps, Ranges::max_steps,
-              "internal steps between two outputs before giving up"),
-      unless("the method's own", text("linear_solver", &IntegratorSpec::linear_solver, {},
-                                      "what solves with the step matrix: palpate list linear-solvers")),
+              "maximum number of internal steps between two outputs"),
+      unless("chosen by the method", text("linear_solver", &IntegratorSpec::linear_solver, {},
+                                          "solver for the step matrix: palpate list linear-solvers")),
       integer("threads", &IntegratorSpec::threads, Ranges::threads,
-              "threads that share the work; results do not depend on it"),
+              "number of threads; results do not depend on it"),
   };
   return keys;
 }
@@ -202,9 +207,9 @@ const KeyTable<RecordSpec>& record_keys() {
       boolean("states", &RecordSpec::states, "states of the bodies as a time series, run.vtkhdf"),
       number("state_period_s", &RecordSpec::state_period_s, positive(),
              "time between states, rounded to whole exchange periods"),
-      boolean("forces", &RecordSpec::forces, "force and torque on the hand, a line a tick, force.csv"),
+      boolean("forces", &RecordSpec::forces, "force and torque on the hand, one line per tick, force.csv"),
       boolean("energy", &RecordSpec::energy,
-              "energies, works and what was dissipated, a line an exchange period or refresh, energy.csv"),
+              "energies, work and dissipation, one line per exchange period or refresh, energy.csv"),
   };
   return keys;
 }
@@ -225,7 +230,7 @@ Key<LadderSpec> rungs(const char* name, const char* meaning) {
         for (std::size_t i = 1; i < spec.values.size(); ++i)
           if (spec.values[i] >= spec.values[i - 1])
             refuse(at, value.where,
-                   fmt::format("{} must fall from the coarsest to the finest, but {} comes after {}",
+                   fmt::format("{} must decrease from the coarsest to the finest, but {} comes after {}",
                                value.key, spec.values[i], spec.values[i - 1]));
       },
       "list of numbers", "", meaning);
@@ -234,12 +239,12 @@ Key<LadderSpec> rungs(const char* name, const char* meaning) {
 const KeyTable<LadderSpec>& ladder_keys() {
   static const KeyTable<LadderSpec> keys = {
       required(text("integrator", &LadderSpec::integrator, {}, "the method: palpate list integrators")),
-      unless("the integrator's name", text("label", &LadderSpec::label, {}, "what reports call this ladder")),
-      texts("set", &LadderSpec::set, "what else is changed in the scene: \"KEY=VALUE\", as for --set"),
-      rungs("rtol",
-            "tolerances, loosest to tightest; of methods with error control; left out: from 0.1 down"),
+      unless("the integrator's name",
+             text("label", &LadderSpec::label, {}, "name of this sequence in reports")),
+      texts("set", &LadderSpec::set, "further changes to the scene: \"KEY=VALUE\", as for --set"),
+      rungs("rtol", "tolerances of a method with error control, loosest first; if omitted: from 0.1 down"),
       rungs("step_s",
-            "steps, longest to shortest; of methods with fixed steps; left out: halved from a period on")};
+            "steps of a method with fixed steps, longest first; if omitted: one period, halved repeatedly")};
   return keys;
 }
 
@@ -248,55 +253,56 @@ void read_methods(const Value& value, CompareSpec& spec) { spec.contact_methods 
 const KeyTable<HapticCompareSpec>& haptic_compare_keys() {
   using Spec = HapticCompareSpec;
   static const KeyTable<Spec> keys = {
-      text("reference", &Spec::reference, {}, "the integrator of tool and bodies as one system"),
+      text("reference", &Spec::reference, {}, "integrator of the monolithic reference"),
       text("reference_check", &Spec::reference_check, {},
-           "the integrator of another family that checks it, twice as coarse; left out: one is chosen"),
+           "integrator of another family that checks the reference, twice as coarse; if omitted: chosen"),
       number("reference_rtol", &Spec::reference_rtol, closed(1e-13, 1e-2),
-             "relative tolerance of the reference, where it has error control"),
+             "relative tolerance of the reference, if it has error control"),
       number("reference_step_s", &Spec::reference_step_s, positive(),
-             "step of the reference, where it takes fixed ones"),
-      number("reference_refresh_s", &Spec::reference_refresh_s, positive(), "its contact refresh"),
+             "step of the reference, if it takes fixed steps"),
+      number("reference_refresh_s", &Spec::reference_refresh_s, positive(),
+             "contact refresh period of the reference"),
       numbers("exchange_periods_s", &Spec::exchange_periods_s, positive(), "exchange periods to compare"),
-      numbers("ticks_s", &Spec::ticks_s, ToolRanges::tick_s, "ticks of the tool to compare"),
+      numbers("ticks_s", &Spec::ticks_s, ToolRanges::tick_s, "tick periods of the tool to compare"),
       numbers("pixels", &Spec::pixels, ContactRanges::pixels,
-              "of the images of the tool's contacts, where it has any"),
+              "image sizes to compare, for contacts of the tool in image space"),
       numbers("element_sizes_m", &Spec::element_sizes_m, positive(),
-              "of every body that a generator meshes; another mesh is another body"),
-      texts("integrators", &Spec::integrators, "of the bodies, at the scene's own tolerance or step"),
-      unless("every one", texts("linearisations", &Spec::linearisations, "values of exchange.linearisation")),
+              "element sizes of all generated meshes; a different mesh is a different body"),
+      texts("integrators", &Spec::integrators, "integrators of the bodies, at the scene's tolerance or step"),
+      unless("all",
+             texts("linearisations", &Spec::linearisations, "values of exchange.linearisation to compare")),
   };
   return keys;
 }
 
 const KeyTable<CompareSpec>& compare_keys() {
   static const KeyTable<CompareSpec> keys = {
-      tables("ladder", &CompareSpec::ladders, ladder_keys(),
-             "one integrator over several tolerances or steps"),
+      tables("ladder", &CompareSpec::ladders, ladder_keys(), "one integrator at several tolerances or steps"),
       numbers("exchange_periods_s", &CompareSpec::exchange_periods_s, positive(),
-              "for the chart of the exchange period's own error"),
+              "exchange periods for the chart of their error"),
       numbers("refresh_periods_s", &CompareSpec::refresh_periods_s, positive(),
-              "contact refreshes at which the price of restarts is counted"),
-      text("reference", &CompareSpec::reference, {}, "the integrator that makes the reference"),
+              "contact refresh periods at which the cost of restarts is measured"),
+      text("reference", &CompareSpec::reference, {}, "integrator of the reference"),
       number("reference_rtol", &CompareSpec::reference_rtol,
-             closed(1e-13, 1e-2, "it must be tighter than every rung; 1e-9 is a good start"),
+             closed(1e-13, 1e-2, "it must be tighter than every compared tolerance; 1e-9 is a good start"),
              "relative tolerance of the reference"),
       text("reference_check", &CompareSpec::reference_check, {},
-           "the integrator of another family that checks the reference"),
+           "integrator of another family that checks the reference"),
       number("reference_check_rtol", &CompareSpec::reference_check_rtol, closed(1e-13, 1e-2),
              "relative tolerance of the check"),
       own_key<CompareSpec>("contact_methods", read_methods, "list of texts", "",
-                           "ways to find the tool's contact, each compared with the first"),
-      number("duration_s", &CompareSpec::duration_s, at_least(0.0, "0 is the scene's own"),
-             "simulated time of a comparison; 0: the scene's own"),
+                           "contact methods of the tool, each compared with the first"),
+      number("duration_s", &CompareSpec::duration_s, at_least(0.0, "0 is that of the scene"),
+             "simulated time of a comparison; 0: that of the scene"),
       table("haptic", &CompareSpec::haptic, haptic_compare_keys(),
-            "force on the hand against tool and bodies as one system: palpate compare --haptic"),
+            "error of the force on the hand against the monolithic solution: palpate compare --haptic"),
   };
   return keys;
 }
 
 const KeyTable<Description>& scene_keys() {
   static const KeyTable<Description> keys = {
-      required(text("name", &Description::name, {}, "what titles and reports call the scene")),
+      required(text("name", &Description::name, {}, "name of the scene in titles and reports")),
       required(number("duration_s", &Description::duration_s, positive(), "simulated time")),
       vec3("gravity_m_s2", &Description::gravity_m_s2, any(), "acceleration of free fall"),
   };
@@ -314,19 +320,19 @@ Key<Description> obstacle_table() {
 
 const KeyTable<Description>& description_keys() {
   static const KeyTable<Description> keys = {
-      required(group("scene", scene_keys(), "what is simulated, and for how long")),
+      required(group("scene", scene_keys(), "name, duration and gravity of the simulation")),
       tables("body", &Description::bodies, body_keys(), "a soft body"),
       tables("bone", &Description::bones, bone_keys(), "a rigid body that carries nodes of soft ones"),
       obstacle_table(),
-      tables("contact", &Description::contacts, contact_keys(), "a pair that may touch"),
+      tables("contact", &Description::contacts, contact_keys(), "a pair of objects that may touch"),
       table("tool", &Description::tool, tool_keys(), "a rigid tool that the hand moves"),
       table("device", &Description::device, device_keys(), "the haptic device in the hand"),
-      tables("hand", &Description::hands, hand_keys(), "one more hand, with a tool and a device of its own"),
-      table("exchange", &Description::exchange, exchange_keys(),
-            "how tool and bodies are simulated together"),
-      table("integrator", &Description::integrator, integrator_keys(), "how the bodies step in time"),
-      table("record", &Description::record, record_keys(), "what is kept of a run; without it nothing is"),
-      table("compare", &Description::compare, compare_keys(), "what palpate compare does with the scene"),
+      tables("hand", &Description::hands, hand_keys(), "an additional hand, with its tool and device"),
+      table("exchange", &Description::exchange, exchange_keys(), "co-simulation of tool and bodies"),
+      table("integrator", &Description::integrator, integrator_keys(), "time integration of the bodies"),
+      table("record", &Description::record, record_keys(),
+            "time series that a run records; without this table, none"),
+      table("compare", &Description::compare, compare_keys(), "settings of palpate compare for this scene"),
   };
   return keys;
 }

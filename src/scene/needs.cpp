@@ -55,20 +55,21 @@ void add_body_needs(const Description& d, const std::string& linear_solver, std:
                  carried > 0 ? fmt::format("{} [[body.attachment]] to a bone or a tool", carried)
                              : "no [[body.attachment]] with to"});
   out.push_back({"rigid bones", free > 0,
-                 free > 0         ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free)
-                 : prescribed > 0 ? "every [[bone]] is fixed or has keyframes: a function of time"
+                 free > 0
+                     ? fmt::format("{} free [[bone]]: rigid-body unknowns in addition to the nodes", free)
+                 : prescribed > 0 ? "every [[bone]] is fixed or has keyframes"
                                   : "no [[bone]]"});
   const int skeletons = count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); });
   out.push_back(
       {"skeleton", skeletons > 0,
        skeletons > 0
-           ? fmt::format("{} [body.skeleton]: bones of the model file; those on joints by Simbody", skeletons)
+           ? fmt::format("{} [body.skeleton]: bones of the model file, on joints by Simbody", skeletons)
            : "no [body.skeleton]"});
   int regions = 0;
   for (const auto& body : d.bodies) regions += static_cast<int>(body.regions.size());
   out.push_back({"materials by region", regions > 0,
                  regions > 0 ? fmt::format("{} [[body.region]]", regions)
-                             : "no [[body.region]]: each body is of one material"});
+                             : "no [[body.region]]: each body has one material"});
   int changes = 0;
   for (const auto& body : d.bodies) changes += static_cast<int>(body.changes.size());
   out.push_back({"material changes", changes > 0,
@@ -100,21 +101,21 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const bool tied = tools_carry(d);
   out.push_back({"contact", any || tied,
                  any    ? fmt::format("{} [[contact]]", d.contacts.size())
-                 : tied ? "no [[contact]], but springs to what a tool carries"
+                 : tied ? "no [[contact]], but springs to nodes that a tool carries"
                         : "no [[contact]]"});
   out.push_back({"friction", rubbing > 0,
                  rubbing > 0 ? fmt::format("{} [[contact]] with friction > 0", rubbing)
                              : "no contact with friction > 0"});
   out.push_back({"contact of a body with itself", own > 0,
                  own > 0 ? fmt::format("{} [[contact]] of a body with itself", own)
-                 : any   ? "every [[contact]] names two"
+                 : any   ? "every [[contact]] is between two objects"
                          : "no [[contact]]"});
   out.push_back({"nearest points", near > 0,
                  near > 0 ? fmt::format("{} [[contact]] with method \"distance\"", near)
                  : any    ? "no contact has method \"distance\""
                           : "no [[contact]]"});
   out.push_back({"contact plane", image > 0,
-                 image > 0 ? fmt::format("{} contact in image space needs its plane", image) : no_image});
+                 image > 0 ? fmt::format("{} [[contact]] in image space", image) : no_image});
   out.push_back(
       {"gl", image > 0, image > 0 ? "method \"image\" rasterises" : no_image + "; pictures only on request"});
 }
@@ -131,7 +132,7 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
   out.push_back({"more hands", more > 0, more > 0 ? fmt::format("{} [[hand]]", more) : "no [[hand]]"});
   const bool monolithic = tool && d.exchange.scheme == "monolithic",
              two_rates = tool && !monolithic && !d.bodies.empty();
-  const std::string one_system = "scheme \"monolithic\": tool and bodies are one system of one integrator";
+  const std::string one_system = "scheme \"monolithic\": one integrator advances tool and bodies";
   out.push_back({"exchange", two_rates,
                  two_rates    ? fmt::format("tool ticks every {} s, exchange every {} s", d.tool->tick_s,
                                             d.exchange.exchange_period_s)
@@ -142,14 +143,14 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                                          }) > 0;
   const bool points = two_rates && touched && d.exchange.linearisation == "points";
   out.push_back({"contact points", points,
-                 points       ? "linearisation \"points\": bodies are reduced to what the tool touches"
+                 points       ? "linearisation \"points\": bodies are reduced to their contact with the tool"
                  : monolithic ? one_system
                  : !touched   ? "no contact of a soft body with a tool"
                               : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
   const bool condensed = two_rates && touched && d.exchange.linearisation == "condensed";
   out.push_back({"condenser", condensed,
                  condensed
-                     ? "linearisation \"condensed\": the bodies' step matrix is factored once an exchange"
+                     ? "linearisation \"condensed\": the bodies' step matrix is factored once per exchange"
                  : monolithic ? one_system
                  : !touched   ? "no contact of a soft body with a tool"
                               : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
@@ -161,8 +162,7 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                  grasp    ? fmt::format("{}.grasp_switch = {}", grasps->tool_key, grasps->tool->grasp_switch)
                  : d.tool ? "no tool.grasp_switch"
                           : "no [tool]"});
-  out.push_back(
-      {"exchange thread", false, "time is virtual: everything runs one after the other in one thread"});
+  out.push_back({"exchange thread", false, "virtual time: everything runs sequentially in one thread"});
 }
 
 void add_output_needs(const Description& d, std::vector<Need>& out) {
@@ -176,7 +176,7 @@ void add_output_needs(const Description& d, std::vector<Need>& out) {
       !d.bones.empty() || count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); }) > 0;
   const bool bones = states && any_bones;
   out.push_back({"bone file", bones,
-                 bones ? fmt::format("[record] states, {} [[bone]] and the skeletons' own", d.bones.size())
+                 bones ? fmt::format("[record] states, {} [[bone]] and those of skeletons", d.bones.size())
                  : !none.empty() ? none
                  : !any_bones    ? "no [[bone]]"
                                  : "[record] states = false"});

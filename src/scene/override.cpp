@@ -41,8 +41,8 @@ toml::table parse_value(const std::string& value, const std::string& from) {
   } catch (const toml::parse_error&) {
     if (is_bare_word(value)) return toml::parse("value = \"" + value + "\"", from);
   }
-  fail("{}: `{}` is not one TOML value; write a number, true, false, a word, [1, 2, 3] or \"text\"", from,
-       value);
+  fail("{}: `{}` is not a single TOML value; write a number, true, false, a word, [1, 2, 3] or \"text\"",
+       from, value);
 }
 
 std::size_t array_index(const toml::array& array, const std::string& part, const std::string& from) {
@@ -66,7 +66,7 @@ toml::node& descend(toml::node& node, const std::string& part, const std::string
   const std::string& from = *region.path;
   if (toml::array* array = node.as_array()) return *array->get(array_index(*array, part, from));
   toml::table* table = node.as_table();
-  if (!table) fail("{}: \"{}\" stands inside a plain value", from, part);
+  if (!table) fail("{}: \"{}\" is inside a value that is not a table", from, part);
   if (!table->contains(part)) {
     const bool index_follows = !next.empty() && std::all_of(next.begin(), next.end(),
                                                             [](unsigned char c) { return std::isdigit(c); });
@@ -87,7 +87,7 @@ void assign(toml::node& node, const std::string& part, toml::node& value, const 
       table->erase(part);
       table->insert(toml::key(part, region), std::move(typed));
     } else {
-      fail("{}: \"{}\" stands inside a plain value", *region.path, part);
+      fail("{}: \"{}\" is inside a value that is not a table", *region.path, part);
     }
   });
 }

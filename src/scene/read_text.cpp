@@ -17,7 +17,7 @@ std::string read_text_file(const std::string& path, const char* what, const char
   const auto status = std::filesystem::status(path, error);
   if (error || !std::filesystem::exists(status)) fail("{}: no such {} file; {}", path, what, help);
   if (std::filesystem::is_directory(status))
-    fail("{}: is a folder; name a {} file (.toml) in it", path, what);
+    fail("{}: is a folder; give a {} file (.toml) in it", path, what);
   std::ifstream in(path, std::ios::binary);
   if (!in) fail("{}: cannot be opened; check its permissions", path);
   std::string text;

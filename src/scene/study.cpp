@@ -30,7 +30,7 @@ class Checker {
   explicit Checker(const Document& document) : document_(document) {}
 
   void check(StudySpec& spec) {
-    if (spec.scenes.empty()) refuse_at("study.scenes", "study", "scenes must name at least one scene");
+    if (spec.scenes.empty()) refuse_at("study.scenes", "study", "scenes must list at least one scene");
     no_doubles("study.scenes", "scenes", spec.scenes);
     no_doubles("study.integrators", "integrators", spec.integrators);
     no_doubles("study.rtol", "rtol", spec.rtol);
@@ -43,7 +43,8 @@ class Checker {
       refuse_at("study", "study", "seeds is missing: each seed draws a value for every [[random]] key");
     if (spec.randoms.empty() && !spec.seeds.empty())
       refuse_at("study.seeds", "study",
-                "seeds without a [[random]] key would run the same again; repeats does that, for the times");
+                "seeds without a [[random]] key would repeat identical runs; use repeats to repeat runs for "
+                "timing");
   }
 
  private:
@@ -63,7 +64,7 @@ class Checker {
     if (!keys.insert(key).second) refuse_at(at, where, fmt::format("key \"{}\" is varied twice", key));
     for (const auto& [of_scene, of_study] : keys_of_their_own())
       if (key == of_scene)
-        refuse_at(at, where, fmt::format("key \"{}\": say {} in [study] instead", key, of_study));
+        refuse_at(at, where, fmt::format("key \"{}\": set {} in [study] instead", key, of_study));
     const bool listed = (key == "integrator.rtol" && !spec.rtol.empty()) ||
                         (key == "integrator.step_s" && !spec.step_s.empty());
     if (listed) refuse_at(at, where, fmt::format("key \"{}\" is varied twice: [study] lists it too", key));
@@ -82,12 +83,12 @@ class Checker {
     std::set<std::string> met;
     for (const std::string& value : s.values)
       if (!met.insert(value).second && !s.together && !moves_with_next(spec, i))
-        refuse_at(at, where, fmt::format("the value {} stands there twice", value));
+        refuse_at(at, where, fmt::format("the value {} is given twice", value));
     if (!s.together) return;
     if (i == 0) refuse_at(at + ".together", where, "together needs a [[sweep]] before it");
     if (const std::size_t before = spec.sweeps[i - 1].values.size(); before != s.values.size())
       refuse_at(at + ".together", where,
-                fmt::format("together with \"{}\", which has {} values, it must have as many, not {}",
+                fmt::format("together with \"{}\", which has {} values, requires as many values, not {}",
                             spec.sweeps[i - 1].key, before, s.values.size()));
   }
 

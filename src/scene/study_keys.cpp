@@ -44,7 +44,7 @@ void read_seeds(const Value& value, StudySpec& spec) {
 
 const KeyTable<StudySpec>& study_keys() {
   static const KeyTable<StudySpec> keys = {
-      unless("the file's name", text("name", &StudySpec::name, {}, "what reports call the study")),
+      unless("the file's name", text("name", &StudySpec::name, {}, "name of the study in reports")),
       required(texts("scenes", &StudySpec::scenes,
                      "files, relative to the study's folder, or names of `palpate list scenes`")),
       unless("each scene's own",
@@ -53,40 +53,45 @@ const KeyTable<StudySpec>& study_keys() {
              numbers("rtol", &StudySpec::rtol, positive(), "tolerances, for each method with error control")),
       unless("each scene's own",
              numbers("step_s", &StudySpec::step_s, positive(), "steps, for each method with fixed steps")),
-      own_key<StudySpec>("seeds", read_seeds, "whole number or list", "none",
-                         "how many, from 1, or which: each draws a value for every [[random]] key"),
-      unless("nothing", texts("set", &StudySpec::set, "KEY=VALUE, in every scene, as for --set")),
+      own_key<StudySpec>(
+          "seeds", read_seeds, "whole number or list", "none",
+          "number of seeds, counted from 1, or a list of seeds: each draws a value for every [[random]] key"),
+      unless("nothing", texts("set", &StudySpec::set, "changes to every scene: KEY=VALUE, as for --set")),
       number("duration_s", &StudySpec::duration_s, at_least(0.0, "0 is each scene's own"),
              "simulated time; 0: each scene's own"),
-      number("limit_s", &StudySpec::limit_s, positive(), "CPU time of a task, its repeats together"),
-      integer("repeats", &StudySpec::repeats, closed(1, 1000), "runs of each task, whose median times count"),
+      number("limit_s", &StudySpec::limit_s, positive(),
+             "limit on the CPU time of a task, all repeats together"),
+      integer("repeats", &StudySpec::repeats, closed(1, 1000),
+              "runs of each task; its times are medians over them"),
   };
   return keys;
 }
 
 const KeyTable<SweepSpec>& sweep_keys() {
   static const KeyTable<SweepSpec> keys = {
-      required(text("key", &SweepSpec::key, {}, "a key of the scenes, dotted, tables counted from 0")),
-      own_key<SweepSpec>("values", read_values, "list", "of from, to and count", "what it takes, in order"),
-      unless("none", number("from", &SweepSpec::from, any(), "the first of `count` values")),
-      unless("none", number("to", &SweepSpec::to, any(), "the last of them")),
-      unless("none", integer("count", &SweepSpec::count, closed(2, 100000), "how many values")),
+      required(text("key", &SweepSpec::key, {}, "dotted path of a scene key; tables count from 0")),
+      own_key<SweepSpec>("values", read_values, "list", "by from, to and count",
+                         "values of the key, in order"),
+      unless("none", number("from", &SweepSpec::from, any(), "first of `count` values")),
+      unless("none", number("to", &SweepSpec::to, any(), "last of `count` values")),
+      unless("none", integer("count", &SweepSpec::count, closed(2, 100000), "number of values")),
       text("spacing", &SweepSpec::spacing, {"linear", "log"}, "equal differences, or equal ratios"),
       boolean("together", &SweepSpec::together,
-              "moves with the sweep before it, value by value, instead of making all combinations"),
+              "vary together with the previous sweep, value by value, instead of in all combinations"),
   };
   return keys;
 }
 
 const KeyTable<RandomSpec>& random_keys() {
   static const KeyTable<RandomSpec> keys = {
-      required(text("key", &RandomSpec::key, {}, "a key of the scenes, dotted, tables counted from 0")),
+      required(text("key", &RandomSpec::key, {}, "dotted path of a scene key; tables count from 0")),
       text("distribution", &RandomSpec::distribution, {"uniform", "log-uniform", "normal"},
-           "how values are drawn"),
-      unless("none", number("min", &RandomSpec::min, any(), "least value; of normal: where it is cut off")),
-      unless("none", number("max", &RandomSpec::max, any(), "greatest; of normal: where it is cut off")),
-      unless("none", number("mean", &RandomSpec::mean, any(), "of normal")),
-      unless("none", number("standard_deviation", &RandomSpec::standard_deviation, positive(), "of normal")),
+           "distribution of the values"),
+      unless("none", number("min", &RandomSpec::min, any(), "smallest value; for normal: lower truncation")),
+      unless("none", number("max", &RandomSpec::max, any(), "largest value; for normal: upper truncation")),
+      unless("none", number("mean", &RandomSpec::mean, any(), "mean of the normal distribution")),
+      unless("none", number("standard_deviation", &RandomSpec::standard_deviation, positive(),
+                            "standard deviation of the normal distribution")),
   };
   return keys;
 }
@@ -95,9 +100,9 @@ const KeyTable<RandomSpec>& random_keys() {
 
 const KeyTable<StudySpec>& study_file_keys() {
   static const KeyTable<StudySpec> keys = {
-      required(group("study", study_keys(), "what is run, and how long it may take")),
+      required(group("study", study_keys(), "scenes, methods and limits of the study")),
       tables("sweep", &StudySpec::sweeps, sweep_keys(), "a parameter that takes several values"),
-      tables("random", &StudySpec::randoms, random_keys(), "a parameter whose value each seed draws"),
+      tables("random", &StudySpec::randoms, random_keys(), "a parameter drawn at random for each seed"),
   };
   return keys;
 }

@@ -116,7 +116,7 @@ class BoundsCheck {
 
   [[noreturn]] void refuse(const std::string& what) const {
     const std::string place = from_.starts_with("--set ") ? from_ : fmt::format("{}:{}", from_, line_);
-    fail("{}: {}; no key of palpate is like that", place, what);
+    fail("{}: {}; no key of palpate has this form", place, what);
   }
 
   const std::string& text_;

@@ -31,7 +31,7 @@ CornerTable::CornerTable(const Faces& faces, int vertices) {
     if (halves[i].first != halves[i + 1].first) continue;
     const int h = halves[i].second, t = halves[i + 1].second;
     PALPATE_CHECK(twin[h] < 0 && from(h) == to(t),
-                  "edge {} {} is in more than two faces, or twice the same way round", from(h), to(h));
+                  "edge {} {} is in more than two faces, or has the same direction in two", from(h), to(h));
     join(h, t);
   }
   std::unordered_map<int, int> rim;  // from a vertex along the rim, against the orientation of the faces

@@ -47,8 +47,8 @@ struct HalfTooth {
     touch_radius = along;
     centre = along * polar(1.0, flank_base) + f * polar(1.0, flank_base + 0.5 * std::numbers::pi);
     root_angle = std::atan2(centre.y(), centre.x());
-    PALPATE_CHECK(touch_radius < rb && root_angle < middle && angle(roll_tip) > 0.0, "no such gear: {} teeth",
-                  g.teeth);
+    PALPATE_CHECK(touch_radius < rb && root_angle < middle && angle(roll_tip) > 0.0,
+                  "a gear cannot have {} teeth", g.teeth);
   }
   double angle(double roll) const { return flank_base - (roll - std::atan(roll)); }
 };

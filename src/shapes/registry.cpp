@@ -12,9 +12,8 @@ namespace {
 int settled(int asked, int usual, int least, const std::string& name, const char* of) {
   if (asked == 0) return usual;
   if (asked < least || asked > 4000000)
-    fail(
-        "shape \"{}\": {} = {} must lie in [{}, 4000000]: below that its smallest parts are lost; 0 takes {}",
-        name, of, asked, least, usual);
+    fail("shape \"{}\": {} = {} must lie in [{}, 4000000]: fewer lose its smallest parts; 0 selects {}", name,
+         of, asked, least, usual);
   return asked;
 }
 

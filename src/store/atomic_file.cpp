@@ -27,7 +27,8 @@ void write(const std::string& path, std::string_view content, bool durably) {
       const std::string reason = errno != 0 ? std::strerror(errno) : "no reason given";
       std::error_code ignored;
       std::filesystem::remove(temporary, ignored);
-      fail("{}: cannot be written ({}); is its folder there, writable, and not full?", path, reason);
+      fail("{}: cannot be written ({}); check that its folder exists, is writable and is not full", path,
+           reason);
     }
   }
   if (durably) bring_to_disk(temporary);
@@ -51,11 +52,12 @@ void write_durably(const std::string& path, std::string_view content) { write(pa
 
 void check_can_write(const std::string& path) {
   std::error_code none;
-  if (std::filesystem::is_directory(path, none)) fail("{}: is a folder; name a file", path);
+  if (std::filesystem::is_directory(path, none)) fail("{}: is a folder; give a file", path);
   const std::string draft = draft_of(path);
   const int file = open(draft.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   if (file < 0)
-    fail("{}: cannot be written ({}); is its folder there, and writable?", path, std::strerror(errno));
+    fail("{}: cannot be written ({}); check that its folder exists and is writable", path,
+         std::strerror(errno));
   close(file);
   std::filesystem::remove(draft, none);
 }
@@ -66,15 +68,15 @@ void bring_to_disk(const std::string& path) {
   const bool done = file >= 0 && (fsync(file) == 0 || errno == EINVAL);
   const int reason = errno;
   if (file >= 0) close(file);
-  if (!done) fail("{}: cannot be brought to the disk: {}", path, std::strerror(reason));
+  if (!done) fail("{}: cannot be flushed to disk: {}", path, std::strerror(reason));
 }
 
 void check_reaches(const std::string& path, std::int64_t bytes) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  if (error) fail("{}: the run cannot go on without this file: {}", path, error.message());
+  if (error) fail("{}: the run cannot be resumed without this file: {}", path, error.message());
   if (bytes < 0 || size < static_cast<std::uintmax_t>(bytes))
-    fail("{}: has {} bytes, and had {} at the checkpoint; it was changed since, run the scene anew", path,
+    fail("{}: has {} bytes, but had {} at the checkpoint; it was changed since, run the scene again", path,
          size, bytes);
 }
 
@@ -82,15 +84,14 @@ void cut_to(const std::string& path, std::int64_t bytes) {
   check_reaches(path, bytes);
   std::error_code error;
   std::filesystem::resize_file(path, static_cast<std::uintmax_t>(bytes), error);
-  if (error) fail("{}: cannot be cut back to its checkpoint: {}", path, error.message());
+  if (error) fail("{}: cannot be truncated to its checkpoint: {}", path, error.message());
 }
 
 void check_content(const std::string& path, const ContentHash& found, const std::string& written) {
   if (found.hex() != written)
     fail(
-        "{}: is not what the run had written by its checkpoint; the file was changed or damaged since, run "
-        "the "
-        "scene anew",
+        "{}: differs from its content at the checkpoint; the file was changed or damaged since, run the "
+        "scene again",
         path);
 }
 

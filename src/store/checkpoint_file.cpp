@@ -54,7 +54,7 @@ struct ValueWriter {
 };
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  fail("{}: is no whole checkpoint: {}; run the scene anew", path, why);
+  fail("{}: is not a valid checkpoint: {}; run the scene again", path, why);
 }
 
 Archive::Value read_value(hid_t group, const std::string& name, const std::string& path) {
@@ -66,7 +66,7 @@ Archive::Value read_value(hid_t group, const std::string& name, const std::strin
   const std::size_t stored = H5Dget_storage_size(set), width = H5Tget_size(type);
   // Contiguous data are stored as they are: a size beyond the file is damage, and must not allocate memory.
   if (size < 0 || static_cast<std::size_t>(size) > stored / std::max<std::size_t>(width, 1))
-    refuse(path, fmt::format("\"{}\" ends before its end", name));
+    refuse(path, fmt::format("\"{}\" is truncated", name));
   const auto read = [&]<class T>(T list, hid_t memory) {
     list.resize(static_cast<std::size_t>(size));
     if (size > 0)
@@ -132,7 +132,7 @@ Checkpoint checkpoint_in(const std::string& path) {
   try {
     const h5::Id file = h5::open_file(path);
     if (H5Aexists(file, "what") <= 0 || h5::read_attribute_text(file, "what", path) != kWhat)
-      fail("it is another kind of file");
+      fail("it is a different kind of file");
     out.version = h5::read_attribute_text(file, "version", path);
     content = h5::read_attribute_text(file, "content", path);
     out.time_s = read_time(file, path);
@@ -140,9 +140,9 @@ Checkpoint checkpoint_in(const std::string& path) {
     const h5::Id state{h5::check(H5Gopen2(file, "state", H5P_DEFAULT), path, "has no state"), H5Gclose};
     for (const std::string& name : names_in(state, path)) out.values[name] = read_value(state, name, path);
   } catch (const Error& error) { refuse(path, error.what()); } catch (const std::bad_variant_access&) {
-    refuse(path, "its scene is no text");
+    refuse(path, "its scene is not text");
   }
-  if (hash_of(out) != content) refuse(path, "its content is not what was written");
+  if (hash_of(out) != content) refuse(path, "its content differs from what was written");
   return out;
 }
 }  // namespace

@@ -38,7 +38,9 @@ CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers)
   out_.rdbuf()->pubsetbuf(nullptr, 0);  // Unbuffered: complete lines are collected here.
   errno = 0;
   out_.open(path, std::ios::binary | std::ios::trunc);
-  if (!out_) fail("{}: cannot be written ({}); is its folder there, writable, and not full?", path, reason());
+  if (!out_)
+    fail("{}: cannot be written ({}); check that its folder exists, is writable and is not full", path,
+         reason());
   for (const std::string& header : headers) {
     append_text(line_, header);
     line_ += ',';
@@ -56,7 +58,9 @@ CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers, 
   out_.rdbuf()->pubsetbuf(nullptr, 0);
   errno = 0;
   out_.open(path, std::ios::binary | std::ios::app);
-  if (!out_) fail("{}: cannot be written ({}); is its folder there, writable, and not full?", path, reason());
+  if (!out_)
+    fail("{}: cannot be written ({}); check that its folder exists, is writable and is not full", path,
+         reason());
 }
 
 CsvWriter::Place CsvWriter::place() {
@@ -105,7 +109,7 @@ void CsvWriter::hand_over() {
   out_.flush();
   content_.add_part(lines_);
   lines_.clear();
-  if (!out_) fail("{}: cannot be written any further ({}); is the disk full?", path_, reason());
+  if (!out_) fail("{}: cannot be written further ({}); is the disk full?", path_, reason());
 }
 
 std::string CsvWriter::reason() { return errno != 0 ? std::strerror(errno) : "no reason given"; }
@@ -115,7 +119,7 @@ void CsvWriter::flush() { hand_over(); }
 void CsvWriter::close() {
   hand_over();
   out_.close();
-  if (!out_) fail("{}: not all could be written ({}); is the disk full?", path_, reason());
+  if (!out_) fail("{}: could not be written completely ({}); is the disk full?", path_, reason());
 }
 
 CsvWriter::~CsvWriter() {
@@ -154,7 +158,7 @@ std::vector<double> CsvTable::numbers(const std::string& header) const {
   for (const std::string& cell : column(header)) {
     double value = 0.0;
     if (!read_csv_number(cell, value))
-      fail("column \"{}\", row {}: \"{}\" is no number", header, out.size() + 1, cell);
+      fail("column \"{}\", row {}: \"{}\" is not a number", header, out.size() + 1, cell);
     if (beyond_whole(cell)) fail("column \"{}\", row {}: {} {}", header, out.size() + 1, cell, kWholeDemand);
     out.push_back(value);
   }

@@ -97,7 +97,7 @@ hid_t check(hid_t id, const std::string& path, const std::string& what) {
 Id create_file(const std::string& path) {
   const Id access = access_without_need_of_locks();
   return {check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), path,
-                "cannot be written; is its folder there, writable, and not full?"),
+                "cannot be written; check that its folder exists, is writable and is not full"),
           H5Fclose};
 }
 
@@ -107,7 +107,7 @@ Id open_file(const std::string& path) {
   Id file{H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
   if (file < 0 && failed_at_lock())
     fail("{}: is being written by another process; wait until it has ended", path);
-  check(file, path, "is not an HDF5 file that can be read; is it whole?");
+  check(file, path, "is not an HDF5 file that can be read; check that it is complete");
   return file;
 }
 
@@ -115,8 +115,9 @@ Id create_in_memory(const std::string& path) {
   const Id access = access_without_need_of_locks();
   constexpr std::size_t kGrowth = 1 << 20;
   H5Pset_fapl_core(access, kGrowth, false);
-  return {check(H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), path, "cannot be made in memory"),
-          H5Fclose};
+  return {
+      check(H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), path, "cannot be created in memory"),
+      H5Fclose};
 }
 
 std::string image(hid_t file, const std::string& path) {
@@ -131,7 +132,7 @@ std::string image(hid_t file, const std::string& path) {
 Id create_group(hid_t parent, const std::string& name, const std::string& path) {
   const Id timeless = created_without_time(H5P_GROUP_CREATE);
   return {check(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, timeless, H5P_DEFAULT), path,
-                "cannot make group " + name),
+                "cannot create group " + name),
           H5Gclose};
 }
 
@@ -140,7 +141,7 @@ void write(hid_t parent, const std::string& name, hid_t type, const std::vector<
   const Id space = space_of(shape);
   const Id timeless = created_without_time(H5P_DATASET_CREATE);
   const Id set{check(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, timeless, H5P_DEFAULT), path,
-                     "cannot make " + name),
+                     "cannot create " + name),
                H5Dclose};
   if (H5Sget_simple_extent_npoints(space) > 0)
     check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path, "cannot write " + name);
@@ -155,7 +156,7 @@ void write_attribute(hid_t object, const std::string& name, hid_t type, const st
                      const void* data, const std::string& path) {
   const Id space = space_of(shape);
   const Id attribute{check(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), path,
-                           "cannot make attribute " + name),
+                           "cannot create attribute " + name),
                      H5Aclose};
   check(H5Awrite(attribute, type, data), path, "cannot write attribute " + name);
 }
@@ -182,7 +183,7 @@ void check_room(const Opened& set, std::size_t size_of_one, H5T_class_t type_cla
   const Id file{H5Iget_file_id(parent), H5Fclose};
   H5Fget_filesize(file, &in_file);
   if (bytes > kMostCompressed * static_cast<double>(in_file))
-    fail("{}: \"{}\" announces {:.3g} bytes, the file has {}; it is damaged", path, name, bytes, in_file);
+    fail("{}: \"{}\" declares {:.3g} bytes, but the file has {}; it is damaged", path, name, bytes, in_file);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TetMesh mesh_in(const std::string& path) {
   for (Eigen::Index i = 0; i < wide.cols(); ++i)
     for (int corner = 0; corner < 4; ++corner)
       if (wide(corner, i) < 0 || wide(corner, i) >= mesh.nodes.cols())
-        fail("{}: tets[{}] names node {}, must lie in [0, {}); indices count from 0", path, i,
+        fail("{}: tets[{}] refers to node {}, must lie in [0, {}); indices count from 0", path, i,
              wide(corner, i), mesh.nodes.cols());
   mesh.tets = wide.cast<int>();
   return mesh;

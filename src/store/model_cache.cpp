@@ -18,7 +18,7 @@ std::filesystem::path cache_folder() {
   if (const char* own = set("PALPATE_MODELS")) return std::filesystem::absolute(own);
   if (const char* cache = set("XDG_CACHE_HOME")) return std::filesystem::path(cache) / "palpate";
   if (const char* home = set("HOME")) return std::filesystem::path(home) / ".cache" / "palpate";
-  fail("there is no folder to keep models in: set PALPATE_MODELS, XDG_CACHE_HOME or HOME");
+  fail("there is no folder for the cache of models; set PALPATE_MODELS, XDG_CACHE_HOME or HOME");
 }
 
 }  // namespace

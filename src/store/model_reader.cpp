@@ -65,12 +65,12 @@ class Group {
   std::vector<int> offsets(const char* name, Eigen::Index parts, Eigen::Index total) const {
     const std::vector<int> out = column<int>(name, parts + 1);
     if (out.front() != 0 || out.back() != total || !std::is_sorted(out.begin(), out.end()))
-      fail("{} must rise from 0 to {}", full(name), total);
+      fail("{} must increase from 0 to {}", full(name), total);
     return out;
   }
   void within(const char* name, int index, int low, Eigen::Index end) const {
     if (index < low || index >= end)
-      fail("{} names {}, must lie in [{}, {}); indices count from 0", full(name), index, low, end);
+      fail("{} refers to {}, must lie in [{}, {}); indices count from 0", full(name), index, low, end);
   }
 
  private:
@@ -157,7 +157,7 @@ void read_proxies(hid_t file, const std::string& path, LayeredModel& model) {
     proxy.members.assign(members.begin() + of_members[p], members.begin() + of_members[p + 1]);
     if (std::adjacent_find(proxy.members.begin(), proxy.members.end(), std::greater_equal<>()) !=
         proxy.members.end())
-      fail("{}: the members of proxy {} must rise, each once", path, p);
+      fail("{}: the members of proxy {} must increase strictly", path, p);
     proxy.bone = bones[p];
     model.proxies.push_back(std::move(proxy));
   }
@@ -176,7 +176,7 @@ std::vector<MaterialRegion> regions_in(hid_t file, const std::string& path, Eige
   std::vector<MaterialRegion> out;
   for (std::size_t r = 0; r < names.size(); ++r) {
     if (std::count(names.begin(), names.end(), names[r]) > 1)
-      fail("{}: \"{}\" names two regions", group.full("names"), names[r]);
+      fail("{}: \"{}\" is the name of two regions", group.full("names"), names[r]);
     if (!(stiffness[r] > 0 && density[r] > 0))
       fail("{}: region \"{}\" has factors {} and {}, must be positive", path, names[r], stiffness[r],
            density[r]);
@@ -184,7 +184,7 @@ std::vector<MaterialRegion> regions_in(hid_t file, const std::string& path, Eige
         {names[r], {tets.begin() + offsets[r], tets.begin() + offsets[r + 1]}, stiffness[r], density[r]});
     if (std::adjacent_find(out.back().tets.begin(), out.back().tets.end(), std::greater_equal<>()) !=
         out.back().tets.end())
-      fail("{}: those of region \"{}\" must rise, each once", group.full("tets"), names[r]);
+      fail("{}: the tetrahedra of region \"{}\" must increase strictly", group.full("tets"), names[r]);
   }
   return out;
 }
@@ -205,8 +205,8 @@ ModelFile model_in(const std::string& path) {
   out.model.tets = read_mesh(path);
   if (!is_model(path))
     fail(
-        "{}: holds tetrahedra alone, not a model: its format is not \"{}\"; `palpate model {} -o FILE.h5` "
-        "makes one of it",
+        "{}: contains only tetrahedra, not a model: its format is not \"{}\"; `palpate model {} -o FILE.h5` "
+        "converts it",
         path, kModelFormat, path);
   const h5::Quiet quiet;
   const h5::Id file = h5::open_file(path);

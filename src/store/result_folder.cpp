@@ -62,7 +62,7 @@ void ResultFolder::make(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (std::error_code none; !fs::is_directory(path, none))
-    fail("{}: this output folder cannot be made ({}); choose another with -o DIR", path,
+    fail("{}: this output folder cannot be created ({}); choose another with -o DIR", path,
          error ? error.message() : "a file has this name");
   if (::access(path.c_str(), W_OK | X_OK) != 0)
     fail("{}: this output folder cannot be written ({}); choose another with -o DIR", path,

@@ -185,14 +185,14 @@ RunFile RunFile::continued(const std::string& path, const std::vector<RunPart>& 
   {
     const RunReader old(path);
     if (old.steps() < place.steps)
-      fail("{}: has {} states, and had {} at the checkpoint; it was changed since, run the scene anew", path,
+      fail("{}: has {} states, but had {} at the checkpoint; it was changed since, run the scene again", path,
            old.steps(), place.steps);
     const auto is_same = [](const RunPart& a, const RunPart& b) {
       return a.name == b.name && a.reference.cols() == b.reference.cols() && a.tets.cols() == b.tets.cols() &&
              a.faces.cols() == b.faces.cols();
     };
     if (!std::equal(parts.begin(), parts.end(), old.parts().begin(), old.parts().end(), is_same))
-      fail("{}: its bodies are not those of the scene; run the scene anew", path);
+      fail("{}: its bodies are not those of the scene; run the scene again", path);
     out.emplace(temporary, parts, info);
     for (int i = 0; i < place.steps; ++i)
       out->append(old.times_s()[static_cast<std::size_t>(i)], old.points(i), old.velocity(i), old.stress(i));
@@ -201,8 +201,8 @@ RunFile RunFile::continued(const std::string& path, const std::vector<RunPart>& 
     out.reset();
     std::filesystem::remove(temporary), std::filesystem::remove(xdmf_path(temporary));
     fail(
-        "{}: its states are not those that the run had written by its checkpoint; the file was changed or "
-        "damaged since, run the scene anew",
+        "{}: its states differ from those at the checkpoint; the file was changed or damaged since, run the "
+        "scene again",
         path);
   }
   std::error_code error;

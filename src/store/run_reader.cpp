@@ -41,7 +41,7 @@ struct RunReader::Impl {
   void read_parts(hid_t group);
   void check_indices(const RunPart& part, const char* name, const auto& cells) const {
     if (cells.size() > 0 && (cells.minCoeff() < 0 || cells.maxCoeff() >= part.reference.cols()))
-      fail("{}: \"{}\" of part \"{}\" name points that it does not have; the file is damaged", path, name,
+      fail("{}: \"{}\" of part \"{}\" refer to points that it does not have; the file is damaged", path, name,
            part.name);
   }
   void read_steps();
@@ -61,8 +61,7 @@ void RunReader::Impl::read_parts(hid_t group) {
     check_indices(part, "tets", part.tets);
     check_indices(part, "faces", part.faces);
     if (!part.reference.allFinite())
-      fail("{}: the positions at the start of part \"{}\" are not finite; the file is damaged", path,
-           part.name);
+      fail("{}: the initial positions of part \"{}\" are not finite; the file is damaged", path, part.name);
     first.push_back(static_cast<int>(n));
     n += part.reference.cols();
     parts.push_back(std::move(part));

@@ -32,7 +32,7 @@ Series::Series(hid_t parent, const std::string& name, hid_t type, hsize_t rows, 
   H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);    // but writes no byte of it: the file is sparse.
   H5Pset_obj_track_times(creation, false);
   set_ = h5::Id{h5::check(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                          path, "cannot make " + name),
+                          path, "cannot create " + name),
                 H5Dclose};
   if (!units.empty()) h5::write_attribute_text(set_, "units", units, path);
 }

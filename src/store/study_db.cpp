@@ -82,8 +82,8 @@ struct StudyDb::Impl {
     const std::string why = message ? message : "unknown";
     sqlite3_free(message);
     fail(
-        "{}: is no study database of palpate, or cannot be written ({}); remove it, or choose another folder "
-        "with -o DIR",
+        "{}: is not a study database of palpate, or cannot be written ({}); remove it, or choose another "
+        "folder with -o DIR",
         path, why);
   }
 
@@ -114,7 +114,7 @@ StudyDb::StudyDb(const std::string& path, const std::vector<std::string>& number
       "create table if not exists artefact (key text primary key, what text, status text, reason text, cpu_s "
       "real, bytes blob)");
   if (impl_->found_columns() != numbers)
-    fail("{}: was made by another version of palpate, with other columns; start anew with --fresh", path);
+    fail("{}: was made by another version of palpate, with other columns; start again with --fresh", path);
 }
 
 StudyDb::~StudyDb() = default;

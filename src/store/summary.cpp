@@ -97,7 +97,7 @@ void write_summary(const std::string& path, const Summary& summary) {
 Summary read_summary(const std::string& path) {
   try {
     return summary_of(parse_json(read_file(path), path));
-  } catch (const Json::exception& e) { fail("{}: is no summary of palpate: {}", path, e.what()); }
+  } catch (const Json::exception& e) { fail("{}: is not a summary of palpate: {}", path, e.what()); }
 }
 
 }  // namespace palpate::store

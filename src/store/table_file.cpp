@@ -71,7 +71,7 @@ Growing make(hid_t file, const TableSpec& spec, const std::string& path) {
   H5Pset_obj_track_times(creation, false);
   out.set = h5::Id{h5::check(H5Dcreate2(file, spec.name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT,
                                         creation, H5P_DEFAULT),
-                             path, "cannot make " + spec.name),
+                             path, "cannot create " + spec.name),
                    H5Dclose};
   h5::write_attribute_text(out.set, "columns", joined(spec.columns), path);
   out.waiting.reserve(kBatch * out.width);
@@ -159,7 +159,8 @@ TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tabl
     cut_to(journal, from.bytes);
   }
   impl_->journal.emplace(journal, std::ios::binary | (from.bytes > 0 ? std::ios::app : std::ios::trunc));
-  if (!*impl_->journal) fail("{}: cannot be written; is its folder there, writable, and not full?", journal);
+  if (!*impl_->journal)
+    fail("{}: cannot be written; check that its folder exists, is writable and is not full", journal);
   flush();
 }
 
@@ -186,7 +187,7 @@ void TableFile::flush() {
   for (Growing& table : impl_->tables) write_waiting(table, impl_->path);
   h5::check(H5Fflush(impl_->file, H5F_SCOPE_LOCAL), impl_->path, "cannot be flushed; is the disk full?");
   if (impl_->journal && !impl_->journal->flush())
-    fail("{}: not all could be written; is the disk full?", journal_path(impl_->path));
+    fail("{}: could not be written completely; is the disk full?", journal_path(impl_->path));
 }
 
 namespace {

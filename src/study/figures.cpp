@@ -146,7 +146,7 @@ Json run_scene(const scene::Description& d, int repeats, const std::atomic<bool>
       Json one = run_once(d, out_of_time, times);
       if (i > 0 && one["status"] == "ok" && one != out) {
         one["status"] = "failed";
-        one["reason"] = "not the same again: two runs of this scene differ";
+        one["reason"] = "not reproducible: two runs of this scene differ";
       }
       out = std::move(one);
       if (out["status"] != "ok") break;

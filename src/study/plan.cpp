@@ -99,7 +99,7 @@ void add_product(Plan& plan, const Task& base, const std::vector<Choices>& lists
   std::size_t count = 1;
   for (const Choices& list : lists) {
     if (list.size() > kMostTasks / count || plan.tasks.size() + count * list.size() > kMostTasks)
-      fail("{}: the study has more than {} tasks; sweep fewer values, or take several studies",
+      fail("{}: the study has more than {} tasks; sweep fewer values, or split it into several studies",
            plan.spec.path, kMostTasks);
     count *= list.size();
   }
@@ -125,8 +125,8 @@ void add_scene(Plan& plan, std::size_t index, const std::vector<Choices>& sweeps
   const bool bodies = !description.bodies.empty();
   if (!bodies && !spec.integrators.empty())
     fail(
-        "{}: integrators: scene {} has no bodies to integrate; a [[sweep]] of \"tool.integrator\" varies "
-        "its tool's",
+        "{}: integrators: scene {} has no bodies to integrate; a [[sweep]] of \"tool.integrator\" varies the "
+        "integrator of its tool",
         spec.path, own.name);
   std::vector<std::string> integrators = spec.integrators;
   if (integrators.empty())
@@ -198,7 +198,7 @@ void settle_all(Plan& plan, const PlanHelp& help) {
     if (std::any_of(plan.tasks.begin(), plan.tasks.end(), runs)) continue;
     const auto first =
         std::find_if(plan.tasks.begin(), plan.tasks.end(), [&](const Task& task) { return task.scene == s; });
-    fail("{}: scene {} refuses every task; the first: {}", plan.spec.path, plan.scenes[s].name,
+    fail("{}: every task of scene {} is rejected; the first: {}", plan.spec.path, plan.scenes[s].name,
          first->refused);
   }
 }

@@ -137,7 +137,7 @@ RunOutcome run_tasks(Plan& plan, const std::vector<std::size_t>& indices, const 
                      const RunOptions& options) {
   std::error_code error;
   fs::create_directories(fs::path(options.folder) / "tasks", error);
-  if (error) fail("{}/tasks: cannot be made: {}", options.folder, error.message());
+  if (error) fail("{}/tasks: cannot be created: {}", options.folder, error.message());
   RunOutcome outcome;
   std::vector<std::size_t> open;
   for (const std::size_t i : indices) {

@@ -97,7 +97,7 @@ std::string sbatch_script(const Plan& plan, const ArrayJob& job) {
 Answer ask(const std::vector<std::string>& words) {
   int out_pipe[2], err_pipe[2];
   if (pipe2(out_pipe, O_CLOEXEC) != 0 || pipe2(err_pipe, O_CLOEXEC) != 0)
-    fail("no pipe can be made: {}", std::strerror(errno));
+    fail("cannot create a pipe: {}", std::strerror(errno));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
@@ -137,8 +137,7 @@ std::size_t max_array_size() {
 std::string submit(const std::string& script) {
   const Answer answer = ask({"sbatch", "--parsable", script});
   if (answer.status != 0)
-    fail("sbatch did not take {} (exit status {}):\n{}", script, answer.status,
-         trimmed(answer.err + answer.out));
+    fail("sbatch rejected {} (exit status {}):\n{}", script, answer.status, trimmed(answer.err + answer.out));
   const std::string job = trimmed(answer.out);
   return job.substr(0, job.find(';'));  // Output may be "7;cluster".
 }

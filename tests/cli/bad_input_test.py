@@ -374,8 +374,9 @@ class Memory(Case):
             resource.setrlimit(resource.RLIMIT_AS, (600 << 20, 600 << 20))
         big = ["--set", "body.0.mesh.element_size_m=0.0015"]
         text = self.refused("run", "press-ball", *big, "-o", "big", before=limit)
-        self.assertRegex(text, r"[\d.]+ (GiB|MiB) of memory .*[\d.]+ (GiB|MiB) are available beside "
-                               r"[\d.]+ MiB of addresses for libraries \(the limit of addresses, ulimit -v\)")
+        self.assertRegex(text, r"[\d.]+ (GiB|MiB) of memory .*[\d.]+ (GiB|MiB) are available after reserving "
+                               r"[\d.]+ MiB of address space for libraries "
+                               r"\(the limit on address space, ulimit -v\)")
         self.assertIn("tetrahedra", text)
         self.assertIn("element_size_m", text)
         self.assertIn("--beyond-memory", text)

@@ -154,11 +154,11 @@ class Judgements(Cli):
         self.assertGreater(whole, 0.0)
         self.assertAlmostEqual(whole, sum(shares), delta=0.25)
         text = self.good("replay", "first")
-        self.assertEqual(text, "200 ticks compared, 0.001 to 0.2 s: identical to the last bit\n")
+        self.assertEqual(text, "200 ticks compared, 0.001 to 0.2 s: bitwise identical\n")
         text = self.good("replay", "first", "--set", "exchange.latency_ticks=10", "-o", "late")
         self.assertRegex(text, r"(?m)^force: differs by \S+ N RMS")
         self.assertIn("force: differs by", self.good("diff", "first", "late"))
-        self.assertIn("identical to the last bit", self.good("diff", "late", "late"))
+        self.assertIn("bitwise identical", self.good("diff", "late", "late"))
         done = self.call("diff", "first", "nowhere")
         self.assertEqual(done.returncode, 1)
         self.assertIn("nowhere/haptic.h5: no such file", done.stderr)
@@ -169,7 +169,7 @@ class Judgements(Cli):
         self.good("run", "press-ball", "--duration-s", "0.2", "-o", "first")
         self.good("run", "press-ball", "--duration-s", "0.2", "-o", "again", "--set",
                   f'device={{type="recording",file="{self.folder}/first/haptic.h5"}}')
-        self.assertIn("200 ticks compared, 0.001 to 0.2 s: identical to the last bit",
+        self.assertIn("200 ticks compared, 0.001 to 0.2 s: bitwise identical",
                       self.good("diff", "first", "again"))
         error = self.refused("run", "press-ball", "--set",
                              f'device={{type="recording",file="{self.folder}/first/run.h5"}}')
@@ -226,7 +226,7 @@ class Judgements(Cli):
             self.assertLess(float(share), 10.0, text)
         figures = json.loads((self.folder / "first/summary.json").read_text())["figures"]
         self.assertGreater(figures["hand left against monolithic"]["peak_force_n"], 1.0)
-        same = "200 ticks compared, 0.001 to 0.2 s: identical to the last bit\n"
+        same = "200 ticks compared, 0.001 to 0.2 s: bitwise identical\n"
         self.assertEqual(self.good("replay", "first"), f"tool:\n{same}left:\n{same}")
         text = self.good("replay", "first", "--set", "exchange.exchange_period_s=0.005", "-o", "other")
         self.assertRegex(text, r"(?m)^tool:\n(.*\n)*force: differs(.*\n)*left:\n(.*\n)*force: differs")
@@ -248,7 +248,7 @@ class Judgements(Cli):
         arguments = ["compare", "--haptic", "press-ball", "--duration-s", "0.08", "--repeats", "1",
                      *self.HAPTIC, "-o", "felt"]
         text = self.good(*arguments)
-        self.assertRegex(text, r"(?m)^press-ball: reference tool and bodies as one system by cvode-bdf")
+        self.assertRegex(text, r"(?m)^press-ball: reference monolithic solution by cvode-bdf")
         self.assertRegex(text, r"(?m)^observed order by exchange alone: force ")
         for variable in ("exchange period", "exchange alone", "tick", "integrator", "linearisation"):
             self.assertRegex(text, rf"(?m)^{variable} ")

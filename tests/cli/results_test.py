@@ -339,7 +339,7 @@ class Results(Cli):
     def test_keys_of_another_method_are_refused(self):
         text = self.refused("run", "one-tet", "--integrator", "rk4",
                             "--set", "integrator.spectral_radius=0.5")
-        self.assertIn("spectral_radius means nothing to integrator \"rk4\", which takes step_s, max_steps, "
+        self.assertIn("spectral_radius does not apply to integrator \"rk4\", which takes step_s, max_steps, "
                       "threads; remove it (used by generalized-alpha)", text)
         self.assertIn("method = \"vertex\" is no method; \"analytic\" and \"image\" have their samples at",
                       self.refused("inspect", "press-ball", "--set", "contact.1.method=vertex"))

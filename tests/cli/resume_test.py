@@ -211,10 +211,10 @@ class Resume(unittest.TestCase):
                               "one bit": good[:at] + bytes([good[at] ^ 1]) + good[at + 1:]}.items():
             with self.subTest(name):
                 checkpoint.write_bytes(content)
-                self.assertIn("no whole checkpoint", self.refused("resume", run))
+                self.assertIn("is not a valid checkpoint", self.refused("resume", run))
         with self.subTest("a run's file in its place"):
             shutil.copy(self.folder / "first" / "run.vtkhdf", checkpoint)
-            self.assertIn("another kind of file", self.refused("resume", run))
+            self.assertIn("a different kind of file", self.refused("resume", run))
         checkpoint.write_bytes(good)
 
         (where / "mine.toml").write_text(source.replace("poissons_ratio = 0.3", "poissons_ratio = 0.31")

@@ -257,7 +257,7 @@ class Places(Bounded):
 
     def test_generators_and_attachments(self):
         for text, place, what in (
-                (self.BODY % "1e-6", "s.toml:7:8: body \"block\": ", "would make about"),
+                (self.BODY % "1e-6", "s.toml:7:8: body \"block\": ", "gives about"),
                 (self.BODY % "0.05" + self.HELD % "0" + self.HELD % "1", "s.toml:11:1: body \"block\": ",
                  "attachment 2 overlaps attachment 1"),
                 (self.BODY % "0.05" + self.HELD % "-0.9", "s.toml:8:1: body \"block\": ", "holds no node")):
@@ -303,7 +303,8 @@ class Resumed(Bounded):
                 path = self.folder / "run" / name
                 whole = path.read_bytes()
                 path.write_bytes(whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1:])
-                self.assertIn(f"run/{name}: is not what the run had written", self.refused("resume", "run"))
+                self.assertIn(f"run/{name}: differs from its content at the checkpoint",
+                              self.refused("resume", "run"))
                 path.write_bytes(whole)
         self.good("resume", "run")
         self.assertEqual(self.summary("run")["outcome"], "finished")
@@ -320,7 +321,7 @@ class Resumed(Bounded):
                 kept = values[0]
                 values[0] = kept + 1e-9
                 file.close()
-                self.assertIn("its states are not those", self.refused("resume", "run"))
+                self.assertIn("its states differ from those", self.refused("resume", "run"))
                 with h5py.File(path, "r+") as again:
                     again["VTKHDF"][field][0] = kept
         self.good("resume", "run")

@@ -54,7 +54,7 @@ TEST(CsvText, WhatIsNoTextInUtf8IsRefused) {
   const auto refusal = [](const std::string& text) {
     return message_of([&] { read_csv_text(text, "a.csv"); });
   };
-  EXPECT_EQ(refusal("a,b\n1,\"2\n"), "a.csv:2: a quote is never closed");
+  EXPECT_EQ(refusal("a,b\n1,\"2\n"), "a.csv:2: unterminated quote");
   EXPECT_EQ(refusal(std::string("\xff\xfe"
                                 "a\0,\0",
                                 6)),
@@ -62,7 +62,7 @@ TEST(CsvText, WhatIsNoTextInUtf8IsRefused) {
   EXPECT_EQ(refusal(std::string("\xfe\xff\0a", 4)),
             "a.csv:1: the file is in UTF-16; save it as CSV in UTF-8");
   EXPECT_EQ(refusal(std::string("a,b\n1\0,2\n", 9)),
-            "a.csv: holds bytes of zero, so it is no CSV text; check the path");
+            "a.csv: contains null bytes, so it is not CSV text; check the path");
   EXPECT_TRUE(read_csv_text("", "a.csv").empty());
 }
 

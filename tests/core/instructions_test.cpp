@@ -26,15 +26,14 @@ TEST(Instructions, TheWidestUnlessAnotherIsNamed) {
 
 TEST(Instructions, WhatTheProcessorLacksIsRefusedWithWhatItHas) {
   EXPECT_EQ(refusal("avx512", Instructions::kAvx2),
-            "PALPATE_INSTRUCTIONS = \"avx512\": this processor does not have it; there are baseline, avx2: "
-            "name one of these, or unset the variable");
-  EXPECT_EQ(
-      refusal("avx2", Instructions::kBaseline),
-      "PALPATE_INSTRUCTIONS = \"avx2\": this processor does not have it; there are baseline: name one of "
-      "these, or unset the variable");
+            "PALPATE_INSTRUCTIONS = \"avx512\": this processor does not support it; set it to one of "
+            "baseline, avx2, or unset it");
+  EXPECT_EQ(refusal("avx2", Instructions::kBaseline),
+            "PALPATE_INSTRUCTIONS = \"avx2\": this processor does not support it; set it to one of baseline, "
+            "or unset it");
   EXPECT_EQ(refusal("sse9", Instructions::kAvx2),
-            "PALPATE_INSTRUCTIONS = \"sse9\": is no set of instructions that palpate knows; there are "
-            "baseline, avx2: name one of these, or unset the variable");
+            "PALPATE_INSTRUCTIONS = \"sse9\": unknown instruction set; set it to one of baseline, avx2, or "
+            "unset it");
 }
 
 }  // namespace

@@ -77,10 +77,10 @@ TEST(Memory, WhatDoesNotFitIsRefusedWithBothFigures) {
     const std::string message = e.what();
     EXPECT_TRUE(
         message.starts_with("scene \"s\": 3 nodes need about 2793967723.8 GiB of memory (all for nothing), "
-                            "and "))
+                            "but only "))
         << message;
     EXPECT_NE(message.find(" are available ("), std::string::npos) << message;
-    EXPECT_NE(message.find("); a smaller one needs less; --beyond-memory goes on all the same"),
+    EXPECT_NE(message.find("); a smaller one needs less, or continue anyway with --beyond-memory"),
               std::string::npos)
         << message;
   }

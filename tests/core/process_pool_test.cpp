@@ -277,8 +277,7 @@ TEST(ProcessPool, AHelperThatDiedIsAClearError) {
   waitpid(parent, nullptr, 0);
   EXPECT_STREQ(
       block,
-      "lost: the process that had started it has died; no process can be started: the server of this "
-      "pool has died");
+      "lost: the process that started it has died; cannot start a process: the server of this pool has died");
 }
 
 TEST(Bytes, ComeBackAsTheyWere) {

@@ -37,21 +37,19 @@ TEST(Rehearsal, ARefusalComesThroughInItsWords) {
 TEST(Rehearsal, TheChildsDeathIsARefusal) {
   EXPECT_EQ(
       refusal([] { std::raise(SIGKILL); }),
-      "f.h5: is damaged: HDF5 does not survive reading it (it does not come to an end); copy it again, or "
-      "make it anew");
+      "f.h5: is damaged: HDF5 fails while reading it (it does not terminate); copy it again, or recreate it");
   EXPECT_EQ(
       refusal([] {
         std::signal(SIGSEGV, SIG_DFL);
         std::raise(SIGSEGV);
       }),
-      "f.h5: is damaged: HDF5 does not survive reading it (Segmentation fault); copy it again, or make it "
-      "anew");
+      "f.h5: is damaged: HDF5 fails while reading it (Segmentation fault); copy it again, or recreate it");
   EXPECT_EQ(refusal([] { ::_exit(0); }),
-            "f.h5: is damaged: HDF5 does not survive reading it (status 0); copy it again, or make it anew");
+            "f.h5: is damaged: HDF5 fails while reading it (status 0); copy it again, or recreate it");
   EXPECT_EQ(refusal([] { throw std::runtime_error("of the library"); }),
-            "f.h5: is damaged: HDF5 does not survive reading it (status 1); copy it again, or make it anew");
+            "f.h5: is damaged: HDF5 fails while reading it (status 1); copy it again, or recreate it");
   EXPECT_EQ(refusal([] { throw std::bad_alloc(); }),
-            "f.h5: asks for more memory than there is; it is damaged, or too large");
+            "f.h5: reading it takes more memory than is available; it is damaged or too large");
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child was left";
 }
 
@@ -65,7 +63,7 @@ TEST(Rehearsal, MemoryIsBounded) {
     };
   };
   EXPECT_EQ(refusal(take(std::size_t{8} << 30), path),
-            path + ": asks for more memory than there is; it is damaged, or too large");
+            path + ": reading it takes more memory than is available; it is damaged or too large");
   EXPECT_EQ(refusal(take(std::size_t{64} << 20), path), "accepted");
 }
 #endif

@@ -233,14 +233,10 @@ TEST(Generators, BadSpecsAreRefusedWithKeyAndValue) {
           "generator \"ball\": radius_m = -1 must lie in (0, 1000000); lengths are in metres");
   refused([](MeshSpec& s) { s.radius_m = kNan; }, "radius_m = nan");
   refused([](MeshSpec& s) { s.element_size_m = 0; }, "element_size_m = 0 must lie in");
-  refused([](MeshSpec& s) { s.element_size_m = 1e-9; }, "element_size_m = 1e-09 would make about");
+  refused([](MeshSpec& s) { s.element_size_m = 1e-9; }, "element_size_m = 1e-09 gives about");
   refused([](MeshSpec& s) { s.grading = 0; }, "grading = 0 must lie in [0.5, 32]");
   refused([](MeshSpec& s) { s.size_m = {1, 0, 1}; }, "size_m[1] = 0", "box");
-  refused(
-      [](MeshSpec& s) {
-        s.size_m = {1e5, 1e-9, 1e-9}, s.element_size_m = 1e-5;
-      },
-      "would make about", "box");
+  refused([](MeshSpec& s) { s.size_m = {1e5, 1e-9, 1e-9}, s.element_size_m = 1e-5; }, "gives about", "box");
   refused([](MeshSpec& s) { s.length_m = -2; }, "length_m = -2", "cylinder");
   refused([](MeshSpec& s) { s.size_m[2] = -1; }, "size_m[2] = -1", "tet");
   refused([](MeshSpec& s) { s.file = "a.msh"; }, "exclude each other");

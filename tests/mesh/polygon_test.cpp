@@ -145,7 +145,7 @@ TEST(Polygon, WhatIsNotPlanarOrCrossesItselfIsReportedWithItsPlace) {
   EXPECT_EQ(triangles.size(), 5u) << "a corner twice in a row counts once";
   from.element_number = {1, 2, 2, 3, 3};
   from.element_line = {7, 8, 8, 9, 9};
-  expect_contains(warped_text(report, from), "a.obj:8: face 2: this polygon is not planar, by 3.5 %");
+  expect_contains(warped_text(report, from), "a.obj:8: face 2: this polygon deviates from a plane by 3.5 %");
   expect_contains(crossing_text(report, from), "a.obj:9: face 3: the outline of this polygon crosses");
   EXPECT_EQ(warped_text({}, from) + crossing_text({}, from), "");
 }

@@ -171,10 +171,10 @@ TEST(Readers, AFileInOtherUnitsIsAskedAboutWhereNoScaleIsGiven) {
     });
   };
   expect_contains(refusal("large.msh"),
-                  "large.msh: the body is 120 m large: is that meant? Then write scale = 1 beside "
-                  "file = \"large.msh\"; a file in millimetres takes scale = 0.001");
-  expect_contains(refusal("small.msh"), "the body is 0.0001 m large: is that meant?");
-  expect_contains(refusal("small.msh"), "a file in kilometres takes scale = 1000");
+                  "large.msh: the body is 120 m large; if this is intended, add scale = 1 to file = "
+                  "\"large.msh\", or if the file is in millimetres, scale = 0.001");
+  expect_contains(refusal("small.msh"), "the body is 0.0001 m large; if this is intended");
+  expect_contains(refusal("small.msh"), "if the file is in kilometres, scale = 1000");
   expect_contains(refusal("tool.obj"), "tool.obj: the tool is 80 m large");
   MeshSpec spec = file_spec("large.msh");
   for (const double scale : {1.0, 1e-3}) {
@@ -340,7 +340,7 @@ TEST(Readers, WrongKindsOfFileAreRefusedWithAWayOut) {
   expect_contains(error_of([&] { tet_mesh(file_spec("no.msh"), folder.path()); }),
                   "no.msh: no such file; check the path");
   expect_contains(error_of([&] { tet_mesh(file_spec("cow.obj"), folder.path()); }),
-                  "an .obj holds a surface");
+                  "an .obj contains a surface");
   expect_contains(error_of([&] { tet_mesh(file_spec("cow.obj"), folder.path()); }), "palpate model ");
   expect_contains(error_of([&] { tet_mesh(file_spec("cow.stl"), folder.path()); }),
                   "unknown ending \".stl\"");

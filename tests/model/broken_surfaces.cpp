@@ -260,11 +260,11 @@ std::vector<Entry> entries() {
          }));
        },
        "model"},
-      {"half a ball", [hole] { return surface(hole(0.0)); }, "the surface is open there"},
+      {"half a ball", [hole] { return surface(hole(0.0)); }, "the surface has a hole"},
       {"sheet without thickness",
        [] { return surface(without(box(), [](const Vec3& p) { return p.z() < 0.49; })); },
-       "the surface is open there"},
-      {"flat ball", [] { return surface(scaled(ball(), 1, 1, 0)); }, "the surface is open there"},
+       "the surface has a hole"},
+      {"flat ball", [] { return surface(scaled(ball(), 1, 1, 0)); }, "the surface has a hole"},
       {"one-sided band", [] { return surface(mobius()); }, "test.obj"},
       {"a number that is none", [] { return surface(not_finite()); }, "is not a finite length"},
       {"doubled faces",
@@ -292,8 +292,8 @@ std::vector<Entry> entries() {
       {"two balls through each other",
        [] { return surface(together(ball(1.0, 8), ball(1.0, 8, Vec3(1, 0.02, 0.03)))); }, "model", false},
       {"the same, not to be wrapped",
-       [] { return surface(together(ball(1.0, 8), ball(1.0, 8, Vec3(1, 0.02, 0.03)))); },
-       "go through each other", true, strict},
+       [] { return surface(together(ball(1.0, 8), ball(1.0, 8, Vec3(1, 0.02, 0.03)))); }, "others intersect",
+       true, strict},
       {"a vertex through the other side",
        [] {
          TriMesh mesh = ball(1.0, 12);
@@ -318,10 +318,10 @@ std::vector<Entry> entries() {
       {"tetrahedra without volume", [] { return tetrahedra(flattened(0.0)); }, "test.msh", true, accept},
       {"inverted tetrahedra, filled anew", [] { return tetrahedra(inverted()); }, "model", true, remesh},
       {"no time", [] { return surface(ball()); }, "--limit-s", true, hurried},
-      {"few points", [] { return surface(ball()); }, "have about 300 points, more than the 250", true,
-       few_points},
+      {"few points", [] { return surface(ball()); }, "have about 300 points, more than the limit of 250",
+       true, few_points},
       {"points run out", [] { return surface(stellated(ball(1.0, 2), 0.6)); },
-       "need more than 600 points, the most of them around", true, too_few},
+       "need more than 600 points, most of them around", true, too_few},
   };
 }
 

@@ -30,7 +30,7 @@ inline void expect_sound(const model::Made& made) {
 /// A refusal names a place (but for budgets that nothing can be made within), and what to do.
 inline void expect_a_way_out(const std::string& refusal) {
   static const std::regex place(R"(at \(.*\) m|(vertex|face|element) \d+|--limit-s|--points)"),
-      way_out("--[a-z]+|write the surface again|mesh again|a body's surface is closed");
+      way_out("--[a-z]+|write the surface again|mesh again|the surface of a body must be closed");
   EXPECT_TRUE(std::regex_search(refusal, place)) << refusal;
   EXPECT_TRUE(std::regex_search(refusal, way_out)) << refusal;
 }

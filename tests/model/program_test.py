@@ -123,8 +123,8 @@ class Memory(unittest.TestCase):
                                   preexec_fn=limit)
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertRegex(done.stderr, r"body\.obj: 9e\+06 tetrahedra in a surface of 6 vertices need "
-                                          r"about 3\.4 GiB of memory, and \d+ MiB are available "
-                                          r"\(the limit of addresses, ulimit -v\); fewer "
+                                          r"about 3\.4 GiB of memory, but only \d+ MiB are available "
+                                          r"\(the limit on address space, ulimit -v\); fewer "
                                           r"--tetrahedra need less")
             self.assertEqual(done.stdout, "")
             self.assertEqual(os.listdir(folder), ["body.obj"])
@@ -168,7 +168,7 @@ class Program(unittest.TestCase):
     def test_messages(self):
         open_body = octahedron(self.path, "open.obj", [(1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5)])
         for words, expected in [
-            ((open_body,), "the surface is open there: a hole of 4 edges"),
+            ((open_body,), "the surface has a hole of 4 edges"),
             ((self.path / "none.obj",), "none.obj: no such file"),
             ((open_body, "--tetrahedra", "many"), "--tetrahedra"),
             ((open_body, "--creases", "some"), "--creases some: must be auto, none, or an angle in degrees"),
@@ -260,7 +260,7 @@ class Program(unittest.TestCase):
                     file.write("f {} {} {}\n".format(*f))
         done = run("model", self.path / "tangle.obj", "-o", self.path / "a.h5", "--limit-s", "0.001")
         self.assertEqual(done.returncode, 1, done.stdout)
-        self.assertRegex(done.stderr, r'tangle.obj.*face \d+ at \(.*\) m: "mend the surface" did not end '
+        self.assertRegex(done.stderr, r'tangle.obj.*face \d+ at \(.*\) m: "repair the surface" did not end '
                                       r"within 0.001 s.*--limit-s")
         self.assertFalse((self.path / "a.h5").exists())
 

@@ -85,12 +85,12 @@ TEST(Regions, OfTheBones) {
 TEST(Regions, Refusals) {
   const TetMesh tets = mesh::ball(1.0, 0.3);
   EXPECT_NE(refused([&] { added(tets, {source("core", ball(0.5, 8, Vec3(3, 0, 0)))}); })
-                .find("--region core=test.obj: no tetrahedron has its middle inside: the surface reaches "
+                .find("--region core=test.obj: no tetrahedron has its centroid inside: the surface extends "
                       "from (2.5, "),
             std::string::npos);
   EXPECT_NE(refused([&] {
               added(tets, {source("left", ball(0.5))}, {{"left", {0}}});
-            }).find("there is a region of this name already"),
+            }).find("there is already a region of this name"),
             std::string::npos);
   EXPECT_NE(refused([&] {
               added(tets, {{"bone", true, {}, {}}});
@@ -127,7 +127,7 @@ TEST(Regions, GoThroughTheWholeOfIt) {
   const model::Made anew = model::make_model(input, options, silent);
   ASSERT_EQ(anew.file.model.regions.size(), 1u);
   EXPECT_NEAR(anew.regions[0].volume / anew.quality.volume, 0.5, 0.02);
-  EXPECT_NE(anew.file.record.notes.back().find("carried over"), std::string::npos);
+  EXPECT_NE(anew.file.record.notes.back().find("transferred"), std::string::npos);
 }
 
 }  // namespace

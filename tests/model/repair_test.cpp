@@ -50,13 +50,13 @@ TEST(Repair, TurnsFlippedFaces) {
     std::swap(mesh.faces(1, f), mesh.faces(2, f));
   const model::RepairedSurface result = repaired(mesh);
   EXPECT_NEAR(volume(result.surface), volume(ball()), 1e-12);
-  EXPECT_TRUE(noted(result, std::to_string(planted) + " faces were turned")) << result.notes.size();
+  EXPECT_TRUE(noted(result, std::to_string(planted) + " faces were reoriented")) << result.notes.size();
 }
 
 TEST(Repair, TurnsAnInsideOutSurfaceOutwards) {
   const model::RepairedSurface result = repaired(turned(ball()));
   EXPECT_NEAR(volume(result.surface), volume(ball()), 1e-12);
-  EXPECT_TRUE(noted(result, "turned outwards"));
+  EXPECT_TRUE(noted(result, "reoriented outwards"));
 }
 
 TEST(Repair, DropsDoubleFacesAndCollapsedOnes) {
@@ -68,7 +68,7 @@ TEST(Repair, DropsDoubleFacesAndCollapsedOnes) {
   mesh.faces.col(n + 2) << 4, 4, 7;
   const model::RepairedSurface result = repaired(mesh);
   EXPECT_EQ(result.surface.faces.cols(), n);
-  EXPECT_TRUE(noted(result, "2 double faces"));
+  EXPECT_TRUE(noted(result, "2 duplicate faces"));
   EXPECT_TRUE(noted(result, "1 collapsed faces"));
 }
 
@@ -85,7 +85,7 @@ TEST(Repair, ClosesASmallHoleByASmoothPatch) {
 TEST(Repair, RefusesTooLargeAHoleWithItsPlace) {
   const TriMesh half = without(ball(), [](const Vec3& p) { return p.z() > 0; });
   const std::string message = refusal([&] { repaired(half); });
-  EXPECT_NE(message.find("the surface is open there: a hole of "), std::string::npos) << message;
+  EXPECT_NE(message.find("the surface has a hole of "), std::string::npos) << message;
   EXPECT_NE(message.find("m across"), std::string::npos) << message;
   EXPECT_NE(message.find("test.obj: vertex "), std::string::npos) << message;
 }
@@ -157,7 +157,7 @@ TEST(Repair, WrapsOverlappingShellsAndSaysSo) {
   model::RepairOptions strict;
   strict.wrap = false;
   const std::string message = refusal([&] { repaired(two, strict); });
-  EXPECT_NE(message.find("go through each other"), std::string::npos) << message;
+  EXPECT_NE(message.find("others intersect"), std::string::npos) << message;
   EXPECT_NE(message.find("test.obj: face "), std::string::npos) << message;
 }
 

@@ -121,7 +121,7 @@ TEST(Tetrahedralise, RefusesWhatCannotBe) {
             "--tetrahedra 3 must lie in [20, 20000000]");
   model::TetrahedraOptions tiny;
   tiny.element_size_m = 1e-6;
-  EXPECT_NE(refusal([&] { model::tetrahedralise(ball(), tiny); }).find("is the unit right?"),
+  EXPECT_NE(refusal([&] { model::tetrahedralise(ball(), tiny); }).find("check the unit of length"),
             std::string::npos);
   const auto outside = [](const Vec3& p) { return p.norm() + 1.0; };
   EXPECT_EQ(refusal([&] { model::tetrahedralise(outside, Vec3::Zero(), 1.0, number(100)); }),

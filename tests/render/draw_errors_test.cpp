@@ -33,9 +33,9 @@ testing::AssertionResult says(const std::string& part,
 }  // namespace
 
 TEST(DrawErrors, NameTheSurfaceAndTheValue) {
-  EXPECT_TRUE(says("surface \"cube\": a face names point 8 of 8",
+  EXPECT_TRUE(says("surface \"cube\": a face refers to point 8 of 8",
                    [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = 8; }));
-  EXPECT_TRUE(says("surface \"cube\": a face names point -1 of 8",
+  EXPECT_TRUE(says("surface \"cube\": a face refers to point -1 of 8",
                    [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = -1; }));
   EXPECT_TRUE(says("surface \"cube\": a position is not finite",
                    [](auto& scene, auto&) { scene.surfaces[0].points(1, 2) = std::nan(""); }));

@@ -56,13 +56,13 @@ std::vector<scene::KeyRow> device_rows() {
 
 TEST(DeviceKeys, AKeyOfAnotherTypeIsRefusedAtItsLocation) {
   EXPECT_EQ(refusal(held_by("script", "arm_mass_kg = 1.0\n")),
-            "s.toml:9:15: device: arm_mass_kg means nothing to device type \"script\", which takes keyframe, "
-            "motion, press; remove it (used by hand)");
+            "s.toml:9:15: device: arm_mass_kg does not apply to device type \"script\", which takes "
+            "keyframe, motion, press; remove it (used by hand)");
   EXPECT_EQ(refusal(held_by("udp", "file = \"poses.csv\"\n")),
-            "s.toml:9:8: device: file means nothing to device type \"udp\", which takes port, address, "
+            "s.toml:9:8: device: file does not apply to device type \"udp\", which takes port, address, "
             "time_out_s, wait_s; remove it (used by recording)");
   EXPECT_EQ(refusal(held_by("recording", "keyframe = [{ time_s = 0.0 }]\n")),
-            "s.toml:9:12: device: keyframe means nothing to device type \"recording\", which takes file, "
+            "s.toml:9:12: device: keyframe does not apply to device type \"recording\", which takes file, "
             "time_offset_s, time_scale; remove it (used by script, hand)");
 }
 
@@ -80,7 +80,7 @@ TEST(DeviceKeys, EveryTypeTakesItsOwnAndRefusesTheOthers) {
         ++(listed ? taken : common);
         continue;
       }
-      const std::string expected = row.name + " means nothing to device type \"" + entry.name + "\"";
+      const std::string expected = row.name + " does not apply to device type \"" + entry.name + "\"";
       EXPECT_NE(message.find(expected), std::string::npos)
           << entry.name << ", " << row.name << ": " << message;
       EXPECT_TRUE(message.starts_with("s.toml:9:")) << message;
@@ -148,11 +148,11 @@ TEST(DeviceKeys, AMotionTakesTheKeysOfItsKind) {
   }
   EXPECT_EQ(with("kind = \"circle\", second_amplitude_m = [0.01, 0, 0]"), "accepted");
   EXPECT_NE(with("kind = \"tap\", second_amplitude_m = [0.01, 0, 0]")
-                .find("second_amplitude_m means nothing to motion \"tap\""),
+                .find("second_amplitude_m does not apply to motion \"tap\""),
             std::string::npos)
       << with("kind = \"tap\", second_amplitude_m = [0.01, 0, 0]");
   EXPECT_NE(with("kind = \"stroke\", end_frequency_per_s = 3.0")
-                .find("end_frequency_per_s means nothing to motion \"stroke\""),
+                .find("end_frequency_per_s does not apply to motion \"stroke\""),
             std::string::npos);
 }
 

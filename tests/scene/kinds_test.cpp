@@ -35,24 +35,25 @@ std::string refusal(const std::string& text, const Overrides& overrides = {}) {
 
 TEST(Kinds, AKeyThatTheIntegratorDoesNotUseIsRefusedAtItsLocation) {
   EXPECT_EQ(refusal(with_integrator("name = \"rk4\"\nstep_s = 1e-4\nspectral_radius = 0.5\n")),
-            "s.toml:11:19: integrator: spectral_radius means nothing to integrator \"rk4\", which takes "
+            "s.toml:11:19: integrator: spectral_radius does not apply to integrator \"rk4\", which takes "
             "step_s, max_steps, threads; remove it (used by generalized-alpha)");
   EXPECT_EQ(refusal(kBlock, {"integrator.name=rk4", "integrator.spectral_radius=0.5"}),
-            "--set integrator.spectral_radius=0.5: integrator: spectral_radius means nothing to integrator "
+            "--set integrator.spectral_radius=0.5: integrator: spectral_radius does not apply to integrator "
             "\"rk4\", which takes step_s, max_steps, threads; remove it (used by generalized-alpha)");
   EXPECT_EQ(refusal(kBlock, {"integrator.spectral_radius=0.5", "integrator.name=generalized-alpha"}),
             "accepted");
   const std::pair<const char*, const char*> unused[] = {
-      {"name = \"cvode-bdf\"\nstep_s = 1e-3", "step_s means nothing to integrator \"cvode-bdf\""},
-      {"step_s = 1e-3", "step_s means nothing to integrator \"cvode-bdf\""},
-      {"name = \"rk4\"\nrtol = 1e-3", "rtol means nothing to integrator \"rk4\""},
-      {"name = \"rk4\"\nlinear_solver = \"cholmod\"", "linear_solver means nothing to integrator \"rk4\""},
-      {"name = \"rk4\"\nlinear_rtol = 1e-6", "linear_rtol means nothing to a method without a linear solver"},
-      {"name = \"cvode-bdf\"\nlinear_rtol = 1e-6", "linear_rtol means nothing to linear solver \"cholmod\""},
-      {"name = \"linearly-implicit-euler\"\nnewton_rtol = 1e-6", "newton_rtol means nothing to"},
-      {"name = \"linearly-implicit-euler\"\nfixed_step = true", "fixed_step means nothing to"},
-      {"name = \"ark-dirk-esdirk547\"\nexplicit_side = \"contact\"", "explicit_side means nothing to"},
-      {"name = \"ark-dirk-esdirk547\"\nmax_order = 3", "max_order means nothing to"},
+      {"name = \"cvode-bdf\"\nstep_s = 1e-3", "step_s does not apply to integrator \"cvode-bdf\""},
+      {"step_s = 1e-3", "step_s does not apply to integrator \"cvode-bdf\""},
+      {"name = \"rk4\"\nrtol = 1e-3", "rtol does not apply to integrator \"rk4\""},
+      {"name = \"rk4\"\nlinear_solver = \"cholmod\"", "linear_solver does not apply to integrator \"rk4\""},
+      {"name = \"rk4\"\nlinear_rtol = 1e-6",
+       "linear_rtol does not apply to a method without a linear solver"},
+      {"name = \"cvode-bdf\"\nlinear_rtol = 1e-6", "linear_rtol does not apply to linear solver \"cholmod\""},
+      {"name = \"linearly-implicit-euler\"\nnewton_rtol = 1e-6", "newton_rtol does not apply to"},
+      {"name = \"linearly-implicit-euler\"\nfixed_step = true", "fixed_step does not apply to"},
+      {"name = \"ark-dirk-esdirk547\"\nexplicit_side = \"contact\"", "explicit_side does not apply to"},
+      {"name = \"ark-dirk-esdirk547\"\nmax_order = 3", "max_order does not apply to"},
   };
   for (const auto& [keys, expected] : unused) {
     const std::string message = refusal(with_integrator(keys));
@@ -81,8 +82,9 @@ TEST(Kinds, EveryIntegratorRefusesEveryKeyThatItDoesNotList) {
       if (listed)
         EXPECT_EQ(message, "accepted") << entry.name << ", " << row.name;
       else
-        EXPECT_NE(message.find(row.name + " means nothing to integrator \"" + entry.name + "\", which takes"),
-                  std::string::npos)
+        EXPECT_NE(
+            message.find(row.name + " does not apply to integrator \"" + entry.name + "\", which takes"),
+            std::string::npos)
             << entry.name << ", " << row.name << ": " << message;
       ++(listed ? taken : refused);
     }
@@ -129,12 +131,12 @@ TEST(Kinds, AnotherMethodTakesOnlyTheKeysThatItUses) {
   EXPECT_EQ(parse(own, "s.toml", {"integrator.linear_solver=cholmod"}).not_carried_over,
             std::vector<std::string>{"integrator.linear_rtol"});
   EXPECT_NE(
-      refusal(own, {"integrator.name=rk4", "integrator.max_order=2"}).find("max_order means nothing to"),
+      refusal(own, {"integrator.name=rk4", "integrator.max_order=2"}).find("max_order does not apply to"),
       std::string::npos)
       << "what is said for the new one counts";
-  EXPECT_NE(
-      refusal(own + "max_order = 2\n", {"integrator.name=generalized-alpha"}).find("max_order means nothing"),
-      std::string::npos)
+  EXPECT_NE(refusal(own + "max_order = 2\n", {"integrator.name=generalized-alpha"})
+                .find("max_order does not apply"),
+            std::string::npos)
       << "the same method";
 }
 
@@ -154,10 +156,9 @@ TEST(Kinds, Obstacles) {
   const auto with = [](const std::string& keys) {
     return refusal(kBlock + "[[obstacle]]\nname = \"thing\"\n" + keys);
   };
-  EXPECT_EQ(
-      with("type = \"sphere\"\nradius_m = 0.1\nsize_m = [1, 1, 1]\n"),
-      "s.toml:12:10: obstacle \"thing\": size_m means nothing to type = \"sphere\", which takes position_m, "
-      "radius_m; remove it (used by box)");
+  EXPECT_EQ(with("type = \"sphere\"\nradius_m = 0.1\nsize_m = [1, 1, 1]\n"),
+            "s.toml:12:10: obstacle \"thing\": size_m does not apply to type = \"sphere\", which takes "
+            "position_m, radius_m; remove it (used by box)");
   EXPECT_EQ(with("type = \"sphere\"\n"),
             "s.toml:8:1: obstacle \"thing\": radius_m is missing: type = \"sphere\" needs it");
   EXPECT_EQ(with("type = \"sphere\"\nradius = 0.1\n"),
@@ -180,10 +181,9 @@ TEST(Kinds, Obstacles) {
 
 TEST(Kinds, ContactMethods) {
   const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
-  EXPECT_EQ(
-      with({"contact.1.pixels=128", "contact.1.method=analytic"}),
-      "--set contact.1.pixels=128: contact between \"ball\" and \"tool\": pixels means nothing to method = "
-      "\"analytic\"; remove it (used by auto, image)");
+  EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=analytic"}),
+            "--set contact.1.pixels=128: contact between \"ball\" and \"tool\": pixels does not apply to "
+            "method = \"analytic\"; remove it (used by auto, image)");
   EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=image"}), "accepted");
   EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=gpu"}),
             "--set contact.1.method=gpu: contact between \"ball\" and \"tool\": method = \"gpu\" is now "
@@ -214,14 +214,14 @@ TEST(Kinds, SpringsOfAreaAndOfPoints) {
       "accepted");
   EXPECT_EQ(with({"contact.0.stiffness_pa_m=1e6", "contact.0.damping_pa_s_m=1.0"}), "accepted");
   EXPECT_NE(with({"contact.0.spring=per_point", "contact.0.stiffness_pa_m=1e6"})
-                .find("stiffness_pa_m means nothing to spring = \"per_point\", which takes stiffness_n_m, "
+                .find("stiffness_pa_m does not apply to spring = \"per_point\", which takes stiffness_n_m, "
                       "damping_n_s_m; remove it (used by per_area)"),
             std::string::npos);
   EXPECT_NE(
-      with({"contact.0.stiffness_n_m=20.0"}).find("stiffness_n_m means nothing to spring = \"per_area\""),
+      with({"contact.0.stiffness_n_m=20.0"}).find("stiffness_n_m does not apply to spring = \"per_area\""),
       std::string::npos);
   EXPECT_NE(with({"contact.0.spring=per_point", "contact.0.law=hunt_crossley", "contact.0.damping_n_s_m=1.0"})
-                .find("damping_n_s_m means nothing to law = \"hunt_crossley\""),
+                .find("damping_n_s_m does not apply to law = \"hunt_crossley\""),
             std::string::npos);
   EXPECT_NE(
       with({"contact.0.spring=steel"}).find("spring = \"steel\" is not known (known: per_area, per_point)"),
@@ -238,12 +238,12 @@ TEST(Kinds, AFrictionTangentBelongsToFriction) {
             "accepted");
   EXPECT_EQ(refusal(scene_texts::kWhole, {"contact.0.friction_tangent=full"}),
             "--set contact.0.friction_tangent=full: contact between \"floor\" and \"ball\": friction_tangent "
-            "means nothing where friction = 0; remove it, or set friction");
+            "does not apply where friction = 0; remove it, or set friction");
   const std::string text = kBlock +
                            "[[obstacle]]\nname = \"floor\"\ntype = \"plane\"\n[[contact]]\nbetween = "
                            "[\"block\", \"floor\"]\nfriction_tangent = \"full\"\n";
   EXPECT_NE(
-      refusal(text).find("s.toml:13:20: contact between \"block\" and \"floor\": friction_tangent means"),
+      refusal(text).find("s.toml:13:20: contact between \"block\" and \"floor\": friction_tangent does"),
       std::string::npos)
       << refusal(text);
   EXPECT_EQ(refusal(text + "friction = 0.3\n", {"contact.0.friction=0.0"}), "accepted")
@@ -254,13 +254,12 @@ TEST(Kinds, ToolDeviceAndExchange) {
   const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
   EXPECT_EQ(with({"exchange.linearisation=frozen"}), "accepted");
   EXPECT_EQ(with({"exchange.scheme=monolithic", "exchange.linearisation=frozen"}),
-            "--set exchange.linearisation=frozen: exchange: linearisation means nothing to scheme = "
+            "--set exchange.linearisation=frozen: exchange: linearisation does not apply to scheme = "
             "\"monolithic\"; remove it (used by partitioned)");
   EXPECT_EQ(with({"exchange.tunnelling=substep", "exchange.shortest_refresh_s=1e-4"}), "accepted");
-  EXPECT_EQ(
-      with({"exchange.shortest_refresh_s=1e-4"}),
-      "--set exchange.shortest_refresh_s=1e-4: exchange: shortest_refresh_s means nothing to tunnelling = "
-      "\"report\"; remove it (used by substep)");
+  EXPECT_EQ(with({"exchange.shortest_refresh_s=1e-4"}),
+            "--set exchange.shortest_refresh_s=1e-4: exchange: shortest_refresh_s does not apply to "
+            "tunnelling = \"report\"; remove it (used by substep)");
   if (!palpate::loop::tool_steppers().empty()) {
     EXPECT_NE(with({"tool.integrator=linearly-implicit-eular"})
                   .find("tool: integrator = \"linearly-implicit-eular\" is not known (did you mean "
@@ -277,11 +276,10 @@ TEST(Kinds, ToolDeviceAndExchange) {
 
 TEST(Kinds, Meshes) {
   const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
-  EXPECT_NE(
-      with({"body.0.mesh.length_m=1.0"})
-          .find("mesh: length_m means nothing to generator = \"ball\", which takes radius_m, element_size_m, "
-                "grading; remove it (used by cylinder)"),
-      std::string::npos);
+  EXPECT_NE(with({"body.0.mesh.length_m=1.0"})
+                .find("mesh: length_m does not apply to generator = \"ball\", which takes radius_m, "
+                      "element_size_m, grading; remove it (used by cylinder)"),
+            std::string::npos);
   EXPECT_NE(with({"body.0.mesh.generator=bal"}).find("did you mean \"ball\"?"), std::string::npos);
   EXPECT_NE(with({"body.0.mesh.generator=file"})
                 .find("generator = \"file\" is not known (known: box, ball, cylinder, tet)"),
@@ -294,16 +292,15 @@ TEST(Kinds, Meshes) {
     return with(all);
   };
   EXPECT_EQ(tool_with("generator = \"ball\", radius_m = 0.01, element_size_m = 0.005"), "accepted");
-  EXPECT_NE(
-      tool_with("generator = \"ball\", radius_m = 0.01, element_size_m = 0.005, grading = 2.0")
-          .find("grading means nothing to generator = \"ball\", which takes radius_m, element_size_m; remove "
-                "it (used by box, cylinder)"),
-      std::string::npos)
+  EXPECT_NE(tool_with("generator = \"ball\", radius_m = 0.01, element_size_m = 0.005, grading = 2.0")
+                .find("grading does not apply to generator = \"ball\", which takes radius_m, element_size_m; "
+                      "remove it (used by box, cylinder)"),
+            std::string::npos)
       << "a sphere of triangles has no inside to grade";
   EXPECT_NE(tool_with("generator = \"tet\", size_m = [1, 1, 1]").find("generator = \"tet\" is not known"),
             std::string::npos);
   EXPECT_NE(
-      tool_with("file = \"a.obj\", radius_m = 1.0").find("radius_m means nothing to a mesh from a file"),
+      tool_with("file = \"a.obj\", radius_m = 1.0").find("radius_m does not apply to a mesh from a file"),
       std::string::npos);
 }
 

@@ -170,10 +170,10 @@ TEST(Load, TwoSoftBodiesHaveNoExactGaps) {
                 .find("two soft bodies have no exact gaps: leave the method out, or write \"auto\""),
             std::string::npos);
   EXPECT_NE(refusal(ball, "method = \"image\"\n[[contact]]\nbetween = [\"b\", \"a\"]\nmethod = \"image\"\n")
-                .find("this pair stands here twice"),
+                .find("this pair has two [[contact]] tables"),
             std::string::npos);
   EXPECT_NE(refusal(model, "method = \"image\"\n")
-                .find("proxies = true stands in \"b\" alone; both need it, or neither"),
+                .find("proxies = true is set for \"b\" alone; set it for both bodies or for neither"),
             std::string::npos);
 }
 
@@ -196,17 +196,19 @@ TEST(Load, ABodyTouchesItself) {
   EXPECT_EQ(refusal("", itself), "accepted");
   EXPECT_EQ(refusal("skin = true\n", itself), "accepted");
   for (const std::string method : {"analytic", "image"})
-    EXPECT_NE(refusal("", itself + "method = \"" + method + "\"\n")
-                  .find("a body touches itself by nearest points; method = \"" + method + "\" has none"),
-              std::string::npos)
+    EXPECT_NE(
+        refusal("", itself + "method = \"" + method + "\"\n")
+            .find("contact of a body with itself requires method = \"distance\", not \"" + method + "\""),
+        std::string::npos)
         << refusal("", itself + "method = \"" + method + "\"\n");
-  EXPECT_NE(refusal("", itself + "pixels = 128\n").find("a body touches itself by nearest points"),
+  EXPECT_NE(refusal("", itself + "pixels = 128\n")
+                .find("contact of a body with itself requires method = \"distance\""),
             std::string::npos);
-  EXPECT_NE(refusal("", itself + "[[contact]]\n" + itself).find("this pair stands here twice"),
+  EXPECT_NE(refusal("", itself + "[[contact]]\n" + itself).find("this pair has two [[contact]] tables"),
             std::string::npos);
-  EXPECT_NE(
-      refusal("", "between = [\"floor\", \"floor\"]\n").find("only a soft body may touch itself; name two"),
-      std::string::npos);
+  EXPECT_NE(refusal("", "between = [\"floor\", \"floor\"]\n")
+                .find("only a soft body may touch itself; give two different names"),
+            std::string::npos);
 }
 
 // Bodies as they are listed, the tool, obstacles: whichever is named first.
@@ -241,62 +243,64 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
       {{"body.0.mesh.file=\"a.msh\""}, "file and generator exclude each other"},
       {{"body.0.mesh={radius_m = 1.0}"}, "needs file = \"PATH\" or generator = \"ball\""},
       {{"body.0.mesh.generator=box"}, "size_m is missing: generator = \"box\" needs it"},
-      {{"body.0.mesh.scale=2.0"}, "scale means nothing to generator = \"ball\""},
-      {{"obstacle.0.radius_m=1.0"}, "radius_m means nothing to type = \"plane\""},
+      {{"body.0.mesh.scale=2.0"}, "scale does not apply to generator = \"ball\""},
+      {{"obstacle.0.radius_m=1.0"}, "radius_m does not apply to type = \"plane\""},
       {{"obstacle.0.type=sphere"}, "radius_m is missing: type = \"sphere\" needs it"},
       {{"obstacle.0.normal=[0,0,0]"}, "has no direction"},
-      {{"obstacle.0.name=tool"}, "name \"tool\" is kept for the tool"},
+      {{"obstacle.0.name=tool"}, "name \"tool\" is reserved for [tool]"},
       {{"body.0.name=\"a/b\""}, "must not contain slashes"},
       {{"contact.0.method=image"}, "an obstacle has exact gaps"},
       {{"contact.0.method=distance", "contact.0.pixels=128"},
-       "pixels means nothing to method = \"distance\""},
+       "pixels does not apply to method = \"distance\""},
       {{"contact.1.quadrature_error=0.0"}, "quadrature_error = 0 must lie in [1e-06, 0.1]"},
       {{"contact.1.method=distance", "contact.1.pixels=128"},
-       "pixels means nothing to method = \"distance\""},
-      {{"contact.1.method=distance", "contact.1.spring=per_point"}, "has points that stand for areas"},
-      {{"contact.0.pixels=128"}, "pixels means nothing here: an obstacle has exact gaps; remove it"},
+       "pixels does not apply to method = \"distance\""},
+      {{"contact.1.method=distance", "contact.1.spring=per_point"}, "whose points represent areas"},
+      {{"contact.0.pixels=128"}, "pixels does not apply to an obstacle, whose gaps are exact; remove it"},
       {{"contact.0.gaps=exact"}, "unknown key \"gaps\""},
       {{"contact.0.hunt_crossley_s_m=1.0"},
-       "hunt_crossley_s_m means nothing to law = \"kelvin_voigt\", which takes damping_pa_s_m, "
+       "hunt_crossley_s_m does not apply to law = \"kelvin_voigt\", which takes damping_pa_s_m, "
        "damping_n_s_m; remove it (used by hunt_crossley)"},
       {{"contact.0.law=hunt_crossley", "contact.0.damping_pa_s_m=1.0"},
-       "damping_pa_s_m means nothing to law = \"hunt_crossley\", which takes hunt_crossley_s_m; remove it "
+       "damping_pa_s_m does not apply to law = \"hunt_crossley\", which takes hunt_crossley_s_m; remove it "
        "(used by kelvin_voigt)"},
-      {{"contact.1.between=[\"floor\", \"ball\"]"}, "this pair stands here twice"},
+      {{"contact.1.between=[\"floor\", \"ball\"]"}, "this pair has two [[contact]] tables"},
       {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.method=image"}, "an obstacle has exact gaps"},
-      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.pixels=128"}, "an obstacle has exact gaps"},
+      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.pixels=128"},
+       "an obstacle, whose gaps are exact"},
       {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.spring=per_point"},
-       "a tool with shape = \"sphere\" has none"},
-      {{"contact.1.between=[\"tool\", \"tool\"]"}, "only a soft body may touch itself; name two"},
+       "a tool with shape = \"sphere\", which has no vertices"},
+      {{"contact.1.between=[\"tool\", \"tool\"]"},
+       "only a soft body may touch itself; give two different names"},
       {{"obstacle=[{name = \"floor\", type = \"plane\"}, {name = \"wall\", type = \"plane\"}]",
         "contact.1.between=[\"wall\", \"floor\"]"},
        "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool"},
-      {{"contact.1.between=[\"ball\"]"}, "between must name two things, [\"ball\", \"floor\"], not 1"},
+      {{"contact.1.between=[\"ball\"]"}, "between must list two names, as in [\"ball\", \"floor\"], not 1"},
       {{"tool.shape=mesh"}, "needs a [tool.mesh]"},
-      {{"tool.mesh.file=\"a.obj\""}, "mesh means nothing to shape = \"sphere\""},
+      {{"tool.mesh.file=\"a.obj\""}, "mesh does not apply to shape = \"sphere\""},
       {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\""}, "inertia_kg_m2 is missing"},
       {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\"", "tool.inertia_kg_m2=[1,1,1]",
         "contact.1.method=analytic"},
        "needs a tool with shape = \"sphere\""},
       {{"device.keyframe=[]"}, "write [[keyframe]] with double brackets"},
-      {{"compare.exchange_periods_s=[50.0, 0.01]"}, "exchange_periods_s = 50 is longer than the whole run"},
-      {{"exchange.exchange_period_s=50.0"}, "exchange_period_s = 50 is longer than the whole run"},
+      {{"compare.exchange_periods_s=[50.0, 0.01]"}, "exchange_periods_s = 50 is longer than the run"},
+      {{"exchange.exchange_period_s=50.0"}, "exchange_period_s = 50 is longer than the run"},
       {{"obstacle.0.type=box"}, "size_m is missing: type = \"box\" needs it"},
       {{"obstacle.0.type=cylinder", "obstacle.0.radius_m=1.0"},
        "length_m is missing: type = \"cylinder\" needs it"},
       {{"compare.ladder=[{integrator = \"x\", rtol = [1e-3], step_s = [1e-3]}]"},
        "rtol and step_s exclude each other"},
       {{"tool.tick_s=0.003"},
-       "exchange_period_s = 0.01 must be a whole number of the tool's ticks of 0.003 s; use 0.009 or 0.012"},
+       "exchange_period_s = 0.01 must be a multiple of the tool's tick of 0.003 s; use 0.009 or 0.012"},
       {{"exchange.scheme=monolith"}, "exchange: scheme = \"monolith\" is not known"},
       {{"integrator.max_order=2.5"}, "must be a whole number"},
       {{"tool.gravity=1"}, "must be true or false"},
       {{"contact.0.stiffness_pa_m=-1"}, "must be positive"},
       {{"contact.0.friction=inf"}, "must be a finite number"},
       {{"body.0.region=[{name = \"core\", youngs_modulus_pa = 1e5}]"},
-       "region \"core\": box_min_m is missing: generator = \"ball\" makes no regions; say which elements"},
+       "region \"core\": box_min_m is missing: generator = \"ball\" defines no regions; select elements"},
       {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01}]"},
-       "says nothing of its material: give youngs_modulus_pa"},
+       "sets no material: give youngs_modulus_pa"},
       {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], youngs_modulus_pa = 1e5}]"},
        "region \"core\": radius_m is missing"},
       {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, box_min_m = [0, 0, 0], "
@@ -307,7 +311,7 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
        "box_max_m = -1 must not be below box_min_m = 0 along y"},
       {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus_pa = 1e5}, "
         "{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.02, density_kg_m3 = 2e3}]"},
-       "region \"core\": this is its second table"},
+       "region \"core\": this region has two tables"},
       {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, poissons_ratio = 0.5}]"},
        "poissons_ratio = 0.5 must lie in (-1, 0.5)"},
       {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus = 1e5}]"},
@@ -318,7 +322,7 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
         "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"cor\"}]"},
        "no [[body.region]] is called \"cor\" (did you mean \"core\"?)"},
       {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = 2e5}]"},
-       "time_s = 0.1 must be greater than the one before (0.1): both change the same"},
+       "time_s = 0.1 must be greater than the previous one (0.1): both change the same elements"},
       {{"record=true"}, "record must be one table: write [record]"},
   };
   for (const auto& [overrides, expected] : cases) {

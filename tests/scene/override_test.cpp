@@ -54,14 +54,13 @@ TEST(Override, IsNamedInErrors) {
             "called \"tol\" (did you mean \"tool\"?)");
   EXPECT_EQ(refusal("device.keyframe.1.time_s=0"),
             "--set device.keyframe.1.time_s=0: device: keyframe[1]: time_s = 0 must come after 0, the "
-            "keyframe before; put keyframes in the order of time");
+            "previous keyframe; put keyframes in order of time");
 }
 
 TEST(Override, ThatCannotBeAppliedSaysWhy) {
   EXPECT_EQ(refusal("tool.tick_s=1e-12"),
-            "--set tool.tick_s=1e-12: exchange: tick_s = 1e-12 of the tool makes 1e+10 ticks of one exchange "
-            "period of 0.01 s, at most 1e+06 are possible; "
-            "a haptic device asks for 0.001");
+            "--set tool.tick_s=1e-12: exchange: tick_s = 1e-12 of the tool gives 1e+10 ticks per exchange "
+            "period of 0.01 s, at most 1e+06 are possible; haptic devices use 0.001");
   EXPECT_EQ(refusal("body.0.youngs_modulus_pa"),
             "--set body.0.youngs_modulus_pa: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5");
   EXPECT_EQ(refusal("=3"), "--set =3: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5");
@@ -71,14 +70,15 @@ TEST(Override, ThatCannotBeAppliedSaysWhy) {
             "--set body.x.youngs_modulus_pa=1e5: \"x\" must be an index from 0 to 0");
   EXPECT_EQ(refusal("bodi.0.name=a"),
             "--set bodi.0.name=a: the scene has no \"bodi\" (did you mean \"body\"?)");
-  EXPECT_EQ(refusal("scene.name.x=1"), "--set scene.name.x=1: \"x\" stands inside a plain value");
-  EXPECT_EQ(refusal("scene.name.x.y=1"), "--set scene.name.x.y=1: \"x\" stands inside a plain value");
+  EXPECT_EQ(refusal("scene.name.x=1"), "--set scene.name.x=1: \"x\" is inside a value that is not a table");
+  EXPECT_EQ(refusal("scene.name.x.y=1"),
+            "--set scene.name.x.y=1: \"x\" is inside a value that is not a table");
   EXPECT_EQ(refusal("scene.duration_s=1 2"),
-            "--set scene.duration_s=1 2: `1 2` is not one TOML value; write a number, true, false, a word, "
-            "[1, 2, 3] or \"text\"");
-  EXPECT_EQ(refusal("scene.duration_s=1\nx=2"),
-            "--set scene.duration_s=1\nx=2: `1\nx=2` is not one TOML value; write a number, true, false, a "
+            "--set scene.duration_s=1 2: `1 2` is not a single TOML value; write a number, true, false, a "
             "word, [1, 2, 3] or \"text\"");
+  EXPECT_EQ(refusal("scene.duration_s=1\nx=2"),
+            "--set scene.duration_s=1\nx=2: `1\nx=2` is not a single TOML value; write a number, true, "
+            "false, a word, [1, 2, 3] or \"text\"");
   EXPECT_NE(refusal("scene..x=1"), "accepted");
   EXPECT_NE(refusal("...=1"), "accepted");
 }

@@ -97,7 +97,7 @@ TEST(Study, RefusesWhatMakesNoSense) {
   expect_refused(kHead + "[[random]]\nkey = \"a\"\nmin = 1\nmax = 2\n", {"seeds is missing"});
   expect_refused(kHead + sweep, {"sweep of \"a.b\"", "give values"});
   expect_refused(kHead + sweep + "values = []\n", {"at least one value"});
-  expect_refused(kHead + sweep + "values = [1, 1]\n", {"the value 1 stands there twice"});
+  expect_refused(kHead + sweep + "values = [1, 1]\n", {"the value 1 is given twice"});
   expect_refused(kHead + sweep + values + "count = 3\n", {"exclude each other"});
   expect_refused(kHead + sweep + "from = 1\n", {"belong together"});
   expect_refused(kHead + sweep + "from = 0\nto = 1\ncount = 3\nspacing = \"log\"\n", {"must be positive"});
@@ -105,7 +105,7 @@ TEST(Study, RefusesWhatMakesNoSense) {
   expect_refused(kHead + sweep + values + "together = true\n", {"needs a [[sweep]] before it"});
   expect_refused(kHead + sweep + values + "[[sweep]]\nkey = \"c\"\nvalues = [1]\ntogether = true\n",
                  {"together with \"a.b\", which has 2 values", "not 1"});
-  expect_refused(kHead + "[[sweep]]\nkey = \"integrator.name\"\n" + values, {"say integrators in [study]"});
+  expect_refused(kHead + "[[sweep]]\nkey = \"integrator.name\"\n" + values, {"set integrators in [study]"});
   expect_refused(kHead + "rtol = [1e-3]\n[[sweep]]\nkey = \"integrator.rtol\"\nvalues = [1e-4]\n",
                  {"[study] lists it too"});
   const std::string random = "seeds = 2\n[[random]]\nkey = \"a\"\n";

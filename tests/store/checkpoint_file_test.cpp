@@ -61,7 +61,7 @@ TEST(CheckpointFile, NeverSaysWhatWasNotWritten) {
       EXPECT_EQ(store::read_checkpoint(path).values, sample().values);
     } catch (const Error& error) {
       ++refused;
-      EXPECT_NE(std::string(error.what()).find(path + ": is no whole checkpoint"), std::string::npos)
+      EXPECT_NE(std::string(error.what()).find(path + ": is not a valid checkpoint"), std::string::npos)
           << error.what();
     }
   };
@@ -114,11 +114,13 @@ TEST(GoingOn, ATableFileIsMadeAnewFromItsJournal) {
     std::string flipped = rows;
     flipped[at] ^= 0x10;
     store::write_atomically(journal, flipped);
-    EXPECT_NE(message_of(again).find(journal + ": is not what the run had written"), std::string::npos) << at;
+    EXPECT_NE(message_of(again).find(journal + ": differs from its content at the checkpoint"),
+              std::string::npos)
+        << at;
   }
   EXPECT_EQ(store::read_file(path), tables_before) << "what is rejected stays as it is";
   std::filesystem::remove(journal);
-  EXPECT_NE(message_of(again).find("cannot go on without this file"), std::string::npos);
+  EXPECT_NE(message_of(again).find("cannot be resumed without this file"), std::string::npos);
 }
 
 TEST(GoingOn, ATextFileIsCutBack) {
@@ -141,7 +143,7 @@ TEST(GoingOn, ATextFileIsCutBack) {
     store::write_atomically(path, changed);
     EXPECT_NE(message_of([&] {
                 store::CsvWriter file(path, {"t", "f"}, place);
-              }).find("is not what the run"),
+              }).find("differs from its content"),
               std::string::npos);
     EXPECT_EQ(store::read_file(path), changed) << "what is rejected stays as it is";
   }
@@ -216,7 +218,7 @@ TEST(GoingOn, AFlippedBitInAStateIsFound) {
     flipped[at] ^= 1;
     store::write_atomically(path, flipped);
     EXPECT_NE(
-        message_of([&] { store::RunFile::continued(path, parts, info, place); }).find("its states are not"),
+        message_of([&] { store::RunFile::continued(path, parts, info, place); }).find("its states differ"),
         std::string::npos);
     EXPECT_EQ(store::read_file(path), flipped) << "what is rejected stays as it is";
     ++found;

@@ -55,7 +55,7 @@ TEST(Csv, AFullDiskIsSaidAtTheFlush) {
   store::CsvWriter csv("/dev/full", {"a"});
   csv.row(std::array{1.0});
   EXPECT_EQ(refusal([&] { csv.flush(); }),
-            "/dev/full: cannot be written any further (No space left on device); is the disk full?");
+            "/dev/full: cannot be written further (No space left on device); is the disk full?");
   store::ForceFile forces("/dev/full");
   forces.append({});
   EXPECT_NE(refusal([&] { forces.close(); }), "accepted");
@@ -91,16 +91,15 @@ TEST(Csv, ErrorsSayWhere) {
   EXPECT_EQ(read("a,b\n1,2\n3\n", "a"), path + ": row 2 has 1 cells, must have 2");
   EXPECT_EQ(read("a,b\r\n1,2\r\n", "a"), "accepted") << "as Windows writes it";
   EXPECT_EQ(read("force_n\n1\n", "force_m"), "no column \"force_m\" (did you mean \"force_n\"?)");
-  EXPECT_EQ(read("a\n1\n2x\n", "a"), "column \"a\", row 2: \"2x\" is no number");
+  EXPECT_EQ(read("a\n1\n2x\n", "a"), "column \"a\", row 2: \"2x\" is not a number");
   EXPECT_NE(
       read("a\n1\n9007199254740993\n", "a").find("column \"a\", row 2: 9007199254740993 must be at most"),
       std::string::npos);
   EXPECT_EQ(read("a\n9007199254740992\n1e300\n", "a"), read("a\n1\n", "a")) << "accepted";
-  EXPECT_EQ(read("a\n1\n\"2\n", "a"), path + ":3: a quote is never closed");
-  EXPECT_EQ(
-      refusal([] { store::CsvWriter csv("/no/such/a.csv", {"a"}); }),
-      "/no/such/a.csv: cannot be written (No such file or directory); is its folder there, writable, and "
-      "not full?");
+  EXPECT_EQ(read("a\n1\n\"2\n", "a"), path + ":3: unterminated quote");
+  EXPECT_EQ(refusal([] { store::CsvWriter csv("/no/such/a.csv", {"a"}); }),
+            "/no/such/a.csv: cannot be written (No such file or directory); check that its folder exists, is "
+            "writable and is not full");
   EXPECT_EQ(refusal([] { store::read_csv("/no/such.csv"); }),
             "/no/such.csv: no such file, or it cannot be read");
   store::CsvWriter csv(path, {"a", "b"});
@@ -112,7 +111,7 @@ TEST(Csv, AFullDiskIsReported) {
   store::CsvWriter csv("/dev/full", {"a"});
   csv.row(std::array{1.0});
   EXPECT_EQ(refusal([&] { csv.close(); }),
-            "/dev/full: cannot be written any further (No space left on device); is the disk full?");
+            "/dev/full: cannot be written further (No space left on device); is the disk full?");
 }
 
 TEST(ForceFile, RoundTrip) {
@@ -155,10 +154,9 @@ TEST(AtomicFile, ReplacesWholeAndLeavesNothingBeside) {
   int files = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder / "")) ++files;
   EXPECT_EQ(files, 1);
-  EXPECT_EQ(
-      refusal([] { store::write_atomically("/no/such/a.txt", "x"); }),
-      "/no/such/a.txt: cannot be written (No such file or directory); is its folder there, writable, and "
-      "not full?");
+  EXPECT_EQ(refusal([] { store::write_atomically("/no/such/a.txt", "x"); }),
+            "/no/such/a.txt: cannot be written (No such file or directory); check that its folder exists, is "
+            "writable and is not full");
 }
 
 }  // namespace

@@ -66,11 +66,11 @@ TEST(MeshFile, RefusesWrongShapesTypesAndValues) {
   EXPECT_EQ(refusal(path), ": has no data set \"nodes\"");
   put(path, false, "nodes", H5T_NATIVE_DOUBLE, {4, 3}, nodes);
   put(path, false, "tets", H5T_NATIVE_LLONG, {1, 4}, tet);
-  EXPECT_EQ(refusal(path), ": tets[0] names node 4, must lie in [0, 4); indices count from 0");
+  EXPECT_EQ(refusal(path), ": tets[0] refers to node 4, must lie in [0, 4); indices count from 0");
   tet[3] = 1LL << 32;  // not 0 by way of 32 bits
   put(path, true, "nodes", H5T_NATIVE_DOUBLE, {4, 3}, nodes);
   put(path, false, "tets", H5T_NATIVE_LLONG, {1, 4}, tet);
-  EXPECT_EQ(refusal(path), ": tets[0] names node 4294967296, must lie in [0, 4); indices count from 0");
+  EXPECT_EQ(refusal(path), ": tets[0] refers to node 4294967296, must lie in [0, 4); indices count from 0");
   nodes[7] = std::nan("");
   put(path, true, "nodes", H5T_NATIVE_DOUBLE, {4, 3}, nodes);
   put(path, false, "tets", H5T_NATIVE_LLONG, {1, 4}, tet);

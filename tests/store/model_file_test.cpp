@@ -93,10 +93,11 @@ TEST(ModelFile, RegionsAreReadAlone) {
     } catch (const Error& e) { return e.what(); }
   };
   EXPECT_EQ(refusal({{"a", {0, 1}}, {"b", {1}}}), "accepted");  // groups of Gmsh overlap
-  EXPECT_NE(refusal({{"a", {1, 1}}}).find("those of region \"a\" must rise, each once"), std::string::npos);
-  EXPECT_NE(refusal({{"a", {0}}, {"a", {1}}}).find("\"a\" names two regions"), std::string::npos);
-  EXPECT_NE(refusal({{"a", {1, 0}}}).find("those of region \"a\" must rise"), std::string::npos);
-  EXPECT_NE(refusal({{"a", {0, 2}}}).find("names 2, must lie in [0, 2)"), std::string::npos);
+  EXPECT_NE(refusal({{"a", {1, 1}}}).find("the tetrahedra of region \"a\" must increase strictly"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"a", {0}}, {"a", {1}}}).find("\"a\" is the name of two regions"), std::string::npos);
+  EXPECT_NE(refusal({{"a", {1, 0}}}).find("the tetrahedra of region \"a\" must increase"), std::string::npos);
+  EXPECT_NE(refusal({{"a", {0, 2}}}).find("refers to 2, must lie in [0, 2)"), std::string::npos);
   EXPECT_NE(refusal({{"a", {0}, -1.0}}).find("has factors -1 and 1, must be positive"), std::string::npos);
 }
 
@@ -148,15 +149,15 @@ std::string refusal(Change change) {
 TEST(ModelFile, RefusesPartsThatDoNotFit) {
   EXPECT_EQ(refusal([](LayeredModel&) {}), "accepted");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.tets.tets(0, 1) = 9; }),
-            ": tets[1] names node 9, must lie in [0, 5); indices count from 0");
+            ": tets[1] refers to node 9, must lie in [0, 5); indices count from 0");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.skin.faces(0, 0) = 4; }),
-            ": \"skin/faces\" names 4, must lie in [0, 4); indices count from 0");
+            ": \"skin/faces\" refers to 4, must lie in [0, 4); indices count from 0");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.skin.vertices(1, 2) = NAN; }),
             ": \"skin/vertices\": row 2 is not finite");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.embedding.tet.pop_back(); }),
             ": \"embedding/tet\" has 3 rows, must have 4");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.embedding.tet[1] = 2; }),
-            ": \"embedding/tet\" names 2, must lie in [0, 2); indices count from 0");
+            ": \"embedding/tet\" refers to 2, must lie in [0, 2); indices count from 0");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.embedding.weights(0, 3) = 0.5; }),
             ": \"embedding/weights\": row 3 sums to 1.5, must sum to 1");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.proxies[1].members = {2}; }),
@@ -164,20 +165,20 @@ TEST(ModelFile, RefusesPartsThatDoNotFit) {
   EXPECT_EQ(refusal([](LayeredModel& m) {
               m.proxies[1].members = {3, 2};
             }),
-            ": the members of proxy 1 must rise, each once");
+            ": the members of proxy 1 must increase strictly");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.proxies[0].bone = 2; }),
-            ": \"proxies/bone\" names 2, must lie in [-1, 2); indices count from 0");
+            ": \"proxies/bone\" refers to 2, must lie in [-1, 2); indices count from 0");
   EXPECT_EQ(
       refusal([](LayeredModel& m) { m.proxies[0].corners.resize(3, 33), m.proxies[0].corners.setZero(); }),
       ": proxy 0 has 33 corners, must have between 1 and 32");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.skeleton.bones[0].parent = 1; }),
-            ": \"skeleton/parent\" names 1, must lie in [-1, 0); indices count from 0");
+            ": \"skeleton/parent\" refers to 1, must lie in [-1, 0); indices count from 0");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.skeleton.bones[1].head_radius = 0; }),
             ": bone \"tip of it\" has radii 0 and 0.30000000000000004 m, must be positive");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.bone_of_node[0] = 2; }),
-            ": \"skeleton/bone_of_node\" names 2, must lie in [-1, 2); indices count from 0");
+            ": \"skeleton/bone_of_node\" refers to 2, must lie in [-1, 2); indices count from 0");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.regions[1].tets = {2}; }),
-            ": \"regions/tets\" names 2, must lie in [0, 2); indices count from 0");
+            ": \"regions/tets\" refers to 2, must lie in [0, 2); indices count from 0");
   EXPECT_EQ(refusal([](LayeredModel& m) { m.regions[1].density_factor = -1; }),
             ": region \"hard\" has factors 20 and -1, must be positive");
 }
@@ -207,7 +208,7 @@ TEST(ModelFile, OffsetsThatDoNotRiseAreRefused) {
     FAIL() << "accepted";
   } catch (const Error& e) {
     EXPECT_EQ(std::string(e.what()).substr(path.size()),
-              ": \"proxies/corner_offsets\" must rise from 0 to 5");
+              ": \"proxies/corner_offsets\" must increase from 0 to 5");
   }
 }
 

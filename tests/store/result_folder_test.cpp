@@ -79,7 +79,7 @@ TEST(ResultFolder, AFileOfThatNameIsRefused) {
   const palpate::TemporaryFolder folder;
   const std::string path = folder.write("file", "mine").string();
   EXPECT_EQ(refusal(path),
-            path + ": this output folder cannot be made (Not a directory); choose another with -o DIR");
+            path + ": this output folder cannot be created (Not a directory); choose another with -o DIR");
 }
 
 }  // namespace

@@ -120,10 +120,9 @@ std::string refusal(const auto& action) {
 
 TEST(RunFile, ErrorsNameTheFile) {
   const sample_run::Folder folder;
-  EXPECT_TRUE(
-      refusal([] { RunFile("/no/such/folder/run.vtkhdf", sample_run::parts(), sample_run::info(1)); })
-          .starts_with(
-              "/no/such/folder/run.vtkhdf: cannot be written; is its folder there, writable, and not full?"));
+  EXPECT_TRUE(refusal([] { RunFile("/no/such/folder/run.vtkhdf", sample_run::parts(), sample_run::info(1)); })
+                  .starts_with("/no/such/folder/run.vtkhdf: cannot be written; check that its folder exists, "
+                               "is writable and is not full"));
   EXPECT_EQ(refusal([] { RunReader run("/no/such.vtkhdf"); }), "/no/such.vtkhdf: no such file");
   const std::string text = folder / "text.vtkhdf";
   std::ofstream(text) << "not HDF5";

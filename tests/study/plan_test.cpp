@@ -129,10 +129,10 @@ TEST(StudyPlan, RefusesWhatNoTaskCanDo) {
     });
   };
   const std::string typo = said("[[sweep]]\nkey = \"body.0.youngs_modulus\"\nvalues = [1e4]\n");
-  expectations::expect_contains(typo, "block.toml refuses every task");
+  expectations::expect_contains(typo, "every task of scene block.toml is rejected");
   expectations::expect_contains(typo, "did you mean \"youngs_modulus_pa\"?");
   expectations::expect_contains(said("integrators = [\"cvode-bfd\"]\n"), "did you mean \"cvode-bdf\"?");
-  expectations::expect_contains(said("set = [\"body.1.name=x\"]\n"), "refuses every task");
+  expectations::expect_contains(said("set = [\"body.1.name=x\"]\n"), "every task of scene");
   expectations::expect_contains(
       said("seeds = 1000\n[[random]]\nkey = \"body.0.youngs_modulus_pa\"\nmin = 1\nmax = 2\n[[sweep]]\nkey = "
            "\"body.0.poissons_ratio\"\nfrom = 0.1\nto = 0.4\ncount = 1001\n"),

@@ -33,7 +33,7 @@ struct MeshRanges {
   static constexpr Range grading = Range::closed(
       0.5, 32.0, "1 is uniform, 2 makes elements in the middle twice as large as at the surface");
   /// Factor on a file's coordinates.
-  static constexpr Range scale = Range::positive("0.001 turns a file in millimetres into metres");
+  static constexpr Range scale = Range::positive("0.001 converts a file in millimetres to metres");
 };
 
 }  // namespace palpate

@@ -77,7 +77,7 @@ class ByteReader {
  private:
   const char* take(std::size_t count) {
     if (count > bytes_.size() - at_)
-      fail("a stored result ends too soon ({} of {} bytes)", at_, bytes_.size());
+      fail("a stored result is truncated ({} of {} bytes)", at_, bytes_.size());
     const char* out = bytes_.data() + at_;
     at_ += count;
     return out;

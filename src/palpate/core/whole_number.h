@@ -9,7 +9,7 @@ namespace palpate {
 
 inline constexpr std::int64_t kLargestWhole = std::int64_t{1} << 53;
 inline constexpr const char* kWholeDemand =
-    "must be at most 9007199254740992 (2^53) in size; write a larger one with an exponent, as 1e16";
+    "must be at most 9007199254740992 (2^53) in magnitude; write larger numbers with an exponent, as in 1e16";
 
 /// Whether an integer exceeds 2^53 in magnitude.
 constexpr bool beyond_whole(std::int64_t value) { return value > kLargestWhole || value < -kLargestWhole; }

@@ -5,7 +5,7 @@
     simulation.advance(0.2)
     print(simulation.force, simulation.body("ball").positions)
 
-SI units throughout; positions are arrays of one row a point.  docs/python.md is the page to begin with.
+SI units throughout; positions are arrays with one row per point.  docs/python.md is the page to begin with.
 `palpate.plot` has charts (Matplotlib), and is imported only where it is asked for.
 """
 from ._blas import settings_of_the_program

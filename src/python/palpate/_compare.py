@@ -30,19 +30,19 @@ def _array(cells: list[str]) -> NDArray[Any]:
 
 
 class Comparison:
-    """What a comparison found: a column of `compare.csv` an array, a row a point (integrator and setting).
+    """Result of a comparison: one array per column of `compare.csv`, one entry per integrator and setting.
 
     comparison["cpu_s_median"], or comparison.cost and comparison.error for the two that charts show.
     """
 
     def __init__(self, columns: dict[str, NDArray[Any]], facts: dict[str, Any]):
-        self.columns = columns  #: name -> array, one entry a point
+        self.columns = columns  #: name -> array, one entry per point
         #: "reference": its integrators in words; its own errors; "rules": how runs were repeated and limited
         self.facts = facts
 
     def __getitem__(self, column: str) -> NDArray[Any]:
         if column not in self.columns:
-            raise KeyError(f"no column {column!r}; there are {', '.join(self.columns)}")
+            raise KeyError(f"no column {column!r}; known are {', '.join(self.columns)}")
         return self.columns[column]
 
     def __len__(self) -> int:
@@ -50,16 +50,16 @@ class Comparison:
 
     @property
     def error(self) -> NDArray[Any]:
-        """Of positions, relative to the deformation; NaN where a point has none."""
+        """Error of positions, relative to the deformation; NaN for points without one."""
         return self["position_error_rel_l2"]
 
     @property
     def cost(self) -> NDArray[Any]:
-        """CPU time of the loop, median of the repeats [s]; NaN where there is none."""
+        """CPU time of the loop, median of the repeats [s]; NaN for points without one."""
         return self["cpu_s_median"]
 
     def frame(self) -> pandas.DataFrame:
-        """All columns as a pandas frame, a row a point."""
+        """All columns as a pandas frame, one row per point."""
         try:
             import pandas
         except ImportError as missing:
@@ -71,11 +71,12 @@ class Comparison:
 def compare(scene: Scene, integrators: Sequence[str] = (), *, limit_s: float = 10.0,
             reference_limit_s: float = 120.0, repeats: int = 3, jobs: int = 0,
             linear_solver: str = "cholmod") -> Comparison:
-    """Runs integrators over ladders of tolerances or steps against the scene's reference.
+    """Runs integrators over sequences of tolerances or steps against the scene's reference.
 
-    As `palpate compare` does, with its options: `integrators` are names or labels of ladders, none means the
-    scene's and all others; `limit_s` CPU seconds a point; `jobs` 0 for what is timed with nothing beside it.
-    It has no effect on this process: all runs are in processes of their own.
+    Takes the options of `palpate compare`: `integrators` are names or labels of [[compare.ladder]], none
+    means the scene's and all others; `limit_s` is in CPU seconds per point; with `jobs` 0, timed runs run
+    alone.
+    All runs are in separate processes, so this one is not affected.
     """
     if isinstance(integrators, str):
         integrators = [integrators]

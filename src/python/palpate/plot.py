@@ -25,7 +25,7 @@ def _axes(axes: Axes | None) -> Axes:
 
 
 def force(simulation: Simulation, hand: str = "tool", axes: Axes | None = None) -> Axes:
-    """Force on a hand over time: its three components and its magnitude.  Gives the axes."""
+    """Force on a hand over time: its three components and its magnitude.  Returns the axes."""
     axes = _axes(axes)
     felt = simulation.hand(hand)
     for component, name in zip(felt.forces.T, "xyz"):
@@ -39,7 +39,7 @@ def force(simulation: Simulation, hand: str = "tool", axes: Axes | None = None) 
 
 def work_precision(comparison: Comparison, error: str = "position_error_rel_l2",
                    axes: Axes | None = None) -> Axes:
-    """Error over run time, a line a ladder; points without an error are left out.  Gives the axes."""
+    """Error over run time, one line per label, without points that have no error.  Returns the axes."""
     axes = _axes(axes)
     labels, cost, errors = comparison["label"], comparison.cost, comparison[error]
     for label in dict.fromkeys(labels):
