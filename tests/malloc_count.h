@@ -3,7 +3,7 @@
 #include <cstddef>
 
 // Counts every call of malloc in this program (operator new and Eigen end there): include it in one file of a
-// test.  Sanitizers bring their own malloc: then the test skips.
+// test. Sanitizers replace malloc: the test then skips.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
 #define PALPATE_CAN_COUNT 0
 #else

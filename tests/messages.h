@@ -5,10 +5,10 @@
 #include <functional>
 #include <string>
 
-/// What an error says.
+/// Helpers for tests of error messages.
 namespace palpate::expectations {
 
-/// Message of the Error or InternalError that f throws; empty when it throws none.
+/// Returns the message of the Error or InternalError that f throws; empty if it throws none.
 inline std::string message_of(const std::function<void()>& f) {
   try {
     f();

@@ -14,14 +14,14 @@
 
 namespace palpate {
 
-/// A folder that belongs to one test alone, under a name that nobody else has: two people, or two tests, on
-/// one machine do not meet.  It goes with its owner, unless the test has failed: then it stays to be looked
-/// at, and its place is printed.
+/// Temporary folder of one test, with a unique name, so that concurrent tests and users on one machine do not
+/// collide. It is removed with its owner, unless the test has failed: then it is kept for inspection, and its
+/// path is printed.
 class TemporaryFolder {
  public:
-  /// In the system's folder for temporary files ($TMPDIR).
+  /// Creates the folder in the system's folder for temporary files ($TMPDIR).
   TemporaryFolder() : TemporaryFolder(std::filesystem::temp_directory_path()) {}
-  /// @param parent  another place for it: "/dev/shm" for thousands of small files
+  /// @param parent  another location: "/dev/shm" for thousands of small files
   explicit TemporaryFolder(const std::filesystem::path& parent) {
     std::string pattern = (parent / "palpate-test-XXXXXX").string();
     if (!::mkdtemp(pattern.data()))
@@ -30,7 +30,7 @@ class TemporaryFolder {
     owner_ = ::getpid();
   }
   ~TemporaryFolder() {
-    if (::getpid() != owner_) return;  // a process that the test has forked
+    if (::getpid() != owner_) return;  // a process forked by the test
     if (testing::Test::HasFailure()) {
       std::printf("kept for a look: %s\n", path_.c_str());
       return;
@@ -44,7 +44,7 @@ class TemporaryFolder {
   const std::filesystem::path& path() const { return path_; }
   std::string string() const { return path_.string(); }
   std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
-  /// Writes a file into it.  @return its path
+  /// Writes a file into the folder. @return its path
   std::filesystem::path write(const std::string& name, std::string_view text) const {
     std::ofstream(path_ / name, std::ios::binary) << text;
     return path_ / name;

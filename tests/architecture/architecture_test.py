@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The tree keeps the allowed dependencies between parts; the check is shown to fail on planted breaches."""
+"""The tree keeps the allowed dependencies between parts; planted violations show that the check detects
+them."""
 import re
 import sys
 import tempfile

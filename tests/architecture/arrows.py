@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Reads the #include lines of the tree and says which arrows are not allowed.
+"""Reads the #include lines of the tree and reports dependencies that are not allowed.
 
-    arrows.py [TREE]      prints each breach as FILE:LINE: what, and exits 1 when there is one
+    arrows.py [TREE]      prints each violation as FILE:LINE: what, and exits 1 if there is one
 
-ALLOWED is the table of the parts: what a part may include besides itself.  Everything here is data; the check
+ALLOWED is the table of the parts: the other parts that each may include. Everything here is data; the check
 is below it.
 """
 import re
@@ -23,7 +23,7 @@ ALLOWED = {
     "proxy": ["core", "mesh"],
     "gl": ["core"],
     "contact": ["core", "mesh", "proxy", "distance", "dynamics", "gl"],
-    "simbody": [],  # Simbody's headers as its library was built; see WRAPPERS
+    "simbody": [],  # headers of Simbody, in the configuration in which its library was built; see WRAPPERS
     "tool": ["core", "dynamics", "simbody"],
     "device": ["core"],
     "bones": ["core", "mesh", "dynamics", "device", "simbody"],
@@ -37,10 +37,10 @@ ALLOWED = {
     "model_program": ["core", "mesh", "proxy", "store", "render", "report", "model", "shapes", "cli"],
     "scene": ["core"],  # and the spec.h of every part: see is_allowed
     "loop": BELOW_LOOP,
-    "compare": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
+    "compare": ["core", "scene", "loop", "store"],  # core and scene: used in loop's headers
     "study": ["core", "scene", "loop", "store"],
-    "stability": BELOW_LOOP + ["loop"],  # builds its cases from the parts themselves, as validation does
-    "bench": BELOW_LOOP + ["loop"],  # bench/fem: a beam made of the parts themselves, without a scene
+    "stability": BELOW_LOOP + ["loop"],  # builds its cases from the parts directly, as validation does
+    "bench": BELOW_LOOP + ["loop"],  # bench/fem: a beam built from the parts, without a scene
     "report": ["core", "mesh", "store"],
     "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "study", "stability", "bench",
             "report", "validation"],
@@ -48,7 +48,7 @@ ALLOWED = {
     "validation": BELOW_LOOP + ["loop", "compare", "report", "simbody"],  # the cases in validation/
 }
 
-# Headers of outside libraries, and the only folders that may include them.
+# Headers of external libraries, and the only folders that may include them.
 OUTSIDE = [
     ("SUNDIALS",
      r"(sundials|cvode|cvodes|arkode|ida|idas|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol|sunmemory)/",
@@ -71,11 +71,12 @@ OUTSIDE = [
     ("HDF5", r"(hdf5|H5\w+)\.h", ["src/store", "tests/store", "tests/fuzz"]),
 ]
 
-# Parts that only wrap a library for others: what stands in src/ there is for all that may include them.
+# Parts that only wrap a library for others: their headers in src/ may be used by all parts that may include
+# them.
 WRAPPERS = ["simbody"]
 
-# Headers that a user of the library may include, and those that parts share with each other alone: both are
-# included as "palpate/PART/NAME.h".  What stands in src/PART is the part's own.
+# Headers that users of the library may include, and headers shared between parts only: both are included as
+# "palpate/PART/NAME.h". Headers in src/PART are private to the part.
 PROMISED = "include/palpate/"
 SHARED = "src/palpate/"
 
@@ -85,7 +86,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 
 
 def part_of(path):
-    """The part that a file belongs to: by its folder under src/, src/palpate/ or include/palpate/."""
+    """Returns the part that a file belongs to, by its folder under src/, src/palpate/ or include/palpate/."""
     pieces = path.split("/")
     if pieces[0] == "validation":
         return "validation"
@@ -101,7 +102,7 @@ def part_of(path):
 
 
 def resolve(path, quoted, name, files):
-    """The file of the tree that an include means, or None where it is the system's."""
+    """Returns the file of the tree that an include refers to, or None if it is a system header."""
     beside = (Path(path).parent / name).as_posix()
     candidates = ["include/" + name, "src/" + name]
     if quoted:
@@ -123,7 +124,7 @@ def is_allowed(source, target):
     own, other = part_of(source), part_of(target)
     if own == other:
         return True
-    if is_spec(target) and (is_spec(source) or own == "scene"):  # plain data may be made of plain data
+    if is_spec(target) and (is_spec(source) or own == "scene"):  # plain data may consist of plain data
         return True
     return other in ALLOWED[own]
 
@@ -137,7 +138,7 @@ def includes(tree, path):
 
 
 def find_cycle(graph):
-    """One cycle of files as a list, or None: depth-first, without recursion."""
+    """Returns one cycle of files as a list, or None: depth-first, without recursion."""
     state = {}
     for start in sorted(graph):
         if start in state:
@@ -166,7 +167,7 @@ def source_files(tree, folders):
 
 
 def check(tree):
-    """(breaches, remarks): lists of strings."""
+    """Returns (breaches, remarks): lists of strings."""
     tree = Path(tree)
     files = source_files(tree, ["include", "src", "validation"])
     known = set(files)
@@ -219,7 +220,7 @@ def check(tree):
 
 
 def link_breaches(tree):
-    """The same table for what a part links: palpate::PART in src/PART/CMakeLists.txt."""
+    """Applies the same table to the libraries that a part links: palpate::PART in src/PART/CMakeLists.txt."""
     out = []
     for listing in sorted((tree / "src").glob("*/CMakeLists.txt")):
         own = listing.parent.name

@@ -30,8 +30,8 @@ std::vector<BoneSpec> shapes() {
 
 }  // namespace
 
-// Volume and second moments by the midpoint rule over what inside_bone says is inside, on a grid rotated
-// against the shape, so that no face runs along it.
+// Volume and second moments equal those of the region for which inside_bone() returns true, integrated by the
+// midpoint rule on a grid that is rotated against the shape, so that no face is aligned with it.
 TEST(Bone, MassAndInertiaAreThoseOfItsInside) {
   for (BoneSpec spec : shapes()) {
     spec.density_kg_m3 = 1800.0;

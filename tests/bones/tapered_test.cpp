@@ -22,7 +22,8 @@ palpate::Bone bone_of(double r0, double r1, double length) {
   return b;
 }
 
-/// Volume, middle and moments of a closed surface by tetrahedra from the origin: exact for the polyhedron.
+/// Volume, centre and second moments of a closed surface, summed over tetrahedra from the origin: exact for
+/// the polyhedron.
 struct Solid {
   double volume = 0.0;
   Vec3 middle = Vec3::Zero(), moments = Vec3::Zero();
@@ -44,7 +45,7 @@ struct Solid {
 
 }  // namespace
 
-// A capsule has closed forms of its own (bone.cpp), a ball as well.
+// Capsule and ball have closed forms (bone.cpp), which a tapered bone of equal radii must reproduce.
 TEST(TaperedBone, OfOneRadiusIsTheCapsule) {
   BoneSpec capsule;
   capsule.name = "c";
@@ -70,8 +71,8 @@ TEST(TaperedBone, WhoseBallHoldsTheOtherIsThatBall) {
   }
 }
 
-// Its surface is inscribed, 24 meridians and 6 rings a cap: it lacks 1 - (24/2 pi) sin(2 pi/24) = 1.1 % of
-// its sections and as much again of the caps.
+// The surface mesh is inscribed, with 24 meridians and 6 rings per cap: its cross-sections are smaller by 1 -
+// (24/2 pi) sin(2 pi/24) = 1.1 %, and its caps by as much again.
 TEST(TaperedBone, HasTheMassOfItsSurface) {
   for (const auto& [r0, r1] : {std::pair{0.03, 0.015}, {0.01, 0.04}, {0.02, 0.02}}) {
     const palpate::Bone b = bone_of(r0, r1, 0.12);

@@ -27,7 +27,8 @@ TreeBone bone_at(const std::string& name, int parent, Joint joint, const Vec3& j
   return b;
 }
 
-/// Every joint there is: a free root; a ball on it; on that a hinge with a weld behind it, and another ball.
+/// Tree with every joint type: a free root; a ball joint on it; on that a hinge that carries a weld, and a
+/// second ball joint.
 std::vector<TreeBone> limbs() {
   std::vector<TreeBone> bones;
   bones.push_back(bone_at("root", -1, Joint::kFree, Vec3::Zero(), Vec3(0.1, 0.2, 0.3)));
@@ -43,7 +44,7 @@ std::vector<TreeBone> limbs() {
   return bones;
 }
 
-/// Coordinates at random, and steps along u from them.
+/// Random coordinates, and finite steps along u from them.
 struct Coordinates {
   const BoneTree& tree;
   dynamics::BlockSpec block;
@@ -58,8 +59,8 @@ struct Coordinates {
     for (double& x : displacement) x = 0.8 * uniform(rng);
     for (int i = 0; i < 20; ++i) q = moved(q, displacement / 20.0);
   }
-  /// q a step of displacement d away: one step of the rule of Simpson's kind (midpoint), enough where d is
-  /// small.
+  /// Returns q after a displacement d, integrated by one step of the midpoint rule; accurate enough for small
+  /// d.
   VecX moved(const VecX& from, const VecX& d) const {
     VecX rate(q.size()), half = from, out = from;
     block.kinematics->q_dot(half, d, rate);
@@ -97,9 +98,9 @@ TEST(BoneTree, OneFreeBoneIsTheRigidBodyOfTheClosedForm) {
   EXPECT_LT((m.pose.translation - at.q.tail<3>()).norm(), 1e-15);
 }
 
-// Two rods on hinges about y in a plane, x to the side and z up.  With angles a, b of the rods from straight
-// down (b of the second absolute), length L of the first, distance d of a middle of mass from its joint, and
-// I about it, the Lagrangian gives
+// Double pendulum in a plane, x to the side and z up: two rods on hinges about y. With angles a, b of the
+// rods from straight down (both absolute), length L of the first rod, distance d of a centre of mass from its
+// joint, and I about the centre of mass, the Lagrangian gives
 //   M_aa = I1 + m1 d^2 + m2 L^2,  M_ab = m2 L d cos(a - b),  M_bb = I2 + m2 d^2,
 //   Q_a = -(m1 d + m2 L) g sin a - m2 L d sin(a - b) b'^2,   Q_b = -m2 d g sin b + m2 L d sin(a - b) a'^2.
 // The tree's second coordinate is b - a, so u = (a', b' - a') and
@@ -177,7 +178,7 @@ TEST(BoneTree, ItsJointsNeverComeApart) {
   }
 }
 
-// d/dt (u M u / 2 + V) = -P along M u' = f.
+// Energy balance: d/dt (u M u / 2 + V) = -P along M u' = f, with P the power dissipated by the dampers.
 TEST(BoneTree, WhatItLosesIsWhatItsDampersTake) {
   const BoneTree tree(limbs(), kGravity);
   for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -229,7 +230,7 @@ TEST(BoneTree, HeldForcesStiffenItAsTheirDerivativeSays) {
 
 TEST(BoneTree, TheTangentIsTheDerivativeAtRest) {
   std::vector<TreeBone> bones = limbs();
-  bones[1].joint = Joint::kHinge;  // a ball's spring enters by its symmetric part alone: see below
+  bones[1].joint = Joint::kHinge;  // only the symmetric part of a ball's spring enters the tangent: see below
   const BoneTree tree(bones, kGravity);
   const Coordinates at(tree, 4);
   const VecX still = VecX::Zero(tree.u_size());
@@ -266,7 +267,7 @@ TEST(BoneTree, ItsKinematicsHaveALeftInverse) {
   EXPECT_LT((u - at.u).norm(), 1e-14);
 }
 
-// Tolerances in other units: those of the position of a root scale with the length, those of angles do not.
+// In other length units, the tolerances of the root's position scale with the length; those of angles do not.
 TEST(BoneTree, KnowsItsAnglesFromItsLengths) {
   std::vector<TreeBone> bones{bone_at("root", -1, Joint::kFree, Vec3::Zero(), Vec3::Zero()),
                               bone_at("hinge", 0, Joint::kHinge, Vec3(0.1, 0.0, 0.0), Vec3(0.2, 0.0, 0.0)),

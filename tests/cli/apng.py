@@ -1,10 +1,10 @@
-"""Reads PNG files and animated ones (PNG, third edition) with nothing but zlib: a second opinion on what
-palpate writes.  Anything that the standard forbids is a ValueError."""
+"""Reads PNG files and animated ones (PNG, third edition) with zlib only: independent of palpate's writer.
+Anything that the standard forbids is a ValueError."""
 import struct
 import zlib
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
-CHANNELS = {2: 3, 6: 4}  # RGB, RGBA, of 8 bits
+CHANNELS = {2: 3, 6: 4}  # RGB, RGBA, 8 bits each
 
 
 def need(condition, message):
@@ -13,7 +13,7 @@ def need(condition, message):
 
 
 def chunks(data):
-    """(type, data) of each chunk, its CRC checked."""
+    """Yields (type, data) of each chunk, after checking its CRC."""
     need(data.startswith(SIGNATURE), "no PNG")
     at = len(SIGNATURE)
     while at < len(data):
@@ -27,7 +27,7 @@ def chunks(data):
 
 
 def unfiltered(data, width, height, channels):
-    """Rows of bytes."""
+    """Returns the rows of bytes without their filters."""
     raw, row_bytes = zlib.decompress(data), width * channels
     need(len(raw) == height * (row_bytes + 1), f"{len(raw)} bytes of pixels")
     rows, above = [], bytearray(row_bytes)
@@ -55,8 +55,8 @@ def unfiltered(data, width, height, channels):
 
 
 class Animation:
-    """width, height; delays: [s] of each frame; frames: each a list of rows of (r, g, b) as bytes, composed
-    over those before.  A PNG that is not animated has one frame, and no delays."""
+    """width, height; delays: [s] per frame; frames: each a list of rows of (r, g, b) as bytes, composed over
+    the previous frames. A PNG without animation has one frame, and no delays."""
 
     def __init__(self, path):
         self.delays, self.frames, self.canvas = [], [], None
@@ -91,7 +91,7 @@ class Animation:
         need(self.numbers == list(range(len(self.numbers))), "sequence numbers")
 
     def show(self):
-        """The frame whose data has been read."""
+        """Composes the frame whose data has been read."""
         if not self.pixels:
             return
         width, height, left, top, _, blend = self.control

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What can go wrong around a run: each case a clear message, and nothing lost.
+"""Failures around a run: each case gives a clear message, and nothing is lost.
 
     bad_input_test.py PROGRAM [CORPORA]
 """
@@ -21,12 +21,12 @@ from pathlib import Path
 PROGRAM = Path(sys.argv[1]).resolve()
 CORPORA = Path(__file__).resolve().parents[1] / "fuzz/corpus"
 LONG = ["run", "one-tet", "--duration-s", "1e6"]  # ends only when it is stopped
-# Mounts of its own: of root, or of a user where the kernel lets users have them.
+# A separate mount namespace: by root, or by a user if the kernel permits it.
 NAMESPACE = ["unshare", "--mount", *([] if os.geteuid() == 0 else ["--user", "--map-root-user"])]
 
 
 def can_mount():
-    """Whether a small file system of its own can be had."""
+    """Returns whether a small separate file system can be mounted."""
     if not shutil.which("unshare"):
         return False
     with tempfile.TemporaryDirectory() as folder:
@@ -54,7 +54,7 @@ class Case(unittest.TestCase):
         return done.stdout
 
     def refused(self, *arguments, **options):
-        """One sentence on standard error, and exit status 1."""
+        """Checks for exit status 1 and returns the one sentence on standard error."""
         done = self.call(*arguments, **options)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assertTrue(done.stderr.startswith("palpate: error: "), done.stderr)
@@ -76,7 +76,7 @@ class Case(unittest.TestCase):
             time.sleep(0.02)
 
     def steps(self, run):
-        """Times of the recorded states, as export finds them."""
+        """Returns the times of the recorded states, as found by export."""
         self.good("export", run, "--to", "csv", "-o", "steps")
         with open(self.folder / "steps/nodes.csv", encoding="utf-8") as file:
             times = sorted({float(row["time_s"]) for row in csv.DictReader(file)})
@@ -88,7 +88,7 @@ class Case(unittest.TestCase):
 
 
 def on_full_disk(size, then):
-    """Runs the program in `full`, a disk of that size, and keeps what is on it afterwards in `then`."""
+    """Runs the program in `full`, a disk of that size, and copies the disk's content to `then` afterwards."""
     script = (f'mount -t tmpfs -o size={size} none full && "$@"; s=$?; '
               f'cp -r --sparse=always full {then}; exit $s')
     return [*NAMESPACE, "sh", "-c", script, "sh"]
@@ -140,7 +140,7 @@ class FullDisk(Case):
 
 
 class FullQuota(Case):
-    """Without root: files may not grow beyond a size, which fails as a full disk does."""
+    """Without root: files may not grow beyond a size, which fails like a full disk."""
 
     def test_each_size_ends_with_a_sentence(self):
         self.good("run", "press-ball", "-o", "whole")
@@ -180,7 +180,7 @@ class ReadOnly(Case):
 
 
 class DamagedModel(Case):
-    """A model file of which a part is missing, or a byte is another one."""
+    """A model file in which a part is missing or a byte is changed."""
 
     def setUp(self):
         super().setUp()
@@ -220,7 +220,7 @@ class DamagedModel(Case):
         self.assertTrue(found)
         for one in found:
             shutil.copy(one, self.model)
-            # HDF5 1.10 falls, and 1.14 says that it ran off the end of a buffer
+            # HDF5 1.10 crashes, and 1.14 reports that it ran off the end of a buffer
             self.assertRegex(self.refused("inspect", "s.toml"), r"m\.h5.*(is damaged|cannot open)")
 
 
@@ -237,7 +237,7 @@ class Killed(Case):
                 process.kill()
                 process.communicate()
                 outcome = self.summary(f"cut{i}")["outcome"]
-                if process.returncode == 0 or outcome == "finished":  # or on its way out
+                if process.returncode == 0 or outcome == "finished":  # or already exiting
                     continue
                 times = self.steps(f"cut{i}")
                 self.assertEqual(times, all_times[:len(times)])
@@ -246,9 +246,9 @@ class Killed(Case):
                 page = self.good("report", f"cut{i}")
                 self.assertIn("report.html", page)
                 self.assertIn("unfinished", (self.folder / f"cut{i}/report.html").read_text())
-                # haptic.h5 may have been cut in the middle: read or refused
+                # haptic.h5 may have been truncated: read or rejected
                 self.assertIn(self.call("replay", f"cut{i}").returncode, (0, 1))
-                # ticks that were written are whole lines
+                # ticks that were written are complete lines
                 self.good("export", f"cut{i}", "--to", "csv")
                 # its folder is free again
                 self.good("run", "press-ball", "--duration-s", "0.01", "-o", f"cut{i}")
@@ -268,7 +268,7 @@ class TwoRuns(Case):
             self.assertIn("-o DIR", text)
         text = self.refused("export", "same", "--to", "csv", "-o", "steps")
         self.assertIn("is being written by another process", text)
-        blocks = states.stat().st_blocks  # its size has room for all steps from the start
+        blocks = states.stat().st_blocks  # its size includes room for all steps from the start
         self.wait_for(lambda: states.stat().st_blocks > blocks, first)
         first.send_signal(signal.SIGINT)
         self.assertEqual(first.wait(timeout=60), 130)
@@ -355,7 +355,7 @@ class Memory(Case):
             self.skipTest("this build makes no models")
         self.good("model", "ball", "--skin-vertices", "200000", "-o", "fine.h5", "-q")
         (self.folder / "fine.toml").write_text(SKINNED)
-        self.assertGreater(self.compare("fine.toml"), 70)  # of which without its skin 41
+        self.assertGreater(self.compare("fine.toml"), 70)  # 41 of these without its skin
         self.assertGreater(self.compare("fine.toml", "--set", 'contact.0.method="distance"'), 200)
 
     def test_the_estimate_is_within_a_factor_of_two(self):
@@ -383,7 +383,7 @@ class Memory(Case):
         self.assertFalse((self.folder / "big").exists(), "nothing was begun")
         done = self.call("run", "press-ball", *big, "--beyond-memory", "-o", "big", before=limit)
         self.assertEqual(done.returncode, 1)
-        # who meets the limit first depends on the libraries' releases
+        # the first to reach the limit depends on the libraries' releases
         self.assertRegex(done.stderr, "no memory for the factor|not enough memory")
         self.good("run", "press-ball", "--duration-s", "0.01", "-o", "small", before=limit)
 
@@ -396,7 +396,8 @@ class Instructions(Case):
         self.good("run", "press-ball", "--duration-s", "0.01", PALPATE_INSTRUCTIONS="baseline")
 
     def test_code_beyond_the_baseline_is_chosen_at_run_time(self):
-        """Vector instructions beyond x86-64's baseline stand in functions whose name says so alone."""
+        """Vector instructions beyond x86-64's baseline occur only in functions whose names state the
+        instruction set."""
         if os.uname().machine != "x86_64" or not shutil.which("objdump"):
             self.skipTest("x86-64 and objdump (package binutils)")
         linked = subprocess.run(["ldd", PROGRAM], capture_output=True, text=True, check=True).stdout
@@ -412,10 +413,10 @@ class Instructions(Case):
 
 
 def beyond_baseline(file):
-    """Functions with instructions of AVX or later: how many are named after their set, and those that are
-    not."""
+    """Functions with instructions of AVX or later: number of those named after their set, and list of all
+    others."""
     function = re.compile(r"^[0-9a-f]+ <(.*)>:$")
-    # VEX and EVEX: a leading v, but for VERR, VERW and virtual machines; and those of mask registers
+    # VEX and EVEX: a leading v, except for VERR, VERW and virtualisation; and mask register instructions
     vector = re.compile(r"^\s+[0-9a-f]+:\s+(v(?!err|erw|m)[a-z0-9]+|vm(?!call|run|load|save|x|func)[a-z0-9]+|"
                         r"k(?:mov|and|or|xor|not|unpck|shift|test|add|xnor)[a-z]*)\s")
     named = re.compile(r"avx2|avx512|arch_x86_64_v[34]")

@@ -1,4 +1,5 @@
-"""A headless Chromium, driven over a pipe by its DevTools protocol: JSON messages that end in a zero byte."""
+"""A headless Chromium, driven over a pipe by its DevTools protocol: JSON messages terminated by a zero
+byte."""
 import base64
 import json
 import os
@@ -17,12 +18,12 @@ PATIENCE_S = 120.0
 
 
 def program():
-    """The browser's path, or None."""
+    """Returns the browser's path, or None."""
     return next((found for found in map(shutil.which, NAMES) if found), None)
 
 
 class Browser:
-    """One tab.  `errors` holds every error of the console and every exception, `requests` every address."""
+    """One tab. `errors` contains every console error and exception, `requests` every address."""
 
     def __init__(self):
         self.profile = tempfile.mkdtemp(prefix="palpate-browser-")
@@ -49,7 +50,7 @@ class Browser:
         self.session = attached["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        self.call("Emulation.setFocusEmulationEnabled", enabled=True)  # as if the window were in front
+        self.call("Emulation.setFocusEmulationEnabled", enabled=True)  # as if the window had the focus
 
     def close(self):
         self.process.terminate()
@@ -112,7 +113,7 @@ class Browser:
             self._note(self._message(until))
 
     def value(self, expression):
-        """Of a JavaScript expression, or of what it promises."""
+        """Returns the value of a JavaScript expression, or of its promise."""
         result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in result:
             raise RuntimeError(json.dumps(result["exceptionDetails"])[:2000])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The program as a person meets it: help, messages, exit statuses, Ctrl-C.
+"""The program's user interface: help, messages, exit statuses, Ctrl-C.
 
     cli_test.py PROGRAM [unittest's names of tests]
 """
@@ -53,7 +53,7 @@ class Help(Cli):
         seen = 0
         for command in [[]] + [[name] for name in COMMANDS]:
             for line in re.findall(r"^  palpate (.+?)(?:   .*)?$", self.good(*command, "--help"), re.M):
-                # An option that does not exist is refused before --help is heeded; the command is not run.
+                # An unknown option is rejected before --help is processed; the command is not run.
                 known = self.good(line.split()[0], "--help")
                 for option in re.findall(r"(?<= )--?[a-z][a-z-]*", line):
                     self.assertRegex(known, rf"(^|[ ,]){option}\b", line)
@@ -80,7 +80,7 @@ class Help(Cli):
             child = subprocess.Popen([PROGRAM, "help", "limits"], stdout=follower, stdin=subprocess.DEVNULL)
             os.close(follower)
             text = b""
-            with contextlib.suppress(OSError):  # the end of a pseudo-terminal
+            with contextlib.suppress(OSError):  # end of a pseudo-terminal
                 while part := os.read(leader, 65536):
                     text += part
             child.wait()
@@ -90,7 +90,7 @@ class Help(Cli):
 
     def test_help_of_a_command_is_its_own(self):
         self.assertEqual(self.good("help", "inspect"), self.good("inspect", "--help"))
-        self.assertIn("matrix", self.good("help", "stability"))  # a page as well: the page
+        self.assertIn("matrix", self.good("help", "stability"))  # a page as well: the page is shown
 
     def test_unknown_topic(self):
         text = self.refused("help", "kys")
@@ -154,7 +154,7 @@ class Refusals(Cli):
 
 
 class Incomplete(Cli):
-    """A command that cannot deliver all that it promises says so in its last line, and ends with 3."""
+    """A command that cannot deliver all its outputs reports this in its last line, and ends with status 3."""
 
     def incomplete(self, *arguments, **environment):
         done = self.call(*arguments, **environment)
@@ -211,7 +211,7 @@ class Incomplete(Cli):
 
 
 class LeftOut(Cli):
-    """What a scene does not name is not there: by the loader's own account, and by the counters."""
+    """Parts that a scene does not specify are absent, according to the loader and to the counters."""
 
     def loaded(self, *arguments):
         done = self.call(*arguments, LD_DEBUG="files")
@@ -238,7 +238,8 @@ class LeftOut(Cli):
 
 
 def recorded_steps(path):
-    """Steps in a run file that is still being written; its size says nothing, for room is made beforehand."""
+    """Returns the number of steps in a run file that is still being written; its size is not significant,
+    because space is allocated beforehand."""
     try:
         with h5py.File(path, "r", locking=False) as file:
             return int(file["VTKHDF/Steps"].attrs["NSteps"])

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""`palpate export`: what each format holds is what the run recorded; what is refused, and what is left then.
+"""`palpate export`: the content of each format equals the recorded run; rejected requests, and files left by
+them.
 
     export_test.py PROGRAM
 """
@@ -27,7 +28,7 @@ PROGRAM = Path(sys.argv[1]).resolve()
 
 
 class Run:
-    """A run file, read with h5py alone."""
+    """A run file, read by h5py only."""
 
     def __init__(self, path):
         with h5py.File(path) as file:
@@ -51,7 +52,7 @@ class Run:
 
 
 class Export(unittest.TestCase):
-    """Runs are made once; each test exports into a folder of its own."""
+    """Runs are made once; each test exports into a separate folder."""
 
     @classmethod
     def setUpClass(cls):
@@ -215,7 +216,7 @@ class Contents(Export):
 
 
 class Skin(Export):
-    """Of a body that has one, which takes a model."""
+    """A body that has a skin, which requires a model."""
 
     @classmethod
     def setUpClass(cls):

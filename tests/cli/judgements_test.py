@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Commands that judge: compare, validate, stability, bench, and runs held against others.
+"""Commands that assess results: compare, validate, stability, bench, and runs compared with others.
 
     judgements_test.py PROGRAM [unittest's names of tests]
 """
@@ -44,11 +44,11 @@ class Judgements(Cli):
     def test_compare_takes_several_scenes_and_any_integrator(self):
         arguments = ["compare", "cantilever", "one-tet", "--duration-s", "0.05", "--repeats", "1",
                      "--integrator", "ark-erk-5", "-o", "two",
-                     "--limit-s", "5"]  # each run takes some 0.4 s: a busy machine ends none
+                     "--limit-s", "5"]  # each run takes about 0.4 s: none is interrupted on a busy machine
         self.good(*arguments)
         table = (self.folder / "two/compare.csv").read_text().splitlines()
         self.assertEqual({line.split(",")[0] for line in table[1:]}, {"cantilever", "one-tet"})
-        for scene in ("cantilever", "one-tet"):  # down to where the reference cannot tell errors
+        for scene in ("cantilever", "one-tet"):  # down to the limit of the reference
             rows = [line for line in table if line.startswith(scene + ",")]
             self.assertGreater(len(rows), 4)
             self.assertLess(len(rows), 12)
@@ -97,7 +97,7 @@ class Judgements(Cli):
         self.assertRegex(text, r"(?m)^method .* skins +regions +faces +upload +passes +gather +readback "
                                r"+gaps +rest +forces +tangent *$")
         self.assertRegex(text, r"(?m)^image +1( +\d+\.\d\d){11} *$")
-        self.assertRegex(text, r"(?m)^press-ball ")  # prices
+        self.assertRegex(text, r"(?m)^press-ball ")  # costs
         written = json.loads((self.folder / "out/bench-contact.json").read_text())
         points, image = written["scenes"][0]["rows"]
         self.assertEqual((points["method"], image["method"]), ("distance", "image"))
@@ -133,7 +133,7 @@ class Judgements(Cli):
         self.assertRegex(done.stdout, r"(?m)^press-ball +query / step +\S+ +<= 1 +missed *$")
         bars = re.findall(r"(?m)^press-ball .* (?:<=|>=) \S+ +(met|missed) *$", done.stdout)
         self.assertTrue(done.stdout.endswith(f"\n{bars.count('met')} of {len(bars)} bars met\n"), done.stdout)
-        # before they touch there is little to look at: in one try of several, however busy the machine is
+        # before contact there are few events: in one of several attempts, however busy the machine is
         (self.folder / "apart.toml").write_text(scene.replace("duration_s = 0.4", "duration_s = 0.05"))
         for _ in range(10):
             done = self.call("bench", "contact", "apart.toml", "--method", "distance", "--threads", "1",
@@ -207,7 +207,7 @@ class Judgements(Cli):
     def test_semi_implicit_beyond_its_limit_is_warned_of(self):
         run = ["run", "press-ball", "--duration-s", "0.02", "-o", "out", "--set",
                "tool.integrator=semi-implicit-euler", "--set"]
-        # 4 m/h^2 - 2 b/h with 0.01 kg, 3 N s/m and ticks of 1 ms
+        # limit 4 m/h^2 - 2 b/h with 0.01 kg, 3 N s/m and ticks of 1 ms
         done = self.call(*run, "tool.coupling.stiffness_n_m=3.5e4")
         self.assertRegex(done.stderr, r"stiffness_n_m of 35000 N/m is not below 34000 N/m")
         done = self.call(*run, "tool.coupling.stiffness_n_m=3.3e4")
@@ -231,7 +231,7 @@ class Judgements(Cli):
         text = self.good("replay", "first", "--set", "exchange.exchange_period_s=0.005", "-o", "other")
         self.assertRegex(text, r"(?m)^tool:\n(.*\n)*force: differs(.*\n)*left:\n(.*\n)*force: differs")
         self.assertIn("\nleft:\n", self.good("diff", "first", "other"))
-        # what an earlier run left there is not taken for this one's, and what a person put there stays
+        # files of an earlier run are not taken for this run's, and files of the user are kept
         (self.folder / "other/force-measured.csv").write_text("1,2\n")
         self.good("run", "press-ball", "--duration-s", "0.1", "-o", "other")
         self.assertIn("left: there is none in other", self.good("diff", "first", "other"))
@@ -281,7 +281,7 @@ class Judgements(Cli):
         self.assertIn("z_width.csv", os.listdir(self.folder / "wall"))
         self.assertIn("about the tool's axis of least inertia", text)
         self.assertNotIn("UNSTABLE", text)
-        # 4 I/h^2 of the ball of 80 g and 20 mm is 51 N m/rad
+        # the limit 4 I/h^2 of the ball of 80 g and 20 mm is 51 N m/rad
         done = self.call("stability", "--haptic", "press-ball", "-o", "turned", "--set",
                          "tool.integrator=semi-implicit-euler", "--set",
                          "tool.coupling.rotational_stiffness_n_m_rad=1e3")
@@ -308,7 +308,7 @@ class Judgements(Cli):
         rows = [self.good("validate", *cases, "--jobs", jobs) for jobs in ("1", "3")]
         self.assertEqual(rows[0], rows[1])
         self.assertIn("3 of 3 cases keep their bars", rows[0])
-        passed = re.findall(r"(?m)^([a-z-]+) .* pass$", rows[0])  # as they were named, whichever ended first
+        passed = re.findall(r"(?m)^([a-z-]+) .* pass$", rows[0])  # as specified, whichever ended first
         self.assertEqual(list(dict.fromkeys(passed)), cases)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The launcher ./palpate, with dpkg, apt, cmake, ninja and ctest replaced by small fakes that write down how
-they were called."""
+"""The launcher ./palpate, with dpkg, apt, cmake, ninja and ctest replaced by small fakes that record how they
+were called."""
 import os
 import shutil
 import stat
@@ -13,7 +13,7 @@ from pathlib import Path
 TREE = Path(__file__).resolve().parents[2]
 
 FAKES = {
-    # Says that every package is installed but those named in the file `missing`.
+    # Reports every package as installed except those named in the file `missing`.
     "dpkg-query": r"""
 printf "%s\n" "dpkg-query $*" >>"$CALLS"
 shift 2
@@ -50,7 +50,7 @@ echo "cpack $* in $PWD" >>"$CALLS"
 mkdir -p packages/_CPack_Packages
 touch packages/palpate_1.deb packages/libpalpate-dev_1.deb
 """,
-    # Copies the file `results`, if there is one, to the path that it is given; ends as `ctest-status` says.
+    # Copies the file `results`, if there is one, to the given path; exits with `ctest-status`.
     "ctest": r"""
 echo "ctest $*" >>"$CALLS"
 echo "what ctest prints"
@@ -62,8 +62,8 @@ done
 """,
 }
 
-# As ctest 3.25 writes it, of one test each: good, failing, skipped by itself, without its program, too slow,
-# disabled.
+# The format of ctest 3.25, with one test each: passed, failed, skipped by the test, without its program,
+# timed out, disabled.
 RESULTS = """<?xml version="1.0" encoding="UTF-8"?>
 <testsuite name="(empty)"
 \ttests="6"
@@ -103,7 +103,7 @@ class Launcher(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
-        self.tree = self.folder / "a tree"  # with a blank, as people have them
+        self.tree = self.folder / "a tree"  # with a blank, as in users' paths
         self.tree.mkdir()
         for name in ("palpate", ".packages", "CMakePresets.json"):
             shutil.copy(TREE / name, self.tree)
@@ -288,7 +288,7 @@ class Launcher(unittest.TestCase):
         self.assertEqual(self.launch("test").stdout, "what ctest prints\n", "no count of an earlier call")
 
     def test_help_of_test_and_build_builds_nothing(self):
-        (self.fake / "missing").write_text("libccd-dev\n")  # and installs nothing
+        (self.fake / "missing").write_text("libccd-dev\n")  # installs nothing
         for command, word in {"test": "--slow", "build": "[target...]", "package": "libpalpate-dev"}.items():
             for option in "--help", "-h":
                 done = self.launch(command, "-R", "fem", option)

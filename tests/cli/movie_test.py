@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Movies of runs: how many frames, what they show, and what is said where there is none.
+"""Movies of runs: number of frames, their content, and the message when there is none.
 
     movie_test.py PROGRAM
 """
@@ -26,7 +26,7 @@ FFMPEG, FFPROBE = shutil.which("ffmpeg"), shutil.which("ffprobe")
 
 
 def marks(frame):
-    """Columns of the mark at the present instant, by its colour, half-way down the strip."""
+    """Columns of the mark at the current time, found by its colour half-way down the strip."""
     row = frame[HEIGHT - STRIP // 2]
     pixels = [row[3 * x:3 * x + 3] for x in range(WIDTH)]
     return [x for x, p in enumerate(pixels) if p[0] > 180 and p[1] < 120 and p[2] < 70]
@@ -37,7 +37,7 @@ def different(one, other, rows):
 
 
 def unlike(one, other):
-    """Pixels that differ by more than rounding of where surfaces are."""
+    """Pixels that differ by more than rounding of surface positions."""
     return sum(max(abs(a - b) for a, b in zip(one[y][3 * x:3 * x + 3], other[y][3 * x:3 * x + 3])) > 3
                for y in range(HEIGHT) for x in range(WIDTH))
 
@@ -75,7 +75,7 @@ class Movie(unittest.TestCase):
         return ["run", "press-ball", "--duration-s", str(seconds), *SMALL, *arguments]
 
     def fake_ffmpeg(self, script):
-        """A program of that name, first on the PATH."""
+        """A fake program of that name, first on the PATH."""
         (self.folder / "bin").mkdir()
         program = self.folder / "bin/ffmpeg"
         program.write_text("#!/bin/sh\n" + script)
@@ -99,13 +99,14 @@ class Frames(Movie):
         for path, frame in zip(pictures, movie.frames):  # lossless, by another encoder
             self.assertEqual(Animation(path).frames[0], frame, path.name)
 
-        # the mark goes evenly over the strip, from its left end to its right
+        # the mark moves uniformly over the strip, from its left end to its right
         columns = [sum(marks(frame)) / len(marks(frame)) for frame in movie.frames]
         steps = [b - a for a, b in zip(columns, columns[1:])]
         for step in steps[1:]:  # the curve begins with the first tick
             self.assertAlmostEqual(step, sum(steps[1:]) / len(steps[1:]), delta=1.01)
         self.assertGreater(columns[-1] - columns[0], 0.6 * WIDTH)
-        # the scene moves: the tool comes down, the ball is dented; the sky at the left edge does not
+        # the scene moves: the tool comes down and the ball is dented, while the sky at the left edge does not
+        # change
         scene = range(0, HEIGHT - STRIP)
         for one, other in zip(movie.frames[3:12], movie.frames[4:13]):
             self.assertGreater(different(one, other, scene), 100)
@@ -114,13 +115,13 @@ class Frames(Movie):
         self.assertFalse(list(self.folder.rglob("*.part")) + list(self.folder.rglob(".instants*")))
 
     def test_a_run_that_is_over_looks_as_it_did(self):
-        # a rigid tool, and bones in a limb: where they were is found from their surfaces
+        # a rigid tool, and bones in a limb: their positions are found from their surfaces
         for scene, seconds in (("press-ball", 0.2), ("swung-limb", 0.2)):
             with self.subTest(scene=scene):
                 self.good("run", scene, "--duration-s", str(seconds), *SMALL, "--movie", "a.png",
                           "-o", "here", "--set", "record.state_period_s=0.01")
                 for cut_off in (False, True):
-                    if cut_off:  # what a run that was killed does not write
+                    if cut_off:  # files that a killed run does not write
                         (self.folder / "here/summary.json").unlink()
                         (self.folder / "here/scene.toml").unlink()
                     text = self.good("movie", "here", *SMALL, "-o", "b.png")
@@ -138,7 +139,7 @@ class Frames(Movie):
         self.good(*self.press(0.05, "--movie", "a.png", "-o", "here"))
         self.good("movie", "here", *SMALL, "--shade", "stress", "--slow", "4", "-o", "b.png")
         self.assertEqual(Animation(self.folder / "b.png").delays, [0.04] * 5)
-        self.good("movie", "here", *SMALL, PATH="/nowhere")  # what it makes unasked takes no other program
+        self.good("movie", "here", *SMALL, PATH="/nowhere")  # default formats require no other program
         self.assertEqual(Animation(self.folder / "here/movie.png").delays, [0.04] * 2)
         self.assertIn("a run does not record it", self.refused("movie", "here", "--shade", "penetration"))
         self.assertIn("a state every 0.01 s", self.refused("movie", "here", "--fps", "200", "-o", "c.png"))

@@ -1,4 +1,4 @@
-"""Two scenes against references from outside: the same semi-discrete equations, written apart from the
+"""Two scenes against external references: the same semi-discrete equations, implemented independently of the
 library in NumPy and integrated by SciPy (DOP853 of Hairer, Norsett and Wanner).
 
     outside_reference_test.py PROGRAM
@@ -29,7 +29,7 @@ SCENES = PROGRAM.parent.parent / "share/palpate/scenes"
 
 
 class SoftBody:
-    """One body of a scene, made of the mesh that the program wrote."""
+    """One body of a scene, built from the mesh that the program wrote."""
 
     def __init__(self, scene, rest, tets):
         body = scene["body"][0]
@@ -39,9 +39,9 @@ class SoftBody:
         self.damping = body["stiffness_damping_s"]
         self.gravity = np.array(scene["scene"]["gravity_m_s2"])
         self.tets = tets
-        edges = rest[tets[:, 1:]] - rest[tets[:, :1]]  # rows
+        edges = rest[tets[:, 1:]] - rest[tets[:, :1]]  # as rows
         self.volume = np.abs(np.linalg.det(edges)) / 6
-        last = np.linalg.inv(edges)  # columns: gradients of the last three shape functions
+        last = np.linalg.inv(edges)  # as columns: gradients of the last three shape functions
         self.gradients = np.concatenate([-last.sum(axis=2, keepdims=True), last], axis=2)
         self.mass = np.zeros(len(rest))
         np.add.at(self.mass, tets, body["density_kg_m3"] * self.volume[:, None] / 4)
@@ -77,7 +77,7 @@ class SoftBody:
 
 
 def deformation(rest, x, mass):
-    """What the nearest rigid motion leaves of a displacement (Kabsch 1976)."""
+    """Returns a displacement minus the nearest rigid motion (Kabsch 1976)."""
     c, d = mass @ rest / mass.sum(), mass @ x / mass.sum()
     U, _, Vt = np.linalg.svd((rest - c).T @ ((x - d) * mass[:, None]))
     turn = np.diag([1, 1, np.linalg.det(U @ Vt)])
@@ -85,7 +85,7 @@ def deformation(rest, x, mass):
 
 
 def overrides_of(scene):
-    """The reference of `palpate compare`, as the scene asks for it."""
+    """The reference of `palpate compare`, with the scene's settings."""
     compare = scene.get("compare", {})
     return {"integrator.name": f'"{compare.get("reference", "cvode-bdf")}"',
             "integrator.rtol": str(compare.get("reference_rtol", 1e-9))}
@@ -111,7 +111,8 @@ class Outside(unittest.TestCase):
         return scene, times, states, tets
 
     def distance(self, name, changes, method, rtol):
-        """Of the program's reference from SciPy's, and of SciPy's at a tenth of the tolerance."""
+        """Distance of the program's reference from SciPy's, and of SciPy's from itself at a tenth of the
+        tolerance."""
         scene, times, states, tets = self.run_scene(name, changes)
         body = SoftBody(scene, states[0], tets)
         y0 = np.concatenate([states[0].ravel(), np.zeros(states[0].size)])
@@ -131,18 +132,18 @@ class Outside(unittest.TestCase):
     def check(self, name, changes, bar, method, rtol):
         from_outside, own = self.distance(name, changes, method, rtol)
         self.assertLess(from_outside, bar)
-        self.assertLess(own, bar)  # SciPy's can tell
+        self.assertLess(own, bar)  # SciPy's error is sufficiently small
 
     def test_one_tet(self):
         self.check("one-tet", {}, 1e-7, "DOP853", 1e-11)
 
     def test_cantilever(self):
-        """Held by its stability limit: 1e-8 costs what 1e-5 does."""
+        """The step is determined by the stability limit: 1e-8 has the cost of 1e-5."""
         self.check("cantilever", {"body.0.mesh.element_size_m": "0.02", "scene.duration_s": "0.1"}, 1e-7,
                    "DOP853", 1e-8)
 
     def test_other_equations_are_told_apart(self):
-        """A stiffness that is wrong by a ten-thousandth is not within the bar."""
+        """A stiffness that is wrong by a ten-thousandth exceeds the acceptance limit."""
         original = SoftBody.__init__
 
         def wrong(body, scene, rest, tets):

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""The scenes of the paper for 10 s of simulated time, of which the hand moves in the first and holds in the
-rest: everything stays finite, the hand gets no energy out of the loop, and a held touch does not vibrate.
+"""The scenes of the paper for 10 s of simulated time, in which the hand moves in the first second and then
+holds: everything remains finite, the hand extracts no energy from the loop, and a held contact does not
+vibrate.
 
     paper_scenes_test.py PROGRAM [Short | Slow.test_...]
 
-The slow ones print a line of figures each; PALPATE_FIGURES=FILE appends them there, too.
+The slow ones print one line of figures each; with PALPATE_FIGURES=FILE they also append them to FILE.
 """
 import csv
 import json
@@ -29,7 +30,8 @@ CONTROL_SHARE = 0.02
 
 
 class HighPass:
-    """Butterworth, fourth order, 30 Hz: two biquads by the bilinear transform, its frequency warped."""
+    """Butterworth filter, fourth order, 30 Hz: two biquads by the bilinear transform with frequency
+    warping."""
 
     def __init__(self, tick_s, hz=30.0):
         w = math.tan(math.pi * hz * tick_s)
@@ -49,7 +51,7 @@ class HighPass:
 
 
 def buzz(rows, tick_s, start_s):
-    """RMS of the force on the hand above 30 Hz from a time on; the filter has begun a second before."""
+    """RMS of the force on the hand above 30 Hz from a given time on; the filter starts a second earlier."""
     total, count = 0.0, 0
     filters = [HighPass(tick_s) for _ in range(3)]
     for row in rows:
@@ -68,7 +70,7 @@ class Scenes(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def run_scene(self, scene, duration_s, passivity, more=()):
-        """The figures of a run that is finite to its end."""
+        """Returns the figures of a run, after checking that it is finite to its end."""
         out = self.folder / f"{scene}-{passivity}"
         command = [str(PROGRAM), "run", scene, "--duration-s", str(duration_s), "--passivity", passivity,
                    "-o", str(out), "--set", "record.state_period_s=0.5"]
@@ -94,9 +96,9 @@ class Scenes(unittest.TestCase):
 
     def check(self, scene, duration_s=10.0, held_s=5.0, more=(), least_j=LEAST_ENERGY_J, buzz_n=BUZZ_N,
               share=CONTROL_SHARE, pressing_n=0.05):
-        """Observed, then controlled.
+        """Runs observed, then controlled.
         @param held_s      from here on the hand holds
-        @param pressing_n  it presses with more than that at the end: else nothing could buzz"""
+        @param pressing_n  lower bound on its force at the end: without a force nothing could vibrate"""
         device, rows = self.run_scene(scene, duration_s, "observe", more)
         tick_s = (rows[-1]["time_s"] - rows[0]["time_s"]) / (len(rows) - 1)
         held = buzz(rows, tick_s, held_s)
@@ -126,7 +128,7 @@ class Scenes(unittest.TestCase):
 
 
 class Short(Scenes):
-    """In every run of the tests, on a small scene."""
+    """Part of every test run, with a small scene."""
 
     def test_press_ball(self):
         # held from the second keyframe on: the others are left out
@@ -148,7 +150,7 @@ class Slow(Scenes):
     BONES = {"upper_arm_left": 7, "forearm_left": 9, "forearm_right": 10}
 
     def angles(self, run):
-        """By how many degrees bones have turned at the end."""
+        """Returns the rotation of the bones at the end [degrees]."""
         with (self.folder / run / "bones.csv").open() as lines:
             rows = list(csv.DictReader(lines))
 
@@ -172,7 +174,7 @@ class Slow(Scenes):
         self.check("touch-human")
 
     def test_posable_human(self):
-        # the finger stays: the arm comes to rest against it, as far as it was pushed
+        # the finger stays: the arm comes to rest against it at its farthest position
         figures = self.check("posable-human", more=(
             "device.keyframe=[{time_s=0.0, position_m=[0.368,0.075,1.03]}, "
             "{time_s=0.9, position_m=[0.368,-0.045,1.03]}]",))
@@ -208,7 +210,7 @@ class Slow(Scenes):
                                         "{time_s=0.15, position_m=[0,0,0.071]}]",))
 
     def test_squeeze_ball(self):
-        self.check("squeeze-ball", pressing_n=None)  # it lets go
+        self.check("squeeze-ball", pressing_n=None)  # it releases the ball
 
     def test_two_heads(self):
         self.run_scene("two-heads", 10.0, "observe")

@@ -1,8 +1,8 @@
-"""Opens files in ParaView, by ParaView's own Python, and prints what it shows as JSON.
+"""Opens files in ParaView, by ParaView's own Python, and prints their content as JSON.
 
     pvpython paraview_probe.py READER:FILE...
 
-READER is a name of paraview.simple, or "any": the one that ParaView takes by itself.
+READER is a name of paraview.simple, or "any": ParaView's default reader.
 """
 import json
 import sys
@@ -11,7 +11,7 @@ from paraview import servermanager, simple
 
 
 def leaves(data):
-    """The grids of a data set, those inside others too."""
+    """Returns the grids of a data set, including nested ones."""
     if not data.IsA("vtkCompositeDataSet"):
         return [data]
     iterator = data.NewIterator()
@@ -24,7 +24,7 @@ def leaves(data):
 
 
 def arrays(attributes):
-    """Name, number of components, and range of the first."""
+    """Returns name, number of components, and range of the first component."""
     found = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
     return {one.GetName(): [one.GetNumberOfComponents(), *one.GetRange(0)] for one in found}
 
@@ -44,7 +44,7 @@ def probe(reader, path):
         source = getattr(simple, reader)(**{key: [path]})
     source.UpdatePipelineInformation()
     times = list(getattr(source, "TimestepValues", None) or [])
-    # to the end, back, and into the middle: a reader may keep what it has read
+    # to the end, back, and into the middle: a reader may cache data
     visited = sorted({0, len(times) // 2, len(times) - 1}) if times else []
     steps = {i: shown(source, times[i]) for i in [*visited, *reversed(visited)]}
     return {"reader": reader, "path": path, "times": times, "steps": steps or {0: shown(source, 0.0)}}

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""ParaView opens runs and exports as time series, and shows what the run holds.  Skipped where ParaView is
-not installed (Debian package paraview with python3-paraview: large, and of no other use here).
+"""ParaView opens runs and exports as time series, and shows the run's content. Skipped where ParaView is not
+installed (Debian package paraview with python3-paraview: large, and not otherwise needed).
 
     paraview_test.py PROGRAM
 """
@@ -25,7 +25,7 @@ PVPYTHON = shutil.which("pvpython")
 if not PVPYTHON:
     print("pvpython is missing (apt-get install paraview python3-paraview): nothing is checked")
     sys.exit(77)
-TEMPORAL_VTKHDF = [5, 12]  # the first ParaView that reads steps of it
+TEMPORAL_VTKHDF = [5, 12]  # first ParaView that reads its steps
 
 
 class ParaView(unittest.TestCase):

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A peer on the network holds the tool: the wait for it, what it may send, and what it gets when a run ends.
+"""A peer on the network holds the tool: the wait for it, the packets that it may send, and those it receives
+when a run ends.
 
     peer_test.py PROGRAM
 """
@@ -20,7 +21,7 @@ PROGRAM = Path(sys.argv[1]).resolve()
 POSE = struct.Struct("<IHHQd3d4d3d3dI")
 WRENCH = struct.Struct("<IHHQd3d3d")
 MAGIC = 0x54504C50
-LIMIT_S = 120  # of a process that does not end by itself
+LIMIT_S = 120  # for a process that does not end
 
 
 def pose(sequence, position, velocity=(0.0, 0.0, 0.0)):
@@ -28,7 +29,7 @@ def pose(sequence, position, velocity=(0.0, 0.0, 0.0)):
 
 
 class Peer:
-    """Sends a pose for each wrench that comes, and now and then without one."""
+    """Sends a pose for each received wrench, and occasionally without one."""
 
     def __init__(self, port, position):
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -48,7 +49,7 @@ class Peer:
             sequence += 1
             packets, self.extra = self.extra, []
             for packet in packets + [pose(sequence, self.position)]:
-                with contextlib.suppress(OSError):  # nobody listens yet, or any more
+                with contextlib.suppress(OSError):  # no listener
                     self.socket.send(packet)
             self.receive()
 
@@ -60,7 +61,7 @@ class Peer:
                 self.pressed.set()
 
     def end(self):
-        """Takes what is still on its way."""
+        """Receives the remaining packets."""
         self.over.set()
         self.thread.join()
         self.socket.setblocking(False)

@@ -29,7 +29,7 @@ struct Png {
     return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                   static_cast<std::size_t>(x)];
   }
-  /// How many pixels of columns [x0, x1) satisfy it.
+  /// Number of pixels in columns [x0, x1) for which `is` holds.
   template <class Is>
   int count(int x0, int x1, Is is) const {
     int n = 0;
@@ -49,7 +49,7 @@ Png read_png(const std::filesystem::path& path) {
   const int stride = cairo_image_surface_get_stride(surface);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) {
-      const unsigned char* p = data + y * stride + 4 * x;  // B, G, R on these machines
+      const unsigned char* p = data + y * stride + 4 * x;  // B, G, R on little-endian machines
       out.pixels.push_back({p[2], p[1], p[0]});
     }
   cairo_surface_destroy(surface);
@@ -67,7 +67,7 @@ class Pictures : public testing::Test {
  protected:
   TemporaryFolder folder_;
 
-  /// @param proxies  of both skins
+  /// @param proxies  whether both skins get contact proxies
   scene::Description blocks(bool proxies, double depth = 1e-3) {
     LayeredModel model;
     model.name = "block";
@@ -109,8 +109,8 @@ TEST_F(Pictures, ContactHasProxiesInOnePanelAndVerticesInTheOther) {
   const Png contact = read_png(folder_ / "contact.png");
   ASSERT_EQ(contact.width, 2 * contact.height);
   const int half = contact.width / 2;
-  EXPECT_GT(contact.count(0, half, is_blue), 500);    // hulls of one side
-  EXPECT_GT(contact.count(0, half, is_orange), 500);  // and of the other
+  EXPECT_GT(contact.count(0, half, is_blue), 500);    // hulls of the first side
+  EXPECT_GT(contact.count(0, half, is_orange), 500);  // hulls of the second side
   EXPECT_EQ(contact.count(0, half, is_red), 0);
   EXPECT_GT(contact.count(half, 2 * half, is_red), 500);  // colliding vertices
 }
@@ -139,14 +139,14 @@ TEST_F(Pictures, APictureOfDisplacementHasNeitherHullsNorVertices) {
 }
 
 #ifdef PALPATE_HAS_TOOL
-// The hand presses for a moment and goes back.
+// The snapshot shows the largest force of a hand that presses briefly and retreats, in both schemes.
 TEST_F(Pictures, APictureIsOfTheLargestForceInBothSchemes) {
   for (const char* scheme : {"partitioned", "monolithic"}) {
     scene::Description d = small_scenes::pressed_block(-1e-4);
     KeyframeSpec pressed = d.device->keyframes[0], back = pressed;
     pressed.time_s = 0.05;
     pressed.position_m.z() -= 0.004;
-    back.time_s = 0.25;  // slowly, so that the coupling pulls less than the block pressed
+    back.time_s = 0.25;  // slow enough for the coupling to pull less than the block pressed
     d.device->keyframes = {d.device->keyframes[0], pressed, back};
     d.duration_s = 0.25;
     d.exchange.scheme = scheme;
@@ -159,10 +159,10 @@ TEST_F(Pictures, APictureIsOfTheLargestForceInBothSchemes) {
 }
 #endif
 
-// Flat faces, pressed evenly: the whole field is as deep as it gets, so it has the colour of the maximum.
+// Flat faces under uniform pressure: the whole field has the maximum depth, and so the colour of the maximum.
 TEST_F(Pictures, TheDeepestPixelsHaveTheColourOfTheMaximum) {
   scene::Description d = blocks(true);
-  d.duration_s = 0.01;  // one query, of what was not moved yet
+  d.duration_s = 0.01;  // one contact query, of the initial state
   const auto world = loop::assemble(d);
   cli::ContactSnapshot snapshot;
   ASSERT_TRUE(run(*world, snapshot).status.ok());
@@ -206,7 +206,7 @@ TEST_F(Pictures, FramesShareCameraAndColours) {
   const Png first = read_png(folder_ / "frames/0000.png"), last = read_png(folder_ / "frames/0004.png");
   EXPECT_EQ(first.width, last.width);
   EXPECT_EQ(first.height, last.height);
-  // the picture's right edge holds the scale: its numbers are those of the whole run, in every frame
+  // the picture's right edge shows the scale: its numbers cover the whole run and are equal in every frame
   int different_scale = 0, different = 0;
   for (int y = 0; y < 720; ++y)
     for (int x = 0; x < first.width; ++x) {
@@ -216,7 +216,7 @@ TEST_F(Pictures, FramesShareCameraAndColours) {
     }
   EXPECT_GT(different, 2000);
   EXPECT_EQ(different_scale, 0);
-  // the held face stands still in the picture, so its lowest corner does
+  // the held face does not move in the picture, and neither does its lowest corner
   const auto lowest = [&](const Png& png) {
     for (int y = 719; y > 120; --y)
       for (int x = 0; x < png.width - 120; ++x)
@@ -225,7 +225,7 @@ TEST_F(Pictures, FramesShareCameraAndColours) {
   };
   EXPECT_GT(lowest(first).second, 400);
   EXPECT_EQ(lowest(first), lowest(last));
-  // what was not moved yet has the lowest colour
+  // the initial state has the lowest colour everywhere
   EXPECT_EQ(first.count(0, first.width - 130, is_greatest), 0);
 }
 
@@ -242,8 +242,8 @@ TEST_F(Pictures, MoviesAreAsLongAsTheRunOrSlower) {
   EXPECT_NEAR(cli::between_movie_frames(d, 0.0, 2.0), 0.02, 1e-15);
   EXPECT_NEAR(cli::between_movie_frames(d, 10.0, 5.0), 0.02, 1e-15);
   EXPECT_NEAR(cli::between_movie_frames(d, 0.0, 0.5), 0.08, 1e-15);
-  EXPECT_NEAR(cli::between_movie_frames(d, 0.0, 100.0), 0.01, 1e-15);  // as many as there are
-  EXPECT_THROW(cli::between_movie_frames(d, 25.0, 100.0), Error);      // no more
+  EXPECT_NEAR(cli::between_movie_frames(d, 0.0, 100.0), 0.01, 1e-15);  // limited by the number of periods
+  EXPECT_THROW(cli::between_movie_frames(d, 25.0, 100.0), Error);      // more frames than periods
 }
 
 TEST_F(Pictures, SizesAreEvenNumbersOfPixels) {
@@ -254,13 +254,13 @@ TEST_F(Pictures, SizesAreEvenNumbersOfPixels) {
     EXPECT_THROW(cli::frame_size(text), Error) << text;
 }
 
-// Bodies that fell behind in real time stand still: frames that nobody saw show what was last seen.
+// In real time, bodies that fell behind are held: frames at instants without a state repeat the last state.
 TEST_F(Pictures, FramesKeepTheirTimeWhereBodiesStandStill) {
   const scene::Description d = blocks(false);
   const auto world = loop::assemble(d);
   cli::Frames frames(*world, folder_.path().string(), cli::Shade::kDisplacement, 0.02, 0.2, {240, 218});
   for (const double t : {0.0, 0.01, 0.02, 0.09, 0.10, 0.2}) frames.period(*world, t);
-  EXPECT_EQ(frames.count(), 10);  // instants of 0, 20, 90 (for 80) and 100 ms; the run's end has none
+  EXPECT_EQ(frames.count(), 10);  // states at 0, 20, 90 (for 80) and 100 ms; the end of the run adds none
   cli::Undelivered missing;
   const long before = counters::counter("render.picture");
   const auto sink = cli::make_frame_folder((folder_ / "frames").string());
@@ -282,10 +282,10 @@ TEST_F(Pictures, InstantsComeBackFromDiskBitForBit) {
   second.time = 0.2;
   second.handle = Pose{Quat(0.6, 0.0, 0.0, 0.8), Vec3(7, 8, 9)};
   cli::InstantSpool spool(folder_.path().string());
-  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));  // it has no name
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));  // the spool file is unlinked
   spool.append(first);
   spool.append(second);
-  for (int time = 0; time < 2; ++time) {  // as often as it is asked for
+  for (int time = 0; time < 2; ++time) {  // may be read repeatedly
     spool.rewind();
     cli::Instant read;
     ASSERT_TRUE(spool.next(read));
@@ -313,12 +313,12 @@ TEST_F(Pictures, AFrameThatCannotBeWrittenIsNamed) {
   cli::Frames frames(*world, folder_.path().string(), cli::Shade::kDisplacement, 0.01, 0.04, {240, 218});
   ASSERT_TRUE(run(*world, frames).status.ok());
   cli::Undelivered missing;
-  std::filesystem::create_directories(folder_ / "frames/0002.part");  // where its draft would be
+  std::filesystem::create_directories(folder_ / "frames/0002.part");  // blocks the temporary file
   const auto folder = cli::make_frame_folder((folder_ / "frames").string());
   const auto movie = cli::make_movie((folder_ / "all.png").string(), 0.01);
   frames.save(*world, {folder.get(), movie.get()}, true, missing);
   EXPECT_EQ(folder->written(), 2);
-  EXPECT_EQ(movie->written(), 4);  // goes on without the other
+  EXPECT_EQ(movie->written(), 4);  // the movie is complete all the same
   EXPECT_TRUE(std::filesystem::exists(folder_ / "all.png"));
   EXPECT_FALSE(missing.empty());
   EXPECT_EQ(missing.close(0), 3);

@@ -1,4 +1,4 @@
-// Markdown as a terminal shows it.
+// Rendering of Markdown as plain text for a terminal.
 #include "plain_text.h"
 
 #include <gtest/gtest.h>

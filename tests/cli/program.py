@@ -1,4 +1,4 @@
-"""The program under test, called as a person calls it.  Its path is the first argument of each test."""
+"""The program under test, called from its command line. Its path is the first argument of each test."""
 import os
 import pty
 import shutil
@@ -18,7 +18,8 @@ NO_GNUPLOT = {"PATH": "/nowhere"}
 
 
 def open_terminal():
-    """Both ends of a terminal; skips the test aloud where the machine has none (no /dev/pts)."""
+    """Returns both ends of a terminal; skips the test with a message where the machine has none (no
+    /dev/pts)."""
     try:
         return pty.openpty()
     except OSError as error:

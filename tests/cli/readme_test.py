@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs every command of a page, in order, as a newcomer would: in one folder, with the files that the page
-says to save there.
+"""Runs every command of a page, in order, as a new user would: in one folder, with the files that the page
+asks to save there.
 
     readme_test.py PROGRAM Readme|FirstTouch|Studies
 """
@@ -16,14 +16,14 @@ from pathlib import Path
 
 PROGRAM = Path(sys.argv[1]).resolve()
 TREE = Path(__file__).resolve().parents[2]
-# Done by other tests: the launcher's own commands (cli.launcher), installation (package.install), a Slurm
+# Tested elsewhere: the launcher's own commands (cli.launcher), installation (package.install), a Slurm
 # cluster (cli.study_slurm).
 ELSEWHERE = [r"git clone ", r"cd palpate$", r"\./palpate test$", r"\./palpate build$",
              r"cmake --install build/release --prefix ", r"\./palpate study .* --slurm"]
 
 
 class Page:
-    """What the tests of a page share; `page` and `least`, how many commands it has at least, are theirs."""
+    """Common code of the tests of a page; they define `page` and `least`, the minimum number of commands."""
 
     @classmethod
     def setUpClass(cls):
@@ -75,7 +75,7 @@ class Readme(Page, unittest.TestCase):
     least = 10
 
     def test_demo(self):
-        """The page holds all five things that README.md lists, in itself."""
+        """The page contains all five items that README.md lists, without external resources."""
         folder = self.folder / "out/demo"
         page = (folder / "report.html").read_text()
         xml.dom.minidom.parseString(page)
@@ -109,8 +109,8 @@ class FirstTouch(Page, unittest.TestCase):
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), 300)
         last = float(rows[-1]["force_z_n"])
-        self.assertGreater(last, 0.05)  # the ball pushes the hand up
-        self.assertLess(abs(float(rows[5]["force_z_n"])), 0.02)  # not yet touched
+        self.assertGreater(last, 0.05)  # the ball exerts an upward force on the hand
+        self.assertLess(abs(float(rows[5]["force_z_n"])), 0.02)  # no contact yet
         third = self.said_by("run touch.toml --picture").splitlines()[2]
         self.assertRegex(third, r"^on the hand: at most \S+ N ")
         most = max(float(row["force_z_n"]) for row in rows)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The page of `palpate report` in a headless Chromium, as a reader uses it.
+"""The page of `palpate report` in a headless Chromium, used like a reader does.
 
     report_page_test.py PROGRAM
 """
@@ -58,7 +58,7 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(outside, [], "the page asks for something outside")
 
     def seen(self, selector):
-        """Scrolls to the first such element, opening what folds it away."""
+        """Scrolls to the first such element, after opening the sections that contain it."""
         self.tab.value(f"(() => {{ const e = document.querySelector('{selector}'); for (let p = e; p; "
                        "p = p.parentElement) if (p.tagName === 'DETAILS') p.open = true; "
                        "e.scrollIntoView({block: 'center'}); })()")
@@ -172,7 +172,7 @@ class ReportPage(unittest.TestCase):
                 self.seen("figure.chart")
                 self.tab.wait_for("document.querySelector('figure.is-live canvas') !== null")
                 self.assertEqual(self.tab.value("document.documentElement.clientWidth"), width)
-                # charts follow a new width when the browser has told them
+                # charts adapt to a new width after the browser has reported it
                 self.tab.wait_for("document.documentElement.scrollWidth <= "
                                   "document.documentElement.clientWidth", patience_s=10.0)
 

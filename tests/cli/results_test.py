@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a run, its pictures, pages and lists are.
+"""Results of a run: its files, pictures, pages and lists.
 
     results_test.py PROGRAM [unittest's names of tests]
 """
@@ -24,7 +24,7 @@ from program import PROGRAM, Cli
 
 class Results(Cli):
     def head_of_page(self, folder):
-        """The lines of the head of a page, above its first section."""
+        """Returns the lines of the head of a page, above its first section."""
         page = (self.folder / folder / "report.html").read_text()
         head = page[page.index("<h1"):page.index("<h2")]
         return [html.unescape(line).strip() for line in re.sub("<[^>]*>", "\n", head).split("\n")]
@@ -141,7 +141,7 @@ class Results(Cli):
             self.assertAlmostEqual(figures[section]["peak_force_at_s"], time_s, delta=1e-9)
 
     def test_a_bound_beyond_the_target_is_no_error(self):
-        """Exchanges within the target are counted, the others' bounds told apart from it."""
+        """Exchanges within the target are counted, and the bounds of the others listed separately."""
         text = self.good("run", "two-hands", "--duration-s", "0.12", "-o", "out")
         figures = json.loads((self.folder / "out/summary.json").read_text())["figures"]
         beyond = 0
@@ -154,7 +154,7 @@ class Results(Cli):
             self.assertEqual("ended at its limit" in line, missed > 0)
             self.assertEqual("which say nothing" in line, kept["largest_error_bound"] > 1.0)
             self.assertLessEqual(float(re.search(r"at most (\S+) %", line)[1]), 100.0 * kept["wanted_error"])
-        self.assertGreater(beyond, 0)  # or this test sees nothing
+        self.assertGreater(beyond, 0)  # otherwise the test has no effect
 
     def test_integrator_option_is_the_one_that_runs(self):
         text = self.good("run", "one-tet", "--duration-s", "0.1", "--integrator", "linearly-implicit-euler",
@@ -215,12 +215,12 @@ class Results(Cli):
             (self.folder / "here/frames" / name).write_text("of an earlier run")
         text = self.good(*run, "--duration-s", "0.05")
         numbered = [f"{i:04}.png" for i in range(5)]
-        self.assertEqual(self.frames("here"), numbered + ["mine.png"])  # nobody's own is touched
+        self.assertEqual(self.frames("here"), numbered + ["mine.png"])  # the user's file is unchanged
         self.assertIn("5 of 5 frames in here/frames, one every 0.01 s", text)
         self.assertIn("ffmpeg -framerate 100 -i here/frames/%04d.png", text)
         sizes = {self.png_size(self.folder / "here/frames" / name) for name in numbered}
         self.assertEqual(len(sizes), 1)
-        self.assertTrue(all(side % 2 == 0 for side in sizes.pop()))  # as video encoders want
+        self.assertTrue(all(side % 2 == 0 for side in sizes.pop()))  # required by video encoders
         self.good(*run, "--duration-s", "0.05", "--frames-per-s", "50", "--shade", "penetration")
         self.assertEqual(self.frames("here"), numbered[:3] + ["mine.png"])
         self.assertIn("--frames-per-s 50 --shade penetration",
@@ -241,7 +241,7 @@ class Results(Cli):
                       self.refused("run", "cantilever", "--picture", "--shade", "penetration"))
 
     def test_nearest_points_press_as_images_do(self):
-        """Much the same force, and smoother: error control takes fewer steps."""
+        """Nearly the same force, and smoother: error control takes fewer steps."""
         force, torque, steps = {}, {}, {}
         for method in ("image", "distance"):
             said = self.good("run", "press-ball", "--duration-s", "0.3", "--set",
@@ -262,11 +262,12 @@ class Results(Cli):
         self.assertGreater(force["image"], 0.3)
         self.assertAlmostEqual(force["distance"] / force["image"], 1.0, delta=0.2)
         self.assertLess(steps["distance"], steps["image"])
-        self.assertLess(torque["distance"], 1e-15)  # the tool is a ball to it, not a mesh of one
+        self.assertLess(torque["distance"], 1e-15)  # the tool is an exact ball, rather than a mesh
         self.assertGreater(torque["image"], 1e-6)
 
     def test_nearest_points_keep_the_energy_of_a_ball_that_bounces(self):
-        """Undamped, contact looked for each 5 ms: with gaps linear in between it gains some percent."""
+        """Undamped, with contact queried every 5 ms: with gaps linear in between it would gain some
+        percent of energy."""
         fall = 0.02  # [m]
         changed = {}
         for name, method in {"points": "distance", "vertices": "analytic"}.items():
@@ -306,7 +307,7 @@ class Results(Cli):
         done = self.call("run", "squeeze-ball", "-o", "out", PALPATE_MODELS=str(self.folder / "models"))
         self.assertEqual(done.returncode, 0, done.stderr)
         lowest = min(float(row["tool_z_m"]) for row in self.table("out/force.csv"))
-        pressed = 0.06 - (lowest - 0.005)  # the ball's height less that of the plate's lower face
+        pressed = 0.06 - (lowest - 0.005)  # height of the ball minus that of the plate's lower face
         self.assertAlmostEqual(pressed / 0.03, 0.40, delta=0.005)
         rows = [{name: float(value) for name, value in row.items()} for row in self.table("out/energy.csv")]
         self.assertEqual(len(rows), 1200)
@@ -317,7 +318,7 @@ class Results(Cli):
         self.assertGreater(elastic, 0.4 * work)
         for row in rows:
             self.assertLess(abs(row["unaccounted_j"]), 0.002 * work, row)
-        self.assertLess(rows[-1]["elastic_j"], 2e-3 * elastic)  # it has its shape again
+        self.assertLess(rows[-1]["elastic_j"], 2e-3 * elastic)  # it has its original shape again
 
     def test_keys_are_listed_with_unit_range_default_and_meaning(self):
         text = self.good("list", "keys")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs that are killed and go on from their last checkpoint: all that they leave is what the run that never
-stopped leaves, to the last bit.
+"""Runs that are killed and resumed from their last checkpoint: all their files are bitwise equal to those of
+an uninterrupted run.
 
     resume_test.py PROGRAM
 """
@@ -34,7 +34,7 @@ RUNS = {
     "contact with friction, linearly implicit": ("falling-ball", 0.05, [
         "--integrator", "linearly-implicit-euler", "--set", "integrator.step_s=0.002",
         "--set", "contact.0.friction=0.4", "--set", "record.energy=true"]),
-    # touching from 0.06 s on
+    # in contact from 0.06 s on
     "tool in exchange, points": ("press-ball", 0.05, [*TOUCHING, "--set", "exchange.latency_ticks=3"]),
     "tool in exchange, condensed": ("press-ball", 0.05, [
         *TOUCHING, "--set", "exchange.linearisation=condensed"]),
@@ -67,7 +67,7 @@ def data_sets(path):
 
 
 def figures(path):
-    """What stands in summary.json, but for clocks and sizes of the process."""
+    """Returns the content of summary.json, except for clocks and sizes of the process."""
     out = {}
 
     def walk(value, at):
@@ -75,7 +75,7 @@ def figures(path):
             for key, inner in value.items():
                 walk(inner, f"{at}/{key}")
         elif at.startswith("/figures/constructions/gl."):
-            pass  # OpenGL is opened by each process that makes a query
+            pass  # every process that makes a query opens OpenGL
         elif not at.endswith(CLOCKS) or at.endswith(("simulated_s", "every_s", "period_s", "step_s")):
             out[at] = value
     walk(json.loads(path.read_text()), "")
@@ -104,7 +104,7 @@ class Resume(unittest.TestCase):
         return done.stderr
 
     def kill(self, command, checkpoints, where, later_s=0.0, sign=signal.SIGKILL):
-        """Starts a command that works in where/run, and kills it behind so many checkpoints."""
+        """Starts a command that works in where/run, and kills it after the given number of checkpoints."""
         process = subprocess.Popen([str(PROGRAM), *map(str, command)], cwd=where, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
         checkpoint, seen = where / "run" / "checkpoint.h5", set()

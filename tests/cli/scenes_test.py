@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Every scene that comes with palpate records what README.md promises of a run: the states of its bodies, the
-force on each hand, a summary and the scene.  What says so is checked of all; those that need no model, which
-takes minutes to make, are run.
+"""Every scene that is part of palpate records the files that README.md states for a run: the states of its
+bodies, the force on each hand, a summary and the scene. The settings for this are checked in all scenes;
+scenes without a model, which takes minutes to make, are run.
 
     scenes_test.py PROGRAM
 """
@@ -21,7 +21,7 @@ SCENES = sorted((Path(__file__).resolve().parents[2] / "scenes").glob("*.toml"))
 
 
 def tools_of(scene):
-    """Names of the files that hold the forces on the hands."""
+    """Returns the names of the files with the forces on the hands."""
     return ["force.csv"] * ("tool" in scene) + [f"force-{hand['name']}.csv" for hand in scene.get("hand", [])]
 
 

@@ -1,5 +1,5 @@
-"""A Slurm cluster of one node on loopback, in a folder of its own: nothing of a cluster that the machine may
-have is read or touched.  Needs root and the Debian package slurm-wlm."""
+"""A Slurm cluster of one node on loopback, in a separate folder: nothing of a cluster that the machine may
+belong to is read or changed. Requires root and the Debian package slurm-wlm."""
 import os
 import shutil
 import socket
@@ -11,7 +11,7 @@ PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel", "sco
 
 
 def why_not():
-    """Why no cluster can be started here; empty: one can."""
+    """Returns the reason why no cluster can be started here; empty if one can."""
     path = os.environ.get("PATH", "") + ":/usr/sbin"
     missing = [name for name in PROGRAMS if not shutil.which(name, path=path)]
     if missing:
@@ -91,7 +91,7 @@ class Cluster:
         return subprocess.run(words, env=self.env, capture_output=True, text=True, timeout=60).stdout
 
     def kill_node(self):
-        """The node as after a power cut: its daemon and all that it has started."""
+        """Kills the node as in a power cut: its daemon and everything that it has started."""
         node = self.processes.pop("slurmd")
         node.kill()
         node.wait()
@@ -102,7 +102,7 @@ class Cluster:
                 pass
 
     def started_by_the_node(self):
-        """Steps of jobs, and what runs in them: their environment names this cluster's configuration."""
+        """Job steps and their processes: their environment specifies this cluster's configuration."""
         mark = f"SLURM_CONF={self.env['SLURM_CONF']}".encode()
         out = []
         for folder in Path("/proc").iterdir():

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Limits, damage and hostile input: each run ends right or is rejected in one sentence, and none hangs.
+"""Limits, damage and hostile input: each run ends correctly or is rejected in one sentence, and none hangs.
 
     stress_test.py PROGRAM
 """
@@ -17,12 +17,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from bad_input_test import NAMESPACE, PROGRAM, Case, can_mount  # noqa: E402
 
 MIB = 1 << 20
-LONGEST_S = 120  # of a run here, on a machine that does much else
+LONGEST_S = 120  # per run, on a busy machine
 MODEL = PROGRAM.parent / "palpate-model"
 
 
 class Bounded(Case):
-    """As Case, but a run that does not end is a failure."""
+    """Like Case, but a run that does not end is a failure."""
 
     def call(self, *arguments, before=None, wrapped=(), **options):
         environment = {key: options.pop(key) for key in list(options) if key.isupper()}
@@ -39,7 +39,7 @@ class Bounded(Case):
 
 
 class MemoryLimits(Bounded):
-    """Whatever the limit is: the right end, or a refusal with figures."""
+    """For any limit: the correct result, or a rejection with figures."""
 
     FINE = ["press-ball", "--set", "body.0.mesh.element_size_m=0.0025", "--duration-s", "0.01"]
     SCENES = {"cholmod": [*FINE, "--set", "integrator.linear_solver=cholmod"],
@@ -49,7 +49,8 @@ class MemoryLimits(Bounded):
     KINDS = {"addresses": resource.RLIMIT_AS, "data": resource.RLIMIT_DATA}
 
     def is_loaded(self, limit):
-        """Whether the system's loader can map the program and its libraries: below, main() is not reached."""
+        """Returns whether the system's loader can map the program and its libraries: otherwise main() is not
+        reached."""
         done = subprocess.run([str(PROGRAM), "list", "integrators"], capture_output=True, preexec_fn=limit,
                               timeout=LONGEST_S, check=False)
         return done.returncode == 0
@@ -78,7 +79,7 @@ class MemoryLimits(Bounded):
         self.assertGreater(refused, 0)
 
     def test_what_the_blas_works_in_is_refused_with_figures(self):
-        """The estimate fits, and the buffer of OpenBLAS does not."""
+        """The estimate fits, but the buffer of OpenBLAS does not."""
         scene = ["one-tet", "--integrator", "linearly-implicit-euler", "--set",
                  "integrator.linear_solver=cholmod",
                  "--set", "integrator.step_s=0.01", "--duration-s", "0.02"]
@@ -105,7 +106,8 @@ class MemoryLimits(Bounded):
 
 class SmallLimits(Bounded):
     def test_no_thread_of_a_library_waits_for_memory(self):
-        """The program ends; its loader may find no room for the libraries (127), or they none to work in."""
+        """The program ends; its loader may find no memory for the libraries (127), or the libraries none for
+        their work."""
         codes = []
         for size in range(120, 321, 20):
             with self.subTest(mib=size):
@@ -242,14 +244,14 @@ class Surroundings(Bounded):
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["file", "folder"])
 
     def test_the_peak_of_memory_is_the_program_s(self):
-        large = bytearray(400 * MIB)  # which a child made by fork has, too, until it becomes another program
+        large = bytearray(400 * MIB)  # inherited by a forked child until it executes another program
         text = self.good("run", "one-tet", "--duration-s", "0.02", before=lambda: None)
         self.assertLess(float(re.search(r"peak memory (\d+) MiB", text).group(1)), 300)
         self.assertEqual(len(large), 400 * MIB)
 
 
 class Places(Bounded):
-    """What is found out after loading names the line, too."""
+    """Errors found after loading state the line as well."""
 
     BODY = ('[scene]\nname = "s"\nduration_s = 0.01\n[[body]]\nname = "block"\nyoungs_modulus_pa = 1e4\n'
             'mesh = { generator = "box", size_m = [0.1, 0.1, 0.1], element_size_m = %s }\n')
@@ -286,7 +288,7 @@ class Studies(Bounded):
 
 
 class Resumed(Bounded):
-    """A run that was killed goes on from whole files alone."""
+    """A killed run is resumed from complete files only."""
 
     def setUp(self):
         super().setUp()

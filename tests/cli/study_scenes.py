@@ -1,4 +1,4 @@
-"""What the tests of studies share: a scene of milliseconds, one of seconds, and calls of the program."""
+"""Shared by the tests of studies: a scene of milliseconds, one of seconds, and calls of the program."""
 import csv
 import os
 import shutil
@@ -41,7 +41,8 @@ min = 900
 max = 1100
 """
 QUICK_TASKS = 16
-# Seconds a task, so that something can happen to it; in another order of magnitude than all else.
+# Seconds per task, so that events can occur during it; the values differ from all others by orders of
+# magnitude.
 LONG = """[study]
 scenes = ["block.toml"]
 step_s = [2e-7]
@@ -56,7 +57,7 @@ LONG_TASKS = 4
 
 
 class Studies(unittest.TestCase):
-    program = None  # of the test file
+    program = None  # set by the test file
     environment = {}
 
     def setUp(self):

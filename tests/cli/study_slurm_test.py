@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""`palpate study --slurm` on a real cluster of one node, which the test starts and stops itself: the same
-table as on the cores of this machine, and a task or a node that is lost costs no other task.
+"""`palpate study --slurm` on a real cluster of one node, which the test starts and stops: the same table as
+on the cores of this machine, and a lost task or node affects no other task.
 
     study_slurm_test.py PROGRAM        skips (status 77) without root or the Debian package slurm-wlm
 """
@@ -40,11 +40,11 @@ class Slurm(Studies):
         return value
 
     def running(self):
-        """Elements of the array that run: "7_2"."""
+        """Returns the running elements of the array: "7_2"."""
         return self.cluster.said("squeue", "-h", "-t", "R", "-o", "%F_%K").split()
 
     def tasks_that_run(self):
-        """Task -> process of the program on the node."""
+        """Returns task -> process of the program on the node."""
         out = {}
         for pid in self.cluster.started_by_the_node():
             try:
@@ -56,7 +56,7 @@ class Slurm(Studies):
         return out
 
     def local(self, study):
-        """The table as the cores of this machine make it."""
+        """Returns the table made on the cores of this machine."""
         self.good(study, "-o", "local")
         return self.table("local")
 
@@ -103,7 +103,7 @@ class Slurm(Studies):
         _, err = child.communicate(timeout=400)
         self.assertEqual(child.returncode, 3, err)
         self.assertIn(f"there is no result of task {task} (job ", err)
-        self.good("long.toml", "-o", "cluster")  # the rest on this machine: results are results
+        self.good("long.toml", "-o", "cluster")  # the remaining tasks on this machine: results are shared
         self.assertEqual(self.table("cluster"), self.local("long.toml"))
 
     def test_a_lost_node_costs_what_it_was_running(self):
@@ -113,7 +113,7 @@ class Slurm(Studies):
         kept = self.results("cluster")
         before = {name: (self.folder / "cluster/tasks" / name).stat().st_mtime_ns for name in kept}
         self.until(lambda: "down" in self.cluster.said("sinfo", "-h", "-o", "%T"))
-        self.cluster.start_node()  # Slurm queues again what the node was running, for two minutes from now
+        self.cluster.start_node()  # Slurm requeues the node's jobs, two minutes from now
         while child.poll() is None:
             for job in self.cluster.said("squeue", "-h", "-t", "PD", "-o", "%A").split():
                 self.cluster.said("scontrol", "update", f"JobId={job}", "StartTime=now")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`palpate study` as a person meets it: the list of tasks, the table, what is lost and made again.
+"""The user interface of `palpate study`: the list of tasks, the table, lost tasks and their repetition.
 
     study_test.py PROGRAM
 """
@@ -144,7 +144,7 @@ class Losses(Studies):
             time.sleep(0.01)
 
     def workers(self, study):
-        """Processes of tasks: those that have no children, below the helper and its server."""
+        """Processes of tasks: those without children, below the helper and its server."""
         return [pid for pid in descendants_of(study.pid) if not children_of(pid)
                 and Path(f"/proc/{pid}/stat").read_text().split()[2] == "R"]
 

@@ -16,7 +16,7 @@ using namespace palpate;
 
 namespace {
 
-/// Every number of a run another one: counts are whole, times are not.
+/// Run in which every number is different, so that a swapped member shows: counts are whole, times are not.
 compare::PointRun distinct() {
   compare::PointRun run;
   run.status = compare::PointStatus::kOk;
@@ -52,7 +52,7 @@ class Folder {
   std::filesystem::path path;
 };
 
-// The names of the struct's members, written out once more: what a run counts must all be visited.
+// Lists the names of the struct's members a second time: the codec must visit every counter of a run.
 TEST(Codec, VisitsEveryMember) {
   const compare::PointRun run = distinct();
   const dynamics::StepperCounters& c = run.result.counters;

@@ -85,8 +85,8 @@ TEST(Compare, SeveralScenesEachAgainstItsOwnReference) {
     EXPECT_EQ(alone.scenes[0].points[i].error.position_rel_l2, all.scenes[0].points[i].error.position_rel_l2);
 }
 
-// Without a ladder in the scene, each integrator gets one by what controls its step; nobody has to list the
-// registry.
+// Without a refinement sequence in the scene, each integrator gets one that varies the quantity that controls
+// its step; no list of integrators is needed.
 TEST(Compare, ComparesWhatTheSceneDoesNotName) {
   compare::CompareOptions options = quick();
   options.limit_s = 1.0;
@@ -119,7 +119,7 @@ TEST(Compare, LaddersOfOneIntegratorAreToldApartByTheirLabels) {
   EXPECT_EQ(c.points[0].label, "capped at 2");
   EXPECT_EQ(c.points[0].description.integrator.max_order, 2);
   const long capped = c.points[0].result.counters.steps;
-  options.integrators = {"cvode-bdf"};  // the ladder of that name, not those with a label of their own
+  options.integrators = {"cvode-bdf"};  // that sequence only, not those with another label
   c = compare::run({compare_scenes::block(labelled)}, options).scenes[0];
   ASSERT_EQ(c.points.size(), 3u);
   for (const auto& point : c.points) EXPECT_EQ(point.label, "cvode-bdf");
@@ -155,7 +155,7 @@ compare::CompareOptions one_rung() {
   return options;
 }
 
-// Methods are compared by one linear solver, whatever each would take by itself.
+// All methods are compared with the same linear solver, whatever their defaults are.
 TEST(Compare, AllMethodsHaveOneLinearSolver) {
   const auto d = compare_scenes::block(kOneRung);
   compare::CompareOptions options = one_rung();
@@ -191,7 +191,7 @@ TEST(Compare, EachMethodsBestLinearSolverIsFoundByTrying) {
       EXPECT_EQ(trial.status, PointStatus::kOk) << trial.label << ": " << trial.reason;
       const double right = direct_error(c, label);
       EXPECT_GT(right, 0.0);
-      if (trial.error.position_rel_l2 > 2.0 * right) continue;  // fast and wrong
+      if (trial.error.position_rel_l2 > 2.0 * right) continue;  // fast but inaccurate
       if (trial.label.starts_with(label) && (!best || trial.cpu_median_s < best->cpu_median_s)) best = &trial;
     }
     ASSERT_TRUE(best);
@@ -199,7 +199,8 @@ TEST(Compare, EachMethodsBestLinearSolverIsFoundByTrying) {
   }
 }
 
-// What a method shares with the reference, its error does not show: it is held against the other family.
+// A method's error does not show what it shares with its reference: each method is compared with a
+// reference of the other family.
 TEST(Compare, NoMethodIsHeldAgainstItsOwnFamily) {
   const compare::SceneComparison c =
       compare::run({compare_scenes::block(compare_scenes::kLadders)}, quick()).scenes[0];
@@ -207,7 +208,7 @@ TEST(Compare, NoMethodIsHeldAgainstItsOwnFamily) {
   EXPECT_EQ(point_of(c, "linearly-implicit-euler").against, "cvode-bdf");
 }
 
-// Of an implicit check the factorisation is another one, too.
+// An implicit check also uses another factorisation than the reference.
 TEST(Compare, AReferenceIsCheckedByAnotherFactorisation) {
   const compare::SceneComparison c =
       compare::run({compare_scenes::block(kOneRung + "reference_check = \"ark-dirk-esdirk547\"\n")},
@@ -220,7 +221,7 @@ TEST(Compare, AReferenceIsCheckedByAnotherFactorisation) {
   EXPECT_EQ(point_of(c, "ark-dirk-sdirk212").against, "cvode-bdf");
 }
 
-// A default ladder goes down to where the reference cannot tell errors any more, and no farther.
+// A default refinement sequence ends at the first levels that the reference cannot resolve.
 TEST(Compare, ALadderWithoutRungsEndsWhereTheReferenceDoes) {
   compare::CompareOptions options = quick();
   options.integrators = {"ark-dirk-esdirk437"};
@@ -268,7 +269,8 @@ TEST(Compare, LaddersThatMakeNoSenseAreRefused) {
   EXPECT_NE(message_of(made_by_hand, quick()).find("has no text"), std::string::npos);
 }
 
-// A run that gives up after a hundredth of the time is close to the reference for that long: it has no error.
+// A run that fails after a hundredth of the duration is close to the reference until then: no error is
+// reported for it.
 TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
   const std::string text =
       "[integrator]\nmax_steps = 2000\n[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s "
@@ -330,7 +332,7 @@ TEST(Compare, WhatCannotRunTheSceneSaysSoOnce) {
       << c.points[0].reason;
 }
 
-// The explicit check needs more steps than it may take on a stiff block; cvode-bdf does not.
+// The explicit check exceeds its step limit on a stiff block; cvode-bdf does not.
 TEST(Compare, WithoutACheckTheReferencesOwnErrorIsNotKnown) {
   const std::string text =
       "[integrator]\nmax_steps = 400\n[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nrtol = "
@@ -354,7 +356,7 @@ TEST(Compare, WithoutAReferencePointsHaveCostsAndNoErrors) {
       "[1e-3]\n[compare]\nreference_rtol = 1e-10\nreference_check_rtol = 1e-12\n";
   compare::CompareOptions options = quick();
   options.integrators = {"linearly-implicit-euler"};
-  options.reference_limit_s = 1e-6;  // less than any run takes
+  options.reference_limit_s = 1e-6;  // shorter than any run
   const compare::SceneComparison c = compare::run({compare_scenes::block(text)}, options).scenes[0];
   EXPECT_FALSE(c.reference.available);
   EXPECT_NE(c.reference.trouble.find("there is no reference"), std::string::npos) << c.reference.trouble;
@@ -373,7 +375,7 @@ TEST(Compare, StopsAtOnceWhenAsked) {
   for (const compare::ComparePoint& p : all.scenes[0].points) EXPECT_EQ(p.status, PointStatus::kMissing);
 }
 
-// A run's process gets the scene as its text: nothing may be lost on the way, to the last bit.
+// A run's process receives the scene as text: the text must reproduce the scene bitwise.
 TEST(Compare, TheTextOfASceneIsAllOfIt) {
   const scene::Description d =
       loop::parse(compare_scenes::block_text(compare_scenes::kLadders), "block.toml",
@@ -406,7 +408,7 @@ TEST(Compare, GoesOnFromItsDatabaseAndDoesNothingTwice) {
     EXPECT_EQ(again.scenes[0].points[i].cpu_s, first.scenes[0].points[i].cpu_s);
     EXPECT_EQ(again.scenes[0].points[i].error.energy_j, first.scenes[0].points[i].error.energy_j);
   }
-  // Another rung changes no other run; another scene changes all.
+  // Another refinement level changes no other run; another scene changes all runs.
   const auto longer = compare_scenes::block(
       compare_scenes::kLadders +
       "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nlabel = \"more\"\nrtol = [1e-5]\n");
@@ -418,7 +420,7 @@ TEST(Compare, GoesOnFromItsDatabaseAndDoesNothingTwice) {
   EXPECT_EQ(runs, 2 + 2 + 2 * 6);
 }
 
-// A point that ran out of time is tried again only where it is given more.
+// A point that exceeded its time limit is run again only under a larger limit.
 TEST(Compare, MoreTimeTriesAgain) {
   const TemporaryFolder folder;
   compare::CompareOptions options = quick();
@@ -434,8 +436,8 @@ TEST(Compare, MoreTimeTriesAgain) {
 }
 
 #ifdef PALPATE_HAS_TOOL
-// Each of Simbody's schemes at its own order in the tick; the error-controlled ones see only the handle,
-// which is sampled by the tick.
+// Each of Simbody's schemes converges at its order in the tick; the error-controlled methods depend on the
+// tick only through the handle, which is sampled once per tick.
 TEST(Compare, AToolWithoutABodyIsComparedByItsTicks) {
   compare::CompareOptions options;
   options.repeats = 1;
@@ -459,8 +461,8 @@ TEST(Compare, AToolWithoutABodyIsComparedByItsTicks) {
   EXPECT_LT(order, 1.1);
 }
 
-// A multistep method begins anew at every refresh that changes the contact: it needs more steps the more
-// often that is; a one-step method's count stays.
+// A multistep method restarts at every refresh that changes the contact, and so needs more steps the more
+// often contact is refreshed; the step count of a one-step method does not change.
 TEST(Compare, RestartsCostMultistepMethods) {
   const std::string text = R"([scene]
 name = "falling block"

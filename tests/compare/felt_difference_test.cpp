@@ -1,4 +1,4 @@
-// What a hand feels of two runs, against differences known in closed form.
+// Perceptible difference of two force and torque histories, against differences known in closed form.
 #include "palpate/compare/felt_difference.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace palpate;
 
-/// Ticks of 1 kHz over 2 s; force f(t) along z, torque tau(t) about x.
+/// Tick records at 1 kHz over 2 s, with force f(t) along z and torque tau(t) about x.
 template <class Force, class Torque>
 std::vector<loop::TickRecord> ticks(Force&& force, Torque&& torque, double h = 1e-3) {
   std::vector<loop::TickRecord> out;
@@ -38,7 +38,7 @@ TEST(FeltDifference, OfARunAndItselfIsNone) {
   EXPECT_NEAR(d.force.peak, 2.0, 1e-4);
 }
 
-// A tone of amplitude a has a root mean square of a/sqrt(2), in its own band alone.
+// A tone of amplitude a has an RMS of a/sqrt(2), in the band of its frequency only.
 TEST(FeltDifference, AToneStandsInItsBand) {
   for (const auto& [hz, band] :
        {std::pair(4.0, 0), std::pair(20.0, 1), std::pair(50.0, 2), std::pair(220.0, 3)}) {
@@ -59,15 +59,15 @@ TEST(FeltDifference, AToneStandsInItsBand) {
   }
 }
 
-/// Of the squares of all bands.
+/// RMS over all bands: root of the sum of the bands' squares.
 double whole(const compare::FeltSeries& s, double compare::FeltSeries::Band::*part) {
   double out = 0.0;
   for (const compare::FeltSeries::Band& band : s.bands) out += band.*part * band.*part;
   return std::sqrt(out);
 }
 
-// Bands share the mean square of the run: also of a difference that is there for a moment, at the run's
-// beginning, middle or end, where a window weighs it in different ways.
+// The bands add up to the mean square of the run, also for a transient at the beginning, middle or end of the
+// run, where windows have different weights.
 TEST(FeltDifference, BandsAddUpToTheWhole) {
   const auto still = ticks([](double) { return 0.5; }, none);
   for (const double at : {0.05, 0.4, 1.0, 1.95}) {
@@ -82,7 +82,7 @@ TEST(FeltDifference, BandsAddUpToTheWhole) {
   }
 }
 
-// A ball without friction has a torque of rounding: a share of it means nothing.
+// A ball without friction has a torque at rounding level: no percentage is reported for it.
 TEST(FeltDifference, OfRoundingThereAreNoPercents) {
   const auto force = [](double) { return 1.0; };
   const auto a = ticks(force, [](double t) { return 1e-17 * tone(t, 7.0); }),
@@ -102,8 +102,8 @@ TEST(FeltDifference, OfRoundingThereAreNoPercents) {
   EXPECT_NE(torque_of(c, a).find("(100 % of the peak of 0.02)"), std::string::npos);
 }
 
-// 2 N: 0.14 N is the threshold, so 0.139 is below it and 0.141 above, at each tick; below 0.5 N it stays at
-// 0.035 N.
+// At 2 N the threshold is 0.14 N: 0.139 N is below it and 0.141 N above, at each tick. Below 0.5 N the
+// threshold is constant, 0.035 N.
 TEST(FeltDifference, NoticeableIsBeyondWebersLaw) {
   const auto share = [](double force, double by) {
     return compare::felt_difference(ticks([=](double) { return force; }, none),
@@ -123,7 +123,8 @@ TEST(FeltDifference, NoticeableIsBeyondWebersLaw) {
   EXPECT_EQ(torque(0.0128), 1.0);
 }
 
-// Runs of other rates and lengths are compared where both have values; between ticks a force is straight.
+// Runs with different rates and lengths are compared over their common duration; forces are interpolated
+// linearly between ticks.
 TEST(FeltDifference, OtherRatesAreInterpolated) {
   const auto line = [](double t) { return 3.0 * t; };
   auto coarse = ticks(line, none, 4e-3);

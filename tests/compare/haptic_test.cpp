@@ -1,4 +1,4 @@
-// The force on the hand against tool and bodies as one system.
+// Force on the hand, compared with the monolithic solution of tool and bodies.
 #include "palpate/compare/haptic.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ using compare::PointStatus;
 
 namespace {
 
-/// A round tool presses a block of 160 tetrahedra while the handle moves down and turns: both force and
-/// torque.  w = sqrt(k/m) = 77/s of the coupling: a period of 2 ms is 0.15 of its radian.
+/// A round tool presses a block of 160 tetrahedra while the handle moves down and turns, which gives force
+/// and torque. The coupling has w = sqrt(k/m) = 77/s: a period of 2 ms is 0.15 rad of its phase.
 constexpr const char* kPress = R"([scene]
 name = "press block"
 duration_s = 0.04
@@ -98,7 +98,7 @@ const HapticPoint& own_point(const HapticComparison& c) {
   throw std::runtime_error("no point of the scene's own");
 }
 
-// Measured for all variables once: what is asked of it stands in the tests below.
+// Comparison over all variables, computed once; the tests below check its parts.
 const HapticComparison& measured() {
   static const HapticComparison comparison = compare::compare_haptic(press(), once());
   return comparison;
@@ -147,7 +147,7 @@ TEST(Haptic, EveryVariableHasTheScenesOwnOnceAndEveryName) {
   }
 }
 
-// 0.5 ms is no multiple of a tick of 0.2 ms.
+// 0.5 ms is no multiple of a tick of 0.2 ms, so that the loader rejects this point.
 TEST(Haptic, WhatTheLoaderRefusesIsARowAndEndsNothingElse) {
   const HapticPoint& p = point_of(measured(), "exchange period", 5e-4);
   EXPECT_EQ(p.status, PointStatus::kRefused);
@@ -205,8 +205,8 @@ const HapticPoint& frozen_point(const HapticComparison& c) {
   throw std::runtime_error("no point of frozen");
 }
 
-// A contact that is frozen over the period is off by the body's motion since its exchange: half a period on
-// the average, and the delay, here as much again.
+// A frozen contact lags the body's motion by half a period on average, plus the delay, which here is another
+// half period.
 TEST(Haptic, ADelayIsSeen) {
   const scene::Description late =
       press({"exchange.linearisation=frozen", "exchange.latency_ticks=5",
@@ -226,8 +226,8 @@ HapticPoint fabricated(double setting, double force, double torque) {
   return p;
 }
 
-// Errors h and h^2 of known points; the finest force is drowned by the reference's own error, the coarsest is
-// wrong throughout.
+// Errors h and h^2 at known points; the finest force is below the reference error, and the coarsest is wrong
+// throughout.
 TEST(Haptic, OrdersLeaveOutWhatIsNotResolvedAndWhatIsWrongThroughout) {
   HapticComparison c;
   c.peak_force_n = c.peak_torque_n_m = 1.0;
@@ -297,7 +297,7 @@ TEST(Haptic, StopsAtOnceWhenAsked) {
   EXPECT_EQ(own_point(c).status, PointStatus::kMissing);
 }
 
-/// Runs the scene with a fault in it, and asks how far it was from the scene without.
+/// Runs the faulty scene and compares it with the monolithic solution of the scene without the fault.
 compare::AgainstMonolithic against(const scene::Description& faulty, bool real_time = false) {
   const auto world = loop::assemble(faulty);
   loop::HapticMemory memory;
@@ -322,7 +322,7 @@ TEST(Haptic, ARunIsHeldAgainstItsOwnSceneAsOneSystem) {
   }
 }
 
-// The hand as it was recorded, tick by tick, is the script's to well within the error that is measured.
+// The recorded hand, tick by tick, equals the scripted one to well within the measured error.
 TEST(Haptic, ARealTimeRunIsHeldByItsRecordedHand) {
   const compare::AgainstMonolithic script = against(press()), recorded = against(press(), true);
   EXPECT_EQ(recorded.trouble, "");

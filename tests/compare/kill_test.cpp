@@ -1,4 +1,4 @@
-// A study that is killed again and again, and started again, ends with the table of one that was left alone.
+// A study that is repeatedly killed and restarted ends with the same table as an uninterrupted one.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -42,11 +42,11 @@ long rows_in(const fs::path& database) {
   if (!fs::exists(database)) return 0;
   try {
     return store::StudyDb(database.string(), compare::run_columns()).run_count();
-  } catch (const Error&) { return 0; }  // it is being made in this moment
+  } catch (const Error&) { return 0; }  // the database is being created
 }
 
-/// A process that makes the study, killed when it has finished some more runs and a while later; true where
-/// it was still at work.
+/// Runs the study in a process and kills it `more_us` after the database holds `rows` runs; returns true if
+/// it was still running.
 bool study_killed_after(const fs::path& database, long rows, int more_us) {
   const pid_t child = fork();
   if (child == 0) {
@@ -72,7 +72,7 @@ TEST(CompareKill, TenKillsGiveTheTableOfAnUndisturbedRun) {
   for (int i = 0; i < 10; ++i) {
     const long rows = kept + static_cast<long>(random() % 3);
     kills += study_killed_after(folder / "killed.sqlite", rows, static_cast<int>(random() % 10000));
-    if (!fs::exists(folder / "killed.sqlite")) continue;  // killed before it was made
+    if (!fs::exists(folder / "killed.sqlite")) continue;  // killed before the database was created
     const store::StudyDb database((folder / "killed.sqlite").string(), compare::run_columns());
     EXPECT_GE(database.run_count(), kept) << "kill " << i;
     grew += database.run_count() > kept;
@@ -96,7 +96,7 @@ TEST(CompareKill, TenKillsGiveTheTableOfAnUndisturbedRun) {
       EXPECT_EQ(x.label, y.label);
       EXPECT_EQ(x.setting, y.setting);
       EXPECT_EQ(x.status, y.status);
-      EXPECT_EQ(x.error.position_rel_l2, y.error.position_rel_l2);  // bit for bit
+      EXPECT_EQ(x.error.position_rel_l2, y.error.position_rel_l2);  // bitwise
       EXPECT_EQ(x.error.energy_j, y.error.energy_j);
       EXPECT_EQ(x.result.counters.steps, y.result.counters.steps);
       EXPECT_EQ(x.result.counters.force_evaluations, y.result.counters.force_evaluations);

@@ -1,4 +1,5 @@
-// A study after a picture: its processes draw too, and must not inherit what the picture has opened.
+// A study started after a picture was drawn: its processes draw as well, and must not inherit the open
+// display.
 #include <gtest/gtest.h>
 
 #include "palpate/compare/compare.h"
@@ -10,7 +11,7 @@ using namespace palpate;
 
 namespace {
 
-/// A round tool stands 1 mm deep in a soft block.
+/// A round tool rests 1 mm deep in a soft block.
 constexpr const char* kTouch = R"([scene]
 name = "touch"
 duration_s = 0.02
@@ -54,7 +55,7 @@ step_s = [0.01]
 )";
 
 TEST(Compare, ProcessesDrawAfterAPictureWasDrawn) {
-  ProcessPool::prepare();  // as main() does first
+  ProcessPool::prepare();  // as main() does at its start
   gl::Context::shared();
   compare::CompareOptions options;
   options.repeats = 1;

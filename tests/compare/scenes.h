@@ -5,8 +5,9 @@
 
 namespace palpate::compare_scenes {
 
-/// A soft block of a few tetrahedra under its weight: smooth, no contact, so that orders are those of theory.
-/// @param more  TOML after it
+/// A soft block of a few tetrahedra under gravity: smooth and without contact, so that methods converge at
+/// their theoretical orders.
+/// @param more  TOML text appended to the scene
 inline std::string block_text(const std::string& more, const std::string& name = "block",
                               double youngs_modulus_pa = 1e4) {
   return "[scene]\nname = \"" + name + R"("
@@ -43,7 +44,7 @@ integrator = "cvode-bdf"
 rtol = [1e-2, 1e-4, 1e-6]
 )";
 
-/// A tool on its spring, pulled aside and let go by the hand; no body.
+/// A tool on its coupling spring, pulled aside and released by the hand; no body.
 inline scene::Description tool_only() {
   return loop::parse(R"([scene]
 name = "tool alone"

@@ -11,7 +11,7 @@ using namespace palpate::compare;
 
 namespace {
 
-/// Two nodes of masses 1 and 3, moving along x with the times' own value; one tick a period.
+/// Two nodes of masses 1 and 3 whose x coordinates equal the time; one tick per period.
 Trajectory line(const std::vector<double>& times, double offset_of_second = 0.0) {
   Trajectory t;
   t.start = VecX::Zero(6);
@@ -39,7 +39,8 @@ TEST(Distance, OfATrajectoryFromItselfIsZero) {
   EXPECT_EQ(e.energy_j, 0.0);
 }
 
-// At the common times 1 and 2: sum of m dx^2 = 2 x 3 x 0.1^2, displacement sum = (1 + 3)(1^2 + 2^2).
+// At the common times 1 and 2: sum of m dx^2 = 2 x 3 x 0.1^2, and sum of displacements squared = (1 + 3)(1^2
+// + 2^2).
 TEST(Distance, IsMassWeightedAtTheCommonTimes) {
   const TrajectoryError e = distance(line({0.5, 1, 2}, 0.1), line({1, 1.5, 2}));
   EXPECT_NEAR(e.position_rel_l2, std::sqrt(2 * 3 * 0.01 / 20.0), 1e-15);
@@ -50,7 +51,7 @@ TEST(Distance, IsMassWeightedAtTheCommonTimes) {
   EXPECT_NEAR(e.energy_j, 0.1, 1e-15);
 }
 
-// A body falls, turns and swells by a thousandth: its error is held against the swelling alone.
+// A body falls, turns and swells by a thousandth: its error is relative to the swelling only.
 TEST(Distance, IsRelativeToTheDeformationNotToRigidMotion) {
   Trajectory reference, computed;
   const Points rest = (Points(3, 4) << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1).finished();
@@ -68,7 +69,7 @@ TEST(Distance, IsRelativeToTheDeformationNotToRigidMotion) {
   }
   const Vec3 centre = stretched.rowwise().mean();
   const double deformation =
-      0.001 / 1.001 * (stretched.colwise() - centre).norm();  // of a stretch about the centre
+      0.001 / 1.001 * (stretched.colwise() - centre).norm();  // displacements of a stretch about the centre
   computed.positions[0][0] += 1e-6;
   EXPECT_NEAR(distance(computed, reference).position_rel_l2, 1e-6 / deformation, 1e-6);
   reference.positions[0] = computed.positions[0] = flat(moved);
@@ -77,7 +78,7 @@ TEST(Distance, IsRelativeToTheDeformationNotToRigidMotion) {
       << "nothing deforms: against the displacement";
 }
 
-// std::max(0, NaN) is 0: a run of NaN must not look exact.
+// std::max(0, NaN) is 0: a run of NaN must not appear exact.
 TEST(Distance, OfNaNIsNaN) {
   Trajectory broken = line({1, 2, 3});
   broken.positions[1][4] = broken.energies[1] = broken.device[1].force[0] = broken.device[1].moment[0] =

@@ -1,4 +1,4 @@
-// After the first queries contact takes no more memory: a query, forces and tangent live on what they have.
+// After the first queries, contact allocates no more memory: query, force and tangent reuse their buffers.
 #include "malloc_count.h"
 #include "touching.h"
 
@@ -25,7 +25,7 @@ TEST(ContactMemory, NothingIsAllocatedAfterTheFirstQueries) {
       dynamics::BorderedMatrix A = step_matrix(term, at.state, 1.0, 0.5);
       long counts[4] = {};
       for (int i = 0; i < 6; ++i) {
-        // it moves a little, back and forth: the same faces meet
+        // moves slightly back and forth, so that the same faces collide
         at.state.q().tail(at.state.q().size() - 6).array() += i % 2 ? 1e-7 : -1e-7;
         const auto counted = [&](int what, const auto& call) {
           const long before = malloc_calls;
@@ -38,7 +38,7 @@ TEST(ContactMemory, NothingIsAllocatedAfterTheFirstQueries) {
         counted(3, [&] { term.apply_tangent(view(), 1.0, 0.5, x, y); });
       }
       EXPECT_GT(term.samples().size(), 20u) << kind.name;
-      if (!kind.image) {  // there the driver's own are counted, too
+      if (!kind.image) {  // in image space the driver's allocations would be counted
         EXPECT_EQ(counts[0], 0) << kind.name << ": query, friction " << friction;
       }
       EXPECT_EQ(counts[1], 0) << kind.name << ": force, friction " << friction;

@@ -6,10 +6,10 @@
 
 namespace contact_tests {
 
-/// A soft ball and a slab that is soft or rigid, with proxies or whole.
+/// A soft ball and a slab that is soft or rigid, with or without proxies.
 namespace ball_and_slab {
 
-/// A soft body in a State: a skin on tetrahedra, with proxies.
+/// A soft ball in a State: a skin embedded in tetrahedra, with proxies.
 inline LayeredModel ball(double radius) {
   LayeredModel out;
   out.name = "ball";
@@ -20,7 +20,7 @@ inline LayeredModel ball(double radius) {
   return out;
 }
 
-/// Its faces at z = +-thickness / 2.
+/// A slab with its faces at z = +-thickness / 2.
 inline LayeredModel slab(double width, double thickness, int cells) {
   LayeredModel out;
   out.name = "slab";
@@ -61,7 +61,7 @@ struct Body {
 
 inline constexpr double kRadius = 0.05, kThickness = 0.01;
 
-/// A ball and a slab, as every kind of pair of bodies.
+/// A ball and a slab, for every kind of body pair.
 struct Pair {
   dynamics::State state;
   Body thrown;

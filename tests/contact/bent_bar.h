@@ -6,16 +6,16 @@
 #include "palpate/mesh/layered_model.h"
 #include "palpate/proxy/decompose.h"
 
-/// A bar around a chain of three bones, that is bent in its middle until its arms meet.
+/// A bar around a chain of three bones, bent in its middle until its arms collide.
 namespace bent_bar {
 
 using namespace palpate;
 
-/// [m]; the middle bone from -kMiddle to kMiddle
+/// [m]; the middle bone extends from -kMiddle to kMiddle
 inline constexpr double kLength = 1.8, kWidth = 0.3, kHeight = 0.24, kMiddle = 0.4;
 
-/// A point of the straight bar, along x, where the bend by `angle` puts it: |x| < kMiddle on an arc, inwards
-/// is +z, the arms straight on.
+/// Maps a point of the straight bar along x to the bar bent by `angle`: |x| < kMiddle lies on an arc with +z
+/// inwards, and the arms are straight.
 inline Vec3 bend(const Vec3& x, double angle) {
   if (angle == 0.0) return x;
   const double r = 2.0 * kMiddle / angle, along = std::clamp(x.x(), -kMiddle, kMiddle), phi = along / r,
@@ -30,8 +30,8 @@ inline Points bend(const Points& straight, double angle) {
   return out;
 }
 
-/// The angle at which the inner edges of the tips overlap by about `depth`: tip to tip 2 (r sin(phi) - l
-/// sin(alpha) - h cos(alpha) / 2), phi = angle / 2 = pi / 2 + alpha, by bisection.
+/// Angle at which the inner edges of the tips overlap by about `depth`, found by bisection; the distance from
+/// tip to tip is 2 (r sin(phi) - l sin(alpha) - h cos(alpha) / 2), phi = angle / 2 = pi / 2 + alpha.
 inline double closing_angle(double depth) {
   const auto apart = [](double angle) {
     return 2.0 * bend(Vec3(0.5 * kLength, 0, 0.5 * kHeight), angle).x();
@@ -41,15 +41,15 @@ inline double closing_angle(double depth) {
   return low;
 }
 
-/// The bar as it is at rest, bent by `rest_angle`; nodes on its axis within a bone are the bone's.
-/// @param count  of proxies, cut by bone
+/// The bar, bent by `rest_angle` at rest; nodes on its axis within a bone are carried by the bone.
+/// @param count  number of proxies, split by bone
 inline LayeredModel model(int count = 24, double rest_angle = 0.0) {
   LayeredModel bar;
   bar.name = "bar";
   const Vec3 size(kLength, kWidth, kHeight);
   bar.tets = mesh::box(size, {18, 2, 2});
   bar.skin = mesh::box_surface(size, {54, 9, 9});
-  // joints of the bar
+  // from and to of the middle bone, and of each arm
   const double ends[] = {-kMiddle, kMiddle, -kMiddle, -0.5 * kLength, kMiddle, 0.5 * kLength}, tissue = 0.15;
   const char* names[] = {"middle", "left", "right"};
   const auto on_axis = [&](double x) { return bend(Vec3(x, 0, 0), rest_angle); };

@@ -9,12 +9,12 @@
 #include "palpate/store/model_file.h"
 #include "temporary_folder.h"
 
-/// Layered blocks, and models on disk for scenes that name a file.
+/// Layered blocks, and temporary model files for scenes that load a file.
 namespace block_model {
 
 using namespace palpate;
 
-/// A block in eight proxies where it stands, under a skin that is `finer` than its cells.
+/// A block at `pose`, cut into eight proxies, under a skin that is `finer` times finer than its cells.
 inline LayeredModel block(const Pose& pose, const Vec3& size, const std::array<int, 3>& cells,
                           int finer = 5) {
   LayeredModel model;
@@ -28,7 +28,7 @@ inline LayeredModel block(const Pose& pose, const Vec3& size, const std::array<i
   return model;
 }
 
-/// A model file that is there as long as the test runs.
+/// A model file that exists for the duration of the test.
 struct ModelOnDisk {
   TemporaryFolder folder;
   std::string path;

@@ -1,11 +1,9 @@
-// A ball against a ring, from inside its hole and from outside, by nearest points: force and moment by the
-// law's own integrals.
-//
-// With c the ball's centre, at the distance x from the ring's axis and in its plane, both skins' points count
-// with half of their weight, each as deep as it lies in the other body, per area of its own skin:
-//     ball   d = r - |(rho - R, z)|,   rho the distance from the axis     (R the ring's radius, r its tube's)
-//     ring   d = 1 - |p - c|
-//     U = k/4 (int d+^2 dA over the ball + int d+^2 dA over the ring),   F = -dU/dx along x.
+// A ball against a ring, inside its hole and outside of it, by nearest points: force and moment against the
+// integrals of the law. With c the ball's centre, at distance x from the ring's axis and in its plane, the
+// points of both skins count with half weight, each with its depth in the other body, per area of its skin:
+//   ball   d = r - |(rho - R, z)|,   rho the distance from the axis     (R the ring's radius, r its tube's)
+//   ring   d = 1 - |p - c|
+//   U = k/4 (int d+^2 dA over the ball + int d+^2 dA over the ring),   F = -dU/dx along x.
 #include <gtest/gtest.h>
 
 #include "palpate/contact/sources.h"
@@ -23,7 +21,7 @@ double energy(double x) {
   constexpr int kParts = 1500;
   double sum = 0.0;
   for (int i = 0; i < kParts; ++i) {
-    const double v = -1.0 + 2.0 * (i + 0.5) / kParts;  // the ball, by height and angle: equal areas
+    const double v = -1.0 + 2.0 * (i + 0.5) / kParts;  // the ball's surface by height and angle: equal areas
     for (int j = 0; j < kParts; ++j) {
       const double phi = 2.0 * kPi * (j + 0.5) / kParts, across = std::sqrt(1.0 - v * v);
       const double rho = std::hypot(x + across * std::cos(phi), across * std::sin(phi)),
@@ -46,7 +44,7 @@ double energy(double x) {
 }  // namespace
 
 TEST(ConcaveTool, FeelsTheForceOfTheLaw) {
-  // 4e-4 of sagittae at 0.06 of depth: the force is right to 1 %.
+  // Sagittae of 4e-4 at a depth of 0.06: the force is accurate to 1 %.
   const TriMesh ring = tools::torus(kRing, kTube, 320, 120), ball = mesh::sphere(1.0, 40);
   for (const double x : {kRing - kTube - 1.0 + kDepth, kRing + kTube + 1.0 - kDepth}) {
     SCOPED_TRACE(x);

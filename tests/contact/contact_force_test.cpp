@@ -14,8 +14,8 @@ ContactSpec spec(double friction = 0.0) {
   return s;
 }
 
-/// Sum of forces and of moments about the world's origin on everything, frames given from outside included,
-/// over the sum of magnitudes.
+/// Sum of forces and of moments about the world's origin on all bodies, including prescribed frames, relative
+/// to the sum of magnitudes.
 struct Balance {
   double force, moment;
 };
@@ -59,12 +59,12 @@ TEST(ContactForce, BalanceOfForceAndMomentForRandomPoses) {
                b = node_point({3, 4, 5, 6}, {0.1, 0.2, 0.3, 0.4});
     samples.push_back(on_frame(a, 0, poses[0], vector(random), 0.01, 0.3, world.state));
     samples.push_back(on_frame(b, 1, poses[1], vector(random), 0.02, 0.2, world.state));
-    // Node against node, without any offset: b's first node is put on the line through a.
+    // Node against node without an offset: b's first node is moved to the line through a.
     auto s = on_nodes(node_point({7}, {1.0}), node_point({0}, {1.0}), vector(random), 0.01, 0.1, world.state);
     world.state.q().segment<3>(0) += s.b.offset;
     s.b.offset.setZero();
     samples.push_back(s);
-    samples[0] = on_frame(a, 0, poses[0], vector(random), 0.01, 0.3, world.state);  // node 0 moved
+    samples[0] = on_frame(a, 0, poses[0], vector(random), 0.01, 0.3, world.state);  // node 0 was moved
     term.add_pair(std::make_unique<ListSource>(samples), spec());
     term.refresh(world.state.view());
     const Balance result = balance(term, world, poses);
@@ -75,7 +75,8 @@ TEST(ContactForce, BalanceOfForceAndMomentForRandomPoses) {
   EXPECT_EQ(checked, 50);
 }
 
-// Friction acts at the two surface points, a depth apart: its moments differ by at most depth x friction.
+// Friction acts at the two surface points, which are a depth apart: its moments balance up to depth x
+// friction.
 TEST(ContactForce, FrictionBalancesUpToItsDepth) {
   World world(3, false, 5);
   contact::ContactForce term;
@@ -127,7 +128,7 @@ TEST(ContactForce, RefreshReportsWhetherTheForceChanged) {
   contact::ContactForce near;
   near.add_frame(contact::fixed_frame());
   near.add_pair(std::make_unique<ListSource>(std::vector{apart}), spec());
-  EXPECT_FALSE(near.refresh(world.state.view()));  // candidates only: no force before or after
+  EXPECT_FALSE(near.refresh(world.state.view()));  // candidates only: the force is zero before and after
   ContactSpec undamped = spec();
   undamped.damping_pa_s_m = 0.0;
   term.add_pair(std::make_unique<ListSource>(std::vector{pressed}), undamped);
@@ -137,8 +138,8 @@ TEST(ContactForce, RefreshReportsWhetherTheForceChanged) {
   EXPECT_GE(term.query_seconds(), 0.0);
 }
 
-// One root function a sample: its sign tells whether it presses, for any gap and rate, also where a damper is
-// cut off while the gap is still closed.
+// One root function per sample: its sign tells whether the sample presses, for any gap and rate, also where
+// the damper is cut off while the gap is still closed.
 TEST(ContactForce, EventsChangeSignExactlyWhereASampleOpensOrCloses) {
   int pressing = 0, parting = 0, apart = 0;
   for (const char* law : {"kelvin_voigt", "hunt_crossley"})
@@ -163,7 +164,7 @@ TEST(ContactForce, EventsChangeSignExactlyWhereASampleOpensOrCloses) {
         for (int j = -10; j <= 10; ++j) {
           const double gap = 0.011 * i + 1e-4, rate = 0.2 * j + 0.01;
           world.state.q()[2] = z0 - 0.1 + gap;
-          world.state.q()[5] = z1 - 0.1 - gap;  // the other sample stands the other way
+          world.state.q()[5] = z1 - 0.1 - gap;  // the other sample faces the opposite way
           world.state.u()[2] = world.state.u()[5] = rate;
           term.events(world.state.view(), g);
           for (int k = 0; k < 2; ++k) {

@@ -1,4 +1,5 @@
-// Blocks between two bodies: they come with what is met, wait for what is near, and go when they are many.
+// Coupling blocks between the nodes of two bodies: added when contact occurs, for nearby nodes as well, and
+// reset when they become too many.
 #include "contact/coupled_nodes.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@ using namespace palpate::contact;
 
 namespace {
 
-constexpr int kNodes = 40, kFirst = 100;  // a chain of edges each; b's nodes are counted from kFirst
+constexpr int kNodes = 40, kFirst = 100;  // each body is a chain of edges; b's nodes are numbered from kFirst
 
 NodeNeighbours chain(int first) {
   Eigen::MatrixXi edges(2, kNodes - 1);
@@ -18,7 +19,7 @@ NodeNeighbours chain(int first) {
   return {edges, first};
 }
 
-/// Samples that hang on this node of the one chain and on the same of the other.
+/// Joint between the same node of either chain.
 std::vector<CoupledNodes::Joint> joint_at(int node) {
   CarriedPoint a, b;
   a.number = b.number = node;

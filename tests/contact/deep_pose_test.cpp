@@ -1,12 +1,12 @@
-// Poses so deep that the shortest way out is the other side: the contact pushes back to where it came from.
+// Poses so deep that the shortest exit is on the far side: contact pushes back to the side of entry.
 #include "ball_and_slab.h"
 #include "palpate/proxy/region.h"
 
 using namespace contact_tests;
 using namespace contact_tests::ball_and_slab;
 
-// Without proxies: a ball pushed into a slab, deeper than to its middle and out of its other side, is pushed
-// back to where it came from as long as they touch.  The hulls' shortest way out is the other way by then.
+// Without proxies: a ball pushed into a slab beyond its middle and out of its far side is pushed back to
+// where it entered for as long as they touch. The shortest exit of the hulls is then the opposite way.
 TEST(DeepPose, ADeepPoseKeepsItsNormal) {
   for (const bool soft : {false, true}) {
     Pair pair;
@@ -27,7 +27,7 @@ TEST(DeepPose, ADeepPoseKeepsItsNormal) {
     EXPECT_TRUE(flips) << "the case is one";
     EXPECT_GT(pressed, 15);
     EXPECT_GT(source->normals_kept(), 3);
-    // out of it on the other side and back: that is where it comes from now
+    // leaves on the far side and returns: now it enters from there
     pair.query(*source, Vec3(0.01, 0.02, -0.1));
     for (const auto& s : pair.query(*source, Vec3(0.01, 0.02, -0.053))) EXPECT_LT(s.normal.z(), -0.5);
   }

@@ -14,7 +14,7 @@ ContactSpec law() {
   return out;
 }
 
-/// A soft ball whose vertices are nodes, and a smaller one, soft or rigid, pressed into its side.
+/// A soft ball whose vertices are nodes, and a smaller ball, soft or rigid, pressed into its side.
 struct Balls {
   SurfaceWorld a{sphere(Vec3::Zero(), 1.0, 14)};
   TriMesh other;
@@ -65,7 +65,7 @@ VecX direction(Eigen::Index size, unsigned seed) {
   return out;
 }
 
-/// Force and moment about the origin of all nodes and bodies, and the sum of the forces' sizes.
+/// Force and moment about the origin of all nodes and bodies, and the sum of the force magnitudes.
 struct Sum {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double size = 0.0;
@@ -93,8 +93,8 @@ Sum sum_of(const dynamics::State& state, const VecX& f) {
 
 }  // namespace
 
-// f = -dU/dq.  Central differences of step h err by h^2 times U's third derivative, which jumps where a foot
-// goes over an edge or a point leaves: of hundreds of points a few do within a step.
+// f = -dU/dq. Central differences of step h have an error of h^2 times U's third derivative, which jumps
+// where a foot crosses an edge or a point separates: of hundreds of points a few do so within a step.
 TEST(DistanceSource, ForceIsTheGradientOfItsEnergy) {
   for (const auto kind : {Balls::Other::kSoft, Balls::Other::kGiven, Balls::Other::kInState}) {
     Balls balls(kind);
@@ -122,7 +122,7 @@ TEST(DistanceSource, ForcesBalance) {
   }
 }
 
-// Fine skins in coarse tetrahedra, of which a point has one.
+// Fine skins in coarse tetrahedra; each skin point is carried by one tetrahedron.
 TEST(DistanceSource, ForcesBalanceOnSkins) {
   TwoBalls balls;
   contact::ContactForce term;
@@ -144,7 +144,7 @@ TEST(DistanceSource, ForcesBalanceOnSkins) {
   EXPECT_LT(worst, 0.03) << "what the tetrahedra's strains differ by";
 }
 
-// What follows the state is what a query finds there, with feet that went over to other faces.
+// Samples that follow the state equal those of a query at that state, also where feet moved to other faces.
 TEST(DistanceSource, FollowsAsAQueryFinds) {
   for (const auto kind : {Balls::Other::kSoft, Balls::Other::kGiven}) {
     Balls exact(kind), fresh(kind);
@@ -164,7 +164,7 @@ TEST(DistanceSource, FollowsAsAQueryFinds) {
   }
 }
 
-// Two soft bodies that slide far between queries: the tangent stays within the blocks that the query said.
+// Two soft bodies slide far between queries: the tangent stays within the blocks announced by the query.
 TEST(DistanceSource, TangentOfWhatFollowsStaysInThePattern) {
   Balls balls(Balls::Other::kSoft);
   dynamics::BorderedMatrix A = step_matrix(balls.term, balls.a.state, 1.0, 0.0);
@@ -185,7 +185,7 @@ TEST(DistanceSource, TangentOfWhatFollowsStaysInThePattern) {
 }
 
 // A ball of radius R, delta deep in a half-space: k pi R delta^2 (1 - delta / (2 R)) by the points of both
-// (tests/distance/skin_contact_test.cpp), and no moment about its middle.
+// (tests/distance/skin_contact_test.cpp), and no moment about its centre.
 TEST(DistanceSource, BallInHalfSpace) {
   TriMesh ball = mesh::sphere(1.0, 40);
   SurfaceWorld world(ball);
@@ -208,11 +208,11 @@ TEST(DistanceSource, BallInHalfSpace) {
   EXPECT_LT(sum.moment.norm(), 1e-3 * sum.force.z());
 }
 
-// A point's foot may go from one face to another, and turns its force by the angle of their edge: along a
-// path of small steps the force changes by what the last step changed it, but for that angle times a point's
-// share.
+// A foot may move from one face to another, which turns its force by the angle between the faces: along a
+// path of small steps, the force changes by the amount of the previous step, plus at most that angle times
+// one point's share.
 TEST(DistanceSource, ForceIsContinuousAlongAPath) {
-  Balls balls(Balls::Other::kInState);  // turned, so that rows of points cross no edge together
+  Balls balls(Balls::Other::kInState);  // rotated, so that no row of points crosses an edge at once
   const dynamics::Block* block = balls.a.state.layout().find(balls.a.surface.block_id);
   const auto resultant = [&] {
     Vec3 sum = Vec3::Zero();
@@ -235,6 +235,6 @@ TEST(DistanceSource, ForceIsContinuousAlongAPath) {
   for (std::size_t i = 2; i < along.size(); ++i)
     jump = std::max(jump, (along[i] - 2.0 * along[i - 1] + along[i - 2]).norm() / along[i].norm());
   EXPECT_GT(share, 0.01);
-  constexpr double kEdge = kPi / 9.0;  // angle between faces of the small ball
+  constexpr double kEdge = kPi / 9.0;  // angle between adjacent faces of the small ball
   EXPECT_LT(jump, 2.0 * share * kEdge) << "two points at once";
 }

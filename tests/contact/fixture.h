@@ -9,8 +9,7 @@
 #include "palpate/contact/sources.h"
 #include "palpate/core/error.h"
 
-/// What the contact tests share: a State with nodes and a rigid body, a source that hands out given samples,
-/// Taylor tests.
+/// Shared by the contact tests: a State with nodes and a rigid body, a source of given samples, Taylor tests.
 namespace contact_tests {
 
 using namespace palpate;
@@ -21,7 +20,7 @@ inline double uniform(std::mt19937& random) {
 inline Vec3 vector(std::mt19937& random) { return {uniform(random), uniform(random), uniform(random)}; }
 inline Quat rotation(std::mt19937& random) { return quaternion_of(2.0 * vector(random)); }
 
-/// Hands out the same samples at every query.
+/// Returns the same samples at every query.
 class ListSource final : public contact::SampleSource {
  public:
   explicit ListSource(std::vector<contact::ContactSample> samples) : samples_(std::move(samples)) {}
@@ -43,7 +42,7 @@ class ListSource final : public contact::SampleSource {
   std::vector<contact::ContactSample> samples_;
 };
 
-/// A source whose samples stay those of the query, as an image's do: their tangent is exact.
+/// A source whose samples do not follow the state between queries, as in an image: their tangent is exact.
 class HeldSource final : public contact::SampleSource {
  public:
   explicit HeldSource(std::unique_ptr<contact::SampleSource> source) : source_(std::move(source)) {}
@@ -57,7 +56,7 @@ class HeldSource final : public contact::SampleSource {
   std::unique_ptr<contact::SampleSource> source_;
 };
 
-/// A State moved by h along u-directions, quaternions on their geodesic.
+/// Returns the State moved by h along u-directions, with quaternions on their geodesic.
 inline dynamics::State moved(const dynamics::State& state, const VecX& direction, double h) {
   dynamics::State out = state;
   auto q = out.q();
@@ -81,7 +80,7 @@ inline dynamics::State pushed(const dynamics::State& state, const VecX& directio
   return out;
 }
 
-/// A free rigid body as a block of the State.  Returns its id.
+/// Adds a free rigid body as a block of the State. Returns its id.
 inline int add_rigid_body(dynamics::State& state, const Pose& pose, const Twist& twist) {
   const Quat r = pose.rotation;
   VecX q(7), u(6);
@@ -96,7 +95,7 @@ inline int add_rigid_body(dynamics::State& state, const Pose& pose, const Twist&
   return state.insert(body, q, u);
 }
 
-/// Nodes, and a free rigid body when asked, at random positions and velocities.
+/// Nodes, and optionally a free rigid body, at random positions and velocities.
 struct World {
   dynamics::State state;
   int nodes_id = -1, body_id = -1;
@@ -146,7 +145,7 @@ inline Vec3 position(const contact::SurfacePoint& p, const dynamics::State& stat
   return x;
 }
 
-/// A sample whose point b lies `depth` above a along the normal, in a frame.
+/// A sample whose point b, fixed in a frame, lies `depth` above a along the normal.
 inline contact::ContactSample on_frame(const contact::SurfacePoint& a, int frame, const Pose& pose,
                                        const Vec3& normal, double depth, double area,
                                        const dynamics::State& state) {
@@ -160,7 +159,7 @@ inline contact::ContactSample on_frame(const contact::SurfacePoint& a, int frame
   return s;
 }
 
-/// A sample between two weighted sets of nodes; b's world offset puts it on the line through a.
+/// A sample between two weighted sets of nodes; b's world offset moves it to the line through a.
 inline contact::ContactSample on_nodes(const contact::SurfacePoint& a, contact::SurfacePoint b,
                                        const Vec3& normal, double depth, double area,
                                        const dynamics::State& state) {
@@ -195,8 +194,8 @@ inline dynamics::BorderedMatrix step_matrix(contact::ContactForce& term, const d
   return A;
 }
 
-/// Residuals r(h) = |f(h) - f(0) - h df| for h = h0 2^-i must fall with slope 2, over seven halvings, or be
-/// rounding throughout (f linear).
+/// The residuals r(h) = |f(h) - f(0) - h df| for h = h0 2^-i must decrease with slope 2 over seven halvings,
+/// or be at rounding level throughout (f linear).
 template <class Function>
 void expect_derivative(Function f, const VecX& df, double h0, const char* what) {
   const VecX f0 = f(0.0);

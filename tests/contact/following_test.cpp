@@ -2,12 +2,12 @@
 
 using namespace contact_tests;
 
-/// Between two queries the samples of material points follow the state.
+/// Between two queries, samples at material points follow the state.
 namespace {
 
-constexpr double kFar = 10.0;  // a candidate gap: all vertices
+constexpr double kFar = 10.0;  // candidate gap that includes all vertices
 
-/// A soft sphere over a rigid one of radius 2, whose top is the origin of the frame.
+/// A soft sphere over a rigid one of radius 2, whose top is at the origin of the frame.
 struct Touch {
   TriMesh rest = sphere(Vec3(0.1, -0.05, 0.9), 1.0, 16);
   SurfaceWorld world{rest};
@@ -29,7 +29,7 @@ struct Touch {
     term.add_force(world.state.view(), f);
     return f;
   }
-  /// Sideways, down, and sheared, so that gaps, normals and areas all change.
+  /// Moves the sphere sideways and down and shears it, so that gaps, normals and areas all change.
   void deform() {
     const int first = world.state.layout().find("surface")->q_offset;
     for (Eigen::Index i = first; i < world.state.q().size(); i += 3) {
@@ -73,7 +73,7 @@ TEST(Following, EnergyWrenchEventsAndProductsAreOfTheSameState) {
   VecX g(exact.term.event_count()), wanted(g.size());
   exact.deform();
   fresh.deform();
-  exact.term.events(at, g.data());  // the first to ask at this state
+  exact.term.events(at, g.data());  // first evaluation at this state
   fresh.term.refresh(there);
   fresh.term.events(there, wanted.data());
   EXPECT_LT((g - wanted).cwiseAbs().maxCoeff(), 1e-13);
@@ -101,7 +101,8 @@ TEST(Following, TheShapeMovesWithItsFrame) {
   EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
 }
 
-/// Between the ticks of a tool its path grows, and with it the pose at one and the same time.
+/// A tool's path is extended between ticks, which changes the pose at the same time: samples must follow the
+/// new pose.
 TEST(Following, APathThatIsKnownBetterIsSeenAtTheSameTime) {
   const auto path = along(Vec3(0, 0, 0.1)), whole = along(Vec3(0, 0, 0.1));
   Touch exact(path), fresh(whole);
@@ -129,7 +130,8 @@ TEST(Following, AFailedTrialOfAnIntegratorIsNoError) {
   EXPECT_NO_THROW(exact.force());
 }
 
-/// Samples at vertices, as images have them: gaps are linear in the positions.
+/// Samples that do not follow the state, such as vertices in an image, have gaps that are linear in the
+/// positions.
 TEST(Following, WhatDoesNotFollowHasLinearGaps) {
   Touch touch;
   touch.term.refresh(touch.world.state.view());
@@ -152,7 +154,8 @@ TEST(Following, WhatDoesNotFollowHasLinearGaps) {
   EXPECT_LT((gaps() - 0.5 * (first + second)).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-/// What does not follow has no material points, hence no anchors: a retardation is no stiffness of its own.
+/// Samples that do not follow have no material points, hence no anchors: a friction retardation adds no
+/// stiffness.
 TEST(Following, WithoutItARetardationChangesNoMatrix) {
   Touch touch;
   touch.term.refresh(touch.world.state.view());

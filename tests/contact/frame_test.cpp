@@ -4,9 +4,8 @@ using namespace contact_tests;
 
 namespace {
 
-/// A smooth motion with its exact twist: rotation exp(a(t)) exp(b(t)) about two fixed axes, so that the axis
-/// of the whole wanders.
-///   w = a' n + exp(a n) (b' m)
+/// A smooth motion with exact twist: rotation exp(a(t)) exp(b(t)) about two fixed axes n and m, so that the
+/// axis of the product varies; w = a' n + exp(a n) (b' m).
 struct Motion {
   Vec3 n = Vec3(1, 2, -1).normalized(), m = Vec3(0, 1, 3).normalized();
   Pose pose(double t) const {
@@ -41,12 +40,12 @@ TEST(TrajectoryFrame, MeetsItsKnots) {
     EXPECT_LT(pose_difference(motion.pose(t), frame.pose(at(t))).norm(), 1e-14);
     EXPECT_LT((motion.twist(t).angular - frame.twist(at(t)).angular).norm(), 1e-12);
     EXPECT_LT((motion.twist(t).linear - frame.twist(at(t)).linear).norm(), 1e-12);
-    // and from the left, at the end of the interval before
+    // left limit, at the end of the preceding interval
     if (i > 0) { EXPECT_LT((motion.twist(t).angular - frame.twist(at(t - 1e-9)).angular).norm(), 1e-6); }
   }
 }
 
-// Cubic Hermite: error h^4 of the pose, h^3 of the twist.
+// Cubic Hermite interpolation: error h^4 in the pose, h^3 in the twist.
 TEST(TrajectoryFrame, PoseOfOrderFourTwistOfOrderThree) {
   const Motion motion;
   std::vector<double> pose_error, twist_error;

@@ -1,4 +1,4 @@
-// Springs of friction between material points: what they say when points move, rotate, roll and go.
+// Friction springs between material points that move, rotate, roll and separate.
 #include "contact/friction_anchors.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTau = 0.01, kSpeed = 1e-3, kLongest = kTau * kSpeed;  // [s], [m/s], [m]
 
-/// Two frames that touch at the origin, the normal along z, and a triangle of nodes there.
+/// Two frames that touch at the origin, with the normal along z, and a triangle of nodes there.
 struct Anchored {
   std::vector<FrameState> frames{2};
   dynamics::State state;
@@ -36,7 +36,7 @@ struct Anchored {
     frames[frame].pose = pose;
     frames[frame].R = pose.rotation.toRotationMatrix();
   }
-  /// As a query has them: the second point is where the first one is, but for the normal.
+  /// Places the second point as a query does: at the first point, apart from the offset along the normal.
   void meet(SurfacePoint& b) const {
     const Vec3 x = frames[0].pose.translation;
     if (b.frame >= 0) {
@@ -59,26 +59,26 @@ struct Anchored {
 
 }  // namespace
 
-// A query moves the anchors and changes no deflection; what slides is cut to the longest.
+// A query moves the anchors and changes no deflection; a sliding spring is limited to its maximum length.
 TEST(FrictionAnchors, AreTheWayOfTheMaterialWithinTheCone) {
   Anchored touch;
   EXPECT_EQ(touch.renewed(), Vec3(0, 0, 0));
   const Vec3 way(3e-6, 4e-6, 0);
-  touch.place(0, {Quat::Identity(), way + Vec3(0, 0, -1e-4)});  // the way along the normal is none
+  touch.place(0, {Quat::Identity(), way + Vec3(0, 0, -1e-4)});  // the normal part does not count
   EXPECT_LT((touch.followed() - way).norm(), 1e-18);
   EXPECT_LT((touch.renewed() - way).norm(), 1e-18);
   EXPECT_LT((touch.followed() - way).norm(), 1e-18);
   touch.place(0, {Quat::Identity(), Vec3(1e-3, 0, 0)});
   EXPECT_NEAR(touch.followed().norm(), kLongest, 1e-18);
   EXPECT_GT(touch.followed().x(), 0.99 * kLongest);
-  // back by as much as the spring is long: the anchor went along
+  // return by the length of the spring: the anchor had moved along
   touch.renewed();
   touch.place(0, {Quat::Identity(), Vec3(1e-3 - kLongest, 0, 0)});
   EXPECT_LT(touch.followed().norm(), 0.02 * kLongest);
 }
 
-// Whatever has the second point: deflections go with it, so that two bodies that rotate as one stay as they
-// are.
+// Deflections rotate with the body that carries the second point (frame or nodes), so that two bodies that
+// rotate together keep them.
 TEST(FrictionAnchors, RotateWithWhatTouches) {
   const Vec3 way(5e-6, 0, 0);
   const Quat turn(Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ()));
@@ -106,8 +106,8 @@ TEST(FrictionAnchors, RotateWithWhatTouches) {
   }
 }
 
-// A round surface whose point is its centre and a way along the normal: what rolls does not slide, what spins
-// on the spot does.
+// A round surface whose point is given by its centre and a slide along the normal: rolling is no sliding,
+// spinning in place is.
 TEST(FrictionAnchors, RollingIsNoSliding) {
   constexpr double kRadius = 0.05, kAngle = 1e-4;
   Anchored touch;
@@ -122,7 +122,7 @@ TEST(FrictionAnchors, RollingIsNoSliding) {
   EXPECT_NEAR(touch.followed().x(), kRadius * kAngle, kRadius * kAngle * kAngle);
 }
 
-// Points that part, or are no longer there, begin anew; of others each keeps its own.
+// Springs of points that separate or disappear are reset; all others are kept.
 TEST(FrictionAnchors, EndWhereItsPointsPart) {
   Anchored touch;
   touch.samples.assign(3, touch.samples[0]);
@@ -141,7 +141,7 @@ TEST(FrictionAnchors, EndWhereItsPointsPart) {
   EXPECT_LT((kTau * touch.samples[0].deflection_rate - way).norm(), 1e-18);
   EXPECT_EQ(touch.samples[1].deflection_rate, Vec3(0, 0, 0));
   EXPECT_EQ(touch.samples[2].deflection_rate, Vec3(0, 0, 0));
-  touch.points.clear();  // they stand for no material points
+  touch.points.clear();  // without material points
   touch.renewed();
   touch.samples[0].deflection_rate.setZero();
   EXPECT_EQ(touch.followed(), Vec3(0, 0, 0));

@@ -1,4 +1,4 @@
-// Friction of a step's end by repeated solves: one mass, whose answer is known, and two that are coupled.
+// Friction at the end of a step by repeated solves: one mass, with a known solution, and coupled masses.
 #include "contact/friction.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 constexpr double kViscous = 1e-4;  // v_r
 const Vec3 kUp(0, 0, 1);
 
-// m u = b + h f(u):  u = sign(b) (|b| - h L)/m where that is above v_r, else b/(m + h L/v_r).
+// m u = b + h f(u): u = sign(b) (|b| - h L)/m where that is above v_r, else b/(m + h L/v_r).
 TEST(Friction, OneMassIsSolvedInThreeSolves) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> in(-1.0, 1.0);
@@ -45,8 +45,8 @@ TEST(Friction, OneMassIsSolvedInThreeSolves) {
   EXPECT_GT(turned, 20);
 }
 
-// Many masses in a chain that rub on a plane, in both directions: within the cone and against the velocity,
-// in the solves that a step has.
+// A chain of many masses that rub on a plane in both directions: within the number of solves of a step,
+// friction is within the cone and opposes the velocity.
 TEST(Friction, ChainsOfMassesEndWithinTheCone) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> in(-1.0, 1.0);
@@ -68,7 +68,7 @@ TEST(Friction, ChainsOfMassesEndWithinTheCone) {
     std::array<FrictionGuess, kMasses> guess;
     for (int k = 0; k < kMasses; ++k) {
       b.segment<3>(3 * k) = 0.02 * Vec3(in(random) + 0.3, in(random), 0.0);
-      L[static_cast<std::size_t>(k)] = 0.02 * std::abs(in(random));  // times h
+      L[static_cast<std::size_t>(k)] = 0.02 * std::abs(in(random));  // includes the factor h
       guess[static_cast<std::size_t>(k)] =
           first_guess(L[static_cast<std::size_t>(k)], 0.3 * Vec3(in(random), in(random), 0.0), kViscous);
     }

@@ -1,4 +1,4 @@
-// Many images in one texture: tiles that do not meet, blocks that cover them, as many as there is room for.
+// Many images in one texture: tiles do not overlap, blocks cover them, and as many fit as there is room for.
 #include "contact/gpu_atlas.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ struct Requests {
   }
 };
 
-/// Each pixel of each tile is in one block of its own tile, and in no other tile.
+/// Each pixel of each tile is in one block of that tile, and in no other tile.
 void expect_sound(const GpuAtlas& atlas) {
   std::vector<int> owner(static_cast<std::size_t>(atlas.width()) * static_cast<std::size_t>(atlas.height()),
                          -1);
@@ -51,7 +51,7 @@ void expect_sound(const GpuAtlas& atlas) {
       for (std::uint32_t x = 16 * (block & 0xff); x < 16 * (block & 0xff) + 16; ++x) {
         if (x >= tile.width || y >= tile.height) continue;
         ASSERT_EQ(at(tile.x + x, tile.y + y), static_cast<int>(block >> 16));
-        at(tile.x + x, tile.y + y) = -2;  // once
+        at(tile.x + x, tile.y + y) = -2;  // each pixel once
         ++covered;
       }
   }
@@ -64,7 +64,7 @@ void expect_sound(const GpuAtlas& atlas) {
 TEST(GpuAtlas, TilesDoNotMeet) {
   Requests requests;
   for (int i = 0; i < 60; ++i) requests.add(1 + (i * 37) % 300, 1 + (i * 53) % 220);
-  requests.add(0, 0);  // sees nothing
+  requests.add(0, 0);  // empty tile
   requests.add(17, 1);
   GpuAtlas atlas;
   EXPECT_EQ(atlas.pack(requests.span(), 16384), 62u);
@@ -79,14 +79,14 @@ TEST(GpuAtlas, WhatHasNoRoomWaits) {
   Requests many;
   for (int i = 0; i < 300; ++i) many.add(16, 16);
   GpuAtlas atlas;
-  EXPECT_EQ(atlas.pack(many.span(), 16384), 256u);  // a tile's number has eight bits
+  EXPECT_EQ(atlas.pack(many.span(), 16384), 256u);  // a tile number has eight bits
   expect_sound(atlas);
   EXPECT_EQ(atlas.pack(many.span().subspan(256), 16384), 44u);
   expect_sound(atlas);
 
   Requests large;
   for (int i = 0; i < 5; ++i) large.add(500, 700);
-  EXPECT_EQ(atlas.pack(large.span(), 1024), 2u);  // beside one another; none below
+  EXPECT_EQ(atlas.pack(large.span(), 1024), 2u);  // side by side; no room below
   EXPECT_LE(atlas.height(), 1024);
   expect_sound(atlas);
 

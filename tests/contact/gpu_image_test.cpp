@@ -1,4 +1,4 @@
-// What a query sends to the GPU, and where it sees it.
+// Data that a query sends to the GPU, and reuse between queries.
 #include "contact/gpu_image.h"
 
 #include <numeric>
@@ -16,7 +16,7 @@ std::vector<int> all_faces(const contact::ImageSide& side) {
   return out;
 }
 
-/// Two sides that are looked at by one image along the line between two points.
+/// Two sides and one image of them along the line between two points.
 struct Look {
   contact::RegionContext context;
   contact::ImageRegion region{context};
@@ -45,8 +45,8 @@ std::size_t bytes(Eigen::Index points) { return 16 * static_cast<std::size_t>(po
 
 }  // namespace
 
-// Skins never travel: a query sends the nodes of each soft body, once for all pairs, and a rigid surface is
-// sent once for good.
+// Skins are not sent: a query sends the nodes of each soft body, once for all pairs, and a rigid surface is
+// sent only once.
 TEST(GpuImages, AQuerySendsNodesAlone) {
   TwoBalls balls;
   const TriMesh tool = sphere(Vec3(-0.3, 0.6, 1.2), 0.5, 20);
@@ -77,8 +77,8 @@ TEST(GpuImages, AQuerySendsNodesAlone) {
   EXPECT_EQ(image.surfaces().size(), 3u);
 }
 
-// What the first touch needs is made before, in a query in which nothing touches: the context, its programs,
-// both surfaces.  Made at first touch it would be a hitch of a tenth of a second there.
+// Everything that the first touch needs (context, programs, both surfaces) is created by a query in which
+// nothing touches. Created at first touch, it would delay that query by a tenth of a second.
 TEST(GpuImages, TheFirstQueryMakesAllThatFirstTouchNeeds) {
   TwoBalls balls;
   const VecX touching = balls.state.q();
@@ -96,8 +96,8 @@ TEST(GpuImages, TheFirstQueryMakesAllThatFirstTouchNeeds) {
   EXPECT_GT(samples.size(), 40u);
 }
 
-// Single precision counts from the body, not from the world's origin: wherever the bodies are, the same
-// vertices have the same gaps, to the rounding of positions.
+// Single-precision positions are relative to the body, not to the world's origin: wherever the bodies are,
+// the same vertices have the same gaps, to the rounding of positions.
 TEST(GpuImages, SeeTheSameFarFromTheOrigin) {
   for (const bool pruned : {false, true}) {
     std::vector<contact::ContactSample> near, far;

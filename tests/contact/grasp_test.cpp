@@ -2,14 +2,16 @@
 
 #include "fixture.h"
 
-// What a frame holds: forces that balance and come from an energy, their derivatives, and that nothing jumps.
+// Samples held by a grasp: their forces balance and derive from an energy; derivatives; no force jumps at
+// closing.
 using namespace contact_tests;
 
 namespace {
 
 constexpr double kDepth = 0.05;
 
-/// Nodes pressed onto a body of the State, each another way, with 6 nodes and a body at random velocities.
+/// Nodes pressed onto a body of the State, each in another direction, with 6 nodes and a body at random
+/// velocities.
 struct Scene {
   World world{6, true, 21};
   std::shared_ptr<contact::MovingFrame> body = contact::block_frame(world.body_id);
@@ -24,7 +26,7 @@ struct Scene {
     const auto tri = node_point({0, 1, 2}, {0.2, 0.9, -0.1}), single = node_point({4}, {1.0});
     samples = {on_frame(tri, frame, pose, {0.1, -0.2, 1}, kDepth, 0.7, world.state),
                on_frame(single, frame, pose, {1, 0.5, -0.3}, kDepth, 0.6, world.state)};
-    // the frame on the other side, a point of it that slides, and a pair that is apart
+    // a frame as side a, a point that slides on it, and a pair that is apart
     samples.push_back(
         on_frame(node_point({3}, {1.0}), frame, pose, {0.4, 0.5, -0.8}, kDepth, 0.5, world.state));
     if (other_side) {
@@ -49,12 +51,13 @@ struct Scene {
     return term.refresh(world.state.view());
   }
 
-  /// The body moved away by so much, and turned a little: where that is more than the depth nothing presses.
+  /// The state with the body moved away by `by` and slightly turned: nothing presses if `by` exceeds the
+  /// depth.
   dynamics::State pulled(double by) const {
     VecX d = VecX::Zero(world.state.layout().u_size);
     const int at = world.state.layout().find(world.body_id)->u_offset;
     d.segment<3>(at) = Vec3(0.02, -0.03, 0.01);
-    for (std::size_t i = 0; i < 3; ++i) {  // each node its own way, along its normal
+    for (std::size_t i = 0; i < 3; ++i) {  // each node in its direction, along its normal
       const contact::SurfacePoint& nodes = samples[i].a.frame < 0 ? samples[i].a : samples[i].b;
       const Vec3 away = (samples[i].a.frame < 0 ? by : -by) * samples[i].normal;
       d.segment<3>(3 * nodes.node[static_cast<std::size_t>(nodes.count == 3 ? 1 : 0)]) +=
@@ -102,13 +105,13 @@ TEST(Grasp, NothingJumpsWhereItCloses) {
     EXPECT_NEAR(scene.term.grasp_counts().area, 1.8, 1e-12);
     ASSERT_GT(before.norm(), 1.0);
     EXPECT_LE((force(scene.term, scene.world.state) - before).norm(), 1e-13 * before.norm());
-    // the damper's share is kept in a little stretch along the surface
+    // the damping force at closing is kept as a small deflection along the surface
     EXPECT_GE(scene.term.energy(scene.world.state.view()), energy);
     EXPECT_LE(scene.term.energy(scene.world.state.view()), 1.2 * energy);
   }
 }
 
-// Contact never pulls; what is held does, with contact's own stiffness, and as long as it is held.
+// Contact never pulls; a grasp does, with the stiffness of contact, until it opens.
 TEST(Grasp, HoldsWhatIsPulledAndLetsGo) {
   Scene scene;
   const dynamics::State pulled = at_rest(scene.pulled(3.0 * kDepth));
@@ -125,7 +128,8 @@ TEST(Grasp, HoldsWhatIsPulledAndLetsGo) {
   EXPECT_GT(scene.term.grasp_counts().largest_area, 1.7);
 }
 
-// What comes to press later is not held, and neither is anything where nothing pressed: until it closes anew.
+// Samples that start to press after closing are not held until the grasp closes again; closing where nothing
+// presses holds nothing.
 TEST(Grasp, ClosesOnWhatPressesThen) {
   Scene scene;
   const dynamics::State pressed = scene.world.state;
@@ -141,9 +145,9 @@ TEST(Grasp, ClosesOnWhatPressesThen) {
 }
 
 TEST(Grasp, BalancesForceAndMoment) {
-  Scene scene(0.1), contact_alone(0.1);  // whose points are no longer opposite each other
+  Scene scene(0.1), contact_alone(0.1);  // with points that are no longer opposite each other
   scene.grasp();
-  for (const double by : {0.3 * kDepth, 3.0 * kDepth}) {  // still pressing, and pulled
+  for (const double by : {0.3 * kDepth, 3.0 * kDepth}) {  // still pressing, and pulled apart
     const dynamics::State state = scene.pulled(by);
     const VecX f = force(scene.term, state) - force(contact_alone.term, state);
     ASSERT_GT(f.norm(), 0.1);
@@ -168,7 +172,7 @@ TEST(Grasp, ForceIsTheEnergysGradient) {
   }
 }
 
-// Without friction and damping of pressing samples all that is dissipated is the grasp's own.
+// Without friction and damping of pressing samples, the grasp's damper is the only dissipation.
 TEST(Grasp, DamperTakesItsPower) {
   Scene scene(0.1);
   scene.grasp();
@@ -214,7 +218,7 @@ TEST(Grasp, ApplyEqualsAssembled) {
   }
 }
 
-// The frame's rows and columns by themselves are those of the matrix.
+// The linearisation for the frame equals the frame's rows and columns of the matrix.
 TEST(Grasp, LinearisedForTheFrame) {
   Scene scene(0.1);
   scene.grasp();
@@ -240,7 +244,7 @@ TEST(Grasp, LinearisedForTheFrame) {
             1e-13 * f.norm());
 }
 
-// The same sums as the interactive solver has them, for a frame that is given.
+// The sums that the interactive solver uses, for a prescribed frame, equal the nodes' block of the matrix.
 TEST(Grasp, PointStiffnessIsTheNodesBlock) {
   World world{6, false, 22};
   const auto given = std::make_shared<contact::TrajectoryFrame>();
@@ -278,7 +282,7 @@ TEST(Grasp, PointStiffnessIsTheNodesBlock) {
   EXPECT_LE((f - step).norm(), 1e-13 * step.norm());
 }
 
-// A query changes no resultant of what is held, and letting go changes it by all of it.
+// A query does not change the resultant of held samples; opening the grasp changes it by all of it.
 TEST(Grasp, LettingGoIsAJumpOfTheResultant) {
   Scene scene(0.0, 0.0, "kelvin_voigt", false);
   scene.grasp();

@@ -10,7 +10,8 @@ namespace contact_tests {
 
 using namespace palpate;
 
-/// Cuts a skin into cells of a grid: the faces with their middle in a cell, in the box around them.
+/// Cuts a skin into the cells of a grid: a cell's proxy has the faces whose centres are in the cell, and is
+/// the box around them.
 inline std::vector<ProxyHull> grid_proxies(const TriMesh& skin, int cells) {
   const Vec3 low = skin.vertices.rowwise().minCoeff(), size = Vec3(skin.vertices.rowwise().maxCoeff()) - low;
   std::vector<std::set<int>> members(static_cast<std::size_t>(cells * cells * cells));
@@ -49,7 +50,7 @@ inline std::shared_ptr<proxy::ProxySet> proxies_of(const TetMesh& tets, const Tr
   return std::make_shared<proxy::ProxySet>(model);
 }
 
-/// Proxies of a rigid surface.
+/// Returns the proxies of a rigid surface.
 inline std::shared_ptr<proxy::ProxySet> proxies_of(const TriMesh& rigid,
                                                    const proxy::SolidOptions& options = {}) {
   return std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(rigid, options));

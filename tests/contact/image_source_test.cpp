@@ -9,8 +9,8 @@ using namespace contact_tests;
 
 namespace {
 
-/// A soft unit sphere above a rigid one of radius 0.8, in a rotated and moved frame; the line of centres is
-/// oblique.
+/// A soft unit sphere above a rigid sphere of radius 0.8, in a rotated and moved frame; the line of centres
+/// is oblique.
 struct Pair {
   Vec3 axis = Vec3(0.3, -0.5, 0.8).normalized();
   double depth = 0.1;
@@ -28,7 +28,8 @@ struct Pair {
   }
 };
 
-/// Where the line x + s n meets a surface: least or greatest s.  Double precision, every triangle.
+/// Least or greatest s at which the line x + s n intersects the mesh, in double precision, through all
+/// triangles.
 double ray(const TriMesh& mesh, const Pose& pose, const Vec3& x, const Vec3& n, bool least) {
   double best = std::nan("");
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
@@ -55,8 +56,8 @@ TriMesh deformed(const SurfaceWorld& world) {
 
 }  // namespace
 
-// The context is opened by the first query, whether anything touches or not: at first touch it would hold up
-// the loop.  To make a source does not open it.
+// The first query opens the OpenGL context, whether or not anything touches: at first touch it would delay
+// the loop. Creating a source does not open it.
 TEST(ImageSource, OpensAContextInItsFirstQuery) {
   const long before = counters::counter("gl.context").load();
   Pair pair;
@@ -66,7 +67,8 @@ TEST(ImageSource, OpensAContextInItsFirstQuery) {
   EXPECT_FALSE(contact::gpu_device().name.empty());
 }
 
-// Every gap against a ray through all the triangles in double; every weight and point consistent.
+// Every gap is compared with a ray through all triangles in double precision; weights and points are
+// consistent.
 TEST(ImageSource, GapsAreThoseOfTheFacets) {
   Pair pair;
   const auto samples = pair.samples(128, 0.03);
@@ -79,7 +81,7 @@ TEST(ImageSource, GapsAreThoseOfTheFacets) {
     const Vec3 xa = position(s.a, pair.soft.state), xb = pair.pose * s.b.offset;
     EXPECT_NEAR(s.a.weight[0] + s.a.weight[1] + s.a.weight[2], 1.0, 1e-13);
     EXPECT_NEAR(s.normal.dot(xa - xb), s.gap, 1e-13);
-    EXPECT_LT((xa - xb).cross(s.normal).norm(), 1e-13);  // both on one line along the normal
+    EXPECT_LT((xa - xb).cross(s.normal).norm(), 1e-13);  // both points on one line along the normal
     const double exact =
         ray(soft, Pose{}, xb, s.normal, true) - ray(pair.rigid, pair.pose, xb, s.normal, false);
     worst = std::max(worst, std::abs(s.gap - exact));
@@ -111,8 +113,8 @@ TEST(ImageSource, SamplesDoNotDependOnTheOrderOfTriangles) {
   }
 }
 
-// Force and moment of real samples, oblique and far from the origin: about the tool's origin, over force x
-// body size.
+// Force and moment of real samples, oblique and far from the origin: moments about the tool's origin,
+// relative to force x body size.
 TEST(ImageSource, ForceAndMomentBalance) {
   Pair pair;
   contact::ContactForce term;
@@ -133,12 +135,12 @@ TEST(ImageSource, ForceAndMomentBalance) {
   EXPECT_GT(w.force.norm(), 100.0);
   EXPECT_LT(sum.norm(), 1e-12 * w.force.norm());
   EXPECT_LT(moment.norm(), 1e-12 * w.force.norm());
-  auto A = step_matrix(term, pair.soft.state, 1.0, 0.0);  // the pattern announced is the one that is used
+  auto A = step_matrix(term, pair.soft.state, 1.0, 0.0);  // the announced pattern is the one used
   EXPECT_GT(*std::max_element(A.body.values().begin(), A.body.values().end()), 1.0);
 }
 
-// A skin pressed by a ball: each sample lies where the image saw it, so that the contact is that of nodes in
-// the skin's places, and force and moment balance.
+// A skin pressed by a ball: each sample is where the image found it. The contact equals the contact of nodes
+// at the skin's vertices, and force and moment balance.
 TEST(ImageSource, ASkinIsSeenWhereItIs) {
   SkinWorld skin;
   SurfaceWorld nodes({skin.vertices, skin.skin.faces});
@@ -152,7 +154,7 @@ TEST(ImageSource, ASkinIsSeenWhereItIs) {
   const auto of_skin = query(skin.surface, skin.state), of_nodes = query(nodes.surface, nodes.state);
   ASSERT_EQ(of_skin.size(), of_nodes.size());
   EXPECT_GT(of_skin.size(), 20u);
-  for (const contact::ContactSample& s : of_skin) {  // in the order of what carries them
+  for (const contact::ContactSample& s : of_skin) {  // ordered by the node that carries them
     const auto same = std::min_element(of_nodes.begin(), of_nodes.end(), [&](const auto& p, const auto& q) {
       return (p.b.offset - s.b.offset).norm() < (q.b.offset - s.b.offset).norm();
     });
@@ -165,8 +167,8 @@ TEST(ImageSource, ASkinIsSeenWhereItIs) {
   }
 }
 
-// Where the tetrahedron is squashed flat its barycentric coordinates say nothing: the corner's weights and an
-// offset place the sample.
+// In a flat tetrahedron barycentric coordinates are undefined: the corner's weights and an offset place the
+// sample.
 TEST(ImageSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
   SkinWorld skin;
   // all nodes in the plane z = 0

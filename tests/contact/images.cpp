@@ -3,7 +3,7 @@
 
 #include "palpate/contact/gpu_device.h"
 
-// Mesa leaks some hundred bytes, from libraries that it has unloaded by the end, so that no suppression could
+// Mesa leaks a few hundred bytes, from libraries that are unloaded before exit, so that no suppression could
 // name them.
 int __lsan_is_turned_off() { return !palpate::contact::gpu_device().name.empty(); }
 #endif

@@ -1,14 +1,14 @@
-// What comes nearer until the next query is among its candidates.
+// Contact that occurs before the next query is among the candidates of the last one.
 #include "grid_proxies.h"
 #include "images.h"
 #include "surfaces.h"
 
 using namespace contact_tests;
 
-// A ball rises towards the tool above it; between two queries it comes to touch.  What a query at the end
-// finds pressed was a candidate at the start, and pressed as hard; without looking ahead nothing was.
+// A ball rises towards the tool above it and touches it between two queries. With look-ahead, the vertices
+// that press at the end were candidates at the start, and press equally hard; without it there were none.
 TEST(LookAhead, WhatComesNearerIsKept) {
-  constexpr double kApart = 0.05, kSpeed = 6.0, kTime = 0.01;  // a candidate gap is 0.02
+  constexpr double kApart = 0.05, kSpeed = 6.0, kTime = 0.01;  // the candidate gap is 0.02
   for (const bool pruned : {false, true}) {
     for (const bool looks : {false, true}) {
       SkinWorld skin;
@@ -27,7 +27,7 @@ TEST(LookAhead, WhatComesNearerIsKept) {
       source()->query(skin.state.view(), before);
       for (Eigen::Index i = 2; i < skin.state.q().size(); i += 3) skin.state.q()[i] += kSpeed * kTime;
       source()->query(skin.state.view(), after);
-      double volume_before = 0.0, volume_after = 0.0;  // at the end, of both lists
+      double volume_before = 0.0, volume_after = 0.0;  // final overlap by either query's samples
       for (const auto* list : {&before, &after})
         for (const auto& s : *list) {
           const double gap = s.normal.dot(point_on_nodes(s.a, skin.state.view()) - s.b.offset);
@@ -42,7 +42,7 @@ TEST(LookAhead, WhatComesNearerIsKept) {
   }
 }
 
-// The middle of the tool stands still, its end swings towards the ball.
+// The tool's centre is at rest; its end swings towards the ball.
 TEST(LookAhead, TheEndOfARotatingToolIsLookedAheadFor) {
   SkinWorld skin;
   const Vec3 near(0.1, 0.05, skin.vertices.row(2).maxCoeff() + 0.55), middle = near + Vec3(2.0, 0, 0);
@@ -54,7 +54,7 @@ TEST(LookAhead, TheEndOfARotatingToolIsLookedAheadFor) {
   tool.faces.conservativeResize(3, 2 * faces);
   tool.faces.rightCols(faces) = far.faces.array() + static_cast<int>(vertices);
   const auto swinging = std::make_shared<contact::TrajectoryFrame>();
-  const Vec3 spin(0, -3.0, 0);  // the end at 6 m/s
+  const Vec3 spin(0, -3.0, 0);  // end speed 6 m/s
   swinging->append(0.0, Pose{}, Twist{spin, -spin.cross(middle)});
   contact::ImageOptions options = image_options(128, 0.02);
   std::vector<contact::ContactSample> samples;

@@ -1,5 +1,5 @@
-// Material points of surfaces against exact shapes: how far apart they stand, what their sum errs and says
-// that it errs, and that its force is the gradient of an energy.
+// Material points of surfaces against exact shapes: their spacing, the quadrature error and its bound, and
+// force as the gradient of an energy.
 #include <numbers>
 
 #include "messages.h"
@@ -14,10 +14,10 @@ constexpr double kRadius = 0.05, kDepth = kRadius / 8.0;
 constexpr contact::CharacteristicLengths kHalfSpace{HUGE_VAL, HUGE_VAL, 0.0};
 constexpr contact::CharacteristicLengths kBall{2.0 * kRadius, kRadius, 0.0};
 
-/// A flat block of nodes, its triangles much larger than a ball.
+/// A flat block of nodes, with triangles much larger than the ball.
 TriMesh block(int finer = 1) { return mesh::box_surface({1.0, 1.0, 0.5}, {10 * finer, 8 * finer, 4}); }
 
-/// On the block's top, at height 0, its points made once.
+/// Contact with the block's top, at height 0; its points are created once.
 struct OnBlock {
   TriMesh rest;
   SurfaceWorld world{rest};
@@ -55,8 +55,8 @@ double exact_force() {
 }
 
 struct Errors {
-  double standard = 0.0;  ///< relative
-  int bounded = 0;        ///< by what the source says, of 100
+  double standard = 0.0;  ///< standard deviation, relative
+  int bounded = 0;        ///< cases within the source's error bound, out of 100
 };
 Errors errors_at(double spacing) {
   std::mt19937 random(11);
@@ -78,7 +78,8 @@ Errors errors_at(double spacing) {
 
 }  // namespace
 
-// A flat skin and a ball, whose curvature is known: what is left is second order, and no more than asked for.
+// A flat skin and a ball of known curvature: the remaining error is of second order, and no larger than
+// requested.
 TEST(MaterialPoints, ErrByWhatWasAskedFor) {
   for (const double wanted : {3e-2, 1e-2, 3e-3}) {
     const Errors errors = errors_at(contact::point_spacing(kHalfSpace, kBall, wanted));
@@ -88,9 +89,9 @@ TEST(MaterialPoints, ErrByWhatWasAskedFor) {
   }
 }
 
-// By dimension, and by the square of the spacing: an error a hundredth as large wants points ten times finer.
-// A surface whose curvature linear gaps do not know of wants finer ones: R/2 sqrt(1e-2/(0.036 + 1/2)); a
-// plane, none at all.
+// The spacing follows from dimensional analysis, and the error from the square of the spacing: a hundredth of
+// the error requires ten times finer points. A surface whose curvature the linear gaps do not include
+// requires R/2 sqrt(1e-2/(0.036 + 1/2)); a plane requires no points.
 TEST(MaterialPoints, SpacingFollowsRadiiAndError) {
   const contact::CharacteristicLengths ball{0.1, 0.05, 0.0}, large{0.2, 0.1, 0.0}, faceted{0.1, 0.05, 20.0};
   const double one = contact::point_spacing(kHalfSpace, ball, 1e-2);
@@ -104,7 +105,7 @@ TEST(MaterialPoints, SpacingFollowsRadiiAndError) {
                                 "it must be positive");
 }
 
-// The points of a skin hang on one tetrahedron each, so that four nodes have all of their force.
+// Each skin point is carried by one tetrahedron, so that four nodes take all of its force.
 TEST(MaterialPoints, ForceIsTheGradientOfItsEnergy) {
   SkinWorld skin;
   const TriMesh rest = mesh::sphere(1.0, 12);
@@ -160,8 +161,8 @@ TEST(MaterialPoints, AreaIsTheSurfacesAndPointsLieOnIt) {
   }
 }
 
-// k pi R depth^2, whatever the depth; and a block's points on a sphere that is smaller than its triangles
-// feel what the block's exact surface feels, where its vertices feel nothing.
+// The force on a ball by its own points is k pi R depth^2 at any depth. The block's points on a sphere
+// smaller than its triangles give the same force as the block's exact surface, where its vertices give none.
 TEST(MaterialPoints, ABallFeelsItsOwnSurface) {
   const dynamics::State state;
   for (const double depth : {1e-6, 1e-3, 0.04}) {
@@ -192,8 +193,9 @@ TEST(MaterialPoints, SeeWhatIsSmallerThanATriangle) {
   for (const auto& s : samples) EXPECT_GT(s.gap, 0.0);
 }
 
-// Gaps to a plane are linear on the box's own triangles, two a side, so that nothing is missed: corner down,
-// edge down and flat, against a divided box and, flat, against the area of its face and what its sides have.
+// Gaps to a plane are linear on the box's triangles, two per side, so that the quadrature is exact: corner
+// down, edge down and flat, against a subdivided box and, flat, against the area of its face and the
+// contribution of its sides.
 TEST(MaterialPoints, ABoxOnAPlaneIsExact) {
   const dynamics::State state;
   const Vec3 size(0.03, 0.02, 0.02);
@@ -223,9 +225,10 @@ TEST(MaterialPoints, ABoxOnAPlaneIsExact) {
   }
 }
 
-// A hat's overlap is k times its own area in the tangent, whatever its neighbours do: right for a push.  Of a
-// triangle of area A that takes A/12 sum (x_i - x_j)^2 over its edges too much for the second moment, h^2/6
-// of the area of right triangles of sides h, where a flat face of n of them a side has L^2/12.
+// In the tangent a hat function's overlap is k times its area, independently of its neighbours: exact for a
+// translation. For tilting, a triangle of area A overestimates the second moment by A/12 sum (x_i - x_j)^2
+// over its edges, which is h^2/6 times the area for right triangles with legs h, while a flat face with n of
+// them per side has L^2/12.
 TEST(MaterialPoints, ATangentIsTooStiffAgainstTilting) {
   constexpr double kSize = 0.04, kDown = 1e-6;
   for (const int n : {2, 4, 8}) {
@@ -266,8 +269,8 @@ class Placed final : public contact::MovingFrame {
 
 }  // namespace
 
-// A source that has seen a ball roll, turn and jump finds what one finds that has seen nothing, whatever it
-// has left out meanwhile.
+// A source that has followed a ball rolling, turning and jumping returns the same samples as a new one,
+// whichever points it skipped meanwhile.
 TEST(MaterialPoints, AQueryIsTheSameWhateverWasAskedBefore) {
   const TriMesh rest = block();
   SurfaceWorld world{block()};
@@ -305,7 +308,7 @@ TEST(MaterialPoints, AQueryIsTheSameWhateverWasAskedBefore) {
   EXPECT_GT(touched, 30);
 }
 
-// Straight down and without a turn, so that nothing but the way itself uses a clearance up.
+// Straight down without rotation, so that only the translation uses up a clearance.
 TEST(MaterialPoints, AJumpStraightDownMissesNothing) {
   const TriMesh rest = block();
   const SurfaceWorld world{block()};
@@ -366,8 +369,9 @@ TEST(MaterialPoints, RefuseASurfaceThatIsOpen) {
       "closed");
 }
 
-// What sticks is a spring: the force's derivative by positions across the normal, as long as the spring is
-// not at its longest; then there is none.  Pressure that friction follows is left out along the normal.
+// Sticking friction is a spring: its tangent is the force's derivative by positions across the normal while
+// the spring is below its maximum length, and zero beyond. The dependence of friction on pressure is left out
+// along the normal.
 TEST(MaterialPoints, WhatSticksHasItsTangent) {
   const TriMesh rest = block();
   SurfaceWorld world{rest};
@@ -375,7 +379,7 @@ TEST(MaterialPoints, WhatSticksHasItsTangent) {
   law.stiffness_pa_m = 1e6;
   law.friction = 0.4;
   law.friction_regularisation_m_s = 1e-2;
-  law.friction_retardation_s = 1e-2;  // its longest is 0.1 mm
+  law.friction_retardation_s = 1e-2;  // maximum spring length 0.1 mm
   for (const bool at_longest : {false, true}) {
     contact::ContactForce term;
     term.add_frame(contact::fixed_frame());

@@ -1,4 +1,4 @@
-// What every obstacle of the registry must do.  Shapes are made from the entries' own keys, at random.
+// Conformance suite of the obstacle registry. Shapes are generated at random from the entries' keys.
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/distance/points.h"
@@ -12,7 +12,7 @@ using contact::ObstacleEntry;
 
 namespace {
 
-/// Lengths of 0.3 to 0.7 m, places and directions of any kind.
+/// Random spec: lengths of 0.3 to 0.7 m, any positions and directions.
 ObstacleSpec random_spec(const ObstacleEntry& entry, std::mt19937& random) {
   const auto length = [&] { return 0.5 + 0.2 * uniform(random); };
   ObstacleSpec spec{"thing", entry.name, {}};
@@ -55,7 +55,7 @@ class Obstacle : public testing::TestWithParam<std::string> {
   Vec3 centre;
 };
 
-// The nearest way out of its middle is half of it; of a half-space there is no middle.
+// The shortest exit from the shape's centre is half of its thickness; a half-space has no centre.
 TEST_P(Obstacle, ThicknessIsTheLeastWayThrough) {
   for (int i = 0; i < 20; ++i) {
     renew();
@@ -67,8 +67,8 @@ TEST_P(Obstacle, ThicknessIsTheLeastWayThrough) {
   }
 }
 
-// Corners on the shape, closed; with what the triangles lack of its area and bulge, coarse ones have as much
-// of both as fine ones.  What has no end has no surface.
+// The surface's corners lie on the shape, and it is closed. With corrections for the area and bulge that its
+// triangles lack, coarse and fine surfaces have equal values of both. An unbounded shape has no surface.
 TEST_P(Obstacle, SurfaceIsClosedAndFittedToTheShape) {
   for (int i = 0; i < 5; ++i) {
     renew();
@@ -77,7 +77,7 @@ TEST_P(Obstacle, SurfaceIsClosedAndFittedToTheShape) {
     const auto measure = [&](double spacing) {
       const TriMesh surface = entry.surface(shape, spacing);
       for (const auto x : surface.vertices.colwise()) EXPECT_NEAR(nearest(x).gap, 0.0, 1e-12);
-      const distance::Skin skin = distance::make_skin(surface);  // or throws
+      const distance::Skin skin = distance::make_skin(surface);  // throws if not closed
       distance::ContactMesh mesh = distance::contact_mesh(skin, HUGE_VAL);
       Points at(3, static_cast<Eigen::Index>(mesh.points.size()));
       double volume = 0.0, area = 0.0;
@@ -98,12 +98,12 @@ TEST_P(Obstacle, SurfaceIsClosedAndFittedToTheShape) {
     };
     const auto [area, volume] = measure(0.1);
     const auto [fine_area, fine_volume] = measure(0.0125);
-    EXPECT_NEAR(area / fine_area, 1.0, 4e-3);  // a cylinder's ends are polygons
+    EXPECT_NEAR(area / fine_area, 1.0, 4e-3);  // the ends of a cylinder are polygons
     EXPECT_NEAR(volume / fine_volume, 1.0, 4e-3);
   }
 }
 
-// As that of its picture; of what has no end there is none.
+// The radius agrees with the mean curvature of the shape's picture; an unbounded shape has none.
 TEST_P(Obstacle, RadiusIsThatOfItsMeanCurvature) {
   for (int i = 0; i < 20; ++i) {
     renew();
@@ -157,8 +157,8 @@ TEST_P(Obstacle, RefusesBadKeys) {
   EXPECT_NE(refusal(unknown).find("unknown key \"colour_m\""), std::string::npos) << refusal(unknown);
 }
 
-// The gap is a signed distance: it has both signs, changes by no more than x does, and x - gap n is a point
-// of the surface, to which every point on the way is nearest as well.
+// The gap is a signed distance: it takes both signs, changes by no more than x does, and x - gap n is the
+// nearest point of the surface for all points on the line to it.
 TEST_P(Obstacle, GapIsASignedDistance) {
   int inside = 0, outside = 0;
   for (int round = 0; round < 20; ++round, renew())
@@ -177,8 +177,8 @@ TEST_P(Obstacle, GapIsASignedDistance) {
   EXPECT_GT(outside, 40);
 }
 
-// |gap(x + h d) - gap(x) - h n.d| falls as h^2.  Where x is within h of a ridge (equally near to two faces,
-// inside) it does not: those are few.
+// ap(x + h d) - gap(x) - h n.d| decreases as h^2, except where x is within h of a ridge (equally near to two
+// faces, inside), which is rare.
 TEST_P(Obstacle, NormalIsTheGradientOfTheGap) {
   int tried = 0, passed = 0;
   for (int round = 0; round < 20; ++round, renew())
@@ -214,7 +214,7 @@ TEST_P(Obstacle, PointsOfTheSurfaceAndOfTheMiddleStayFinite) {
   }
 }
 
-/// The source samples what `nearest` says, at the vertices that face the obstacle.
+/// The source samples `nearest` at the vertices that face the obstacle.
 TEST_P(Obstacle, SourceAgrees) {
   std::size_t seen = 0;
   for (int round = 0; round < 10; ++round, renew()) {
@@ -247,7 +247,7 @@ TEST_P(Obstacle, PictureIsItsSurface) {
                  c = mesh.vertices.col(mesh.faces(2, f)), area = (b - a).cross(c - a),
                  middle = (a + b + c) / 3.0;
       EXPECT_GT(area.norm(), 0.0);
-      // just above the face, where the shape's normal is the face's
+      // slightly above the face, the shape's normal is the face's
       EXPECT_GT(area.dot(nearest(middle + 0.1 * area.normalized()).normal), 0.5 * area.norm())
           << "face " << f;
     }

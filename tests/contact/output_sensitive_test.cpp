@@ -1,4 +1,4 @@
-// A query of skins with proxies pays for the skin that may touch, not for the skin.
+// The cost of a query of skins with proxies depends on the skin that may collide, not on the whole skin.
 #include "contact/image_side.h"
 #include "contact/image_source.h"
 #include "palpate/proxy/pruner.h"
@@ -12,7 +12,7 @@ struct Work {
   long vertices, evaluated, faces, handed_on;
 };
 
-/// Two queries of a ball of `rings` under a small rigid ball that touches it at the top.
+/// Two queries of a ball with `rings` rings under a small rigid ball that touches its top.
 Work work(int rings, int cells) {
   const TetMesh ball = mesh::ball(1.0, 0.45);
   const TriMesh skin = mesh::sphere(1.0, rings), rigid = sphere(Vec3(0.05, 0.02, 1.13), 0.15, 24);
@@ -49,7 +49,7 @@ TEST(OutputSensitive, AQueryEvaluatesTheVerticesOfTheFacesHandedOn) {
     EXPECT_GT(w.evaluated, 20) << rings;
     EXPECT_LT(w.handed_on, w.faces / 10) << rings;
     EXPECT_LT(w.evaluated, w.vertices / 10) << rings;
-    // a patch of triangles has half as many vertices as faces, and some more along its border
+    // a patch has half as many vertices as faces, plus a number proportional to its border
     EXPECT_LT(static_cast<double>(w.evaluated),
               0.5 * static_cast<double>(w.handed_on) + 8.0 * std::sqrt(static_cast<double>(w.handed_on)))
         << rings;

@@ -1,5 +1,5 @@
-// A body against itself by nearest points: what two of its parts feel is what two bodies of the same shape
-// would, where it is thick it feels nothing, and the force is the gradient of the energy.
+// Self-contact by nearest points: two parts of a body interact as two bodies of the same shape would, the
+// thickness of the body is no contact, and the force is the gradient of the energy.
 #include "bent_bar.h"
 #include "fixture.h"
 #include "palpate/contact/sources.h"
@@ -47,10 +47,10 @@ ContactSpec law() {
   return out;
 }
 
-/// Every vertex is a point, and no triangle is cut.
+/// Options in which every vertex is a point and no triangle is subdivided.
 contact::DistanceOptions coarse(double gap = 0.02) { return {.quadrature_error = 1.0, .candidate_gap = gap}; }
 
-/// The bar against itself.
+/// The bar in contact with itself.
 struct Bar {
   LayeredModel model = bent_bar::model();
   dynamics::State state;
@@ -75,7 +75,7 @@ struct Bar {
 
 }  // namespace
 
-// Two bodies, and one body of the same nodes in two shells: the same forces and tangent, to rounding.
+// Two bodies, and one body with the same nodes in two shells: equal forces and tangents, to rounding.
 TEST(OwnDistance, IsThatOfTwoBodiesOfTheSameShape) {
   const LayeredModel a = ball(Pose{}, 1.0),
                      b = ball({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2),
@@ -85,7 +85,7 @@ TEST(OwnDistance, IsThatOfTwoBodiesOfTheSameShape) {
             block = add_block(one, both.tets.nodes);
   one.u() = two.u();
   ASSERT_EQ(one.q(), two.q());
-  Points rest = both.tets.nodes, skin = both.skin.vertices;  // what overlaps at rest is no contact
+  Points rest = both.tets.nodes, skin = both.skin.vertices;  // overlaps at rest do not count as contact
   rest.rightCols(b.tets.nodes.cols()).row(2).array() -= 1.0;
   skin.rightCols(b.skin.vertices.cols()).row(2).array() -= 1.0;
   ContactSpec with_all = law();
@@ -115,8 +115,8 @@ TEST(OwnDistance, IsThatOfTwoBodiesOfTheSameShape) {
   }
 }
 
-// What flies through another part between two queries is counted as of two bodies; what grazes it, or goes
-// with it, or bends, is not.
+// A part that passes through another part between two queries is counted as with two bodies; grazing, common
+// motion and bending are not counted.
 TEST(OwnDistance, WhatGoesThroughAnotherPartIsCounted) {
   const LayeredModel a = ball(Pose{}, 1.0), b = ball({Quat::Identity(), Vec3(0, 0, -2.4)}, 1.2),
                      both = together(a, b);
@@ -138,7 +138,7 @@ TEST(OwnDistance, WhatGoesThroughAnotherPartIsCounted) {
     between.refresh(two.view());
     within.refresh(one.view());
     const long of_two = between.tunnelled()[0] - before[0], of_one = within.tunnelled()[0] - before[1];
-    // what grazes is told by the thickness of the thinner body, and of one by what it feels
+    // grazing is measured by the thickness of the thinner body, and for one body by its self-contact depth
     EXPECT_NEAR(static_cast<double>(of_one), static_cast<double>(of_two), 0.03 * static_cast<double>(of_two));
     return of_one;
   };
@@ -158,7 +158,7 @@ TEST(OwnDistance, WhatGoesThroughAnotherPartIsCounted) {
   }
 }
 
-// The gap that is looked into is larger than the bar is thick.
+// The candidate gap exceeds the thickness of the bar.
 TEST(OwnDistance, WhereABodyIsThickItFeelsNothing) {
   Bar bar;
   contact::ContactForce term;
@@ -169,14 +169,15 @@ TEST(OwnDistance, WhereABodyIsThickItFeelsNothing) {
     for (const auto& s : term.samples()) EXPECT_GE(s.gap, 0.0) << "bent by " << angle;
     EXPECT_EQ(force(term, bar.state).norm(), 0.0) << "bent by " << angle;
   }
-  // squeezed to a tenth of its height, half of the depth up to which overlaps are found
+  // squeezed to a tenth of its height, half of the depth up to which overlaps are detected
   bar.bend(0.0);
   for (Eigen::Index i = 2; i < bar.state.q().size(); i += 3) bar.state.q()[i] *= 0.1;
   term.refresh(bar.state.view());
   EXPECT_EQ(force(term, bar.state).norm(), 0.0);
 }
 
-// Arms pressed together: equal and opposite on both, along the line of the tips; none on the middle.
+// Arms pressed together: equal and opposite forces on both, along the line between the tips; none on the
+// middle.
 TEST(OwnDistance, ArmsThatMeetPushEachOtherApart) {
   Bar bar;
   bar.bend(bent_bar::closing_angle(0.03));
@@ -198,8 +199,8 @@ TEST(OwnDistance, ArmsThatMeetPushEachOtherApart) {
   EXPECT_LT(left.tail<2>().norm(), 1e-10 * left.norm());
 }
 
-// As the arms close no part of the force comes or goes at once: following the query's points and asking anew
-// give the same.
+// As the arms close, no part of the force appears or vanishes abruptly: following the query's points and a
+// new query give the same force.
 TEST(OwnDistance, FollowsAsItFinds) {
   Bar bar;
   contact::ContactForce follows, asks;
@@ -219,7 +220,7 @@ TEST(OwnDistance, FollowsAsItFinds) {
   EXPECT_GT(last, 1.0);
 }
 
-// Between the energy and its gradient, and between force and tangent.
+// Taylor tests between the energy and its gradient, and between force and tangent.
 TEST(OwnDistance, TheForceIsTheGradient) {
   Bar bar;
   bar.bend(bent_bar::closing_angle(0.03));
@@ -239,7 +240,7 @@ TEST(OwnDistance, TheForceIsTheGradient) {
   };
   const double h = 1e-6, slope = (energy_at(h) - energy_at(-h)) / (2.0 * h);
   const double expected = -force(term, bar.state).dot(direction);
-  // a point of a skin hangs on one tetrahedron, while its triangle may be carried by three
+  // a skin point is carried by one tetrahedron, while its triangle may be carried by three
   EXPECT_NEAR(slope, expected, 1e-2 * std::abs(expected));
   const MatX dense = step_matrix(term, bar.state, 1.0, 0.0).to_dense();
   EXPECT_LT((dense - dense.transpose()).norm(), 1e-12 * dense.norm());

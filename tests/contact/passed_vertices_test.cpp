@@ -1,4 +1,5 @@
-// Vertices that go through a closed surface between two times, against what theory says of the same ways.
+// Detection of vertices that tunnel through a closed surface between two times, against theory for the same
+// motions.
 #include "contact/passed_vertices.h"
 
 #include "surfaces.h"
@@ -9,7 +10,7 @@ namespace {
 
 contact::SurfaceWays still(const TriMesh& mesh) { return {mesh.faces, mesh.vertices, mesh.vertices}; }
 
-/// Vertices alone, from one place to another.
+/// Motion of vertices without faces, from one position to another.
 contact::SurfaceWays points(const Points& before, const Points& now) { return {Faces(3, 0), before, now}; }
 
 long passed(const Vec3& from, const Vec3& to, const contact::SurfaceWays& through) {
@@ -32,7 +33,7 @@ TEST(PassedVertices, WhatGoesThroughIsCountedAndNothingElse) {
   EXPECT_EQ(passed({-3, 0.03, 0.01}, {3, 0.02, 0.02}, box), 1) << "lengthwise";
 }
 
-// Through one of two plates and into the other: it is inside at last, where a query sees it.
+// Through one of two plates and into the other: at the end it is inside, where a query detects it.
 TEST(PassedVertices, WhatIsInsideAtEitherEndIsSeen) {
   TriMesh two = mesh::box_surface(Vec3(2, 2, 0.1), {4, 4, 1});
   const Eigen::Index vertices = two.vertices.cols(), faces = two.faces.cols();
@@ -45,7 +46,7 @@ TEST(PassedVertices, WhatIsInsideAtEitherEndIsSeen) {
   EXPECT_EQ(passed({0.1, 0.2, 0.3}, {0.1, 0.2, -0.8}, still(two)), 1) << "once, through both";
 }
 
-// Half of the faces stand still, half rise and overtake a vertex that moves as their mean does.
+// Half of the faces are at rest; the other half rise and overtake a vertex that moves at their mean velocity.
 TEST(PassedVertices, FacesMayMoveDifferently) {
   const TriMesh box = mesh::box_surface(Vec3(2, 2, 0.1), {4, 4, 1});
   const Eigen::Index vertices = box.vertices.cols(), faces = box.faces.cols();
@@ -58,20 +59,20 @@ TEST(PassedVertices, FacesMayMoveDifferently) {
   EXPECT_EQ(contact::PassedVertices().count(vertex, two, 0.11), 0) << "it is 0.1 thick";
 }
 
-// An edge that is grazed: the way inside is the cut through the corner, seen from the box.
+// A grazed edge: the path length inside is the cut through the corner, in the frame of the box.
 TEST(PassedVertices, AWayThatIsShortDoesNotCount) {
   const TriMesh mesh = mesh::box_surface(Vec3(2, 2, 0.1), {8, 8, 1});
-  const Vec3 out_of_side(1.03, 0.3, 0.02), in_at_top(0.97, 0.3, 0.08);  // between them the edge is touched
+  const Vec3 out_of_side(1.03, 0.3, 0.02), in_at_top(0.97, 0.3, 0.08);  // the edge lies between them
   const auto graze = [&](double deep, double least) {
     const Vec3 shift = -deep * Vec3(1, 0, 1).normalized();
     return contact::PassedVertices().count(points(in_at_top + shift, out_of_side + shift), still(mesh),
                                            least);
   };
-  // a cut `deep` below a right-angled edge is 2 deep long
+  // a cut `deep` below a right-angled edge has length 2 deep
   EXPECT_EQ(graze(0.01, 0.019), 1);
   EXPECT_EQ(graze(0.01, 0.021), 0);
   EXPECT_EQ(graze(-0.001, 0.0), 0) << "it passes by";
-  // both drift: the way that counts is the one against each other
+  // both drift: the relative path counts
   contact::SurfaceWays along = still(mesh);
   const Vec3 drift(0, 5, 0), shift = -0.01 * Vec3(1, 0, 1).normalized();
   along.now.colwise() += drift;
@@ -80,8 +81,8 @@ TEST(PassedVertices, AWayThatIsShortDoesNotCount) {
   EXPECT_EQ(contact::PassedVertices().count(together, along, 0.021), 0);
 }
 
-// A straight way goes through a ball if its distance from the centre is less than the radius, of both ends
-// outside: thousands of ways at random, but for those that the flat triangles decide.
+// A straight path with both ends outside passes through a ball if its distance from the centre is less than
+// the radius: thousands of random paths, except those that depend on the facets.
 TEST(PassedVertices, AgreesWithASphere) {
   const auto ball = still(mesh::sphere(1.0, 8));
   std::mt19937 random(2);
@@ -101,8 +102,8 @@ TEST(PassedVertices, AgreesWithASphere) {
   EXPECT_GT(past, 200);
 }
 
-// The surface moves, turns over on its way, or shrinks to nothing and grows again: what counts is where both
-// are at the same time.
+// The surface moves, inverts on its way, or shrinks to a point and grows again: only simultaneous positions
+// count.
 TEST(PassedVertices, BothMayMove) {
   const TriMesh box = mesh::box_surface(Vec3(2, 2, 0.1), {8, 8, 1});
   const auto moving = [&](const Vec3& from, const Vec3& to) {
@@ -113,15 +114,15 @@ TEST(PassedVertices, BothMayMove) {
   EXPECT_EQ(passed({0.1, 0.2, -0.5}, {0.1, 0.2, 1.5}, moving({0, 0, -1}, {0, 0, 1})), 0) << "together";
   EXPECT_EQ(passed({0.1, 0.2, -0.5}, {0.1, 0.2, 0.5}, moving({0, 0, -1}, {0, 0, 1})), 1) << "overtaken";
   EXPECT_EQ(passed(x, x, moving({3, 0, -1}, {3, 0, 1})), 0) << "beside it";
-  // each point of the box goes straight to its opposite: at half time all are in the middle
+  // each point of the box moves straight to its opposite: at half time all are at the centre
   contact::SurfaceWays turned = still(box);
   turned.now = -turned.before;
   EXPECT_EQ(passed({0.5, 0.3, 1}, {0.5, 0.3, 0.9}, turned), 0);
 }
 
-// Brute force: a tetrahedron whose corners each go their own way, so that it rotates and is sheared, and a
-// vertex.  It goes through if it is outside at both ends and inside, by its barycentric coordinates, at one
-// of many times in between; ways that come within a hundredth of that limit are left out.
+// Brute force: a tetrahedron whose corners move independently, so that it rotates and shears, and a vertex.
+// The vertex tunnels if it is outside at both ends and inside, by its barycentric coordinates, at one of many
+// times in between; paths that come within a hundredth of that limit are skipped.
 TEST(PassedVertices, AgreesWithSamplesOfTheWayThroughWhatDeforms) {
   Faces faces(3, 4);
   faces.col(0) = Eigen::Vector3i(1, 2, 3);
@@ -163,8 +164,8 @@ TEST(PassedVertices, OfNoneThereIsNone) {
   EXPECT_EQ(contact::PassedVertices().count(points(Points(3, 0), Points(3, 0)), box, 0.0), 0);
 }
 
-// Three thousand points all through nine thousand faces at once: what it has not looked at it does not
-// count, and it says so.  The same points on short ways are all counted.
+// Three thousand points all pass through nine thousand faces at once: unchecked candidates are not counted,
+// and are reported as unchecked. The same points on short paths are all counted.
 TEST(PassedVertices, GivesUpWhereAllWouldBeLookedAtAgainstAll) {
   const auto box = still(mesh::box_surface(Vec3(2, 2, 0.1), {60, 60, 4}));
   const int n = 3000;

@@ -48,7 +48,7 @@ TEST(Pressure, NeverPullsAndIsZeroApart) {
         }
       }
   }
-  EXPECT_GT(cut, 100);  // separation fast enough to be cut was among them
+  EXPECT_GT(cut, 100);  // including separation fast enough to cut the damper off
 }
 
 TEST(Pressure, DerivativesAreThoseOfTheFormula) {
@@ -66,7 +66,7 @@ TEST(Pressure, DerivativesAreThoseOfTheFormula) {
 }
 
 TEST(Onset, ByHand) {
-  // k = 2e6, w = 1 mm, at half of w: k d^2/(2 w) = 2e6 * 2.5e-7/2e-3 = 250 Pa, half the slope; at 3 mm: k (3
+  // k = 2e6, w = 1 mm. At half of w: k d^2/(2 w) = 2e6 * 2.5e-7/2e-3 = 250 Pa, half the slope; at 3 mm: k (3
   // - 0.5) mm = 5000 Pa.
   ContactSpec s = spec("kelvin_voigt");
   s.damping_pa_s_m = 0.0;
@@ -80,22 +80,22 @@ TEST(Onset, ByHand) {
   EXPECT_NEAR(p.dp_dgap, -2e6, 1e-6);
 }
 
-// Pressure and its derivatives have no jump, neither at first touch nor at the end of the onset; without an
-// onset the derivative has one.
+// Pressure and its derivatives are continuous, at first touch and at the end of the onset; without an onset
+// the derivative jumps.
 TEST(Onset, PressureAndItsDerivativesAreContinuous) {
   int checked = 0;
   for (const char* law : {"kelvin_voigt", "hunt_crossley"})
     for (const double rate : {-0.4, 0.0, 0.05}) {
       ContactSpec s = spec(law);
       s.onset_width_m = 1e-3;
-      const double slope = 2e6 * 2.0;  // no derivative by depth is larger
+      const double slope = 2e6 * 2.0;  // upper bound of the derivative by depth
       for (const double depth : {0.0, 1e-3}) {
         const double e = 1e-9;
         const auto below = contact::pressure(s, -(depth - e), rate),
                    above = contact::pressure(s, -(depth + e), rate);
         EXPECT_NEAR(below.p, above.p, 2 * e * slope) << law;
-        // a damper that grows with depth bends the pressure at the end of the onset, in proportion to the
-        // rate
+        // a damper that grows with depth changes the slope of the pressure at the end of the onset, in
+        // proportion to the rate
         if (depth == 0.0 || rate == 0.0) {
           EXPECT_NEAR(below.dp_dgap, above.dp_dgap,
                       std::abs(rate) * spec(law).damping_pa_s_m / 1e-3 * (law[0] == 'k') + 1e-4 * slope)
@@ -143,7 +143,7 @@ TEST(Onset, EnergyIsTheIntegralOfTheSpring) {
   EXPECT_NEAR(e2, simpson(0.0, 1e-3) + simpson(1e-3, 4e-3), 1e-12);
 }
 
-// |p_w - p_0| <= k w/2 (and the damper's part, which is whole from w on): linear in w.
+// _w - p_0| <= k w/2 (plus the damper's part, which is fully active from w on): linear in w.
 TEST(Onset, TheSharpLawIsItsLimit) {
   for (const char* law : {"kelvin_voigt", "hunt_crossley"}) {
     ContactSpec s = spec(law);

@@ -1,4 +1,4 @@
-// Image space with convex proxies: only skin that may be near is looked at, in regions of their own.
+// Image space with convex proxies: only skin that may be near is rendered, in separate regions.
 #include "grid_proxies.h"
 #include "images.h"
 #include "palpate/proxy/pruner.h"
@@ -6,9 +6,9 @@
 
 using namespace contact_tests;
 
-// One pose, its skin cut into 1, 8 and 64 cells: the force is as large as the uncut surface's within 1 %
-// (each surface point contributes once).  Its direction is the plane's, that of the skin which is handed on,
-// and turns by some degrees with the cut.
+// One pose, with the skin cut into 1, 8 and 64 cells: the force magnitude equals the uncut surface's to 1 %
+// (each surface point contributes once). Its direction is the normal of the plane fitted to the skin passed
+// on, and varies by a few degrees with the cut.
 TEST(PrunedImageSource, SizeOfTheForceDoesNotDependOnTheCut) {
   SkinWorld skin;
   const TriMesh rigid = sphere(Vec3(0.1, 0.05, skin.vertices.row(2).maxCoeff() + 0.35), 0.5, 30);
@@ -32,8 +32,8 @@ TEST(PrunedImageSource, SizeOfTheForceDoesNotDependOnTheCut) {
   }
 }
 
-// Two balls of one body with a rigid ball between them: as a whole no height field from any side.  Each is
-// pressed away by its own overlap.
+// Two balls of one body with a rigid ball between them: from no side are they a height field as a whole. Each
+// is pushed away by its overlap.
 TEST(PrunedImageSource, FindsContactOnBothSides) {
   TetMesh tets = mesh::ball(1.0, 0.45);
   TriMesh skin = mesh::sphere(1.0, 16);
@@ -102,7 +102,7 @@ TEST(PrunedImageSource, RefusesWhatDoesNotBelongTogether) {
                InternalError);
 }
 
-// A second query sees the body where it is then, not where it was.
+// A second query uses the body's position at that time.
 TEST(PrunedImageSource, FollowsTheBody) {
   SkinWorld skin;
   const TriMesh rigid = sphere(Vec3(0.1, 0.0, -1.6), 0.8, 20);

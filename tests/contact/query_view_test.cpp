@@ -10,7 +10,8 @@ using namespace contact_tests;
 
 namespace {
 
-/// A soft unit sphere over a rigid one of radius 0.8, the line of centres oblique: a lens `kDepth` thick.
+/// A soft unit sphere over a rigid sphere of radius 0.8, with an oblique line of centres: a lens `kDepth`
+/// thick.
 constexpr double kDepth = 0.1;
 struct Lens {
   Vec3 axis = Vec3(0.3, -0.5, 0.8).normalized();
@@ -33,7 +34,7 @@ TEST(QueryView, IsKeptOnlyWhereItWasAskedFor) {
   source->query(lens.soft.state.view(), samples);
   EXPECT_EQ(source->view(), nullptr);
   source->keep_view();
-  for (int i = 0; i < 2; ++i) {  // of the last query alone
+  for (int i = 0; i < 2; ++i) {  // the view shows the last query only
     source->query(lens.soft.state.view(), samples);
     ASSERT_NE(source->view(), nullptr);
     EXPECT_EQ(source->view()->regions.size(), 1u);
@@ -43,8 +44,8 @@ TEST(QueryView, IsKeptOnlyWhereItWasAskedFor) {
   EXPECT_TRUE(source->view()->regions.empty());
 }
 
-// On both spheres a pixel of the grid lies where its height says; its volume is that of the lens, and about
-// that of the samples at vertices.
+// A pixel of the grid lies on both spheres at its stored heights; the volume of the grid is the lens's, and
+// about that of the samples at vertices.
 TEST(QueryView, PixelsLieOnTheSurfaces) {
   Lens lens;
   const auto source = contact::make_image_source(lens.soft.surface, lens.rigid, 0, contact::fixed_frame(),
@@ -93,22 +94,22 @@ TEST(QueryView, HullsAreThoseOfProxiesThatPress) {
   source->query(skin.state.view(), samples);
   const contact::QueryView& view = *source->view();
   EXPECT_FALSE(view.regions.empty());
-  ASSERT_EQ(view.proxies_b.size(), 1u);  // a ball is one hull
+  ASSERT_EQ(view.proxies_b.size(), 1u);  // a ball is a single hull
   for (const auto corner : view.proxies_b[0].colwise()) EXPECT_NEAR((corner - centre).norm(), 0.5, 1e-9);
   EXPECT_GT(view.proxies_a.size(), 0u);
-  EXPECT_LT(static_cast<int>(view.proxies_a.size()), proxies->size());  // the ball's far side is not there
+  EXPECT_LT(static_cast<int>(view.proxies_a.size()), proxies->size());  // the ball's far side is pruned
   for (const Points& hull : view.proxies_a) EXPECT_EQ(hull.cols(), 8);
   const auto box_distance = [&](const Points& hull) {
     const Vec3 low = hull.rowwise().minCoeff(), high = hull.rowwise().maxCoeff();
     return (low - centre).cwiseMax(centre - high).cwiseMax(0.0).norm();
   };
-  // kept are pairs whose hulls, inflated, may be nearer than the candidate gap
+  // pairs are kept whose inflated hulls may be nearer than the candidate gap
   double inflation = 0.0;
   for (int p = 0; p < proxies->size(); ++p) inflation = std::max(inflation, proxies->state(p).inflation);
   for (const Points& hull : view.proxies_a) EXPECT_LT(box_distance(hull), 0.5 + 0.02 + inflation);
 }
 
-// Points of the contact are its samples, with the law's pressure.
+// Contact points of the view are the samples, with the law's pressure.
 TEST(QueryView, PointsAreTheSamples) {
   Lens lens;
   const contact::ImageOptions options = image_options(64, 0.05);

@@ -1,10 +1,10 @@
-// What a query in image space says of itself: where its time went, and how much it went through.
+// Statistics of a query in image space: time per stage, and amounts of work.
 #include "two_balls.h"
 
 using namespace contact_tests;
 
-// The four are parts of what the images take as a whole, which a clock outside of them reads. A thread
-// may be set aside between two of them, on a busy machine for long, but not in each of a hundred queries.
+// The four stages are parts of the total image time, which an outer clock measures. A thread may be suspended
+// between two of them, on a busy machine for long, but not in each of a hundred queries.
 TEST(QueryWork, TheTimeOfImagesIsThatOfTheirStages) {
   TwoBalls balls;
   contact::ContactForce term;
@@ -29,7 +29,8 @@ TEST(QueryWork, TheTimeOfImagesIsThatOfTheirStages) {
   }
 }
 
-// Skins are evaluated with the positions: what is left of the faces is their look along the axes.
+// Skins are evaluated together with the positions; patches include only the transform of the faces to contact
+// axes.
 TEST(QueryWork, SkinsAreTimedWithThePositions) {
   TwoBalls balls;
   const auto source = balls.source(true);
@@ -39,7 +40,7 @@ TEST(QueryWork, SkinsAreTimedWithThePositions) {
   EXPECT_GT(source->stages()->patches_s, 0.0);
 }
 
-// One image of both skins whole: all of their vertices are put in its axes, and each hit is a sample.
+// One image of both whole skins: all of their vertices are transformed to its axes, and each hit is a sample.
 TEST(QueryWork, OneImageIsCounted) {
   TwoBalls balls;
   const auto source = balls.source(false);
@@ -49,7 +50,7 @@ TEST(QueryWork, OneImageIsCounted) {
   ASSERT_EQ(s.images, 1);
   EXPECT_EQ(s.vertices, balls.a.model.skin.vertices.cols() + balls.b.model.skin.vertices.cols());
   const auto faces = balls.a.model.skin.faces.cols() + balls.b.model.skin.faces.cols();
-  EXPECT_GT(s.faces, faces / 50);  // a cap of either ball, from both sides
+  EXPECT_GT(s.faces, faces / 50);  // a cap of either ball, for both sides
   EXPECT_LT(s.faces, faces);
   EXPECT_GT(samples.size(), 40u);
   EXPECT_EQ(s.hits, static_cast<long>(samples.size()));

@@ -1,11 +1,11 @@
-// What a refresh changes: the resultants of each pair on its bodies, force and moment apart.
+// Changes of the resultants at a refresh: force and moment of each pair on its bodies.
 #include "fixture.h"
 
 using namespace contact_tests;
 
 namespace {
 
-/// Hands out another list of samples at every query; the last one again and again.
+/// Returns another list of samples at every query, and the last one repeatedly.
 class ListsSource final : public contact::SampleSource {
  public:
   explicit ListsSource(std::vector<std::vector<contact::ContactSample>> lists) : lists_(std::move(lists)) {}
@@ -45,8 +45,8 @@ World square(const Vec3& middle, bool with_body = false) {
 
 }  // namespace
 
-// One corner of a square is pressed: the whole force, with the arm from the square's middle, wherever in the
-// world it is.
+// One corner of a square is pressed: the whole force, and its arm from the square's centre, wherever the
+// square is.
 TEST(Resultants, ForceAndMomentOfOneNodeByHand) {
   for (const double friction : {0.0, 0.3})  // summed in groups, and sample by sample
     for (const Vec3& middle : {Vec3(0, 0, 0), Vec3(1e3, -2e3, 50)}) {
@@ -69,11 +69,12 @@ TEST(Resultants, ForceAndMomentOfOneNodeByHand) {
     }
 }
 
-// The same load on other nodes: forces on nodes change, which an integrator must know; no resultant does.
+// The same load on other nodes: the forces on nodes change, which an integrator must detect; the resultant
+// does not.
 TEST(Resultants, TheSameLoadOnOtherNodesIsNoJump) {
   for (const double friction : {0.0, 0.3}) {
     World world = square(Vec3(3, 2, 1));
-    // the middle of the upper edge, in three ways
+    // the centre of the upper edge, in three ways
     const auto sample = [&](std::vector<int> nodes, std::vector<double> weights, double share) {
       return above(node_point(std::move(nodes), std::move(weights)), 0, Pose{}, world, share);
     };
@@ -99,7 +100,8 @@ TEST(Resultants, TheSameLoadOnOtherNodesIsNoJump) {
   }
 }
 
-// A load that moves from the right edge to the left one: no force, a moment of twice its arm.
+// A load that moves from the right edge to the left one: no force change, and a moment change of twice its
+// arm.
 TEST(Resultants, ALoadThatMovesIsAMoment) {
   World world = square(Vec3(3, 2, 1));
   contact::ContactForce term;
@@ -114,13 +116,13 @@ TEST(Resultants, ALoadThatMovesIsAMoment) {
   EXPECT_NEAR(term.refresh_jump().moment, 2.0 * kForce, 1e-9);
 }
 
-// Both bodies of a pair feel a moment, each about its own middle: the larger one counts.  Pairs count one by
-// one, so that the forces of two do not hide each other.
+// Both bodies of a pair have a moment, each about its centre: the larger one counts. Pairs count separately,
+// so that the forces of two pairs do not cancel.
 TEST(Resultants, EveryBodyOfEveryPairCounts) {
   World world = square(Vec3::Zero(), true);
   const auto body = contact::block_frame(world.body_id);
   const Pose pose = body->pose(world.state.view());
-  int farthest = 0;  // from the body, so that its moment is the larger one
+  int farthest = 0;  // farthest from the body, so that the body's moment is the larger one
   const auto arm = [&](int i) {
     return (world.state.view().position(i) - pose.translation).head<2>().norm();
   };

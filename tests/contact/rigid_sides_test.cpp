@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kR = 0.3;
 
-/// Overlap volume by its samples: force along the normal at unit stiffness.
+/// Overlap volume by the samples: force along the normal at unit stiffness.
 double volume(const std::vector<ContactSample>& samples, double deeper = 0.0) {
   double sum = 0.0;
   for (const ContactSample& s : samples) sum += s.area * std::max(0.0, deeper - s.gap);
@@ -36,7 +36,7 @@ std::unique_ptr<contact::SampleSource> on_plane(contact::ContactSide side, doubl
 
 double cap(double depth) { return std::numbers::pi * depth * depth * (kR - depth / 3.0); }
 
-/// Volume between a ball and what lies below height(x, y), whose highest point is 0 at the origin, with the
+/// Volume between a ball and the region below height(x, y), whose highest point is 0 at the origin, with the
 /// ball's lowest point `depth` below that; by the midpoint rule on a fine grid.
 template <class Height>
 double overlap(double depth, const Height& height) {
@@ -53,7 +53,7 @@ double overlap(double depth, const Height& height) {
 
 }  // namespace
 
-// The rings are whole, so the volume is exact.
+// Rings of samples are complete, so that the volume is exact.
 TEST(BallOnPlane, ForceIsTheCapsVolume) {
   const dynamics::State state;
   for (const double depth : {1e-9, 1e-4, 0.05, 0.29, 0.3, 0.45}) {
@@ -104,11 +104,11 @@ TEST(BallOnBox, FaceEdgeAndCorner) {
         *contact::make_box_source(ball_at(centre), 1, contact::fixed_frame(), pose, size, 0.01), state));
   };
   EXPECT_NEAR(of({0.3, 0.1, 1.0}, {0, 0, 1}, 0.05) / cap(0.05), 1.0, 1e-12);
-  // an edge of 90 degrees, looked at along its bisector
+  // an edge of 90 degrees, along its bisector
   const double edge = overlap(0.05, [](double x, double) { return -std::abs(x); });
   EXPECT_NEAR(of({2.0, 0.1, 1.0}, {1, 0, 1}, 0.05) / edge, 1.0, 5e-3);
   EXPECT_LT(edge, 0.5 * cap(0.05));
-  // a corner along its diagonal: three planes of slope sqrt(2) that meet there, x along one of their edges
+  // a corner along its diagonal: three planes of slope sqrt(2) meet there, with x along one of their edges
   const double corner = overlap(0.05, [](double x, double y) {
     double height = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -133,7 +133,7 @@ TEST(BallOnCylinder, SideAndEnd) {
   EXPECT_NEAR(of({0.05, 0.0, 1.5 + kR - 0.05}) / cap(0.05), 1.0, 1e-12) << "the flat end";
 }
 
-// A rigid surface is sampled as a soft one that stands where it does and moves as it does.
+// A rigid surface is sampled as a soft one with the same positions and velocities.
 TEST(RigidSurface, IsSampledAsASoftOne) {
   std::mt19937 random(4);
   const TriMesh mesh = sphere({0.1, 0.2, -0.1}, 0.6, 10);
@@ -154,7 +154,7 @@ TEST(RigidSurface, IsSampledAsASoftOne) {
             key.required && std::holds_alternative<double>(*key.fallback) ? Setting(0.7) : *key.fallback;
       const auto motion = std::make_shared<contact::TrajectoryFrame>();
       motion->append(0.0, pose, twist);
-      const double gap = look_ahead > 0.0 ? 0.01 : 0.0;  // else the mean edge
+      const double gap = look_ahead > 0.0 ? 0.01 : 0.0;  // 0: the mean edge
       const auto soft = query(
           *entry.make_source(world.surface, 1, contact::fixed_frame(), shape, gap, look_ahead), world.state);
       const auto rigid = query(*entry.make_source(contact::FrameSurface{mesh, 0, motion}, 1,
@@ -194,13 +194,13 @@ TEST(RigidSurface, CrossingsAreCounted) {
 
 namespace {
 
-/// The tool in the State, pressed into an obstacle: a query, and then a little deeper, so that every sample
-/// is pressed along a Taylor test.
+/// The tool in the State, pressed into an obstacle: queried, and then moved slightly deeper, so that every
+/// sample is pressed throughout a Taylor test.
 struct Pressed {
   World world{2, true, 21};
   contact::ContactForce term;
 
-  /// @param held  samples stay those of the query
+  /// @param held  samples do not follow the state after the query
   Pressed(const contact::ObstacleEntry& entry, bool ball, const ContactSpec& law, bool held = false) {
     const int own = term.add_frame(contact::block_frame(world.body_id)),
               other = term.add_frame(contact::fixed_frame());
@@ -271,8 +271,8 @@ TEST(RigidSides, TaylorOfTheirTangents) {
   EXPECT_EQ(checked, 24);
 }
 
-// About its centre a ball feels no moment, and rotating it changes nothing; sliding, friction is mu N against
-// it, with the arm from the centre to the patch.
+// A ball has no moment about its centre, and rotating it changes nothing; when it slides, friction mu N
+// opposes it, with the arm from the centre to the patch.
 TEST(RigidSides, ABallFeelsNoMomentButThatOfFriction) {
   for (const contact::ObstacleEntry& entry : contact::obstacle_registry()) {
     Pressed smooth(entry, true, law_of("kelvin_voigt", 0.0, 0.0));
@@ -299,8 +299,8 @@ TEST(RigidSides, ABallFeelsNoMomentButThatOfFriction) {
   }
 }
 
-// The force between two queries is that of a query there, and a ball that leaves and comes
-// back within them feels nothing and then the same.
+// The force between two queries equals the force of a query at that state. A ball that separates and returns
+// between queries has zero force and then the same force.
 TEST(RigidSides, ABallFollowsTheState) {
   for (const contact::ObstacleEntry& entry : contact::obstacle_registry()) {
     const ContactSpec law = law_of("kelvin_voigt", 0.0, 0.0);
@@ -322,7 +322,7 @@ TEST(RigidSides, ABallFollowsTheState) {
   }
 }
 
-// A ball flies at a plate: the next query is due when it has gone half of the plate's thickness into it.
+// A ball flies at a plate: the next query is due when it has penetrated half of the plate's thickness.
 TEST(RigidSides, ABallSaysWhenTheNextQueryIsDue) {
   const dynamics::State state;
   const auto asked = [&](double height, double speed, double look_ahead) {
@@ -342,8 +342,8 @@ TEST(RigidSides, ABallSaysWhenTheNextQueryIsDue) {
   EXPECT_EQ(asked(0.5, 50.0, 0.02).first, HUGE_VAL);
 }
 
-// With the tool's motion given nothing in the State feels an obstacle: no force, no matrix, no event; the
-// wrench on the tool is whole.
+// With a prescribed tool motion, the State has no force, matrix or event from an obstacle; the wrench on the
+// tool is complete.
 TEST(RigidSides, AGivenToolFeelsAnObstacleAndTheStateDoesNot) {
   World world(3, false, 4);
   world.state.u().setZero();

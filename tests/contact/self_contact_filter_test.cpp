@@ -1,5 +1,5 @@
-// What two overlapping points of one skin are: contact, the body's own thickness, or parts that passed each
-// other by.
+// Classification of two overlapping points of one skin: contact, thickness of the body, or parts that passed
+// through each other.
 #include "contact/self_contact_filter.h"
 
 #include "bent_bar.h"
@@ -9,7 +9,7 @@ using namespace contact_tests;
 
 namespace {
 
-/// The bar, bent, with its skin.
+/// The bent bar with its skin.
 struct Bar {
   LayeredModel model = bent_bar::model(3);
   dynamics::State state;
@@ -37,7 +37,7 @@ struct Bar {
     state.q() = Eigen::Map<const VecX>(bent.data(), bent.size());
     skin.update(state.view());
   }
-  /// The point of the skin that is at rest nearest to x, in the middle of its face.
+  /// The skin point nearest to x at rest, at the centre of its face.
   contact::SkinPoint at(const Vec3& x) const {
     int best = 0;
     double least = 1e9;
@@ -56,7 +56,7 @@ constexpr double kUp = 0.5 * bent_bar::kHeight;
 
 }  // namespace
 
-// However the bar is bent, what lies between its two sides is its own tissue.
+// However the bar is bent, its tissue lies between its two sides.
 TEST(SelfContactFilter, ThicknessIsNoContact) {
   Bar bar;
   int looked = 0;
@@ -74,7 +74,7 @@ TEST(SelfContactFilter, ThicknessIsNoContact) {
   EXPECT_EQ(looked, 4 * 18 * 3);
 }
 
-// Two arms that overlap by less than they are thick: each inner side lies in the other's tissue.
+// Two arms that overlap by less than their thickness: each inner side lies in the other arm's tissue.
 TEST(SelfContactFilter, ArmsThatOverlapAreInContact) {
   Bar bar;
   for (const double depth : {0.015, 0.03, 0.06, 0.1}) {
@@ -86,7 +86,7 @@ TEST(SelfContactFilter, ArmsThatOverlapAreInContact) {
   }
 }
 
-// The outer sides of two arms with air between them: both ways come out of the tissue.
+// The outer sides of two arms with air between them: the lines from both points leave the tissue.
 TEST(SelfContactFilter, WhatPassedByIsNoContact) {
   Bar bar;
   bar.bend(3.3);
@@ -98,7 +98,7 @@ TEST(SelfContactFilter, WhatPassedByIsNoContact) {
   EXPECT_FALSE(bar.filter.in_contact(inner_left, inner_right)) << "air alone";
 }
 
-// A node pulled through its tetrahedra: a way ends, whatever stands in it.
+// A node pulled through its tetrahedra: the search line ends at any degenerate or inverted tetrahedron.
 TEST(SelfContactFilter, FlatAndInvertedTetrahedraEndTheWay) {
   Bar bar;
   for (const double squash : {0.0, -0.5}) {

@@ -1,4 +1,4 @@
-// The points of a shape's own surface: what the points of a body alone do not see.
+// Quadrature points of a shape's surface: they detect contact that the points of a body alone miss.
 #include "palpate/contact/obstacle.h"
 #include "palpate/distance/points.h"
 #include "two_balls.h"
@@ -23,8 +23,8 @@ contact::ShapePoints ball_points(double radius, double spacing, int frame,
           Vec3::Zero()};
 }
 
-/// A soft ball of radius 1 whose vertices are nodes, and a rigid one that is a body of the State: half of the
-/// weight for the points of each.
+/// A soft ball of radius 1 whose vertices are nodes, and a rigid one that is a body of the State; points of
+/// each have half weight.
 struct BallInBall {
   SurfaceWorld soft{sphere(Vec3::Zero(), 1.0, 12)};
   int body;
@@ -56,9 +56,9 @@ struct BallInBall {
 
 }  // namespace
 
-// Archimedes: of a sphere in a half-space at the depth delta, the integral of the depth over its surface is
-// pi R delta^2.  What is left of the error is of second order, a fourth from size to size; sizes are those of
-// whole parts of an icosahedron's edges.
+// Archimedes: for a sphere in a half-space at depth delta, the integral of the depth over its surface is pi R
+// delta^2. The remaining error is of second order, a fourth per size; sizes are integer divisions of an
+// icosahedron's edges.
 TEST(ShapePoints, OfABallInAHalfSpaceHaveArchimedesForce) {
   constexpr double kRadius = 1.0, kDepth = 0.3;
   TriMesh block = mesh::box_surface(Vec3(6.0, 6.0, 6.0), {1, 1, 1});
@@ -106,8 +106,8 @@ TEST(ShapePoints, OfABallHaveNoMomentAboutItsCentre) {
   EXPECT_LT(balls.moment_on_body(f).norm(), 1e-14 * balls.on_body(f).norm());
 }
 
-// A sphere of radius r within a sphere of radius 1, its centre at the distance c from the other's: each of
-// its points x is pushed out by k/2 of 1 - |x|.  The integral by a rule of another kind is the law.
+// A sphere of radius r within a sphere of radius 1, with distance c between the centres: each of its points x
+// is pushed out by k/2 of 1 - |x|. The reference integral uses an independent quadrature rule.
 TEST(ShapePoints, PushOutWhatLiesWithin) {
   constexpr double kSmall = 0.1, kFrom = 0.5;
   BallInBall alone(kSmall, Vec3(0.0, 0.0, kFrom), false), both(kSmall, Vec3(0.0, 0.0, kFrom));

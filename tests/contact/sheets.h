@@ -9,14 +9,13 @@
 #include "contact/image_side.h"
 #include "palpate/contact/sources.h"
 
-/// Patches in contact axes, for what stands under src/contact.
+/// Patches in contact axes, for tests of src/contact internals.
 namespace contact_tests {
 
 using namespace palpate;
 using namespace palpate::contact;
 
-/// A bumpy sheet over [-1, 1]^2, its triangles' diagonals and the places of its vertices at random; `side`
-/// +1: it faces up.
+/// A bumpy sheet over [-1, 1]^2, with random diagonals and vertex positions; `side` +1: it faces up.
 struct Sheet {
   Points vertices;
   Faces faces;
@@ -52,7 +51,7 @@ struct Sheet {
   }
 };
 
-/// What an image of two patches shows.
+/// Result of an image of two patches.
 struct Seen {
   std::vector<FacePair> pairs;
   ContactCamera camera;

@@ -1,12 +1,11 @@
-// A mesh file's order of triangles says nothing about a body.
+// The order of triangles in a mesh file does not affect the result.
 #include "two_balls.h"
 
 using namespace contact_tests;
 
 namespace {
 
-/// Forces and samples of two soft bodies that overlap and slide, their triangles in an order of their own
-/// each.
+/// Forces and samples of two soft bodies that overlap and slide, with the triangles of each in a given order.
 struct Felt {
   VecX force;
   std::vector<contact::ContactSample> samples;
@@ -29,8 +28,8 @@ Felt felt_by(unsigned order, double friction) {
 
 }  // namespace
 
-// Two soft bodies through proxies: the same samples and the same forces, bit by bit.  Patches, regions,
-// planes and sums go by what the triangles are, not by their numbers.
+// Two soft bodies through proxies: samples and forces are bitwise equal. Patches, regions, planes and sums
+// depend on the triangles' geometry, not on their numbers.
 TEST(Shuffled, SamplesAndForcesStayBitByBit) {
   for (const double friction : {0.3, 0.0}) {
     const Felt plain = felt_by(0, friction);

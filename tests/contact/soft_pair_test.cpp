@@ -1,4 +1,4 @@
-// Two soft skins in image space: what one body feels the other gives, and the tangent couples them.
+// Two soft skins in image space: forces on both bodies are equal and opposite, and the tangent couples them.
 #include "two_balls.h"
 
 using namespace contact_tests;
@@ -13,8 +13,8 @@ ContactSpec law() {
 
 }  // namespace
 
-// Vertices of both skins: a sample's gap is that between its two points, and the force does not depend on
-// which body is named first.
+// Samples at the vertices of both skins: a sample's gap is the distance between its two points, and the force
+// does not depend on the order of the bodies.
 TEST(SoftPair, VerticesOfBothSkins) {
   TwoBalls balls;
   double force[2];
@@ -34,8 +34,8 @@ TEST(SoftPair, VerticesOfBothSkins) {
   EXPECT_EQ(force[1], force[0]);
 }
 
-// Third law: resultant and moment of both bodies' forces vanish to rounding, each alone does not; the force
-// pushes a up, off b.
+// Third law: resultant and moment of both bodies' forces vanish to rounding, and each alone does not; the
+// force pushes a up, away from b.
 TEST(SoftPair, ActionIsReaction) {
   TwoBalls balls;
   Vec3 whole = Vec3::Zero();
@@ -58,7 +58,7 @@ TEST(SoftPair, ActionIsReaction) {
     EXPECT_GT(on_a.z(), 100.0);
     EXPECT_LT(sum.norm(), 1e-12 * on_a.norm());
     int sliding = 0;
-    // friction acts along both points, which lie up to the depth apart along the normal: its moment is
+    // friction acts at both points, which are up to the depth apart along the normal: its moment is at most
     // friction x depth
     double arm = 0.0;
     for (const auto& s : term.samples()) {
@@ -69,7 +69,7 @@ TEST(SoftPair, ActionIsReaction) {
     EXPECT_GT(sliding, 40);
     EXPECT_LT(moment.norm(), with_all.friction * arm * on_a.norm() + 1e-11 * on_a.norm());
     if (pruned)
-      EXPECT_LT((on_a - whole).norm(), 0.1 * whole.norm());  // planes of their own: 96 pixels, coarse skins
+      EXPECT_LT((on_a - whole).norm(), 0.1 * whole.norm());  // separate planes: 96 pixels, coarse skins
     else
       whole = on_a;
     contact::ContactForce smooth;
@@ -84,8 +84,8 @@ TEST(SoftPair, ActionIsReaction) {
   }
 }
 
-// With the smooth onset the force is C1, so that the Taylor residual falls with slope 2; the assembled
-// tangent is the applied one, and symmetric.
+// With the smooth onset the force is C1, so that the Taylor residual decreases with slope 2; the assembled
+// tangent equals the applied one, and is symmetric.
 TEST(SoftPair, TheTangentCouplesBothBodies) {
   for (const bool per_point : {false, true}) {
     SCOPED_TRACE(per_point ? "per point" : "per area");
@@ -129,7 +129,7 @@ TEST(SoftPair, TheTangentCouplesBothBodies) {
     EXPECT_LT((dense - dense.transpose()).norm(), 1e-12 * dense.norm());
     const int n = 3 * balls.nodes_of_a();
     EXPECT_GT(dense.topRightCorner(n, size - n).norm(), 0.1 * dense.topLeftCorner(n, n).norm());
-    // Both bodies moved as one feel nothing new.
+    // A common translation of both bodies changes no force.
     VecX shifted = VecX::Zero(size), together(size);
     for (int i = 0; i < size; ++i) together[i] = i % 3 == 1 ? 1.0 : 0.3;
     term.apply_tangent(balls.state.view(), 1.0, 0.0, together, shifted);
@@ -137,8 +137,8 @@ TEST(SoftPair, TheTangentCouplesBothBodies) {
   }
 }
 
-// What a fused step adds beside its pattern is the assembled tangent, with and without friction; and its
-// force is that of the term, less what the tangent makes of the step's shift.
+// The point stiffness of a fused step is the assembled tangent, with and without friction; its force is the
+// term's force minus the tangent times the step's shift.
 TEST(SoftPair, PointStiffnessIsTheTangent) {
   for (const double friction : {0.0, 0.4}) {
     TwoBalls balls;
@@ -185,9 +185,9 @@ TEST(SoftPair, PointStiffnessIsTheTangent) {
   }
 }
 
-// The pattern holds what the contact has met and may meet next: it rests while nothing new is met, and
-// announces all that the tangent couples as one ball rolls off the other (coupled_nodes_test.cpp has its
-// rules).
+// The pattern contains the current contact and its neighbourhood: it is constant while contact stays within
+// it, and includes all that the tangent couples as one ball rolls off the other (see coupled_nodes_test.cpp
+// for its rules).
 TEST(SoftPair, ThePatternHoldsTheContact) {
   TwoBalls balls;
   contact::ContactForce term;

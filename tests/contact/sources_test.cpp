@@ -12,7 +12,7 @@ Vec3 position_of(const contact::SurfacePoint& p, const dynamics::State& state, c
 
 TEST(PlaneSource, GapsAreDistancesAndAreasSumToTheCap) {
   const Pose pose{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)};  // the plane's frame
-  const Vec3 point(0.1, 0.2, 0.3), normal(0, 0, 2);                            // scaled on purpose
+  const Vec3 point(0.1, 0.2, 0.3), normal(0, 0, 2);                            // not normalised, on purpose
   const Vec3 n = pose.rotation * Vec3::UnitZ(), origin = pose * point;
   SurfaceWorld world(sphere(origin + 0.6 * n, 1.0, 40));  // centre 0.6 above: depth 0.4
   const auto frame = contact::fixed_frame(pose);
@@ -26,14 +26,14 @@ TEST(PlaneSource, GapsAreDistancesAndAreasSumToTheCap) {
     EXPECT_NEAR(s.gap, s.normal.dot(xa - xb), 1e-13);
     EXPECT_LT((xa - xb).cross(s.normal).norm(), 1e-13);  // on one line along the normal
     EXPECT_NEAR(n.dot(xb - origin), 0.0, 1e-13);
-    EXPECT_GE(s.a.node[0], 2);  // behind the other block's nodes
+    EXPECT_GE(s.a.node[0], 2);  // after the other block's nodes
     EXPECT_LT(s.gap, 0.05);
     (s.gap < 0 ? pressed : candidates) += 1;
     if (s.gap < 0) area += s.area;
   }
   EXPECT_GT(pressed, 100);
   EXPECT_GT(candidates, 10);
-  // pi (2 R d - d^2) for the true sphere, d = 0.4; the border is coarse by one row of vertices
+  // pi (2 R d - d^2) for the exact sphere, d = 0.4; the border is resolved to one row of vertices
   EXPECT_NEAR(area, kPi * (0.8 - 0.16), 0.1);
 }
 
@@ -48,7 +48,7 @@ TEST(PlaneSource, CandidateGapComesFromTheMeshWhenNoneIsGiven) {
 }
 
 TEST(PlaneSource, VerticesThatFaceAwayDoNotPull) {
-  SurfaceWorld world(sphere(Vec3(0, 0, -3), 1.0, 12));  // wholly below the plane
+  SurfaceWorld world(sphere(Vec3(0, 0, -3), 1.0, 12));  // entirely below the plane
   auto source =
       contact::make_plane_source(world.surface, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1);
   std::vector<contact::ContactSample> samples;
@@ -59,7 +59,7 @@ TEST(PlaneSource, VerticesThatFaceAwayDoNotPull) {
 }
 
 TEST(SphereSource, GapsNormalsAndAreas) {
-  // A big soft sphere pressed by a small rigid one from above, whose frame is rotated and moved.
+  // A large soft sphere pressed from above by a small rigid one, whose frame is rotated and moved.
   SurfaceWorld world(sphere(Vec3::Zero(), 1.0, 60));
   const Pose pose{quaternion_of(Vec3(1, 0.2, -0.4)), Vec3(0.2, 0.1, 0.4)};
   const Vec3 centre = pose.inverse() * Vec3(0.0, 0.0, 1.25);
@@ -88,14 +88,15 @@ TEST(SphereSource, VertexAtTheCentreStaysFinite) {
   auto source = contact::make_sphere_source(world.surface, 0, contact::fixed_frame(), Vec3::Zero(), 0.5, 0.1);
   std::vector<contact::ContactSample> samples;
   source->query(world.state.view(), samples);
-  ASSERT_EQ(samples.size(), 1u);  // the others lie outside
+  ASSERT_EQ(samples.size(), 1u);  // the others are outside
   EXPECT_TRUE(samples[0].normal.allFinite());
   EXPECT_NEAR(samples[0].gap, -0.5, 1e-15);
 }
 
 namespace {
 
-/// Distance to a solid by brute force: the least over a fine grid of its surface, with the sign of `inside`.
+/// Distance to a solid by brute force: the minimum over a fine grid of its surface, with the sign of
+/// `inside`.
 template <class Surface>
 double sampled_distance(const Vec3& x, bool inside, const Surface& surface) {
   double least = 1e30;
@@ -103,8 +104,7 @@ double sampled_distance(const Vec3& x, bool inside, const Surface& surface) {
   return inside ? -least : least;
 }
 
-/// Random points as a soft surface: one triangle each would be needed for areas, so the samples are asked for
-/// by their gap alone.
+/// Random points as a soft surface: areas are not meaningful, so that only gaps are tested.
 TriMesh scattered(int count, double reach, const Vec3& toward) {
   std::mt19937 random(5);
   TriMesh mesh;
@@ -120,7 +120,7 @@ TriMesh scattered(int count, double reach, const Vec3& toward) {
   return mesh;
 }
 
-/// Every sample: a's gap is the distance to the solid, b lies on its surface, the normal is the gap's
+/// Checks every sample: a's gap is the distance to the solid, b lies on its surface, the normal is the gap's
 /// gradient.
 template <class Surface, class Inside>
 int check_solid(contact::SampleSource& source, const SurfaceWorld& world, const Pose& frame,
@@ -199,8 +199,8 @@ TEST(CylinderSource, GapsAreDistances) {
   EXPECT_GT(seen, 200);
 }
 
-// A round surface that rotates about its own centre or axis stays where it is: neither force nor gap may
-// change between two queries, and no moment may come of it.
+// A round surface that rotates about its centre or axis does not move: force and gap must not change between
+// two queries, and it must not cause a moment.
 TEST(RoundSources, RotationAboutTheCentreChangesNothing) {
   const Pose start{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)};
   const Vec3 axis = start.rotation * Vec3::UnitZ();
@@ -242,8 +242,8 @@ TEST(RoundSources, RotationAboutTheCentreChangesNothing) {
 
 namespace {
 
-/// Vertices that are counted when a small triangle's three vertices go from one place to another between two
-/// queries.
+/// Number of tunnelled vertices counted when the three vertices of a small triangle move from one place to
+/// another between two queries.
 long counted(contact::SampleSource& source, SurfaceWorld& world, const Vec3& from, const Vec3& to) {
   const auto at = [&](const Vec3& x) {
     std::vector<contact::ContactSample> samples;
@@ -267,8 +267,8 @@ TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
   struct Shape {
     std::unique_ptr<contact::SampleSource> source;
     Vec3 above, inside, below, beside;
-    Vec3 rim, past_rim;                        ///< outside both, with a corner of the shape between them
-    Vec3 corner = above, past_corner = below;  ///< likewise, with much of it between them
+    Vec3 rim, past_rim;                        ///< both outside, with a corner of the shape between them
+    Vec3 corner = above, past_corner = below;  ///< both outside, with a large part of the shape between them
   };
   SurfaceWorld world(one);
   std::vector<Shape> shapes;
@@ -311,7 +311,7 @@ TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
   EXPECT_EQ(counted(*plane, world, {0, 0, 1}, {0, 0, -1}), 0) << "behind a plane is inside";
 }
 
-// The obstacle, too, may be what moves.
+// The obstacle may be the moving body.
 TEST(Tunnelling, IsSeenFromTheFrameThatMoves) {
   TriMesh one;
   one.vertices = Points::Zero(3, 3);
@@ -328,7 +328,8 @@ TEST(Tunnelling, IsSeenFromTheFrameThatMoves) {
   EXPECT_EQ(source->tunnelled(), 3);
 }
 
-// A block of three vertices flies at a plate: the next query is due when they are half of its thickness deep.
+// Three vertices of a block fly at a plate: the next query is due when they have penetrated half of its
+// thickness.
 TEST(Tunnelling, SaysWhenTheNextQueryIsDue) {
   TriMesh one;
   one.vertices = Points::Zero(3, 3);
@@ -359,7 +360,7 @@ TEST(Tunnelling, SaysWhenTheNextQueryIsDue) {
   EXPECT_EQ(asked(*box), HUGE_VAL);
 }
 
-// A skin's vertices make the samples that nodes in their places would make.
+// The vertices of a skin give the same samples as nodes at their positions.
 TEST(Skins, VerticesActAsNodesInTheirPlaces) {
   SkinWorld skin;
   SurfaceWorld nodes({skin.vertices, skin.skin.faces});
@@ -384,8 +385,7 @@ TEST(Skins, VerticesActAsNodesInTheirPlaces) {
   EXPECT_GT(extrapolated, 5) << "the skin stands out between the ball's flat faces";
 }
 
-// Ahead of a fast body samples are kept by the skin's own velocity: all nodes come down, at 2 m/s and 0.1 s
-// ahead 0.2 m.
+// Look-ahead uses the skin's velocity: all nodes move down at 2 m/s, which in 0.1 s is 0.2 m.
 TEST(Skins, VelocityIsThatOfTheSkin) {
   SkinWorld skin;
   for (Eigen::Index i = 6; i < skin.state.u().size(); ++i) skin.state.u()[i] = i % 3 == 2 ? -2.0 : 0.0;

@@ -1,4 +1,4 @@
-// What a stiffness is of: area, or points.
+// Stiffness per area or per point.
 #include "images.h"
 #include "surfaces.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kDepth = 0.01;
 
-/// A flat sheet of 1 m x 1 m at a height z, of columns x rows vertices.
+/// A flat sheet of 1 m x 1 m at height z, with columns x rows vertices.
 TriMesh sheet(int columns, int rows, double z, bool faces_down) {
   TriMesh mesh;
   mesh.vertices.resize(3, columns * rows);
@@ -37,7 +37,7 @@ ContactSpec spec(const std::string& spring) {
   return out;
 }
 
-/// Of a sheet that sinks into z = 0 at `speed`; the stiffness is that against its rigid motion.
+/// Response of a sheet that sinks into z = 0 at `speed`; the stiffness is against its rigid motion.
 struct Response {
   double lift, energy, power, stiffness;
 };
@@ -68,9 +68,9 @@ Response response(const TriMesh& mesh, const ContactSpec& law, bool image, doubl
 
 }  // namespace
 
-// Twice the vertices: per area nothing changes, per point everything doubles.  By hand, of N vertices over
-// 1 m^2 at a depth d that grows at a speed v:
-//   force k d + c v, energy k d^2/2, power taken c v^2, stiffness k,     times 1 m^2, or times N
+// With twice the vertices, per-area values do not change and per-point values double. By hand, for N vertices
+// over 1 m^2 at a depth d that grows at speed v:
+//   force k d + c v, energy k d^2/2, dissipated power c v^2, stiffness k,     times 1 m^2, or times N
 TEST(Springs, OfAreaDoNotSeeTheMeshOfPointsCountIt) {
   constexpr double kSpeed = 0.2;
   int checked = 0;

@@ -6,8 +6,7 @@
 
 using namespace contact_tests;
 
-// A vertex of a skin is the same whether it was asked for alone or with all, and follows the nodes at each
-// update.
+// A skin vertex is the same whether evaluated alone or with all others, and follows the nodes at each update.
 TEST(SurfaceState, OneVertexIsAsAllAre) {
   SkinWorld world;
   contact::SurfaceState one(world.surface), all(world.surface);
@@ -26,11 +25,11 @@ TEST(SurfaceState, OneVertexIsAsAllAre) {
   }
 }
 
-// --- squashed tetrahedra
+// --- Squashed tetrahedra
 
 namespace {
 
-/// A skin on a ball of which one tetrahedron that carries much of it is squashed to `share` of its height:
+/// A skin on a ball in which one tetrahedron that carries many vertices is squashed to `share` of its height:
 /// the node opposite its outermost face is moved almost into that face.
 struct SquashedWorld : SkinWorld {
   int squashed = -1;
@@ -53,8 +52,8 @@ struct SquashedWorld : SkinWorld {
 
 }  // namespace
 
-// However low a tetrahedron is, its nodes carry a point of the skin by weights no larger than those of an
-// embedding, and the point lies on the line of the force: the moment of a force along it is kept.
+// However flat a tetrahedron is, its nodes carry a skin point by weights no larger than those of an
+// embedding, and the point lies on the line of the force: the moment of a force along it is preserved.
 TEST(SurfaceState, ASquashedTetrahedronAmplifiesNoForce) {
   std::mt19937 random(5);
   int beside = 0;
@@ -91,7 +90,7 @@ TEST(SurfaceState, ASquashedTetrahedronAmplifiesNoForce) {
         EXPECT_LT((x - carried).cross(n).norm(), 1e-12) << "a moment of its own, squashed to " << share;
         largest = std::max(largest, size);
         largest_offset = std::max(largest_offset, point.offset.norm());
-        // what the coordinates in the nearest corner's tetrahedron are
+        // coordinates in the nearest corner's tetrahedron
         Eigen::Index nearest = 0;
         weights.maxCoeff(&nearest);
         const int tet = world.surface.embedding.tet[static_cast<std::size_t>(corner[nearest])];
@@ -118,7 +117,8 @@ TEST(SurfaceState, ASquashedTetrahedronAmplifiesNoForce) {
   EXPECT_EQ(beside, 3);
 }
 
-// Forces and moments balance on a squashed tetrahedron, and no node feels many times the whole force.
+// Forces and moments balance on a squashed tetrahedron, and no node takes a large multiple of the total
+// force.
 TEST(SurfaceState, ContactOnASquashedTetrahedronBalances) {
   for (const double share : {1e-2, 1e-4}) {
     SquashedWorld world(share);

@@ -38,7 +38,7 @@ inline TriMesh sphere(const Vec3& centre, double radius, int rings) {
   return mesh;
 }
 
-/// A surface with a border, closed by a cone from there to `tip`, which becomes its last vertex.
+/// Closes a surface that has a border by a cone to `tip`, which becomes its last vertex.
 inline TriMesh closed_by_cone(TriMesh open, const Vec3& tip) {
   std::map<std::pair<int, int>, int> edges;
   for (Eigen::Index f = 0; f < open.faces.cols(); ++f)
@@ -54,7 +54,7 @@ inline TriMesh closed_by_cone(TriMesh open, const Vec3& tip) {
   return open;
 }
 
-/// A State whose nodes are a surface's vertices, behind another block of two nodes.
+/// A State whose nodes are a surface's vertices, after a block of two other nodes.
 struct SurfaceWorld {
   dynamics::State state;
   contact::NodeSurface surface;
@@ -76,14 +76,14 @@ struct SurfaceWorld {
   }
 };
 
-/// A coarse ball of tetrahedra, bent and stretched, that carries a fine sphere as its skin (some of it
-/// outside, between the flat faces); behind another block.
+/// A coarse ball of tetrahedra, bent and stretched, that carries a fine sphere as its skin (parts of which
+/// lie outside of the flat faces); after another block.
 struct SkinWorld {
   TetMesh ball = mesh::ball(1.0, 0.45);
   TriMesh skin = mesh::sphere(1.0, 12);
   dynamics::State state;
   contact::NodeSurface surface;
-  Points vertices;  ///< of the skin, deformed
+  Points vertices;  ///< skin vertices, deformed
 
   SkinWorld() {
     dynamics::BlockSpec other;
@@ -107,7 +107,7 @@ struct SkinWorld {
   }
 };
 
-/// Where a point on weighted nodes is.
+/// Position of a point on weighted nodes.
 inline Vec3 point_on_nodes(const contact::SurfacePoint& p, const dynamics::StateView& state) {
   Vec3 x = p.offset;
   for (int k = 0; k < p.count; ++k)
@@ -115,7 +115,7 @@ inline Vec3 point_on_nodes(const contact::SurfacePoint& p, const dynamics::State
   return x;
 }
 
-/// Force and moment about the origin of unit stiffness per area, on side a.
+/// Force and moment about the origin on side a, at unit stiffness per area.
 struct Total {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   int pressed = 0;

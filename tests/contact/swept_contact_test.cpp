@@ -1,4 +1,4 @@
-// What moves fast between two queries: seen before it touches, counted where it went through.
+// Fast motion between two queries: detected before it touches, and counted where it tunnelled.
 #include "ball_and_slab.h"
 #include "contact/image_side.h"
 
@@ -18,8 +18,8 @@ void for_each_pair(Check check) {
 
 }  // namespace
 
-// Two gaps of the ball to the slab, a little less and a little more than it moves until the next query.  The
-// next query is due when it is half of the slab's thickness deep.
+// Two gaps between ball and slab, slightly smaller and slightly larger than the distance covered until the
+// next query, which is due when the ball is half of the slab's thickness deep.
 TEST(SweptContact, ABallIsSeenBeforeItTouchesIffItGetsThere) {
   for_each_pair([](bool soft, bool pruned) {
     Pair pair;
@@ -45,7 +45,7 @@ TEST(SweptContact, ABallIsSeenBeforeItTouchesIffItGetsThere) {
   });
 }
 
-// A ball from above the slab to below: each of its vertices went through the slab, and so did the slab's
+// A ball moves from above the slab to below: each of its vertices passed through the slab, and the slab's
 // vertices under it through the ball.
 TEST(SweptContact, WhatWentThroughIsCountedAndNothingElse) {
   for_each_pair([](bool soft, bool pruned) {
@@ -59,7 +59,7 @@ TEST(SweptContact, WhatWentThroughIsCountedAndNothingElse) {
     };
     const Vec3 above(0.025, 0.025, 0.2), below(0.025, 0.025, -0.2);
     const long vertices = pair.thrown.model.skin.vertices.cols();
-    // the slab's vertices are 0.05 apart: four are 0.035 away from the ball's axis, on either face
+    // the slab's vertices are 0.05 apart: on either face, four are 0.035 away from the ball's axis
     EXPECT_EQ(counted(above, below), vertices + 8);
     EXPECT_EQ(counted(below, above), vertices + 8) << "and back";
     const long beyond = (pair.thrown.model.skin.vertices.row(2).array() < -0.5 * kThickness).count();
@@ -67,7 +67,7 @@ TEST(SweptContact, WhatWentThroughIsCountedAndNothingElse) {
     EXPECT_EQ(counted(above, Vec3(0.025, 0.025, 0.06)), 0);
     EXPECT_EQ(counted(above, Vec3(1.5, 0.025, -0.2)), 0) << "past it";
     EXPECT_EQ(counted(above, above), 0);
-    // down through the slab by less than its thickness at a time: seen in it always
+    // down through the slab in steps shorter than its thickness: always detected inside
     long slowly = 0;
     for (double z = 0.08; z > -0.08; z -= 0.009)
       slowly += counted(Vec3(0.025, 0.025, z + 0.009), Vec3(0.025, 0.025, z));
@@ -75,7 +75,7 @@ TEST(SweptContact, WhatWentThroughIsCountedAndNothingElse) {
   });
 }
 
-// The rigid slab moves, the ball stands still.
+// The rigid slab moves, the ball is at rest.
 TEST(SweptContact, ARigidBodyMayBeTheOneThatGoesThrough) {
   for (const bool pruned : {false, true}) {
     Pair pair;
@@ -89,8 +89,8 @@ TEST(SweptContact, ARigidBodyMayBeTheOneThatGoesThrough) {
   }
 }
 
-// It turns over: seen from it, the ball goes through its middle.  Vertices that go straight on in the world
-// would pass beside the ball.
+// The slab turns over: in its frame, the ball passes through its centre. Vertices on straight paths in the
+// world would miss the ball.
 TEST(SweptContact, ARigidBodyMayTurnOver) {
   for (const bool pruned : {false, true}) {
     Pair pair;
@@ -105,8 +105,8 @@ TEST(SweptContact, ARigidBodyMayTurnOver) {
   }
 }
 
-// The velocity of every skin vertex, and its way, is within what bounds the whole side; the skin is outside
-// its tetrahedra, where weights are negative.
+// The velocity and displacement of every skin vertex are within the bounds of the whole side; the skin is
+// outside its tetrahedra, where weights are negative.
 TEST(SweptSide, ABoundHoldsAllOfTheSkin) {
   Pair pair;
   const Body& body = pair.thrown;
@@ -120,7 +120,7 @@ TEST(SweptSide, ABoundHoldsAllOfTheSkin) {
   body.model.embedding.weights.cwiseAbs().colwise().sum().maxCoeff(&worst);
   for (int i = 0; i < 20; ++i) {
     Points v = Points::NullaryExpr(3, body.model.tets.nodes.cols(), [&] { return normal(random); });
-    if (i == 0) {  // the vertex of the largest weights moves as fast as it can
+    if (i == 0) {  // the vertex with the largest weights reaches the bound on the velocity
       const auto nodes = body.model.tets.tets.col(body.model.embedding.tet[static_cast<std::size_t>(worst)]);
       v.setZero();
       for (int k = 0; k < 4; ++k) v(0, nodes[k]) = body.model.embedding.weights(k, worst) < 0.0 ? -1.0 : 1.0;

@@ -11,11 +11,12 @@ struct Law {
   double friction, regularisation;
 };
 
-/// Deep enough contacts of every kind: nodes on a given frame, nodes on a body of the State, nodes on nodes,
-/// body on a given frame. Depths of 0.4 at speeds of order 1 keep every sample pressed along a Taylor test.
+/// Sufficiently deep contacts of every kind: nodes on a prescribed frame, nodes on a body of the State, nodes
+/// on nodes, body on a prescribed frame. Depths of 0.4 at speeds of order 1 keep every sample pressed
+/// throughout a Taylor test.
 struct Scene {
-  /// The point of a sample on a round surface, whose centre lies 0.6 within: half of its arm does not rotate
-  /// with the frame.
+  /// Moves a sample's point to a round surface whose centre is 0.6 deeper: that part of its arm does not
+  /// rotate with the frame.
   static contact::ContactSample rounded(contact::ContactSample s, const Pose& frame) {
     s.b.slide = 0.6 * s.normal;
     s.b.offset -= frame.rotation.conjugate() * s.b.slide;
@@ -46,7 +47,7 @@ struct Scene {
           on_frame(single, given_index, given_pose, {0.3, -0.6, 0.8}, 0.4, 0.7, world.state), given_pose));
     samples.push_back(
         on_nodes(tri, node_point({3, 4, 5}, {0.3, 0.3, 0.4}), {-0.3, 1, 0.2}, 0.45, 0.5, world.state));
-    if (with_given) {  // a: the body, b: the given frame
+    if (with_given) {  // a: the body, b: the prescribed frame
       contact::ContactSample s;
       s.a.frame = body_index;
       s.a.offset = Vec3(0.2, -0.1, 0.3);
@@ -122,7 +123,8 @@ TEST(ContactTangent, NodePartIsSymmetricWithoutFriction) {
   EXPECT_LT((A - A.transpose()).norm(), 1e-14 * A.norm());
 }
 
-// Symmetric and positive semi-definite, far from the whole; assembled and applied alike; forces are whole.
+// The symmetric tangent is symmetric and positive semi-definite, and differs much from the full one;
+// assembled and applied forms agree; forces are unchanged.
 TEST(ContactTangent, SymmetricOneIsPositiveAndChangesNoForce) {
   for (const Law& law : {kLaws[2], kLaws[3]}) {
     Scene scene(law, true, "symmetric"), full(law);
@@ -147,8 +149,8 @@ TEST(ContactTangent, SymmetricOneIsPositiveAndChangesNoForce) {
   }
 }
 
-// One node that slides is pressed deeper by e after the tangent was made: the friction that the step left out
-// is mu A k e, of mu A k depth.
+// A sliding node is pressed deeper by e after the tangent was formed: the friction that the step left out is
+// mu A k e, relative to mu A k depth.
 TEST(ContactTangent, TheFrictionLeftOutIsMeasured) {
   World world(2, false, 3);
   world.state.u().setZero();
@@ -165,7 +167,7 @@ TEST(ContactTangent, TheFrictionLeftOutIsMeasured) {
                 spec);
   term.refresh(world.state.view());
   EXPECT_TRUE(term.traits().symmetric_tangent);
-  // the spring along z and friction's damper across the sliding, nothing that couples them
+  // the spring along z and friction's damper across the sliding direction, without coupling
   const MatX A = step_matrix(term, world.state, 1.0, 1.0).to_dense().topLeftCorner(3, 3);
   const double pressing = area * 2e3 * depth;
   EXPECT_LT((A - MatX(Vec3(0.0, 0.3 * pressing / 0.5, area * 2e3).asDiagonal())).norm(), 1e-12 * A.norm())
@@ -177,9 +179,9 @@ TEST(ContactTangent, TheFrictionLeftOutIsMeasured) {
   EXPECT_NEAR(term.largest_friction_lag(), 0.3 * area * 2e3 * deeper, 1e-12);
 }
 
-// The secant through zero: with the force and the matrix of one state, F0 - D (v - v0), friction at any other
-// velocity v is that of v0 times v / |v0|, along both tangents, so that it never does positive work; below
-// v_r it is the tangent.
+// Secant through zero: with force and matrix of one state, F0 - D (v - v0), friction at any other velocity v
+// is the friction at v0 times v / |v0|, along both tangents, so that it never does positive work; below v_r
+// it is the tangent.
 TEST(ContactTangent, TheSecantOfFrictionOpposesEveryVelocity) {
   constexpr double depth = 0.02, area = 0.7, k = 2e3, mu = 0.3, regularisation = 0.1;
   for (const Vec3& v0 : {Vec3(0.3, -0.4, 0.2), Vec3(0.03, 0.04, 0.0), Vec3(0.0, 0.0, 0.1)}) {
@@ -213,7 +215,7 @@ TEST(ContactTangent, TheSecantOfFrictionOpposesEveryVelocity) {
 }
 
 TEST(ContactTangent, TraitsSayWhatItIs) {
-  EXPECT_FALSE(Scene(kLaws[0]).term.traits().symmetric_tangent);  // a body of the State is a frame
+  EXPECT_FALSE(Scene(kLaws[0]).term.traits().symmetric_tangent);  // a body of the State acts as a frame
   contact::ContactForce term;
   term.add_frame(contact::fixed_frame());
   ContactSpec spec;
@@ -226,7 +228,8 @@ TEST(ContactTangent, TraitsSayWhatItIs) {
   EXPECT_FALSE(term.traits().conservative);
 }
 
-// The linearisation seen from a given frame: by its pose, by its twist, by nodes' positions and velocities.
+// The linearisation for a prescribed frame: by its pose, by its twist, and by the nodes' positions and
+// velocities.
 TEST(FrameLinearisation, TaylorByPoseTwistAndNodes) {
   for (const Law& law : kLaws) {
     Scene scene(law);
@@ -277,8 +280,8 @@ TEST(FrameLinearisation, TaylorByPoseTwistAndNodes) {
   }
 }
 
-// Force is minus the gradient of the energy, in nodes and in the body's pose (undamped, against frames that
-// stand still).
+// Force is minus the gradient of the energy, in the nodes and in the body's pose (undamped, with other frames
+// at rest).
 TEST(ContactEnergy, ForceIsItsGradient) {
   Scene scene(kLaws[0]);
   scene.world.state.u().setZero();
@@ -297,8 +300,8 @@ TEST(ContactEnergy, ForceIsItsGradient) {
       slope, 0.02, "energy");
 }
 
-// Power balance at any state: d(energy)/dt = -(power given to nodes and bodies) - dissipated power, with all
-// frames at rest or in the State.
+// Power balance at any state: d(energy)/dt = -(power delivered to nodes and bodies) - dissipated power, with
+// all frames at rest or in the State.
 TEST(ContactEnergy, DissipationClosesThePowerBalance) {
   for (const Law& law : kLaws) {
     Scene scene(law, false);

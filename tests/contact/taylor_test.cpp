@@ -1,6 +1,6 @@
-// The tangent of every law on every kind of pair, through the whole chain: nodes, skin points or frames,
-// gaps, forces on nodes and frames.  Between two queries points, normals and areas stand; what a query
-// changes is another matter (pairing_test.cpp).
+// The tangent of every law for every kind of pair, through the whole chain: nodes, skin points or frames,
+// gaps, forces on nodes and frames. Points, normals and areas are constant between two queries; changes at a
+// query are tested in resultants_test.cpp.
 #include <fmt/format.h>
 
 #include <array>
@@ -11,7 +11,7 @@ using namespace contact_tests;
 
 namespace {
 
-/// Hands out the samples of another source that `keep` keeps.
+/// Returns the samples of another source for which `keep` holds.
 class KeptSource final : public contact::SampleSource {
  public:
   KeptSource(std::unique_ptr<contact::SampleSource> source,
@@ -46,7 +46,7 @@ struct Law {
     return fmt::format("{}, {}, friction {}, onset {}", name, spring, friction, onset);
   }
 };
-/// A spring per point is for points of a surface: a pixel is none.
+/// A spring per point applies to points of a surface; a pixel is no such point.
 std::vector<Law> laws(bool of_vertices) {
   std::vector<Law> out;
   for (const char* spring : {"per_area", "per_point"})
@@ -58,7 +58,7 @@ std::vector<Law> laws(bool of_vertices) {
   return out;
 }
 
-constexpr double kSlipping = 0.25;  // [m/s]: some points slide faster than that, some slower
+constexpr double kSlipping = 0.25;  // [m/s]: some points slide faster, some slower
 ContactSpec spec_of(const Law& law) {
   ContactSpec out;
   out.law = law.name;
@@ -75,7 +75,7 @@ ContactSpec spec_of(const Law& law) {
   return out;
 }
 
-/// Which side of its kinks a sample is on: open, parting, onset, slipping.
+/// State of a sample with respect to its kinks: open, parting, onset, slipping.
 std::array<bool, 4> sides(const contact::ContactSample& s, const Touching& at, const dynamics::State& state,
                           const contact::PressureLaw& law) {
   const auto motion = contact::sample_motion(s, state.view(), frame_states(at, state.view()));
@@ -91,8 +91,7 @@ VecX direction(Eigen::Index size, unsigned seed) {
   return out;
 }
 
-/// |f(h) - f(0) - h df| over five halvings of h0: slope 2 within the band, or rounding alone where f is
-/// linear.
+/// (h) - f(0) - h df| over five halvings of h0: slope 2 within the band, or rounding only where f is linear.
 template <class Function>
 void expect_slope_two(const Function& f, const VecX& df, double h0, bool linear, const std::string& what) {
   const VecX f0 = f(0.0);
@@ -113,7 +112,7 @@ void expect_slope_two(const Function& f, const VecX& df, double h0, bool linear,
 
 }  // namespace
 
-// Samples that would cross a kink within the step are taken out: there the force has no derivative.
+// Samples that would cross a kink within the step are removed: the force has no derivative there.
 TEST(Taylor, EveryTangentOfEveryPairUnderEveryLaw) {
   int checked = 0, linear_ones = 0, expected = 0;
   for (const TouchingKind& kind : touching_kinds()) {
@@ -147,8 +146,9 @@ TEST(Taylor, EveryTangentOfEveryPairUnderEveryLaw) {
             step_matrix(term, at.state, by_velocity ? 0.0 : 1.0, by_velocity ? 1.0 : 0.0);
         VecX Ad;
         A.multiply(d, Ad);
-        // Gaps and rates are linear in what nodes do, and pressure in either where it sets in at once.
-        // Friction is not linear in velocities, nor a frame's point in its rotation, but for a ball's.
+        // Gaps and rates are linear in the nodes' motion, and pressure is linear in either if it sets in at
+        // once. Friction is not linear in velocities, nor is a frame's point in its rotation, except on a
+        // ball.
         const bool rotates = !at.frames.empty() && at.frames[0]->in_state() && !kind.of_ball;
         const bool linear = by_velocity ? law.friction == 0.0 : law.onset == 0.0 && !rotates;
         expect_slope_two([&](double h) { return force(term, step(h)); }, -Ad, h0, linear, what);
@@ -164,10 +164,10 @@ TEST(Taylor, EveryTangentOfEveryPairUnderEveryLaw) {
   EXPECT_LT(linear_ones, checked / 2);
 }
 
-// Both sides of every pair: forces sum to zero, and so do moments about any point, to rounding; nodes carry
-// the point that is pressed, extrapolated or not.  Friction alone leaves a moment, that of its two points a
-// depth apart; and a ball by its own points has none about its centre, where those that a sum over points has
-// by chance are left to the other side.
+// For both sides of every pair, forces sum to zero, and so do moments about any point, to rounding; nodes
+// carry the pressed point, extrapolated or not. Friction leaves a moment, because its two points are a depth
+// apart. A ball by its own points has none about its centre, where the accidental moments of a sum over
+// points are assigned to the other side.
 TEST(Taylor, ForcesAndMomentsBalance) {
   int checked = 0;
   for (const TouchingKind& kind : touching_kinds())

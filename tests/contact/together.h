@@ -12,8 +12,8 @@ Matrix beside(const Matrix& a, const Matrix& b) {
   return out;
 }
 
-/// Two models as one body, nodes, vertices and proxies of b behind those of a; a's proxies on bone 0, b's on
-/// bone 1.
+/// Merges two models into one body: nodes, vertices and proxies of b after those of a; a's proxies on bone 0,
+/// b's on bone 1.
 inline LayeredModel together(const LayeredModel& a, const LayeredModel& b) {
   LayeredModel out;
   out.name = "both";

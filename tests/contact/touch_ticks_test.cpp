@@ -5,7 +5,8 @@
 
 #include "palpate/contact/touch_model.h"
 
-// One point of contact in a few modes, and many: what a tick keeps in balance, and what it must not do.
+// Reduced contact model with one point and a few modes, and with many points: balances that each tick
+// preserves, and behaviour that must not occur.
 namespace palpate {
 namespace {
 
@@ -22,7 +23,7 @@ ContactSpec law(double friction = 0.0) {
   return spec;
 }
 
-/// A wall z = 0 of one square millimetre under a tool's point at its origin; it does not answer.
+/// A wall z = 0 of one square millimetre under a tool's point at the tool's origin, without body response.
 TouchModel wall(double gap) {
   TouchModel model;
   model.points = 1;
@@ -40,7 +41,7 @@ Vec3 force_at(const dynamics::LinearisedContact& record, double t, const RigidMo
   return dynamics::contact_wrench(record, t, tool.pose, tool.twist).tail<3>();
 }
 
-/// Points all over a tool of 2 cm, some deep, some apart, in modes that have nothing special.
+/// Points all over a tool of 2 cm, some deep, some apart, with generic modes.
 TouchModel any_model(std::mt19937& random) {
   std::uniform_real_distribution<double> in(-1.0, 1.0);
   const auto vec = [&](double size) {
@@ -73,7 +74,7 @@ TouchModel any_model(std::mt19937& random) {
   return model;
 }
 
-// A tool that is torn off at 0.2 m/s: a line through the state at the exchange would pull it back.
+// A tool is torn off at 0.2 m/s: a linear model about the state at the exchange would pull it back.
 TEST(TouchTicks, NothingPullsAToolBack) {
   contact::TouchTicks ticks({law()});
   ticks.adopt(wall(-1e-3));
@@ -88,7 +89,7 @@ TEST(TouchTicks, NothingPullsAToolBack) {
     EXPECT_EQ(ticks.pressing(), after.pose.translation.z() < 1e-3 - 1e-12 ? 1 : 0);
     ticks.follow(after);
   }
-  EXPECT_GT(largest, 0.5);  // of 1 N at the start
+  EXPECT_GT(largest, 0.5);  // initially 1 N
 }
 
 TEST(TouchTicks, ATouchWithinThePeriodIsFeltInItsTick) {
@@ -105,7 +106,7 @@ TEST(TouchTicks, ATouchWithinThePeriodIsFeltInItsTick) {
   }
 }
 
-// 30 N on the skin at 0.1 m/s: more than mu times the pressure is never felt.
+// 30 N on the skin at 0.1 m/s: friction never exceeds mu times the pressure.
 TEST(TouchTicks, FrictionStaysInItsCone) {
   contact::TouchTicks ticks({law(0.3)});
   TouchModel model = wall(-1e-3);
@@ -123,8 +124,8 @@ TEST(TouchTicks, FrictionStaysInItsCone) {
   }
 }
 
-// A free tool at rest is pushed with 1.01 to 3 times what friction can hold: from its first tick it slides as
-// the law says, and the force is the cone's.  Slowed down it comes to rest, and stays.
+// A free tool at rest is pushed with 1.01 to 3 times the limit of sticking: from its first tick on it slides
+// as the law predicts, with the force on the cone. Once slowed down it comes to rest and remains there.
 TEST(TouchTicks, AToolThatStartsToSlideFeelsNoMoreThanTheCone) {
   const double h = 1e-3, mass = 0.05, mu = 0.3;
   for (const double push : {1.01, 1.5, 3.0}) {
@@ -158,10 +159,10 @@ TEST(TouchTicks, AToolThatStartsToSlideFeelsNoMoreThanTheCone) {
   }
 }
 
-// One mass on a spring under one point: the pair of equations of a tick by hand.
+// One mass on a spring under one point: the two equations of a tick by hand.
 TEST(TouchTicks, OneMassAnswersByImplicitEuler) {
   TouchModel model = wall(-1e-3);
-  const double m = 0.01, k = 5000.0, h = 1e-3;  // so stiff that it never parts
+  const double m = 0.01, k = 5000.0, h = 1e-3;  // stiff enough to stay in contact
   model.modes = 1;
   model.stiffness[0] = k / m;
   model.point[0].modes[2] = 1.0 / std::sqrt(m);
@@ -182,7 +183,7 @@ TEST(TouchTicks, OneMassAnswersByImplicitEuler) {
   EXPECT_NEAR(x, -kc * 1e-3 / (k + kc), 1e-4);
 }
 
-/// The same point, held where it touches.
+/// The same point, held by a grasp where it touches.
 TouchModel held(double gap) {
   TouchModel model = wall(gap);
   model.point[0].held_stiffness = 1e6 * model.point[0].area;
@@ -190,7 +191,7 @@ TouchModel held(double gap) {
   return model;
 }
 
-// Pulled off it is a spring to where it is held; pressed it holds along the surface alone.
+// Pulled away, a held point is a spring to its anchor; pressed, it holds along the surface only.
 TEST(TouchTicks, AHeldPointPullsBack) {
   contact::TouchTicks ticks({law()});
   ticks.adopt(held(0.0));
@@ -209,7 +210,7 @@ TEST(TouchTicks, AHeldPointPullsBack) {
 
 TEST(TouchTicks, OneHeldMassAnswersByImplicitEuler) {
   TouchModel model = held(-1e-3);
-  model.point[0].normal = {0, 0, -1};  // so that it is pulled
+  model.point[0].normal = {0, 0, -1};  // the point is pulled
   const double m = 0.01, k = 5000.0, h = 1e-3, kc = 1e3, dc = 0.1;
   model.modes = 1;
   model.stiffness[0] = k / m;
@@ -228,7 +229,7 @@ TEST(TouchTicks, OneHeldMassAnswersByImplicitEuler) {
   }
 }
 
-// Where the bodies do not answer, the record is linear in the tool's pose, turned arms included.
+// Without body response, the record is linear in the tool's pose, including rotated arms.
 TEST(TouchTicks, HeldPointsAreLinearInTheToolsPose) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> in(-1.0, 1.0);
@@ -259,8 +260,8 @@ TEST(TouchTicks, HeldPointsAreLinearInTheToolsPose) {
   EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.1);
 }
 
-// Bodies that are pushed within a tick: the wrench is that of where they come to, the turned arms' moment
-// too, up to the second order in the way that they go.
+// Bodies are pushed within a tick: the wrench is the one at their final positions, including the moment of
+// the rotated arms, up to second order in their displacement.
 TEST(TouchTicks, HeldPointsAreWhereTheBodiesCome) {
   std::vector<double> errors;
   for (const double push : {1.0, 0.5, 0.25}) {
@@ -270,7 +271,7 @@ TEST(TouchTicks, HeldPointsAreWhereTheBodiesCome) {
       model.force[k] = push * (k % 2 ? 50.0 : -40.0), model.force_rate[k] = 0;
     for (auto& point : model.point) {
       point.velocity = {};
-      point.offset[2] -= 0.05;  // pressed or pulled, each stays as it is
+      point.offset[2] -= 0.05;  // pressed or pulled, each point keeps its state
       point.held_stiffness = 10.0;
     }
     contact::TouchTicks ticks({law()});
@@ -287,8 +288,8 @@ TEST(TouchTicks, HeldPointsAreWhereTheBodiesCome) {
   EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.2);
 }
 
-// A tool that does not turn meets a free body, with friction: whatever presses where, the tool loses what the
-// body gains, each tick.
+// A non-rotating tool collides with a free body, with friction: wherever points press, the tool loses the
+// momentum that the body gains, in each tick.
 void expect_momentum_kept(bool grasped) {
   std::mt19937 random(4);
   const double h = 1e-3, tool_mass = 0.05, body_mass = 0.2;
@@ -318,7 +319,7 @@ void expect_momentum_kept(bool grasped) {
     using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
     const Mat6 J = Eigen::Map<const RowMajor6>(record.J.data()),
                B = Eigen::Map<const RowMajor6>(record.B.data());
-    // m dv = h F,  F = F0 + J (h dv) + B dv: x0 is where the tool comes without dv
+    // m dv = h F, F = F0 + J (h dv) + B dv: x0 is the tool's final position for dv = 0
     const Mat3 by_dv = (h * J + B).bottomRightCorner<3, 3>();
     const Vec3 dv = (tool_mass * Mat3::Identity() - h * by_dv)
                         .partialPivLu()
@@ -331,7 +332,7 @@ void expect_momentum_kept(bool grasped) {
   }
   EXPECT_GT(pressed, 40.0);
   if (grasped) return;
-  EXPECT_GT(tool.twist.linear.z(), 0.01);  // it was thrown back
+  EXPECT_GT(tool.twist.linear.z(), 0.01);  // it bounced
 }
 
 TEST(TouchTicks, ToolAndBodiesKeepTheirMomentum) {
@@ -339,8 +340,9 @@ TEST(TouchTicks, ToolAndBodiesKeepTheirMomentum) {
   expect_momentum_kept(true);
 }
 
-// 500 samples of a dent, their depths and normals all different, in no more points than there is room for:
-// tool and bodies get their loads to rounding, so that what is at rest stays so; with what sticks, too.
+// 500 samples of a dent with different depths and normals are clustered into the maximum number of points:
+// tool and bodies receive the same loads to rounding, so that a state of rest is preserved, also with
+// sticking friction.
 void expect_loads_kept(double friction) {
   constexpr double kRetardation = 5e-3, kSpeed = 2e-4;
   std::mt19937 random(9);
@@ -395,7 +397,7 @@ void expect_loads_kept(double friction) {
     if (gap < 0.0)
       load += Eigen::Map<const Eigen::Matrix<double, 3, kModes>>(p.modes.data()).transpose() *
               (1e6 * p.area * gap * (n - friction / (kRetardation * kSpeed) * (u - n.dot(u) * n)));
-    p.modes.fill(0.0);  // bodies that hold still, from here on
+    p.modes.fill(0.0);  // bodies without response, from here on
   }
   load += Eigen::Map<const Eigen::Matrix<double, kModes, 1>>(model.missing_load.data());
   EXPECT_LE(load.norm(), 1e-11 * force.norm());
@@ -429,8 +431,8 @@ TEST(TouchPoints, ABunchPressesWithTheForceMomentAndModalLoadOfItsSamples) {
   expect_loads_kept(0.4);
 }
 
-// The spring of friction of what sticks: as the tool moves and turns across the points its force grows with
-// the way of the tool's material, and is never longer than the law's.
+// Sticking friction is a spring: as the tool moves and rotates across the points, its force grows with the
+// displacement of the tool's material, up to the law's maximum.
 TEST(TouchTicks, WhatSticksHasASpring) {
   constexpr double kRetardation = 5e-3, kSpeed = 2e-4, kFriction = 0.4, kArea = 1e-6, kGap = -1e-3;
   ContactSpec spec = law();
@@ -439,7 +441,7 @@ TEST(TouchTicks, WhatSticksHasASpring) {
   spec.friction_retardation_s = kRetardation;
   const Pose pose{quaternion_of(Vec3(0.3, 0.2, -0.4)), Vec3(0.1, 0.2, 0.3)};
   const Vec3 arm(0.01, 0.0, -0.02), centre(0.01, 0.0, 0.0), normal = Vec3::UnitZ();
-  for (const bool round : {false, true}) {  // a ball's point slides round with its centre
+  for (const bool round : {false, true}) {  // a ball's contact point slides with its centre
     contact::TouchSample s{};
     const Mat3 back = pose.rotation.toRotationMatrix().transpose();
     s.offset = back * (round ? centre : arm);
@@ -474,7 +476,7 @@ TEST(TouchTicks, WhatSticksHasASpring) {
   }
 }
 
-// What is held is bunched as well: the same force, and nearly the same stiffness against turning.
+// Held samples are clustered as well: the same force, and nearly the same rotational stiffness.
 TEST(TouchPoints, ABunchHoldsAsItsSamplesDo) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> in(-1.0, 1.0);

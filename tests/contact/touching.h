@@ -11,7 +11,7 @@
 
 namespace contact_tests {
 
-/// A pair of every kind in contact, its frames and its source; the law comes later.
+/// A pair of any kind in contact, with its frames and source; the law is added by the test.
 struct Touching {
   dynamics::State state;
   std::vector<std::shared_ptr<contact::MovingFrame>> frames;
@@ -23,15 +23,15 @@ struct TouchingKind {
   bool pruned = true;        ///< by proxies
   bool of_vertices = false;  ///< samples are points of a surface
   bool of_ball = false;      ///< one side is a ball by its own points, which do not rotate with it
-  bool image = false;        ///< in image space: a query asks OpenGL
+  bool image = false;        ///< in image space: a query uses OpenGL
 };
 
 namespace touching {
 
-/// The tool's pose: oblique, off the origin.
+/// The tool's pose: oblique, away from the origin.
 inline Pose tool_pose() { return {quaternion_of(Vec3(0.3, -0.2, 0.5)), Vec3(0.15, -0.1, 0.2)}; }
 
-/// A frame for the other side: fixed, or a moving body of the State.
+/// Adds a frame for the other side: fixed, or a moving body of the State.
 inline std::shared_ptr<contact::MovingFrame> add_frame(Touching& out, const Pose& pose, bool in_state) {
   const Twist twist{Vec3(0.3, -0.4, 0.2), Vec3(0.1, -0.2, 0.3)};
   out.frames.push_back(in_state ? contact::block_frame(add_rigid_body(out.state, pose, twist))
@@ -39,14 +39,13 @@ inline std::shared_ptr<contact::MovingFrame> add_frame(Touching& out, const Pose
   return out.frames.back();
 }
 
-/// What is pressed: nodes of a sphere, or the skin of a bent ball with extrapolated weights; its lowest
-/// point.
+/// The soft side: nodes of a sphere, or the skin of a bent ball with extrapolated weights; its lowest point.
 struct Soft {
   dynamics::State state;
   contact::NodeSurface surface;
   std::shared_ptr<proxy::ProxySet> proxies;
   Vec3 bottom;
-  Points rest;  ///< of the surface's vertices
+  Points rest;  ///< the surface's vertices at rest
   TetMesh body{};
 };
 inline Soft soft_nodes() {
@@ -68,8 +67,8 @@ inline Soft soft_skin() {
           world.ball};
 }
 
-/// An analytic shape below the soft body, overlapping by `depth`, in a frame at tool_pose(); by vertices or
-/// by material points.
+/// An analytic shape below the soft body, overlapping by `depth`, in a frame at tool_pose(); sampled at
+/// vertices or at material points.
 inline Touching on_shape(const std::string& shape, bool skin, bool in_state, bool points = false) {
   constexpr double kDepth = 0.15;
   const Soft soft = skin ? soft_skin() : soft_nodes();
@@ -79,7 +78,7 @@ inline Touching on_shape(const std::string& shape, bool skin, bool in_state, boo
   const auto frame = add_frame(out, pose, in_state);
   const Vec3 top = pose.inverse() * Vec3(soft.bottom + Vec3(0, 0, kDepth)),
              up = pose.rotation.conjugate() * Vec3(0.1, -0.05, 1.0).normalized();
-  // the shape's own axes, its z along up; its top face or its round side touches
+  // the shape's axes, z along up; its top face or its round side touches
   const Pose upright{Quat::FromTwoVectors(Vec3::UnitZ(), up), top - 0.6 * up},
       lying{Quat::FromTwoVectors(Vec3::UnitX(), up), top - 0.6 * up};
   contact::ContactSide surface = soft.surface;
@@ -102,7 +101,7 @@ inline TriMesh tool_ball(const Soft& soft) {
   return tool;
 }
 
-/// It in image space.
+/// The rigid ball in image space.
 inline Touching on_tool(bool pruned, bool in_state) {
   const Soft soft = soft_skin();
   Touching out;
@@ -116,7 +115,7 @@ inline Touching on_tool(bool pruned, bool in_state) {
   return out;
 }
 
-/// And by nearest points.
+/// The rigid ball by nearest points.
 inline Touching near_tool(bool in_state) {
   const Soft soft = soft_skin();
   Touching out;
@@ -128,7 +127,7 @@ inline Touching near_tool(bool in_state) {
   return out;
 }
 
-/// Points of a skin on a sphere, and the sphere's own.
+/// Points of a skin on a sphere, and the sphere's points, each with half weight.
 inline Touching half_and_half(bool in_state) {
   const Soft soft = soft_skin();
   Touching out;
@@ -165,7 +164,7 @@ inline Touching two_soft(bool pruned) {
   return out;
 }
 
-/// Two balls that are one body, against itself.
+/// Two balls that form one body, in self-contact.
 inline Touching itself() {
   const TwoBalls balls;
   const LayeredModel both = [&] {
@@ -173,7 +172,7 @@ inline Touching itself() {
     for (LayeredModel* model : {&a, &b}) model->embedding = mesh::embed(model->tets, model->skin.vertices);
     return together(a, b);
   }();
-  // what overlaps at rest is no contact: there they stand apart
+  // overlaps at rest do not count as contact: at rest the balls are apart
   Points rest = both.tets.nodes, rest_skin = both.skin.vertices;
   rest.rightCols(balls.b.model.tets.nodes.cols()).row(2).array() -= 1.0;
   rest_skin.rightCols(balls.b.model.skin.vertices.cols()).row(2).array() -= 1.0;
@@ -193,7 +192,7 @@ inline Touching itself() {
 
 }  // namespace touching
 
-/// Every kind of pair, each with nodes and skins, frames that stand still and such of the State.
+/// Every kind of pair: nodes and skins, with frames at rest and frames in the State.
 inline std::vector<TouchingKind> touching_kinds() {
   std::vector<TouchingKind> out;
   for (const char* shape : {"plane", "sphere", "box", "cylinder"}) {

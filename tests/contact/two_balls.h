@@ -5,8 +5,8 @@
 
 namespace contact_tests {
 
-/// A ball of tetrahedra, and above it another one, rotated, larger and pressed into it; both under fine
-/// skins, with velocities.
+/// A ball of tetrahedra, and above it a second one, rotated, larger and pressed into it; both with fine skins
+/// and velocities.
 struct TwoBalls {
   struct Body {
     LayeredModel model;
@@ -17,10 +17,10 @@ struct TwoBalls {
   Body a, b;
 
   struct Skins {
-    unsigned order = 0;  ///< of their triangles: 0 as they are made, else shuffled
+    unsigned order = 0;  ///< order of the triangles: 0 as generated, else the seed of a shuffle
     int subdivisions = 12;
-    double bumps = 0.0;  ///< their height
-    int cells = 3;       ///< of the grid of proxies, along an edge
+    double bumps = 0.0;  ///< height of the bumps
+    int cells = 3;       ///< proxy grid cells along an edge
   };
   TwoBalls() : TwoBalls(Skins{}) {}
   explicit TwoBalls(const Skins& skins)

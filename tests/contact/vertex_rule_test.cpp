@@ -1,5 +1,5 @@
-// Samples at vertices, on patches in contact axes: what the image finds is what lines in double precision
-// meet.
+// Samples at vertices, on patches in contact axes: the image's result equals the intersection of lines in
+// double precision.
 #include "contact/vertex_rule.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct Found {
   ContactCamera camera;
 };
 
-/// Vertices of both sheets, or of a alone.
+/// Samples at the vertices of both sheets, or of a only.
 Found vertices_of(Sheet& a, Sheet& b, double gap, int pixels, bool both = true) {
   Found out;
   const std::vector<FacePair> pairs =
@@ -38,7 +38,7 @@ Found vertices_of(Sheet& a, Sheet& b, double gap, int pixels, bool both = true) 
   return out;
 }
 
-/// Height of a sheet over (u, v), by every triangle; NaN: none.
+/// Height of a sheet over (u, v), by every triangle; NaN if there is none.
 double height(const Sheet& sheet, double u, double v) {
   for (Eigen::Index f = 0; f < sheet.faces.cols(); ++f) {
     const Vec3 p = sheet.vertices.col(sheet.faces(0, f)), q = sheet.vertices.col(sheet.faces(1, f)),
@@ -55,10 +55,10 @@ double height(const Sheet& sheet, double u, double v) {
 
 }  // namespace
 
-// Each vertex of either sheet that has the other sheet opposite, nearer than the gap, is a sample once; with
-// pixels of the triangles' size one in fifty may be missed.  Its depth is what all triangles in double give
-// it where some pixel's middle around the vertex lies in the triangle opposite; else a neighbour's plane is
-// extended, by less than a pixel and with a slope that differs by less than two.
+// Each vertex of either sheet that has the other sheet opposite, nearer than the gap, gives one sample; with
+// pixels of the size of the triangles one in fifty may be missed. Its depth is that of all triangles in
+// double precision if the centre of some pixel around the vertex lies in the opposite triangle; else a
+// neighbour's plane is extended by less than a pixel, with a slope that differs by less than two.
 TEST(VertexRules, FindsEveryVertexAndItsDepth) {
   Sheet a(30, 0.02, -1.0, 1), b(23, 0.0, 1.0, 2);
   constexpr double kGap = 0.03;
@@ -88,7 +88,8 @@ TEST(VertexRules, FindsEveryVertexAndItsDepth) {
   }
 }
 
-// Two passes of half the area: where all is in contact, the areas of all samples sum to that of the plane.
+// Two passes with half the area each: where everything is in contact, the areas of all samples sum to the
+// area of the plane.
 TEST(VertexRules, AreasSumToThePlane) {
   Sheet a(20, 0.0, -1.0, 1), b(17, 0.3, 1.0, 2);
   for (const bool both : {true, false}) {
@@ -98,13 +99,13 @@ TEST(VertexRules, AreasSumToThePlane) {
       area += hit.area;
       if (hit.at.weights_a.maxCoeff() == 1.0) of_a += hit.area;
     }
-    // the rim's vertices have pixels beyond the last middle
+    // vertices on the rim have pixels beyond the last pixel centre
     EXPECT_NEAR(area, 4.0, 0.01);
     EXPECT_NEAR(of_a, both ? 2.0 : 4.0, 0.01);
   }
 }
 
-// A sheet that lies behind another one of the same body is not seen, and has no sample.
+// A sheet hidden behind another sheet of the same body has no samples.
 TEST(VertexRules, WhatIsHiddenHasNone) {
   Sheet front(20, 0.0, -1.0, 1), b(17, 0.05, 1.0, 2);
   const Eigen::Index vertices = front.vertices.cols(), faces = front.faces.cols();

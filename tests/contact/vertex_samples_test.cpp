@@ -1,4 +1,4 @@
-// Samples at vertices, from scenes' point of view: sources on whole bodies.
+// Samples at vertices of whole bodies, through contact sources.
 #include "grid_proxies.h"
 #include "images.h"
 #include "surfaces.h"
@@ -7,7 +7,7 @@ using namespace contact_tests;
 
 namespace {
 
-/// A soft unit sphere pressed 0.1 into a rigid slab, in a rotated and moved frame.
+/// A soft unit sphere pressed 0.1 deep into a rigid slab, in a rotated and moved frame.
 struct OnSlab {
   Pose pose{quaternion_of(Vec3(0.5, 1.1, -0.4)), Vec3(2, -1, 5)};
   TriMesh slab;
@@ -33,8 +33,8 @@ struct OnSlab {
 
 }  // namespace
 
-// Every vertex below the slab's face, none missed and none extra, each as deep as it is, for a third of its
-// triangles' projected area.
+// Every vertex below the slab's face gives a sample, none is missed and none is extra; each has the exact
+// depth, and a third of its triangles' projected area.
 TEST(VertexSamples, AreTheVerticesBelowAFace) {
   OnSlab scene(40);
   const Pose inverse = scene.pose.inverse();
@@ -56,7 +56,7 @@ TEST(VertexSamples, AreTheVerticesBelowAFace) {
       for (int k = 1; k < s.a.count; ++k)
         if (s.a.weight[static_cast<std::size_t>(k)] > s.a.weight[static_cast<std::size_t>(heaviest)])
           heaviest = k;
-      // affine in the place: rounding grows by the patch's size over the triangle's, 100 at the pole
+      // affine in the position: rounding grows with the ratio of patch size to triangle size, 100 at the pole
       EXPECT_NEAR(s.a.weight[static_cast<std::size_t>(heaviest)], 1.0, 1e-14);
       const int vertex = s.a.node[static_cast<std::size_t>(heaviest)] - 2;
       ++seen[static_cast<std::size_t>(vertex)];
@@ -78,7 +78,7 @@ TEST(VertexSamples, AreTheVerticesBelowAFace) {
   }
 }
 
-// The sum of depth x area tends to the overlap's volume, pi d^2 (3 - d)/3.
+// The sum of depth x area converges to the volume of the overlap, pi d^2 (3 - d)/3.
 TEST(VertexSamples, SumToTheOverlapVolume) {
   const double volume = kPi * 0.01 * (3.0 - 0.1) / 3.0;
   std::vector<double> errors;
@@ -93,8 +93,8 @@ TEST(VertexSamples, SumToTheOverlapVolume) {
   EXPECT_LT(errors[2], 0.2 * errors[0]);
 }
 
-// A box flat on a slab, its walls along the normal but for rounding: the vertices at its rim are corners of
-// walls, and a line through one may pass beside the box.  Each is a sample, and hangs on the face below.
+// A box flat on a slab, with walls along the normal up to rounding: the vertices on its rim are corners of
+// walls, and a line through one may miss the box. Each is a sample, carried by the face below.
 TEST(VertexSamples, OfABoxHangOnTheFaceThatIsSeen) {
   constexpr int kCellsX = 5, kCellsY = 4;
   for (int turn = 0; turn < 16; ++turn) {

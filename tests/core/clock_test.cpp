@@ -13,8 +13,8 @@ void spin(double s) {
   while (thread_cpu_seconds() - start < s) {}
 }
 
-// With the process's own clock most of these runs take 0 s, some a whole tick.  The thread's clock is not
-// read in between: it would bring that of the process up to date.
+// By the process's CPU clock most of these runs take 0 s, and some a whole clock tick. The thread's clock is
+// not read in between, because that would update the process's clock.
 TEST(CpuTime, IsExactWhileATimerCountsIt) {
   const itimerval far{{0, 0}, {100000, 0}}, off{};
   ASSERT_EQ(setitimer(ITIMER_PROF, &far, nullptr), 0);
@@ -35,7 +35,7 @@ TEST(CpuTime, IsThatOfAllThreads) {
   double found = 0.0;
   std::thread other([&] {
     spin(5e-3);
-    found = cpu_seconds() - start;  // while both live
+    found = cpu_seconds() - start;  // while both threads are alive
   });
   other.join();
   EXPECT_GE(found, 5e-3);

@@ -23,7 +23,7 @@ TEST(Error, NearestNameForgivesTyposOnly) {
   EXPECT_EQ(nearest_name("x", {}), "");
 }
 
-// A name that is the beginning of the word, or of which the word is the beginning, is no nearer for that.
+// A candidate is not nearer for being a prefix of the word, or for having the word as its prefix.
 TEST(Error, NearestNameIsTheOneOfLeastDistance) {
   EXPECT_EQ(nearest_name("blok", {"b", "block"}), "block");
   EXPECT_EQ(nearest_name("ballon", {"ball", "balloon"}), "balloon");

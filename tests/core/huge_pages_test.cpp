@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 TEST(HugePages, ContentsStay) {
-  // nothing, less than a page, 24 MiB
+  // empty, less than a page, 24 MiB
   for (const std::size_t count : {std::size_t{0}, std::size_t{100}, std::size_t{3} << 20}) {
     std::vector<double> v(count), expected(count);
     std::iota(v.begin(), v.end(), 0.0);

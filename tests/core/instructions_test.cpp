@@ -1,4 +1,4 @@
-// Instruction sets are named by people too, and a processor may lack them.
+// Instruction sets may be specified by a user, and a processor may lack them.
 #include "palpate/core/instructions.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Warnings are kept, each once, whether or not the terminal shows them.
+// Warnings are kept, each once, whether or not they are printed.
 #include "palpate/core/log.h"
 
 #include <gtest/gtest.h>

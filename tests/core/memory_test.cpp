@@ -1,4 +1,4 @@
-// What is left of the memory: the kernel's figure, or a control group's limit, whichever is less.
+// Available memory: the smaller of the kernel's figure and the control group's limit.
 #include "palpate/core/memory.h"
 
 #include <gtest/gtest.h>

@@ -28,7 +28,8 @@ double distance_from_rotation(const Mat3& R) {
                   std::abs(R.determinant() - 1.0));
 }
 
-/// F = U diag(sigma) V^T with random rotations: every signed spectrum that a mesh may meet.
+/// F = U diag(sigma) V^T with random rotations: covers every sign pattern of singular values that a mesh may
+/// produce.
 struct Spectrum {
   const char* name;
   Vec3 sigma;
@@ -85,7 +86,7 @@ TEST(Polar, SignedSvdRebuildsItsMatrixWithProperRotations) {
     }
 }
 
-// F = R0 S0 with S0 symmetric positive definite has exactly this one polar form.
+// F = R0 S0 with S0 symmetric positive definite has this polar decomposition only.
 TEST(Polar, FindsTheRotationThatTheMatrixWasMadeFrom) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> stretch(0.4, 1.8);
@@ -99,8 +100,8 @@ TEST(Polar, FindsTheRotationThatTheMatrixWasMadeFrom) {
   }
 }
 
-// Newton serves det F > 0.05, the signed SVD the rest: both must be the same function on either side of the
-// switch.
+// Newton handles det F > 0.05, and the signed SVD the rest: both must give the same function on either
+// side of the switch.
 TEST(Polar, NewtonAgreesWithSignedSvd) {
   std::mt19937 random(4);
   int checked = 0;

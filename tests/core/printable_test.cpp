@@ -1,4 +1,4 @@
-// What may reach a terminal, and which whole numbers a double holds.
+// Characters that may be printed to a terminal, and the range of whole numbers that a double represents.
 #include "palpate/core/printable.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Work in processes of its own: effects of a crash, an endless loop, an exception and a dying parent.
+// Jobs in separate processes: effects of a crash, an endless loop, an exception and a dying parent.
 #include "palpate/core/process_pool.h"
 
 #include <gtest/gtest.h>
@@ -112,14 +112,14 @@ TEST(ProcessPool, OneCrashTouchesNoOther) {
   EXPECT_EQ(outcomes, (std::vector<std::string>{"0", "crash", "2", "3"}));
 }
 
-/// Work that says which process it is, by the pipe's end that its input names, and never ends.
+/// Job that writes its process id to the pipe whose descriptor is its input, and never ends.
 std::string tell_process(const std::string& bytes, const std::atomic<bool>&) {
   const pid_t self = getpid();
   if (write(std::stoi(bytes), &self, sizeof self) == sizeof self) spin_until(nullptr);
   return "";
 }
 
-// The endless child holds the pipe's other end: it closes when the child, and the helper, have died.
+// The endless child inherits the pipe's write end: the pipe closes when the child and the helper have died.
 TEST(ProcessPool, AChildDiesWithItsParent) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
@@ -160,7 +160,7 @@ TEST(ProcessPool, AChildDiesWithItsPool) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
-// The terminal sends Ctrl-C to all processes of the group: only the caller heeds it.
+// A terminal sends Ctrl-C to all processes of the group: only the caller handles it.
 TEST(ProcessPool, AnInterruptOfTheGroupEndsNoWork) {
   const pid_t parent = fork();
   if (parent == 0) {
@@ -209,7 +209,7 @@ TEST(ProcessPool, PoolsSideBySideAndWithinWork) {
   EXPECT_EQ(got, (std::vector<std::string>{"2 inner outer", "1 inner outer"}));
 }
 
-/// Result of making a pool in a process while its second thread runs.
+/// Result of creating a pool in a process while a second thread runs.
 std::string with_a_thread(bool prepared) {
   int ends[2];
   if (pipe(ends) != 0) return "no pipe";
@@ -258,7 +258,7 @@ TEST(ProcessPool, AHelperThatDiedIsAClearError) {
     pool.start(
         [](const std::string& bytes, const auto&) -> std::string {
           char byte;
-          if (read(std::stoi(bytes), &byte, 1) == 1) kill(getppid(), SIGKILL);  // the server
+          if (read(std::stoi(bytes), &byte, 1) == 1) kill(getppid(), SIGKILL);  // the server process
           for (;;) pause();
         },
         std::to_string(go[0]), 60.0, [&](const ProcessPool::Outcome& o) { said = o.bytes; });

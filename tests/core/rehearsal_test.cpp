@@ -1,4 +1,5 @@
-// A reader that dies does so in a child: here, by signals, by endless work and by greed.
+// A reader that dies does so in a child process: here by signals, by endless work and by excessive memory
+// use.
 #include "palpate/core/rehearsal.h"
 
 #include <gtest/gtest.h>

@@ -17,7 +17,7 @@ TEST(RigidFit, FindsARigidMotion) {
   EXPECT_LT((found.translation - way).norm(), 1e-12);
 }
 
-// No rotation is a reflection; of a flat set both would fit alike.
+// The fitted rotation is never a reflection; for a flat point set both would fit equally well.
 TEST(RigidFit, ReflectsNothing) {
   Points flat = kCorner.leftCols(3);
   EXPECT_NEAR(rigid_fit(flat, flat).rotation.angularDistance(Quat::Identity()), 0.0, 1e-7);
@@ -26,7 +26,7 @@ TEST(RigidFit, ReflectsNothing) {
   EXPECT_NEAR(rigid_fit(kCorner, mirrored).rotation.toRotationMatrix().determinant(), 1.0, 1e-12);
 }
 
-// A point of no weight pulls nothing; a heavy one draws the whole to itself.
+// A point of zero weight has no influence; a dominant weight makes its point fit exactly.
 TEST(RigidFit, WeighsItsPoints) {
   Points after = kCorner;
   after(0, 3) += 1.0;

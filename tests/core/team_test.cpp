@@ -18,7 +18,8 @@ TEST(Team, WorksTogetherAgainAndAgain) {
       team.run([&](int k) {
         slots[static_cast<std::size_t>(k)] = round * (k + 1);
         team.barrier();
-        for (const long slot : slots) sums[static_cast<std::size_t>(k)] += slot;  // sees what all wrote
+        // Each thread must see the slots of all threads.
+        for (const long slot : slots) sums[static_cast<std::size_t>(k)] += slot;
         team.barrier();
       });
     for (const long sum : sums) EXPECT_EQ(sum, 200 * 201 / 2 * size * (size + 1) / 2);
@@ -26,7 +27,7 @@ TEST(Team, WorksTogetherAgainAndAgain) {
   EXPECT_THROW(Team(0), InternalError);
 }
 
-// Two callers, and loops beside them: one pool serves all, one after the other.
+// Two callers that also run loops: one pool serves all of them, one after the other.
 TEST(Team, TeamsOfSeveralThreadsShareThePool) {
   const auto work = [](int size, long& total) {
     const workers::Count count(size);

@@ -18,7 +18,7 @@ using namespace palpate;
 
 namespace {
 
-/// Every task ran once, by a worker that exists.
+/// Checks that every task ran once, by an existing worker.
 void expect_every_task_once(int tasks) {
   std::array<std::atomic<int>, 300> runs{};
   std::atomic<int> strangers{0};
@@ -86,7 +86,7 @@ TEST(Workers, ACountHoldsForItsOwnThreadAlone) {
   workers::set_count(1);
 }
 
-// After a loop of seven threads, one of two is for two.
+// After a loop with seven threads, a loop with two uses two.
 TEST(Workers, ALoopTakesNoMoreThreadsThanItMay) {
   for (const int threads : {7, 2}) {
     const workers::Count count(threads);
@@ -108,7 +108,7 @@ TEST(Workers, CountsTheTasksOfEachThread) {
   EXPECT_EQ(workers::tasks_of(0) + workers::tasks_of(1), before + 40);
 }
 
-/// The state of the pool in a forked child: 0 where loops and teams work there.
+/// Exit code of a forked child that uses the pool: 0 if loops and teams work there.
 int pool_in_child() {
   const pid_t child = fork();
   if (child == 0) {
@@ -120,7 +120,7 @@ int pool_in_child() {
       sum += 10000 * (k + 1);
       team.barrier();
     });
-    std::exit(sum == 4950 + 60000 ? 0 : 1);  // destructors of statics run as well
+    std::exit(sum == 4950 + 60000 ? 0 : 1);  // runs static destructors as well
   }
   int status = -1;
   waitpid(child, &status, 0);

@@ -1,5 +1,5 @@
-// What every device is: opened by its first sample, the same sample for the same time, a specification, and a
-// path that is its samples where it has one.
+// Properties of every device: opened by its first sample, the same sample for the same time, a specification,
+// and, where it has a path, samples that lie on it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using palpate::expectations::message_of;
 
 namespace {
 
-/// A device of one's own: what docs/devices.md shows.
+/// A user-defined device, as docs/devices.md shows.
 class Counted : public Device {
  public:
   DeviceSpecification specification() const override { return {}; }
@@ -38,7 +38,7 @@ class Counted : public Device {
   void do_feedback(double t, const Wrench& on_hand) override { felt = on_hand, felt_at = t; }
 };
 
-/// A spec with which each listed device can be made.
+/// Returns a spec with which the listed device can be made.
 DeviceSpec spec_of(const std::string& type, const TemporaryFolder& folder) {
   DeviceSpec spec;
   spec.type = type;
@@ -78,7 +78,7 @@ TEST(Device, opens_before_its_first_sample_and_closes_once) {
   EXPECT_EQ(device.opened, 2);
 }
 
-// Conformance: every device of the registry.
+// Conformance suite: every device of the registry.
 TEST(Device, every_listed_one_samples) {
   const TemporaryFolder folder;
   int paths = 0;
@@ -162,7 +162,8 @@ TEST(Device, pulls_nobody_at_once) {
   EXPECT_EQ(figures_of(driver).ramp, 0.2);
 }
 
-// A hand that teleports, through a device in a hand: the wanted force jumps from one maximum to the other.
+// The pose teleports while a simulated hand holds the device: the requested force jumps from one maximum to
+// the other, the force on the hand does not.
 TEST(Device, a_jump_of_the_pose_is_no_jump_of_the_force_in_a_hand) {
   int checked = 0;
   for (const char* profile : {"", "omni", "premium-1.5", "omega.3", "haply-pantograph", "haply-inverse3"}) {
@@ -174,7 +175,7 @@ TEST(Device, a_jump_of_the_pose_is_no_jump_of_the_force_in_a_hand) {
     const double stiffness = figures.specification.max_stiffness.value_or(1020.0);  // [N/m], 1020: the Omni's
     WrenchLimiter limiter(figures.max_force, figures.max_torque, figures.ramp, figures.max_force_slew,
                           figures.max_torque_slew);
-    const double most = std::max(stiffness * 1.0, 150.0 * figures.max_force) * 1e-3;  // a wall at 1 m/s
+    const double most = std::max(stiffness * 1.0, 150.0 * figures.max_force) * 1e-3;  // a wall hit at 1 m/s
     double before = 0.0;
     for (int i = 0; i <= 100; ++i) {
       const double wanted = i < 50 ? -1e6 : 1e6;

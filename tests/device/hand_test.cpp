@@ -1,5 +1,5 @@
-// The simulated hand against theory: closed forms of the mass, spring and damper, Coulomb's law, and the
-// energy that a hold makes.
+// The simulated hand against theory: closed forms of the mass-spring-damper system, Coulomb's law, and the
+// energy that a zero-order hold generates.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kTick = 1e-3;
 
-/// A hand that wants to stay at `x`; no damping, friction or rounding, and 1 kg in all.
+/// A hand with target position `x`, without damping, friction or rounding of positions; 1 kg in total.
 DeviceSpec bare(double k = 0.0, double b = 0.0, const Vec3& x = Vec3::Zero()) {
   DeviceSpec spec;
   spec.type = "hand";
@@ -35,7 +35,7 @@ DeviceSpec bare(double k = 0.0, double b = 0.0, const Vec3& x = Vec3::Zero()) {
 
 Wrench push(double force) { return {Vec3::Zero(), Vec3(force, 0, 0)}; }
 
-/// x and v after `ticks` under a force that is constant from the first tick on.
+/// Returns x and v after `ticks` under a force that is constant from the first tick on.
 Eigen::Vector2d pushed(DeviceSpec spec, double force, int ticks) {
   const auto device = make_device(spec);
   device->sample(0.0);
@@ -70,7 +70,7 @@ TEST(Hand, a_held_force_gives_the_closed_form) {
   EXPECT_NEAR(damped[1], 2.0 * (1.0 - std::exp(-0.3)), 1e-13);
 }
 
-// Pushed for one tick, then let go: what is left is the free motion from where the push ended.
+// Pushed for one tick and then released: the rest is the free motion from the state at the end of the push.
 TEST(Hand, free_motion_is_the_closed_form) {
   const double k = 568.0, b = 5.5, z = 0.5 * b, w = std::sqrt(k - z * z);
   const Eigen::Vector2d start = step_response(k, b, 100.0, kTick);
@@ -84,7 +84,7 @@ TEST(Hand, free_motion_is_the_closed_form) {
     device->sample(kTick + t);
     const double x =
         std::exp(-z * t) * (start[0] * std::cos(w * t) + (start[1] + z * start[0]) / w * std::sin(w * t));
-    ASSERT_NEAR(device->position().x(), x, 1e-15) << i;  // of 5e-5 and less
+    ASSERT_NEAR(device->position().x(), x, 1e-15) << i;  // amplitude 5e-5 or less
   }
 }
 
@@ -95,8 +95,8 @@ TEST(Hand, rests_where_spring_and_force_balance) {
   EXPECT_NEAR(x[1], 0.0, 1e-12);
 }
 
-// A path at constant speed pulls the hand after it with k x_d + b v_d: behind by M a = 0, it follows with
-// the same speed, and lags by c v/k of the device's own friction alone.
+// A path at constant speed pulls the hand with k x_d + b v_d. In the steady state M a = 0: the hand follows
+// at the same speed, and lags by c v/k, which comes from the device's damping c alone.
 TEST(Hand, lags_a_moving_path_by_the_devices_own_damping) {
   DeviceSpec spec = bare(568.0, 20.0);
   spec.device_damping_n_s_m = 4.0;
@@ -128,18 +128,18 @@ TEST(Hand, sticks_below_coulombs_level_and_slides_above) {
   spec.device_friction_n = 0.5;
   EXPECT_EQ(pushed(spec, 0.499, 1000), Eigen::Vector2d(0.0, 0.0));
   EXPECT_EQ(pushed(spec, -0.499, 1000), Eigen::Vector2d(0.0, 0.0));
-  // above: from rest m x'' + k x = F - f until x' = 0 at half a period, 2 (F - f)/k away
+  // sliding: from rest m x'' + k x = F - f until x' = 0 at half a period, 2 (F - f)/k away
   const double w = std::sqrt(200.0);
   const Eigen::Vector2d sliding = pushed(spec, 0.7, 100);
   EXPECT_NEAR(sliding[0], 0.2 / 200.0 * (1.0 - std::cos(w * 0.1)), 1e-14);
   EXPECT_NEAR(sliding[1], 0.2 / w * std::sin(w * 0.1), 1e-13);
-  // there the spring's 0.4 N is above the push by less than f: it stays, at exactly zero velocity
+  // at that point the spring's 0.4 N exceeds the push by less than f: it sticks, at exactly zero velocity
   const Eigen::Vector2d stuck = pushed(spec, 0.7, 1000);
   EXPECT_NEAR(stuck[0], 2.0 * 0.2 / 200.0, 1e-13);
   EXPECT_EQ(stuck[1], 0.0);
 }
 
-// Swings under Coulomb friction alone lose 2 f/k each half period, by the textbook.
+// Oscillations under Coulomb friction alone lose 2 f/k of amplitude per half period (textbook result).
 TEST(Hand, swings_shrink_by_coulombs_decrement) {
   const double k = 400.0, f = 0.3, w = std::sqrt(k);
   DeviceSpec spec = bare(k, 0.0);
@@ -153,7 +153,7 @@ TEST(Hand, swings_shrink_by_coulombs_decrement) {
   double amplitude = 0.02;
   int turns = 0;
   for (int i = 1; amplitude > 2.0 * f / k; ++i) {
-    // a step of the clock that has nothing to do with the period, and one that lands on its end
+    // a sample time that is unrelated to the period, and one at the end of the half period
     device->sample(1e-9 + (i - 0.37) * half);
     device->sample(1e-9 + i * half);
     amplitude -= 2.0 * f / k;
@@ -209,7 +209,7 @@ TEST(Hand, what_is_read_is_off_by_at_most_half_a_step) {
   EXPECT_GT(largest, 1.2e-5) << "it was rounded";
 }
 
-// The filter's answer to a ramp of slope v is v (1 - exp(-2 pi f_c t)).
+// The filter's response to a ramp of slope v is v (1 - exp(-2 pi f_c t)).
 TEST(Hand, velocity_comes_from_positions_through_a_low_pass) {
   DeviceSpec spec = bare();
   spec.velocity_cutoff_per_s = 30.0;
@@ -243,7 +243,7 @@ TEST(Hand, a_force_arrives_after_its_delay) {
     spec.delay_s = delay;
     const auto device = make_device(spec);
     device->sample(0.0);
-    for (int i = 0; i < 10; ++i) {  // sent at each tick from 0 on, on for one tick alone
+    for (int i = 0; i < 10; ++i) {  // sent at each tick from 0 on, held for one tick each
       device->feedback(i * kTick, push(i == 0 ? 1000.0 : 0.0));
       device->sample((i + 1) * kTick);
       const double t = (i + 1) * kTick, on = std::clamp(t - delay, 0.0, kTick);
@@ -252,9 +252,10 @@ TEST(Hand, a_force_arrives_after_its_delay) {
   }
 }
 
-// A wall F = -K x, sampled and held for T, on a free mass with damping c.  A hold lags by T/2, so it feeds K
-// T/2 v^2 into the motion while c v^2 leaves it (Colgate and Schenkel 1994, Gil et al. 2004): it grows where
-// K T/2 > c.  Ours has no damping in the wall and a mass so large that K T^2/M is small.
+// A wall F = -K x, sampled and held for T, on a free mass with damping c. A hold lags by T/2, so it adds K
+// T/2 v^2 to the motion while damping removes c v^2 (Colgate and Schenkel 1994, Gil et al. 2004): the
+// oscillation grows where K T/2 > c. Here the wall has no damping, and the mass is so large that K T^2/M is
+// small.
 TEST(Hand, a_held_wall_gains_energy_where_colgate_says) {
   const double K = 2000.0;
   const auto growth = [&](double damping) {

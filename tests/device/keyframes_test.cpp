@@ -33,7 +33,8 @@ std::string message(const std::vector<KeyframeSpec>& keys) {
   return "";
 }
 
-/// Largest error of the central difference of pose by twist, and of twist by acceleration, at step h.
+/// Largest error of the central differences of pose against twist, and of twist against acceleration, at step
+/// h.
 double derivative_error(const std::vector<KeyframeSpec>& keys, double t, double h) {
   const HandleSample a = sample_keyframes(keys, t - h), m = sample_keyframes(keys, t),
                      b = sample_keyframes(keys, t + h);
@@ -81,7 +82,7 @@ TEST(Keyframes, twist_and_acceleration_are_the_derivatives) {
     int checked = 0;
     for (double t : {0.17, 0.33, 0.52, 0.86, 1.19}) {
       if (std::string(way) == "linear") {
-        // no error of truncation: constant rate about a fixed axis
+        // no truncation error: constant rate about a fixed axis
         EXPECT_LT(derivative_error(keys, t, 1e-3), 1e-11);
       } else {
         std::vector<double> e;

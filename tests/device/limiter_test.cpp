@@ -17,7 +17,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 
 Wrench wrench(const Vec3& force, const Vec3& moment = Vec3::Zero()) { return {moment, force}; }
 
-/// The steady output for a constant wish: second tick, so that the slew has its span.
+/// Steady output for a constant request: the second tick, so that the slew limit has had time to act.
 Wrench steady(double force, double max) {
   WrenchLimiter limiter(max, 1.0, 0.0);
   limiter.limit(0.0, wrench(Vec3(0, 0, force)), true);
@@ -103,7 +103,7 @@ TEST(WrenchLimiter, holds_for_10_ms_after_the_last_valid_pose_and_is_zero_at_20)
   Wrench live;
   for (int i = 0; i <= 10; ++i) live = limiter.limit(1e-3 * i, wrench(Vec3(2, 0, 0), Vec3(0, 0.1, 0)), true);
   EXPECT_NEAR(live.force.x(), 2.0, 0.02);
-  // another wrench that comes with an invalid pose is not taken
+  // a new wrench that arrives with an invalid pose is ignored
   for (const double age : {0.0005, 0.004, 0.0099}) {
     const Wrench out = limiter.limit(0.01 + age, wrench(Vec3(-3, 1, 0)), false);
     EXPECT_EQ(out.force, live.force) << age;
@@ -134,7 +134,7 @@ TEST(WrenchLimiter, a_nan_falls_to_zero_and_is_counted) {
     if (i > 30) { EXPECT_EQ(out.force.norm(), 0.0); }
   }
   EXPECT_EQ(limiter.rejected_ticks(), ticks);
-  EXPECT_NEAR(limiter.limit(0.041, wrench(Vec3(1, 0, 0)), true).force.x(), 1.0, 1e-3);  // and comes back
+  EXPECT_NEAR(limiter.limit(0.041, wrench(Vec3(1, 0, 0)), true).force.x(), 1.0, 1e-3);  // and recovers
 }
 
 TEST(WrenchLimiter, a_clock_that_stops_or_jumps_cannot_hold_a_force) {
@@ -154,8 +154,8 @@ TEST(WrenchLimiter, a_clock_that_stops_or_jumps_cannot_hold_a_force) {
   }
 }
 
-// Whatever comes in: finite, inside the maximum, slew within its bound, zero from 20 ms after the last valid
-// tick on.
+// For any input the output is finite, within the maximum, with bounded slew, and zero from 20 ms after the
+// last valid tick on.
 TEST(WrenchLimiter, property_over_random_inputs) {
   std::mt19937 rng(20240611);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -182,7 +182,7 @@ TEST(WrenchLimiter, property_over_random_inputs) {
       ASSERT_TRUE(out.force.allFinite() && out.moment.allFinite());
       ASSERT_LE(out.force.norm(), force);
       ASSERT_LE(out.moment.norm(), torque);
-      // The clock has its own rounding: dt is known to eps t.
+      // The clock is rounded: dt is known to eps t.
       const double room = 1e-9;
       if (i > 0) {
         ASSERT_LE((out.force - last.force).norm(), force_slew * dt * (1.0 + room));
@@ -204,7 +204,7 @@ TEST(WrenchLimiter, property_over_random_inputs) {
   EXPECT_GT(slewing, 1000);
 }
 
-// Three motors that move a tip: what they cannot give is no limit that the hand runs into.
+// Three motors that move a tip: the torque that they cannot exert does not count as limited output.
 TEST(WrenchLimiter, a_device_without_torque_gives_none) {
   WrenchLimiter limiter(3.3, 0.0, 0.0);
   for (int tick = 0; tick < 10; ++tick) {

@@ -57,7 +57,7 @@ TEST(Motions, are_what_their_formulas_say) {
   EXPECT_LT(displacement(motion("tap"), 0.5).v.norm(), 1e-16) << "begins at rest";
   EXPECT_LT((displacement(motion("circle"), quarter).x - (B - A)).norm(), 1e-16);
   EXPECT_LT((displacement(motion("circle"), half).x + 2.0 * A).norm(), 1e-16);
-  // of a chirp: (f0 + f1)/2 D = 12 periods in all, and at its middle f0 D/2 + (f1 - f0) D/8 = 4.5
+  // chirp: (f0 + f1)/2 D = 12 periods in all, and f0 D/2 + (f1 - f0) D/8 = 4.5 periods at its middle
   EXPECT_LT(displacement(motion("chirp"), 2.5).x.norm(), 1e-15);
   EXPECT_LT((displacement(motion("chirp"), 1.5).v + A * kTurn * 6.0).norm(), 1e-12);
 }
@@ -110,7 +110,7 @@ TEST(Motions, bad_ones_are_refused) {
   expect_contains(message_of([&] { make_device(spec); }), "device: motion[0]: kind \"strok\" (did you mean");
 }
 
-// By script and by a simulated hand: fingers do not yield to the force.
+// Presses are kept for their time by the script and by the simulated hand: fingers do not yield to the force.
 TEST(Presses, hold_their_switches_for_their_time) {
   for (const char* type : {"script", "hand"}) {
     DeviceSpec spec;

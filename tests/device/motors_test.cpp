@@ -1,4 +1,4 @@
-// What a device's motors hold of the wrenches that they are sent.
+// Wrenches held by a device's motors, from the wrenches that were sent.
 #include "palpate/device/motors.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(Motors, hold_each_wrench_from_its_delay_on) {
     Motors motors({.delay = delay * T});
     for (int k = 0; k <= 40; ++k) {
       motors.advance(k * T);
-      // over the tick to k the wrench sent `delay` ticks before its start
+      // over the tick to k, the wrench sent `delay` ticks before its start is held
       EXPECT_NEAR(motors.mean().force.x(), k > delay ? k - delay : 0.0, 1e-13) << delay << ' ' << k;
       motors.send(k * T, push(k + 1.0));
     }
@@ -46,7 +46,7 @@ TEST(Motors, change_within_a_tick_where_the_delay_ends_there) {
   EXPECT_EQ(spans, 2);
   EXPECT_NEAR(motors.mean().force.x(), 3.75, 1e-12);
   EXPECT_NEAR(motors.mean().moment.y(), 0.1, 1e-12);
-  // from here on: 4 for a quarter of a tick, then 5, which was sent last, for the rest of 1.25 ticks
+  // from here on: 4 for a quarter of a tick, then 5, the last wrench sent, for the rest of 1.25 ticks
   spans = 0;
   motors.coming([&](const Motors::Span& span) {
     EXPECT_NEAR(span.to - span.from, spans == 0 ? 0.25 * T : T, 1e-15);

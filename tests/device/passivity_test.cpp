@@ -22,15 +22,15 @@ constexpr double T = 1e-3;
 Pose at(double x) { return {Quat::Identity(), Vec3(x, 0, 0)}; }
 Wrench force(double f) { return {Vec3::Zero(), Vec3(f, 0, 0)}; }
 
-/// A mass with a viscous b under the force of the motors (zero-order hold, delayed by ticks, in steps and
-/// cut) and of a hand, on the virtual wall F = -K x - B (x_k - x_{k-1})/T in x > 0.
+/// A mass with viscous damping b under the force of the motors (zero-order hold, delayed by ticks, quantised
+/// and saturated) and of a hand, on the virtual wall F = -K x - B (x_k - x_{k-1})/T in x > 0.
 struct Loop {
   double K, B, b, mass = 0.045;
   Motors motors;
   PassivityController controller;
   double x = 0.0, v = 0.0, last = 0.0, F = 0.0, time = 0.0, largest = 0.0;
   std::vector<double> sent;
-  double energy = 0.0, least = 0.0;  ///< at the port, summed up beside the controller
+  double energy = 0.0, least = 0.0;  ///< energy at the port, summed independently of the controller
 
   Loop(double k, double damping, double own, Mode mode, const Motors::Figures& figures = {})
       : K(k),
@@ -80,8 +80,8 @@ TEST(Passivity, observer_of_a_passive_wall_never_falls_below_zero) {
   EXPECT_GT(pressed, 10000);
 }
 
-// (8 A^2/T)(b - K T/2 - B) a cycle of the triangle wave of period 2T; with one tick of delay the wave is no
-// counter-example, but a slow one is: b = 3 K T/2 at frequency 0.
+// The energy per cycle of the triangle wave of period 2T is (8 A^2/T)(b - K T/2 - B). With one tick of delay
+// this wave is no worst case; a slow one is, with b = 3 K T/2 at frequency 0.
 TEST(Passivity, triangle_wave_attains_the_bound_of_theory) {
   const double A = 1e-3, centre = 2e-3, b = 1.0, K = 1500.0, B = 0.4;
   PassivityObserver observer(b);
@@ -102,7 +102,8 @@ TEST(Passivity, triangle_wave_attains_the_bound_of_theory) {
   EXPECT_LT(observer.least_energy(), 0.0);
 }
 
-// A sine of one tick of delay: per cycle sum D^2 (b/T - K/2 s), s = sin(3 w T/2)/sin(w T/2) -> 3.
+// A sine with one tick of delay: per cycle the energy is sum D^2 (b/T - K/2 s), with s = sin(3 w T/2)/sin(w
+// T/2) -> 3.
 TEST(Passivity, a_tick_of_delay_needs_three_times_the_damping) {
   const double K = 1000.0, A = 1e-3;
   const int period = 200;
@@ -123,8 +124,8 @@ TEST(Passivity, a_tick_of_delay_needs_three_times_the_damping) {
   }
 }
 
-// A slow handle that is read in steps of 30 um stands still for 29 ticks and jumps: b D^2/T of the jump is 30
-// times what was dissipated.  What is counted must not be more than that.
+// A slow handle that is read in steps of 30 um rests for 29 ticks and then jumps: b D^2/T of the jump is 30
+// times the dissipated energy. The observer must not count more than was dissipated.
 TEST(Passivity, friction_of_positions_in_steps_is_never_counted_for_more_than_it_is) {
   constexpr double b = 2.0, step = 30e-6;
   const auto counted = [&](double speed, double resolution) {
@@ -133,7 +134,7 @@ TEST(Passivity, friction_of_positions_in_steps_is_never_counted_for_more_than_it
       observer.sample(k * T, at(step * std::round(k * T * speed / step)));
       observer.hold(force(0.0));
     }
-    return observer.energy() / (b * speed * speed);  // over the truth of one second
+    return observer.energy() / (b * speed * speed);  // relative to the exact energy dissipated in one second
   };
   EXPECT_NEAR(counted(1e-3, 0.0), 30.0, 1.0) << "the fault to be kept out";
   EXPECT_LE(counted(1e-3, step), 1.0);
@@ -157,7 +158,7 @@ TEST(Passivity, a_scene_s_device_has_its_friction_counted) {
 
 TEST(Passivity, controller_keeps_an_active_wall_above_zero) {
   for (const Mode mode : {Mode::kObserve, Mode::kControl}) {
-    Loop loop(2000.0, 0.0, 0.1, mode);  // ten times of what is passive, and of what is stable
+    Loop loop(2000.0, 0.0, 0.1, mode);  // ten times the passivity limit, and the stability limit
     for (int i = 0; i < 4000; ++i) loop.tick(0.5);
     const PassivityObserver& observer = loop.controller.observer();
     if (mode == Mode::kObserve) {
@@ -172,8 +173,8 @@ TEST(Passivity, controller_keeps_an_active_wall_above_zero) {
   }
 }
 
-// The energy is that of the force that the motors hold: summed up here from the forces sent, each delayed by
-// whole ticks, in steps and cut.
+// The observed energy is the work of the force that the motors hold: here summed from the forces sent, each
+// delayed by whole ticks, quantised and saturated.
 TEST(Passivity, observer_counts_the_force_that_the_motors_hold) {
   int negative = 0;
   for (int delay = 0; delay <= 10; ++delay)
@@ -190,7 +191,7 @@ TEST(Passivity, observer_counts_the_force_that_the_motors_hold) {
   EXPECT_GT(negative, 10) << "delayed walls give energy";
 }
 
-// A delay of n + s ticks holds two forces within a tick; at constant speed their mean is exact.
+// A delay of n + s ticks holds two forces within one tick; at constant speed their mean is exact.
 TEST(Passivity, observer_counts_forces_that_change_within_a_tick) {
   constexpr double speed = 0.05, share = 0.3;
   Motors motors({.delay = (2.0 + share) * T});
@@ -202,7 +203,7 @@ TEST(Passivity, observer_counts_forces_that_change_within_a_tick) {
     controller.apply(k * T, at(k * speed * T), motors, force(sent.back()));
     motors.send(k * T, force(sent.back()));
   }
-  double exact = 0.0;  // -sum of each force times the way on which it is held, up to the last sample
+  double exact = 0.0;  // -sum of each force times the distance over which it is held, up to the last sample
   const double end = 49 * T;
   for (std::size_t i = 0; i < sent.size(); ++i) {
     const double from = static_cast<double>(i) * T + motors.delay(), to = std::min(from + T, end);
@@ -211,8 +212,8 @@ TEST(Passivity, observer_counts_forces_that_change_within_a_tick) {
   EXPECT_NEAR(controller.observer().energy(), exact, 1e-15);
 }
 
-// Walls that are far beyond what is passive under delays of up to ten ticks, pressed, stroked and shaken: the
-// energy summed up here stays above zero, but for what a shake beyond the bounds takes.
+// Walls far beyond passivity, under delays of up to ten ticks, pressed, stroked and shaken: the energy summed
+// here stays above zero, except for the amount that a shake beyond the assumed bounds takes.
 TEST(Passivity, controller_guarantees_the_energy_whatever_the_delay) {
   std::mt19937 random(7);
   std::normal_distribution<double> push;

@@ -27,7 +27,7 @@ std::unique_ptr<Device> replay(const TemporaryFolder& folder, const std::string&
   return make_device(spec, folder.string());
 }
 
-/// x(t) of a function at n + 1 times in [0, 1], unevenly spaced.
+/// x(t) of a function at n + 1 unevenly spaced times in [0, 1].
 template <class F>
 std::string sampled(F f, int n) {
   std::string out = kHeader;
@@ -57,8 +57,8 @@ TEST(Recording, goes_through_its_lines_and_rests_outside) {
   EXPECT_NEAR(device->path()(1.5).twist.angular.norm(), std::numbers::pi, 1e-14);
 }
 
-// Velocities of a parabola through three lines are exact for a parabola, and so is the cubic between them;
-// its vertex, beyond two lines of the file, is not among these times.
+// Velocities from a parabola through three samples are exact for a parabola, and so is the cubic between
+// them. The vertex of the parabola, more than two lines of the file away, is not among the tested times.
 TEST(Recording, a_parabola_comes_back_exactly) {
   const TemporaryFolder folder;
   const auto device = replay(folder, sampled([](double t) { return 0.3 + 0.5 * t + 0.8 * t * t; }, 10));
@@ -72,15 +72,15 @@ TEST(Recording, a_parabola_comes_back_exactly) {
   EXPECT_GT(checked, 40);
 }
 
-// Of third order between turning points.  About one the motion leaves the interval of its two lines, and the
-// handle does not: there it is of second order.
+// Convergence is of third order between turning points. At a turning point the motion leaves the interval of
+// its two samples, which the handle does not: there it is of second order.
 TEST(Recording, converges_with_third_order) {
   const TemporaryFolder folder;
   std::vector<double> errors;
   for (const int n : {20, 40, 80, 160}) {
     const auto device = replay(folder, sampled([](double t) { return std::sin(7.0 * t); }, n));
     double largest = 0.0;
-    for (double t = 0.35; t < 0.55; t += 1e-3)  // well between its turning points, at 0.22 and 0.67
+    for (double t = 0.35; t < 0.55; t += 1e-3)  // well between the turning points at 0.22 and 0.67
       largest = std::max(largest, std::abs(device->sample(t).pose.translation.x() - std::sin(7.0 * t)));
     errors.push_back(largest);
   }
@@ -90,8 +90,8 @@ TEST(Recording, converges_with_third_order) {
   }
 }
 
-// Between two lines each component stays between theirs, however uneven the lines are: after a pause, in a
-// jump, at a turning point; and the path goes through every line without a jump of its velocity.
+// Between two samples each component stays between their values, however uneven the samples are (after a
+// pause, in a jump, at a turning point); the path passes through every sample with continuous velocity.
 TEST(Recording, between_two_lines_the_handle_stays_between_them) {
   const TemporaryFolder folder;
   std::mt19937 rng(20261128);
@@ -127,7 +127,7 @@ TEST(Recording, between_two_lines_the_handle_stays_between_them) {
   }
 }
 
-// A pause that the recorder left out: 10 ms lines, then nothing for a second, then on from nearby.
+// A pause that the recorder left out: samples every 10 ms, then none for a second, then samples from nearby.
 TEST(Recording, a_pause_is_no_swing) {
   const TemporaryFolder folder;
   const auto path =
@@ -190,7 +190,7 @@ TEST(Recording, switches_are_those_of_the_line_before) {
   EXPECT_EQ(replay(folder, kHeader + "0,0,0,0,1,0,0,0\n")->sample(1.0).switches, 0u);
 }
 
-// What programs of this field write: each is the same two lines.
+// Dialects that programs of the field write: each file holds the same two samples.
 TEST(Recording, dialects_read_alike) {
   const TemporaryFolder folder;
   const std::string rows = "0,0.1,0.2,0.3,1,0,0,0\n1,0.1,0.2,0.4,1,0,0,0\n";

@@ -1,4 +1,4 @@
-// A device on the loopback network, with a peer in the test.
+// A UDP device on the loopback network, with its peer in the test.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -30,12 +30,12 @@ class Peer {
     EXPECT_EQ(::connect(socket_, reinterpret_cast<sockaddr*>(&to_), sizeof to_), 0);
   }
   ~Peer() { ::close(socket_); }
-  /// Loopback hands a packet over within the call.
+  /// Sends a packet; loopback delivers it within the call.
   template <class Bytes>
   void send(const Bytes& bytes) {
     EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
   }
-  /// Every wrench that has come.
+  /// Returns every wrench received so far.
   std::vector<WrenchPacket> wrenches() {
     std::vector<WrenchPacket> out;
     std::array<unsigned char, 256> buffer;
@@ -88,7 +88,7 @@ TEST(Udp, packets_have_the_documented_bytes) {
   EXPECT_EQ(back.switches, 5u);
   const WrenchBytes answer = encode(WrenchPacket{9, 0.5, {Vec3(1, 2, 3), Vec3(4, 5, 6)}});
   EXPECT_EQ(answer[6], 2);
-  EXPECT_EQ(answer[31], 0x40);  // of fx = 4.0
+  EXPECT_EQ(answer[31], 0x40);  // fx = 4.0
   WrenchPacket wrench;
   ASSERT_EQ(decode(answer, wrench), PacketFault::kNone);
   EXPECT_EQ(wrench.on_hand.force, Vec3(4, 5, 6));
@@ -100,7 +100,7 @@ TEST(Udp, poses_come_and_wrenches_go) {
   const HandleSample before = device.sample(0.0);
   EXPECT_FALSE(before.valid) << "nobody has sent anything";
   EXPECT_EQ(before.pose.translation, Vec3(0, 0, 0.5));
-  device.feedback(0.0, {Vec3(1, 1, 1), Vec3(1, 1, 1)});  // to nobody
+  device.feedback(0.0, {Vec3(1, 1, 1), Vec3(1, 1, 1)});  // no peer is known yet
   Peer peer(device.port());
   for (int i = 1; i <= 20; ++i) {
     peer.send(encode(pose(static_cast<std::uint64_t>(i), 0.1 * i)));
@@ -169,9 +169,9 @@ TEST(Udp, what_is_no_new_pose_of_the_peer_is_counted_and_dropped) {
   bytes = encode(pose(11, 9.0));
   bytes[4] = 2;
   peer.send(bytes);                   // version
-  peer.send(encode(pose(10, 9.0)));   // sent again
+  peer.send(encode(pose(10, 9.0)));   // duplicate
   peer.send(encode(pose(9, 9.0)));    // late
-  other.send(encode(pose(99, 9.0)));  // somebody else
+  other.send(encode(pose(99, 9.0)));  // another sender
   device.sample(0.002);
   EXPECT_EQ(device.position(), Vec3(0.1, 2, 3));
   EXPECT_EQ(device.counts().malformed, 9);
@@ -191,8 +191,8 @@ TEST(Udp, what_is_no_new_pose_of_the_peer_is_counted_and_dropped) {
   EXPECT_EQ(device.position(), Vec3(0.3, 2, 3));
 }
 
-// Finite, and still none of a hand: each would have moved the tool out of the scene, or the integrator out of
-// what it can follow.
+// Finite poses that no hand can reach: each would have moved the tool out of the scene, or made the
+// integrator fail.
 TEST(Udp, poses_beyond_the_bounds_are_counted_and_dropped) {
   UdpDevice device(any_port());
   device.bound({Vec3(0, 2, 3), 1.5, 20.0, 30.0});
@@ -222,7 +222,8 @@ TEST(Udp, poses_beyond_the_bounds_are_counted_and_dropped) {
   EXPECT_EQ(device.counts().out_of_bounds, 7);
 }
 
-// One damaged number does not make all that follow old: it is dropped, and nothing of the hand is lost.
+// One damaged sequence number does not make all later ones old: it is dropped, and no sample of the hand is
+// lost.
 TEST(Udp, a_number_far_ahead_is_dropped) {
   UdpDevice device(any_port());
   device.sample(0.0);
@@ -242,7 +243,7 @@ TEST(Udp, a_number_far_ahead_is_dropped) {
   EXPECT_EQ(device.counts().stale, 0);
 }
 
-// A first number that is damaged, or a peer that starts anew, costs what the watchdog takes: 20 ms.
+// A damaged first sequence number, or a restarted peer, interrupts the device for the watchdog's 20 ms only.
 TEST(Udp, numbers_begin_anew_once_the_force_has_fallen) {
   for (const std::uint64_t first : {~std::uint64_t{0}, std::uint64_t{5000}}) {
     UdpDevice device(any_port());

@@ -16,7 +16,7 @@ TEST(Workspace, distances_to_box_ball_and_both) {
   const Workspace box{c, Vec3(0.2, 0.4, 0.6), 0.0, 0.01}, ball{c, Vec3::Zero(), 0.1, 0.01};
   EXPECT_EQ(Workspace{}.distance_outside(Vec3(1e9, 0, 0)), 0.0);
   EXPECT_EQ(box.distance_outside(c + Vec3(0.09, -0.19, 0.29)), 0.0);
-  EXPECT_NEAR(box.distance_outside(c + Vec3(0.13, -0.24, 0.0)), 0.05, 1e-15);  // 3, 4, 5 from an edge
+  EXPECT_NEAR(box.distance_outside(c + Vec3(0.13, -0.24, 0.0)), 0.05, 1e-15);  // 3-4-5 triangle from an edge
   EXPECT_EQ(ball.distance_outside(c + Vec3(0.05, 0.05, 0.05)), 0.0);
   EXPECT_NEAR(ball.distance_outside(c + Vec3(0, 0, -0.13)), 0.03, 1e-15);
   const Workspace both{c, Vec3(0.2, 0.4, 0.6), 0.15, 0.01};
@@ -38,7 +38,7 @@ TEST(Workspace, share_fades_smoothly) {
   EXPECT_EQ(Workspace{}.share(Vec3(1e9, 0, 0)), 1.0);
 }
 
-// The loop's own order: sample, then limit.
+// Same order of calls as the loop: sample, then limit.
 TEST(Workspace, the_limiter_fades_the_force_of_a_handle_that_leaves_it) {
   DeviceSpec spec;
   spec.keyframes = {{0.0, Vec3::Zero(), Vec3::Zero(), "linear"},

@@ -19,7 +19,7 @@ inline void expect_message(const std::function<void()>& f, const std::vector<std
   for (const std::string& part : parts) expectations::expect_contains(expectations::message_of(f), part);
 }
 
-/// A skin and where its nodes are.
+/// A skin with its current node positions.
 struct Body {
   Skin skin;
   Points rest, nodes;
@@ -31,7 +31,7 @@ struct Body {
 
 inline Body shell(const TriMesh& mesh) { return {make_skin(mesh), mesh.vertices, mesh.vertices}; }
 
-/// A sphere with bumps: concave and convex edges, of 20 n^2 faces.
+/// A sphere with bumps, that has concave and convex edges and 20 n^2 faces.
 inline TriMesh bumpy_sphere(double radius, int n, double bump) {
   TriMesh mesh = mesh::sphere(radius, n);
   for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
@@ -46,7 +46,7 @@ inline TriMesh shape_skin(const std::string& name, int vertices) {
   return shapes::make(name, {.skin_vertices = vertices, .base_vertices = 0}).skin;
 }
 
-/// A body of tetrahedra with a bumpy skin that is embedded in them, larger than they are in places.
+/// A body of tetrahedra with an embedded bumpy skin, which extends beyond the tetrahedra in places.
 inline Body soft_bumpy(double radius, int n, double bump) {
   const TetMesh tets = mesh::ball(radius, radius / 3);
   const TriMesh surface = bumpy_sphere(radius, n, bump);

@@ -7,7 +7,7 @@ using namespace distance_tests;
 
 namespace {
 
-/// By the centroids of n^2 equal triangles.
+/// Integrates by the centroids of n^2 equal triangles.
 HatIntegrals summed(const Vec3& overlap, int n) {
   HatIntegrals out;
   for (int i = 0; i < n; ++i)
@@ -41,8 +41,8 @@ TEST(LinearGap, IntegratesThePositivePart) {
   for (const int count : cases) EXPECT_GT(count, 3);
 }
 
-// Its gradient by the corners' values is what the overlap is, and that of the overlap, summed over the
-// corners, the area.
+// The gradient of half the squared overlap with respect to the corner values is the integrated overlap, and
+// the derivative of the latter, summed over the corners, is the area.
 TEST(LinearGap, IsTheGradientOfHalfTheSquare) {
   std::mt19937 random(6);
   std::normal_distribution<double> normal;
@@ -70,7 +70,7 @@ TEST(LinearGap, TakesCornersOnTheSurfaceItself) {
   EXPECT_EQ(integrate_hats(Vec3::Zero()).overlap.norm(), 0.0);
 }
 
-// On a sphere: the mean of the interpolated distance less the distance, by many points.
+// On a sphere: the mean of the interpolated distance minus the exact distance, integrated over many points.
 TEST(LinearGap, KnowsWhatItMisses) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;

@@ -1,4 +1,4 @@
-// A skin against itself, beside a search through all of its faces.
+// Self-contact of a skin, against a search through all of its faces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using namespace palpate::distance;
 
 namespace {
 
-/// A bar along x, bent about y by an angle over its middle third, its ends straight on.
+/// A bar along x, bent about y by an angle over its middle third; its ends remain straight.
 Points bent(const Points& straight, double length, double angle) {
   Points out = straight;
   if (angle == 0.0) return out;
@@ -27,7 +27,7 @@ Points bent(const Points& straight, double length, double angle) {
   return out;
 }
 
-/// Two sheets, each two layers of faces 2 mm apart, that lie on each other: bisection puts both in one
+/// Two sheets that lie on each other, each with two layers of faces 2 mm apart: bisection puts both in one
 /// cluster.
 TriMesh two_sheets() {
   const TriMesh sheet = mesh::box_surface(Vec3(1.0, 1.0, 0.002), {12, 12, 1});
@@ -57,7 +57,7 @@ struct Own {
   }
   void find(const Points& x, double near) { contact.find(x.data(), x.data(), near); }
 
-  /// Points that a search through all faces finds, with their gaps.
+  /// Contact points found by a search through all faces, with their gaps.
   std::map<int, double> by_all_faces(const Points& x, double near) const {
     const OwnContact own = this->own();
     Surface surface(skin);
@@ -75,7 +75,7 @@ struct Own {
           best = {f, here};
       }
       if (best.face < 0) continue;
-      // nearer on a neighbour that shares the foot: the skin goes on there
+      // nearer on a neighbour that shares the foot: the skin is continuous there
       if (!own.neighbours.may_touch(point.face / kClusterFaces,
                                     surface.nearest_around(at, best.face).face / kClusterFaces))
         continue;
@@ -99,7 +99,7 @@ void expect_equal(const std::map<int, double>& found, const std::map<int, double
                   const std::string& what) {
   for (const auto& [point, gap] : wanted) {
     ASSERT_TRUE(found.contains(point)) << what << ": point " << point << ", gap " << gap;
-    // of two faces that are as near but for single precision the search may take either
+    // the search may take either face if their distances agree to single precision
     EXPECT_NEAR(found.at(point), gap, 1e-7) << what << ": point " << point;
   }
   for (const auto& [point, gap] : found)
@@ -108,7 +108,8 @@ void expect_equal(const std::map<int, double>& found, const std::map<int, double
 
 }  // namespace
 
-// From pose to pose, with clusters known to be clear and without: the same springs, those of all faces.
+// Moving from pose to pose, with clusters known to be clear and without, the search finds the same springs as
+// a search through all faces.
 TEST(OwnSkinContact, FindsWhatASearchThroughAllFacesFinds) {
   const double length = 2.0;
   const TriMesh bar = mesh::box_surface(Vec3(length, 0.3, 0.2), {60, 9, 6});
@@ -137,7 +138,7 @@ TEST(OwnSkinContact, FindsWhatASearchThroughAllFacesFinds) {
   EXPECT_GT(overlaps, 500);
 }
 
-// Sheets that lie on each other share no cluster, and meet where they are pressed together.
+// Sheets that lie on each other share no cluster, and collide where they are pressed together.
 TEST(OwnSkinContact, SheetsOnEachOtherHaveClustersOfTheirOwn) {
   const TriMesh sheets = two_sheets();
   Own own(sheets, 0.1);
@@ -159,7 +160,7 @@ TEST(OwnSkinContact, SheetsOnEachOtherHaveClustersOfTheirOwn) {
   EXPECT_NEAR(area, own.skin.area.sum(), 1e-12);
 
   Points x = sheets.vertices;
-  x.rightCols(half).row(2).array() -= 0.0025;  // half a millimetre into each other
+  x.rightCols(half).row(2).array() -= 0.0025;  // overlapping by half a millimetre
   own.find(x, 0.0);
   int lower = 0, upper = 0;
   for (const Spring& s : own.contact.springs()) {
@@ -170,7 +171,7 @@ TEST(OwnSkinContact, SheetsOnEachOtherHaveClustersOfTheirOwn) {
   EXPECT_GT(lower, 100);
   EXPECT_GT(upper, 100);
 
-  // apart, but nearer than what is asked for
+  // apart, but within the search distance
   x = sheets.vertices;
   x.rightCols(half).row(2).array() += 0.01;
   own.find(x, 0.02);
@@ -179,8 +180,8 @@ TEST(OwnSkinContact, SheetsOnEachOtherHaveClustersOfTheirOwn) {
   EXPECT_TRUE(near_ones(own.contact, 1.0).empty());
 }
 
-// Clusters that are known to be clear stay out of the search: limbs that come out of each other, from deeper
-// than overlaps are found, in steps shorter than what is clear.
+// Clusters known to be clear are left out of the search without effect on the result: limbs separate,
+// starting deeper than overlaps are detected, in steps shorter than the clearance.
 TEST(OwnSkinContact, FindsTheSameWhateverWasBefore) {
   const double length = 2.0;
   const TriMesh bar = mesh::box_surface(Vec3(length, 0.3, 0.2), {120, 18, 12});
@@ -204,8 +205,8 @@ TEST(OwnSkinContact, FindsTheSameWhateverWasBefore) {
   EXPECT_GT(deepest, 5) << "overlaps reach the depth of 0.02 up to which they are found";
 }
 
-// Of a bar bent to a U: opposite sides of an arm have tissue in between, arms side by side have air; next to
-// each other along the skin are neighbours whatever is in between.
+// Neighbourhoods of a bar bent to a U: opposite sides of one arm have tissue in between, and the two arms
+// have air. Clusters adjacent along the skin are neighbours in any case.
 TEST(OwnSkinContact, NeighboursAreNearAlongTheSkinOrThroughTissue) {
   const double length = 2.0, radius = 0.25;
   const TriMesh bar = mesh::box_surface(Vec3(length, 0.8, 0.2), {60, 24, 6});
@@ -213,8 +214,8 @@ TEST(OwnSkinContact, NeighboursAreNearAlongTheSkinOrThroughTissue) {
   const Skin skin = make_skin({rest, bar.faces}, Clusters::kConnected);
   const OwnNeighbourhood neighbours(skin, rest, radius);
   struct Place {
-    Vec3 middle = Vec3::Zero();             // of the straight bar
-    bool is_inner = true, is_outer = true;  // all on that side
+    Vec3 middle = Vec3::Zero();             // centre on the straight bar
+    bool is_inner = true, is_outer = true;  // all vertices on that side
   };
   std::vector<Place> places;
   for (int c = 0; c < skin.cluster_count(); ++c) {

@@ -1,4 +1,4 @@
-// The triangles between contact points: they are the skin, cut, and hang together.
+// Triangles between contact points: they are the skin, subdivided, and connected.
 #include "palpate/distance/points.h"
 #include "bodies.h"
 
@@ -14,7 +14,8 @@ Vec3 place(const TriMesh& mesh, const Skin& skin, const ContactPoint& point) {
 
 }  // namespace
 
-// Each as large as it says, turned as its face is; a hat's area is a third of its triangles'.
+// Each triangle has its stored area and the orientation of its face; the area of a hat function is a third of
+// its triangles' area.
 TEST(ContactMesh, CutsTheSkin) {
   const TriMesh mesh = bumpy_sphere(1.0, 4, 0.2);
   const Skin skin = make_skin(mesh);
@@ -43,7 +44,7 @@ TEST(ContactMesh, CutsTheSkin) {
   }
 }
 
-// Euler: half a point per triangle, and the two that a sphere has more.
+// Euler's formula: half a point per triangle, plus two for a sphere.
 TEST(ContactMesh, SharesPointsBetweenFacesThatAreCutAlike) {
   const Skin skin = make_skin(mesh::sphere(1.0, 1));
   ASSERT_LT(skin.longest_edge.maxCoeff() / skin.longest_edge.minCoeff(), 1.0 + 1e-12);

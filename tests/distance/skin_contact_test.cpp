@@ -1,4 +1,4 @@
-// The energy of two skins in contact: laws worked out by hand, gradient, balance, history, memory.
+// Contact energy of two skins: laws worked out by hand, gradient, equilibrium, history, memory.
 #include "malloc_count.h"
 
 #include "bodies.h"
@@ -10,7 +10,7 @@ namespace {
 constexpr double kStiffness = 1e6;  // [Pa/m]
 constexpr double kRadius = 0.05;
 
-/// Force on a sphere that is pressed by `depth` into the top of a box, over pi k R depth^2.
+/// Force on a sphere that is pressed by `depth` into the top of a box, divided by pi k R depth^2.
 double ratio_to_law(const Body& sphere, const Body& box, bool two_sided, bool of_box, double depth) {
   Body ball = sphere;
   ball.place(rotation({0.4, 0.3, 0.2}), {0.003, 0.002, 0.1 + kRadius - depth});
@@ -24,13 +24,11 @@ double ratio_to_law(const Body& sphere, const Body& box, bool two_sided, bool of
 
 }  // namespace
 
-// With d the depth at the angle t from the lowest point, d = delta - R (1 - cos t), the sphere's own points
-// give
-//   k integral of d dA = 2 pi k R^2 integral over c = cos t of (delta - R (1 - c)) = pi k R delta^2.
-// A point of the plane at the distance s from the centre, h = R - delta, is pushed by R - s along its radius:
-//   k integral of (R - s) h/s 2 pi s ds over h < s < R = pi k (R - delta) delta^2.
-// Half of each: pi k R delta^2 (1 - delta/(2 R)).  The volume is pi delta^2 (R - delta/3), so the first is
-// 1/(1 - delta/(3 R)) times k and the volume.
+// With d the depth at angle t from the lowest point, d = delta - R (1 - cos t), the sphere's points give k
+// integral of d dA = 2 pi k R^2 integral over c = cos t of (delta - R (1 - c)) = pi k R delta^2. A point of
+// the plane at distance s from the centre, h = R - delta, is pushed by R - s along its radius: k integral of
+// (R - s) h/s 2 pi s ds over h < s < R = pi k (R - delta) delta^2. Half of each: pi k R delta^2 (1 - delta/(2
+// R)). The volume is pi delta^2 (R - delta/3), so the first is 1/(1 - delta/(3 R)) times k times the volume.
 TEST(SkinContact, SphereOnPlane) {
   const Body sphere = shell(mesh::sphere(kRadius, 48));
   const Body box = shell(mesh::box_surface({0.2, 0.2, 0.2}, {128, 128, 1}));
@@ -41,8 +39,8 @@ TEST(SkinContact, SphereOnPlane) {
   }
 }
 
-// A polyhedron inscribed in the sphere lies inside by up to h^2/(8 R); so does the force err, to second
-// order.
+// A polyhedron inscribed in a sphere lies inside it by up to h^2/(8 R); the force therefore has a
+// second-order error.
 TEST(SkinContact, ForceConvergesToSecondOrderInTheMesh) {
   const Body box = shell(mesh::box_surface({0.2, 0.2, 0.2}, {2, 2, 1}));
   double error[3];
@@ -123,9 +121,9 @@ TEST(SkinContact, ForcesAndMomentsBalanceToRounding) {
   EXPECT_LT((contact.resultant().moment - moment).norm(), 1e-14 * force.norm());
 }
 
-// Exact spheres have no torque about their centres; of two inscribed polyhedra each foot's line passes the
-// centre by up to R times the angle between a face and the sphere, h/(2 R), as often on one side as on the
-// other.
+// Exact spheres have no torque about their centres. With two inscribed polyhedra, the line through each foot
+// misses the centre by up to R times the angle between face and sphere, h/(2 R), equally often on either
+// side.
 TEST(SkinContact, SpheresFeelNoTorque) {
   const Body a = shell(mesh::sphere(0.05, 40));
   Body b = shell(mesh::sphere(0.04, 40));
@@ -146,7 +144,7 @@ TEST(SkinContact, SpheresFeelNoTorque) {
   }
 }
 
-// Renaming the sides swaps the roles of the two skins and nothing else.
+// Exchanging the two bodies swaps the roles of the two skins and changes nothing else.
 TEST(SkinContact, OrderOfTheBodiesChangesRoundingAlone) {
   Pair pair;
   SkinContact one(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
@@ -168,8 +166,8 @@ TEST(SkinContact, RigidMotionOfAllTurnsTheForce) {
   EXPECT_LT((contact.resultant().force - R * r.force).norm(), 1e-10 * r.force.norm());
 }
 
-// A small body whose surface is everywhere far from the large one's: no cap on depth, and the nearest way
-// out.
+// A small body deep inside a large one, far from its surface everywhere: depth is not limited, and the
+// nearest exit is found.
 TEST(SkinContact, DeepPointsAreFoundHoweverFarTheSkinIs) {
   const Body large = shell(mesh::sphere(0.1, 24));
   Body small = shell(mesh::sphere(0.01, 6));
@@ -202,7 +200,7 @@ TEST(SkinContact, ResultIsTheSameWhateverWasFoundBefore) {
   EXPECT_GT(springs, 500);
 }
 
-// Straight towards the other body, so that a clearance is used up by nothing but the approach.
+// Motion straight towards the other body: the approach alone consumes the clearance.
 TEST(SkinContact, SmallStepsTowardsEachOtherMissNothing) {
   Pair pair;
   const SkinContactSpec spec{.stiffness_pa_m = kStiffness};
@@ -220,8 +218,8 @@ TEST(SkinContact, SmallStepsTowardsEachOtherMissNothing) {
   EXPECT_GT(springs, 200u);
 }
 
-// Two balls along the diagonal: their boxes overlap by far before their skins touch, so that every cluster
-// near the contact was found clear, by up to 0.07 m, and is looked at again for nothing but the approach.
+// Two balls approach along the diagonal: their boxes overlap well before their skins touch. Every cluster
+// near the contact was found clear by up to 0.07 m, and is searched again only because of the approach.
 TEST(SkinContact, AnApproachFromFarMissesNothing) {
   const Body a = shell(mesh::sphere(0.1, 24));
   Body b = a;
@@ -240,13 +238,13 @@ TEST(SkinContact, AnApproachFromFarMissesNothing) {
   EXPECT_GT(springs, 50u);
 }
 
-// Springs that were found 2 mm apart follow an approach along their own line: as soon as the first of them
-// can be inside it is, and those that are left out are outside.
+// Springs found 2 mm apart follow an approach along their line: once the first one can penetrate, it does,
+// and the springs left out are outside.
 TEST(SkinContact, SpringsThatFollowAnApproachMissNothing) {
   const Body a = shell(mesh::sphere(0.1, 24));
   Body b = a;
   const SkinContactSpec spec{.stiffness_pa_m = kStiffness};
-  const Vec3 line = a.rest.col(0).normalized();  // a vertex of a comes down on its own image
+  const Vec3 line = a.rest.col(0).normalized();  // a vertex of a approaches its mirror image
   const double low = std::abs((a.rest.transpose() * line).minCoeff());
   const auto place = [&](double gap) { b.place(Vec3(line * (0.1 + low + gap))); };
   for (const double depth : {1e-5, 1e-4, 1e-3}) {
@@ -267,8 +265,8 @@ TEST(SkinContact, SpringsThatFollowAnApproachMissNothing) {
   }
 }
 
-// The packets' single precision picks a face; the foot is then that of the reference, but where two places
-// are as near to within rounding.
+// The packets' single precision selects a face; the foot is then that of the reference search, unless two
+// places are equally near to within rounding.
 TEST(SkinContact, FindEqualsTheReference) {
   std::mt19937 random(23);
   std::uniform_real_distribution<double> turn(-1.0, 1.0), shift(-0.01, 0.01);
@@ -291,7 +289,7 @@ TEST(SkinContact, FindEqualsTheReference) {
         if (f.face == r.face) {
           EXPECT_LT((f.reach - r.reach).norm(), 1e-15);
         } else {
-          EXPECT_NEAR(f.reach.norm(), r.reach.norm(), 2e-7);  // [m], of bodies of 0.1 m: single precision
+          EXPECT_NEAR(f.reach.norm(), r.reach.norm(), 2e-7);  // [m], for bodies of 0.1 m: single precision
           ++elsewhere;
         }
       }
@@ -306,15 +304,15 @@ TEST(SkinContact, FindEqualsTheReference) {
   const Body box = shell(mesh::box_surface({0.1, 0.2, 0.05}, {6, 12, 3}));
   Body gear = shell(shapes::make("gear").skin);
   compare(box, gear, {0.08, 0, 0}, 1.0, 1);
-  // Deep inside, the points of a packet are close together against their distance: bounds on clusters are
+  // Deep inside, the points of a packet are close together relative to their distance: bounds on clusters are
   // tight.
   const Body around = shell(bumpy_sphere(0.1, 16, 0.2));
   Body within = shell(bumpy_sphere(0.02, 8, 0.2));
   compare(around, within, {0.03, 0.01, -0.02}, 1.0, 1);
 }
 
-// A diverging integrator asks at positions beyond single precision, whose squares are beyond double, and at
-// none.
+// A diverging integrator evaluates contact at positions beyond single precision, whose squares exceed double,
+// and at NaN.
 TEST(SkinContact, AbsurdPositionsDoNoHarm) {
   Pair pair;
   SkinContact contact(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
@@ -335,7 +333,7 @@ TEST(SkinContact, AbsurdPositionsDoNoHarm) {
         contact.add_force(fa.data(), fb.data());
         contact.quadrature_error();
       }
-  // and what comes after is what it would have been
+  // the next search is unaffected
   SkinContact fresh(pair.a.skin, pair.b.skin, {.stiffness_pa_m = kStiffness});
   contact.find(pair.a.at(), pair.b.at());
   fresh.find(pair.a.at(), pair.b.at());

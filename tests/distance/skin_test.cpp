@@ -1,4 +1,5 @@
-// Topology of a skin: closed surfaces alone, clusters that hold every face once, neighbours that agree.
+// Topology of a skin: only closed surfaces are accepted, clusters hold every face once, neighbours are
+// mutual.
 #include <set>
 
 #include "bodies.h"

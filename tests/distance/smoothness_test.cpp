@@ -1,10 +1,10 @@
-// Force along smooth paths: no jumps beyond one point's share, no work around closed loops.
+// Contact force along smooth paths: no jumps beyond one point's share, no work around closed loops.
 #include "bodies.h"
 
 using namespace distance_tests;
 
-// A foot that changes from one face to another beyond a sharp edge takes its spring's force with it, by no
-// more than twice its size; all other springs change smoothly.
+// A foot that changes from one face to another across a sharp edge changes its spring's force by at most
+// twice its magnitude; all other springs change smoothly.
 TEST(SmoothContact, JumpsAreBoundedByOnePointsShare) {
   Pair pair;
   const SkinContactSpec spec{
@@ -35,12 +35,12 @@ TEST(SmoothContact, JumpsAreBoundedByOnePointsShare) {
     }
     EXPECT_LT(share, 0.05);
   }
-  EXPECT_GT(worst, 1e-7);  // it moved
+  EXPECT_GT(worst, 1e-7);  // it changes at all
   EXPECT_LT(worst, 5e-3);
 }
 
-// The trapezium rule's own error around a circle of n steps is of second order in 1/n, and larger at first
-// touch; a force with a rotation would leave work however small the steps are.
+// The error of the trapezium rule around a circle with n steps is of second order in 1/n, and larger at first
+// touch; a force with a curl would leave work however small the steps are.
 TEST(SmoothContact, ClosedLoopsDoNoWork) {
   Pair pair;
   SkinContact contact(pair.a.skin, pair.b.skin, {.stiffness_pa_m = 1e6});

@@ -1,5 +1,5 @@
-// Nearest points and sides against all triangles one by one, over shapes with sharp edges, relief and
-// handles, and meshes that people made (PALPATE_TEST_DATA).
+// Nearest points and inside tests against a search through all triangles, over shapes with sharp edges,
+// relief and handles, and meshes from practice (PALPATE_TEST_DATA).
 #include <cstdlib>
 #include <filesystem>
 
@@ -46,7 +46,7 @@ TEST(NearestOnTriangle, MeetsTheConditionOfANearestPoint) {
     const Vec3 a = point(), b = point(), c = i % 3 ? point() : Vec3(a + 0.4 * (b - a) + 1e-3 * point()),
                x = point();
     const TrianglePoint at = nearest_on_triangle(a, b, c, x);
-    // y is nearest to x in a convex set exactly where no point z of it has (x - y) . (z - y) > 0.
+    // y is the point of a convex set nearest to x exactly if no point z of the set has (x - y) . (z - y) > 0.
     const Vec3 y = x - at.away;
     for (const Vec3& z : {a, b, c}) EXPECT_LE(at.away.dot(z - y), 1e-12);
     EXPECT_NEAR(at.weights.sum(), 1.0, 1e-14);
@@ -75,7 +75,7 @@ TEST(DistanceSurface, NearestPointIsThatOfAllTrianglesWhateverBoundsTheSearch) {
     int inside = 0;
     for (int i = 0; i < 200; ++i) {
       Vec3 x;
-      if (i % 2)  // near the skin, where features are many
+      if (i % 2)  // near the skin, where many features compete
         x = surface.corner(any(random), 0) +
             (high - low).norm() * Vec3(small(random), small(random), small(random));
       else
@@ -99,7 +99,8 @@ TEST(DistanceSurface, NearestPointIsThatOfAllTrianglesWhateverBoundsTheSearch) {
   }
 }
 
-// A needle's tip: an outside point before it is behind two of the faces that meet there.
+// At a needle's tip, a point outside in front of the tip is behind two of the faces that meet there; the
+// pseudonormal gives the right side.
 TEST(DistanceSurface, SideAtASharpVertexIsThePseudonormals) {
   TriMesh needle;
   needle.vertices.resize(3, 4);
@@ -120,7 +121,7 @@ TEST(DistanceSurface, SideAtASharpVertexIsThePseudonormals) {
       behind += n.dot(x - surface.corner(f, 0)) < 0;
     }
   }
-  // Before each edge, within the wedge of its two normals and near one of them.
+  // In front of each edge, within the wedge of its two normals and near one of them.
   for (int f = 0; f < 4; ++f)
     for (int k = 0; k < 3; ++k) {
       const auto normal = [&](int face) {
@@ -133,6 +134,6 @@ TEST(DistanceSurface, SideAtASharpVertexIsThePseudonormals) {
       EXPECT_EQ((foot.at.weights.array() == 0.0).count(), 1);
       EXPECT_FALSE(surface.is_inside(foot));
     }
-  EXPECT_GT(behind, 2);  // a single face would have said inside
+  EXPECT_GT(behind, 2);  // a single face's normal would have given inside
   EXPECT_TRUE(surface.is_inside(surface.nearest(Vec3(0.8, 0.0, 0.02))));
 }

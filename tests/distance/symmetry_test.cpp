@@ -1,11 +1,11 @@
-// Contact of rotated and reflected scenes, and of a ball carried round another one.
+// Contact of rotated and reflected scenes, and of a ball carried round another ball.
 #include "bodies.h"
 
 using namespace distance_tests;
 
 namespace {
 
-/// The 48 ways to map the axes onto each other; half of them mirror.
+/// The 48 maps of the axes onto each other; half of them are reflections.
 std::vector<Mat3> axis_maps() {
   std::vector<Mat3> out;
   std::array<int, 3> axis = {0, 1, 2};
@@ -21,11 +21,11 @@ std::vector<Mat3> axis_maps() {
 
 TriMesh mapped(TriMesh mesh, const Mat3& map) {
   mesh.vertices = (map * mesh.vertices).eval();
-  if (map.determinant() < 0.0) mesh.faces.row(1).swap(mesh.faces.row(2));  // outward again
+  if (map.determinant() < 0.0) mesh.faces.row(1).swap(mesh.faces.row(2));  // outward orientation again
   return mesh;
 }
 
-/// A body's rest surface as its nodes stand.
+/// A body's rest surface with its vertices at the current nodes.
 TriMesh placed(TriMesh mesh, const Mat3& turn, const Vec3& shift) {
   mesh.vertices = ((turn * mesh.vertices).colwise() + shift).eval();
   return mesh;
@@ -33,7 +33,8 @@ TriMesh placed(TriMesh mesh, const Mat3& turn, const Vec3& shift) {
 
 }  // namespace
 
-// The search is in single precision about an origin of its own; feet, gaps and sums are in double.
+// The search uses single precision about a local origin; feet, gaps and sums use double, so that force and
+// moment transform with the scene to double precision.
 TEST(Symmetry, ForceAndMomentGoWithRotationsAndReflectionsOfTheScene) {
   const TriMesh one = bumpy_sphere(0.1, 14, 0.05),
                 other =
@@ -56,9 +57,9 @@ TEST(Symmetry, ForceAndMomentGoWithRotationsAndReflectionsOfTheScene) {
   EXPECT_EQ(checked, 48);
 }
 
-// A ball of 20 mm carried round one of 30 mm at 3 mm of overlap, both of triangles: polyhedra, whose facets
-// show.  The energy leaves no work around the loop, on any mesh; the direction, the moment about the centre
-// and what the force jumps by fall with the facets.
+// A ball of 20 mm is carried round one of 30 mm at 3 mm of overlap. Both are polyhedra, whose facets are
+// noticeable. On any mesh the energy leaves no work around the loop; errors of direction, moment about the
+// centre and force jumps decrease with the facet size.
 TEST(Symmetry, ABallCarriedRoundABall) {
   struct Measured {
     double angle_deg = 0.0, arm_mm = 0.0, jump = 0.0, work = 0.0;

@@ -1,4 +1,4 @@
-// docs/extending.md quotes the files of examples/: each does what it says.
+// docs/extending.md quotes the files of examples/: each behaves as described there.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -90,7 +90,7 @@ TEST(Examples, ObstacleIsTheSetOfPointsNearAnAxis) {
   int inside = 0;
   for (int k = 0; k < 300; ++k) {
     const Vec3 x = pose.translation + 0.45 * vector();
-    double nearest = 1e9;  // to the axis, point by point
+    double nearest = 1e9;  // distance to the axis, minimised over sampled points
     for (int i = 0; i <= 4000; ++i)
       nearest = std::min(nearest, (x - pose * Vec3(0.0, 0.0, -0.3 + 0.6 * i / 4000.0)).norm());
     const contact::Nearest at = entry.nearest(shape, x);
@@ -108,7 +108,7 @@ TEST(Examples, ObstacleIsTheSetOfPointsNearAnAxis) {
   for (int k = 0; k < 300; ++k) {
     const Vec3 x = pose.translation + 0.6 * vector(), n = vector().normalized(),
                to = pose.translation + 0.6 * vector();
-    double last = -1e9, deepest = 1e9;  // along the line and the way, point by point
+    double last = -1e9, deepest = 1e9;  // minimised over sampled points along the line
     for (int i = 0; i <= 4000; ++i) {
       const double s = -2.0 + i / 1000.0;
       if (capsule.at(x + s * n).gap < 0.0) last = s;

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""docs/keys.md, docs/study-keys.md, docs/names.md and docs/commands.md are what the program says.
+"""docs/keys.md, docs/study-keys.md, docs/names.md and docs/commands.md equal the program's output.
 
     generated_pages_test.py PROGRAM            compares
-    generated_pages_test.py PROGRAM --write    writes them anew: after a key, a name or an option has changed
+    generated_pages_test.py PROGRAM --write    rewrites them: after a key, a name or an option has changed
 """
 import re
 import subprocess
@@ -32,7 +32,7 @@ def said(*arguments):
 
 
 def wrapped(line, columns=108):
-    """The help's long lines, broken; an option's go on where its text begins."""
+    """Breaks the help's long lines; continuation lines of an option are aligned with its text."""
     text_column = 34 if line.startswith("  ") else 0
     return textwrap.wrap(line, columns, subsequent_indent=text_column * " ", break_long_words=False,
                          break_on_hyphens=False, drop_whitespace=True) if len(line) > columns else [line]
@@ -49,7 +49,7 @@ def commands():
 
 
 def model_section():
-    """Of the program palpate-model, which not every build has: then the page's own."""
+    """Section of the program palpate-model, which not every build has: otherwise the page's existing one."""
     text = said("model", "--help")
     if text is None:
         print("remark: this build has no palpate-model, its section is not compared")
@@ -87,7 +87,7 @@ class Generated(unittest.TestCase):
         self.assertGreater(len(tables), 20)
         for table in tables:
             self.assertIn(f"\n## {table}\n", page)
-        # as many rows as the terminal's tables, less the header and the rule of each
+        # as many rows as the terminal's tables, without the header and the rule of each
         rows = [line for line in keys.splitlines() if line and not line.startswith("[")]
         self.assertEqual(len(re.findall(r"^\| `\w+` \|.*\|.*\|.*\|.*\|.*\|.*\|$", page, re.M)),
                          len(rows) - 2 * len(tables))

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Every link, anchor and picture of README.md and docs/ leads somewhere, every page is reached, and the
-navigation of the site and `palpate help` have all of them; the checks themselves can fail."""
+"""Every link, anchor and picture of README.md and docs/ has a target, every page is reached, and the
+navigation of the site and `palpate help` include all pages; faulty examples show that the checks detect
+errors."""
 import re
 import statistics
 import sys
@@ -12,7 +13,7 @@ from pages import DOCS, TREE, anchors, fences, links, pages, prose, sentences  #
 
 
 def broken(name, text, texts):
-    """Links of a page that lead nowhere.  `texts`: all pages, by name."""
+    """Returns the links of a page without a target. `texts`: all pages, by name."""
     out = []
     for target in links(text):
         if re.match(r"[a-z]+://|mailto:", target):
@@ -85,7 +86,7 @@ class Lists(unittest.TestCase):
 
 
 class Short(unittest.TestCase):
-    """What a new user reads first stays short."""
+    """The pages for new users must remain short."""
 
     def test_readme_is_short(self):
         self.assertLess(len((TREE / "README.md").read_text().splitlines()), 160)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""docs/meshes.md quotes what the program says: each message of the first table is that of its file under
-tests/mesh/broken, each of the second stands in the sources of `palpate model`.
+"""docs/meshes.md quotes the program's messages: each message of the first table is that of its file under
+tests/mesh/broken, each of the second occurs in the sources of `palpate model`.
 
     meshes_test.py PROGRAM
 """

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Every key, option, command, name and file that README.md and docs/ mention exists, and every command and
-option, every key and every name of the program stands in some page; the checks themselves can fail.
+option, every key and every name of the program occurs in some page; faulty examples show that the checks
+detect errors.
 
-What exists is read from docs/keys.md, docs/names.md and docs/commands.md, which docs.generated_pages holds
-against the program.
+The existing names are read from docs/keys.md, docs/names.md and docs/commands.md, which docs.generated_pages
+compares with the program.
 """
 import fnmatch
 import re
@@ -20,13 +21,13 @@ LAUNCHER = {"test": {"--slow", "--part", "--help"}, "build": set(), "package": s
 LAUNCHER_OPTIONS = {"--no-install", "--assume-packages", "--debug", "--asan", "--strict", "--minimal"}
 # Options of other programs that the pages mention.
 FOREIGN = {"--install", "--prefix"}
-FOREIGN_NAMES = {"m_specifications"}  # of CHAI3D
+FOREIGN_NAMES = {"m_specifications"}  # CHAI3D's
 # [hand.tool] and [hand.device] have the keys of [tool] and [device].
 SAME_KEYS = {"hand.tool": "tool", "hand.device": "device"}
 
 
 class Program:
-    """What the generated pages say that there is."""
+    """Names and options according to the generated pages."""
 
     def __init__(self):
         self.options = {}
@@ -58,7 +59,7 @@ class Program:
 
 @cache
 def sources():
-    """All that is written in the sources, where a name may stand that is no key."""
+    """All text of the sources, in which a name that is no key may occur."""
     folders = ("src", "include", "tests", "validation", "benchmarks", "shaders")
     files = [file for folder in folders for file in (TREE / folder).rglob("*")
              if file.suffix in (".h", ".cpp", ".py", ".txt", ".inl", ".glsl", ".comp")]
@@ -69,7 +70,7 @@ def sources():
 
 
 def command_faults(line, program):
-    """What is wrong with `palpate ...`."""
+    """Returns the faults of a `palpate ...` command."""
     words = re.sub(r"^(\./)?palpate\s*", "", line).split()
     while words and words[0] in LAUNCHER_OPTIONS:
         words.pop(0)
@@ -104,7 +105,7 @@ def command_faults(line, program):
 
 
 def commands_of(text):
-    """Each `palpate ...` of fenced blocks and of backticks."""
+    """Returns each `palpate ...` of fenced blocks and of backticks."""
     out = []
     for language, content in fences(text):
         if language in ("sh", "text"):
@@ -132,7 +133,7 @@ def toml_faults(text, program):
 
 
 def span_faults(span, program):
-    """What is wrong with what stands in backticks."""
+    """Returns the faults of text in backticks."""
     if re.match(r"(\./)?palpate ", span):
         return []
     every_option = set().union(*program.options.values(), *LAUNCHER.values(), LAUNCHER_OPTIONS, FOREIGN)
@@ -219,7 +220,8 @@ class FromThePages(unittest.TestCase):
 
 
 class FromTheProgram(unittest.TestCase):
-    """Tables of what there is stand in the generated pages; a person needs more of what can be called."""
+    """The generated pages contain tables of all names; the other pages must mention those that a user
+    needs."""
     program = Program()
 
     def test_the_generated_pages_have_all(self):
@@ -235,7 +237,7 @@ class FromTheProgram(unittest.TestCase):
         self.assertEqual(set(self.program.options) - shown, set())
 
     def test_every_key_of_the_specs_is_in_the_page(self):
-        """A key's row is `name("key", ...`: none of the loader's tables is missing."""
+        """A key's row is `name("key", ...`: no table of the loader may be missing."""
         text = "\n".join(file.read_text() for pattern in ("keys*.cpp", "study_keys.cpp")
                          for file in (TREE / "src/scene").glob(pattern))
         kinds = "number|numbers|text|texts|integer|boolean|vec3|table|tables|rungs|group"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""docs/ is one static site: `mkdocs build --strict`, which fails on a page or link that is not there; and
-every place in a page that a link names is there, too.  Exits with 77 (skipped, aloud) where MkDocs or its
-theme is missing.
+"""docs/ is one static site: `mkdocs build --strict` fails on a missing page or link; in addition, every
+anchor that a link refers to must exist. Exits with 77 (skipped, with a message) where MkDocs or its theme is
+missing.
 """
 import re
 import shutil
@@ -19,7 +19,7 @@ def skip(what):
 
 
 def lost_places(site):
-    """Links into pages whose heading is not there."""
+    """Returns the links to headings that do not exist."""
     texts = {page: page.read_text(encoding="utf-8") for page in site.rglob("index.html")}
     out, seen = [], 0
     for page, text in texts.items():
@@ -34,7 +34,7 @@ def lost_places(site):
 
 
 def check(site):
-    """What is wrong with the site; empty: nothing."""
+    """Returns the faults of the site; empty if there are none."""
     made = {page.parent.relative_to(site).as_posix() for page in site.rglob("index.html")}
     docs = TREE / "docs"
     missing = ({page.relative_to(docs).with_suffix("").as_posix() for page in docs.rglob("*.md")} - made
@@ -55,7 +55,7 @@ def main():
         if done.returncode != 0:
             sys.exit(done.returncode)
         faults = check(site)
-        page = site / "keys/index.html"  # the check itself can fail
+        page = site / "keys/index.html"  # the check must detect a planted fault
         page.write_text(page.read_text().replace('id="bodymesh"', ""))
         if not any("#bodymesh" in fault for fault in check(site)):
             faults.append("a heading that was taken away was not missed")

@@ -1,6 +1,6 @@
 #pragma once
-// A chain of nodes with springs, masses, held and carried nodes: the smallest systems that have all that a
-// System puts together.
+// Chains of nodes with springs, masses, held and carried nodes: the smallest systems with all parts that a
+// System assembles.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -19,8 +19,8 @@ class ChainSprings : public ForceTerm, public FusedStepTerm {
  public:
   ChainSprings(int nodes, double k, bool fuses = true) : nodes_(nodes), k_(k), fuses_(fuses) {}
   std::uint64_t version = 0;  ///< step_version()
-  int assembled = 0;          ///< calls of add_step()
-  double drag = 0.0;          ///< mass-proportional damping, in add_step() alone [kg/s]
+  int assembled = 0;          ///< number of add_step() calls
+  double drag = 0.0;          ///< mass-proportional damping, applied in add_step() only [kg/s]
   std::string_view name() const override { return "springs"; }
   TermTraits traits() const override { return {}; }
   bool fuses_step() const override { return fuses_; }
@@ -72,7 +72,7 @@ class ChainSprings : public ForceTerm, public FusedStepTerm {
   bool fuses_;
 };
 
-/// Mass m on every node; with `coupling` > 0 neighbours share inertia (a consistent mass).
+/// Mass m on every node; with `coupling` > 0 neighbours share inertia (consistent mass).
 class ChainMass final : public InertiaTerm {
  public:
   ChainMass(int block, int nodes, double m, double coupling = 0.0)
@@ -103,7 +103,7 @@ class ChainMass final : public InertiaTerm {
   double m_, c_;
 };
 
-/// A rigid body of mass M and inertia I (isotropic), no coupling to nodes of its own.
+/// A rigid body of mass M and isotropic inertia I, without coupling to nodes.
 class BoneMass final : public InertiaTerm {
  public:
   BoneMass(int block, double mass, double inertia) : block_(block), mass_(mass), inertia_(inertia) {}
@@ -124,7 +124,7 @@ class BoneMass final : public InertiaTerm {
   double mass_, inertia_;
 };
 
-/// Nodes held still, or moved with x = x0 + 1/2 a t^2.
+/// Nodes that are held, or moved with x = x0 + 1/2 a t^2.
 class Held final : public DrivenMotion {
  public:
   Held(std::vector<int> dofs, VecX x0, double a) : dofs_(std::move(dofs)), x0_(std::move(x0)), a_(a) {}
@@ -141,7 +141,7 @@ class Held final : public DrivenMotion {
   double a_;
 };
 
-/// The second client: one node carried by a rigid body, x = p + R c.
+/// One node carried by a rigid body, x = p + R c.
 class OnBone final : public DrivenMotion {
  public:
   OnBone(int node, int bone, const Vec3& c)
@@ -171,7 +171,7 @@ class OnBone final : public DrivenMotion {
   Vec3 c_;
 };
 
-/// A second linear solver: dense LU.
+/// A second linear solver for the tests: dense LU.
 class DenseSolver final : public LinearSolver {
  public:
   std::string name() const override { return "dense"; }

@@ -9,7 +9,7 @@ using namespace palpate::dynamics;
 
 namespace {
 
-// A record whose every field tells its version: a torn copy would mix two.
+// A record in which every field encodes the version: a torn copy would mix two versions.
 LinearisedContact marked(std::uint64_t version) {
   LinearisedContact r;
   r.version = version;
@@ -45,7 +45,7 @@ TEST(Exchange, RecordsAreNeverTornNorGoBackwards) {
   EXPECT_EQ(exchange.latest().version, kRecords);
 }
 
-TEST(Exchange, FitsAnyPlainRecord) {  // a second client of the interface: a bare clock
+TEST(Exchange, FitsAnyPlainRecord) {  // a second record type for the interface: a plain clock
   struct Clock {
     double t;
   };

@@ -87,8 +87,8 @@ TEST(FreeBodyKinematics, LeftInverseUndoesTheRate) {
   EXPECT_LT((back - u).norm(), 1e-14);
 }
 
-// A constant angular velocity turns the body by exp(t [w]): the rate must be the derivative of that, for
-// world axes.
+// A constant angular velocity w rotates the body by exp(t [w]): the kinematic rate must be its derivative,
+// with w in world axes.
 TEST(FreeBodyKinematics, RateIsTheDerivativeOfARotationAboutAWorldAxis) {
   const Vec3 w(0.4, -1.2, 0.7);
   const Quat start(Eigen::AngleAxisd(0.9, Vec3(1, 2, -1).normalized()));

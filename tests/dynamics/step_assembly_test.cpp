@@ -9,7 +9,7 @@ using namespace palpate::dynamics;
 
 namespace {
 
-/// Room for a zero-row-sum matrix, in the order of the pattern's upper triangle.
+/// Allocates a zero-row-sum matrix in the order of the pattern's upper triangle.
 ZeroRowSumMatrix room_for(const BlockSparse& pattern) {
   ZeroRowSumMatrix A;
   A.pattern = &pattern;
@@ -30,8 +30,8 @@ ZeroRowSumMatrix room_for(const BlockSparse& pattern) {
 
 }  // namespace
 
-// The zero-row-sum matrix is that of step_matrix: its off-diagonal blocks, and on the diagonal m less the
-// row's sum; held rows apart.
+// The zero-row-sum matrix represents step_matrix: it has the same off-diagonal blocks, and its diagonal
+// blocks are m minus the sum of the row's off-diagonal blocks. Held rows are stored separately.
 TEST(StepAssembly, MakesTheStepOfTheSystem) {
   Chain c(5);
   c.system.add(std::make_shared<ChainMass>(c.block, 5, 2.0));
@@ -96,7 +96,8 @@ TEST(StepAssembly, AppliesOnlyWhereEveryTermTakesPart) {
   })) << "two terms on one pair of nodes";
 }
 
-// The residual of the step is that of its matrix and right-hand side, and zero along held directions.
+// The step's residual equals the one computed from its matrix and right-hand side, and is zero along held
+// directions.
 TEST(StepAssembly, TheResidualIsThatOfTheMatrix) {
   Chain c(5);
   c.system.add(std::make_shared<ChainMass>(c.block, 5, 2.0));
@@ -123,7 +124,7 @@ TEST(StepAssembly, TheResidualIsThatOfTheMatrix) {
   EXPECT_EQ(r[2], 0.0);
 }
 
-// A term without the capability: its steps are assembled the general way, unless its tangent is zero.
+// A term without the capability sends its steps to general assembly, unless its tangent is zero.
 TEST(StepAssembly, FindsTheCapabilityOfATermThatIsAddedLater) {
   struct Load final : ForceTerm {
     explicit Load(bool is_zero) : zero(is_zero) {}
@@ -153,7 +154,7 @@ TEST(StepAssembly, FindsTheCapabilityOfATermThatIsAddedLater) {
 
 namespace {
 
-/// A chain of which a step was kept, and one that never keeps any.
+/// A chain for which a step was kept, and a fresh one that never keeps a step.
 struct KeptChain {
   Chain c{5}, fresh{5};
   VecX shift = VecX::LinSpaced(15, -1.0, 2.0);
@@ -179,8 +180,8 @@ struct KeptChain {
     ASSERT_TRUE(assembly.applies(c.state.view()));
     assembly.assemble(c.state.view(), shift, 1.0, d, k, f, A, keep);
   }
-  /// Whether the terms were asked again, by an assembly of another's, into a matrix with other numbers in it.
-  /// What comes of it is in any case that of a system that keeps nothing.
+  /// Returns whether the terms were evaluated again by another assembly into a matrix with other values. The
+  /// result equals in any case that of a system that keeps nothing.
   bool asks_again() {
     const int before = springs().assembled;
     std::fill(A.values.begin(), A.values.end(), 77.0f);
@@ -199,7 +200,7 @@ struct KeptChain {
 
 }  // namespace
 
-// Who asks for the step that was kept gets it without the terms; whoever asks for any other gets that.
+// A request for the kept step is served without evaluating the terms; any other request is assembled.
 TEST(StepAssembly, TakesWhatWasKeptOfTheSameStepAlone) {
   const auto changed = [](auto&& change) {
     KeptChain chain;
@@ -224,7 +225,7 @@ TEST(StepAssembly, KeepsNothingOfTermsWithoutAVersion) {
   EXPECT_TRUE(chain.asks_again());
 }
 
-// A step that is not kept leaves what is.
+// An assembly with keep = false leaves the kept step valid.
 TEST(StepAssembly, KeepsWhatItIsAskedToKeep) {
   KeptChain chain;
   const VecX shift = chain.shift;

@@ -7,7 +7,7 @@
 using namespace palpate;
 using namespace palpate::dynamics;
 
-/// Couples one pair of nodes that changes; counts how often it is asked for it.
+/// Couples one pair of nodes that may change; counts the calls of add_pattern().
 class Rolling final : public ForceTerm {
  public:
   std::string_view name() const override { return "rolling"; }
@@ -25,8 +25,8 @@ class Rolling final : public ForceTerm {
   mutable int asked = 0;
 };
 
-// Only the term whose pairs changed is asked anew, and the pattern is that of a System which
-// never knew the old ones.
+// Only the term whose pairs changed is queried again, and the pattern equals that of a System that never had
+// the old pairs.
 TEST(System, AsksForThePairsOfWhatChangedAlone) {
   Chain chain(8);
   const auto first = std::make_shared<Rolling>(), second = std::make_shared<Rolling>();

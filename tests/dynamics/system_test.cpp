@@ -84,10 +84,9 @@ TEST(System, StepMatrixHasIdentityRowsForDrivenDirectionsAndKeepsItsPattern) {
   EXPECT_NE(A.values_version, values);
 }
 
-// A node welded to a light bone: its force must turn and move the bone, and the two together obey Newton and
-// Euler:
-// total force on bone + node = rate of total linear momentum, moment about the bone's centre = rate of
-// angular momentum.
+// A node is welded to a light bone: its force must turn and move the bone, and the two together obey Newton
+// and Euler: total force on bone and node = rate of total linear momentum, moment about the bone's centre =
+// rate of angular momentum.
 TEST(System, NodesOnABoneBringTheirForceAndInertiaToIt) {
   for (const double coupling : {0.0, 0.5}) {
     Chain c(3);
@@ -114,14 +113,14 @@ TEST(System, NodesOnABoneBringTheirForceAndInertiaToIt) {
     const Vec3 arm(0.0, -0.3, 0.2), w = u.head<3>();
     const Vec3 node_acceleration = a.segment<3>(12) + a.segment<3>(9).cross(arm) + w.cross(w.cross(arm));
     EXPECT_LT((a.head<3>() - node_acceleration).norm(), 1e-11);
-    const Vec3 constraint = Ma.head<3>() - f.head<3>();  // what the bone exerts on its node
+    const Vec3 constraint = Ma.head<3>() - f.head<3>();  // force that the bone exerts on its node
     EXPECT_LT((Ma.segment<3>(12) + constraint).norm(), 1e-10 * constraint.norm());
     EXPECT_LT((Ma.segment<3>(9) + arm.cross(constraint)).norm(), 1e-10 * constraint.norm());
     EXPECT_LT((Ma.segment<6>(3) - f.segment<6>(3)).norm(), 1e-10 * f.norm()) << "free nodes";
   }
 }
 
-// T^T A T against the dense congruence.
+// The step matrix with carried nodes is T^T A T, compared with the dense congruence.
 TEST(System, StepMatrixOfNodesOnABoneIsTheCongruence) {
   Chain c(3);
   BlockSpec bone_spec;
@@ -163,7 +162,7 @@ TEST(System, FiltersTermsByWhatTheyAre) {
   EXPECT_EQ(none.norm(), 0.0);
 }
 
-/// Springs that write the rows of their block whole.
+/// Springs that overwrite the rows of their block.
 class StoredSprings final : public ChainSprings, public StoredTangentTerm {
  public:
   StoredSprings(int block, int nodes, double k) : ChainSprings(nodes, k), block_(block), count_(nodes) {}
@@ -180,7 +179,7 @@ class StoredSprings final : public ChainSprings, public StoredTangentTerm {
 };
 
 TEST(System, TermsThatStoreTheirRowsComeFirstAndOnlyOnceABlock) {
-  Chain c(3);  // its own springs, k = 50, add
+  Chain c(3);  // the chain's springs, k = 50, are added
   c.state.insert(BlockSpec{.name = "beside", .q_size = 6, .u_size = 6}, VecX::Zero(6), VecX::Zero(6));
   const auto first = std::make_shared<StoredSprings>(c.block, 3, 20.0),
              second = std::make_shared<StoredSprings>(c.block, 3, 3.0);

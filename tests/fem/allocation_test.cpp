@@ -15,7 +15,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
   workers::set_count(2);
   const TetMesh rest = jittered_cube(8, 0.1, 71);
   Random random(72);
-  // inverted elements too
+  // includes inverted elements
   const VecX x = flat(rest.nodes) + 0.07 * random.vector(3 * rest.nodes.cols()), v = random.vector(x.size());
   OneBody at(x, v);
   Material material = soft_material();
@@ -26,7 +26,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
   for (std::size_t e = 0; e < materials.of_element.size(); e += 3) materials.of_element[e] = 1;
   const long before_all = malloc_calls;
   const auto mass = make_consistent_mass(rest, materials, at.id);
-  EXPECT_GT(malloc_calls, before_all);  // the counter counts
+  EXPECT_GT(malloc_calls, before_all);  // the counter works
   struct Choice {
     Tangent tangent;
     const char* law;
@@ -42,14 +42,14 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
                                {.tangent = tangent, .full_damping_tangent = true, .volumetric_share = 0.5},
                                at.id);
     dynamics::PatternBuilder builder(at.state.layout());
-    dilatation.add_pattern(builder);  // the element's pairs are among them
+    dilatation.add_pattern(builder);  // the pattern includes the element's pairs
     dynamics::BorderedMatrix A;
     A.body = builder.build();
     VecX f = VecX::Zero(x.size()), y = f;
     SoftBody symmetric("b", rest, materials, {.tangent = tangent, .law = law}, at.id);
     dynamics::ZeroRowSumMatrix matrix;
     matrix.pattern = &A.body;
-    for (int s = 0; s < A.body.slot_count(); ++s) matrix.slot_map.push_back(s);  // more room than it needs
+    for (int s = 0; s < A.body.slot_count(); ++s) matrix.slot_map.push_back(s);  // more room than needed
     matrix.values.resize(9 * matrix.slot_map.size());
     matrix.diagonal = f;
     matrix.slot_map_key = 1;

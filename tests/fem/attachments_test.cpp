@@ -44,8 +44,8 @@ TEST(Attachments, NodesInABoxBordersIncluded) {
                   "attachment: box_min_m[1] = 2 must not exceed box_max_m[1] = 1");
 }
 
-// A block of 0.1 m, turned, far from the origin, and written in single precision: its top lies on the border
-// of the box to about 1e-8 m, of the sphere's centre too.
+// A block of 0.1 m, rotated, far from the origin, and stored in single precision: its top lies on the
+// border of the box to about 1e-8 m, and so does its distance from the sphere's centre.
 TEST(Attachments, NodesOnTheBorderAreInsideWhateverTheirRounding) {
   Points p(3, 8);
   for (int i = 0; i < 8; ++i)

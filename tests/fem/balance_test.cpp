@@ -65,7 +65,7 @@ TEST(Balance, DampingTakesPowerOutOfAnyOtherMotion) {
     const VecX x = s.x + 0.3 * random.vector(s.x.size()), v = random.vector(s.x.size());
     const double power = s.power(x, v);
     EXPECT_GT(power, 0.0);
-    // the power of the damping force itself
+    // power of the damping force
     EXPECT_NEAR(-(s.force(x, v) - elastic.force(x, v)).dot(v), power, 1e-12 * power);
   }
 }

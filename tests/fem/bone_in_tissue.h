@@ -7,21 +7,21 @@
 namespace palpate::fem::testing {
 
 struct BoneOptions {
-  int cells = 3;             ///< of the cube's edge, 0.1 m
-  double mass_ratio = 1e-3;  ///< bone to tissue
-  /// of the bone's origin, from the middle of the cube: off its carried nodes' centroid [m]
+  int cells = 3;             ///< number of cells along the cube's edge of 0.1 m
+  double mass_ratio = 1e-3;  ///< bone mass over tissue mass
+  /// bone's origin relative to the cube's centre, off the centroid of the carried nodes [m]
   Vec3 centre{0.005, -0.01, 0.015};
-  double radius = 0.03;         ///< nodes nearer to the middle than this are carried [m]
+  double radius = 0.03;         ///< nodes closer to the centre than this are carried [m]
   double youngs_modulus = 5e4;  ///< [Pa]
   double damping = 0.0;         ///< stiffness-proportional [s]
-  /// the bone holds its nodes this much farther apart than they stand at rest
+  /// the bone spreads its nodes by this factor relative to rest
   double spread = 1.0;
   bool consistent = false;
   bool geometric_stiffness = true;  ///< false: without the geometric stiffness of carried nodes
 };
 
-/// A carried motion, its geometric stiffness left out of every matrix: what it is there for shows against
-/// this.
+/// A carried motion without its geometric stiffness in any matrix: comparison that shows the effect of the
+/// geometric stiffness.
 struct WithoutTurning final : dynamics::DrivenMotion {
   std::shared_ptr<dynamics::DrivenMotion> whole;
   explicit WithoutTurning(std::shared_ptr<dynamics::DrivenMotion> motion) : whole(std::move(motion)) {}
@@ -39,12 +39,12 @@ struct BoneInTissue {
   dynamics::System system;
   std::shared_ptr<SoftBody> term;
   TetMesh rest;
-  VecX masses;  ///< of the nodes [kg]
+  VecX masses;  ///< nodal masses [kg]
   double bone_mass = 0.0;
   Vec3 inertia = Vec3::Zero();
   int tissue = -1, bone = -1;
-  std::vector<int> carried;  ///< nodes
-  Points local;              ///< of the carried nodes, in the bone's axes
+  std::vector<int> carried;  ///< carried nodes
+  Points local;              ///< positions of the carried nodes in the bone's axes
 
   explicit BoneInTissue(const BoneOptions& o = {}) {
     rest = jittered_cube(o.cells, 0.05, 7);
@@ -97,7 +97,7 @@ struct BoneInTissue {
   }
   void impose() { system.impose(state.layout(), state.time(), state.q().data(), state.u().data()); }
 
-  /// Nodes moved and thrown about at random, bone turned and spinning; carried nodes follow it.
+  /// Moves nodes and bone at random, with random velocities; carried nodes follow the bone.
   void disturb(double size, double speed, unsigned seed) {
     Random random(seed);
     state.q().head(state.layout().nodal_size) += size * random.vector(state.layout().nodal_size);
@@ -105,7 +105,7 @@ struct BoneInTissue {
     dynamics::project(state.layout(), state.q().data());
     impose();
   }
-  /// The whole as one rigid body: velocity v of the middle of the cube, angular velocity w.
+  /// Moves the whole as one rigid body, with velocity v of the cube's centre and angular velocity w.
   void throw_rigidly(const Vec3& v, const Vec3& w) {
     for (Eigen::Index i = 0; i < masses.size(); ++i)
       state.u().segment<3>(3 * i) = v + w.cross(Vec3(state.q().segment<3>(3 * i)));
@@ -114,8 +114,8 @@ struct BoneInTissue {
     state.u().segment<3>(b.u_offset + 3) = v + w.cross(Vec3(state.q().segment<3>(b.q_offset + 4)));
     impose();
   }
-  /// (angular about the world's origin, linear) of velocities or, with accelerations, its rate less the
-  /// bone's w x I w.
+  /// Momentum (angular about the world's origin, linear) for velocities u; for accelerations u, its rate
+  /// without the bone's w x I w.
   Vec6 momentum_of(const VecX& u) const {
     const auto view = state.view();
     const auto& b = *state.layout().find(bone);

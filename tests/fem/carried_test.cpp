@@ -1,4 +1,5 @@
-// Nodes on a bone: their motion and its derivatives, and the laws that tissue and bone obey at one instant.
+// Nodes carried by a bone: their motion and its derivatives, and conservation laws of tissue and bone at one
+// instant.
 #include <Eigen/Cholesky>
 
 #include "fem/bone_in_tissue.h"
@@ -9,7 +10,7 @@ using namespace palpate::fem::testing;
 
 namespace {
 
-/// The bone's pose moved by h times a twist, angular part first; nodes follow.
+/// Moves the bone's pose by h times a twist, angular part first; nodes follow.
 void move_bone(BoneInTissue& b, const VecX& q0, const Vec6& twist, double h) {
   b.state.q() = q0;
   const auto& block = *b.state.layout().find(b.bone);
@@ -45,7 +46,7 @@ TEST(Carried, StandsWhereTheFormulaSays) {
   }
 }
 
-// G is the derivative of the positions, and G u' + gamma that of the velocities.
+// G is the derivative of the positions, and G u' + gamma is the derivative of the velocities.
 TEST(Carried, JacobianAndGammaAreDerivatives) {
   BoneInTissue b = disturbed();
   const VecX q0 = b.state.q();
@@ -78,9 +79,9 @@ TEST(Carried, JacobianAndGammaAreDerivatives) {
   expect_slope_two([&](double h) { return evaluate(h, v); }, change, 0.05, "velocities");
 }
 
-// The step matrix's K, rows of the bone: what its rotation makes of the force and moment that the nodes press
-// on it with, those held that are of the nodes' own. K is symmetrised; what is lost is half the cross matrix
-// of the moment out of balance.
+// Rows of the bone in the step matrix's K: derivative, by the bone's rotation, of the force and moment that
+// the carried nodes exert on it, with the nodal forces held fixed. K is symmetrised; the lost part is half
+// the cross matrix of the residual moment.
 TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
   BoneInTissue b = disturbed({.damping = 0.0});
   b.state.u().setZero();
@@ -113,7 +114,7 @@ TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
                   .cross(Vec3(c.segment<3>(3 * b.carried[i])));
   K.topLeftCorner<3, 3>() += 0.5 * cross_matrix(moment);
   expect_slope_two(pressed, VecX(-K * test_twist()), 2e-3, "reduced force");
-  // And it matters: without it the derivative is wrong in its first term.
+  // The term is significant: without it the derivative is wrong at first order.
   VecX rotated = VecX::Zero(layout.u_size), x = VecX::Zero(layout.u_size);
   x.segment<6>(at) = test_twist();
   b.system.apply_carried_stiffness(b.state.view(), x, rotated);
@@ -123,8 +124,8 @@ TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
   EXPECT_EQ(rotated.head(layout.nodal_size).norm(), 0.0);
 }
 
-// Newton's and Euler's laws for tissue and bone together, any state, any bone: no force from outside, no
-// change of momentum.
+// Newton's and Euler's laws for tissue and bone together, for any state and any bone: without external force,
+// momentum is constant.
 TEST(Carried, TissueAndBoneKeepTheirMomentumAtEveryInstant) {
   for (const double ratio : {1.0, 1e-3, 1e-6}) {
     BoneInTissue b = disturbed({.mass_ratio = ratio, .damping = 1e-2});
@@ -138,7 +139,7 @@ TEST(Carried, TissueAndBoneKeepTheirMomentumAtEveryInstant) {
     const double forces = f.head(b.state.layout().nodal_size).lpNorm<1>();
     EXPECT_LT(rate.tail<3>().norm(), 1e-13 * forces) << "mass ratio " << ratio;
     EXPECT_LT(rate.head<3>().norm(), 1e-13 * forces * 0.1) << "mass ratio " << ratio;
-    // what the bone exerts on its nodes is what they exert on it
+    // force of the bone on its nodes equals the force of the nodes on the bone, reversed
     VecX r;
     b.system.reactions(b.state.view(), r);
     Vec3 on_nodes = Vec3::Zero();
@@ -148,7 +149,7 @@ TEST(Carried, TissueAndBoneKeepTheirMomentumAtEveryInstant) {
   }
 }
 
-// Carried acceleration against the congruence written out densely, and its limit as the bone's mass goes to
+// Acceleration with carried nodes against the dense congruence, and its limit as the bone's mass goes to
 // zero.
 TEST(Carried, AccelerationIsThatOfTheReducedEquationsAndHasALimitWithoutABone) {
   std::vector<std::pair<double, VecX>> along;

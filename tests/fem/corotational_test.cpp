@@ -19,7 +19,7 @@ const Lame kDamping{0.7, 0.4};
 Mat3 rotation_of(const Mat3& F) { return polar_decomposition(F).R; }
 VecX vec(const Mat3& m) { return m.reshaped(); }
 
-/// dP/dF as a 9 x 9 matrix, one column a unit direction.
+/// dP/dF as a 9 x 9 matrix, one column per unit direction.
 Mat9 hessian(const Mat3& F, Tangent tangent, bool* was_clamped = nullptr) {
   const Mat3 R = rotation_of(F);
   bool clamped = false;
@@ -34,7 +34,7 @@ Mat9 hessian(const Mat3& F, Tangent tangent, bool* was_clamped = nullptr) {
   return H;
 }
 
-/// The nearest positive semi-definite matrix, by numeric eigenvalues.
+/// Nearest positive semi-definite matrix, by numerical eigenvalues.
 Mat9 numeric_projection(const Mat9& H) {
   const Eigen::SelfAdjointEigenSolver<Mat9> eigen(0.5 * (H + H.transpose()));
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
@@ -70,7 +70,7 @@ TEST(Corotated, ExactTangentIsTheDerivativeOfTheStress) {
 }
 
 TEST(Corotated, HessianHasTheEigenvaluesOfTheTheory) {
-  // 2 mu + 3 lambda once, 2 mu five times, 2 mu - 2 c/(s_i + s_j) for the three twists.
+  // Eigenvalues: 2 mu + 3 lambda once, 2 mu five times, 2 mu - 2 c/(s_i + s_j) for the three twist modes.
   Random random(3);
   for (const auto& [name, s] : stretch_cases()) {
     const double c = 2 * kLame.mu - kLame.lambda * (s.sum() - 3);
@@ -89,7 +89,7 @@ TEST(Corotated, ProjectedEqualsTheNumericProjection) {
   Random random(4);
   int changed = 0;
   for (int i = 0; i < 200; ++i) {
-    const Vec3 stretches = Vec3(1.6, 1.2, 0.3) + 0.5 * Vec3(random.vector(3));  // third: -0.2 to 0.8
+    const Vec3 stretches = Vec3(1.6, 1.2, 0.3) + 0.5 * Vec3(random.vector(3));  // third stretch: -0.2 to 0.8
     const Mat3 F = deformation(random, stretches);
     const Mat9 exact = hessian(F, Tangent::kExact), projected = hessian(F, Tangent::kProjected);
     EXPECT_LT((projected - numeric_projection(exact)).norm(), 1e-10 * exact.norm());

@@ -11,7 +11,7 @@ using namespace palpate::fem::testing;
 
 namespace {
 
-constexpr int kCells = 12;  // 10,368 tetrahedra, in chunks enough that some edges lie in four
+constexpr int kCells = 12;  // 10,368 tetrahedra: enough chunks for some edges to lie in four
 
 TetMesh mesh() { return jittered_cube(kCells, 0.2, 11); }
 ElementChunks chunks_of(const TetMesh& mesh) { return {mesh, make_rest_elements(mesh, "a test")}; }
@@ -24,11 +24,11 @@ Mat3 rest_edges(const TetMesh& mesh, const ElementChunks::Element& e) {
 
 using Key = std::pair<int, int>;
 
-/// Which chunk owns each node or edge, and which share it, in their order; `keys(chunk)` lists the owned ones
-/// of a chunk, then the shared ones.
+/// Owner chunk of each node or edge, and the chunks that share it, in order; `keys(chunk)` lists a chunk's
+/// owned keys, then its shared ones.
 struct Holders {
   std::map<Key, int> owned;
-  std::map<Key, std::vector<std::pair<int, int>>> shared;  ///< chunk, place of the contribution
+  std::map<Key, std::vector<std::pair<int, int>>> shared;  ///< chunk, index of the contribution
 };
 
 template <class Keys>
@@ -49,8 +49,8 @@ Holders holders(const ElementChunks& chunks, int ElementChunks::Chunk::*owned,
   return out;
 }
 
-/// Each is owned by the first chunk that has it, and the sums gather what each later one puts aside, in the
-/// order of the chunks, once.
+/// Checks that each key is owned by the first chunk that has it, and that the sums gather the contribution of
+/// each later chunk once, in the order of the chunks.
 void expect_sums(const Holders& found, const SharedSums& sums, bool edges) {
   ASSERT_EQ(static_cast<std::size_t>(sums.count()), found.shared.size());
   std::set<int> places;
@@ -83,8 +83,8 @@ TEST(ElementChunks, HaveEachElementOnce) {
   EXPECT_EQ(times, std::vector<int>(times.size(), 1));
 }
 
-/// T^-1 is a triangle, and Dm T^-1 = Q is a rotation, no mirror image: which is all that an isotropic
-/// material needs.
+/// T^-1 is triangular, and Dm T^-1 = Q is a rotation without reflection, which is sufficient for an isotropic
+/// material.
 TEST(ElementChunks, HaveRestShapesTurnedIntoTriangles) {
   const TetMesh rest = mesh();
   int odd = 0;
@@ -101,7 +101,7 @@ TEST(ElementChunks, HaveRestShapesTurnedIntoTriangles) {
   EXPECT_GT(odd, 1000) << "nodes in ascending order are mirror images as often as not";
 }
 
-/// A sliver keeps the lengths and angles of its rest edges to rounding.
+/// A sliver's rest edges keep their lengths and angles to rounding.
 TEST(ElementChunks, TurnSliversAsWell) {
   TetMesh rest = one_tet();
   rest.nodes.row(2) *= 1e-7;

@@ -38,8 +38,7 @@ class Random {
   std::uniform_real_distribution<double> uniform_{-1.0, 1.0};
 };
 
-/// n^3 unit cubes of six tetrahedra each, scaled to the unit cube; inner and outer nodes moved by `jitter`
-/// cells.
+/// The unit cube, divided into n^3 cubes of six tetrahedra each; all nodes moved by `jitter` cells.
 inline TetMesh jittered_cube(int n, double jitter, unsigned seed) {
   Random random(seed);
   TetMesh mesh;
@@ -68,7 +67,7 @@ inline TetMesh jittered_cube(int n, double jitter, unsigned seed) {
   return mesh;
 }
 
-/// One regular-looking tetrahedron without symmetry.
+/// One well-shaped tetrahedron without symmetry.
 inline TetMesh one_tet() {
   TetMesh mesh;
   mesh.nodes.resize(3, 4);
@@ -88,7 +87,7 @@ inline Material soft_material() {
   return m;
 }
 
-/// A state with one body of the mesh's nodes, at x and v.
+/// A state with one body with the mesh's nodes, at x and v.
 struct OneBody {
   dynamics::State state;
   int id;
@@ -103,8 +102,8 @@ struct OneBody {
 inline VecX flat(const Points& p) { return p.reshaped(); }
 inline Points unflat(const VecX& x) { return x.reshaped(3, x.size() / 3); }
 
-/// The remainder of a first-order expansion must fall with slope 2: r(h) = |y(h) - y(0) - h y'| over h = h0 /
-/// 2^k.
+/// Checks that the remainder of a first-order expansion decreases with slope 2: r(h) = |y(h) - y(0) - h y'|
+/// over h = h0 / 2^k.
 inline void expect_slope_two(const std::function<VecX(double)>& y, const VecX& derivative, double h0,
                              const std::string& what, int steps = 6) {
   const VecX y0 = y(0.0);
@@ -123,7 +122,7 @@ inline void expect_slope_two(const std::function<VecX(double)>& y, const VecX& d
   EXPECT_GE(counted, 5);
 }
 
-/// Forces f on nodes at x have neither a resultant nor a moment.
+/// Checks that forces f on nodes at x have zero resultant and moment.
 inline void expect_balanced(const Points& f, const Points& x) {
   Vec3 moment = Vec3::Zero();
   for (Eigen::Index i = 0; i < x.cols(); ++i) moment += x.col(i).cross(f.col(i));
@@ -133,12 +132,12 @@ inline void expect_balanced(const Points& f, const Points& x) {
   EXPECT_LT(moment.norm(), 1e-12 * scale);
 }
 
-/// A deformation with given signed stretches, rotated on both sides.
+/// Deformation gradient with given signed stretches, rotated on both sides.
 inline Mat3 deformation(Random& random, const Vec3& stretches) {
   return random.rotation() * stretches.asDiagonal() * random.rotation();
 }
 
-/// Signed stretches of the kinds that occur: ordinary, large, flattened to a plane, inverted.
+/// Typical signed stretches: regular, large, flattened to a plane, inverted.
 inline std::vector<std::pair<std::string, Vec3>> stretch_cases() {
   return {{"regular", {1.2, 0.9, 0.8}},
           {"stretched", {3.0, 1.5, 1.2}},

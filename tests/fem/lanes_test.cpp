@@ -23,8 +23,8 @@ struct Shaken {
 }  // namespace
 
 TEST(Lanes, EveryShapeGetsWhatTheScalarFormulasGive) {
-  // Relative to each element's own norm.  Where two signed singular values nearly cancel, R moves by a
-  // rounding of F over their sum, C by that over the sum again.
+  // Tolerance relative to each element's norm. Where two signed singular values nearly cancel, R changes by a
+  // rounding of F divided by their sum, and C by that divided by the sum again.
   Random random(81);
   std::vector<Mat3> deformations;
   std::vector<double> sums;
@@ -38,7 +38,7 @@ TEST(Lanes, EveryShapeGetsWhatTheScalarFormulasGive) {
     add(Vec3(1.2 + 0.2 * random(), 0.8 + 0.1 * random(), -0.35 + 0.3 * random()));  // inverted
     add(Vec3(4.0 + random(), 2.0 + 0.9 * random(), 0.5 + 0.4 * random()));          // far from rest
     add(Vec3(0.05, 0.03, 0.01) * (1.0 + 0.1 * random()));                           // crushed
-    add(Vec3(1.0, 0.4, -0.4 + 1e-3 * (1.5 + random())));                            // beside the singular set
+    add(Vec3(1.0, 0.4, -0.4 + 1e-3 * (1.5 + random())));                            // near the singular set
   }
   const Apart m(deformations, random);
   for (const std::string& instructions : instruction_sets())
@@ -60,7 +60,7 @@ TEST(Lanes, EveryShapeGetsWhatTheScalarFormulasGive) {
         EXPECT_NEAR(found.energy, expected.energy, 1e-13 * expected.energy);
         EXPECT_NEAR(found.power, expected.power, 1e-13 * expected.power);
         EXPECT_GE(found.counts.inverted, 80);
-        EXPECT_LE(found.counts.inverted, 120);  // the flat ones by their rounding
+        EXPECT_LE(found.counts.inverted, 120);  // flat elements: the sign is decided by rounding
         if (tangent == Tangent::kExact) {
           EXPECT_EQ(found.counts.by_scalar, 2 * 40);  // the last kind: R in the force and in the tangent
         }
@@ -68,7 +68,7 @@ TEST(Lanes, EveryShapeGetsWhatTheScalarFormulasGive) {
 }
 
 TEST(Lanes, ChunksAddUpToTheScalarSum) {
-  const Shaken m(9, 0.02, 83);  // 4,374 elements in three chunks, the last group not full
+  const Shaken m(9, 0.02, 83);  // 4,374 elements in three chunks; the last group is not full
   for (const std::string& instructions : instruction_sets())
     for (bool full : {false, true}) {
       const Evaluation found = evaluate(m.rest, damped_material(),
@@ -196,7 +196,7 @@ TEST(Lanes, NotANumberStaysWhereItIsAndIsNoCrash) {
   m.x[0] = std::nan("");
   const Evaluation found = evaluate(m.rest, damped_material(), {}, m.x, m.v, m.w, false);
   EXPECT_TRUE(std::isnan(found.f[0]));
-  // the node at the other corner has no element in common with it
+  // the node at the opposite corner shares no element with it
   EXPECT_TRUE(found.f.tail<3>().allFinite());
 }
 
@@ -205,7 +205,7 @@ TEST(Lanes, MemoryIsSaid) {
   OneBody at(m.x, m.v);
   SoftBody body("b", m.rest, soft_material(), {}, at.id);
   const auto count = static_cast<std::size_t>(m.rest.tets.cols());
-  // ten numbers of the rest shape and four nodes, at the least
+  // at least ten numbers of the rest shape and four nodes
   EXPECT_GE(body.memory().elements, 96 * count);
   EXPECT_LT(body.memory().elements, 400 * count);
   EXPECT_EQ(body.memory().maps, 0u);  // before the first matrix

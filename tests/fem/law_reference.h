@@ -5,13 +5,13 @@
 #include "../../src/fem/objective_damping.h"
 #include "fem_fixture.h"
 
-// The fast path of a SoftBody against the scalar formulas of its law.
+// Fast path of a SoftBody against the scalar formulas of its law.
 
 namespace palpate::fem::testing {
 
 inline const Law& law_called(const std::string& name) { return *find(law_registry(), name, "material").make; }
 
-/// The instruction sets of this build that this processor has; baseline always.
+/// Instruction sets of this build that the processor supports; always includes baseline.
 inline std::vector<std::string> instruction_sets() {
   std::vector<std::string> out;
   for (const char* name : {"baseline", "avx2", "avx512"})
@@ -64,7 +64,7 @@ inline Evaluation evaluate(const TetMesh& rest, const Material& material, const 
   return out;
 }
 
-/// What a SoftBody gives, element by element, by the scalar formulas of its law and of its damping.
+/// Results of a SoftBody, element by element, by the scalar formulas of its law and damping.
 struct Reference {
   VecX f, y;
   double energy = 0.0, power = 0.0;
@@ -106,7 +106,7 @@ inline Reference reference(const Law& law, const TetMesh& rest, const Material& 
   return out;
 }
 
-/// Tetrahedra apart from each other, each with its own deformation.
+/// Separate tetrahedra, each with its deformation.
 struct Apart {
   TetMesh rest;
   VecX x, v, w;
@@ -125,7 +125,7 @@ struct Apart {
   }
 };
 
-/// Relative distance.
+/// Relative distance between two vectors.
 inline double apart(const VecX& a, const VecX& b) { return (a - b).norm() / b.norm(); }
 
 }  // namespace palpate::fem::testing

@@ -7,7 +7,7 @@
 #include "palpate/dynamics/zero_row_sum_matrix.h"
 #include "palpate/fem/nodal_dilatation.h"
 
-// What every constitutive law must do, over the whole registry: a new law is tested by being listed.
+// Conformance suite of the constitutive laws, over the whole registry: a new law is tested by being listed.
 
 using namespace palpate;
 using namespace palpate::fem;
@@ -30,7 +30,7 @@ class Laws : public ::testing::TestWithParam<std::string> {
     out.law = GetParam();
     return out;
   }
-  /// dP/dF, one column a unit direction.
+  /// dP/dF, one column per unit direction.
   Mat9 hessian(const Mat3& F, Tangent tangent, const Lame& lame = kLame) const {
     Mat9 H;
     for (int i = 0; i < 9; ++i) {
@@ -48,7 +48,7 @@ Mat9 numeric_projection(const Mat9& H) {
          eigen.eigenvectors().transpose();
 }
 
-/// Deformations of every kind but the corotational law's singular set, one element each.
+/// Deformations of every kind except the corotational law's singular set, one element each.
 std::vector<Mat3> shapes(Random& random) {
   std::vector<Mat3> out;
   for (int i = 0; i < 40; ++i)
@@ -103,7 +103,7 @@ TEST_P(Laws, ProjectedTangentIsTheNearestSemiDefiniteOne) {
   Random random(4);
   int changed = 0, kept = 0;
   for (int i = 0; i < 300; ++i) {
-    // from compressed and inverted to a little stretched in every direction
+    // from compressed and inverted to slightly stretched in every direction
     const Vec3 stretches = i < 200 ? Vec3(Vec3(1.6, 1.2, 0.3) + 0.5 * Vec3(random.vector(3)))
                                    : Vec3(Vec3(1.1, 1.08, 1.06) + 0.05 * Vec3(random.vector(3)));
     const Mat3 F = deformation(random, stretches);
@@ -171,14 +171,14 @@ TEST_P(Laws, LanesGiveWhatTheScalarFormulasGiveInEveryShape) {
         EXPECT_NEAR(found.energy, expected.energy, 1e-13 * expected.energy);
         EXPECT_NEAR(found.power, expected.power, 1e-13 * expected.power);
         EXPECT_GE(found.counts.inverted, 40);
-        EXPECT_LE(found.counts.inverted, 80);  // the flat ones by their rounding
+        EXPECT_LE(found.counts.inverted, 80);  // flat elements: the sign is decided by rounding
         if (tangent == Tangent::kProjected) { EXPECT_GT(found.counts.by_scalar, 40); }
         if (tangent == Tangent::kProjected) { EXPECT_LT(found.counts.by_scalar, m.rest.tets.cols()); }
       }
 }
 
 TEST_P(Laws, ForceAndTangentOfABodyAreTheDerivativesOfItsEnergy) {
-  for (const double shake : {0.05, 0.35}) {  // 0.35: about a third of the elements inside out
+  for (const double shake : {0.05, 0.35}) {  // 0.35 inverts about a third of the elements
     const Shaken m(2, shake, 3);
     const VecX still = VecX::Zero(m.x.size());
     SoftBody body("b", m.rest, soft_material(), with(Tangent::kExact), 0);
@@ -197,8 +197,8 @@ TEST_P(Laws, ForceAndTangentOfABodyAreTheDerivativesOfItsEnergy) {
   }
 }
 
-// A uniform deformation of an irregular mesh leaves nodes inside without force, and the outer ones with that
-// of the law's stress: sum of f_i X_i^T = -P volume.
+// Patch test: under a uniform deformation of an irregular mesh, inner nodes have no force, and the outer
+// nodes balance the law's stress: sum of f_i X_i^T = -P volume.
 TEST_P(Laws, PatchOfUniformDeformation) {
   Random random(61);
   const TetMesh rest = jittered_cube(4, 0.15, 62);
@@ -235,7 +235,7 @@ TEST_P(Laws, DampingIsTheSameForAll) {
   EXPECT_LT(apart(damping(GetParam()), damping("corotational")), 1e-13);
 }
 
-// The fused assembly of a linearly implicit step gives what force, product and tangent give.
+// Fused assembly of a linearly implicit step equals separate evaluations of force, product and tangent.
 TEST_P(Laws, FusedStepIsForceProductAndTangent) {
   const Shaken m(10, 0.03, 31);  // several chunks
   Material material = soft_material();
@@ -334,7 +334,7 @@ TEST_P(Laws, NotANumberStaysWhereItIs) {
     const Evaluation found = evaluate(m.rest, damped_material(), with(tangent), m.x, m.v, m.w, false);
     EXPECT_TRUE(std::isnan(found.f[0]));
     EXPECT_TRUE(std::isnan(found.y[0]));
-    // the node at the other corner has no element in common with it
+    // the node at the opposite corner shares no element with it
     EXPECT_TRUE(found.f.tail<3>().allFinite());
     EXPECT_TRUE(found.y.tail<3>().allFinite());
   }

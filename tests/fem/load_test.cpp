@@ -32,7 +32,7 @@ TEST(Load, DeadLoadIsMinusTheGradientOfItsEnergy) {
 }
 
 TEST(Load, TractionIsSharedByBoundaryArea) {
-  // The face x = 1 of the unit cube: resultant F, and its moment is that of F at the middle of the face.
+  // The face x = 1 of the unit cube: resultant F, with the moment of F at the centre of the face.
   const TetMesh mesh = jittered_cube(3, 0.0, 54);
   LoadSpec spec;
   spec.box_min_m = Vec3(0.999, -1, -1);

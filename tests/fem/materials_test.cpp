@@ -3,9 +3,9 @@
 #include "palpate/dynamics/zero_row_sum_matrix.h"
 #include "palpate/fem/nodal_dilatation.h"
 
-// Bodies of several materials.  Everything but the shared nodes is a sum over elements, so that a body of two
-// materials is the sum of two bodies on the same nodes, each with the elements of one material and nothing
-// else: what is computed by one body of one material checks all that is computed by the mixed one.
+// Bodies with several materials. Except for shared nodes, everything is a sum over elements: a body with two
+// materials is the sum of two bodies on the same nodes, each with the elements of one material. Bodies with
+// one material therefore verify all results of the mixed body.
 
 using namespace palpate;
 using namespace palpate::fem;
@@ -33,7 +33,7 @@ Material rubber() {
           .stiffness_damping = 0.4};
 }
 
-/// A cube, its elements of three materials without any order, moved about.
+/// A deformed cube whose elements have three materials in no particular order.
 struct Mixed {
   TetMesh rest;
   Materials materials{{soft(), stiff(), rubber()}, {}};
@@ -48,7 +48,7 @@ struct Mixed {
     v = random.vector(x.size());
     w = random.vector(x.size());
   }
-  /// The elements of one material, on all nodes.
+  /// Mesh of the elements with one material, on all nodes.
   TetMesh part(int material) const {
     TetMesh out{rest.nodes, Tets(4, rest.tets.cols())};
     Eigen::Index count = 0;
@@ -60,7 +60,7 @@ struct Mixed {
   }
 };
 
-/// What a term gives at one state.
+/// Results of a term at one state.
 struct Figures {
   VecX force, product;
   MatX tangent;
@@ -133,7 +133,7 @@ TEST(Materials, AveragesOfDilatationStayWithinEach) {
   SoftBodyOptions options{.full_damping_tangent = true};
   for (const Material& material : m.materials.list)
     options.volumetric_shares.push_back(kept_volumetric_share(material));
-  EXPECT_EQ(options.share_of(1), 1.0);  // nu = 0.2: nothing is left for the averages
+  EXPECT_EQ(options.share_of(1), 1.0);  // nu = 0.2: no share is averaged
   EXPECT_LT(options.share_of(2), 0.1);
   NodalDilatation whole("b", m.rest, m.materials, options, 0);
   std::vector<Figures> parts;
@@ -144,7 +144,7 @@ TEST(Materials, AveragesOfDilatationStayWithinEach) {
     parts.push_back(evaluate(part, whole, m));
   }
   expect_sum(evaluate(whole, whole, m), parts, "dilatation");
-  // Pressed alike, theta is the same everywhere, whatever the materials.
+  // Under uniform compression theta is uniform, whatever the materials are.
   OneBody pressed(flat(0.9 * m.rest.nodes), m.v);
   EXPECT_LT((whole.dilatations(pressed.state.view()) + VecX::Constant(m.rest.nodes.cols(), 0.3))
                 .cwiseAbs()
@@ -234,7 +234,7 @@ TEST(Materials, TheSameMaterialInTwoRegionsIsThatOfOne) {
   EXPECT_LT((a.product - b.product).norm(), 1e-13 * a.product.norm());
   EXPECT_NEAR(a.energy, b.energy, 1e-13 * a.energy);
   EXPECT_NEAR(a.power, b.power, 1e-13 * a.power);
-  // A list of which only one is used is that one, to the last bit.
+  // A list of which only one material is used is bitwise equal to that material.
   SoftBody first(
       "b", m.rest,
       Materials({rubber(), stiff()}, std::vector<int>(static_cast<std::size_t>(m.rest.tets.cols()), 0)), {},
@@ -257,7 +257,7 @@ TEST(Materials, ThreadsDoNotChangeABit) {
   EXPECT_EQ(found[0].energy, found[1].energy);
 }
 
-// Lanes that no element fills are at most seven a material and chunk.
+// Unused vector lanes: at most seven per material and chunk.
 TEST(Materials, CostAFewEmptyLanesAndNothingElse) {
   const Mixed m(10);
   Materials halves({soft(), stiff()}, {});

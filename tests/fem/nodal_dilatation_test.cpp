@@ -22,7 +22,7 @@ SoftBodyOptions nodal(const Material& m, Tangent tangent = Tangent::kExact, bool
   return {.tangent = tangent, .full_damping_tangent = full, .volumetric_share = kept_volumetric_share(m)};
 }
 
-/// Sheared and rotated, every node shaken; a large shake inverts elements.
+/// Sheared and rotated, with every node perturbed; a large shake inverts elements.
 struct Shaken {
   TetMesh rest;
   VecX x, v;
@@ -73,8 +73,8 @@ TEST(NodalDilatation, KeptShareIsAllUpToNuOfAQuarterAndThenMuOfLambda) {
 }
 
 TEST(NodalDilatation, OneTetrahedronIsTheElement) {
-  // All four nodes average over the one element: with the kept share it must give the plain element, whatever
-  // its shape.
+  // All four nodes average over the single element: with the kept share it must equal the plain element,
+  // whatever its shape.
   const TetMesh rest = one_tet();
   const Material m = nearly_incompressible(0.3);
   Random random(41);
@@ -117,7 +117,7 @@ TEST(NodalDilatation, UniformStrainIsThatOfTheElements) {
 }
 
 TEST(NodalDilatation, ForceIsMinusTheGradientAndTheTangentItsDerivative) {
-  for (double shake : {0.05, 0.35}) {  // 0.35: about a third of the elements inside out
+  for (double shake : {0.05, 0.35}) {  // 0.35 inverts about a third of the elements
     Shaken s(44, shake);
     const Material m = nearly_incompressible();
     NodalDilatation term("b", s.rest, m, nodal(m), 0);

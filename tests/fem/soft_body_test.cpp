@@ -24,7 +24,7 @@ TEST(SoftBody, TwoBodiesInOneStateDoNotMix) {
   SoftBody b_alone("b", second, soft_material(), {}, only_b.id);
   b_alone.add_force(only_b.state.view(), alone);
   EXPECT_EQ((f.tail(nb) - alone).norm(), 0.0);
-  // The assembled matrix has each body's K on its own diagonal block.
+  // The assembled matrix has each body's K on the body's diagonal block.
   dynamics::PatternBuilder builder(state.layout()), builder_b(only_b.state.layout());
   a.add_pattern(builder);
   b.add_pattern(builder);
@@ -41,7 +41,7 @@ TEST(SoftBody, TwoBodiesInOneStateDoNotMix) {
 }
 
 TEST(SoftBody, UniaxialStressShowsAsVonMises) {
-  // F = diag(l, t, t), t = 1 - nu (l - 1): only S_xx carries stress, T_xx = E (l - 1), Cauchy stress T_xx l /
+  // F = diag(l, t, t), t = 1 - nu (l - 1): S_xx is the only stress, T_xx = E (l - 1), Cauchy stress T_xx l /
   // (l t^2).
   const TetMesh rest = jittered_cube(2, 0.1, 34);
   const Material m = soft_material();

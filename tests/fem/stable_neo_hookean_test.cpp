@@ -4,7 +4,7 @@
 #include "law_reference.h"
 #include "palpate/core/polar.h"
 
-// Stable neo-Hookean: what holds for this law alone.  What every law must do stands in laws_test.cpp.
+// Properties specific to the stable neo-Hookean law. Properties of every law are tested in laws_test.cpp.
 
 using namespace palpate;
 using namespace palpate::fem;
@@ -16,7 +16,7 @@ namespace {
 const Lame kLame{1.1, 2.3};
 const Law& law() { return law_called("stable_neo_hookean"); }
 
-/// Smith, de Goes and Kim 2018, eq. 14, as it stands there, of the stretches.
+/// Smith, de Goes and Kim 2018, eq. 14, in the paper's form, as a function of the stretches.
 double paper_energy(const Vec3& s, const Lame& lame) {
   const double mu = 4.0 / 3.0 * lame.mu, lambda = lame.lambda + 5.0 / 6.0 * lame.mu;
   const double alpha = 1.0 + mu / lambda - mu / (4.0 * lambda);
@@ -24,7 +24,7 @@ double paper_energy(const Vec3& s, const Lame& lame) {
   return 0.5 * mu * (I - 3.0) + 0.5 * lambda * (J - alpha) * (J - alpha) - 0.5 * mu * std::log(I + 1.0);
 }
 
-/// Side of the interval in which f changes its sign, halved until it cannot be.
+/// Root of f by bisection between points at which f has opposite signs, to rounding.
 double root(const std::function<double(double)>& f, double low, double high) {
   EXPECT_LT(f(low), 0.0);
   EXPECT_GT(f(high), 0.0);
@@ -43,8 +43,8 @@ TEST(StableNeoHookean, EnergyIsThatOfThePaperCountedFromRest) {
 }
 
 TEST(StableNeoHookean, HessianHasTheEigenvaluesOfTheTheory) {
-  // Twists a + d s_k, flips a - d s_k; the stretches have those of the Hessian of the energy as a function of
-  // the stretches, here by differences.
+  // Eigenvalues: twists a + d s_k, flips a - d s_k; the stretch modes have the eigenvalues of the energy's
+  // Hessian as a function of the stretches, here by differences.
   Random random(3);
   const double m = 4.0 / 3.0 * kLame.mu, l = kLame.lambda + 5.0 / 6.0 * kLame.mu;
   for (const auto& [name, s] : stretch_cases()) {
@@ -75,8 +75,8 @@ TEST(StableNeoHookean, HessianHasTheEigenvaluesOfTheTheory) {
 }
 
 TEST(StableNeoHookean, UniaxialStretchIsThatOfThePrincipalStretches) {
-  // F = diag(s, t, t), free sides: t where the energy at this s is least, stress the energy's derivative by
-  // s.
+  // F = diag(s, t, t) with free sides: t minimises the energy at this s, and the stress is the energy's
+  // derivative by s.
   for (const double poisson : {0.0, 0.3, 0.45}) {
     const Material material{.youngs_modulus = 3.0, .poissons_ratio = poisson};
     const Lame lame{material.mu(), material.lambda()};
@@ -110,8 +110,8 @@ TEST(StableNeoHookean, APointGivesWayAndAFlatElementIsDrivenBack) {
   }
 }
 
-// From flat, from a point and from inside out a free body finds back to rest by projected Newton steps that
-// lower the energy.
+// From a flat, a point-like and an inverted state, a free body returns to rest by projected Newton steps that
+// reduce the energy.
 TEST(StableNeoHookean, RecoversFromFlatFromAPointAndFromInsideOut) {
   const TetMesh rest = jittered_cube(2, 0.1, 51);
   const Material material = soft_material();
@@ -133,7 +133,7 @@ TEST(StableNeoHookean, RecoversFromFlatFromAPointAndFromInsideOut) {
       K.body = builder.build();
       body.add_tangent(at.state.view(), 1.0, 0.0, K);
       MatX A = K.to_dense();
-      A.diagonal().array() += 1e-6 * A.norm();  // rigid motions are free
+      A.diagonal().array() += 1e-6 * A.norm();  // rigid motions are unconstrained
       const VecX direction = A.ldlt().solve(f);
       double length = 1.0;
       while (length > 1e-9 && energy(x + length * direction) >= now) length *= 0.5;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kK = 0.37, kD = 0.6, kScale = 8.0;
 
-/// Room for a zero-row-sum matrix in an order of its own: blocks backwards.
+/// Storage for a zero-row-sum matrix in another order: blocks backwards.
 struct Room {
   dynamics::BlockSparse pattern;
   dynamics::ZeroRowSumMatrix A;
@@ -50,7 +50,7 @@ struct Room {
 };
 
 struct Case {
-  TetMesh rest;  // of ten cells along three chunks
+  TetMesh rest;  // ten cells along an edge: three chunks
   VecX x, v, w, change;
   explicit Case(double shake, int cells = 10) : rest(jittered_cube(cells, 0.15, 31)) {
     Random random(32);
@@ -78,8 +78,8 @@ std::vector<std::string> sets_here() {
 
 }  // namespace
 
-// Fused assembly gives what three evaluations give: force less stiffness times the shift, and the blocks off
-// the diagonal to single precision, every one of them.
+// Fused assembly equals three evaluations: force minus stiffness times the shift, and every off-diagonal
+// block to single precision.
 TEST(Step, IsForceProductAndTangentInOne) {
   int compared = 0;
   for (const std::string& set : sets_here())
@@ -130,7 +130,8 @@ TEST(Step, IsForceProductAndTangentInOne) {
   EXPECT_GT(compared, 100000);
 }
 
-// In a large body blocks of one chunk leave while the next one is computed.  Twice: what left is zero again.
+// In a large body, blocks of one chunk are written while the next one is computed. Evaluated twice: the
+// buffers must be zero again.
 TEST(Step, OfALargeBodyIsTheSame) {
   const Case c(0.01, 24);
   ASSERT_GT(c.rest.tets.cols(), 16 * 4096) << "more than sixteen chunks";
@@ -189,8 +190,8 @@ TEST(Step, AnUnsymmetricTangentIsNotBalanced) {
   EXPECT_FALSE(body.fuses_step());
 }
 
-// Two matrices of different orders take turns (a step's, and one that a touch is reduced with): each is what
-// it is alone, and the map into each is made once.
+// Two matrices of different orders alternate (a step's matrix, and one for model reduction): each equals its
+// separate assembly, and the map into each is built once.
 TEST(Step, MatricesOfTwoOrdersTakeTurns) {
   const Case c(0.01);
   OneBody at(c.x, c.v);
@@ -216,7 +217,7 @@ TEST(Step, MatricesOfTwoOrdersTakeTurns) {
   EXPECT_EQ(counters::counter("fem.scatter_map") - before, 2);
 }
 
-// What a step is kept by (dynamics::KeptStep) changes with materials and tangents, and back with these.
+// The key of a kept step (dynamics::KeptStep) changes with materials and tangents, and is restored with them.
 TEST(Step, VersionsTellWhenItWouldBeAnother) {
   const Case c(0.01);
   OneBody at(c.x, c.v);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kOthers = 7.0;
 
-/// A body of some chunks behind a block of three nodes that are not its own, in a matrix that has pairs which
-/// no element joins.
+/// A body of several chunks after a block of three other nodes, in a matrix that also has pairs without a
+/// common element.
 struct Scene {
   TetMesh rest = jittered_cube(9, 0.15, 31);  // 4,374 elements in several chunks
   dynamics::State state;
@@ -51,7 +51,7 @@ struct Scene {
     m.mass_damping = 0.3;
     return m;
   }
-  /// where the body's rows begin
+  /// Index at which the body's rows begin.
   std::size_t own_values() const { return 9 * static_cast<std::size_t>(A.body.row_start()[3]); }
 
   std::vector<double> added(double k_scale, double d_scale) {

@@ -8,7 +8,7 @@ using namespace palpate::fem::testing;
 
 namespace {
 
-/// A body sheared, rotated and moving, every node shaken; a large shake inverts elements.
+/// A body sheared, rotated and moving, with every node perturbed; a large shake inverts elements.
 struct Moving {
   TetMesh rest;
   VecX x, v;
@@ -58,7 +58,7 @@ Material damped() {
 }  // namespace
 
 TEST(Tangent, ForceIsMinusTheGradientOfTheEnergy) {
-  for (double shake : {0.05, 0.35}) {  // 0.35: about a third of the elements inside out
+  for (double shake : {0.05, 0.35}) {  // 0.35 inverts about a third of the elements
     Moving m(3, shake);
     SoftBody body("b", m.rest, soft_material(), {}, 0);
     const VecX w = Random(7).vector(m.x.size());
@@ -168,7 +168,7 @@ TEST(Tangent, ClampingIsCounted) {
 }
 
 TEST(Tangent, ScatterMapFollowsAChangedPattern) {
-  // A body's matrix in a larger pattern, and back: the cached slots must not be stale.
+  // The body's matrix in a larger pattern, and back: cached slots must not be stale.
   const TetMesh rest = jittered_cube(1, 0.1, 10);
   const VecX x = flat(rest.nodes);
   SoftBody body("b", rest, soft_material(), {}, 0);

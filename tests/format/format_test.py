@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Every C++ source is as clang-format writes it (.clang-format: 110 columns), and no line of any other text
-is longer; the checks themselves can fail."""
+"""Every C++ source is formatted by clang-format (.clang-format: 110 columns), and no line of any other text
+is longer; faulty examples show that the checks detect errors."""
 import re
 import shutil
 import subprocess
@@ -14,17 +14,18 @@ FOLDERS = ("include", "src", "tests", "validation", "benchmarks", "packaging")
 COLUMNS = 110
 NAMES = (".h", ".cpp", ".inl", ".py", ".toml", ".cmake", ".in", "CMakeLists.txt", ".md", "palpate", ".ci/run",
          ".vert", ".frag", ".comp", ".glsl", ".js", ".mjs")
-# Bundled libraries, and what a maintainer's npm puts beside them.
+# Bundled libraries, and a maintainer's npm packages.
 MADE_ELSEWHERE = ("src/report/page/dist/", "src/report/page/node_modules/")
 
 
 def version_wanted():
-    """The version of clang-format that writes the sources: each breaks some lines in its own way."""
+    """Returns the version of clang-format with which the sources are formatted: versions break some lines
+    differently."""
     return re.match(r"# clang-format (\d+)", (TREE / ".clang-format").read_text()).group(1)
 
 
 def misformatted(files):
-    """The files that clang-format would change."""
+    """Returns the files that clang-format would change."""
     if not shutil.which("clang-format"):
         raise unittest.SkipTest("clang-format is missing (Debian package clang-format)")
     here = subprocess.run(["clang-format", "--version"], capture_output=True, text=True, check=True).stdout
@@ -39,7 +40,8 @@ def misformatted(files):
 
 
 def too_long(text, markdown=False):
-    """Numbers of the lines that are too long: but for rows of a table, links and addresses in Markdown."""
+    """Returns the numbers of lines that are too long, except for table rows, links and addresses in
+    Markdown."""
     return [number for number, line in enumerate(text.splitlines(), 1) if len(line) > COLUMNS
             and not (markdown and (line.startswith(("|", "!", "<")) or "](" in line or "://" in line))]
 

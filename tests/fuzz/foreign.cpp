@@ -1,4 +1,4 @@
-// Foreign meshes that palpate model reads by code of its own, and by CGAL.  libgmsh's readers are not here.
+// Foreign meshes that palpate model reads with its parsers and with CGAL. libgmsh's readers are not included.
 #include "fuzz/input.h"
 #include "fuzz/targets.h"
 #include "palpate/model/foreign_files.h"

@@ -65,7 +65,7 @@ void change_number(hid_t set, const Edit& edit) {
            is_real ? static_cast<const void*>(&real) : &whole);
 }
 
-/// Another type or shape under the same name, with nothing but zeros.
+/// Replaces an object by one with another type or shape under the same name, filled with zeros.
 void replace(hid_t file, const std::string& name, const Edit& edit) {
   H5Ldelete(file, name.c_str(), H5P_DEFAULT);
   Id string{H5Tcopy(H5T_C_S1), H5Tclose};
@@ -79,7 +79,7 @@ void replace(hid_t file, const std::string& name, const Edit& edit) {
                H5Dclose};
 }
 
-/// The first attribute of an object: gone, or another number.
+/// Changes the first attribute of an object: removed, or another number.
 void change_attribute(hid_t file, const std::string& name, const Edit& edit) {
   const Id object{H5Oopen(file, name.c_str(), H5P_DEFAULT), H5Oclose};
   if (H5Aget_num_attrs(object) <= 0) return;

@@ -1,4 +1,4 @@
-// What moves the handle from outside: packets of the network, and recordings.
+// External inputs that move the handle: network packets and recordings.
 #include <cmath>
 
 #include "device/recorded_path.h"

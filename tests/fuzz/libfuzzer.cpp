@@ -1,5 +1,5 @@
-// libFuzzer's side: `palpate_fuzzer --target=NAME [libFuzzer's options] CORPUS`.  libFuzzer passes over what
-// begins with two dashes.
+// libFuzzer entry point: `palpate_fuzzer --target=NAME [libFuzzer's options] CORPUS`. libFuzzer ignores
+// options that begin with two dashes.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

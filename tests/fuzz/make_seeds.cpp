@@ -1,4 +1,4 @@
-// Writes the seeds that no text editor can: `fuzz_make_seeds CORPUS` (ninja fuzz_make_seeds).
+// Writes the seeds that a text editor cannot create: `fuzz_make_seeds CORPUS` (ninja fuzz_make_seeds).
 #include <cstdio>
 
 #include "fuzz/seeds.h"

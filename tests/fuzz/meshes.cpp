@@ -1,4 +1,4 @@
-// The native readers of meshes, with the checks that follow them.
+// Native mesh readers, with the checks that follow them.
 #include "fuzz/input.h"
 #include "fuzz/targets.h"
 #include "palpate/mesh/source.h"
@@ -12,7 +12,7 @@ void promise_whole(const Points& points, const auto& cells) {
           "cells name points that are there");
 }
 
-/// As a scene names it: read, mended and checked.
+/// Reads, repairs and checks a mesh as a scene does.
 void read_tets(const std::string& path) {
   is_read([&] {
     MeshSpec spec;

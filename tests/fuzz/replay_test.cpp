@@ -1,4 +1,5 @@
-// Every input of the corpora, and mutations of it, without a fuzzer: what once broke a reader stays mended.
+// Replays every input of the corpora, and mutations of it, without a fuzzer: regression test for inputs that
+// once broke a reader.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +41,7 @@ TEST_P(Replay, EveryInputIsReadOrRefused) {
   }
 }
 
-/// A file that is cut off at any byte, as a copy that was interrupted.
+/// Files truncated at any byte, as by an interrupted copy.
 TEST_P(Replay, ATruncatedInputIsReadOrRefused) {
   constexpr std::size_t kCuts = 60;
   for (const fs::path& input : inputs_of(GetParam())) {
@@ -57,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Targets, Replay, testing::ValuesIn(targets()), name_of)
 TEST(Corpora, BelongToTargets) {
   for (const auto& entry : fs::directory_iterator(kCorpora)) {
     const std::string name = entry.path().filename().string();
-    // without meshing there are no foreign meshes
+    // targets of foreign meshes exist only with meshing
     const bool foreign = name == "medit" || name == "vtu" || name == "vtk" || name == "polygons";
     if (foreign) continue;
     EXPECT_NO_THROW(palpate::fuzz::target(name));

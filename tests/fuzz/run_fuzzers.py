@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Runs libFuzzer's program over each target, one after another, and says what it did.
+"""Runs libFuzzer's program over each target, one after another, and prints a summary.
 
     run_fuzzers.py PROGRAM [--seconds N] [--work DIR] [--jobs N] [TARGET...]
 
 PROGRAM is build/fuzz/tests/fuzz/palpate_fuzzer: `cmake --preset fuzz && ninja -C build/fuzz palpate_fuzzer`.
-It begins with the inputs of corpus/TARGET and with those that it found earlier in DIR.  What breaks a reader
-is copied to DIR/TARGET/findings; after it is mended, it belongs into corpus/TARGET.  Exit status 1 where
-something broke.
+It starts with the inputs of corpus/TARGET and with earlier findings in DIR. Inputs that break a reader are
+copied to DIR/TARGET/findings; once the reader is fixed, they belong in corpus/TARGET. The exit status is 1 if
+a reader broke.
 """
 import argparse
 import concurrent.futures
@@ -19,15 +19,15 @@ from pathlib import Path
 CORPORA = Path(__file__).resolve().parent / "corpus"
 ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=1:allocator_may_return_null=1",
                "UBSAN_OPTIONS": "print_stacktrace=1"}
-# HDF5 keeps what it could not read to the end, and asks for what a damaged file tells it to; both end with
-# the child process that reads first.  A small process is copied faster.
+# HDF5 leaks data that it could not read completely, and allocates as much memory as a damaged file requests;
+# both end with the child process that reads first. A small process is copied faster.
 OF_HDF5 = "detect_leaks=0:allocator_may_return_null=1:quarantine_size_mb=8"
 ALLOCATES_AS_TOLD = {"mesh_file", "model_file", "run_file", "mesh_content", "model_content", "run_content",
                      "checkpoint_file", "checkpoint_content"}
 
 
 def targets_of(program):
-    """Names, as the program lists them where none is asked for."""
+    """Returns the names of all targets, which the program lists if none is given."""
     done = subprocess.run([program], capture_output=True, text=True, check=False)
     return re.findall(r"^  (\w+) ", done.stderr, re.M)
 
@@ -38,7 +38,7 @@ def number(log, pattern):
 
 
 def fuzz(program, target, seconds, work):
-    """One target: its line for people, and whether nothing broke."""
+    """Fuzzes one target: returns a line for the summary, and whether no reader broke."""
     folder, findings = work / target / "corpus", work / target / "findings"
     folder.mkdir(parents=True, exist_ok=True)
     findings.mkdir(exist_ok=True)

@@ -7,7 +7,7 @@
 
 namespace palpate::fuzz {
 
-/// The first line may be an override, `--set PATH=VALUE`; the rest is the scene.
+/// Reads a scene. The first line may be an override, `--set PATH=VALUE`; the rest is the scene.
 void scene(std::string_view bytes) {
   constexpr std::string_view kSet = "--set ";
   std::vector<std::string> overrides;

@@ -3,9 +3,9 @@
 
 namespace palpate::fuzz {
 
-/// The names that the scene target knows.  Those of devices, motions and generators are the registries' own.
-/// Integrators, solvers, contact and obstacles are a few of each sort: their registries would bring nearly
-/// all of palpate into the fuzzer's build.  tests/scene reads the same corpus with all of them.
+/// Names known to the scene target. Devices, motions and generators use the full registries. Integrators,
+/// solvers, contact and obstacles are a few examples of each: their registries would pull nearly all of
+/// palpate into the fuzzer's build. tests/scene reads the same corpus with all names.
 const scene::Kinds& scene_kinds();
 
 }  // namespace palpate::fuzz

@@ -1,4 +1,4 @@
-// What palpate itself wrote: models, runs, their tables.  A disk may have damaged it, or somebody changed it.
+// Files written by palpate: models, runs, their tables. They may have been damaged on disk or edited.
 #include "fuzz/h5_edits.h"
 #include "fuzz/input.h"
 #include "fuzz/seeds.h"
@@ -62,13 +62,13 @@ void read_checkpoint(const std::string& path) {
 
 }  // namespace
 
-// The bytes of the file itself.  HDF5 does not survive all of them, and must be kept in its child process.
+// Raw bytes of the file. HDF5 does not survive all of them, and must run in its child process.
 void mesh_file(std::string_view bytes) { read_mesh(InputFile("fuzz.h5", bytes).path()); }
 void model_file(std::string_view bytes) { read_model(InputFile("fuzz.h5", bytes).path()); }
 void run_file(std::string_view bytes) { read_run(InputFile("fuzz.vtkhdf", bytes).path()); }
 void checkpoint_file(std::string_view bytes) { read_checkpoint(InputFile("fuzz.h5", bytes).path()); }
 
-// A sound file with other content: our own readers alone are asked, in this process.
+// A valid file with other content: tests palpate's readers only, in this process.
 void mesh_content(std::string_view bytes) {
   const WithoutRehearsal here;
   read_mesh(edited("mesh.h5", write_mesh_seed, bytes));
@@ -86,7 +86,7 @@ void checkpoint_content(std::string_view bytes) {
   read_checkpoint(edited("checkpoint.h5", write_checkpoint_seed, bytes));
 }
 
-/// The kind by its first letter, as no two of them begin alike.
+/// Selects the kind of result by its first letter, which is unique.
 void results(std::string_view bytes) {
   const InputFile file("fuzz.txt", bytes);
   if (bytes.starts_with('{')) {

@@ -3,25 +3,23 @@
 #include <string_view>
 #include <vector>
 
-/// What reads bytes that somebody else wrote, one entry a format.  libFuzzer looks for inputs that break them
-/// (libfuzzer.cpp, the preset `fuzz`); replay_test.cpp gives them every input of corpus/NAME, and mutations
-/// of it, in the default tests.
-///
-/// A new one is its function in a file of its own, a line in targets.cpp and in CMakeLists.txt, and seeds in
-/// corpus/NAME.
+/// Readers of untrusted bytes, one entry per format. libFuzzer searches for inputs that break them
+/// (libfuzzer.cpp, the preset `fuzz`); replay_test.cpp runs every input of corpus/NAME, and mutations of it,
+/// in the default tests. A new target consists of its function in a separate file, a line in targets.cpp and
+/// in CMakeLists.txt, and seeds in corpus/NAME.
 namespace palpate::fuzz {
 
 struct Target {
-  std::string name;   ///< of its corpus too
-  std::string reads;  ///< one line
-  /// Reads the bytes or refuses them by palpate::Error with a message.  Anything else is a finding: another
-  /// exception, a signal, a result that breaks what the reader promises (std::logic_error).
+  std::string name;   ///< also the name of its corpus
+  std::string reads;  ///< description, one line
+  /// Reads the bytes or rejects them by palpate::Error with a message. Anything else is a finding: another
+  /// exception, a signal, a result that violates the reader's contract (std::logic_error).
   void (*run)(std::string_view bytes);
 };
 
 const std::vector<Target>& targets();
 
-/// @throws std::invalid_argument for a name that is not there
+/// @throws std::invalid_argument for an unknown name
 const Target& target(std::string_view name);
 
 void scene(std::string_view bytes);

@@ -1,4 +1,4 @@
-// Which display OpenGL is opened on: hardware before software, in whatever order EGL lists them.
+// Selection of the OpenGL display: hardware before software, in whatever order EGL lists them.
 #include "gl/display_order.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Ranges of faces drawn at once: where each vertex is, what each face's number is.
+// Ranges of faces drawn at once: position of each vertex, number of each face.
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using namespace palpate;
 
 namespace {
 
-/// As the GPU reads them: a range of indices, and a number for all of it.
+/// Format read by the GPU: a range of indices, and one number for all of it.
 struct Range {
   std::uint32_t count, instances, first_index, base_vertex, base_instance, number;
 };
@@ -30,15 +30,15 @@ void fill(gl::MappedBuffer& buffer, const void* data, std::size_t bytes) {
 
 // A triangle over the lower left half of a 4 x 4 image covers the pixels whose centre has x + y < 4 (x, y in
 // pixels from the corner): rows of 3 (centre 3.5 + 0.5 = 4 lies on the edge), 2, 1 and 0 pixels inside; those
-// on the edge may go either way.  Of its corners one is half-way between two points.  Behind it, in a range
-// of its own, a square of two triangles fills the image; a window leaves out the last column.
+// on the edge may go either way. One of its corners is half-way between two points. Behind it, in a separate
+// range, a square of two triangles fills the image; a window leaves out the last column.
 TEST(GlDrawRanges, NumbersFacesOfEachRangeFromItsOwn) {
   gl::Context::shared();
   gl::Framebuffer target(4, 4, {gl::Format::kR32ui}, gl::DepthBuffer::kDepth);
   gl::Program program("contact/skin.vert", "contact/skin.frag");
-  const std::vector<float> points = {9,  9,  9,    0,                   // another surface's
+  const std::vector<float> points = {9,  9,  9,    0,                   // another surface's point
                                      -1, -1, 0.5f, 0, 3,  -1, 0.5f, 0,  // the triangle
-                                     -1, 1,  0.5f, 0, -1, -1, 0.9f, 0,  // and the square
+                                     -1, 1,  0.5f, 0, -1, -1, 0.9f, 0,  // the square
                                      1,  -1, 0.9f, 0, 1,  1,  0.9f, 0, -1, 1, 0.9f, 0};
   gl::MappedBuffer points_sent(gl::MappedBuffer::For::kUpload), ranges_sent(gl::MappedBuffer::For::kUpload);
   fill(points_sent, points.data(), points.size() * sizeof(float));
@@ -69,7 +69,7 @@ TEST(GlDrawRanges, NumbersFacesOfEachRangeFromItsOwn) {
   target.clear(0, 0u);
   target.clear_depth(1.0f);
   gl::set_window(0, 0, 3, 4);
-  glViewport(0, 0, 4, 4);  // the scissor alone is less
+  glViewport(0, 0, 4, 4);  // the scissor is smaller
   program.use();
   points_sent.bind_storage(0);
   gl::draw_ranges(layout, ranges_sent, sizeof(Range), 2, sizeof(Range));

@@ -26,8 +26,8 @@ TEST(GlContext, OpensOnceAndSaysWhatItIs) {
   RecordProperty("renderer", context.info().renderer);
 }
 
-// Where the machine has no GPU, both Mesa's surfaceless platform and its software device would do: the one
-// that could have been hardware was tried first, in whatever order EGL lists them.
+// On a machine without GPU, both Mesa's surfaceless platform and its software device would work: the one that
+// could have been hardware is tried first, in whatever order EGL lists them.
 TEST(GlContext, WhatMayBeHardwareIsTriedFirst) {
   const gl::ContextInfo& info = gl::Context::shared().info();
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -46,7 +46,7 @@ TEST(GlContext, MissingLibraryNamesThePackage) {
   }
 }
 
-// In a process of its own, whose EGL knows no driver: a gtest "death test" that starts this program again.
+// Runs in a separate process whose EGL has no driver: a gtest "death test" that restarts this program.
 TEST(GlContextDeathTest, NoDriverSaysWhatToInstall) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto open = [] {
@@ -82,8 +82,8 @@ TEST(GlContext, AnotherThreadTakesItOnlyAfterRelease) {
 }
 
 TEST(GlProgram, UnknownShaderAndUniformAreNamed) {
-  // each is sound, but the second reads what the first does not write: an error, which NVIDIA's driver
-  // forgives
+  // each is valid, but the second reads an output that the first does not write: an error, which NVIDIA's
+  // driver tolerates
   if (gl::Context::shared().info().software) {
     EXPECT_THROW(gl::Program("contact/skin.vert", "render/surface.frag"), InternalError);
   }

@@ -1,4 +1,4 @@
-// Programs are kept on disk, and what is damaged there is made again.
+// Compiled programs are cached on disk, and damaged cache entries are recompiled.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -28,7 +28,7 @@ class GlProgramCache : public ::testing::Test {
     fs::remove_all(folder_);
     ::unsetenv("XDG_CACHE_HOME");
   }
-  /// Makes a program; how many were compiled, and how many came from the cache.
+  /// Creates a program; returns how many were compiled and how many were loaded from the cache.
   std::pair<long, long> make() {
     const auto count = [](const char* name) { return static_cast<long>(counters::counter(name).load()); };
     const long compiled = count("gl.program_compiled"), loaded = count("gl.program_from_cache");

@@ -1,4 +1,4 @@
-// The GPU's clock, beside the processor's.
+// GPU clock, compared with the processor's clock.
 #include "palpate/gl/timestamps.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,7 @@
 
 using namespace palpate;
 
-// Clearing 16 million pixels again and again takes longer than nothing, and no longer than the processor
-// waits for it.
+// Clearing 16 million pixels repeatedly takes a positive time, which is no longer than the processor's wait.
 TEST(Timestamps, LieBetweenTheCommands) {
   gl::Context::shared();
   gl::Timestamps at(4);
@@ -36,7 +35,7 @@ TEST(Timestamps, LieBetweenTheCommands) {
   EXPECT_GT(clearing, 4.0 * idle);
   EXPECT_LE(at.seconds(0, 3), took);
   EXPECT_NEAR(at.seconds(0, 3), idle + clearing + at.seconds(2, 3), 1e-9);
-  EXPECT_EQ(at.seconds(2, 1), 0.0);  // back in time
+  EXPECT_EQ(at.seconds(2, 1), 0.0);  // reversed order of times
 }
 
 TEST(Timestamps, AreSomeAtLeast) {

@@ -1,4 +1,4 @@
-#include <cstdio>  // SUNDIALS 6.4 forgets it
+#include <cstdio>  // missing include of SUNDIALS 6.4
 
 #include <arkode/arkode_butcher_dirk.h>
 #include <arkode/arkode_butcher_erk.h>
@@ -16,7 +16,7 @@
 #include "integrate/sundials/ark_methods.h"
 #include "palpate/core/error.h"
 
-/// What ark_methods.cpp claims of each table, found from the tables of the installed version themselves.
+/// Properties that ark_methods.cpp states for each table, computed from the tables of the installed version.
 namespace palpate {
 namespace {
 
@@ -44,8 +44,8 @@ struct Table {
     const Eigen::VectorXcd stages = M.partialPivLu().solve(Eigen::VectorXcd::Ones(s));
     return std::abs(1.0 + z * (b.cast<Complex>().transpose() * stages)(0));
   }
-  /// With no pole in the left half plane the maximum principle leaves the imaginary axis to look at; poles
-  /// are at 1 / a_ii > 0.
+  /// Returns whether the method is A-stable. Without a pole in the left half plane the maximum principle
+  /// reduces the check to the imaginary axis; poles are at 1 / a_ii > 0.
   bool a_stable() const {
     if (A.diagonal().minCoeff() < 0.0) return false;
     for (double e = -4.0; e < 8.0; e += 0.01)
@@ -53,9 +53,9 @@ struct Table {
     return true;
   }
   double at_infinity() const { return amplification({-1e8, 0.0}); }
-  /// What a stiff mode leaves of the error: b A^-1 c^j = 1 for all j > 0 (a first explicit stage, where c =
-  /// 0, left out).  So it is where b is the last row of A and its c is 1; and in SDIRK-2-1, c = (1, 0), b
-  /// A^-1 = (1, 1/2).
+  /// Returns whether a stiff mode leaves no error: b A^-1 c^j = 1 for all j > 0 (without a first explicit
+  /// stage, where c = 0). This holds where b is the last row of A with c = 1; and in SDIRK-2-1, with c = (1,
+  /// 0), b A^-1 = (1, 1/2).
   bool stiffly_accurate() const {
     const Eigen::Index e = A(0, 0) == 0.0 ? 1 : 0, n = A.rows() - e;
     const VecX row = MatX(A.bottomRightCorner(n, n)).transpose().partialPivLu().solve(b.tail(n));
@@ -72,8 +72,8 @@ struct Table {
 
 const std::vector<integrate::ArkMethod>& methods() { return integrate::ark_methods(); }
 
-/// d^T A^(p-1) 1 = 1/p! for the embedded weights d of a pair p (p - 1): of the conditions of order p the tall
-/// tree's, the only one on a linear motion.
+/// Defect of d^T A^(p-1) 1 = 1/p! for the embedded weights d of a pair p (p - 1): among the conditions of
+/// order p, the one of the tall tree, which is the only one that matters for linear motion.
 double tall_tree_defect(ARKodeButcherTable t) {
   const Table table(ARKodeButcherTable_Copy(t));
   VecX stages = VecX::Ones(t->stages);
@@ -128,7 +128,7 @@ TEST(ArkMethods, ExplicitTablesHaveTheirOrder) {
   EXPECT_EQ(checked, 4);
 }
 
-/// Where |R(i y)| leaves 1; zero where it does so at once.
+/// Largest y up to which |R(i y)| <= 1; zero if it exceeds 1 at once.
 double imaginary_limit(const Table& t) {
   double y = 0.05;
   while (t.amplification({0.0, y}) <= 1.0) y += 1e-3;
@@ -159,7 +159,7 @@ TEST(ArkMethods, CashAndKarpAmplifyByTheSixthPower) {  // |R(iy)| = 1 + y^6/7200
     EXPECT_NEAR((t.amplification({0.0, y}) - 1.0) * 7200.0 / std::pow(y, 6), 1.0, 2.0 * y * y + 1e-3) << y;
 }
 
-// Of the tables that all tested releases have: those that 7.1 added stand behind them.
+// Covers the tables common to all tested releases; the tables that 7.1 added come after them.
 TEST(ArkMethods, NoStableTableIsMissing) {
   std::set<int> listed;
   for (const auto& m : methods())
@@ -178,26 +178,25 @@ TEST(ArkMethods, NoStableTableIsMissing) {
 //
 // Prothero and Robinson's problem in mechanical form: a stiff spring and damper that follow a smooth motion
 // g(t),
-//     q' = u,   u' = -w^2 (q - g) - 2 w (u - g') + g'',       y = (q, u),  y' = L (y - G) + G',   G = (g,
-//     g'),
-// both eigenvalues of L are -w, and h w >> 1.  From G(0) the exact solution is G.  Put G into the stages (c^j
-// by entries, A, b, c the table):
-//     D = sum_j h^(j+1) d_j G^(j+1) / j!,  d_j = c^(j+1) / (j+1) - A c^j  of the stages,     and  e_j = 1 /
-//     (j+1) - b.c^j  of the step.
-// d_j = 0 below the stage order.  The errors E of the stages and e of the step then obey E = e_n + h A L E -
-// D, e_(n+1) = e_n + h b L E - (e_j terms), so that
-//     e_(n+1) = R(h L) e_n + sum_j h^(j+1) / j! [ (b A^-1 d_j - e_j) + (h L)^-1 b A^-2 d_j + O((h w)^-2) ]
-//     G^(j+1),     L^-1 = [-2/w, -1/w^2; 1, 0].
-// (A first explicit stage has d = 0: it is left out of A, b and d.)  R(h L) = R(-inf) + O((h L)^-1),
-// |R(-inf)| < 1: errors are forgotten, not summed.
-//   stiffly accurate  b A^-1 d_j = e_j for all j.  What is left is (h L)^-1: position 2/w h^j, velocity h^j,
-//   j the first with b A^-2 d_j != 0: in general the
-//                     stage order, in both.  In the velocity no 1/w makes it small: a stiff spring's velocity
-//                     is the derivative of a constraint.
+//     q' = u,   u' = -w^2 (q - g) - 2 w (u - g') + g'',       y = (q, u),  y' = L (y - G) + G',
+//     G = (g, g'),
+// both eigenvalues of L are -w, and h w >> 1. From G(0) the exact solution is G. Substituting G into the
+// stages (c^j by entries; A, b, c the table) gives the defects
+//     D = sum_j h^(j+1) d_j G^(j+1) / j!,  d_j = c^(j+1) / (j+1) - A c^j  of the stages, and
+//     e_j = 1 / (j+1) - b.c^j  of the step.
+// d_j = 0 below the stage order. The errors E of the stages and e of the step then satisfy
+//     E = e_n + h A L E - D,  e_(n+1) = e_n + h b L E - (e_j terms), so that
+//     e_(n+1) = R(h L) e_n + sum_j h^(j+1) / j! [ (b A^-1 d_j - e_j) + (h L)^-1 b A^-2 d_j
+//               + O((h w)^-2) ] G^(j+1),     L^-1 = [-2/w, -1/w^2; 1, 0].
+// (A first explicit stage has d = 0 and is left out of A, b and d.) R(h L) = R(-inf) + O((h L)^-1) with
+// |R(-inf)| < 1: errors decay rather than accumulate.
+//   stiffly accurate  b A^-1 d_j = e_j for all j. The remainder is (h L)^-1: position 2/w h^j, velocity h^j,
+//                     j the first with b A^-2 d_j != 0, in general the stage order, in both. The velocity
+//                     error has no factor 1/w: a stiff spring's velocity is the derivative of a constraint.
 //   else              position h^(j+1), j the first with b A^-1 d_j != e_j; the velocity loses one order to
-//   (h L)^-1 of that, or to b A^-2 d_j != 0.
-// Were the stiffness all in the damper, q would be slow, and what is of order h^j here would hide behind the
-// classical error of q: hence w^2 and 2 w.
+//                     (h L)^-1 times that, or to b A^-2 d_j != 0.
+// With all stiffness in the damper, q would be slow, and terms of order h^j here would be masked by the
+// classical error of q: hence the coefficients w^2 and 2 w.
 
 struct StiffOrders {
   int position = 0, velocity = 0;
@@ -222,7 +221,7 @@ StiffOrders stiff_orders(const Table& t) {
 
 constexpr double kStiff = 1e5;  // w [1/s]: h w from 1000 to 8000
 
-/// The stiff half: implicit wherever a method has an implicit side.
+/// The stiff part: implicit wherever a method has an implicit side.
 struct Follow final : dynamics::ForceTerm {
   std::string_view name() const override { return "follow"; }
   dynamics::TermTraits traits() const override { return {}; }
@@ -238,8 +237,8 @@ struct Follow final : dynamics::ForceTerm {
   }
 };
 
-/// g'': on the explicit side of an additive pair, whose defects there enter by (h w)^-1 less, and change no
-/// order.
+/// g'': on the explicit side of an additive pair, whose defects have an additional factor (h w)^-1 there and
+/// change no order.
 struct Push final : dynamics::ForceTerm {
   std::string_view name() const override { return "push"; }
   dynamics::TermTraits traits() const override { return {.stiff = false}; }
@@ -252,7 +251,7 @@ struct StiffErrors {
   double position = 0.0, velocity = 0.0;
 };
 
-/// Largest errors from 0.8 to 1.6 s, where what the first steps made is forgotten.
+/// Largest errors from 0.8 to 1.6 s, after the errors of the first steps have decayed.
 StiffErrors stiff_errors(const std::string& name, double h) {
   dynamics::State state;
   dynamics::System system;
@@ -266,7 +265,7 @@ StiffErrors stiff_errors(const std::string& name, double h) {
   spec.name = name;
   spec.fixed_step = true;
   spec.step_s = h;
-  spec.newton_rtol = 1e-10;  // the problem is linear: the second correction is rounding
+  spec.newton_rtol = 1e-10;  // the problem is linear: the second correction is at rounding level
   const auto stepper = integrate::make_stepper(system, state, spec);
   StiffErrors worst;
   for (int n = 1; n <= 10; ++n) {
@@ -302,8 +301,8 @@ TEST(ArkMethods, HaveTheirStiffOrder) {
   EXPECT_EQ(checked, 28);
 }
 
-/// R = 1 + (l_I b_I + l_E b_E)^T Z with the stages Z = (I - l_I A_I - l_E A_E)^-1 1: one step of y' = l_I y +
-/// l_E y, h = 1.
+/// Amplification of one step of y' = l_I y + l_E y, h = 1: R = 1 + (l_I b_I + l_E b_E)^T Z with the stages Z
+/// = (I - l_I A_I - l_E A_E)^-1 1.
 double one_step(const integrate::ArkMethod& m, double l_implicit, double l_explicit) {
   MatX A;
   VecX b;
@@ -320,8 +319,8 @@ double one_step(const integrate::ArkMethod& m, double l_implicit, double l_expli
   return 1.0 + b.dot(VecX((MatX::Identity(s, s) - A).partialPivLu().solve(VecX::Ones(s))));
 }
 
-/// n equal steps of a linear equation are the n-th power of one: not so where a step begins with another f
-/// than that of its start.  Both sides act.
+/// n equal steps of a linear equation equal the n-th power of one step, unless a step starts with an f other
+/// than that of its initial state. Both sides of the method act.
 TEST(ArkMethods, EachStepBeginsWhereTheLastOneEnded) {
   constexpr double kImplicit = -0.9, kExplicit = 0.4, kStep = 0.5;
   constexpr int kSteps = 4;

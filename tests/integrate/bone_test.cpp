@@ -1,5 +1,5 @@
-// Tissue around a free bone of a thousandth of its mass, under the integrators of the registry: what of its
-// momentum is kept, and whether it is stable.
+// Tissue around a free bone of a thousandth of its mass, with the integrators of the registry:
+// conservation of momentum, and stability.
 #include <gtest/gtest.h>
 
 #include "fem/bone_in_tissue.h"
@@ -25,7 +25,7 @@ void advance(BoneInTissue& b, const IntegratorSpec& spec, double t_end) {
   ASSERT_TRUE(b.state.q().allFinite() && b.state.u().allFinite()) << spec.name;
 }
 
-/// Thrown and spinning, tissue and bone as one: relative changes of angular and linear momentum over 0.2 s.
+/// Tissue and bone thrown and spinning as one: relative changes of angular and linear momentum over 0.2 s.
 std::pair<double, double> drift(const IntegratorSpec& spec) {
   BoneInTissue b({.damping = 1e-3});
   b.prepare();
@@ -37,13 +37,13 @@ std::pair<double, double> drift(const IntegratorSpec& spec) {
           change.tail<3>().norm() / before.tail<3>().norm()};
 }
 
-// Nodes on a bone move on circles, which a step replaces by chords: what is kept to rounding at every instant
-// is kept in time to the method's order.
+// Carried nodes move on circles, which a step replaces by chords: momentum, which is conserved to rounding at
+// every instant, is conserved over time to the method's order.
 TEST(Bone, FixedStepsKeepMomentumToTheirOrder) {
   for (const char* name : {"linearly-implicit-euler", "backward-euler", "implicit-midpoint", "bdf2",
                            "newmark", "generalized-alpha"}) {
     const int order = find(integrate::stepper_registry(), name, "integrator").traits.order;
-    // 10 ms does not resolve the tissue's own modes
+    // 10 ms does not resolve the tissue's modes
     std::vector<double> steps = {0.005, 0.0025, 0.00125}, angular, linear;
     for (const double h : steps) {
       const auto [dL, dP] = drift(spec_of(name, h));
@@ -66,9 +66,9 @@ TEST(Bone, ErrorControlKeepsMomentumToTheTolerance) {
   }
 }
 
-// A bone that presses its tissue together, let go at rest: forces of the tissue on its nodes are in balance,
-// and stay so when it turns, for they turn with it. A step that holds them while the arms turn sees a moment
-// that is not there: with compressed tissue it grows, and spins the whole up out of nothing.
+// A bone that compresses its tissue is released at rest: the tissue's forces on its nodes are in equilibrium,
+// and remain so under rotation, because they rotate with it. A step that holds them fixed while the arms
+// rotate has a spurious moment, which grows with compressed tissue and makes the body spin up.
 TEST(Bone, ALightBoneUnderPrestressDoesNotSpinUp) {
   double spin[2] = {0.0, 0.0};
   for (const bool included : {true, false}) {
@@ -83,8 +83,8 @@ TEST(Bone, ALightBoneUnderPrestressDoesNotSpinUp) {
   EXPECT_GT(spin[false], 1e-2) << "what the geometric stiffness is there for";
 }
 
-// Linearly implicit Euler at 10 ms, and the mass of the bone down to nothing: the same motion, no smaller
-// step.
+// Linearly implicit Euler at 10 ms, with the bone's mass going to zero: the same motion without smaller
+// steps.
 TEST(Bone, ItsMassMayGoToNothing) {
   Vec6 last = Vec6::Zero();
   for (const double ratio : {1e-3, 1e-6, 1e-9}) {
@@ -100,8 +100,8 @@ TEST(Bone, ItsMassMayGoToNothing) {
   }
 }
 
-// Tissue so stiff that tissue and bone are one rigid body: they tumble as Euler's top with the moments of all
-// masses together.
+// With very stiff tissue, tissue and bone form one rigid body: they tumble as Euler's top with the moments of
+// inertia of all masses together.
 TEST(Bone, StiffTissueAndItsBoneTumbleAsOneRigidBody) {
   BoneInTissue b({.mass_ratio = 0.3, .youngs_modulus = 1e8, .damping = 1e-5});
   b.inertia = b.bone_mass * Vec3(1e-4, 1.5e-4, 2e-4);
@@ -121,11 +121,11 @@ TEST(Bone, StiffTissueAndItsBoneTumbleAsOneRigidBody) {
   Mat3 I = dynamics::world_inertia(dynamics::motion_of(b.state.view(), block).pose, b.inertia) +
            about_centre(b.bone_mass, b.state.q(block).tail<3>());
   for (int i = 0; i < b.masses.size(); ++i) I += about_centre(b.masses[i], b.state.view().position(i));
-  b.throw_rigidly(-w0.cross(centre), w0);  // about the centre of mass, which stays
+  b.throw_rigidly(-w0.cross(centre), w0);  // about the centre of mass, which is at rest
   const Quat start(b.state.q(block)[0], b.state.q(block)[1], b.state.q(block)[2], b.state.q(block)[3]);
 
-  // Torque-free: L = I w0 stands in space, w = R I^-1 R^T L, q' = 1/2 (0, w) q; by the classical fourth-order
-  // rule with steps of 0.1 ms.
+  // Torque-free: L = I w0 is constant in space, w = R I^-1 R^T L, q' = 1/2 (0, w) q; integrated by the
+  // classical fourth-order method with steps of 0.1 ms.
   const Vec3 L = I * w0;
   const Mat3 inverse = I.inverse();
   const double T = 0.6, h = 1e-4;

@@ -10,7 +10,7 @@ namespace {
 
 using namespace fakes;
 
-// Newton's matrix of the residual form, against the dense matrix that the header derives it from.
+// Newton's matrix of the residual form, against the dense matrix from which the header derives it.
 TEST(CondensedNewton, SolvesTheResidualForm) {
   Chain chain(0.3);
   IntegratorSpec spec;
@@ -41,7 +41,7 @@ TEST(CondensedNewton, FactorsOnlyWhatChanged) {
   EXPECT_EQ(counters.tangent_evaluations, 1);
 }
 
-/// Keeps the positions that it is given with a matrix.
+/// Stores the positions passed with a matrix.
 struct PositionsKept final : LinearSolver {
   VecX& kept;
   SolverCounters none;
@@ -57,7 +57,7 @@ struct PositionsKept final : LinearSolver {
   const SolverCounters& counters() const override { return none; }
 };
 
-// Preconditioners turn their rigid motions with the body.
+// The matrix carries the current node positions, with which preconditioners rotate their rigid motions.
 TEST(CondensedNewton, TellsWhereTheNodesAre) {
   Chain chain;
   VecX seen;

@@ -4,8 +4,7 @@
 
 #include "integrate/ode_problem.h"
 
-/// A small equation in the place of a System, with a dense solver in the place of ours: what is tested is the
-/// adapters alone.
+/// A small equation in the place of a System, with a dense solver: tests the adapters in isolation.
 namespace palpate::fakes {
 
 using dynamics::SolveStatus;
@@ -16,7 +15,7 @@ struct Equation {
   std::function<void(const VecX& y, VecX& f)> f;
   std::function<void(const VecX& y, MatX& J)> jacobian;
   VecX y0;
-  VecX scale;  ///< sizes of the components that matter to error control
+  VecX scale;  ///< magnitudes of the components for error control
   std::function<void(const VecX& y, VecX& g)> g{};
 };
 

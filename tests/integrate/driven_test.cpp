@@ -11,10 +11,9 @@ namespace {
 
 using namespace fakes;
 
-/// Node 0 is moved along x by A sin(W t); node 1 follows through a spring k, a damper c and the off-diagonal
-/// mass of a linear bar element. Free row: m11 a1 + m10 a0 = -k (d1 - d0) - c (v1 - v0).  With d0 = Im(A
-/// e^{iWt}), d1 = Im(X e^{iWt}):
-///     X (k + i W c - W^2 m11) = A (k + i W c + W^2 m10).
+/// Node 0 is driven along x by A sin(W t); node 1 follows through a spring k, a damper c and the off-diagonal
+/// mass of a linear bar element. Free row: m11 a1 + m10 a0 = -k (d1 - d0) - c (v1 - v0). With d0 = Im(A
+/// e^{iWt}), d1 = Im(X e^{iWt}): X (k + i W c - W^2 m11) = A (k + i W c + W^2 m10).
 struct DrivenBar {
   static constexpr double kA = 0.1, kW = 5.0, kK = 100.0, kC = 3.0, kM11 = 2.0, kM10 = 1.0;
   State state;
@@ -90,7 +89,7 @@ TEST_P(Driven, NodesFollowExactlyAndTheRestRespondsAtTheOrder) {
   EXPECT_LT(errors.back(), 1e-3 * DrivenBar::kA);
 }
 
-// The whole bar moves with its drive at a constant velocity: no force, any step.
+// The whole bar moves with its drive at constant velocity: no force arises, at any step size.
 TEST_P(Driven, RigidMotionWithTheDriveFeelsNoForce) {
   const MatX K =
       (MatX(6, 6) << MatX::Identity(3, 3), -MatX::Identity(3, 3), -MatX::Identity(3, 3), MatX::Identity(3, 3))
@@ -109,13 +108,13 @@ TEST_P(Driven, RigidMotionWithTheDriveFeelsNoForce) {
   }));
   system.prepare(state.view());
   IntegratorSpec s = mode_spec(GetParam());
-  // Newton's remainder is a share of rtol, where a factor is kept for another step.
+  // Newton's remaining error is a fraction of rtol where a factorisation is reused for another step.
   s.rtol = is_explicit(GetParam()) ? 1e-3 : 1e-8;
   s.step_s = is_explicit(GetParam()) ? 1e-4 : 0.1;  // the largest rate is 2e3
   const auto stepper = integrate::make_stepper(system, state, s);
   ASSERT_TRUE(stepper->advance_to(1.0).ok());
   const bool at_its_limit = is_explicit(GetParam()) && !steps_are_fixed(GetParam());
-  // there rounding grows to the tolerance, of a speed of 2
+  // at the stability limit rounding grows to the tolerance, relative to a speed of 2
   const double bar = at_its_limit ? 2.1 * s.rtol : 1e-9;
   EXPECT_LT((state.q() - q0 - VecX::Constant(6, 2.0)).norm(), bar);
   EXPECT_LT((state.u() - VecX::Constant(6, 2.0)).norm(), bar);
@@ -150,10 +149,9 @@ struct BallMass final : InertiaTerm {
   }
 };
 
-// Light bone (1 kg), heavy tissue: node 0 (3 kg) is carried, node 1 (2 kg) hangs on it by k = 50.  Two masses
-// 4 and 2 on one spring:
-// omega^2 = k (1/4 + 1/2).  The carried node's mass and stiffness must enter the bone's equations, or both
-// are wrong.
+// Light bone (1 kg), heavy tissue: node 0 (3 kg) is carried, node 1 (2 kg) is attached to it by k = 50. Two
+// masses 4 and 2 on one spring: omega^2 = k (1/4 + 1/2). The carried node's mass and stiffness must enter the
+// bone's equations; otherwise the frequency is wrong.
 TEST_P(Driven, NodesCarriedByABodyLoadIt) {
   std::vector<double> values, errors;
   const int n = order();

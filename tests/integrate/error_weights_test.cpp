@@ -43,12 +43,12 @@ TEST(ErrorWeights, DrivenDirectionsNeitherCountNorDilute) {
   std::vector<char> driven(12, 0);
   for (int dof : {0, 1, 2, 4}) driven[static_cast<std::size_t>(dof)] = 1;
   const VecX free = weights(TwoBlocks{}, std::vector<char>(12, 0)), w = weights(TwoBlocks{}, driven);
-  VecX error = VecX::Zero(kSize);  // one tolerance's worth in every free entry
+  VecX error = VecX::Zero(kSize);  // one tolerance in every free entry
   for (int i = 0; i < kSize; ++i)
     if (w[i] > 1.0) error[i] = 1.0 / free[i];
   EXPECT_EQ((error.array() > 0.0).count(), kSize - 8);
   EXPECT_NEAR(w.cwiseProduct(error).norm() / std::sqrt(kSize), 1.0, 1e-14);
-  error[0] = error[13] = 1e3;  // driven entries may hold anything
+  error[0] = error[13] = 1e3;  // driven entries are ignored
   EXPECT_NEAR(w.cwiseProduct(error).norm() / std::sqrt(kSize), 1.0, 1e-14);
 }
 

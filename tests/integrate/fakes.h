@@ -6,13 +6,13 @@
 #include "palpate/dynamics/system.h"
 #include "palpate/integrate/integrators.h"
 
-/// Small systems whose motion is known, so that integrators are tested without elements and without contact.
+/// Small systems with known motion, for tests of integrators without elements and contact.
 namespace palpate::fakes {
 
 using namespace dynamics;
 
-/// f = -K (q - q0) - D u over the node blocks, all nodes coupled; on request unsymmetric, or not a number
-/// from a time on.
+/// f = -K (q - q0) - D u over the node blocks, all nodes coupled; optionally unsymmetric, or NaN from a given
+/// time on.
 struct LinearTerm final : ForceTerm {
   MatX K, D;
   VecX q0;
@@ -48,7 +48,7 @@ struct LinearTerm final : ForceTerm {
   }
 };
 
-/// A mass matrix over the nodes, any.
+/// Any mass matrix over the nodes.
 struct NodalMass final : InertiaTerm {
   int block;
   MatX M;
@@ -70,7 +70,7 @@ struct NodalMass final : InertiaTerm {
   }
 };
 
-/// Directions that follow functions of time.
+/// Directions prescribed as functions of time.
 struct Scripted final : DrivenMotion {
   std::vector<int> indices;
   std::function<void(double t, VecX& x, VecX& v, VecX& a)> motion;
@@ -80,8 +80,8 @@ struct Scripted final : DrivenMotion {
   void evaluate(const StateView& s, VecX& x, VecX& v, VecX& a) const override { motion(s.time, x, v, a); }
 };
 
-/// Chain of `nodes` equal masses along x, springs k between neighbours and from the first to a wall, in x;
-/// each node held by k in y and z.
+/// Stiffness of a chain of `nodes` equal masses along x, with springs k between neighbours and from the first
+/// to a wall, in x; each node is held by k in y and z.
 inline MatX chain_stiffness(int nodes, double k) {
   MatX K = MatX::Zero(3 * nodes, 3 * nodes);
   for (int i = 0; i < nodes; ++i) {
@@ -138,8 +138,8 @@ inline VecX run(System& system, State& state, const IntegratorSpec& spec, double
   return state.q();
 }
 
-/// What a conformance suite runs over: every integrator of the registry, and those that can do both once more
-/// with a fixed step ("ark-erk-3, fixed step").
+/// Modes of a conformance suite: every integrator of the registry, and those that support both again with a
+/// fixed step ("ark-erk-3, fixed step").
 inline constexpr const char* kFixedStep = ", fixed step";
 inline std::vector<std::string> stepper_modes(bool dynamic_only = true) {
   std::vector<std::string> out;
@@ -155,23 +155,23 @@ inline IntegratorSpec mode_spec(const std::string& mode) {
   spec.fixed_step = mode.ends_with(kFixedStep);
   spec.name = spec.fixed_step ? mode.substr(0, mode.size() - std::string(kFixedStep).size()) : mode;
   spec.newton_rtol = 1e-11;                                // below the error of the finest step of order 5
-  if (spec.name.starts_with("ark-mri")) spec.rtol = 1e-8;  // of the fast side
+  if (spec.name.starts_with("ark-mri")) spec.rtol = 1e-8;  // tolerance of the fast side
   return spec;
 }
 inline const StepperTraits& mode_traits(const std::string& mode) {
   return find(integrate::stepper_registry(), mode_spec(mode).name, "integrator").traits;
 }
 inline bool is_explicit(const std::string& mode) { return !mode_traits(mode).implicit; }
-/// True when a step decides the accuracy, not a tolerance.
+/// Returns whether a step, rather than a tolerance, determines the accuracy.
 inline bool steps_are_fixed(const std::string& mode) {
   return mode_traits(mode).control == StepControl::kFixed || mode_spec(mode).fixed_step;
 }
-/// The order that a ladder of steps shows; 0 of a method that tolerances steer.
+/// Order observed over a sequence of steps; 0 for a method controlled by tolerances.
 inline int ladder_order(const std::string& mode) {
   return steps_are_fixed(mode) ? mode_traits(mode).order : 0;
 }
 
-/// The setting that a ladder refines: the step of a method of known order, else the tolerance.
+/// Sets the parameter refined by a sequence: the step of a method with known order, else the tolerance.
 inline void set_accuracy(IntegratorSpec& spec, int order, double value) {
   (order > 0 ? spec.step_s : spec.rtol) = value;
 }
@@ -183,15 +183,17 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y) 
   return ((lx - lx.mean()) * (ly - ly.mean())).sum() / (lx - lx.mean()).square().sum();
 }
 
-/// Settings of a ladder over which the error must fall with the theoretical slope, and the band of that
-/// slope. Fixed steps: the order; w h small enough for the next term of the error to stay below a tenth,
-/// large enough for a high order to stay above rounding. A tolerance: of variable order k/(k+1) to 1, with k
-/// from 2 to 5 along the ladder; of one order 1.  A low order is spared the tightest rungs.
+/// Settings of a refinement sequence over which the error must decrease with the theoretical slope, and the
+/// band of that slope. Fixed steps: the order; w h is small enough for the next error term to stay below a
+/// tenth, and large enough for the error of a high-order method to stay above rounding. Tolerances: for
+/// variable order k/(k+1) to 1, with k from 2 to 5 along the sequence; for a single order 1. Low orders skip
+/// the tightest levels.
 struct Ladder {
   std::vector<double> values;
   double low, high;
 };
-/// @param T  time between two outputs: a whole number of steps, for a shortened last one would blur the slope
+/// @param T  time between two outputs: a whole number of steps, because a shortened last step would distort
+/// the slope
 inline Ladder ladder(const std::string& mode, double omega, double T) {
   const int order = mode_traits(mode).order;
   if (steps_are_fixed(mode)) {

@@ -4,7 +4,7 @@
 
 #include "integrate/oscillator.h"
 
-/// The steppers written by hand, by name.
+/// Names of the steppers implemented in palpate.
 namespace hand_steppers {
 
 using namespace palpate;
@@ -24,7 +24,7 @@ inline IntegratorSpec spec_of(const std::string& name, double h) {
   IntegratorSpec s;
   s.name = name;
   s.step_s = h;
-  s.linear_solver = "cholmod";  // to rounding: it is the steppers that are looked at
+  s.linear_solver = "cholmod";  // accurate to rounding: the steppers are tested
   return s;
 }
 

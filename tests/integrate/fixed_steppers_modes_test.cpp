@@ -10,7 +10,7 @@ using namespace hand_steppers;
 using Mat2 = Eigen::Matrix2d;
 using Vec2 = Eigen::Vector2d;
 
-// --- Amplification of a mode: y = (q, u/w), y' = w G y, so that W = w h is all that enters a step.
+// --- Amplification of a mode: y = (q, u/w), y' = w G y, so that a step depends on W = w h only.
 
 Mat2 generator(double z) { return (Mat2() << 0, 1, -1, -2 * z).finished(); }
 Mat2 matrix_of(const std::string& name, double W, double z) {
@@ -41,7 +41,7 @@ TEST(HandSteppers, AmplifyAModeByTheClosedForm) {
         for (int n = 1; n <= 3; ++n) {
           ASSERT_TRUE(stepper->advance_to(n * (W / w)).ok());
           y = matrix_of(name, W, z) * y;
-          const double rounding = name == "newmark" ? 1e-15 * W * W : 0.0;  // of its a
+          const double rounding = name == "newmark" ? 1e-15 * W * W : 0.0;  // rounding of the acceleration a
           EXPECT_LT((o.scaled() - y).norm(), (1e-12 + rounding) * std::max(1.0, y.norm()))
               << name << ", W = " << W << ", z = " << z << ", step " << n;
           ++counted;
@@ -72,7 +72,7 @@ TEST(Bdf2, AmplifiesAModeByTheClosedForm) {
     }
 }
 
-// Two steps of 0.6 and 1 in a row: the variable-step formula with r = 1/0.6, from y_before = y(t0).
+// Two consecutive steps of 0.6 and 1: the variable-step formula with r = 1/0.6, from y_before = y(t0).
 TEST(Bdf2, TakesAChangedStepByItsCoefficients) {
   const double w = 2.0, z = 0.2, h0 = 0.06, h1 = 0.1, r = h1 / h0;
   Oscillator o(w, z, 0.3, 0.2);
@@ -81,13 +81,14 @@ TEST(Bdf2, TakesAChangedStepByItsCoefficients) {
   ASSERT_TRUE(stepper->advance_to(h0).ok());
   const Vec2 y1 = o.scaled();
   ASSERT_TRUE(stepper->advance_to(h0 + h1).ok());
-  // y' of the parabola through the three: (1 + 2r)/(1 + r) y2 - (1 + r) y1 + r^2/(1 + r) y0 = h1 w G y2.
+  // y' of the parabola through the three points: (1 + 2r)/(1 + r) y2 - (1 + r) y1 + r^2/(1 + r) y0 = h1 w G
+  // y2.
   const Mat2 A = (1 + 2 * r) / (1 + r) * Mat2::Identity() - h1 * w * generator(z);
   const Vec2 y2 = A.inverse() * ((1 + r) * y1 - r * r / (1 + r) * y0);
   EXPECT_LT((o.scaled() - y2).norm(), 1e-13);
 }
 
-// (q, h u, h^2 a) <- B^-1 C of Chung and Hulbert's four equations, written out as they stand.
+// (q, h u, h^2 a) <- B^-1 C of Chung and Hulbert's four equations, written out.
 TEST(GeneralizedAlpha, AmplifiesAModeByTheClosedForm) {
   const double w = 7.0;
   for (const double rho : {0.0, 0.5, 0.8, 1.0})
@@ -115,7 +116,8 @@ TEST(GeneralizedAlpha, AmplifiesAModeByTheClosedForm) {
       }
 }
 
-// A query of contact changes the force alone: a and g go on, where M^-1 f of a stiff force has no bound.
+// A contact query changes the force only: a and g are continued, because M^-1 f of a stiff force is
+// unbounded.
 TEST(GeneralizedAlpha, GoesOnWhereContactIsRefreshed) {
   const double h = 0.01;
   Oscillator whole(1.0, 1e6 / (2.0 * h), 0.0, 1.0), refreshed(1.0, 1e6 / (2.0 * h), 0.0, 1.0);
@@ -131,7 +133,7 @@ TEST(GeneralizedAlpha, GoesOnWhereContactIsRefreshed) {
   }
 }
 
-// All three roots tend to -rho: (E + rho)^3 q = 0, E the shift by a step.
+// All three roots tend to -rho: (E + rho)^3 q = 0, with E the shift by one step.
 TEST(GeneralizedAlpha, HasItsSpectralRadiusAtInfinity) {
   for (const double rho : {0.0, 0.3, 0.8, 1.0}) {
     Oscillator o(1.0, 0.0, 0.3, 0.5);
@@ -153,13 +155,13 @@ TEST(GeneralizedAlpha, HasItsSpectralRadiusAtInfinity) {
   }
 }
 
-// --- What is kept, what is bounded
+// --- Conserved and bounded quantities
 
 TEST(HandSteppers, KeepTheEnergyOfALinearSystemWhereTheoryDoes) {
   for (const std::string name : {"implicit-midpoint", "newmark"}) {
     Chain chain;
     chain.start_in_mode(0.1);
-    chain.state.u()[7] = 0.3;  // and others
+    chain.state.u()[7] = 0.3;  // and other modes
     const auto energy = [&] {
       return chain.system.kinetic_energy(chain.state.view()) +
              chain.system.potential_energy(chain.state.view());
@@ -173,7 +175,7 @@ TEST(HandSteppers, KeepTheEnergyOfALinearSystemWhereTheoryDoes) {
   }
 }
 
-/// Growth of (q, u/w) over 2000 steps of W/w, or the failure.
+/// Growth of (q, u/w) over 2000 steps of W/w, or the failure status.
 StepResult excite(const std::string& name, double W, double z, double& growth) {
   Oscillator o(3.0, z, 0.3, 0.2);
   const auto stepper = integrate::make_stepper(o.system, o.state, spec_of(name, W / o.w));

@@ -12,7 +12,7 @@ namespace {
 using namespace fakes;
 using hand_steppers::kNewton;
 
-/// Corotational box of 20 cells' nodes, clamped at one end unless free.
+/// Corotational box of 20 nodes, clamped at one end unless free.
 struct Box {
   TetMesh rest = mesh::box(Vec3(1.0, 0.25, 0.25), {4, 1, 1});
   VecX mass;
@@ -38,7 +38,7 @@ struct Box {
     }
     system.prepare(state.view());
   }
-  /// A smooth start that bends it far: the tip moves by half the length.
+  /// Sets a smooth initial velocity that bends it strongly: the tip moves by half the length.
   void swing(double speed) {
     for (int i = 0; i < rest.nodes.cols(); ++i) {
       const double s = rest.nodes(0, i) + 0.5;
@@ -60,7 +60,7 @@ struct Box {
 
 constexpr double kEnd = 0.16;
 
-/// (q, kEnd u) at kEnd.
+/// State (q, kEnd u) at kEnd.
 VecX swung(const std::string& name, double step_or_rtol, bool rtol, StepperCounters* counters = nullptr,
            int kept = 1) {
   Box box(true);
@@ -79,7 +79,7 @@ VecX swung(const std::string& name, double step_or_rtol, bool rtol, StepperCount
 }
 
 TEST(HandSteppersNonlinear, ConvergeOnABendingBodyAtTheirOrder) {
-  // two families; with 1e-10 as well, cvode-bdf is as tight as it can be
+  // two families; at 1e-10, cvode-bdf is at its tightest tolerance
   const VecX reference = swung("cvode-bdf", 1e-10, true), start = Box(true).state.q();
   EXPECT_GT((reference.head(start.size()) - start).lpNorm<Eigen::Infinity>(), 0.3) << "it bends far";
   EXPECT_LT((reference - swung("ark-dirk-esdirk547", 1e-11, true)).norm(), 3e-9);
@@ -108,7 +108,7 @@ TEST(HandSteppersNonlinear, KeepAFactorAndTheAnswer) {
   }
 }
 
-// A large step that full Newton must work for: the body is thrown by half its length in one step.
+// A large step that requires full Newton: the body is thrown by half its length in one step.
 TEST(HandSteppersNonlinear, SolveALargeStep) {
   for (const std::string& name : kNewton)
     for (const int kept : {1, 10}) {
@@ -119,8 +119,8 @@ TEST(HandSteppersNonlinear, SolveALargeStep) {
     }
 }
 
-// Angular momentum of nodes is a quadratic invariant: kept by Gauss' method to Newton's tolerance, by no
-// other here.
+// The angular momentum of nodes is a quadratic invariant: Gauss' method conserves it to Newton's tolerance,
+// and no other method here does.
 TEST(ImplicitMidpoint, KeepsTheAngularMomentumOfASoftBody) {
   const auto drift = [](const std::string& name) {
     Box box(false);
@@ -138,7 +138,7 @@ TEST(ImplicitMidpoint, KeepsTheAngularMomentumOfASoftBody) {
   EXPECT_GT(drift("newmark"), 1e-7);
 }
 
-/// Largest distance of a free top's angular momentum from its start, relative, over a time.
+/// Largest relative deviation of a free top's angular momentum from its initial value over a duration.
 double top_drift(const std::string& name, double h, double duration) {
   Top top;
   IntegratorSpec s;
@@ -154,8 +154,8 @@ double top_drift(const std::string& name, double h, double duration) {
   return worst;
 }
 
-// R I R^T w is no quadratic function of quaternion and w: off by O(h^2), but the method is symmetric and the
-// free top reversible: no drift.
+// R I R^T w is no quadratic function of quaternion and w: it deviates by O(h^2), but the method is symmetric
+// and the free top reversible, so that there is no drift.
 TEST(ImplicitMidpoint, KeepsTheAngularMomentumOfARigidBodyNearWithoutDrift) {
   std::vector<double> steps = {0.02, 0.01, 0.005}, errors;
   for (const double h : steps) errors.push_back(top_drift("implicit-midpoint", h, 3.0));

@@ -10,7 +10,7 @@ using namespace hand_steppers;
 
 // --- Orders in special circumstances
 
-/// Error at 1.2 s of the oscillator, with outputs at uneven times, so that neighbouring intervals have other
+/// Error at 1.2 s of the oscillator, with outputs at uneven times, so that adjacent intervals have different
 /// steps.
 double uneven_error(const IntegratorSpec& s, bool reinit) {
   Oscillator o(3.0, 0.1);
@@ -65,7 +65,7 @@ TEST(HandSteppers, HaveTheirStiffOrder) {
       System system;
       const int id =
           state.insert(BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Ones(3));
-      system.add(std::make_shared<Smooth>(1e6, 1e6));  // fast rate 1e6: h of it at least 1e4; slow rate 1
+      system.add(std::make_shared<Smooth>(1e6, 1e6));  // fast rate 1e6, h x rate >= 1e4; slow rate 1
       system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
       system.prepare(state.view());
       IntegratorSpec s = spec_of(name, h);
@@ -123,14 +123,14 @@ TEST(HandSteppers, TakeOneFactorForALinearStepAndOneForManyWhereItIsKept) {
     ASSERT_TRUE(a->advance_to(1.0).ok());
     ASSERT_TRUE(b->advance_to(1.0).ok());
     EXPECT_LT((full.state.q() - kept.state.q()).norm(), 1e-13);
-    const long starts = name == "bdf2" ? 1 : 0;  // of two stages
+    const long starts = name == "bdf2" ? 1 : 0;  // the first step has two stages
     EXPECT_EQ(a->counters().solver.factorisations, 100 + starts);
     EXPECT_EQ(b->counters().solver.factorisations, 10 + starts);
     EXPECT_EQ(b->counters().newton_failures, 0);
   }
 }
 
-/// A spring whose tangent is a lie: `share` of the true one.
+/// A spring whose tangent is wrong: `share` of the true one.
 struct Liar final : ForceTerm {
   double k, share;
   Liar(double stiffness, double told) : k(stiffness), share(told) {}
@@ -163,8 +163,8 @@ struct Kept final : StepTrace {
   void attempt(const StepAttempt& a) override { attempts.push_back(a); }
 };
 
-// Newton's iteration matrix is 1 - lambda R, R = 1 + W^2 with no stiffness told: with lambda >= 1/64 it
-// contracts while R < 128.
+// Newton's iteration matrix is 1 - lambda R, with R = 1 + W^2 if the tangent has no stiffness: with lambda >=
+// 1/64 it contracts while R < 128.
 TEST(HandSteppers, GiveUpOnANewtonThatCannotConverge) {
   for (const std::string& name : kNewton) {
     Lied lied(1e8, 0.0);

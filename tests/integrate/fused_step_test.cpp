@@ -11,8 +11,8 @@ namespace {
 
 using namespace dynamics;
 
-// Steps in one pass are the steps of the general way, to the solver's tolerance; and no whole matrix was made
-// on the way.
+// Steps assembled in one pass equal steps of the general assembly, to the solver's tolerance; no whole matrix
+// is assembled.
 TEST(LinearlyImplicitEuler, StepsTheSameInOnePass) {
   for (const std::string name : {"pcg-single", "pcg-two-level"}) {
     BentBeam fast(16, 1e5), direct(16, 1e5);
@@ -39,8 +39,8 @@ TEST(LinearlyImplicitEuler, StepsTheSameInOnePass) {
   }
 }
 
-// What is done beforehand need not be done by the first step, and changes neither the state nor, but for what
-// a linear solver learned, the steps.
+// prepare() performs one-time work ahead of the first step, and changes neither the state nor, apart
+// from what a linear solver learned, the steps.
 TEST(LinearlyImplicitEuler, PreparesItsFirstStep) {
   for (const std::string name : {"pcg-single", "pcg-two-level", "auto", "cholmod"}) {
     BentBeam prepared(16, 1e5), other(16, 1e5);
@@ -55,7 +55,7 @@ TEST(LinearlyImplicitEuler, PreparesItsFirstStep) {
     EXPECT_EQ(prepared.state.time(), 0.0);
     EXPECT_EQ(ready->counters().steps, 0);
     const long analysed = ready->counters().solver.symbolic;
-    EXPECT_EQ(analysed, name == "auto" ? 2 : 1) << name;  // one for each of the two that it tries
+    EXPECT_EQ(analysed, name == "auto" ? 2 : 1) << name;  // one per candidate solver
     for (const auto& stepper : {ready.get(), cold.get()})
       for (int k = 1; k <= 2; ++k) ASSERT_TRUE(stepper->advance_to(2e-3 * k).ok());
     EXPECT_EQ(ready->counters().solver.symbolic, analysed) << name;

@@ -1,5 +1,4 @@
-// Struts beyond their critical load, and bodies inside out or crushed flat: their step matrices are
-// indefinite.
+// Struts beyond their critical load, and inverted or flattened bodies: their step matrices are indefinite.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -18,12 +17,11 @@ using namespace dynamics;
 
 constexpr double kLength = 1.0, kWidth = 0.1, kYoung = 1e6, kDensity = 1000.0;
 
-/// Column along x of square section, nu = 0, all nodes of one end held, under a dead load P on the other that
-/// is met by uniform compression:
-/// F = diag(1 - e, 1, 1), R = I, P_xx = -E e, P = E A e: an equilibrium at any e.  Its tangent loses
-/// definiteness at Euler's load
-///   P_cr = pi^2 E I / (4 L^2),  e_cr = P_cr / (E A) = pi^2 w^2 / (48 L^2)
-/// of a beam; linear tetrahedra are stiffer in bending, so that of the mesh lies above.
+/// Column along x with square section and nu = 0; all nodes of one end are held, under a dead load P on the
+/// other end that uniform compression balances: F = diag(1 - e, 1, 1), R = I, P_xx = -E e, P = E A e, an
+/// equilibrium at any e. Its tangent becomes indefinite at Euler's load P_cr = pi^2 E I / (4 L^2), e_cr =
+/// P_cr / (E A) = pi^2 w^2 / (48 L^2) of a beam; linear tetrahedra are stiffer in bending, so that the mesh
+/// has a higher load.
 struct Strut {
   State state;
   System system;
@@ -46,14 +44,14 @@ struct Strut {
     VecX x0(static_cast<Eigen::Index>(held.size()));
     for (std::size_t i = 0; i < held.size(); ++i) x0[static_cast<Eigen::Index>(i)] = state.q()[held[i]];
     system.add(fem::make_fixed(held, x0));
-    // the load that holds this state: minus the elastic force on the nodes that are free
+    // load in equilibrium with this state: minus the elastic force on the free nodes
     VecX f = VecX::Zero(3 * n);
     body->add_force(state.view(), f);
     for (int dof : held) f[dof] = 0.0;
     system.add(fem::make_dead_load("end load", Points(-f.reshaped(3, n)), id));
     system.prepare(state.view());
   }
-  /// K phi = lambda M phi over the free directions [1/s^2], by growing lambda; phi.M phi = 1.
+  /// Modes K phi = lambda M phi over the free directions [1/s^2], by increasing lambda; phi.M phi = 1.
   struct Modes {
     VecX lambda;
     MatX phi;
@@ -74,11 +72,11 @@ TEST(EulerStrut, IsStableBelowTheCriticalLoadAndNotWellAbove) {
   EXPECT_LT(Strut(4.0).smallest_eigenvalue(), 0.0);
 }
 
-// M + h^2 K is positive definite exactly when 1 + h^2 lambda > 0 for the smallest eigenvalue lambda of (K,
-// M): with lambda = -sigma^2 < 0, when h < 1 / sigma.  A body that moves along that mode with the speed v
-// leaves at v / (1 - (h sigma)^2), where the motion itself grows by e^(h sigma): the step along it is taken
-// up to (h sigma)^2 = 0.1 and projected beyond, definite or not.  It then keeps v, as long as no other part
-// of the tangent takes it.  (A square section has two such modes, of one rate.)
+// M + h^2 K is positive definite exactly if 1 + h^2 lambda > 0 for the smallest eigenvalue lambda of (K, M):
+// with lambda = -sigma^2 < 0, if h < 1 / sigma. A body that moves along that mode at speed v leaves the step
+// at v / (1 - (h sigma)^2), where the motion itself grows by e^(h sigma): the step follows the mode up to (h
+// sigma)^2 = 0.1 and is projected beyond, whether or not the matrix is definite. It then keeps v, unless
+// another part of the tangent reduces it. (A square section has two such modes with one rate.)
 TEST(EulerStrut, StepGoesAlongTheUnstableModeUpToATenthOfItsMass) {
   const auto modes = Strut(4.0).modes();
   const double sigma = std::sqrt(-modes.lambda[0]);
@@ -108,7 +106,7 @@ TEST(EulerStrut, StepGoesAlongTheUnstableModeUpToATenthOfItsMass) {
       }
 }
 
-// The matrix itself has a Cholesky factor up to 1.
+// The matrix itself has a Cholesky factor up to (h sigma)^2 = 1.
 TEST(EulerStrut, StepMatrixTurnsIndefiniteAtTheGrowthRate) {
   const double sigma = std::sqrt(-Strut(4.0).smallest_eigenvalue());
   const auto counts_of = [&](double h_sigma, const char* solver, const char* policy) {
@@ -128,12 +126,12 @@ TEST(EulerStrut, StepMatrixTurnsIndefiniteAtTheGrowthRate) {
   EXPECT_EQ(counts_of(0.98, "cholmod", "lu"), std::pair(0L, 0L));
   EXPECT_EQ(counts_of(1.02, "cholmod", "lu"), std::pair(1L, 0L));
   EXPECT_EQ(counts_of(1.02, "cholmod", "project"), std::pair(1L, 1L));
-  // PCG meets a direction of negative curvature only where the right-hand side has one
+  // PCG finds negative curvature only along directions present in the right-hand side
   for (const char* policy : {"project", "lu"}) counts_of(1.02, "pcg", policy);
 }
 
-/// A cube, one end held, the nodes of its free half mirrored through the middle plane: every element between
-/// is inside out.
+/// A cube with one end held and the nodes of its free half mirrored through the middle plane: all elements in
+/// between are inverted.
 struct Mirrored {
   State state;
   System system;
@@ -182,7 +180,7 @@ TEST(InvertedElements, GiveAFiniteStepByEitherPolicy) {
     }
 }
 
-/// A free damped cube whose nodes are crushed onto a line, but for a nanometre at random.
+/// A free damped cube whose nodes are collapsed onto a line, with random offsets of a nanometre.
 struct Crushed {
   State state;
   System system;
@@ -206,9 +204,9 @@ struct Crushed {
   }
 };
 
-// A moving body's step gains no energy, whether its matrix is made again in one pass or as a whole: its
-// right-hand side is h (f - K_p h u0) by the same tangent.  By the true one, which the flat elements make
-// stiffer and softer without bound, it would leave at 2e4 m/s.
+// A moving body's step gains no energy, whether its matrix is reassembled in one pass or as a whole: its
+// right-hand side is h (f - K_p h u0) with the same projected tangent. With the exact tangent, whose
+// stiffness the flat elements change without bound, the body would leave at 2e4 m/s.
 TEST(InvertedElements, AreProjectedAlikeInOnePass) {
   const auto step_by = [](const char* solver, StepperCounters& c) {
     Crushed cube(1);
@@ -237,8 +235,8 @@ TEST(InvertedElements, AreProjectedAlikeInOnePass) {
   }
 }
 
-/// What becomes of the crushed cube of five seeds in 0.5 s: the most energy that it ever had, over that at
-/// the start; counts of all.
+/// Largest energy of the crushed cube within 0.5 s, relative to its initial energy, over five seeds; `sum`
+/// accumulates the counts.
 double most_energy(const std::string& solver, double rtol, const std::string& policy, StepperCounters& sum) {
   double most = 0.0;
   for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -265,8 +263,9 @@ double most_energy(const std::string& solver, double rtol, const std::string& po
   return most;
 }
 
-// Let go, a crushed body may not gain energy, whether its solver meets the indefinite matrices when it
-// factors or while it solves.  By LU, which follows the linear force model to its saddle, it does.
+// A released crushed body must not gain energy, whether its solver detects the indefinite matrices when it
+// factors or while it solves. With LU, which follows the linear force model to its saddle point, it gains
+// energy.
 TEST(InvertedElements, GainNoEnergyByAnySolver) {
   StepperCounters by_factor, by_lu;
   const double expected = most_energy("cholmod", 1e-8, "project", by_factor);
@@ -283,7 +282,7 @@ TEST(InvertedElements, GainNoEnergyByAnySolver) {
     }
 }
 
-/// A free damped cube, all its nodes anywhere within its size, thrown anywhere.
+/// A free damped cube with random node positions within its size and random velocities.
 struct ThrownApart {
   State state;
   System system;
@@ -305,9 +304,9 @@ struct ThrownApart {
   double speed() { return std::sqrt(2.0 * system.kinetic_energy(state.view())); }
 };
 
-// No step is faster than 1/(1 - eta) times that of the same nodes without stiffness, u0 + h M^-1 f, whatever
-// the tangent and whoever solves.  With the tangent as it is, LU's way, some are, ten times and more: their
-// matrices are definite by a hair.
+// No step is faster than 1/(1 - eta) times the step of the same nodes without stiffness, u0 + h M^-1 f, for
+// any tangent and any solver. With the unprojected tangent, as LU uses it, some are ten times faster and
+// more: their matrices are barely definite.
 TEST(ThrownApart, NoStepIsFasterThanTheForcesPush) {
   constexpr double kStep = 5e-3, kMost = 1.0 / 0.9, kSolved = 1e-6;
   const auto fastest = [&](const char* solver, const char* policy, long& projected) {

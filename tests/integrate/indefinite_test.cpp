@@ -8,7 +8,7 @@ namespace {
 
 using namespace fakes;
 
-/// f = -K (q - q0), with a definite stand-in for K where there is one.
+/// f = -K (q - q0), optionally with a definite matrix in the place of K.
 struct Buckling final : ForceTerm, public PsdProjectedTerm {
   MatX K, definite_K;
   bool definite = false;
@@ -28,8 +28,8 @@ struct Buckling final : ForceTerm, public PsdProjectedTerm {
   }
 };
 
-/// Two unit masses without coupling at an unstable equilibrium: q'' = 100 q along x of the first, stable
-/// along the rest. M + gamma^2 K is indefinite exactly for gamma > 0.1.
+/// Two uncoupled unit masses at an unstable equilibrium: q'' = 100 q along x of the first, stable in all
+/// other directions. M + gamma^2 K is indefinite exactly for gamma > 0.1.
 struct Unstable {
   State state;
   System system;
@@ -57,8 +57,8 @@ std::vector<std::string> implicit_methods() {
 
 class Indefinite : public testing::TestWithParam<std::string> {
  protected:
-  /// From rest at the equilibrium there is no error to control and no force: adaptive steps grow past gamma =
-  /// 0.1, and the fixed ones are given so.
+  /// From rest at the equilibrium there is no error and no force: adaptive steps grow past gamma = 0.1, and
+  /// fixed steps are set beyond it.
   StepperCounters counts(Unstable& problem, const std::string& policy) const {
     IntegratorSpec spec;
     spec.name = GetParam();
@@ -68,7 +68,7 @@ class Indefinite : public testing::TestWithParam<std::string> {
     const StepResult result = stepper->advance_to(1000.0);
     EXPECT_TRUE(result.ok()) << result.message;
     EXPECT_EQ(problem.state.q().norm(), 0.0);
-    // saw that no force was left, and asked for no matrix: one step from beside the equilibrium
+    // without any force no matrix was needed: one step from near the equilibrium
     if (stepper->counters().tangent_evaluations == 0) {
       problem.state.q().setConstant(1e-3);
       stepper->reinit(ReinitReason::kStateChanged);
@@ -106,11 +106,10 @@ TEST_P(Indefinite, TakesLuAtOnceWhereAsked) {
   EXPECT_EQ(problem.term->definite_tangents, 0);
 }
 
-/// Two unit masses on x, joined so that together they topple and against each other they are held: along (1,
-/// 1) q'' = 100 q, along (1, -1) q'' = -300 q. M + gamma^2 K has positive blocks on its diagonal at any
-/// gamma, and is indefinite exactly for gamma > 0.1: only a solve can tell, of a right-hand side along (1,
-/// 1).
-/// Such a one comes with a push at kPushed.
+/// Two unit masses on x, coupled such that they are unstable together and stable against each other: along
+/// (1, 1) q'' = 100 q, along (1, -1) q'' = -300 q. M + gamma^2 K has positive diagonal blocks at any gamma,
+/// and is indefinite exactly for gamma > 0.1: only a solve with a right-hand side along (1, 1) detects it. A
+/// push at kPushed provides such a right-hand side.
 constexpr double kPushed = 500.0;
 struct Toppling {
   struct Push final : ForceTerm, PsdProjectedTerm {
@@ -122,7 +121,7 @@ struct Toppling {
       for (const int i : {1, 2, 4, 5}) leaning.K(i, i) = 100.0;
       definite_K = leaning.K;
       leaning.K(0, 0) = leaning.K(3, 3) = 100.0, leaning.K(0, 3) = leaning.K(3, 0) = -200.0;
-      // the nearest positive semi-definite one
+      // the nearest positive semi-definite matrix
       definite_K(0, 0) = definite_K(3, 3) = 150.0, definite_K(0, 3) = definite_K(3, 0) = -150.0;
     }
     std::string_view name() const override { return "toppling"; }
@@ -155,9 +154,9 @@ struct Toppling {
   }
 };
 
-/// From rest the steps of error control grow far past gamma = 0.1, and meet the push with it; fixed ones are
-/// given so.  A fixed step may fail: a Newton iteration by the definite matrix, 1, for an equation of slope 1
-/// - 100 gamma^2 < 0 goes away from its solution.
+/// From rest, error-controlled steps grow far past gamma = 0.1 before the push; fixed steps are set beyond
+/// it. A fixed step may fail: a Newton iteration with the definite matrix, 1, diverges for an equation of
+/// slope 1 - 100 gamma^2 < 0.
 StepperCounters pushed(Toppling& problem, IntegratorSpec spec) {
   spec.step_s = 1.0;
   const auto stepper = integrate::make_stepper(problem.system, problem.state, spec);
@@ -187,8 +186,8 @@ TEST_P(Indefinite, MetWhileSolvingIsAnsweredByLuWhereAsked) {
   EXPECT_EQ(problem.term->definite_tangents, 0);
 }
 
-// With a projected matrix the masses go where the push sends them; with the true one, LU's, to the other
-// side: (1 - 100) du = 1e-3.
+// With a projected matrix the masses move in the direction of the push; with the exact one, as LU uses it, to
+// the opposite side: (1 - 100) du = 1e-3.
 TEST(LinearlyImplicitEuler, FollowsThePushByAnySolver) {
   VecX by_factor;
   for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level", "auto"}) {

@@ -1,4 +1,4 @@
-// Which embedded pairs do not see a kink of the force (d_dropped_ball.cpp has the derivation).
+// Embedded pairs whose error estimate misses a kink of the force (derivation in d_dropped_ball.cpp).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,8 +10,8 @@
 namespace palpate {
 namespace {
 
-/// Part of all places theta within a step at which the error of y'' = (t - theta h)+ is more than 860 times
-/// its estimate.
+/// Fraction of positions theta within a step at which the error of y'' = (t - theta h)+ exceeds 860 times its
+/// estimate.
 double blind_part(const integrate::ButcherTable& table) {
   constexpr int kPlaces = 10000;
   const VecX c = table.A.rowwise().sum(), difference = table.b - table.embedded;

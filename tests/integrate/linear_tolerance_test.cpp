@@ -1,4 +1,4 @@
-// Newton's corrections by an iterative linear solver: as accurate as Newton's method sees, and no more.
+// Newton's corrections by an iterative linear solver: as accurate as Newton's method requires, and no more.
 #include <gtest/gtest.h>
 
 #include "integrate/condensed_newton.h"
@@ -11,13 +11,13 @@ namespace {
 
 using namespace fakes;
 
-/// Corrections of a bar that has swung for a while, and what they cost.
+/// Corrections of a swinging bar, and their cost.
 struct Corrections {
   std::unique_ptr<Small> bar = swinging_bar(8, 3);
   VecX w, d;
   long iterations = 0;
 
-  /// @param error  that is allowed in the norm of the weights of rtol 1e-3; < 0: nothing is said
+  /// @param error  permitted error in the norm of the weights of rtol 1e-3; < 0: not specified
   Corrections(const char* solver, double error) {
     const auto stepper =
         integrate::make_stepper(bar->system, bar->state, {.name = "cvode-bdf", .rtol = 1e-4});
@@ -32,7 +32,7 @@ struct Corrections {
     integrate::error_weights(l, {.rtol = 1e-3}, bar->system.driven_mask(), bar->state.u().data(), w.data());
     if (error >= 0.0) newton.limit_error(l, w.data(), error);
     d.resize(2 * n);
-    for (int k = 0; k < 3; ++k) {  // the first knows nothing of the spectrum
+    for (int k = 0; k < 3; ++k) {  // the first solve has no information on the spectrum
       const VecX r = 1e-3 * VecX::LinSpaced(2 * n, -1.0, 1.0 + k).array().sin().matrix();
       const long before = newton.solver().counters().iterations;
       EXPECT_EQ(newton.solve(l, bar->state.q().data(), r.data(), r.data() + n, d.data(), d.data() + n),
@@ -62,9 +62,9 @@ TEST(LinearTolerance, BoundsTheErrorOfACorrection) {
   }
 }
 
-// The step sequence of backward differences is sensitive: rtol changed by 3 % changes the error by a factor
-// of two to three either way, with a direct solver as well.  Over forty tolerances the geometric mean is
-// left.
+// The step sequence of backward differences is sensitive: changing rtol by 3 % changes the error by a
+// factor of two to three either way, also with a direct solver. The geometric mean over forty tolerances is
+// stable.
 TEST(LinearTolerance, LeavesTheErrorOfARunAsItIs) {
   const auto mean_error = [](const char* solver) {
     const auto made = swinging_bar();

@@ -1,7 +1,7 @@
 #pragma once
 #include "integrate/fakes.h"
 
-/// Small mechanical systems of the literature, and Runge-Kutta-4 of this file as their reference.
+/// Small mechanical systems from the literature, with a Runge-Kutta-4 integrator as their reference.
 namespace palpate::fakes {
 
 /// A potential over one node block, with its Hessian.
@@ -32,7 +32,8 @@ struct Potential final : ForceTerm {
 
 using Potentials = std::vector<std::shared_ptr<Potential>>;
 
-/// Classical RK4 on q'' = -sum of gradients; error O(h^4), with h small enough to be below every bar here.
+/// Classical RK4 on q'' = -sum of gradients; error O(h^4), with h small enough for the error to be below
+/// every limit here.
 inline void reference(const Potentials& potentials, VecX& q, VecX& u, double T, int steps) {
   const auto a = [&](const VecX& at) {
     VecX sum = VecX::Zero(at.size());
@@ -77,7 +78,7 @@ inline std::shared_ptr<Potential> spring_pendulum(double k) {
   return p;
 }
 
-/// A soft floor under a point, V = v e^(-(y + 0.8)/0.1).
+/// Potential of a soft floor under a point, V = v e^(-(y + 0.8)/0.1).
 inline std::shared_ptr<Potential> exponential_floor(double v) {
   const auto at = [v](const VecX& q) { return v * std::exp(-(q[1] + 0.8) / 0.1); };
   auto p = std::make_shared<Potential>();
@@ -89,15 +90,15 @@ inline std::shared_ptr<Potential> exponential_floor(double v) {
   return p;
 }
 
-/// Fermi-Pasta-Ulam with 3 stiff linear and 4 soft cubic springs (Hairer, Lubich, Wanner 2006, I.5.1), along
-/// x; y and z of each mass are free and at rest.
+/// Fermi-Pasta-Ulam problem with 3 stiff linear and 4 soft cubic springs (Hairer, Lubich, Wanner 2006,
+/// I.5.1), along x; y and z of each mass are free and at rest.
 namespace fermi_pasta_ulam {
 
 inline constexpr int kMasses = 6;
 inline double x(const VecX& q, int i) { return i < 0 || i >= kMasses ? 0.0 : q[3 * i]; }
 
 /// Springs between masses i and i + 1 for i = first, first + 2, ..; -1 and kMasses are walls.
-/// @param energy, force, stiffness  of a spring's elongation
+/// @param energy, force, stiffness  functions of a spring's elongation
 inline std::shared_ptr<Potential> springs(int first, std::function<double(double)> energy,
                                           std::function<double(double)> force,
                                           std::function<double(double)> stiffness) {
@@ -130,21 +131,21 @@ inline std::shared_ptr<Potential> springs(int first, std::function<double(double
   return p;
 }
 
-/// Within the pairs 0 and 1, 2 and 3, 4 and 5.
+/// Stiff springs within the pairs 0 and 1, 2 and 3, 4 and 5.
 inline std::shared_ptr<Potential> stiff(double w) {
   return springs(
       0, [w](double e) { return 0.25 * w * w * e * e; }, [w](double e) { return 0.5 * w * w * e; },
       [w](double) { return 0.5 * w * w; });
 }
-/// Between the pairs, and from the first and the last to the walls.
+/// Soft springs between the pairs, and from the first and the last mass to the walls.
 inline std::shared_ptr<Potential> soft() {
   return springs(
       -1, [](double e) { return std::pow(e, 4); }, [](double e) { return 4.0 * std::pow(e, 3); },
       [](double e) { return 12.0 * e * e; });
 }
 
-/// The start of the book, x_1 = 1, y_1 = 1, z_1 = 1/w and its velocity 1: the first stiff spring carries
-/// energy 1/2 + 1/2.
+/// Initial state of the book, x_1 = 1, y_1 = 1, z_1 = 1/w with velocity 1: the first stiff spring has energy
+/// 1/2 + 1/2.
 inline VecX q0(double w) {
   VecX q = VecX::Zero(3 * kMasses);
   q[0] = (1.0 - 1.0 / w) / std::sqrt(2.0);

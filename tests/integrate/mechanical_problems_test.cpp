@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-/// Mechanical systems of the literature through the condensed Newton matrix.
+/// Mechanical systems from the literature through the condensed Newton matrix.
 namespace palpate {
 namespace {
 
 using namespace fakes;
 
-/// Methods with error control whose order lets them reach 1e-6 in seconds.
+/// Error-controlled methods of sufficient order to reach 1e-6 within seconds.
 std::vector<std::string> accurate_methods() {
   std::vector<std::string> out;
   for (const auto& e : integrate::stepper_registry())
@@ -30,7 +30,7 @@ void expect_reference(const std::string& name, const Potentials& potentials, con
   ASSERT_TRUE(result.ok()) << result.message;
   EXPECT_LT((problem.state.q() - q).norm() / q.norm(), 2e-5);
   EXPECT_LT((problem.state.u() - u).norm() / std::max(1.0, u.norm()), 2e-4 * std::sqrt(fastest));
-  // about 1 goes back and forth
+  // energy of about 1 is exchanged
   EXPECT_NEAR(problem.energy(), energy, 1e-4 * std::max(1.0, std::abs(energy)));
 }
 

@@ -1,5 +1,5 @@
-// The matrix of one multi-rate step against what is known of it: each side alone, the order of both together,
-// and the steps that the method takes.
+// Amplification matrix of one multi-rate step against theory: each side alone, the order of both together,
+// and the steps of the method.
 #include "palpate/integrate/multirate.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using integrate::multirate_amplification;
 
 constexpr const char* kNames[] = {"ark-mri-2", "ark-mri-3", "ark-mri-4"};
 
-/// y' = A y of q'' = -k q - d q'.
+/// Matrix A of y' = A y for q'' = -k q - d q'.
 MatX oscillator(double k, double d) {
   MatX A(2, 2);
   A << 0.0, 1.0, -k, -d;
@@ -39,7 +39,7 @@ TEST(MultirateAmplification, OfOneSideAloneIsWhatTheoryGives) {
         << "the trapezoidal rule";
 }
 
-// A motion with damping d has the modulus exp(-d H/2); that of a method of order p is off by H^(p+1).
+// A motion with damping d has modulus exp(-d H/2); a method of order p has an error of H^(p+1).
 TEST(MultirateAmplification, ComesToTheExactOneWithTheMethodsOrder) {
   constexpr double kDamping = 0.6;
   MatX slow = oscillator(4.0, kDamping), fast = MatX::Zero(2, 2);
@@ -52,7 +52,7 @@ TEST(MultirateAmplification, ComesToTheExactOneWithTheMethodsOrder) {
   }
 }
 
-/// A spring from each node to its place of rest, on the fast side.
+/// A spring from each node to its rest position, on the fast side.
 struct FastSpring final : ForceTerm {
   double k;
   VecX rest;
@@ -64,8 +64,8 @@ struct FastSpring final : ForceTerm {
   void apply_tangent(const StateView&, double, double, const VecX&, VecX&) override {}
 };
 
-// One mode of two springs, each stable alone: a step from a displacement and one from a speed are the columns
-// of the step's matrix.
+// One mode with two springs, each stable alone: a step from a displacement and one from a velocity are the
+// columns of the step's matrix.
 TEST(MultirateAmplification, IsThatOfTheStepsThatAreTaken) {
   constexpr double kFast = 300.0, kStep = 0.15, kSmall = 1e-3;
   int unstable = 0;

@@ -1,5 +1,4 @@
-// Newton's method by itself, on equations whose solutions are known, and what fixed steps of ARKODE do where
-// a solve fails.
+// Newton's method on equations with known solutions, and fixed steps of ARKODE when a solve fails.
 #include "integrate/newton.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,7 @@ using dynamics::StepStatus;
 using integrate::DampedNewton;
 using Way = DampedNewton::Way;
 
-/// One equation in one unknown, with its derivative; counts what it is asked for.
+/// One equation in one unknown, with its derivative; counts its evaluations.
 struct Scalar final : integrate::NewtonEquation {
   std::function<double(double)> r, slope;
   double tolerance = 1e-12, x_ = 0.0, r_ = 0.0, a_ = 0.0;
@@ -52,13 +51,13 @@ TEST(DampedNewton, ALinearEquationTakesOneMatrixAndTwoResiduals) {
   EXPECT_EQ(linear.residuals, 2);
 }
 
-// Undamped it diverges from |x| > 1.39: the next iterate is farther away than the last.
+// Undamped Newton diverges from |x| > 1.39: each iterate is farther away than the previous one.
 TEST(DampedNewton, DampsWhereAWholeCorrectionWouldDiverge) {
   for (const double start : {1.0, 2.0, 10.0, 100.0}) {
     Scalar arctan([](double x) { return std::atan(x); }, [](double x) { return 1.0 / (1.0 + x * x); });
     VecX x = VecX::Constant(1, start);
     const auto result = DampedNewton().solve(arctan, x, 60, Way::kFresh, false);
-    // a damping of 1/64 reaches so far
+    // the reach of a damping of 1/64
     EXPECT_EQ(result.status, start < 50.0 ? StepStatus::kOk : StepStatus::kNewtonFailed) << start;
     if (start < 50.0) { EXPECT_NEAR(x[0], 0.0, 1e-11) << start; }
   }
@@ -82,8 +81,8 @@ TEST(DampedNewton, AKeptMatrixServesUntilItContractsTooLittle) {
   EXPECT_NEAR(x[0], std::sqrt(2.0), 1e-11);
 }
 
-// x + jump at 0, no slope of the jump in the matrix: from the right the solution x = -1 lies behind it, and
-// no small correction descends over it.
+// x plus a jump at 0, without the jump's slope in the matrix: from the right the solution x = -1 lies behind
+// it, and no small correction decreases the residual.
 TEST(DampedNewton, LeapsOverAJump) {
   const auto residual = [](double x) {
     return x > 0.0 ? 0.5 * x + 0.2 : x + 1.0 + 1e3 * std::max(0.0, x + 1e-3);
@@ -100,7 +99,7 @@ TEST(DampedNewton, LeapsOverAJump) {
 }
 
 TEST(DampedNewton, AResidualThatIsNotFiniteIsSaidAndNotTaken) {
-  // from 10 the whole correction goes to -13
+  // from 10 the full correction leads to -13
   Scalar log([](double x) { return std::log(x); }, [](double x) { return 1.0 / x; });
   VecX x = VecX::Constant(1, 10.0);
   ASSERT_EQ(DampedNewton().solve(log, x, 60, Way::kFresh, false).status, StepStatus::kOk);
@@ -114,15 +113,15 @@ struct Kept final : dynamics::StepTrace {
   void attempt(const dynamics::StepAttempt& a) override { all.push_back(a); }
 };
 
-// y' = y^2, y(0) = 1: y = 1/(1 - t).  A stage y1 = y0 + g y1^2 has no solution for 4 g y0 > 1, so a step of H
-// cannot be taken whole by a table whose first stage has g = H a_11 > 1/4, and ends near 1/(1 - H) where it
-// is taken in parts.
+// y' = y^2, y(0) = 1: y = 1/(1 - t). A stage y1 = y0 + g y1^2 has no solution for 4 g y0 > 1, so that a table
+// whose first stage has g = H a_11 > 1/4 cannot take a step H as a whole; taken in parts, it ends near 1/(1 -
+// H).
 TEST(FixedStepNewton, AStepThatHasNoSolutionIsTakenInParts) {
   fakes::Equation growth;
   growth.f = [](const VecX& y, VecX& f) { f = y.cwiseProduct(y); };
   growth.jacobian = [](const VecX& y, MatX& J) { J = (2.0 * y).asDiagonal(); };
   growth.y0 = growth.scale = VecX::Ones(1);
-  for (const char* name : {"ark-dirk-cash534", "ark-dirk-kvaerno534"}) {  // a_11 = 0.436 of both
+  for (const char* name : {"ark-dirk-cash534", "ark-dirk-kvaerno534"}) {  // a_11 = 0.436 in both
     VecX y;
     double t = 0.0;
     IntegratorSpec spec{.name = name, .step_s = 0.65, .fixed_step = true};
@@ -166,7 +165,7 @@ TEST(FixedStepNewton, CountsEachSolveOnce) {
 }
 
 TEST(FixedStepNewton, WhereNoPartHelpsItIsSaid) {
-  // y' jumps from 1 to -1 at y = 1/2: a stage there has no solution however short the step
+  // y' jumps from 1 to -1 at y = 1/2: there a stage has no solution, however short the step is
   fakes::Equation jump;
   jump.f = [](const VecX& y, VecX& f) { f = VecX::Constant(1, y[0] < 0.5 ? 1.0 : -1.0); };
   jump.jacobian = [](const VecX&, MatX& J) { J.setZero(1, 1); };

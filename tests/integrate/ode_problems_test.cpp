@@ -3,8 +3,7 @@
 #include "integrate/dense_ode.h"
 #include "integrate/fakes.h"
 
-/// The adapters against equations that the field agrees on, with a dense solver in the place of ours: what is
-/// tested is the adapters alone.
+/// The adapters on standard test equations, with a dense solver: tests the adapters in isolation.
 namespace palpate {
 namespace {
 
@@ -30,7 +29,7 @@ double relative_error(const VecX& y, const VecX& exact) {
   return (y - exact).cwiseQuotient(exact).cwiseAbs().maxCoeff();
 }
 
-/// The stiff ones: every implicit, error-controlled method of the adapters.
+/// Stiff problems: every implicit, error-controlled method of the adapters.
 std::vector<std::string> implicit_adapters() {
   std::vector<std::string> out;
   for (const auto& e : integrate::stepper_registry())
@@ -42,7 +41,7 @@ std::vector<std::string> implicit_adapters() {
 
 class StiffEquations : public testing::TestWithParam<std::string> {
  protected:
-  /// A method of order 2 needs a million steps for 1e-6.
+  /// Methods of order 2 would need a million steps for 1e-6.
   double rtol() const {
     const int order = find(integrate::stepper_registry(), GetParam(), "integrator").traits.order;
     return order <= 2 ? 1e-5 : 1e-8;
@@ -52,7 +51,7 @@ class StiffEquations : public testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(Registry, StiffEquations, testing::ValuesIn(implicit_adapters()),
                          registry_test_name);
 
-// Van der Pol in his own time, y1'' = mu (1 - y1^2) y1' - y1, mu = 1000, from (2, 0); t = 2000.
+// Van der Pol in the original time, y1'' = mu (1 - y1^2) y1' - y1, mu = 1000, from (2, 0); t = 2000.
 // Reference: Mazzia and Magherini, Test Set for IVP Solvers (2008), II-5.
 TEST_P(StiffEquations, VanDerPol) {
   constexpr double kMu = 1000.0;
@@ -69,7 +68,7 @@ TEST_P(StiffEquations, VanDerPol) {
   EXPECT_LT(relative_error(a.y, (VecX(2) << 1.706167732170469, -8.928097010248125e-4).finished()), bar());
 }
 
-// HIRES, eight reactions of plant physiology (Schaefer 1975); t = 321.8122.  Reference: Test Set for IVP
+// HIRES, eight reactions of plant physiology (Schaefer 1975); t = 321.8122. Reference: Test Set for IVP
 // Solvers, II-1.
 TEST_P(StiffEquations, Hires) {
   const Equation e{
@@ -100,9 +99,9 @@ TEST_P(StiffEquations, Hires) {
   EXPECT_LT(relative_error(a.y, exact), bar());
 }
 
-// Robertson (1966): -0.04 y1 + 1e4 y2 y3, rate constants over nine decades.  At t = 0.4 and 40: y of
-// Hindmarsh's CVODE example, to six digits; the sum of the three is kept by every linear multistep and
-// Runge-Kutta method.
+// Robertson (1966): -0.04 y1 + 1e4 y2 y3, with rate constants over nine decades. At t = 0.4 and 40: y of
+// Hindmarsh's CVODE example, to six digits; every linear multistep and Runge-Kutta method conserves the
+// sum of the three.
 TEST_P(StiffEquations, Robertson) {
   const Equation e{[](const VecX& y, VecX& f) {
                      f[0] = -0.04 * y[0] + 1e4 * y[1] * y[2];
@@ -127,11 +126,12 @@ TEST_P(StiffEquations, Robertson) {
   EXPECT_NEAR(late.y.sum(), 1.0, 100.0 * rtol());
 }
 
-// y' = -y to 157 times, at each of which the last step is shortened, and the factor of the steps before kept
-// where it is shortened by less than a fifth.  On a linear equation every solve with a fresh factor converges
-// at once: a test of convergence that remembers how fast takes the first correction with the old factor,
-// wrong by |h / h' - 1|, for exact (findings/sundials-7-arkstep-trusts-an-old-factor.sh): errors of 1e3 to
-// 2e6 rtol by most tables, where all stay below 3.
+// y' = -y to 157 times, at each of which the last step is shortened, and the factorisation of the preceding
+// steps is kept if it is shortened by less than a fifth. On a linear equation every solve with a fresh
+// factorisation converges at once: a convergence test that remembers this rate accepts the first correction
+// with the old factorisation, wrong by |h / h' - 1|, as exact
+// (findings/sundials-7-arkstep-trusts-an-old-factor.sh). This gives errors of 1e3 to 2e6 rtol with most
+// tables, where all must stay below 3.
 TEST_P(StiffEquations, LinearDecayToAnyStopTime) {
   const Equation e{[](const VecX& y, VecX& f) { f = -y; }, [](const VecX&, MatX& J) { J << -1.0; },
                    VecX::Ones(1), VecX::Ones(1)};

@@ -1,5 +1,5 @@
-// The order of every method at fixed steps on nonlinear motion, where conditions count that a linear one does
-// not see, and on systems that additive and multi-rate methods split.
+// Order of every method at fixed steps on nonlinear motion, which involves order conditions that linear
+// motion does not, and on systems split by additive and multi-rate methods.
 #include <gtest/gtest.h>
 
 #include "integrate/mechanical_problems.h"
@@ -17,8 +17,8 @@ struct OrderProblem {
   double T, fastest;  ///< [s], [rad/s]
 };
 
-/// A pendulum on a spring that swings through its lowest point, onto a soft floor; and six masses.
-/// @param split  the floor, and the soft springs, are contacts
+/// A pendulum on a spring that swings through its lowest point onto a soft floor; and six masses.
+/// @param split  floor and soft springs are contacts
 std::vector<OrderProblem> problems(bool split) {
   namespace fpu = fermi_pasta_ulam;
   const auto floor = exponential_floor(0.05);
@@ -45,7 +45,7 @@ double error(const OrderProblem& p, const Reference& truth, IntegratorSpec spec)
   return std::hypot((problem.state.q() - truth.q).norm(), (problem.state.u() - truth.u).norm() / p.fastest);
 }
 
-/// Steps that resolve the motion, and leave an error above rounding.
+/// Steps that resolve the motion with an error above rounding.
 int coarsest(int order) { return order == 1 ? 800 : order == 2 ? 200 : order == 3 ? 100 : 50; }
 
 void expect_order(const std::string& mode, bool split) {
@@ -87,7 +87,7 @@ std::vector<std::string> splitting_modes() {
 INSTANTIATE_TEST_SUITE_P(Registry, SplitOrder, testing::ValuesIn(splitting_modes()), registry_test_name);
 TEST_P(SplitOrder, IsThatOfTheRegistry) { expect_order(GetParam(), true); }
 
-// A rigid tool in fast steps, on a spring against a node whose q' = u is slow; the motion is known.
+// A rigid tool in fast steps, on a spring against a slow node; the motion is known.
 TEST(MultirateOrder, WithAFastToolIsThatOfTheRegistry) {
   for (const std::string mode : {"ark-mri-2", "ark-mri-3", "ark-mri-4"}) {
     std::vector<double> steps, errors;

@@ -3,7 +3,8 @@
 
 namespace palpate::fakes {
 
-/// One node of unit mass, q'' + 2 z w q' + w^2 q = 0 in each direction: the test equation of mechanics.
+/// One node of unit mass, q'' + 2 z w q' + w^2 q = 0 in each direction: the test equation of structural
+/// dynamics.
 struct Oscillator {
   double w, z;
   State state;
@@ -20,7 +21,7 @@ struct Oscillator {
     system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
     system.prepare(state.view());
   }
-  /// (q, u/w) of the first direction.
+  /// State (q, u/w) of the first direction.
   Eigen::Vector2d scaled() const { return {state.q()[0], state.u()[0] / w}; }
   double energy() { return system.kinetic_energy(state.view()) + system.potential_energy(state.view()); }
 };

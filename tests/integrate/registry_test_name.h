@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// "cvode-bdf" as the name of a test: GoogleTest takes letters, digits and underscores.
+/// Converts "cvode-bdf" to the name of a test: GoogleTest accepts letters, digits and underscores.
 inline std::string registry_test_name(const testing::TestParamInfo<std::string>& info) {
   std::string name = info.param;
   std::replace_if(

@@ -13,7 +13,7 @@ namespace {
 
 using namespace dynamics;
 
-/// A soft beam, one end held, that falls under its weight and swings.
+/// A soft beam with one end held, that falls under gravity and swings.
 struct Cantilever {
   State state;
   System system;
@@ -51,8 +51,8 @@ class SoftCantilever : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Registry, SoftCantilever, testing::ValuesIn(names(linear::linear_solver_registry())),
                          registry_test_name);
 
-// Every linear solver is exact as far as CVODE can tell, so the steps are the same, and the trajectories
-// differ by less than CVODE's own tolerance.
+// Every linear solver is exact within CVODE's accuracy, so that the steps are the same, and the trajectories
+// differ by less than CVODE's tolerance.
 TEST_P(SoftCantilever, SwingsTheSameWithEveryLinearSolver) {
   Cantilever beam, direct;
   const StepperCounters c = swing(beam, GetParam()), reference = swing(direct, "cholmod");

@@ -1,4 +1,4 @@
-// What an implicit step does where its linear solver cannot solve.
+// Fallbacks of an implicit step whose linear solver fails.
 #include "integrate/step_solver.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace dynamics;
 
-// With a border the iteration ends while the matrix is factored, without one at the right-hand side.
+// With a border the iteration fails while the matrix is factored, without a border at the right-hand side.
 TEST(StepSolver, LeavesAnUnsymmetricMatrixToLuWhereTheIterationDoesNotConverge) {
   for (const int border : {0, 6}) {
     BorderedMatrix A = spinning_nodes(60, 20.0);

@@ -8,7 +8,7 @@ namespace {
 
 using namespace fakes;
 
-/// What every integrator of the registry must do.  A new entry is tested by being listed.
+/// Conformance suite of the integrator registry. A new entry is tested by being listed.
 class Steppers : public testing::TestWithParam<std::string> {
  protected:
   IntegratorSpec spec() const {
@@ -22,7 +22,7 @@ class Steppers : public testing::TestWithParam<std::string> {
 
 INSTANTIATE_TEST_SUITE_P(Registry, Steppers, testing::ValuesIn(stepper_modes()), registry_test_name);
 
-/// The methods of the registry that a case applies to.
+/// Modes of the registry for which `applies` holds.
 template <class Applies>
 std::vector<std::string> modes_where(Applies applies) {
   std::vector<std::string> out = stepper_modes();
@@ -30,18 +30,18 @@ std::vector<std::string> modes_where(Applies applies) {
   return out;
 }
 
-/// Methods that a step makes accurate.
+/// Methods whose accuracy is determined by a step.
 class FixedSteppers : public Steppers {};
 INSTANTIATE_TEST_SUITE_P(Registry, FixedSteppers, testing::ValuesIn(modes_where(steps_are_fixed)),
                          registry_test_name);
 
-/// Methods that a tolerance makes accurate.
+/// Methods whose accuracy is determined by a tolerance.
 class AdaptiveSteppers : public Steppers {};
 INSTANTIATE_TEST_SUITE_P(Registry, AdaptiveSteppers,
                          testing::ValuesIn(modes_where([](const auto& m) { return !steps_are_fixed(m); })),
                          registry_test_name);
 
-/// Methods with a tangent to factor.
+/// Methods that factor a tangent.
 class ImplicitSteppers : public Steppers {};
 INSTANTIATE_TEST_SUITE_P(Registry, ImplicitSteppers,
                          testing::ValuesIn(modes_where([](const auto& m) { return !is_explicit(m); })),
@@ -66,7 +66,7 @@ TEST_P(Steppers, LandExactly) {
 TEST_P(FixedSteppers, ConvergeToTheModeAtTheirOrder) {
   std::vector<double> values, errors;
   const Ladder l = ladder(GetParam(), Chain().omega(), 0.5);
-  const double amplitude = 10.0;  // far above the rest positions' rounding
+  const double amplitude = 10.0;  // far above the rounding of rest positions
   for (const double value : l.values) {
     Chain chain;
     chain.start_in_mode(amplitude);
@@ -82,9 +82,9 @@ TEST_P(FixedSteppers, ConvergeToTheModeAtTheirOrder) {
   EXPECT_LT(errors.back(), 2e-4);
 }
 
-/// Error of the mode after two periods in the norm of its energy, sqrt((w dq)^2 + du^2) / w: amplitude and
-/// phase at once, so that no zero of the one hides the other.  One output, so that steps are the method's
-/// own.
+/// Error of the mode after two periods in the energy norm, sqrt((w dq)^2 + du^2) / w: it combines amplitude
+/// and phase, so that no zero of the one hides the other. There is a single output, so that the method
+/// chooses its steps.
 double error_after_two_periods(const IntegratorSpec& spec) {
   Chain chain;
   chain.start_in_mode(0.1);
@@ -95,7 +95,7 @@ double error_after_two_periods(const IntegratorSpec& spec) {
   return std::hypot(dq, chain.state.u().norm() / w);
 }
 
-// Error control is worth its name where a tenth of the tolerance buys a tenth of the error.
+// Error control is effective if a tenth of the tolerance gives a tenth of the error.
 TEST_P(AdaptiveSteppers, FollowTheirToleranceOverTwoPeriods) {
   std::vector<double> tolerances, errors;
   for (int k = 3; k <= 8; ++k) {
@@ -135,7 +135,7 @@ TEST_P(Steppers, StayAtRest) {
   EXPECT_EQ((chain.state.q() - rest).cwiseAbs().maxCoeff(), 0.0);
 }
 
-// Of later steps what an interpolant takes from the step before counts as well.
+// In later steps the data that an interpolant reuses from the preceding step are tested as well.
 TEST_P(Steppers, InterpolateWithinLaterSteps) {
   Chain chain;
   chain.start_in_mode(0.1);
@@ -190,17 +190,17 @@ TEST_P(Steppers, StartAnewAfterReinit) {
   ASSERT_TRUE(stepper->advance_to(0.6).ok());
   fresh.state.q().setConstant(0.5);
   fresh.state.set_time(0.3);
-  // an iteration starts from what it solved before
+  // an iterative solver starts from previous solutions
   const double tolerance = integrate::linear_solver_of(spec()) == "auto" ? spec().linear_rtol : 1e-12;
   EXPECT_LT((run(fresh.system, fresh.state, spec(), 0.6) - chain.state.q()).norm(), tolerance);
   EXPECT_EQ(stepper->counters().reinits, 1);
 }
 
-// A contact set that changed costs a multistep method its history; a one-step method goes on with the step
-// that it had.
+// A changed contact set costs a multistep method its history; a one-step method continues with its current
+// step size.
 TEST_P(Steppers, PayForARestartOnlyIfTheyHaveAHistory) {
-  // Of three tolerances together: how short a step that lands on an output is left is chance, and the next
-  // ones grow from it.
+  // Sum over three tolerances: the length of the step that is shortened at an output is accidental, and the
+  // next steps grow from it.
   const auto steps_with = [this](int restarts) {
     long steps = 0;
     for (const double rtol : {1e-4, 1e-5, 1e-6}) {
@@ -225,7 +225,8 @@ TEST_P(Steppers, PayForARestartOnlyIfTheyHaveAHistory) {
     EXPECT_NEAR(ratio, 1.0, 0.15);
 }
 
-// A step that an output shortens, or that is one of two equal ones before it, is no reason to halve the next.
+// A step that is shortened by an output, or halved into two equal ones before it, is no reason to halve the
+// next step.
 TEST_P(Steppers, HalveNoStepTwiceInARow) {
   if (steps_are_fixed(GetParam())) GTEST_SKIP() << "steps are fixed";
   struct Lengths final : StepTrace {
@@ -255,7 +256,7 @@ TEST_P(Steppers, FollowALayoutThatGrows) {
   const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
   ASSERT_TRUE(stepper->advance_to(0.25).ok());
   BlockSpec more{.name = "more", .q_size = 3, .u_size = 3};
-  const int id = chain.state.insert(more, VecX::Zero(3), VecX::Ones(3));  // flies freely
+  const int id = chain.state.insert(more, VecX::Zero(3), VecX::Ones(3));  // moves freely
   struct PointMass final : InertiaTerm {
     int id;
     explicit PointMass(int i) : id(i) {}
@@ -273,7 +274,7 @@ TEST_P(Steppers, FollowALayoutThatGrows) {
   chain.system.prepare(chain.state.view());
   stepper->reinit(ReinitReason::kLayoutChanged);
   ASSERT_TRUE(stepper->advance_to(0.5).ok());
-  // Newton's remainder
+  // remaining error of Newton's iteration
   EXPECT_LT((chain.state.q(*chain.state.layout().find(id)) - VecX::Constant(3, 0.25)).norm(),
             is_explicit(GetParam()) ? 1e-12 : 1e-7);
   const VecX exact = chain.term->q0 + 0.1 * std::cos(0.5 * chain.omega()) * chain.mode();
@@ -291,7 +292,7 @@ TEST_P(Steppers, EndCleanlyAtNotANumber) {
   EXPECT_LE(chain.state.time(), 0.2) << "no force is taken there by a step whose stage lies inside it";
   EXPECT_EQ(result.t, chain.state.time());
   EXPECT_TRUE(chain.state.q().allFinite() && chain.state.u().allFinite()) << "the last good step";
-  chain.term->nan_from = 1e9;  // mended
+  chain.term->nan_from = 1e9;  // NaN no longer occurs
   stepper->reinit(ReinitReason::kParametersChanged);
   ASSERT_TRUE(stepper->advance_to(0.5).ok());
   const VecX exact = chain.term->q0 + 0.1 * std::cos(0.5 * chain.omega()) * chain.mode();
@@ -319,8 +320,8 @@ TEST_P(Steppers, StopAtTheStepLimit) {
   EXPECT_GT(chain.state.time(), 0.0);
 }
 
-// By an iteration over the solver's factor of the symmetric part, or by the solver itself where it takes such
-// matrices; never by LU.
+// Solved by an iteration over the solver's factor of the symmetric part, or by the solver itself if it
+// supports unsymmetric matrices; never by LU.
 TEST_P(ImplicitSteppers, TakeAnUnsymmetricTangent) {
   Chain chain;
   chain.start_in_mode(0.1);
@@ -340,8 +341,8 @@ TEST_P(ImplicitSteppers, TakeAnUnsymmetricTangent) {
   same.term->symmetric = false;
   IntegratorSpec s = spec();
   s.linear_solver = "umfpack";
-  // error control over stages turns the last digits into other lengths of steps, between two LU factors as
-  // well (8e-10, measured with KLU and UMFPACK): the limit is ten times that, and roundings at fixed steps
+  // Error control over stages turns rounding into different step lengths, also between two LU factorisations
+  // (8e-10, measured with KLU and UMFPACK): the limit is ten times that, and rounding level for fixed steps.
   const bool free_steps = s.name.starts_with("ark-") && !steps_are_fixed(GetParam());
   const VecX by_lu = run(same.system, same.state, s, 0.3);
   EXPECT_LT((by_lu - q).norm(), free_steps ? 1e-8 : 1e-13);
@@ -366,7 +367,7 @@ TEST_P(Steppers, CountTheirWork) {
   EXPECT_GT(c.steps, 2);
   EXPECT_EQ(c.force_evaluations, chain.term->forces);
   EXPECT_EQ(c.indefinite, 0);
-  if (is_explicit(GetParam())) {  // leaves out what it does not need
+  if (is_explicit(GetParam())) {  // needs neither tangent nor solver
     EXPECT_EQ(chain.term->tangents, 0);
     EXPECT_EQ(c.solver.symbolic + c.solver.factorisations + c.solver.solves, 0);
     return;
@@ -378,7 +379,7 @@ TEST_P(Steppers, CountTheirWork) {
   EXPECT_EQ(c.solver.factorisations, c.tangent_evaluations);
 }
 
-/// A LinearSolver of somebody else's fits: dense, and counting.
+/// A user-defined LinearSolver: dense, with counters.
 struct DenseSolver final : LinearSolver {
   Eigen::PartialPivLU<MatX> lu;
   SolverCounters count;
@@ -459,7 +460,7 @@ TEST(StepperRegistry, NamesTheNearest) {
 }
 
 TEST(LinearlyImplicitEuler, FallsBackToLuOnAnIndefiniteMatrix) {
-  Chain chain(0.0, -100.0);  // buckles: 1 + h^2 K has negative eigenvalues at h = 1
+  Chain chain(0.0, -100.0);  // unstable: 1 + h^2 K has negative eigenvalues at h = 1
   IntegratorSpec s{.name = "linearly-implicit-euler", .step_s = 1.0};
   const auto stepper = integrate::make_stepper(chain.system, chain.state, s);
   ASSERT_TRUE(stepper->advance_to(2.0).ok());

@@ -1,5 +1,5 @@
-// What the tested releases of SUNDIALS do differently (src/integrate/sundials/release.h), held for the one
-// that is installed.
+// Differences between the tested releases of SUNDIALS (src/integrate/sundials/release.h), checked for the
+// installed one.
 #include <gtest/gtest.h>
 #include <spdlog/sinks/ostream_sink.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using namespace fakes;
 
-/// The log of a scope, in the place of the default one.
+/// Captures the log within a scope in place of the default log.
 class CapturedLog {
  public:
   CapturedLog() : before_(spdlog::default_logger()) {
@@ -36,7 +36,7 @@ class CapturedLog {
   std::shared_ptr<spdlog::logger> before_;
 };
 
-/// A step that is lost in the rounding of the time, which the library warns of.
+/// A step that vanishes in the rounding of the time, about which the library warns.
 IntegratorSpec lost_step(const char* name) {
   return {.name = name, .step_s = 1e-10, .fixed_step = true, .max_steps = 5};
 }
@@ -84,7 +84,8 @@ struct Ends final : StepTrace {
   void attempt(const StepAttempt& a) override { all.push_back(a.t + a.h); }
 };
 
-// A fixed step is counted from where the last one ended: from an output on too, though that shortened one.
+// A fixed step starts at the end of the previous one, also at an output, although the output shortened that
+// step.
 TEST(SundialsRelease, FixedStepsAreWholeFromAnOutputOn) {
   constexpr double h = 1e-3;
   for (const char* name : {"ark-erk-4", "ark-dirk-ark436", "ark-imex-4", "ark-mri-2"}) {
@@ -106,7 +107,7 @@ TEST(SundialsRelease, FixedStepsAreWholeFromAnOutputOn) {
   }
 }
 
-// An output that falls on the end of a step is landed on, and the next one is reached from there.
+// An output that coincides with the end of a step is reached exactly, and the next one is reached from there.
 TEST(SundialsRelease, AnOutputIsLandedOnHoweverItLies) {
   for (const auto& entry : integrate::stepper_registry()) {
     if (entry.traits.control == StepControl::kFixed) continue;
@@ -121,12 +122,12 @@ TEST(SundialsRelease, AnOutputIsLandedOnHoweverItLies) {
   }
 }
 
-/// A force of zero that records where forces were evaluated.
+/// A zero force that records the states at which forces are evaluated.
 struct Recorder final : ForceTerm {
   std::vector<VecX> states;
   std::string_view name() const override { return "recorder"; }
   TermTraits traits() const override { return {.symmetric_tangent = true, .conservative = true}; }
-  /// With the time: Newton's iterations of later stages begin at the state of the step's start.
+  /// Includes the time: Newton's iterations of later stages begin at the step's initial state.
   static VecX joined(double t, const VecX& q, const VecX& u) {
     VecX y(1 + q.size() + u.size());
     y << t, q, u;
@@ -140,7 +141,7 @@ struct Recorder final : ForceTerm {
   }
 };
 
-/// Counts the steps in which no force was evaluated at the state that they start from.
+/// Counts steps in which no force was evaluated at their initial state.
 struct StepStarts final : StepFollower {
   Recorder& recorder;
   const State& state;
@@ -165,7 +166,7 @@ void expect_starts_evaluated(const std::string& mode, double step) {
   model.system.prepare(model.state.view());
   IntegratorSpec spec = mode_spec(mode);
   spec.step_s = step;
-  spec.newton_rtol = 1e-6;  // far above the distance that counts as the same state
+  spec.newton_rtol = 1e-6;  // far above the distance at which states count as equal
   const auto stepper = integrate::make_stepper(model.system, model.state, spec);
   StepStarts starts(*recorder, model.state);
   ASSERT_TRUE(stepper->follow(&starts));
@@ -174,9 +175,9 @@ void expect_starts_evaluated(const std::string& mode, double step) {
   EXPECT_EQ(starts.missed, 0) << mode << " of " << starts.steps << " steps";
 }
 
-// Where the first stage is explicit, its f is that of the state from which the step starts: not what Newton's
-// iteration left of the last stage before, and not of the state before a projection.  What a step does then
-// does not depend on whether the method was reset before it.
+// With an explicit first stage, f is evaluated at the step's initial state, rather than reused from Newton's
+// iteration of the last stage or from the state before a projection. The step then does not depend on whether
+// the method was reset before it.
 TEST(SundialsRelease, StepsStartFromTheForceOfTheirState) {
   int checked = 0;
   for (const std::string& mode : stepper_modes()) {
@@ -185,14 +186,14 @@ TEST(SundialsRelease, StepsStartFromTheForceOfTheirState) {
     const integrate::ArkMethod& method = integrate::ark_method(name);
     if (method.implicit_table >= 0 && integrate::implicit_table(method).A(0, 0) != 0.0) continue;
     expect_starts_evaluated<Top>(mode, 0.01);
-    // Without a projection an explicit method may keep f of its last stage: it is the same one.
+    // Without a projection an explicit method may reuse f of its last stage, which is the same.
     if (method.implicit_table >= 0) expect_starts_evaluated<Chain>(mode, 0.01);
     ++checked;
   }
   EXPECT_EQ(checked, 54);
 }
 
-// On unit quaternions, whose length is off by one step's error before each projection.
+// On unit quaternions, whose norm has one step's error before each projection.
 TEST(SundialsRelease, MethodsKeepTheirOrderWhereStepsAreProjected) {
   int checked = 0;
   for (const std::string& mode : stepper_modes()) {
@@ -200,7 +201,7 @@ TEST(SundialsRelease, MethodsKeepTheirOrderWhereStepsAreProjected) {
     const int order = mode_traits(mode).order;
     std::vector<double> steps, errors;
     std::string text;
-    // Steps at which the leading term of the error decides, and rounding does not.
+    // Steps for which the leading error term dominates, rather than rounding.
     for (int n = order < 4 ? 20 : order == 4 ? 80 : 10; steps.size() < 3; n *= 2) {
       Top top;
       IntegratorSpec spec = mode_spec(mode);

@@ -8,9 +8,9 @@ namespace {
 
 using namespace fakes;
 
-/// A unit mass under g over a one-sided spring k that begins at x = 0: a kink, with its root function.
-/// From height H at rest: free fall for sqrt(2 H / g), then x(t) = -(v/w) sin(w t) + (g/w^2)(cos(w t) - 1)
-/// until x = 0 again, with the speed it came with.
+/// A unit mass under g over a one-sided spring k that begins at x = 0: a kink, with its root function. From
+/// height H at rest: free fall for sqrt(2 H / g), then x(t) = -(v/w) sin(w t) + (g/w^2)(cos(w t) - 1) until x
+/// = 0 again, with the initial impact speed.
 struct OneSidedSpring final : ForceTerm {
   double k, g;
   OneSidedSpring(double stiffness, double gravity) : k(stiffness), g(gravity) {}
@@ -42,7 +42,7 @@ struct Bouncer {
     system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
     system.prepare(state.view());
   }
-  /// Time between two tops: the motion is periodic.
+  /// Time between two highest points: the motion is periodic.
   static double period() {
     const double w = std::sqrt(kStiffness), v = std::sqrt(2.0 * kGravity * kHeight);
     const double contact = 2.0 * (M_PI - std::atan2(v * w, kGravity)) / w;  // from x = 0 down and up again
@@ -134,8 +134,8 @@ TEST_P(Traces, CostNothingWhereNobodyLooks) {
   EXPECT_EQ(a->counters().force_evaluations, b->counters().force_evaluations);
 }
 
-// A flag with one number means another thing in each library, and another again where a linear solver is set
-// up (the libraries' own headers).
+// The same flag value has different meanings in each library, and again in the setup of a linear solver
+// (headers of the libraries).
 TEST(FlagNames, AreThoseOfTheLibraryThatWasCalled) {
   using integrate::self_test::flag_name;
   EXPECT_EQ(flag_name("CVode", -4), "CV_CONV_FAILURE");
@@ -179,9 +179,9 @@ TEST(FixedStep, ABlowUpIsCalledByItsName) {
       << r.message;
 }
 
-// --- many fast steps in a slow one
+// --- Many fast steps per slow step
 
-/// A fast damper of 1e6/s: the explicit fast side needs some 4e4 steps for 0.1 s.  Raises a flag at a given
+/// A fast damper of 1e6/s: the explicit fast side needs about 4e4 steps for 0.1 s. Raises a flag at a given
 /// evaluation.
 struct FastDamper final : ForceTerm {
   long evaluations = 0, raise_at = -1;
@@ -212,7 +212,7 @@ TEST(MultiRate, FastStepsAreLimitedAndInterrupted) {
     const StepResult r = stepper->advance_to(0.1);
     EXPECT_EQ(r.status, interrupt ? StepStatus::kInterrupted : StepStatus::kErrorTestFailed) << r.message;
     EXPECT_EQ(chain.state.time(), 0.0);
-    EXPECT_LT(fast->evaluations, interrupt ? 510 : 5 * 2000);  // rejected ones count
+    EXPECT_LT(fast->evaluations, interrupt ? 510 : 5 * 2000);  // rejected steps count
     EXPECT_GT(fast->evaluations, interrupt ? 499 : 2000);
   }
 }
@@ -227,14 +227,15 @@ TEST(MultiRate, CountsItsFastSteps) {
       integrate::make_stepper(chain.system, chain.state, {.name = "ark-mri-2", .step_s = 1e-4});
   ASSERT_TRUE(stepper->advance_to(1e-3).ok());
   EXPECT_EQ(stepper->counters().steps, 10);
-  // Bogacki and Shampine are stable up to 2.5 rates, and take three evaluations a step
+  // Bogacki and Shampine's method is stable up to 2.5 rates, and needs three evaluations per step
   EXPECT_GT(stepper->counters().fast_steps, 1e-3 * 1e6 / 3.0);
   EXPECT_LT(3 * stepper->counters().fast_steps, fast->evaluations);
 }
 
-// --- what is silent
+// --- Silent fallbacks
 
-// A matrix serves CVODE for several steps: its iterations are known, and no more than all.
+// CVODE reuses a matrix for several steps: the iterations with a reused matrix are counted, and are no more
+// than all iterations.
 TEST(Silent, IterationsByAKeptMatrixAreCounted) {
   for (const char* name : {"cvode-bdf", "ida", "ark-dirk-esdirk437"}) {
     Chain chain(0.02);
@@ -248,7 +249,7 @@ TEST(Silent, IterationsByAKeptMatrixAreCounted) {
   }
 }
 
-/// Says that each of its tangents was bounded.
+/// Reports that each of its tangents was bounded.
 struct Bounded final : ForceTerm {
   long bounded = 5;
   std::string_view name() const override { return "bounded"; }
@@ -273,7 +274,7 @@ TEST(Silent, BoundedTangentsAreCounted) {
   }
 }
 
-// --- statics
+// --- Statics
 
 const IntegratorSpec kStatic{.name = "kinsol-static"};
 
@@ -305,8 +306,8 @@ TEST(KinsolStatic, FindsTheEquilibriumOfALinearSystem) {
   EXPECT_EQ(stepper->counters().halved_steps + stepper->counters().downhill, 0);
 }
 
-/// Snap-through: a mass on two springs that meet at a shallow angle, V = k (sqrt(1 + x^2) - L)^2 with L > 1,
-/// pressed beyond its limit load.
+/// Snap-through: a mass on two springs at a shallow angle, V = k (sqrt(1 + x^2) - L)^2 with L > 1, loaded
+/// beyond its limit load.
 struct SnapThrough final : ForceTerm {
   double k = 100.0, L = 1.1, load;
   explicit SnapThrough(double p) : load(p) {}
@@ -334,7 +335,7 @@ TEST(KinsolStatic, SnapsThroughALimitLoad) {
   State state;
   System system;
   VecX q = VecX::Zero(3);
-  q[0] = std::sqrt(1.1 * 1.1 - 1.0);  // unloaded, up
+  q[0] = std::sqrt(1.1 * 1.1 - 1.0);  // unloaded, upper equilibrium
   const int id = state.insert(BlockSpec{.name = "arch", .q_size = 3, .u_size = 3}, q, VecX::Zero(3));
   const auto arch = std::make_shared<SnapThrough>(8.0);  // the limit load is 4.9
   system.add(std::static_pointer_cast<ForceTerm>(arch));
@@ -352,7 +353,7 @@ TEST(KinsolStatic, SnapsThroughALimitLoad) {
   EXPECT_EQ(c.step_parts + c.downhill, c.steps);
 }
 
-/// f = -atan(x - 50): from x = 0 a whole correction of Newton's method goes far beyond and grows.
+/// f = -atan(x - 50): from x = 0 a full Newton correction overshoots and diverges.
 struct Saturated final : ForceTerm {
   std::string_view name() const override { return "saturated"; }
   TermTraits traits() const override { return {.conservative = true}; }

@@ -1,4 +1,4 @@
-// What rtol buys, of every method with error control: the table of docs/tolerances.md.
+// Error achieved per rtol for every error-controlled method: the table of docs/tolerances.md.
 #include "integrate/tolerance_table.h"
 
 namespace palpate {
@@ -6,7 +6,7 @@ namespace {
 
 using namespace fakes;
 
-// Methods of order 2 and 3 stop at 1e-8: a decade more is two to three times as many steps.
+// Methods of order 2 and 3 end at 1e-8: another decade needs two to three times as many steps.
 template <class Applies>
 void expect_within_bands(const ToleranceScene& scene, Applies applies) {
   const References references(scene);
@@ -25,7 +25,7 @@ TEST(Tolerance, EveryMethodBuysTheErrorThatItSays) {
 
 TEST(Tolerance, AdditiveMethodsBuyItWithContactExplicit) { expect_within_bands(split_scene(), is_additive); }
 
-// Where a force sets in at once.  The reference has the ten thousandth of the tightest tolerance.
+// A force with a kink at onset. The reference uses a ten-thousandth of the tightest tolerance.
 TEST(Tolerance, BackwardDifferencesBuyItAtKinks) {
   const ToleranceScene scene{"block, kinks", +[] {
                                auto block = sharply_landing_block();

@@ -4,10 +4,10 @@
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/generators.h"
 
-/// Small scenes over which a tolerance is held against the error that it buys.
+/// Small scenes for comparing tolerances with achieved errors.
 namespace palpate::fakes {
 
-/// A floor under every node: springs k of a depth d that set in over a width w, f = k w ln(1 + e^(d/w)), as
+/// A floor under every node: springs k with depth d that set in over a width w, f = k w ln(1 + e^(d/w)), as
 /// smooth as the rest of a scene; or one-sided, w = 0, with a kink at d = 0.
 struct SpringFloor final : ForceTerm {
   double k, w;
@@ -41,8 +41,8 @@ struct Small {
   double duration = 0.0;  ///< [s]
 };
 
-/// A damped soft bar, one end held, that falls under its weight and swings.
-/// @param length, across  elements
+/// A damped soft bar with one end held, that falls under gravity and swings.
+/// @param length, across  numbers of elements
 inline std::unique_ptr<Small> swinging_bar(int length, int across) {
   auto s = std::make_unique<Small>();
   const TetMesh mesh = mesh::box(Vec3(0.12, 0.04, 0.04), {length, across, across});
@@ -67,8 +67,9 @@ inline std::unique_ptr<Small> swinging_bar(int length, int across) {
   return s;
 }
 
-/// A damped soft block, a little tilted, that comes to lie on a floor: each node of its lower face touches
-/// once.  @param onset  width of the floor's [m]
+/// A damped soft block, slightly tilted, that comes to rest on a floor: each node of its lower face touches
+/// once.
+/// @param onset  onset width of the floor [m]
 inline std::unique_ptr<Small> landing_block(double onset) {
   auto s = std::make_unique<Small>();
   const TetMesh mesh = mesh::box(Vec3(0.06, 0.04, 0.04), {2, 1, 1});
@@ -95,7 +96,7 @@ inline std::unique_ptr<Small> swinging_bar() { return swinging_bar(3, 1); }
 inline std::unique_ptr<Small> smoothly_landing_block() { return landing_block(1e-3); }
 inline std::unique_ptr<Small> sharply_landing_block() { return landing_block(0.0); }
 
-/// A spinning top whose centre swings on a spring against a node: rigid, with a quaternion.
+/// A spinning rigid top, with a quaternion, whose centre swings on a spring against a node.
 inline std::unique_ptr<Small> spinning_top() {
   auto s = std::make_unique<Small>();
   s->state.insert(BlockSpec{.name = "node", .q_size = 3, .u_size = 3, .q_scale = 0.2, .u_scale = 1.0},
@@ -107,7 +108,7 @@ inline std::unique_ptr<Small> spinning_top() {
   s->system.add(std::make_shared<TopInertia>(id));
   s->system.add(std::make_shared<NodalMass>(0, kNodeMass * MatX::Identity(3, 3)));
   s->system.prepare(s->state.view());
-  s->duration = 0.6;  // a period of the swing
+  s->duration = 0.6;  // one period of the swing
   return s;
 }
 

@@ -5,8 +5,9 @@
 #include "integrate/sundials/ark_calibration.h"
 #include "integrate/tolerance_systems.h"
 
-/// Achieved over wanted error: the largest norm of the error at four outputs, in the weights of rtol
-/// (error_weights.h), so that 1 is what was asked for.  The reference is of another family, at its tightest.
+/// Achieved over requested error: the largest norm of the error at four outputs, in the weights of rtol
+/// (error_weights.h), so that 1 is the requested error. The reference uses a method of another family at its
+/// tightest tolerance.
 namespace palpate::fakes {
 
 struct ToleranceScene {
@@ -14,7 +15,7 @@ struct ToleranceScene {
   std::unique_ptr<Small> (*make)();
   const char* explicit_side = "loads";
 };
-/// About a period of each: on undamped motion errors grow with time.
+/// About one period each: errors of undamped motion grow with time.
 inline const std::vector<ToleranceScene>& tolerance_scenes() {
   static const std::vector<ToleranceScene> scenes = {
       {"spinning top", spinning_top},
@@ -24,7 +25,7 @@ inline const std::vector<ToleranceScene>& tolerance_scenes() {
   return scenes;
 }
 
-/// For additive methods: the contact is on the explicit side.
+/// Scene for additive methods: contact is on the explicit side.
 inline ToleranceScene split_scene() { return {"block, split", smoothly_landing_block, "contact"}; }
 inline bool is_additive(const dynamics::StepperEntry& entry) {
   return entry.traits.family == "ImEx Runge-Kutta";
@@ -46,7 +47,7 @@ inline Course course(const ToleranceScene& scene, IntegratorSpec spec) {
   return out;
 }
 
-/// The norm of the difference in the weights of rtol.
+/// Norm of the difference in the weights of rtol.
 inline double over_wanted(const ToleranceScene& scene, const Course& a, const Course& b, double rtol) {
   const auto small = scene.make();
   const IntegratorSpec spec{.rtol = rtol};
@@ -71,40 +72,42 @@ struct References {
   }
 };
 
-/// A pair whose test is held tighter than smooth motion needs buys so many times less than it was asked for.
+/// Factor by which a method achieves less than the requested error, for a pair whose error test is tighter
+/// than smooth motion requires.
 inline double spare_of(const std::string& method) {
   for (const auto& ark : integrate::ark_methods())
     if (ark.name == method) return integrate::ark_calibration(ark).spare;
   return 1.0;
 }
 
-/// Upper bound on each error over the wanted one: 10, but for what is known (docs/tolerances.md).
+/// Upper bound on achieved over requested error: 10, with known exceptions (docs/tolerances.md).
 inline double largest_of(const std::string& method, const std::string& scene, double rtol) {
   const auto is = [&](const char* of, double at) {
     return method == of && scene == "spinning top" && std::abs(rtol / at - 1.0) < 0.01;
   };
-  // at 1e-3 the order stays at 2 and 3, whose power is not 1.2 but 1.5 and 1.33
+  // at 1e-3 the order remains 2 and 3, with exponents 1.5 and 1.33 rather than 1.2
   if (is("cvode-bdf", 1e-3) || is("cvode-bdf", 1e-9)) return 15.0;
-  if (is("cvode-adams", 1e-8)) return 30.0;  // one rung of eight, where the order reaches 8
+  if (is("cvode-adams", 1e-8)) return 30.0;  // one of eight levels, where the order reaches 8
   return 10.0;
 }
 
-/// Lower bound on the geometric mean of a row's errors, below which work is wasted: 0.1, but for what
-/// is known (docs/tolerances.md).  One error may: it is the sum of many steps' errors, which may cancel.
+/// Lower bound on the geometric mean of a row's errors, below which work is wasted: 0.1, with known
+/// exceptions (docs/tolerances.md). A single error may be smaller: it is the sum of many steps' errors, which
+/// may cancel.
 inline double least_mean_of(const std::string& method, const std::string& scene) {
   struct Exception {
     const char *method, *scene;
     double least;
   };
   static const Exception exceptions[] = {
-      // an estimate that is made nearly zero on linear motion sees nonlinear ones a hundred times as well
+      // an estimate that is tuned to nearly vanish on linear motion is a hundred times as sensitive to
+      // nonlinear motion
       {"ark-dirk-ark548", "swinging bar", 0.03},
       {"ark-imex-5", "swinging bar", 0.03},
       {"ark-dirk-ark548", "landing block", 0.09},
-      // with the explicit half an additive pair's estimate is another one: only the implicit one is
-      // calibrated
+      // an additive pair's estimate changes with its explicit half: only the implicit one is calibrated
       {"ark-imex-5", "block, split", 0.015},
-      // on damped motions the error is a small part of what it is on undamped ones
+      // damped motions have a small fraction of the error of undamped ones
       {"ark-erk-5", "landing block", 0.05},
   };
   for (const Exception& e : exceptions)
@@ -112,7 +115,8 @@ inline double least_mean_of(const std::string& method, const std::string& scene)
   return 0.1 / spare_of(method);
 }
 
-/// Runs a method over decades of rtol from 1e-3 on, and holds each error and the row's mean to their bounds.
+/// Runs a method over decades of rtol from 1e-3 on, and checks each error and the row's mean against their
+/// bounds.
 /// @returns the table's row
 inline std::string expect_within_band(const ToleranceScene& scene, const References& references,
                                       const dynamics::StepperEntry& entry, double tightest, double factor) {

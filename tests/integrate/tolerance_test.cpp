@@ -1,4 +1,4 @@
-// What rtol buys: one method a family; tolerance_slow_test.cpp has all of them over every decade.
+// Error achieved per rtol: one method per family; tolerance_slow_test.cpp has all methods over every decade.
 #include "integrate/tolerance_table.h"
 
 #include "palpate/core/error.h"
@@ -34,7 +34,7 @@ std::string refusal(const IntegratorSpec& spec) {
   return {};
 }
 
-// No request is met half-way: what a method cannot do it refuses, and says what it can.
+// No request is fulfilled partially: an unsupported tolerance is rejected, with the supported range.
 TEST(Tolerance, BeyondAMethodsReachIsRefused) {
   EXPECT_EQ(refusal({.name = "cvode-bdf", .rtol = 1e-10}), "");
   EXPECT_EQ(
@@ -61,7 +61,7 @@ TEST(Tolerance, BeyondAMethodsReachIsRefused) {
   }
 }
 
-// Two requests are two tests, down to the tightest.
+// Two requested tolerances are two error tests, down to the tightest.
 TEST(Tolerance, NoTwoRequestsAreOneRun) {
   for (const auto& entry : integrate::stepper_registry()) {
     if (!entry.error_test_rtol) continue;

@@ -3,7 +3,7 @@
 #include "palpate/core/pose.h"
 #include "palpate/dynamics/rigid_body.h"
 
-/// A rigid body with a known motion, beside a node.
+/// A rigid body with a known motion, together with a node.
 namespace palpate::fakes {
 
 inline constexpr double kI1 = 0.02, kI3 = 0.05, kMass = 2.0, kNodeMass = 0.5, kSpring = 40.0;
@@ -68,16 +68,16 @@ struct TopForces final : ForceTerm {
   }
 };
 
-/// Torque-free symmetric top: the axis e3 precesses about L at |L|/I1, and the body turns about e3 by w3 (1 -
-/// I3/I1) beside that (Landau and Lifshitz, Mechanics, 33). Its centre and a node swing about their common
-/// centre of mass with omega^2 = k (1/m1 + 1/m2).
+/// Torque-free symmetric top: the axis e3 precesses about L at |L|/I1, and the body additionally rotates
+/// about e3 by w3 (1 - I3/I1) (Landau and Lifshitz, Mechanics, 33). Its centre and a node swing about their
+/// common centre of mass with omega^2 = k (1/m1 + 1/m2).
 struct Top {
   State state;
   System system;
   Vec3 w0 = Vec3(1.0, -0.5, 3.0), L, node0 = Vec3(0.2, 0.0, -0.1);
   const Block* body = nullptr;
 
-  /// @param fast  the top's forces belong on the fast side of a multi-rate method
+  /// @param fast  assigns the top's forces to the fast side of a multi-rate method
   explicit Top(bool fast = false) {
     state.insert(BlockSpec{.name = "node", .q_size = 3, .u_size = 3}, node0, VecX::Zero(3));
     VecX q = VecX::Unit(7, 0), u = VecX::Zero(6);

@@ -16,7 +16,7 @@ void expect_sundials(double t) {
   for (const auto& answer : answers) EXPECT_NEAR(answer.y, std::exp(-t), 1e-6) << answer.library;
 }
 
-/// Each test runs in a process of its own under ctest, so this is the order of first use.
+/// ctest runs each test in a separate process, so that this is the order of first use.
 TEST(Isolation, SundialsThenCPodes) {
   expect_sundials(1.0);
   EXPECT_NEAR(cpodes_decay(1.0), std::exp(-1.0), 1e-6);
@@ -29,7 +29,7 @@ TEST(Isolation, CPodesThenSundials) {
   EXPECT_NEAR(cpodes_decay(2.0), std::exp(-2.0), 1e-6);
 }
 
-// The executable is what its name says: the loader meets the libraries in this order.
+// The loader finds the libraries in the order that the executable's name specifies.
 TEST(Isolation, LinkedInTheOrderMeant) {
   std::vector<std::string> loaded;
   dl_iterate_phdr(

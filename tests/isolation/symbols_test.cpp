@@ -21,8 +21,7 @@ std::string output_of(const std::string& command) {
 const std::regex kSundials(
     "\\b(_?N_V|SUN|CVode|cv[A-Z]|ARKStep|ARKode|ark[A-Z]|IDA|ida[A-Z])|_generic_(N_Vector|SUN)");
 
-// A symbol that is exported can be bound to by, or replaced by, Simbody's copy; one that is imported would
-// be.
+// An exported symbol may be bound to or replaced by Simbody's copy; an imported one would be.
 TEST(Isolation, NoSundialsSymbolLeavesOrEntersTheLibrary) {
   const std::string symbols = output_of(PALPATE_NM " -D -C " PALPATE_INTEGRATE_LIBRARY);
   ASSERT_NE(symbols.find("palpate::integrate::make_stepper"), std::string::npos) << "nm did not work";

@@ -16,9 +16,9 @@ namespace {
 
 using namespace dynamics;
 
-// Rows of M + h^2 K sum to those of M: the number is what the definition says, from masses and diagonal.
+// Rows of M + h^2 K sum to those of M: the number equals its definition, from masses and diagonal.
 TEST(Auto, ReadsTheStiffnessNumberFromTheMatrix) {
-  // the last has rows that are not looked at
+  // the last case has rows that are not sampled
   for (const auto& [cells, h] : {std::pair{16, 1e-4}, {16, 1e-2}, {36, 1e-3}}) {
     BentBeam beam(cells, 1e5);
     BorderedMatrix A;
@@ -26,7 +26,7 @@ TEST(Auto, ReadsTheStiffnessNumberFromTheMatrix) {
     beam.at(0.6, h, A, b);
     double own = 0.0, mass = 0.0;
     for (int i = 0; i < A.body.block_rows(); ++i) {
-      if (beam.rest[3 * i] < -0.5 + 0.1) continue;  // held, or beside what is held
+      if (beam.rest[3 * i] < -0.5 + 0.1) continue;  // held, or next to a held node
       const double* block = A.body.block(A.body.diagonal(i));
       own += block[0] + block[4] + block[8];
       mass += 3.0 * beam.masses[i];
@@ -54,8 +54,8 @@ TEST(Auto, SolvesSoftAndStiffMatrices) {
   EXPECT_EQ(checked, 4);
 }
 
-/// One after the other: zero-row-sum matrices of the beam at these steps, solved as accurately as the
-/// tolerance says; who had solved how many by then.
+/// Solves zero-row-sum matrices of the beam at given steps, one after the other, to the solver's tolerance;
+/// counts the solvers created.
 class AutoOnZeroRowSum : public testing::Test {
  protected:
   static constexpr double kRtol = 1e-3;
@@ -127,7 +127,7 @@ TEST_F(AutoOnZeroRowSum, ChoosesAnewForAnotherBody) {
   EXPECT_EQ(solver->counters().solves, 4);
 }
 
-// What was seen of a zero-row-sum matrix says nothing once a whole one came after it.
+// Measurements of a zero-row-sum matrix are discarded when a whole matrix follows.
 TEST_F(AutoOnZeroRowSum, ForgetsWhatItSawWhenAWholeMatrixComes) {
   solve(1e-4);
   BorderedMatrix whole;

@@ -16,10 +16,10 @@ namespace palpate {
 
 struct BentBeamOptions {
   double stiffness_damping = 0.0, mass_damping = 0.0;
-  double shake_m = 0.0;  ///< amplitude that the held end is moved with, up and down
+  double shake_m = 0.0;  ///< amplitude of the held end's vertical motion
 };
 
-/// Step matrices M + h^2 K of a beam, held at one end, bent by angles that large rotation needs.
+/// Step matrices M + h^2 K of a beam held at one end and bent by angles that require large rotations.
 struct BentBeam {
   dynamics::State state;
   dynamics::System system;
@@ -63,15 +63,15 @@ struct BentBeam {
       system.add(fem::make_fixed(held, x0));
     system.prepare(state.view());
   }
-  /// Bends the middle line to a circle whose angle at the end is `angle`, writes the step matrix there, and a
-  /// right-hand side: weight and a wave.
+  /// Bends the centre line to a circle whose angle at the end is `angle`, and writes the step matrix there,
+  /// and a right-hand side of weight and a wave.
   void at(double angle, double h, dynamics::BorderedMatrix& A, VecX& b) {
     bend(angle);
     system.step_matrix(state.view(), 1.0, h, h * h, A);
     system.force(state.view(), b);
     load(angle, h, b);
   }
-  /// The step matrix as a zero-row-sum one, with that right-hand side.
+  /// Writes the step matrix as a zero-row-sum matrix, with the same right-hand side.
   void at(double angle, double h, dynamics::ZeroRowSumMatrix& A, VecX& b) {
     bend(angle);
     ASSERT_TRUE(assembly.applies(state.view()));
@@ -102,7 +102,7 @@ struct BentBeam {
   }
 };
 
-/// The residuals of a system whose matrix is at hand; `evaluated` counts them.
+/// Residuals of a system with a given matrix; `evaluated` counts the evaluations.
 class Known final : public dynamics::ResidualFunction {
  public:
   Known(const dynamics::BorderedMatrix& A, const VecX& b) : A_(A), b_(b) {}
@@ -118,7 +118,7 @@ class Known final : public dynamics::ResidualFunction {
   const VecX& b_;
 };
 
-/// The capability, which the solver is expected to have.
+/// Returns the solver's mixed-precision capability, which it is expected to have.
 inline dynamics::MixedPrecisionSolver& mixed(dynamics::LinearSolver& solver) {
   return dynamic_cast<dynamics::MixedPrecisionSolver&>(solver);
 }

@@ -1,4 +1,4 @@
-// A dense border by its Schur complement, over any solver of the body.
+// A dense border eliminated by its Schur complement, over any solver of the body.
 #include "linear/border_elimination.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 
 using namespace dynamics;
 
-// Against a dense solution: rows of a tool that are no transpose of its columns, over a body that is
-// symmetric and over one with friction; no body, no border.
+// Against a dense solution: a tool whose rows are no transpose of its columns, over a symmetric body and over
+// one with friction; also without a body and without a border.
 TEST(BorderElimination, AgreesWithDense) {
   int checked = 0;
   for (const int border : {0, 6, 13})
@@ -43,7 +43,7 @@ TEST(BorderElimination, AgreesWithDense) {
   EXPECT_EQ(checked, 6);
 }
 
-// The complement needs an inverse, not a Cholesky factor.
+// The complement needs an inverse, rather than a Cholesky factor.
 TEST(BorderElimination, TakesAnIndefiniteComplementAndSeesASingularOne) {
   BorderedMatrix A = row_with_friction(40, 1.0, 2, 1.0, 0.0);
   add_border(A, 6, -300.0);
@@ -60,7 +60,8 @@ TEST(BorderElimination, TakesAnIndefiniteComplementAndSeesASingularOne) {
   EXPECT_EQ(solver->factor(A), SolveStatus::kSingular);
 }
 
-// The border's columns are solved for once a matrix; other values in the border alone make another matrix.
+// The border's columns are solved once per matrix; changed values in the border alone count as another
+// matrix.
 TEST(BorderElimination, KeepsTheComplementOfAnUnchangedMatrix) {
   BorderedMatrix A = row_with_friction(20, 1.0, 2, 1.0, 0.3), other = row_with_friction(20, 2.0, 2, 1.0, 0.0);
   other.symmetric = true;

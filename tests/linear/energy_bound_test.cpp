@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-// The Gauss-Radau bound against the error itself, along the iteration, for a spectrum given.
+// The Gauss-Radau bound against the error along the iteration, for a given spectrum.
 TEST(EnergyBound, LiesAboveTheErrorAndCloseToIt) {
   const int n = 60;
   VecX lambda(n);
@@ -20,7 +20,7 @@ TEST(EnergyBound, LiesAboveTheErrorAndCloseToIt) {
   linear::EnergyBound bound;
   int above = 0, checked = 0;
   double worst = 0.0;
-  for (int solve = 0; solve < 3; ++solve) {  // the first teaches it the spectrum
+  for (int solve = 0; solve < 3; ++solve) {  // the first solve provides the spectrum
     bound.begin(0.0);
     VecX x = VecX::Zero(n), r = b, p = r;
     double rho = r.squaredNorm();
@@ -46,8 +46,8 @@ TEST(EnergyBound, LiesAboveTheErrorAndCloseToIt) {
   EXPECT_LT(worst, 100.0) << "of the squares: a factor of ten";
 }
 
-// Coefficients that no spectrum has: the search for a mu below it ends, nothing is known of the error, and
-// the next solve is judged by what was known before.
+// Coefficients that no spectrum can produce: the search for a mu below it ends without a bound on the error,
+// and the next solve uses the previous estimate.
 TEST(EnergyBound, GivesUpWhereNoSpectrumFits) {
   linear::EnergyBound bound, untouched;
   for (linear::EnergyBound* one : {&bound, &untouched}) {
@@ -58,7 +58,7 @@ TEST(EnergyBound, GivesUpWhereNoSpectrumFits) {
   }
   const std::vector<std::vector<double>> spoilt = {
       {1.0, 1.0, 1e300, 1.0, 1e300, 1e-300, 1.0},  // alpha, rho, next; alpha, rho, next; ...
-      {HUGE_VAL, 1.0, 1.0},                        // a step of no length
+      {HUGE_VAL, 1.0, 1.0},                        // a step without length
       {1.0, 1.0, std::nan(""), 1.0, 1.0, 1.0}};
   for (const auto& numbers : spoilt) {
     for (std::size_t k = 0; k + 2 < numbers.size(); k += 3)

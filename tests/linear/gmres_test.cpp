@@ -1,4 +1,4 @@
-// Unsymmetric matrices by flexible GMRES, preconditioned by a solution with their symmetric part.
+// Unsymmetric matrices by flexible GMRES, preconditioned by a solve with their symmetric part.
 #include "linear/gmres.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ TEST(SymmetricPart, IsTheMeanOfBothTriangles) {
   A.bottom = MatX::Random(2, 36);
   A.corner = MatX::Random(2, 2);
   linear::SymmetricPart part;
-  for (int i = 0; i < 2; ++i) {  // made anew, and once more with other values in the same pattern
+  for (int i = 0; i < 2; ++i) {  // new, and again with other values in the same pattern
     const MatX dense = A.to_dense();
     const BorderedMatrix& S = part.of(A);
     EXPECT_TRUE(S.symmetric);
@@ -34,12 +34,12 @@ TEST(SymmetricPart, IsTheMeanOfBothTriangles) {
 
 double dense_energy_norm(const MatX& A, const VecX& x) { return std::sqrt(x.dot(A * x)); }
 
-/// Directions that theory allows: 2 rho^k <= rtol, rho the rate of an exact symmetric part.
+/// Number of directions from theory: 2 rho^k <= rtol, with rho the rate for an exact symmetric part.
 double most_directions(double skew, double rtol) {
   return std::ceil(std::log(0.5 * rtol) / std::log(skew / (1.0 + std::sqrt(1.0 + skew * skew))));
 }
 
-// The number of directions that theory allows and the error that it promises, with no constant in either.
+// Number of directions and error equal the bounds of theory, without any constant.
 TEST(Gmres, ConvergesAtTheRateOfTheoryOverAFactor) {
   int checked = 0;
   for (const double mu : {0.1, 0.3, 1.0, 1.5})
@@ -69,7 +69,7 @@ TEST(Gmres, ConvergesAtTheRateOfTheoryOverAFactor) {
             << mu << " " << rtol;
         EXPECT_LE(static_cast<double>(solver.directions()), most_directions(skew, rtol)) << mu << " " << rtol;
         EXPECT_GE(solver.directions(), 2);
-        // of both together: one factor, one right-hand side
+        // both together: one factorisation, one right-hand side
         SolverCounters sum = cholesky->counters();
         sum += solver.counters();
         EXPECT_EQ(sum.solves, 1);
@@ -80,7 +80,8 @@ TEST(Gmres, ConvergesAtTheRateOfTheoryOverAFactor) {
   EXPECT_EQ(checked, 32);
 }
 
-// A symmetric part solved to two digits: each direction gains no more than these, and the error is the same.
+// The symmetric part is solved to two digits: each direction gains at most two digits, and the error is the
+// same.
 TEST(Gmres, ConvergesOverAnInexactSymmetricPart) {
   int checked = 0;
   for (const double mu : {0.1, 0.3, 1.0}) {
@@ -93,9 +94,9 @@ TEST(Gmres, ConvergesOverAnInexactSymmetricPart) {
       ASSERT_EQ(solver.factor(A), SolveStatus::kOk);
       VecX x;
       ASSERT_EQ(solver.solve(b, x), SolveStatus::kOk);
-      constexpr double kNorm = 1.01;  // the inner tolerance, in the norm of the termination
+      constexpr double kNorm = 1.01;  // inner tolerance, in the norm of the stopping criterion
       constexpr double kInner =
-          0.1003;  // rho = 0.05: the inner digits, and basis vectors orthogonal to these
+          0.1003;  // rho = 0.05: inner digits, and basis vectors orthogonal to that accuracy
       EXPECT_LE(dense_energy_norm(S, x - exact), kNorm * rtol * (1.0 + skew) * dense_energy_norm(S, exact))
           << mu;
       EXPECT_LE(static_cast<double>(solver.directions()), most_directions(std::max(skew, kInner), rtol))
@@ -148,7 +149,7 @@ TEST(Gmres, SeesABorderThatIsNotSymmetric) {
   }
 }
 
-// Below a tolerance of 1e-10 the residual is computed from the solution, which takes one product more.
+// Below a tolerance of 1e-10 the residual is computed from the solution, which takes one more product.
 TEST(Gmres, ComputesATightResidual) {
   const BorderedMatrix A = row_with_friction(60, 1.0, 2, 1.0, 0.3);
   const VecX b = VecX::LinSpaced(180, -1.0, 3.0);
@@ -176,7 +177,7 @@ TEST(Gmres, ReportsWhatItCannotSolve) {
   EXPECT_EQ(solver.factor(broken), SolveStatus::kSingular);
 }
 
-// An unchanged matrix is not factored again, unless the symmetric solver has had another one in between.
+// An unchanged matrix is not factored again, unless the symmetric solver had another matrix in between.
 TEST(Gmres, KeepsTheFactorOfAnUnchangedMatrix) {
   BorderedMatrix A = row_with_friction(20, 1.0, 2, 1.0, 0.3), other = row_with_friction(20, 2.0, 2, 1.0, 0.0);
   other.symmetric = true;
@@ -200,7 +201,7 @@ TEST(Gmres, KeepsTheFactorOfAnUnchangedMatrix) {
   expect_solved(4);
 }
 
-// LU is the last resort: made for the two matrices above, never for one that the iteration solves.
+// LU is the last resort: used for the two difficult matrices, never for one that the iteration solves.
 TEST(Gmres, PrecedesLu) {
   const BorderedMatrix mild = row_with_friction(60, 1.0, 2, 1.0, 0.3),
                        indefinite = row_with_friction(60, 1.0, 3, 1e4, 0.8),
@@ -229,12 +230,12 @@ TEST(Gmres, PrecedesLu) {
     EXPECT_EQ(lus, before + 1) << name << ": made once";
     BorderedMatrix bordered = spinning;
     add_border(bordered, 6, 400.0);
-    solve(bordered);  // with a direct solver it is the border's columns that do not converge
+    solve(bordered);  // with a direct solver the border's columns do not converge
     EXPECT_EQ(lus, before + 1) << name;
   }
 }
 
-// Contact that is stiffer than the nodes behind it by more than 4/mu^2: S = k [[1 + t, -mu/2], [-mu/2, t]] is
+// Contact stiffer than the nodes behind it by more than 4/mu^2: S = k [[1 + t, -mu/2], [-mu/2, t]] is
 // indefinite for t (1 + t) < mu^2/4, though A is not singular.
 TEST(Gmres, SaysThatASymmetricPartIsIndefinite) {
   constexpr double kFriction = 0.8;

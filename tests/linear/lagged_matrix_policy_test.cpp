@@ -5,10 +5,10 @@
 using palpate::linear::LaggedMatrixPolicy;
 
 namespace {
-// twice rho of a lag of one step, times the correction, is a sixth of the error that may go unnoticed
+// twice rho for a lag of one step, times the correction, is a sixth of the permitted undetected error
 constexpr double kRtol = 1e-3, kSize = 1e-2, kRho = 2e-3;
 
-/// Takes steps while the matrix serves, as a solver would; returns how many.
+/// Takes steps as a solver would for as long as the matrix serves; returns their number.
 int steps(LaggedMatrixPolicy& policy, double size, int most, int* checks = nullptr) {
   int taken = 0;
   for (; taken < most && policy.serves(); ++taken) {
@@ -24,12 +24,12 @@ int steps(LaggedMatrixPolicy& policy, double size, int most, int* checks = nullp
 
 TEST(LaggedMatrixPolicy, TriesWhereNothingIsKnownAndLooks) {
   LaggedMatrixPolicy policy(kRtol);
-  policy.solved(0.5);  // however large
+  policy.solved(0.5);  // correction of any size
   EXPECT_TRUE(policy.serves());
   EXPECT_FALSE(policy.sure(1e-9));
 }
 
-// 2 rho n d <= rtol / 4: six steps by one matrix, and checks no more often than the first and by plan.
+// 2 rho n d <= rtol / 4: six steps per matrix, with no checks other than the first and the scheduled ones.
 TEST(LaggedMatrixPolicy, ServesUntilItWouldLeaveTooMuch) {
   LaggedMatrixPolicy policy(kRtol);
   int checks = 0;

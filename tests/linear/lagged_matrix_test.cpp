@@ -1,5 +1,5 @@
-// Solves with a lagged matrix, that of an earlier step: as accurate as with the step's own, and known to be
-// so.
+// Solves with a lagged matrix of an earlier step: as accurate as with the step's matrix, with a verified
+// error.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -21,8 +21,8 @@ VecX direct_solution(const BorderedMatrix& A, const VecX& b) {
   return x;
 }
 
-/// A solver that has its zero-row-sum matrix of a beam bent by `angle`, and solved with it for the loads of a
-/// bend that grows.
+/// Returns a solver that has the zero-row-sum matrix of a beam bent by `angle`, and has solved with it for
+/// the loads of an increasing bend.
 std::unique_ptr<LinearSolver> solver_at(BentBeam& beam, const std::string& name, double angle, double h,
                                         double rtol) {
   auto solver = linear::make_linear_solver(name, {.linear_rtol = rtol});
@@ -63,7 +63,7 @@ TEST(LaggedMatrix, SolvesAsAccuratelyAsTheMatrixItself) {
     }
 }
 
-// A matrix of another body with as many nodes: nothing of it may come out as a solution.
+// A matrix of another body with the same number of nodes must not produce a solution.
 TEST(LaggedMatrix, SaysWhereItIsTooFar) {
   for (const std::string name : {"pcg-single", "pcg-two-level"}) {
     BentBeam beam(16, 1e6);
@@ -98,7 +98,7 @@ TEST(LaggedMatrix, NeedsAZeroRowSumMatrixAndASolution) {
   EXPECT_EQ(left.evaluated, 0);
 }
 
-/// Between a stepper and its solver: compares every solution of a step with a direct one of its matrix.
+/// Placed between a stepper and its solver: compares every solution of a step with a direct solution.
 class EverySolve final : public LinearSolver, public MixedPrecisionSolver {
  public:
   EverySolve(std::unique_ptr<LinearSolver> solver, BentBeam& beam, double h)
@@ -140,7 +140,7 @@ class EverySolve final : public LinearSolver, public MixedPrecisionSolver {
     worst = std::max(worst, energy_norm(A_, x - exact) / energy_norm(A_, exact));
   }
   std::unique_ptr<LinearSolver> solver_;
-  MixedPrecisionSolver* mixed_;  ///< null: the solver lacks the capability
+  MixedPrecisionSolver* mixed_;  ///< null if the solver lacks the capability
   BentBeam& beam_;
   double h_;
   BorderedMatrix A_;
@@ -151,7 +151,7 @@ struct Swing {
   long lagged = 0, steps = 0, checks = 0;
   VecX q;
 };
-/// Swings a beam; `blow` is a velocity that its end gets all of a sudden, half way.
+/// Swings a beam; `blow` is a velocity that its end suddenly receives half way.
 Swing swing(const std::string& name, double h, double rtol, int steps, double blow, int threads = 1,
             const BentBeamOptions& options = {}) {
   BentBeam beam(16, 1e5, 0, options);
@@ -194,7 +194,7 @@ TEST(LaggedMatrix, EveryStepOfASwingHasItsTolerance) {
     }
 }
 
-// What no history foresees: the first steps after a blow.
+// The first steps after an impulse, which no history predicts.
 TEST(LaggedMatrix, ABlowIsSeen) {
   for (const std::string name : {"pcg-single", "pcg-two-level"})
     for (const double blow : {0.1, 1.0, 10.0}) {
@@ -204,7 +204,7 @@ TEST(LaggedMatrix, ABlowIsSeen) {
     }
 }
 
-// Damping of both kinds and an end that moves are in what a step leaves as they are in its matrix.
+// Both kinds of damping, and a moving end, are included in the step's residual and in its matrix.
 TEST(LaggedMatrix, DampedAndDrivenItIsTheSameMotion) {
   for (const BentBeamOptions& options :
        {BentBeamOptions{.stiffness_damping = 0.01},
@@ -227,8 +227,8 @@ TEST(LaggedMatrix, ThreadsDoNotChangeABit) {
   EXPECT_EQ(one.q, three.q);
 }
 
-// Tolerances for which the copy in single precision is too coarse: its own steps are corrected by it, each of
-// them looked at, and so are those by an older one.
+// Tolerances for which the single-precision copy is too coarse: the steps of its matrix are corrected by it,
+// and each is checked, as are steps with a lagged matrix.
 TEST(LaggedMatrix, ARoundedMatrixKeepsTightTolerances) {
   for (const std::string name : {"pcg-single", "pcg-two-level"})
     for (const auto& [h, rtol] : {std::pair{1e-3, 1e-8}, {1e-3, 1e-10}, {1e-2, 1e-9}}) {
@@ -241,7 +241,7 @@ TEST(LaggedMatrix, ARoundedMatrixKeepsTightTolerances) {
     }
 }
 
-// A stepper that is told of a change takes no matrix from before it.
+// After a reinitialisation the stepper uses no earlier matrix.
 TEST(LaggedMatrix, IsForgottenAtAReinitialisation) {
   BentBeam beam(16, 1e5);
   const auto stepper = integrate::make_stepper(beam.system, beam.state,

@@ -16,8 +16,9 @@ using namespace dynamics;
 
 enum class Kind { kSpd, kUnsymmetric, kIndefinite };
 
-/// Random bordered matrix with a dominant diagonal: positive definite; symmetric with every third node's and
-/// the corner's sign reversed; or (values of the two triangles drawn apart) unsymmetric.
+/// Random bordered matrix with a dominant diagonal: positive definite; symmetric indefinite, with the
+/// signs of every third node and of the corner reversed; or unsymmetric, with independent values in the
+/// two triangles.
 BorderedMatrix random_matrix(int nodes, int border, Kind kind, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> value(-1.0, 1.0);
@@ -54,7 +55,7 @@ BorderedMatrix random_matrix(int nodes, int border, Kind kind, unsigned seed) {
 
 class LinearSolvers : public testing::TestWithParam<std::string> {
  protected:
-  /// An iterative solver's tolerance is set so that it must agree like a direct one.
+  /// An iterative solver's tolerance is set such that it must agree like a direct one.
   std::unique_ptr<LinearSolver> solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-14});
   std::vector<Kind> kinds() const {
     std::vector out{Kind::kSpd};
@@ -67,7 +68,7 @@ class LinearSolvers : public testing::TestWithParam<std::string> {
 std::vector<std::string> solver_names() { return names(linear::linear_solver_registry()); }
 INSTANTIATE_TEST_SUITE_P(Registry, LinearSolvers, testing::ValuesIn(solver_names()), registry_test_name);
 
-/// Solvers that pivot: they take any matrix with an inverse, and see a singular one.
+/// Pivoting solvers: they accept any invertible matrix, and detect a singular one.
 class PivotingSolvers : public LinearSolvers {};
 std::vector<std::string> pivoting_names() {
   std::vector<std::string> out = solver_names();
@@ -189,8 +190,8 @@ TEST_P(LinearSolvers, RefuseWhatIsNotFiniteAnywhere) {
   EXPECT_EQ(refused, 12);
 }
 
-// A free graph of springs has no stiffness against translation: the LU factors meet a pivot of rounding's
-// size, wherever in the order it falls.  (Rounding may make a Cholesky pivot positive.)
+// A free graph of springs has no stiffness against translation: the LU factors have a pivot at rounding
+// level, wherever in the order it occurs. (Rounding may make a Cholesky pivot positive.)
 TEST_P(PivotingSolvers, RefuseASingularMatrix) {
   BorderedMatrix A = random_matrix(40, 0, Kind::kSpd, 9);
   for (int i = 0; i < 40; ++i) {
@@ -200,7 +201,7 @@ TEST_P(PivotingSolvers, RefuseASingularMatrix) {
          s < A.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       const int j = A.body.columns()[static_cast<std::size_t>(s)];
       if (j == i) continue;
-      const double k = 1.0 + 0.1 * ((i * j) % 7);  // the same for (j, i)
+      const double k = 1.0 + 0.1 * ((i * j) % 7);  // equal for (j, i)
       std::fill_n(A.body.block(s), 9, 0.0);
       A.body.add(s, -k * Mat3::Identity());
       A.body.add(own, k * Mat3::Identity());
@@ -211,8 +212,8 @@ TEST_P(PivotingSolvers, RefuseASingularMatrix) {
   EXPECT_EQ(solver->factor(A), SolveStatus::kSingular);
 }
 
-// A kept pivot order meets values that it was not chosen for: the diagonal fades, and the order of the first
-// factorisation would divide by it.
+// A kept pivot order is applied to values for which it was not chosen: the diagonal vanishes, and the
+// order of the first factorisation would divide by it.
 TEST_P(PivotingSolvers, KeepTheirAccuracyOverChangingValues) {
   const BorderedMatrix first = random_matrix(30, 0, Kind::kUnsymmetric, 2);
   for (const double share : {1.0, 0.9, 1e-3, 1e-6, 1e-9, 0.0, 1.0}) {
@@ -239,9 +240,10 @@ TEST_P(LinearSolvers, RobustOnesTakeAnyMatrix) {
   }
 }
 
-// --- conjugate gradients
+// --- Conjugate gradients
 
-/// A cantilever of springs: nodes in a row, the first held; condition of the order of the number squared.
+/// A cantilever of springs: nodes in a row with the first one held; the condition number is of the order of
+/// the number of nodes squared.
 BorderedMatrix row_of_springs(int nodes, double mass, int border = 0) {
   PatternBuilder pattern(nodes);
   for (int i = 0; i + 1 < nodes; ++i) pattern.add_pair(i, i + 1);
@@ -307,8 +309,7 @@ TEST(Pcg, AnswersZeroByZeroAndWithoutWork) {
   EXPECT_EQ(solver->counters().iterations, 0);
 }
 
-// The blocks on the diagonal are positive definite, the matrix is not: 1 - 2 cos of the longest wave is below
-// zero.
+// The diagonal blocks are positive definite, the matrix is not: 1 - 2 cos of the longest wave is negative.
 TEST(Pcg, FindsNegativeCurvatureWhileItSolves) {
   const BorderedMatrix A = row_of_springs(50, -0.01);
   const auto solver = linear::make_linear_solver("pcg");
@@ -325,7 +326,7 @@ TEST(Pcg, FindsNegativeCurvatureWhileItSolves) {
 }
 
 TEST(Pcg, GivesUpAnIterationThatDoesNotEnd) {
-  const BorderedMatrix A = row_of_springs(4000, 0.0);  // 4,000 iterations carry a force from end to end
+  const BorderedMatrix A = row_of_springs(4000, 0.0);  // 4,000 iterations propagate a force from end to end
   const auto solver = linear::make_linear_solver("pcg");
   ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
   VecX x;
@@ -337,8 +338,8 @@ TEST(Pcg, GivesUpAnIterationThatDoesNotEnd) {
   EXPECT_NEAR(x[A.size() - 1], 4000.0, 1e-6) << "springs in series";
 }
 
-/// A rigid tool of six directions in contact with `touched` nodes, each by a spring k along a direction of
-/// its own.
+/// A rigid tool with six directions in contact with `touched` nodes, each by a spring k along a random
+/// direction.
 BorderedMatrix touched_by_a_tool(double k, int touched) {
   BorderedMatrix A = row_of_springs(100, 0.01, 6);
   A.corner = 0.1 * MatX::Identity(6, 6);
@@ -359,8 +360,8 @@ BorderedMatrix touched_by_a_tool(double k, int touched) {
   return A;
 }
 
-// The preconditioner's coarse space holds the six directions in which nodes and tool move together: six
-// orders of stiffness do not show in the count.
+// The preconditioner's coarse space contains the six common motions of nodes and tool: six orders of
+// magnitude in stiffness do not affect the iteration count.
 TEST(Pcg, IsNotRuinedByAStiffTool) {
   std::vector<long> iterations;
   for (const double k : {1.0, 1e2, 1e4, 1e6}) {

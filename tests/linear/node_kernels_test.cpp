@@ -27,14 +27,14 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   for (std::size_t i = 0; i < n; ++i) {
     diagonal[i] = A.body.diagonal(static_cast<int>(i));
     const auto row = source.begin() + A.body.row_start()[i];
-    // the row's own block first
+    // the row's diagonal block first
     std::rotate(row, source.begin() + diagonal[i], source.begin() + diagonal[i] + 1);
   }
   std::vector<int> column;
   for (const int slot : source) column.push_back(A.body.columns()[static_cast<std::size_t>(slot)]);
   std::vector<int> row_start(A.body.row_start().begin(), A.body.row_start().end());
   linear::NodeOrder order = linear::cluster_nodes(A.body, 3, 3);
-  // parts of nodes as they come: many blocks between parts
+  // parts of nodes in their given order: many blocks between parts
   for (std::size_t i = 0; i < n; ++i) order.node[i] = static_cast<int>(i);
   linear::RowPacking packing;
   packing.analyse(order, row_start, column);
@@ -93,7 +93,7 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     EXPECT_NEAR(pq, b.dot(exact), 1e-5 * std::abs(b.dot(exact))) << k.name;
     EXPECT_LT(off_identity(false), 1e-5) << k.name;
 
-    // Zero row sums: what is missing in a row's sum is its mass.  Blocks come transposed and as they are.
+    // Zero row sums: a row's deficit is its mass. Blocks occur transposed and untransposed.
     std::vector<double> mass(4 * n + linear::kVectorTail);
     std::vector<float> mass_single(mass.size());
     for (std::size_t i = 0; i < n; ++i)
@@ -147,7 +147,7 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     double off = 0.0, off_single = 0.0, off_columns = 0.0, traces = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       traces += Eigen::Map<const Mat3>(A.body.block(diagonal[i])).trace();
-      if (lacks_held_columns(i)) continue;  // such rows do not sum to their mass
+      if (lacks_held_columns(i)) continue;  // rows that lack columns of held nodes do not sum to their mass
       for (std::size_t a = 0; a < 3; ++a) {
         const double want = exact[static_cast<Eigen::Index>(3 * i + a)];
         off = std::max(off, std::abs(Av[4 * i + a] - want));
@@ -181,8 +181,8 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   }
 }
 
-// Against plain sums in double, on ranges that begin and end anywhere, of what has each instruction set's own
-// loops.
+// Vector operations at the start of a solve against plain sums in double, over arbitrary ranges, for every
+// instruction set.
 TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
   constexpr int kNodes = 37, kFirst = 3, kLast = 36, kCount = 3, kNumbers = 4 * kNodes + linear::kVectorTail;
   std::mt19937 random(7);
@@ -255,7 +255,7 @@ TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
     EXPECT_EQ(r[kBegin - 1], 9.0f);
     EXPECT_EQ(r[kEnd], 9.0f);
 
-    // z + motion, with and without a direction before
+    // z + motion, with and without a previous direction
     std::vector<float> arm(kNumbers, 0.0f), z = field(0.0f), first_d(d), first_p(p), next_d(d), next_p(p);
     for (std::size_t i = 0; i < 4 * kNodes; ++i) arm[i] = i % 4 == 3 ? 1.0f : number(random);
     const float motion[6] = {1.0f, 2.0f, 3.0f, 0.5f, -0.25f, 0.75f};

@@ -39,8 +39,8 @@ TEST(NodeOrder, CutsAGraphIntoEqualPartsThatHangTogether) {
   EXPECT_EQ(linear::cluster_nodes(A.body, 10 * n).clusters(), n) << "no more clusters than nodes";
 }
 
-// Every block has a place of its own, or shares its mirror image's where both nodes are of one part; little
-// is filled up.
+// Every block has its place, or shares that of its mirror image if both nodes are in one part; little padding
+// is added.
 TEST(RowPacking, TakesEveryBlockOnce) {
   BentBeam beam(24, 1e5);
   const BlockSparse& pattern = beam.pattern();

@@ -24,8 +24,8 @@ INSTANTIATE_TEST_SUITE_P(Registry, NodeSolvers, testing::Values("pcg-single", "p
                            return name;
                          });
 
-// What linear_rtol says: the error of the solution in the energy norm, against a direct solve, over a motion,
-// with what the last steps left to start from.
+// linear_rtol bounds the error of the solution in the energy norm, against a direct solve, over a motion,
+// with start values from the last steps.
 TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSays) {
   int checked = 0;
   for (const double E : {1e5, 1e6})
@@ -51,10 +51,11 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSays) {
   EXPECT_EQ(checked, 96);
 }
 
-// A zero-row-sum matrix, off-diagonal blocks in single precision, is held to the same promise: against a
-// direct solve of the whole matrix in double.  Across from four elements to one, where rounding of the blocks
-// tells most; from matrices that are nearly mass to those that are nearly stiffness.  Where it is too coarse
-// for the tolerance, the solver says so, and corrects by it what the equations leave, from the first step on.
+// A zero-row-sum matrix with off-diagonal blocks in single precision satisfies the same bound: against a
+// direct solve of the whole matrix in double. Between four elements and one across, where rounding of the
+// blocks matters most; between matrices dominated by mass and by stiffness. Where it is too coarse for the
+// tolerance, the solver reports this, and corrects the residual of the equations with it, from the first step
+// on.
 TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfAZeroRowSumMatrix) {
   int checked = 0, rounded = 0;
   for (const int across : {4, 1})
@@ -96,7 +97,8 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfAZeroRowSumMatrix) {
   EXPECT_GE(rounded, 48);
 }
 
-// Whole and zero-row-sum matrices of one pattern in turn: one analysis, and what is remembered serves both.
+// Whole and zero-row-sum matrices of one pattern alternate: one analysis, and remembered solutions serve
+// both.
 TEST_P(NodeSolvers, TakeWholeAndZeroRowSumMatricesInTurn) {
   BentBeam beam(16, 1e5);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
@@ -137,7 +139,7 @@ TEST_P(NodeSolvers, SayWhatTheyCannotDoWithAZeroRowSumMatrix) {
   EXPECT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kSolve);
 }
 
-// Without a right-hand side there is nothing to begin with, and nothing to solve.
+// Without a right-hand side there is nothing to start from, and nothing to solve.
 TEST_P(NodeSolvers, RefineZeroToZero) {
   BentBeam beam(8, 1e6);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-9});
@@ -153,8 +155,8 @@ TEST_P(NodeSolvers, RefineZeroToZero) {
   EXPECT_EQ(x, VecX(VecX::Zero(b.size())));
 }
 
-// A system that is not the matrix's is no rounding: it is said, and zero-row-sum matrices of this pattern are
-// not taken again for a while, whatever other patterns come between.
+// A system that does not belong to the matrix differs by more than rounding: this is reported, and
+// zero-row-sum matrices of this pattern are rejected for a while, whatever other patterns occur in between.
 TEST_P(NodeSolvers, RefuseARoundedMatrixThatCorrectsNothing) {
   BentBeam beam(8, 1e6);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-9});
@@ -172,7 +174,7 @@ TEST_P(NodeSolvers, RefuseARoundedMatrixThatCorrectsNothing) {
   EXPECT_EQ(mixed(*solver).solve_by_refinement(left, x), SolveStatus::kNotConverged);
   EXPECT_EQ(mixed(*solver).solve_by_refinement(left, x), std::nullopt) << "it refines nothing any more";
   EXPECT_EQ(left.evaluated, 2);
-  BentBeam other(8, 1e6, 3);  // as a matrix with contact in it has another pattern
+  BentBeam other(8, 1e6, 3);  // another pattern, as of a matrix with contact
   BorderedMatrix elsewhere;
   int refused = 0;
   for (; refused < 1000 && !mixed(*solver).step_matrix(beam.pattern()); ++refused) {
@@ -185,8 +187,8 @@ TEST_P(NodeSolvers, RefuseARoundedMatrixThatCorrectsNothing) {
   EXPECT_EQ(solver->counters().lagged, 0);
 }
 
-// Rows of held directions are the identity's: what the right-hand side has there is the answer, and the rest
-// does not feel it; in place, too.
+// Rows of held directions are rows of the identity: their right-hand side is their solution, and does not
+// affect the rest; also in place.
 TEST_P(NodeSolvers, HeldRowsStandAlone) {
   BentBeam beam(8, 1e5);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-6});
@@ -237,8 +239,8 @@ TEST_P(NodeSolvers, ThreadsDoNotChangeABit) {
   EXPECT_EQ(answers[0], answers[2]);
 }
 
-// A matrix that was solved before is solved by what is remembered; a second right-hand side of one factor
-// starts from products with that factor's matrix.
+// A matrix solved before is solved from remembered solutions; a second right-hand side of the same
+// factorisation starts from products with its matrix.
 TEST_P(NodeSolvers, StartFromTheLastSolutions) {
   BentBeam beam(16, 1e5);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
@@ -261,8 +263,8 @@ TEST_P(NodeSolvers, StartFromTheLastSolutions) {
   EXPECT_EQ(x, VecX(VecX::Zero(b.size())));
 }
 
-// Units: the same problem in other units of force is solved to the same bits but for a power of two, far
-// outside of what single precision can hold.
+// Units: the same problem in other units of force has the same bits up to a power of two, far outside of the
+// range of single precision.
 TEST_P(NodeSolvers, TakeAnyUnits) {
   BentBeam beam(8, 1e5);
   BorderedMatrix A;
@@ -282,8 +284,8 @@ TEST_P(NodeSolvers, TakeAnyUnits) {
   }
 }
 
-// What is kept of solutions is in single precision: one that is larger or smaller by far than those before
-// has nothing to say of the next, and spoils nothing.
+// Remembered solutions are in single precision: a solution that is larger or smaller by far than the previous
+// ones neither benefits from them nor corrupts later solves.
 TEST_P(NodeSolvers, TakeSolutionsOfAnySizeOneAfterTheOther) {
   BentBeam beam(8, 1e5);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});

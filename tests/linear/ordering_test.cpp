@@ -12,7 +12,7 @@ namespace {
 
 using namespace dynamics;
 
-/// Springs along the edges of a square grid of nodes and along some further pairs, each node tied to the
+/// Springs along the edges of a square grid of nodes and along some further pairs, with each node tied to the
 /// ground; node k of the grid is number[k].
 BorderedMatrix grid(const std::vector<int>& number, int edge,
                     const std::vector<std::pair<int, int>>& further = {}) {
@@ -52,9 +52,9 @@ double error_of(LinearSolver& solver, const BorderedMatrix& A) {
 
 }  // namespace
 
-// Contact that rolls on couples other pairs at every step: the ordering found first goes on, and the answers
-// with it.  A mesh numbered anew is another matrix: its separators are elsewhere, the old ordering fills up,
-// and a new one is looked for.
+// Rolling contact couples other pairs at every step: the first ordering is kept, and solutions remain
+// correct. A renumbered mesh is another matrix: its separators are elsewhere, the old ordering causes
+// fill-in, and a new one is computed.
 TEST(Ordering, IsKeptWhileItServes) {
   constexpr int kEdge = 30;
   std::vector<int> number(kEdge * kEdge);

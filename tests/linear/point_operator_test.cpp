@@ -1,4 +1,4 @@
-// Matrices with sums that stand beside their pattern, as contact does.
+// Matrices with sums outside of their sparsity pattern, such as contact.
 #include "linear/mixed_precision/point_operator.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace dynamics;
 
-/// Sums of every kind between nodes that lie anywhere, of this size [kg].
+/// Random sums of every kind between any nodes, with magnitude `size` [kg].
 PointStiffness random_points(int nodes, int count, double size, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -28,7 +28,7 @@ PointStiffness random_points(int nodes, int count, double size, unsigned seed) {
     of.relative = k % 2 == 0;
     of.count = of.relative ? 8 : 3 + k % 2;
     for (int i = 0; i < of.count; ++i) of.node[static_cast<std::size_t>(i)] = any(random);
-    const auto weights = [&] {  // a's sum to 1, b's to -1
+    const auto weights = [&] {  // a's weights sum to 1, b's to -1
       PointStiffness::Weights w = PointStiffness::Weights::Zero();
       for (int i = 0; i < of.count; ++i) w[i] = 0.3 + 0.2 * uniform(random);
       const int a = of.relative ? 4 : of.count;
@@ -43,12 +43,12 @@ PointStiffness random_points(int nodes, int count, double size, unsigned seed) {
   return out;
 }
 
-/// With others on the same nodes, or on all but one.
+/// Adds sums on the same nodes, or on all but one of them.
 PointStiffness on_the_same_nodes(const PointStiffness& C, double size) {
   PointStiffness out = C;
   for (const auto& one : C.points) {
     out.points.push_back({one.nodes, one.weight, size * one.C});
-    if (!one.nodes.relative) {  // on all of these nodes but the last
+    if (!one.nodes.relative) {  // on all of these nodes except the last
       PointStiffness::OfPoint fewer = one;
       const int last = --fewer.nodes.count;
       fewer.nodes.node[static_cast<std::size_t>(last)] = 0;
@@ -65,7 +65,7 @@ PointStiffness on_the_same_nodes(const PointStiffness& C, double size) {
   return out;
 }
 
-/// visit(i, j, block) of the definition.
+/// Calls visit(i, j, block) for each block of the definition.
 template <class Visit>
 void for_each_block(const PointStiffness& C, Visit visit) {
   for (const auto& a : C.points)
@@ -75,7 +75,7 @@ void for_each_block(const PointStiffness& C, Visit visit) {
               Mat3(a.weight[i] * a.weight[j] * a.C));
 }
 
-/// A + C in one pattern; nothing of C in held directions.
+/// Returns A + C in one pattern, without C in held directions.
 BorderedMatrix with(const BorderedMatrix& A, const PointStiffness& C, const std::vector<HeldNode>& held) {
   BorderedMatrix out = A;
   PatternBuilder builder(A.body.block_rows());
@@ -102,7 +102,7 @@ BorderedMatrix with(const BorderedMatrix& A, const PointStiffness& C, const std:
   return out;
 }
 
-/// Two parts, and nodes in an order of their own.
+/// Two parts, with nodes in a permuted order.
 struct Order {
   linear::NodeOrder order;
   std::vector<int> place;
@@ -120,14 +120,15 @@ struct Order {
 
 }  // namespace
 
-// Products with the sums are those with their blocks, part by part, and p . C p is what the parts add up.
+// Products with the sums equal products with their blocks, part by part, and p . C p is the total over the
+// parts.
 TEST(PointOperator, ProductsAreThoseOfItsBlocks) {
   constexpr int kNodes = 50;
   constexpr double kScale = 0.25;
   const Order order(kNodes);
   const PointStiffness C = on_the_same_nodes(random_points(kNodes, 40, 3.0, 1), 2.0);
   linear::PointOperator op;
-  op.take(random_points(kNodes, 9, 1.0, 4), order.place, order.order, 2.0);  // leaves nothing behind
+  op.take(random_points(kNodes, 9, 1.0, 4), order.place, order.order, 2.0);  // must leave no trace
   op.take(C, order.place, order.order, kScale);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -154,7 +155,7 @@ TEST(PointOperator, ProductsAreThoseOfItsBlocks) {
     EXPECT_NEAR(q[i], kScale * expected[i], 2e-6 * 3.0 * 40);
   }
   EXPECT_NEAR(share, kScale * energy, 1e-5 * kScale * energy);
-  // the diagonal blocks, each node once
+  // the diagonal blocks, once per node
   std::vector<Mat3> diagonal(kNodes, Mat3::Zero());
   for_each_block(C, [&](int i, int j, const Mat3& block) {
     if (i == j) diagonal[static_cast<std::size_t>(order.place[static_cast<std::size_t>(i)])] += block;
@@ -180,7 +181,8 @@ TEST(PointOperator, ProductsAreThoseOfItsBlocks) {
               1e-5);
 }
 
-// A translation of all nodes costs a relative sum nothing, whatever the stiffness: not by rounding either.
+// A relative sum does not resist a translation of all nodes, whatever its stiffness: no rounding error
+// either.
 TEST(PointOperator, RelativeSumsFeelNoTranslation) {
   constexpr int kNodes = 30;
   const Order order(kNodes);
@@ -213,11 +215,11 @@ INSTANTIATE_TEST_SUITE_P(Registry, PointSolvers, testing::Values("pcg-single", "
                            return name;
                          });
 
-// linear_rtol bounds the error of the solution in the energy norm of the whole matrix, the sums included,
-// against a direct solve; from sums that are softer than a node's own block to those that are 10^5 times
-// stiffer, over a motion, new ones at each step.  Stiff sums are outliers of the spectrum, as many as their
-// rank, 130 here.  Conjugate gradients take each in one iteration, or two by rounding; the blocks on the
-// diagonal keep the moderate ones among the others.
+// linear_rtol bounds the error of the solution in the energy norm of the whole matrix including the sums,
+// against a direct solve; from sums that are softer than a node's diagonal block to sums 10^5 times stiffer,
+// over a motion, with new ones at each step. Stiff sums are outliers of the spectrum, as many as their rank,
+// 130 here. Conjugate gradients need one iteration for each, or two with rounding; the diagonal blocks absorb
+// the moderate ones.
 TEST_P(PointSolvers, TheErrorIsWhatTheToleranceSays) {
   constexpr double kStep = 1e-2;
   long free_iterations = 0;
@@ -262,8 +264,8 @@ TEST_P(PointSolvers, TheErrorIsWhatTheToleranceSays) {
     }
 }
 
-// Solves of one step, each with other sums and another right-hand side than the one before: those that
-// another one follows are as far as they say, and the last one is as accurate as a solve alone.
+// Several solves per step, each with other sums and another right-hand side: intermediate solutions are as
+// accurate as reported, and the last one is as accurate as a single solve.
 TEST_P(PointSolvers, GoOnFromSolveToSolveOfAStep) {
   constexpr double kStep = 1e-2, kTolerance = 1e-4, kShare = 0.1;
   for (const int threads : {1, 2}) {
@@ -310,13 +312,13 @@ TEST_P(PointSolvers, GoOnFromSolveToSolveOfAStep) {
     }
     EXPECT_GT(rough, 4);
     EXPECT_EQ(solver->counters().factorisations, 4);
-    // auto sees how stiff the first matrix is, and may give the next to another solver
+    // auto measures the stiffness of the first matrix, and may assign the next one to another solver
     EXPECT_EQ(solver->counters().symbolic, threads == 1 ? 1 : 2);
   }
 }
 
-// Tolerances below what single precision can say of a solution: corrected from the first step on, with new
-// sums at each, and never by a matrix in double, whose pattern would be another one every time.
+// Tolerances below the resolution of single precision: solutions are corrected from the first step on, with
+// new sums at each, and never by a matrix in double, whose pattern would change every time.
 TEST_P(PointSolvers, AreCorrectedFromTheFirstStepOn) {
   constexpr double kStep = 1e-2, kTolerance = 1e-9;
   BentBeam beam(16, 1e5);
@@ -343,7 +345,7 @@ TEST_P(PointSolvers, AreCorrectedFromTheFirstStepOn) {
   EXPECT_EQ(solver->counters().factorisations, 4);
 }
 
-// A node in contact that is held along one axis moves along the others, and only along these.
+// A node in contact that is held along one axis moves along the other two only.
 TEST_P(PointSolvers, NodesMayBeHeldAlongOneAxis) {
   constexpr double kStep = 1e-2;
   BentBeam beam(8, 1e5);

@@ -1,4 +1,4 @@
-// A few vectors over the nodes together, by every instruction set.
+// Operations on a few vectors over the nodes at once, by every instruction set.
 #include "linear/mixed_precision/response_columns.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 using linear::Columns;
 
-constexpr int kNodes = 301;  // a multiple of no width
+constexpr int kNodes = 301;  // no multiple of any vector width
 constexpr std::size_t kSize = 4 * kNodes;
 
 Columns wave(int count, double phase) {
@@ -62,7 +62,7 @@ TEST(ResponseColumns, EverySetGivesThePlainSumsOfAnyCounts) {
 TEST(ResponseColumns, AnInverseIsThatOfWhatIsMoreThanRounding) {
   const MatX v = in_double(wave(3, 0.3));
   MatX V(kSize, 4);
-  V << v, v.col(0) + v.col(1);  // waves of one kind: two directions
+  V << v, v.col(0) + v.col(1);  // linearly dependent waves: two directions
   const VecX scale = (VecX(4) << 1.0, 1e-4, 1e3, 1.0).finished();
   const MatX G = scale.asDiagonal() * (V.transpose() * V) * scale.asDiagonal();
   const MatX inverse = linear::pseudo_inverse(G);

@@ -19,8 +19,8 @@ namespace {
 
 using dynamics::BorderedMatrix;
 
-/// Springs along the edges and diagonals of a lattice of unit cells, each with a share across, and a mass:
-/// positive definite, indifferent to translations but for the mass.
+/// Springs along the edges and diagonals of a lattice of unit cells, each with a transverse part, and a mass:
+/// positive definite, insensitive to translations except for the mass.
 struct SpringBlock {
   int along, across;
   Points positions;
@@ -63,7 +63,7 @@ struct SpringBlock {
   }
 };
 
-/// The solver's parts around one matrix.
+/// The solver's components around one matrix.
 struct Preconditioner {
   const linear::NodeKernels& kernels = linear::node_kernels();
   linear::ClusterTeam team;
@@ -80,7 +80,7 @@ struct Preconditioner {
     EXPECT_EQ(matrix.take(block.A, 0, nullptr, nullptr), dynamics::SolveStatus::kOk);
     EXPECT_TRUE(clusters.refresh(matrix, with_positions ? block.positions.data() : nullptr, kernels));
   }
-  /// r . P^-1 r of the copy's problem, in units of the matrix.
+  /// r . P^-1 r of the scaled copy, in units of the matrix.
   double form(const VecX& r) {
     for (int k = 0; k < matrix.nodes(); ++k)
       for (int axis = 0; axis < 3; ++axis)
@@ -90,8 +90,8 @@ struct Preconditioner {
   }
 };
 
-/// Rigid motions of runs of nodes, a unit of length as the scale of turns: a space has the same projection in
-/// any units.
+/// Rigid motions of ranges of nodes, with a unit of length as the scale of rotations: the projection onto a
+/// space does not depend on units.
 MatX rigid_motions(const SpringBlock& block, const linear::NodeOrder& order, const std::vector<int>& start) {
   MatX Z = MatX::Zero(3 * block.nodes(), 6 * static_cast<Eigen::Index>(start.size() - 1));
   for (std::size_t c = 0; c + 1 < start.size(); ++c)
@@ -107,7 +107,7 @@ MatX rigid_motions(const SpringBlock& block, const linear::NodeOrder& order, con
   return Z;
 }
 
-/// J^-1 + Y D^-1 Y^T + Z E^-1 Z^T, as rigid_mode_coarse_space.h writes it.
+/// J^-1 + Y D^-1 Y^T + Z E^-1 Z^T, as in rigid_mode_coarse_space.h.
 MatX by_definition(const SpringBlock& block, const linear::NodeOrder& order, bool with_pieces) {
   const MatX A = block.dense(), Z = rigid_motions(block, order, order.start),
              Y = rigid_motions(block, order, order.piece_start);
@@ -138,7 +138,7 @@ TEST(RigidModeCoarseSpace, PreconditionByBlocksPiecesAndClustersAsDefined) {
     const MatX P = by_definition(block, by.matrix.order(), pieces > count);
     for (int seed = 1; seed <= 4; ++seed) {
       const VecX r = noise(3 * block.nodes(), seed);
-      // E's diagonal carries a share of 1e-5 for rounding
+      // E's diagonal is increased by 1e-5 against rounding
       EXPECT_NEAR(by.form(r) / r.dot(P * r), 1.0, 1e-4) << count << " clusters, " << pieces << " pieces";
     }
     for (Eigen::Index c = 0; c < 6; ++c) {  // forces that move one cluster as a whole
@@ -165,10 +165,10 @@ TEST(RigidModeCoarseSpace, GiveTheSameOnOneAndTwoThreads) {
   EXPECT_EQ(one.form(r), two.form(r));
 }
 
-// What they are for: few large clusters leave what varies within them to the blocks, on a bar of l cells a
-// cluster with a condition of order l^2.  Pieces of p cells see a chain of l/p, and a smooth motion in steps
-// of theirs, which takes p times its energy (all of it in one cell of p): p (l/p)^2, a p-th of that.  The
-// largest eigenvalue is at most the number of levels: three for two.
+// Purpose of pieces: few large clusters leave variations within them to the diagonal blocks, on a bar with l
+// cells per cluster with a condition number of order l^2. Pieces of p cells form a chain of l/p, and
+// represent a smooth motion in steps of a piece, which has p times its energy (all of it in one of p cells):
+// p (l/p)^2, a p-th of l^2. The largest eigenvalue is at most the number of levels: three instead of two.
 TEST(RigidModeCoarseSpace, PiecesBoundTheConditionWhereClustersAreLarge) {
   const SpringBlock block(63, 1, 1e-6);
   const auto condition = [&](int pieces) {

@@ -1,4 +1,4 @@
-// What a step matrix answers to a few right-hand sides.
+// Responses of a step matrix to a few right-hand sides.
 #include "palpate/linear/step_response.h"
 
 #include <gtest/gtest.h>
@@ -16,19 +16,20 @@ using linear::StepResponse;
 
 constexpr double kStep = 0.01, kTick = 0.001, kDamping = 2e-3;
 
-/// A beam on springs along z under its free end, and the forces that a tool there would see: a push and two
-/// tilts, with a load on all nodes as the last column.
+/// A beam on springs along z under its free end, and the loads of a tool there: a push and two tilts, with a
+/// load on all nodes as the last column.
 struct Touched {
   BentBeam beam{12, 2e4, 3, {.stiffness_damping = kDamping}};
   double angle;
   std::vector<int> nodes;
-  std::vector<double> weight;  ///< of each; empty: one
+  std::vector<double> weight;  ///< weight per node; empty: one
 
   explicit Touched(double bend = 0.4) : angle(bend) {
     for (int i = 0; i < beam.rest.size() / 3; ++i)
       if (beam.rest[3 * i] > 0.3 && beam.rest[3 * i + 2] < -0.12) nodes.push_back(i);
   }
-  /// Springs around one place of the lower side, those of its middle stiffest; weights of the push likewise.
+  /// Moves the springs to one position on the lower side, with the largest weight at its centre; the push has
+  /// the same weights.
   void touch(double along) {
     nodes.clear();
     weight.clear();
@@ -71,7 +72,7 @@ struct Touched {
     A.points = springs(stiffness * h * h);
     ASSERT_EQ(response.take_step_matrix(), SolveStatus::kOk);
   }
-  /// In double and dense.
+  /// The step matrix in double, dense.
   MatX matrix(double stiffness, double h = kStep) {
     BorderedMatrix A;
     VecX b;
@@ -83,7 +84,7 @@ struct Touched {
   }
 };
 
-/// S_ij over the root of S_ii S_jj of the exact one.
+/// Largest error of S_ij relative to the root of S_ii S_jj of the exact one.
 double apart(const MatX& S, const MatX& exact) {
   const VecX unit = exact.diagonal().cwiseSqrt().cwiseInverse();
   return (unit.asDiagonal() * (S - exact) * unit.asDiagonal()).cwiseAbs().maxCoeff();
@@ -105,8 +106,8 @@ class StepResponses : public testing::TestWithParam<std::pair<double, double>> {
   }
 };
 
-// S and the solutions tend to those of a factorisation; what S lacks is the energy of the columns' errors,
-// and S stays below.
+// S and the solutions converge to those of a factorisation; the deficit of S is the energy of the columns'
+// errors, so that S converges from below.
 TEST_P(StepResponses, TendToTheFactoredOnesFromBelow) {
   Touched of;
   StepResponse response(1);
@@ -136,7 +137,7 @@ TEST_P(StepResponses, TendToTheFactoredOnesFromBelow) {
   EXPECT_LT(apart(response.response(), exact), 1e-5);
 }
 
-// Whoever stops when the estimate says so has the error that was wanted, and has not gone far beyond it.
+// Stopping by the estimate gives the requested error, without many excess iterations.
 TEST_P(StepResponses, LackAboutWhatTheySayTheyLack) {
   Touched of;
   StepResponse response(1);
@@ -152,7 +153,7 @@ TEST_P(StepResponses, LackAboutWhatTheySayTheyLack) {
   }
 }
 
-// The next right-hand sides, other combinations of the same that moved a little, begin where the last ended.
+// New right-hand sides, combinations of slightly changed previous ones, start from the previous solutions.
 TEST_P(StepResponses, BeginWhereTheLastOnesEnded) {
   Touched of;
   StepResponse response(1);
@@ -173,8 +174,8 @@ TEST_P(StepResponses, BeginWhereTheLastOnesEnded) {
   EXPECT_GT(apart(cold.response(), exact), 0.5) << "nothing is known at first";
 }
 
-// Before its first step a call has seen no eigenvalue of its own right-hand sides: those of a tool that goes
-// over the beam, step by step, are new ones.
+// Before its first step a call has no eigenvalue estimate for its right-hand sides: the right-hand sides of a
+// tool that moves along the beam are new in each step.
 TEST_P(StepResponses, LackNoMoreThanTheySayBeforeTheFirstStep) {
   Touched of;
   StepResponse response(1);
@@ -218,7 +219,7 @@ INSTANTIATE_TEST_SUITE_P(Of, StepResponses,
                                   (of.param.second > 0.0 ? "OnSprings" : "");
                          });
 
-// Columns that are alike, zero ones, and more of them than go through one reading.
+// Dependent columns, zero columns, and more columns than one pass handles.
 TEST(StepResponse, TakesAnyColumns) {
   Touched of;
   StepResponse response(1);
@@ -246,10 +247,10 @@ TEST(StepResponse, SaysThatAMatrixIsIndefinite) {
   ZeroRowSumMatrix& A = response.step_matrix(of.beam.pattern());
   VecX b;
   of.beam.at(of.angle, kStep, A, b);
-  A.diagonal *= -1e3;  // in blocks of single nodes
+  A.diagonal *= -1e3;  // indefinite in blocks of single nodes
   EXPECT_EQ(response.take_step_matrix(), SolveStatus::kIndefinite);
   of.beam.at(of.angle, kStep, A, b);
-  A.diagonal -= 1.2 * of.beam.system.nodal_mass();  // as a whole alone: a push of all nodes
+  A.diagonal -= 1.2 * of.beam.system.nodal_mass();  // indefinite only as a whole: a push of all nodes
   ASSERT_EQ(response.take_step_matrix(), SolveStatus::kOk);
   MatX push = MatX::Zero(b.size(), 1);
   for (Eigen::Index i = 2; i < b.size(); i += 3) push(i, 0) = of.beam.masses[i / 3];
@@ -260,7 +261,7 @@ TEST(StepResponse, SaysThatAMatrixIsIndefinite) {
   EXPECT_EQ(status, SolveStatus::kIndefinite);
 }
 
-// What is assembled for a touch can be taken for the step, and the other way round, whichever solver has it.
+// A matrix assembled for model reduction can be used for the step, and vice versa, with either solver.
 TEST(StepResponse, HasTheOrderOfTheSolvers) {
   for (const int cells : {8, 16, 32}) {
     BentBeam beam(cells, 1e5);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace dynamics;
 
-// Twice the squared Courant-type number is 1.4 times the iterations of block Jacobi; rigid clusters take the
+// Twice the squared Courant number costs block Jacobi 1.4 times the iterations; rigid clusters represent the
 // long waves, so that the count hardly grows.
 TEST(TwoLevel, StiffnessHardlyShowsInTheCount) {
   std::vector<long> two_level, single;
@@ -45,8 +45,8 @@ TEST(TwoLevel, KeepsItsClustersWhileTheyServe) {
   EXPECT_EQ(solver->counters().refreshes, 1);
 }
 
-// A whole matrix and a zero-row-sum one are copied in units of their own, by powers of two: clusters made of
-// one serve the other.
+// Whole and zero-row-sum matrices are copied in different units, by powers of two: clusters of one serve the
+// other.
 TEST(TwoLevel, ServesWholeAndZeroRowSumMatricesInTurn) {
   BentBeam beam(16, 1e6);
   const double h = 1e-2;
@@ -63,7 +63,7 @@ TEST(TwoLevel, ServesWholeAndZeroRowSumMatricesInTurn) {
       beam.at(0.5, h, *room, b);
       EXPECT_EQ(mixed(solver).factor_step_matrix(), StepMatrixUse::kSolve);
     }
-    MatX B = MatX::Zero(b.size(), 2), X;  // several columns start from nothing
+    MatX B = MatX::Zero(b.size(), 2), X;  // several columns start from zero
     B.col(0) = b;
     EXPECT_EQ(solver.solve(B, X), SolveStatus::kOk);
     x = X.col(0);

@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// A row of nodes on springs, each on the ground as well by `ground`; every `every`-th is pressed by a
-/// contact k (n - mu s) n^T with n and s at random: friction follows the pressure.
+/// A row of nodes on springs, each also tied to the ground by `ground`; every `every`-th is pressed by a
+/// contact k (n - mu s) n^T with random n and s: friction follows the pressure.
 inline dynamics::BorderedMatrix row_with_friction(int nodes, double ground, int every, double k, double mu) {
   dynamics::PatternBuilder pattern(nodes);
   for (int i = 0; i + 1 < nodes; ++i) pattern.add_pair(i, i + 1);
@@ -34,8 +34,7 @@ inline dynamics::BorderedMatrix row_with_friction(int nodes, double ground, int 
   return A;
 }
 
-/// S = 1 and N of nodes by themselves, v -> c_i axis x v: |N|_S is the largest c_i, and each is another
-/// eigenvalue.
+/// S = 1 and N of uncoupled nodes, v -> c_i axis x v: |N|_S is the largest c_i, and all eigenvalues differ.
 inline dynamics::BorderedMatrix spinning_nodes(int nodes, double largest) {
   dynamics::BorderedMatrix A = row_with_friction(nodes, 0.0, 1, 0.0, 0.0);
   A.body.set_zero();
@@ -49,7 +48,8 @@ inline dynamics::BorderedMatrix spinning_nodes(int nodes, double largest) {
   return A;
 }
 
-/// A border of entries at random below 1, no transpose of one another, about a corner of `corner` times one.
+/// Adds a border with random entries below 1, whose row and column parts are not transposes, around a
+/// corner of `corner` times the identity.
 inline void add_border(dynamics::BorderedMatrix& A, int border, double corner) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> value(-1.0, 1.0);

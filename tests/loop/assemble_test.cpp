@@ -46,12 +46,12 @@ TEST(Assemble, MaterialNamesTheConstitutiveLaw) {
   expect_refused(d, {"body \"block\"", "warped", "stable_neo_hookean", "use \"exact\" or \"projected\""});
   d.bodies[0].tangent = "exact";
   d.bodies[0].volumetric = "nodal";
-  d.bodies[0].poissons_ratio = 0.2;  // nothing would be left for the averages: said all the same
+  d.bodies[0].poissons_ratio = 0.2;  // no share is left for the averages; "nodal" is reported all the same
   expect_refused(d, {"body \"block\"", "volumetric", "stable_neo_hookean", "use \"element\""});
 }
 
-// A block that sags by a tenth under its weight: other methods find the same rest of the same law, and
-// another law another rest.
+// A block that sags by a tenth under its weight: other methods find the same equilibrium of one law, and
+// another law has another equilibrium.
 TEST(Assemble, EveryKindOfIntegratorRunsEveryMaterial) {
   double sag[2][3];
   int law = 0;

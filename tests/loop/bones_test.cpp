@@ -1,4 +1,4 @@
-// Bones in scenes: what is assembled, what is kept, what is recorded.
+// Bones in scenes: assembly, conserved quantities, recording.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -20,8 +20,7 @@ using namespace palpate::scene_checks;
 
 namespace {
 
-/// A block of tissue, 4 x 4 x 8 cm and 0.128 kg, around a capsule of a thousandth of its mass; nothing holds
-/// it.
+/// A free block of tissue, 4 x 4 x 8 cm and 0.128 kg, around a capsule of a thousandth of its mass.
 scene::Description limb() {
   scene::Description d;
   d.name = "limb";
@@ -132,8 +131,8 @@ TEST(Bones, KeyframesMoveOneFromWhereItIsPlaced) {
   }
 }
 
-// A hanging limb at rest: what the tissue exerts on the bone that holds it is its weight, and with a free
-// bone nothing but the bone's own inertia.
+// A hanging limb at rest: the tissue exerts its weight on the bone that holds it, and on a free bone only the
+// bone's inertial force.
 TEST(Bones, TheWrenchOnABoneBalances) {
   scene::Description d = limb();
   d.bodies[0].angular_velocity_rad_s.setZero();
@@ -201,7 +200,7 @@ TEST(Bones, NodesThatNoBoneHoldsAreRefused) {
 }
 
 #ifdef PALPATE_HAS_TOOL
-// The tool of a monolithic scheme carries tissue like a bone: the only force from outside is the coupling's.
+// The tool of a monolithic scheme carries tissue like a bone: the only external force is the coupling's.
 TEST(Bones, TheToolOfAMonolithicSceneCarriesNodes) {
   scene::Description d = pressed_block(0.0);
   d.contacts.clear();
@@ -230,7 +229,8 @@ TEST(Bones, TheToolOfAMonolithicSceneCarriesNodes) {
   EXPECT_GT(f.segment<3>(tool.u_offset + 3).norm(), 1e-3);
 }
 
-// Partitioned: the bone's block stands beside the tissue in the step matrix that is condensed onto the tool.
+// Partitioned scheme: the step matrix that is condensed onto the tool contains the bone's block as well as
+// the tissue's.
 TEST(Bones, AToolMayTouchTissueThatSitsOnAFreeBone) {
   scene::Description d = pressed_block(1e-3);
   d.bodies[0].attachments[0].to = "bone";

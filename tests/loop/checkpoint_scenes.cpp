@@ -27,7 +27,7 @@ Case sliding_block() {
 }
 
 #ifdef PALPATE_HAS_TOOL
-/// A hand that goes into the block and along it.
+/// A hand that presses into the block and moves along it.
 Case pressed(const std::string& linearisation) {
   Case c{small_scenes::pressed_block(0.0), 0.02};
   scene::Description& d = c.scene;
@@ -70,8 +70,7 @@ Cases make_cases() {
   frozen.scene.device->max_torque_n_m = 0.01;
   frozen.scene.device->max_force_slew_n_s = 80.0;
   frozen.scene.device->max_torque_slew_n_m_s = 1.6;
-  frozen.scene.device->keyframes[1].time_s =
-      0.0405;  // behind a checkpoint, so that the slew is bounded there
+  frozen.scene.device->keyframes[1].time_s = 0.0405;  // after a checkpoint, so that the slew is bounded there
   frozen.scene.device->keyframes[1].interpolation = "step";
   Case& late = out["Late"] = pressed("points");
   late.scene.exchange.latency_ticks = 13;
@@ -83,12 +82,12 @@ Cases make_cases() {
   hand.scene.device->velocity_cutoff_per_s = 200.0;
   hand.scene.device->device_damping_n_s_m = 0.5;
   hand.passivity = device::PassivityController::Mode::kControl;
-  // a delayed spring gives back more than it got, where the hand goes back
+  // a delayed spring returns more energy than it received where the hand reverses
   Case& controlled = out["ControlledHand"] = hand;
   controlled.scene.device->device_damping_n_s_m = 0.0;
   controlled.scene.device->encoder_resolution_m = 0.0;
   controlled.scene.device->delay_s = 0.0065;
-  controlled.telling = 0;  // the controller acts there
+  controlled.telling = 0;  // the controller is active at that checkpoint
   controlled.scene.device->arm_mass_kg = 0.1;
   controlled.scene.device->arm_stiffness_n_m = 3000.0;
   controlled.scene.device->arm_damping_n_s_m = 20.0;

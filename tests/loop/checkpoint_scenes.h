@@ -6,7 +6,7 @@
 #include "palpate/device/passivity.h"
 #include "small_scenes.h"
 
-/// Small scenes that between them have every piece of state that a checkpoint keeps.
+/// Small scenes that together contain every piece of state stored in a checkpoint.
 namespace palpate::checkpoint_scenes {
 
 struct Case {
@@ -14,12 +14,12 @@ struct Case {
   double every_s = 0.0;
   bool energy = false;
   device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
-  /// of what a run shows, relative, below `scale` absolute / scale
+  /// Tolerance of a run's output: relative, and below `scale` absolute divided by scale.
   double restart_error = 1e-9, scale = 1e-3;
-  std::size_t telling = 1;  ///< the checkpoint whose values are changed
+  std::size_t telling = 1;  ///< index of the checkpoint whose values are changed
 };
 
-/// A block under its own weight, which it was not made for.
+/// A block under its weight, in which it is not in equilibrium.
 inline Case falling_body(const std::string& integrator) {
   Case c{small_scenes::held_block(), 0.01};
   scene::Description& d = c.scene;

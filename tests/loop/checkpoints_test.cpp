@@ -1,5 +1,5 @@
-// A run that goes on from a checkpoint is, to the last bit, the one that never stopped; a checkpoint forgets
-// nothing that the run needs, and keeps nothing that it does not.
+// A run resumed from a checkpoint is bitwise equal to an uninterrupted one; a checkpoint contains everything
+// that the run needs, and nothing else.
 #include "palpate/loop/checkpoints.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 using namespace palpate;
 using namespace palpate::checkpoint_scenes;
 
-/// All that a run showed to somebody: each tick, record and period, in their order.
+/// Everything that a run reports to an observer: each tick, record and period, in order.
 class Log : public loop::Observer {
  public:
   explicit Log(bool energy) : energy_(energy) {}
@@ -61,7 +61,7 @@ class Log : public loop::Observer {
   bool energy_;
 };
 
-/// What a run left behind.
+/// Final state and log of a run.
 struct Outcome {
   VecX q, u;
   std::vector<double> log;
@@ -144,7 +144,7 @@ Outcome plain(const Case& c) {
   return outcome_of(*world, result, log);
 }
 
-/// @param from  a checkpoint of it; null: from the start
+/// @param from  a checkpoint of the run; null: from the start
 Outcome with_checkpoints(const Case& c, const Archive::Values* values = nullptr) {
   Log log(c.energy);
   std::vector<Archive> kept;
@@ -168,7 +168,7 @@ bool same_bits(const double* a, const double* b, std::size_t n) {
   return std::memcmp(a, b, n * sizeof *a) == 0;
 }
 
-/// What is not the same to the last bit; empty: nothing.
+/// Describes what differs bitwise; empty if nothing does.
 std::string difference(const Outcome& a, const Outcome& b) {
   if (a.q.size() != b.q.size() || !same_bits(a.q.data(), b.q.data(), static_cast<std::size_t>(a.q.size())))
     return "q";
@@ -196,8 +196,8 @@ TEST_P(Checkpoints, ARunThatGoesOnIsTheOneThatNeverStopped) {
   }
 }
 
-// Where one step knows nothing of the one before, and matrices are factorised, nothing is lost by beginning
-// anew: what the checkpoints forgot would be seen here.
+// Where a step does not depend on the previous one, and matrices are factored, a restart loses nothing: any
+// state missing from the checkpoints would show here.
 TEST_P(Checkpoints, ForgetNothing) {
   const Case c = scene();
   const Outcome without = plain(c), with = with_checkpoints(c);
@@ -218,7 +218,7 @@ TEST_P(Checkpoints, ForgetNothing) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoints, testing::ValuesIn(case_names()),
                          [](const auto& one) { return one.param; });
 
-/// Each integrator that moves in time, on a body that falls.
+/// Every dynamic integrator, on a falling body.
 TEST(CheckpointsOfIntegrators, GoOnBitForBit) {
   for (const auto& method : integrate::stepper_registry()) {
     SCOPED_TRACE(method.name);
@@ -231,7 +231,8 @@ TEST(CheckpointsOfIntegrators, GoOnBitForBit) {
   }
 }
 
-/// Whether a value only says how long something took, or what another value is counted from.
+/// Returns whether a value only states how long something took, or is a reference from which another value is
+/// counted.
 bool is_time_of_day(const std::string& name) {
   for (const char* end :
        {"loop_cpu_s",    "loop_wall_s", "contact_query_s", "linearise_s", "tool_ticks_s", "force_s",
@@ -242,7 +243,7 @@ bool is_time_of_day(const std::string& name) {
   return name.starts_with("process.") || name == "bodies.counts.simulated_s";
 }
 
-/// Another value of that kind; false where there is none that a run could have.
+/// Replaces a value by another one of its kind; false if there is no other that a run could have.
 bool change(Archive::Value& value) {
   if (auto* numbers = std::get_if<std::vector<double>>(&value)) {
     for (double& number : *numbers) number -= 0.1 * std::abs(number) + 1e-7;
@@ -255,16 +256,16 @@ bool change(Archive::Value& value) {
   return false;
 }
 
-// Without rigid tools there are fewer scenes, and some values show in none of them.
+// Without rigid tools there are fewer scenes, and some values affect none of them.
 #ifdef PALPATE_HAS_TOOL
 constexpr bool kAllScenes = true;
 #else
 constexpr bool kAllScenes = false;
 #endif
 
-/// Values that no run shows, by the beginnings of their names.
+/// Values that affect no output of these runs, by prefixes of their names.
 const std::vector<std::string> kShownNowhere = {
-    // sums and samples that the next period or tick makes anew before it shows them
+    // sums and samples that the next period or tick recomputes before they are used
     "bodies.energy.contact_j",
     "bodies.energy.coupling",
     "bodies.energy.dissipated_",
@@ -280,7 +281,7 @@ const std::vector<std::string> kShownNowhere = {
     "bodies.hand..handle_now.",
     "hand..ticks.handle.acceleration",
     "bodies.hand..passivity.observer.tick",
-    // what is said once, or asked for by others than a run
+    // reported once, or read by observers other than a run's
     "bodies.contact.pair..warned",
     "bodies.felt..buzz.largest",
     "bodies.hand..device.last.",
@@ -289,39 +290,39 @@ const std::vector<std::string> kShownNowhere = {
     "bodies.hand..limiter.rejected",
     "hand..ticks.live",
     "hand..ticks.time",
-    // counts of images that the summary leaves out
+    // image counts that the summary omits
     "bodies.contact.pair..faces",
     "bodies.contact.pair..hits",
     "bodies.contact.pair..pixels",
     "bodies.contact.pair..vertices",
-    // of poses so deep that no skin says which way is out, and of a run without steps in parts
+    // used for poses so deep that the skin gives no exit direction, and by runs that take steps in parts
     "bodies.contact.pair..finder.",
     "bodies.contact.pair..normal",
     "bodies.contact.pair..presses",
     "bodies.contact.pair..thickness",
-    // of a clock that stands still, and of poses that do not arrive
+    // used when the clock stops, and when poses are missing
     "bodies.hand..limiter.stalled",
     "bodies.hand..limiter.held",
     "bodies.hand..limiter.last_valid",
     "bodies.hand..limiter.last_length",
     "hand..ticks.handle.valid",
-    // fingers do not yield: a path has its switches at every time
+    // fingers do not yield: a path defines its switches at every time
     "hand..ticks.handle.switches",
     "bodies.hand..device.switches",
-    // largest ones, which these scenes reach later (MaterialPoints.SumsErrorsLargestOnesGoOn has them)
+    // maxima that these scenes reach later (tested by MaterialPoints.SumsErrorsLargestOnesGoOn)
     "bodies.contact.pair..sum_error.largest_",
-    // likewise: only images jump, and what presses deeper jumps more
+    // a maximum as well: only images jump, and deeper contact jumps more
     "bodies.contact.largest_jump.",
-    // what is near, and no nearer: samples that do not press
+    // near samples that do not press
     "bodies.contact.pair..near",
-    // a largest area that is held still, and a guess that only a controller that acts makes
+    // a maximum of a constant area, and an estimate used only by an active controller
     "bodies.contact.largest_grasped_area",
     "bodies.hand..passivity.observer.change",
-    // counts from the wrench that acts already
+    // already counted from the acting wrench
     "bodies.hand..device.motors.next",
     "bodies.hand..motors.next",
     "bodies.hand..passivity.reductions.next",
-    // these scenes move no support
+    // these scenes have no moving support
     "bodies.energy.work_of_supports.",
 };
 bool is_shown_nowhere(const std::string& name) {
@@ -329,7 +330,7 @@ bool is_shown_nowhere(const std::string& name) {
                      [&](const std::string& beginning) { return name.starts_with(beginning); });
 }
 
-/// "bodies.hand.0.limiter.live" of any hand.
+/// Removes indices: "bodies.hand.0.limiter.live" of any hand.
 std::string without_numbers(const std::string& name) {
   std::string out;
   for (const char c : name)
@@ -337,7 +338,7 @@ std::string without_numbers(const std::string& name) {
   return out;
 }
 
-// Left out, a value is missed by name.  Changed, the run that goes on is another one, in one of the scenes.
+// A missing value is reported by name. A changed value changes the resumed run in at least one of the scenes.
 TEST(CheckpointValues, MatterEachAndAll) {
   std::set<std::string> matters, idle;
   for (const std::string& scene : case_names()) {

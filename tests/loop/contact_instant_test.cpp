@@ -13,7 +13,7 @@ using small_scenes::held_block;
 
 namespace {
 
-/// A second block over the held one, a little smaller, pressed into it by `depth`.
+/// A second, slightly smaller block over the held one, pressed into it by `depth`.
 scene::Description two_blocks(double depth, const char* method = "distance") {
   scene::Description d = held_block();
   SoftBodySpec upper = d.bodies[0];
@@ -40,14 +40,14 @@ TEST(ContactInstant, BothFacesOfAnOverlapHaveItsDepthAndNothingElseHas) {
   for (std::size_t i = 0; i < 2; ++i) {
     const loop::Body& body = world->bodies[i];
     const Points x = body.surface_points(world->positions(body));
-    const double face = i == 0 ? 0.02 : 0.02 - depth;  // height of the face that touches
+    const double face = i == 0 ? 0.02 : 0.02 - depth;  // height of the face in contact
     int inside = 0;
     for (Eigen::Index v = 0; v < x.cols(); ++v) {
       const bool under =
           std::abs(x(0, v) - 0.001) < 0.0275 / 2 - 1e-6 && std::abs(x(1, v) - 0.002) < 0.0315 / 2 - 1e-6;
       const bool rim = std::abs(std::abs(x(0, v) - 0.001) - 0.0275 / 2) < 1e-6 ||
                        std::abs(std::abs(x(1, v) - 0.002) - 0.0315 / 2) < 1e-6;
-      if (rim && std::abs(x(2, v) - face) < 1e-9) continue;  // on the overlap's border
+      if (rim && std::abs(x(2, v) - face) < 1e-9) continue;  // on the border of the overlap
       if (std::abs(x(2, v) - face) < 1e-9 && under) {
         ++inside;
         EXPECT_NEAR(now.depths[i][v], depth, 1e-6 * depth);
@@ -120,5 +120,5 @@ TEST(ContactInstant, ObserversSeeEachQueryAtItsState) {
   ASSERT_EQ(watch.periods.size(), 4u);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(watch.queries[i], watch.periods[i], 1e-15);
   EXPECT_TRUE(watch.at_state);
-  EXPECT_EQ(world->contact->views()[0], nullptr);  // nobody asked for pictures
+  EXPECT_EQ(world->contact->views()[0], nullptr);  // no observer requests pictures
 }

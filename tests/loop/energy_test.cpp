@@ -9,7 +9,7 @@
 
 using namespace palpate;
 
-// Of sin^2, whose trapezoidal sums err at second order: the estimate is the error.
+// The trapezoidal rule for sin^2 has a second-order error, which the estimate reproduces.
 TEST(PowerIntegral, KnowsItsError) {
   for (const int n : {40, 80}) {
     loop::PowerIntegral integral;
@@ -41,7 +41,7 @@ std::vector<loop::EnergyBalance> balance_of(scene::Description d) {
   return keep.rows;
 }
 
-/// The block, free, falls on the floor.
+/// The free block falls on the floor.
 scene::Description dropped(const char* integrator, double setting) {
   scene::Description d = small_scenes::held_block();
   d.bodies[0].attachments.clear();
@@ -60,7 +60,7 @@ scene::Description dropped(const char* integrator, double setting) {
 
 }  // namespace
 
-// m g h is there in every form that the block gives it, and what its damping takes out is all that is gone.
+// m g h is converted to each form of energy in the block, and only its damping removes energy.
 TEST(EnergyLedger, ADroppedBlock) {
   const auto rows = balance_of(dropped("cvode-bdf", 1e-7));
   ASSERT_EQ(rows.size(), 200u);
@@ -84,7 +84,7 @@ TEST(EnergyLedger, ADroppedBlock) {
   EXPECT_LT(rows.back().quadrature_error, 0.02 * scale);
 }
 
-// The same block with hardly a damper of its own: what is lost, contact's damper has.
+// The same block with almost no material damping: the lost energy is dissipated by contact's damper.
 TEST(EnergyLedger, NamesWhatContactDissipates) {
   scene::Description d = dropped("cvode-bdf", 1e-7);
   d.bodies[0].stiffness_damping_s = 1e-7;
@@ -97,7 +97,7 @@ TEST(EnergyLedger, NamesWhatContactDissipates) {
 
 namespace {
 
-/// Held nodes that are moved: the block is stretched slowly by a path.
+/// Held nodes that are moved: the block is stretched slowly along a path.
 scene::Description stretched() {
   scene::Description d = small_scenes::held_block();
   AttachmentSpec top;
@@ -111,7 +111,7 @@ scene::Description stretched() {
   d.integrator.name = "cvode-bdf";
   d.integrator.rtol = 1e-7;
   d.record.emplace();
-  d.record->state_period_s = 1e-3;  // the loop's period
+  d.record->state_period_s = 1e-3;  // period of the loop
   d.duration_s = 0.1;
   return d;
 }
@@ -128,7 +128,7 @@ TEST(EnergyLedger, SupportsDoWork) {
   EXPECT_LT(std::abs(last.unaccounted), 1e-3 * last.supports + 2.0 * last.quadrature_error);
 }
 
-// At twice Young's modulus the same deformation stores twice the energy, which nobody did as work.
+// At twice Young's modulus the same deformation stores twice the energy, which no external work supplied.
 TEST(EnergyLedger, AChangeOfMaterialIsNamed) {
   scene::Description d = stretched();
   const double before = d.bodies[0].youngs_modulus_pa;
@@ -145,7 +145,7 @@ TEST(EnergyLedger, AChangeOfMaterialIsNamed) {
 #ifdef PALPATE_HAS_TOOL
 namespace {
 
-/// The hand presses the block by the tool and goes back.
+/// The hand presses the block with the tool and retreats.
 scene::Description pressed_and_let_go(const char* scheme) {
   scene::Description d = small_scenes::pressed_block(-1e-4);
   KeyframeSpec pressed = d.device->keyframes[0];
@@ -175,7 +175,7 @@ struct Worst {
 
 }  // namespace
 
-// Its work is what is stored and dissipated.
+// The hand's work equals the stored plus the dissipated energy.
 TEST(EnergyLedger, TheHandsWork) {
   const auto rows = balance_of(pressed_and_let_go("monolithic"));
   const Worst worst(rows);
@@ -185,8 +185,8 @@ TEST(EnergyLedger, TheHandsWork) {
   EXPECT_NEAR(rows.back().hand, rows.back().dissipated, 0.05 * worst.hand) << "nothing is left in the block";
 }
 
-// A tool that nothing touches swings about a handle that has jumped aside: m x'' = -k x - b x'.  The spring's
-// energy k x_0^2 / 2 goes to and fro, and into the coupling's damper alone.
+// A free tool swings about a handle that has jumped aside: m x'' = -k x - b x'. The spring's energy k x_0^2 /
+// 2 oscillates, and is dissipated only by the coupling's damper.
 TEST(EnergyLedger, NamesTheToolsParts) {
   for (const char* scheme : {"monolithic", "partitioned"}) {
     scene::Description d = small_scenes::pressed_block(-0.01);
@@ -218,8 +218,8 @@ TEST(EnergyLedger, NamesTheToolsParts) {
   }
 }
 
-// A tool of ticks is no part of the system, and all of its energies are accounted for beside it.  What is
-// left is the exchange's error, of first order in the period and the tick.
+// A tool in ticks is not part of the system, and its energies are accounted separately. The remainder is the
+// error of the exchange, of first order in period and tick.
 TEST(EnergyLedger, TheHandsWorkByTicks) {
   double unaccounted[2];
   for (const int fine : {0, 1}) {
@@ -235,9 +235,9 @@ TEST(EnergyLedger, TheHandsWorkByTicks) {
   EXPECT_LT(unaccounted[1], 0.75 * unaccounted[0]);
 }
 
-// Contact points over reduced bodies: tool and bodies do nearly the same work on each other.  What is left is
-// what Euler's method takes in a tick, and goes with the tick; the exchange itself leaves a fifth of what a
-// line does, which makes 1.3 % of energy in these periods whatever the tick.
+// Contact points over reduced bodies: tool and bodies do nearly the same work on each other. The remainder is
+// the dissipation of Euler's method per tick, which decreases with the tick; the error of the exchange is a
+// fifth of the linear model's, which makes 1.3 % of energy at these periods for any tick.
 TEST(EnergyLedger, ContactPointsLeaveTheTicksOwnLossAlone) {
   double unaccounted[2];
   for (const int fine : {0, 1}) {

@@ -1,4 +1,4 @@
-// A contact that closes within a fixed step: Newton's iteration has no shorter step to fall back on.
+// Contact that closes within a fixed step: Newton's iteration cannot fall back on a shorter step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,8 +14,8 @@ using namespace palpate;
 
 namespace {
 
-/// A cube that just touches an incline below the angle of friction, without what would hold it there; k = 1e7
-/// Pa/m under a quarter of its face and an eighth of its mass make w H = 6.
+/// A cube that just touches an incline below the angle of friction, initially without the contact pressure
+/// that would hold it; k = 1e7 Pa/m under a quarter of its face and an eighth of its mass give w H = 6.
 scene::Description on_an_incline(const std::string& integrator) {
   constexpr double kSlope = 0.2;
   scene::Description d;
@@ -46,13 +46,13 @@ scene::Description on_an_incline(const std::string& integrator) {
   return d;
 }
 
-/// Cash's two tables have c = -0.7: that stage stands before the step, where the damper of the contact jumps,
-/// and its equation need have no solution.  They are given a contact without the jump.
+/// Cash's two tables have c = -0.7: that stage lies before the step, where the damper of the contact jumps,
+/// and its equation need not have a solution. They are tested with a contact without the jump.
 bool has_a_stage_behind_its_start(const std::string& name) { return name.starts_with("ark-dirk-cash"); }
 
 }  // namespace
 
-// It settles and creeps, v = v_r tan(a)/mu = 0.02 m/s, whatever the table.
+// It settles and creeps at v = v_r tan(a)/mu = 0.02 m/s with every table.
 TEST(FixedStepContact, EveryImplicitTableOfArkodeFindsIt) {
   int tried = 0;
   for (const auto& entry : integrate::stepper_registry()) {
@@ -72,11 +72,11 @@ TEST(FixedStepContact, EveryImplicitTableOfArkodeFindsIt) {
   EXPECT_EQ(tried, 28);
 }
 
-// A cube that slides on a level floor comes to rest; a step of one linear solve, h mu g = 0.05 m/s of
-// velocity each, does not carry it beyond.  With the tangent of friction, which is zero along the sliding, it
-// turns round at |v| = h mu g/2, and friction takes m (h mu g)^2/2 a step that nobody gave (sample_math.cpp).
-// A soft cube would turn round as well: sheared by what slows it down, it springs back at about
-// mu g L sqrt(rho/G)/2, here 2e-4 m/s; and so would one that is tilted on soft springs.
+// A cube that slides on a level floor comes to rest: a step of one linear solve, which changes the velocity
+// by h mu g = 0.05 m/s, does not reverse it. With the tangent of friction, which is zero along the sliding
+// direction, the cube reverses at |v| = h mu g/2, and friction extracts m (h mu g)^2/2 per step from no
+// source (sample_math.cpp). A soft cube would also reverse: sheared by friction, it springs back at about mu
+// g L sqrt(rho/G)/2, here 2e-4 m/s; so would a cube tilted on soft springs.
 TEST(FixedStepContact, SlidingEndsAtRestWhereAStepIsOneSolve) {
   constexpr double kSpeed = 0.31, kLost = 0.01 * 0.5 * 9.81;
   for (const std::string tangent : {"auto", "secant", "symmetric"}) {
@@ -105,7 +105,7 @@ TEST(FixedStepContact, SlidingEndsAtRestWhereAStepIsOneSolve) {
   }
 }
 
-/// A block on an incline of tan a = ratio times mu, whose regularisation is the scene's choice; it sticks.
+/// A sticking block on an incline of tan a = ratio times mu, with the scene's default regularisation.
 scene::Description block_on_an_incline(const std::string& integrator, double ratio, double step_s) {
   constexpr double kFriction = 0.5;
   const double slope = ratio * kFriction;
@@ -114,7 +114,7 @@ scene::Description block_on_an_incline(const std::string& integrator, double rat
   d.bodies[0].mesh.size_m = Vec3(0.06, 0.05, 0.02);
   d.bodies[0].mesh.element_size_m = 0.02;
   d.bodies[0].youngs_modulus_pa = 1e7;
-  d.bodies[0].position_m.z() = 0.00999804;  // in balance
+  d.bodies[0].position_m.z() = 0.00999804;  // in equilibrium
   d.contacts[0].stiffness_pa_m = 1e8;
   d.contacts[0].damping_pa_s_m = 0.0;
   d.contacts[0].friction = kFriction;
@@ -125,13 +125,14 @@ scene::Description block_on_an_incline(const std::string& integrator, double rat
   return d;
 }
 
-/// Mean of the nodes along the slope.
+/// Mean position of the nodes along the slope.
 double place(const loop::World& world) {
   const Points x = Eigen::Map<const Points>(world.state.q().data(), 3, world.state.q().size() / 3);
   return x.row(0).mean();
 }
 
-// g (sin a - mu cos a) t^2/2 = g cos a mu (ratio - 1) t^2/2.  Euler's methods are ahead by h/t, 0.7 %.
+// Sliding distance g (sin a - mu cos a) t^2/2 = g cos a mu (ratio - 1) t^2/2. Euler's methods are ahead by
+// h/t, 0.7 %.
 TEST(FixedStepContact, SlidingBeginsWhenTheLawSaysSo) {
   constexpr double kTime = 1.5;
   for (const char* integrator : {"linearly-implicit-euler", "backward-euler", "implicit-midpoint", "bdf2",
@@ -150,8 +151,8 @@ TEST(FixedStepContact, SlidingBeginsWhenTheLawSaysSo) {
   }
 }
 
-/// Way slid in 2 s over that of Coulomb's law, of a hard block that begins in balance (validation/
-/// b_incline_steps.cpp): tilted by friction's moment, on a damped contact.
+/// Sliding distance in 2 s relative to Coulomb's law, for a hard block that starts in equilibrium
+/// (validation/ b_incline_steps.cpp): tilted by friction's moment, on a damped contact.
 double way_over_exact(const std::string& integrator, double step_s, double v_r) {
   constexpr double kRatio = 1.01, kSlope = 0.5 * kRatio, kTime = 2.0;
   const double weight = 9.81 / std::sqrt(1.0 + kSlope * kSlope), depth = 1000.0 * 0.02 * weight / 1e8;
@@ -170,22 +171,25 @@ double way_over_exact(const std::string& integrator, double step_s, double v_r) 
   return (place(*world) - start) / (weight * 0.5 * (kRatio - 1.0) * kTime * kTime / 2.0);
 }
 
-// At some of these speeds v_r Newton's method finds no end of the start's backward Euler step of 10 ms.  The
-// acceleration without friction in its place gives h mu g/2 of velocity, half of the way more.
+// At some of these speeds v_r, Newton's method does not converge in the initial backward Euler step of 10 ms.
+// Starting from the acceleration without friction instead would add h mu g/2 of velocity, which is half of
+// the distance more.
 TEST(FixedStepContact, SlidingBeginsWithAnAccelerationWithinTheCone) {
   for (const char* integrator : {"newmark", "generalized-alpha"})
     for (const double v_r : {7e-5, 7.3e-5, 7.5e-5, 7.8e-5})
       EXPECT_NEAR(way_over_exact(integrator, 0.01, v_r), 1.0, 0.01) << integrator << ", " << v_r;
 }
 
-// An extrapolation over the jump to v_r would keep v_r/2 of velocity for good, 1.3 % of the way at 1 ms.
+// An extrapolation over the jump to v_r would permanently keep v_r/2 of velocity, which is 1.3 % of the
+// distance at 1 ms.
 TEST(FixedStepContact, BackwardDifferencesForgetWhatWasBeforeSliding) {
   for (const double step_s : {0.01, 0.005, 0.001})
     EXPECT_NEAR(way_over_exact("bdf2", step_s, 0.0), 1.0, 0.01) << step_s;
 }
 
-// Below the angle of friction it creeps without anchors at v_r tan a/mu, v_r = 3e-4 sqrt(g L) of a block of 6
-// cm, and so does one a hundred times as large, a tenth as fast as its speeds are.
+// Below the angle of friction the block creeps without anchors at v_r tan a/mu, with v_r = 3e-4 sqrt(g L) for
+// a block of 6 cm; a block a hundred times as large creeps at the same fraction of its velocities, which are
+// ten times as large.
 TEST(FixedStepContact, TheSpeedOfTheRegularisationFollowsTheScene) {
   for (const double scale : {1.0, 100.0}) {
     scene::Description d = block_on_an_incline("linearly-implicit-euler", 0.9, 0.01 * std::sqrt(scale));
@@ -204,9 +208,9 @@ TEST(FixedStepContact, TheSpeedOfTheRegularisationFollowsTheScene) {
   }
 }
 
-// Where a step is one linear solve, the step matrix leaves out how friction follows the pressure, unless the
-// scene asks for it: then it is unsymmetric, as for all other methods.  Either way the cube creeps as it
-// should, and what was left out is told.
+// Where a step is one linear solve, the step matrix omits the dependence of friction on pressure, unless the
+// scene requests it: then it is unsymmetric, as for all other methods. Either way the cube creeps at the
+// predicted speed, and the omission is reported.
 TEST(FixedStepContact, FrictionNeedsNoLuWhereAStepIsOneSolve) {
   for (const auto& [integrator, tangent, symmetric] :
        {std::tuple{"linearly-implicit-euler", "auto", true},

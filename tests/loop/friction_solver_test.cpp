@@ -1,4 +1,4 @@
-// Friction's tangent is unsymmetric: what solves with it, in each family of implicit methods.
+// Friction's tangent is unsymmetric: linear solvers used for it in each family of implicit methods.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -16,7 +16,7 @@ using namespace palpate;
 
 namespace {
 
-/// A block that slides over the floor: pressed by its weight, its upper side sheared by its inertia.
+/// A block that slides over the floor, pressed by its weight; inertia shears its upper side.
 scene::Description sliding(const std::string& integrator, double friction, double stiffness_pa_m,
                            double depth_m = 5e-4) {
   scene::Description d = small_scenes::held_block();
@@ -34,7 +34,7 @@ scene::Description sliding(const std::string& integrator, double friction, doubl
   small_scenes::add_floor(d, contact);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
   d.integrator.name = integrator;
-  d.integrator.rtol = 1e-6;  // some hundred steps: of few a Newton iteration more or less tells nothing
+  d.integrator.rtol = 1e-6;  // some hundred steps, so that a single Newton iteration is not significant
   d.integrator.step_s = 1e-3;
   return d;
 }
@@ -42,7 +42,7 @@ scene::Description sliding(const std::string& integrator, double friction, doubl
 struct Ran {
   VecX q;
   dynamics::StepperCounters counters;
-  long lu = 0, left_to_lu = 0;  ///< solvers of that kind; matrices that came to one unasked
+  long lu = 0, left_to_lu = 0;  ///< number of LU solvers; matrices passed on to LU by fallback
 };
 Ran run(scene::Description d, const std::string& solver) {
   d.integrator.linear_solver = solver;
@@ -55,7 +55,7 @@ Ran run(scene::Description d, const std::string& solver) {
           counters::counter("integrate.matrices_left_to_lu")};
 }
 
-/// Newton iterations of an attempted step.
+/// Newton iterations per attempted step.
 double newton_a_step(const Ran& ran) {
   return static_cast<double>(ran.counters.newton_iterations) /
          static_cast<double>(ran.counters.steps + ran.counters.rejected);
@@ -65,11 +65,10 @@ double moved(const scene::Description& d, const Ran& ran) {
   return (ran.q - loop::assemble(d)->state.q()).norm();
 }
 
-// The error of the iteration stays below what Newton's method sees: as many Newton iterations as by LU's
-// factors, to the same motion.  Error control turns the last digits into other lengths of steps, as a change
-// of the friction coefficient by 1e-13 does: those methods are compared within their tolerance, and by Newton
-// iterations per step with both runs by LU.
-// One method of each family that moves.
+// The iteration's error stays below the accuracy of Newton's method: it needs as many Newton iterations as LU
+// factorisations do, and gives the same motion. Error control turns rounding into different step lengths, as
+// does a change of the friction coefficient by 1e-13: those methods are compared within their tolerance, and
+// by Newton iterations per step with both runs by LU. One dynamic method of each family.
 TEST(FrictionSolver, NoFamilyOfMethodsNeedsLu) {
   std::set<std::string> families;
   for (const auto& entry : integrate::stepper_registry()) {
@@ -102,11 +101,11 @@ TEST(FrictionSolver, NoFamilyOfMethodsNeedsLu) {
   EXPECT_GE(families.size(), 6u);
 }
 
-// Contact stiffer than 4/mu^2 times the nodes behind it: the symmetric part is indefinite, and LU takes over.
+// Contact stiffer than 4/mu^2 times the nodes behind it: the symmetric part is indefinite, and LU is used.
 TEST(FrictionSolver, LeavesAnIndefiniteSymmetricPartToLuAndSaysSo) {
   for (const char* integrator : {"cvode-bdf", "ida", "backward-euler"}) {
     scene::Description d = sliding(integrator, 1.2, 3e9, 1e-5);
-    d.integrator.rtol = 1e-2;  // steps long enough that mass does not hold the nodes
+    d.integrator.rtol = 1e-2;  // steps long enough for the mass not to dominate the nodes' stiffness
     const Ran krylov = run(d, "cholmod"), lu = run(d, "umfpack");
     EXPECT_EQ(krylov.lu, 1) << integrator;
     EXPECT_GT(krylov.left_to_lu, 0) << integrator;

@@ -1,5 +1,5 @@
 // The tool holds what it pressed while a switch of the handle is closed: it carries a weight, pulls a body
-// that is held elsewhere, and lets go.
+// that is attached elsewhere, and releases it.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -29,14 +29,14 @@ void press_switch(scene::Description& d, double start, double duration) {
   d.device->presses = {{2, start, duration}};
 }
 
-/// A block in the air, a millimetre in the tool, which holds it from the start.
+/// A block in the air, penetrated by the tool by a millimetre, which holds it from the start.
 scene::Description hanging_block() {
   scene::Description d = small_scenes::pressed_block(0.001);
   d.duration_s = 1.5;
   d.gravity_m_s2 = Vec3(0, 0, -9.81);
   d.bodies[0].attachments.clear();
   d.bodies[0].youngs_modulus_pa = 1e5;
-  d.bodies[0].mass_damping_per_s = 20.0;  // it comes to rest
+  d.bodies[0].mass_damping_per_s = 20.0;  // damped to rest
   d.bodies[0].mesh.element_size_m = 0.005;
   d.tool->coupling.rotational_stiffness_n_m_rad = 1.0;
   d.tool->coupling.rotational_damping_n_m_s_rad = 5e-3;
@@ -47,7 +47,8 @@ scene::Description hanging_block() {
 
 double mass_of(const scene::Description& d) { return d.bodies[0].density_kg_m3 * 0.04 * 0.04 * 0.02; }
 
-// What hangs still weighs m g on the hand, and turns it by m g times the way to its centre; let go, it falls.
+// A body hanging at rest exerts m g on the hand, and a moment of m g times the distance to its centre; when
+// released, it falls.
 TEST(Grasp, WhatHangsHasItsWeight) {
   for (const char* linearisation : {"points", "condensed", "frozen", "monolithic"}) {
     scene::Description d = hanging_block();
@@ -68,15 +69,16 @@ TEST(Grasp, WhatHangsHasItsWeight) {
     // no later than two periods after the switch
     EXPECT_EQ(at(ticks, 1.225).contact.force.norm(), 0.0) << linearisation;
     const Points now = world->positions(world->bodies[0]);
-    const double t = d.duration_s - 1.21;  // it falls against the drag
+    const double t = d.duration_s - 1.21;  // time of fall against the drag
     const double drag = d.bodies[0].mass_damping_per_s,
                  fallen = 9.81 * (t / drag - (1 - std::exp(-drag * t)) / (drag * drag));
     EXPECT_NEAR(now.row(2).mean(), still.tool.translation.z() - 0.024 - fallen, 0.01) << linearisation;
   }
 }
 
-/// The block of pressed_block, its lower face held, that the tool presses, grasps at 0.1 s, pulls and turns.
-/// @param waits  so much longer before it grasps
+/// The block of pressed_block, with its lower face held: the tool presses it, grasps at 0.1 s, pulls and
+/// turns.
+/// @param waits  delay before it grasps [s]
 scene::Description pulled_block(double waits = 0.0) {
   scene::Description d = small_scenes::pressed_block(0.0);
   d.duration_s = 0.5 + waits;
@@ -109,7 +111,7 @@ TEST(Grasp, PullsWithTheSwitchAlone) {
   EXPECT_EQ(pull(ticks_of(d)), 0.0);
   d.device->presses = {{1, 0.1, 0.0}};  // another switch
   EXPECT_EQ(pull(ticks_of(d)), 0.0);
-  // closed before the tool is there, it has closed on nothing
+  // closed before the tool is in contact: it holds nothing
   d.device->presses = {{2, 0.0, 0.0}};
   const auto world = loop::assemble(d);
   EXPECT_EQ(pull(ticks_of(*world)), 0.0);
@@ -118,7 +120,7 @@ TEST(Grasp, PullsWithTheSwitchAlone) {
 }
 
 struct Errors {
-  double force = 0.0, torque = 0.0;  ///< RMS over the peak
+  double force = 0.0, torque = 0.0;  ///< RMS relative to the peak
 };
 
 Errors between(const std::vector<loop::TickRecord>& a, const std::vector<loop::TickRecord>& b) {
@@ -135,7 +137,7 @@ Errors between(const std::vector<loop::TickRecord>& a, const std::vector<loop::T
   return {std::sqrt(out.force / n) / force, std::sqrt(out.torque / n) / torque};
 }
 
-// Tool and block as one system feel the same; what an exchange leaves out is small.
+// The force agrees with the monolithic solution of tool and block; the error of the exchange is small.
 TEST(Grasp, IsNearToOneSystem) {
   scene::Description one = pulled_block();
   one.exchange.scheme = "monolithic";
@@ -171,7 +173,7 @@ TEST(Grasp, IsRetracedBitForBit) {
   EXPECT_GT(pull(again), 0.3);
   EXPECT_EQ(record.ticks.front().switches, 0u);
   EXPECT_EQ(record.ticks.back().switches, 4u);
-  // the recorded hand presses the same switch
+  // the recorded hand closes the same switch
   Ticks felt;
   const auto world = loop::assemble(d, loop::recorded_hand(record));
   loop::RunOptions options;
@@ -180,7 +182,7 @@ TEST(Grasp, IsRetracedBitForBit) {
   EXPECT_EQ(pull(felt.all), pull(record.ticks));
 }
 
-// In real time the bodies learn of the switch a period later, and hold all the same.
+// In real time the bodies receive the switch a period later, and hold all the same.
 TEST(Grasp, InRealTime) {
   const scene::Description d = pulled_block(0.5);
   const auto world = loop::assemble(d);
@@ -193,8 +195,8 @@ TEST(Grasp, InRealTime) {
   EXPECT_NEAR(pull(ticks.all), pull(ticks_of(d)), 0.1);
 }
 
-// A record's first tick, as long as the period, is the condensed answer (touch_reduction_test.cpp), with what
-// is held as with what presses: pulled off, where nothing but the grasp acts.
+// A record's first tick with the length of the period is the condensed response (touch_reduction_test.cpp),
+// for held samples as well as for pressing ones: pulled off, where only the grasp acts.
 TEST(Grasp, ModesAnswerWhatIsHeld) {
   constexpr double kPeriod = 0.01;
   const auto record = [&](const std::string& linearisation, double pull) {
@@ -226,7 +228,7 @@ TEST(Grasp, ModesAnswerWhatIsHeld) {
     return ticks.linearise(kPeriod, kPeriod, {away, {}});
   };
   using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-  for (const double pull : {0.0, 0.004}) {  // as it pressed, and 2 mm off
+  for (const double pull : {0.0, 0.004}) {  // while pressing, and pulled off by 2 mm
     const auto exact = record("condensed", pull), points = record("points", pull);
     const Eigen::Map<const Vec6> F(exact.F0.data()), F_points(points.F0.data());
     const Mat6 J = Eigen::Map<const RowMajor6>(exact.J.data()),

@@ -1,5 +1,4 @@
-// What a hand brings along and leaves: the times of its recording, the poses that it can have, the ticks at
-// its device's limit.
+// Files of a hand: the times of its recording, the bounds of its poses, the ticks at its device's limit.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,7 +20,7 @@ namespace {
 using namespace palpate;
 using palpate::expectations::message_of;
 
-/// A scene of 0.5 s under a recording with these times.
+/// A scene of 0.5 s with a recording at these times.
 scene::Description held_by(const TemporaryFolder& folder, const std::vector<double>& times) {
   scene::Description d = small_scenes::pressed_block(0.002);
   d.duration_s = 0.5;
@@ -86,7 +85,7 @@ TEST(RecordedTimes, OfTheSceneAreTaken) {
   EXPECT_EQ(refusal(d), "") << "who says seconds means seconds";
 }
 
-// The record of a run's hand goes by the same keys, and keeps its speeds by them.
+// A run's record of the hand uses the same keys, and its velocities are scaled by them.
 TEST(RecordedTimes, OfARunsRecordAreShiftedAndScaled) {
   const TemporaryFolder folder;
   scene::Description d = small_scenes::pressed_block(0.0);
@@ -120,7 +119,8 @@ TEST(RecordedTimes, OfARunsRecordAreShiftedAndScaled) {
             std::string::npos);
 }
 
-// A hand goes as far beyond the scene as the scene is wide, and an arm's length; the scene's size scales it.
+// The bounds of poses extend beyond the scene by the scene's width and an arm's length, and scale with the
+// scene.
 TEST(PoseBounds, FollowTheScene) {
   scene::Description d = small_scenes::pressed_block(0.0);
   const auto bounds = [](const scene::Description& scene) {
@@ -141,8 +141,8 @@ TEST(PoseBounds, FollowTheScene) {
   EXPECT_GT(bounds(d).radius, 90.0) << "a workspace is a part of it";
 }
 
-// force.csv marks the ticks that the run counts: those that wanted more than the device's maximum, not those
-// in which the force ramps in, or is a little smaller by the smoothness of the limit.
+// force.csv marks the ticks that the run counts: those whose requested force exceeded the device's maximum,
+// but not those in which the force ramps up, or is slightly reduced by the smooth limit.
 TEST(ForceFile, MarksTheTicksThatTheRunCounts) {
   for (const char* profile : {"", "omni"}) {
     const TemporaryFolder folder;

@@ -1,4 +1,4 @@
-// A simulated hand, its tool and the bodies as one system: what the loop of ticks tends to.
+// Monolithic solution of a simulated hand, its tool and the bodies: the limit of the tick loop.
 #include <gtest/gtest.h>
 
 #include "loop/ticks_of.h"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace palpate;
 
-/// An arm that wants to be in the block, and turned.
+/// A hand whose arm has a target inside the block, rotated.
 scene::Description yielding() {
   scene::Description d = small_scenes::pressed_block(0.0);
   d.bodies[0].mesh.element_size_m = 0.02;
@@ -40,11 +40,11 @@ double largest(const std::vector<loop::TickRecord>& ticks) {
   return out;
 }
 
-// The hand gives way, in depth as in force: it does not go where the arm wants it.
+// The hand yields in depth in proportion to the force: it does not reach the arm's target.
 TEST(HandInState, YieldsToTheForce) {
   scene::Description d = as_one(yielding(), 0.005);
   d.duration_s = 0.5;
-  d.device->arm_damping_n_s_m = 40.0;  // it comes to rest
+  d.device->arm_damping_n_s_m = 40.0;  // damped to rest
   const auto ticks = ticks_of(d);
   const loop::TickRecord& end = ticks.back();
   const KeyframeSpec& wanted = d.device->keyframes.back();
@@ -58,8 +58,9 @@ TEST(HandInState, YieldsToTheForce) {
   EXPECT_GT(ticks_of(d).back().device.force.z(), 1.02 * end.device.force.z());
 }
 
-// Without bodies the ticks' hand tends to it with the tick: the hold of the force is of first order.
-/// @param friction_n  Coulomb's, of the device
+// Without bodies, the hand in ticks converges to the monolithic solution with the tick: the hold of the force
+// is of first order.
+/// @param friction_n  Coulomb friction of the device [N]
 void expect_order_one(double friction_n) {
   scene::Description d = yielding();
   d.device->device_friction_n = friction_n;
@@ -94,7 +95,7 @@ TEST(HandInState, TheLoopOfTicksTendsToIt) {
   expect_order_one(0.26);
 }
 
-// With bodies, what is left at ticks of 1 ms is the exchange.
+// With bodies, the remaining difference at ticks of 1 ms is the error of the exchange.
 TEST(HandInState, TheExchangesAreNearIt) {
   scene::Description d = yielding();
   const auto truth = ticks_of(as_one(d));
@@ -113,7 +114,7 @@ TEST(HandInState, TheExchangesAreNearIt) {
   EXPECT_LT(errors[2], 0.03);
 }
 
-// Methods with error control, with Newton iterations and with one linear solve a step take the block.
+// Methods with error control, with Newton iterations and with one linear solve per step integrate the block.
 TEST(HandInState, UnderEveryKindOfIntegrator) {
   scene::Description d = as_one(yielding(), 0.002);
   const double force = ticks_of(d).back().device.force.z();

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Keeps what two hands felt, in what order, and the last balance of energy where that is asked for.
+/// Records the ticks of two hands and their order, and the last energy balance if requested.
 struct HandsFelt final : loop::Observer {
   std::vector<loop::TickRecord> of[2];
   std::vector<std::size_t> order;

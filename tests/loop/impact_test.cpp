@@ -36,9 +36,9 @@ class Energies : public loop::Observer {
 
 }  // namespace
 
-// Between two queries, 10 ms apart, the block goes farther than the candidate gap (its mean edge, 11 mm).
-// Without the look-ahead it was found 5 to 25 mm deep in the plane and thrown back by a spring that nothing
-// had pressed, with many times its energy; with it, it meets the plane where the plane is.
+// Between two queries, 10 ms apart, the block moves farther than the candidate gap (its mean edge, 11 mm).
+// Without look-ahead it was found 5 to 25 mm deep in the plane and expelled with many times its energy by
+// springs that no work had compressed; with look-ahead contact starts at the plane.
 TEST(Impact, AFastBlockIsCaughtByThePlaneAndGainsNoEnergy) {
   for (const double speed : {0.5, 1.5, 3.0}) {
     const auto world = loop::assemble(thrown_block(speed, 0.0125));
@@ -53,8 +53,8 @@ TEST(Impact, AFastBlockIsCaughtByThePlaneAndGainsNoEnergy) {
   }
 }
 
-// 20 m/s through a plate of 1 mm, between queries 10 ms apart, by a contact far too soft to stop it.  A stiff
-// one is not passed, and says so.
+// 20 m/s through a plate of 1 mm, between queries 10 ms apart, with a contact far too soft to stop it. A
+// stiff plate is not passed, and nothing is counted.
 TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
   const auto through_plate = [](double speed, double stiffness) {
     scene::Description d = thrown_block(speed, 0.005);
@@ -83,8 +83,8 @@ TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
 }
 
 // A tumbling block approaches the plane vertex by vertex: at a query the list of candidates changes while
-// nothing presses yet, and the force does not.  What a root finder keeps of the old list must be dropped all
-// the same.
+// nothing presses yet, and the force does not. The root finder's values for the old list must still be
+// discarded.
 TEST(Impact, RootsAreFoundWhileTheListOfCandidatesChanges) {
   const auto landed = [](const std::string& integrator, const std::string& events) {
     scene::Description d = thrown_block(0.5, 0.0125);

@@ -29,7 +29,7 @@ constexpr double kDepth = 0.002;
 std::unique_ptr<loop::World> touching(const std::string& linearisation) {
   scene::Description d = pressed_block(kDepth);
   d.exchange.linearisation = linearisation;
-  d.integrator.linear_solver = "cholmod";  // differences of 1e-7 are taken of its steps
+  d.integrator.linear_solver = "cholmod";  // differences of 1e-7 are taken between steps
   auto world = loop::assemble(d);
   side_of(*world).trajectory->append(0.0, side_of(*world).tool->pose(), {});
   world->contact->refresh(world->state.view());
@@ -40,12 +40,12 @@ Mat6 stiffness(const dynamics::LinearisedContact& record) {
   return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(record.J.data());
 }
 
-/// The wrench on the tool after one linearly implicit step of H with the tool displaced by `dx` at its end.
+/// Wrench on the tool after one linearly implicit step of H, with the tool displaced by `dx` at its end.
 Vec6 wrench_after_step(double H, const Vec3& dx) {
   const auto world = touching("frozen");
   Pose moved = side_of(*world).tool->pose();
   moved.translation += dx;
-  side_of(*world).trajectory->clear();  // it stands there from now on
+  side_of(*world).trajectory->clear();  // at rest there from now on
   side_of(*world).trajectory->append(0.0, moved, {});
   EXPECT_TRUE(world->stepper->advance_to(H).ok());
   const Wrench w = world->contact->frame_wrench(world->state.view(), world->tool_frame_index());
@@ -54,8 +54,8 @@ Vec6 wrench_after_step(double H, const Vec3& dx) {
   return out;
 }
 
-// The claim of `condensed`: the change of the wrench when the bodies have answered the tool's displacement by
-// one linearly implicit step.
+// Definition of `condensed`: the change of the wrench after the bodies have responded to the tool's
+// displacement by one linearly implicit step.
 TEST(Linearise, CondensedIsTheAnswerOfOneImplicitStep) {
   const double H = 0.01, e = 1e-7;
   long fallbacks = 0;
@@ -101,8 +101,8 @@ TEST(Linearise, FrozenRecordRepeatsTheContactAtItsOwnPose) {
   EXPECT_GT(exact.force.z(), 0.0) << "the block pushes the tool up";
 }
 
-/// The pressed block in balance with the tool, on a floor that moves, and then struck: every part of the
-/// derivation is at work, and the changes over one period are small enough for no sample to open or close.
+/// The pressed block in equilibrium with the tool, on a moving floor, and then struck: every term of the
+/// derivation contributes, and the changes over one period are so small that no sample opens or closes.
 struct Struck {
   std::unique_ptr<loop::World> world;
   VecX q, u;
@@ -118,7 +118,7 @@ struct Struck {
     end.position_m = Vec3(2e-4, -1e-4, 3e-4);
     end.interpolation = "linear";
     d.bodies[0].attachments[0].keyframes = {start, end};
-    d.integrator.linear_solver = "cholmod";  // differences of 1e-8 are taken of its steps
+    d.integrator.linear_solver = "cholmod";  // differences of 1e-8 are taken between steps
     world = loop::assemble(d);
     loop::RunOptions options;
     options.duration_s = 1.5;
@@ -152,7 +152,8 @@ struct Struck {
     out << w.moment, w.force;
     return out;
   }
-  /// After one linearly implicit step of H, at whose end the tool is displaced by dx and moves with dv.
+  /// Wrench after one linearly implicit step of H, at whose end the tool is displaced by dx and moves with
+  /// dv.
   Vec6 after_step(double H, const Vec6& dx, const Vec6& dv) {
     back();
     const Pose moved{quaternion_of(dx.head<3>()) * x0.rotation, x0.translation + dx.tail<3>()};
@@ -162,8 +163,8 @@ struct Struck {
   }
 };
 
-// The bodies' own motion, after a tick and after the period: velocities, forces out of balance, driven nodes
-// and damping.
+// The bodies' own motion, after a tick and after the period: velocities, unbalanced forces, driven nodes and
+// damping.
 TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
   Struck s;
   const double H = 0.01, tick = s.world->description.tool->tick_s;
@@ -180,7 +181,7 @@ TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
   }
 }
 
-// The tool moves as well: one step of the coupled system, linear in where the tool ends.
+// The tool moves as well: one step of the coupled system is linear in the tool's final position.
 TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
   Struck s;
   const double H = 0.01, e = 1e-8;
@@ -188,7 +189,7 @@ TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
   const dynamics::LinearisedContact record = record_of(*s.world, 1, H, fallbacks);
   int checked = 0;
   for (int k = 0; k < 12; ++k, ++checked) {
-    const double scale = k % 6 < 3 ? 1.0 / 0.015 : 1.0;  // radians for metres at the tool's surface
+    const double scale = k % 6 < 3 ? 1.0 / 0.015 : 1.0;  // radians per metre at the tool's surface
     Vec6 dx = Vec6::Zero(), dv = Vec6::Zero();
     (k < 6 ? dx : dv)[k % 6] = (k < 6 ? 1.0 : 10.0) * scale * e;
     const Vec6 change = s.after_step(H, dx, dv) - s.after_step(H, -dx, -dv);
@@ -196,7 +197,7 @@ TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
     const Pose behind{quaternion_of(-dx.head<3>()) * s.x0.rotation, s.x0.translation - dx.tail<3>()};
     const Vec6 linear = dynamics::contact_wrench(record, s.t0 + H, ahead, {dv.head<3>(), dv.tail<3>()}) -
                         dynamics::contact_wrench(record, s.t0 + H, behind, {-dv.head<3>(), -dv.tail<3>()});
-    // the floor moves the contact by 5e-4 of its depth meanwhile: a product of both changes
+    // the moving floor changes the contact by 5e-4 of its depth meanwhile: a product of both changes
     EXPECT_LT((change - linear).norm(), 2e-3 * change.norm() + 1e-16) << "direction " << k;
   }
   EXPECT_EQ(checked, 12);
@@ -208,7 +209,7 @@ TEST(Linearise, AnIndefiniteStepMatrixIsFactoredByLu) {
   auto world = loop::assemble(d);
   side_of(*world).trajectory->append(0.0, side_of(*world).tool->pose(), {});
   Eigen::Map<Points> x(world->state.q().data(), 3, world->state.q().size() / 3);
-  x.row(2) *= 0.2;  // squashed flat: compressed struts
+  x.row(2) *= 0.2;  // flattened: compressed struts
   x.row(2).array() += 0.8 * 0.02 - 1e-4;
   world->contact->refresh(world->state.view());
   dynamics::BorderedMatrix A;
@@ -222,12 +223,12 @@ TEST(Linearise, AnIndefiniteStepMatrixIsFactoredByLu) {
   EXPECT_GE(counters::counter("loop.condensed_by_lu"), 1);
 }
 
-// The tool was thrown away by 29 m: where contact is so stiff that a period without it leaves 1e4 N, the
-// record must say that the bodies give way.
+// Regression test: the tool was thrown away by 29 m. Where contact is so stiff that a period without response
+// leaves 1e4 N, the record must include that the bodies yield.
 TEST(Linearise, AStiffContactDoesNotThrowTheToolAway) {
   class Bounds : public loop::Observer {
    public:
-    // Left out: the contact's energy, of a depth that came about between two samples.
+    // Without the contact's energy, whose depth results from the interval between two samples.
     void period(loop::World& world, double) override {
       energy = std::max(energy, world.mechanical_energy() - world.contact->energy(world.state.view()));
     }
@@ -254,7 +255,7 @@ TEST(Linearise, AStiffContactDoesNotThrowTheToolAway) {
     const loop::RunResult result = loop::run(*world, options);
     EXPECT_TRUE(result.status.ok()) << result.status.message;
     EXPECT_LT(bounds.away, 0.01) << "at " << stiffness << " Pa/m";
-    // the hand never did more work
+    // upper bound on the hand's work
     EXPECT_LT(bounds.energy, 0.5 * d.tool->coupling.stiffness_n_m * 0.01 * 0.01)
         << "at " << stiffness << " Pa/m";
     EXPECT_LT(bounds.rotation, 1e-9) << "at " << stiffness

@@ -7,28 +7,26 @@
 #include "palpate/core/clock.h"
 #include "palpate/loop/run.h"
 
-// A tool that rests against a body which does not move, for many ticks: what moves is an error.
-//
-// A tick is one linearly implicit Euler step of tool and coupling: about its rest the tool comes back by the
-// factor rho a tick, 1/rho^2 = 1 + h b/m + h^2 k/m or less stiff, and each tick rounds its pose p by eps |p|.
-// So it stays within eps |p|/(1 - rho) of its rest, however long it rests, and the coupling's wrench within
-// k times that.  1 - rho is 1e-3 at least where the coupling settles within a second.
+// A tool rests for many ticks against a body that does not move: any motion is an error. A tick is one
+// linearly implicit Euler step of tool and coupling: about its equilibrium the tool's deviation decays by the
+// factor rho per tick, 1/rho^2 = 1 + h b/m + h^2 k/m or less stiff, and each tick rounds its pose p by eps
+// |p|. It therefore stays within eps |p|/(1 - rho) of its equilibrium for any duration, and the coupling's
+// wrench within k times that. 1 - rho is at least 1e-3 if the coupling settles within a second.
 namespace palpate::long_touch {
 
-/// The largest and the last of what moved, beside what rounding may make of it.
+/// Largest and last drift, with the bounds due to rounding.
 struct Drift {
-  double pose = 0.0;         ///< of a tick against the first that counts: length of (rotation, translation)
+  double pose = 0.0;         ///< tick against the first tick that counts: norm of (rotation, translation)
   double force = 0.0;        ///< [N]
   double moment = 0.0;       ///< [N m]
-  double memory_mib = 0.0;   ///< resident at the end, less that at the first tick that counts
+  double memory_mib = 0.0;   ///< resident memory at the end minus that at the first tick that counts
   double pressing_n = 0.0;   ///< force on the hand at the first tick that counts
   double pose_bound = 0.0;   ///< eps |p|/(1 - rho)
-  double force_bound = 0.0;  ///< k times that
+  double force_bound = 0.0;  ///< k times pose_bound
   long ticks = 0;
 };
 
-/// Every node of every body is held, so that a body stands where it is put; contact is looked for every
-/// `period_s`.
+/// Holds every node of every body, so that bodies do not move, and queries contact every `period_s`.
 inline void freeze(scene::Description& d, double period_s) {
   AttachmentSpec all;
   all.region = "box";
@@ -38,8 +36,8 @@ inline void freeze(scene::Description& d, double period_s) {
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = d.integrator.step_s = period_s;
 }
 
-/// The tool is held at `depth` below first touch of a frozen body.
-/// @param settled  the tick from which on it counts
+/// Holds the tool at `depth` below first touch of a frozen body.
+/// @param settled  first tick that counts
 inline Drift rest(const scene::Description& d, long ticks, long settled) {
   struct Watch : loop::Observer {
     void tick(const loop::TickRecord& tick) override {
@@ -70,7 +68,7 @@ inline Drift rest(const scene::Description& d, long ticks, long settled) {
   EXPECT_TRUE(watch.finite);
   watch.out.memory_mib = resident_memory_mib() - watch.memory;
   watch.out.ticks = result.ticks;
-  constexpr double kSlowest = 1e-3;  // 1 - rho
+  constexpr double kSlowest = 1e-3;  // lower bound on 1 - rho
   watch.out.pose_bound =
       std::numeric_limits<double>::epsilon() * std::max(1.0, d.tool->position_m.norm()) / kSlowest;
   watch.out.force_bound = d.tool->coupling.stiffness_n_m * watch.out.pose_bound;

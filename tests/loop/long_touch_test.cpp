@@ -1,4 +1,4 @@
-// The short version of million_ticks_test.cpp, on a block of a few tetrahedra.
+// Short version of million_ticks_test.cpp, with a block of a few tetrahedra.
 #include "loop/long_touch.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ TEST(LongTouch, AToolAtRestOnAFrozenBlockDoesNotDrift) {
   const long_touch::Drift drift = long_touch::rest(d, 20'000, 5'000);
   EXPECT_EQ(drift.ticks, 20'000);
   long_touch::expect_no_drift(drift);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these keep what was given back
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers keep freed memory
   EXPECT_LT(drift.memory_mib, 1.0) << "15,000 ticks of one record each would be 7 MiB";
 #endif
 }

@@ -1,4 +1,4 @@
-// Young's modulus changed while a scene runs: it counts from the next step on.
+// Young's modulus changed during a run: effective from the next step on.
 #include <gtest/gtest.h>
 
 #include "loop/small_scenes.h"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBefore = 1e4, kAfter = 3e4;
 
-/// The held block under its own weight, which it was not made for.
+/// The held block under its weight, in which it is not in equilibrium.
 scene::Description sagging(const std::string& integrator) {
   scene::Description d = held_block();
   d.gravity_m_s2 = Vec3(0, 0, -9.81);
@@ -27,8 +27,8 @@ scene::Description sagging(const std::string& integrator) {
 
 }  // namespace
 
-// A one-step method knows the state alone, and cholmod the matrix alone: after the change they do what they
-// do from that state with the new modulus, to the last bit.
+// A one-step method depends on the state alone, and cholmod on the matrix alone: after the change the run is
+// bitwise equal to one from that state with the new modulus.
 TEST(MaterialChange, CountsFromTheNextStepOn) {
   for (const char* name : {"linearly-implicit-euler", "implicit-midpoint", "newmark"}) {
     scene::Description d = sagging(name);
@@ -50,7 +50,7 @@ TEST(MaterialChange, CountsFromTheNextStepOn) {
   }
 }
 
-// A method with a memory forgets it: every method reaches the same end.
+// A multistep method discards its history: every method reaches the same final state.
 TEST(MaterialChange, OfASceneActsInTheRunWhateverTheIntegrator) {
   VecX reference;
   for (const char* name : {"ark-erk-5", "cvode-bdf", "ida", "ark-dirk-kvaerno745", "cvode-adams"}) {
@@ -92,7 +92,7 @@ TEST(MaterialChange, RefusesWhatIsNoModulus) {
   EXPECT_DOUBLE_EQ(world->bodies[0].term->materials()[0].youngs_modulus, kBefore);
 }
 
-// The hand feels the change: under a tool that keeps its position, the force follows the modulus.
+// The force on the hand follows the modulus under a tool that keeps its position.
 #ifdef PALPATE_HAS_TOOL
 TEST(MaterialChange, IsFeltByTheHand) {
   scene::Description d = pressed_block(0.003);

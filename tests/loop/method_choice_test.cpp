@@ -1,4 +1,4 @@
-// How gaps are found: method = "auto" takes nearest points, and opens no OpenGL; "image" does.
+// Choice of the contact method: "auto" uses nearest points and does not open OpenGL; "image" does.
 #include <gtest/gtest.h>
 
 #include "loop/small_scenes.h"
@@ -11,7 +11,7 @@ using namespace palpate;
 
 namespace {
 
-/// Two blocks that touch, after one period.
+/// Two blocks in contact, after one period.
 std::unique_ptr<loop::World> after_a_period(const std::string& method) {
   scene::Description d = small_scenes::held_block();
   d.bodies.push_back(d.bodies[0]);

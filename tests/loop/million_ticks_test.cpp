@@ -1,4 +1,4 @@
-// A million ticks of touch-human's tool at rest against the person, who is frozen: 1000 s.
+// A million ticks (1000 s) of touch-human's tool at rest against the person, who is frozen.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@
 using namespace palpate;
 
 TEST(MillionTicks, TouchHumanNeitherDriftsNorGrows) {
-  // the finger where the scene holds it: 15 mm deep in the belly
+  // the finger where the scene holds it, 15 mm deep in the belly
   scene::Description d = loop::load(PALPATE_SOURCE_DIR "/scenes/touch-human.toml");
   ASSERT_TRUE(std::filesystem::exists(d.bodies[0].mesh.file) ||
               std::system("'" PALPATE_PROGRAM "' inspect touch-human > /dev/null") == 0)
       << "palpate makes the model";
-  d.device->keyframes.erase(d.device->keyframes.begin());  // time 0 is the first one left
+  d.device->keyframes.erase(d.device->keyframes.begin());  // the first remaining keyframe must have time 0
   d.device->keyframes.resize(1);
   d.device->keyframes[0].time_s = 0.0;
   d.tool->position_m = d.device->keyframes[0].position_m;

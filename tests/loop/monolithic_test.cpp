@@ -15,7 +15,7 @@ using namespace palpate::small_scenes;
 
 namespace {
 
-/// The handle goes from first touch to `depth` below it and rests there; tool and block are one system.
+/// The handle moves from first touch to `depth` below it and rests there; tool and block form one system.
 scene::Description monolithic_press(double depth) {
   scene::Description d = pressed_block(0.0);
   d.exchange.scheme = "monolithic";
@@ -77,7 +77,7 @@ TEST(Monolithic, NothingIsExchangedAndNothingCondensed) {
 }
 
 // The tool's rows are no transpose of its columns, but the nodes' block is symmetric, and keeps its Cholesky
-// factor: an LU factor is made of six rows.  With friction the nodes' block is unsymmetric as well.
+// factor: only six rows are factored by LU. With friction the nodes' block is unsymmetric as well.
 TEST(Monolithic, WithoutFrictionStaysOnCholesky) {
   for (const char* integrator : {"cvode-bdf", "ida", "backward-euler"})
     for (const double friction : {0.0, 0.3}) {
@@ -98,15 +98,15 @@ TEST(Monolithic, WithoutFrictionStaysOnCholesky) {
       const auto by_lu = loop::assemble(d);
       const VecX start = by_lu->state.q();
       ASSERT_TRUE(loop::run(*by_lu, {}).status.ok());
-      // CVODE's steps are as long as the last digits of its error estimates have them (ida's here are not)
+      // CVODE's step lengths depend on rounding in its error estimates (ida's do not in this case)
       const double bar = friction > 0.0 && d.integrator.name == "cvode-bdf" ? d.integrator.rtol : 1e-10;
       EXPECT_LT((world->state.q() - by_lu->state.q()).norm(), bar * (by_lu->state.q() - start).norm())
           << integrator << friction;
     }
 }
 
-// One linear solve a step takes sliding friction by its secant, whoever is in the State; Newton's iterations
-// take it whole.
+// With one linear solve per step, sliding friction uses its secant, whatever is in the State; Newton's
+// iterations use the full tangent.
 TEST(Monolithic, LeavesFrictionOutWhereAStepIsOneSolve) {
   for (const bool monolithic : {false, true})
     for (const char* integrator : {"linearly-implicit-euler", "backward-euler"}) {
@@ -152,7 +152,7 @@ TEST(Monolithic, TicksComeInTheirOrderAndNumberWhateverTheRefresh) {
   }
 }
 
-// Each sample that closes or opens under the tool is a root that a step is cut short at.
+// Each sample that closes or opens under the tool is a root at which a step is shortened.
 TEST(Monolithic, SummaryCountsTheRootsThatStepsWereCutShortAt) {
   const auto counted = [](const char* events) {
     scene::Description d = monolithic_press(0.002);
@@ -171,7 +171,8 @@ TEST(Monolithic, SummaryCountsTheRootsThatStepsWereCutShortAt) {
   EXPECT_EQ(counted("error-control").first, 0);
 }
 
-// At rest k (x_h - x_t) + F = 0, as in the partitioned scheme: the two differ on the way, not in the end.
+// At rest k (x_h - x_t) + F = 0, as in the partitioned scheme: the two differ in the transient, not in the
+// equilibrium.
 TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
   scene::Description d = monolithic_press(0.003);
   const Outcome whole = run(d, 1.5);
@@ -186,8 +187,8 @@ TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
   EXPECT_LT((a.device.force - b.device.force).norm(), 1e-3 * b.device.force.norm());
 }
 
-// Nothing damps, the handle rests, the contact is queried once: kinetic, elastic, contact and coupling energy
-// together are kept, and far more than the tolerance passes between tool and block.
+// Without damping, with the handle at rest and one contact query, the sum of kinetic, elastic, contact and
+// coupling energy is conserved, while far more than the tolerance is exchanged between tool and block.
 TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
   scene::Description d = pressed_block(0.003);
   d.exchange.scheme = "monolithic";
@@ -197,7 +198,7 @@ TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
   d.tool->coupling.damping_n_s_m = d.tool->coupling.rotational_damping_n_m_s_rad = 0.0;
   d.integrator.name = "cvode-bdf";
   d.integrator.rtol = 1e-8;
-  d.duration_s = 0.002;  // to the next query
+  d.duration_s = 0.002;  // until the next query
   const auto world = loop::assemble(d);
   world->contact->refresh(world->state.view());
   const double before = world->mechanical_energy(),
@@ -209,8 +210,8 @@ TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
   EXPECT_NEAR(world->mechanical_energy() / before, 1.0, 1e-5);
 }
 
-// One tool, two ways to it that share no integrator: CVODE on the block of the State, and Simbody's Merson on
-// a System of its own.
+// One tool with two independent integrators: CVODE on the block of the State, and Simbody's Merson on a
+// separate System.
 TEST(Monolithic, AToolAloneMovesAsInASystemOfItsOwn) {
   scene::Description d = monolithic_press(0.02);
   d.bodies.clear();
@@ -229,8 +230,8 @@ TEST(Monolithic, AToolAloneMovesAsInASystemOfItsOwn) {
     EXPECT_LT(pose_difference(whole.log.ticks[i].tool, parts.log.ticks[i].tool).norm(), 1e-6) << "tick " << i;
 }
 
-// An integrator that steps bodies also steps a tool beside them: its block's unit quaternion, the border of
-// the Newton matrix.  All of the registry, against cvode-bdf at rtol 1e-8, over the first 20 ms of a press:
+// An integrator of bodies also integrates a tool: its block's unit quaternion, the border of the Newton
+// matrix. All integrators of the registry, against cvode-bdf at rtol 1e-8, over the first 20 ms of a press:
 // the tool touches at once and is 0.6 mm deep at the end.
 class MonolithicRegistry : public testing::TestWithParam<std::string> {};
 
@@ -261,7 +262,7 @@ TEST_P(MonolithicRegistry, StepsToolAndBodiesAsOneSystem) {
   const dynamics::StepperTraits traits = find(integrate::stepper_registry(), GetParam(), "integrator").traits;
   const bool fixed = traits.control == dynamics::StepControl::kFixed;
   d.integrator.name = GetParam();
-  d.integrator.rtol = 1e-5;  // of the tool's radius, 15 mm: 2e-4 of the way that it goes
+  d.integrator.rtol = 1e-5;  // relative to the tool's radius, 15 mm: 2e-4 of its displacement
   // explicit: below its stability limit
   d.integrator.step_s = traits.stability == dynamics::Stability::kExplicit ? 2e-5 : 2e-4;
   const Outcome out = run(d, kDuration);
@@ -272,8 +273,8 @@ TEST_P(MonolithicRegistry, StepsToolAndBodiesAsOneSystem) {
     worst =
         std::max(worst, (out.log.ticks[i].tool.translation - reference.log.ticks[i].tool.translation).norm());
   RecordProperty("error", std::to_string(worst / moved));
-  // Order 1: an error of h times a rate, sqrt(k/m) = 77/s of the coupling, some times over.  Higher order, or
-  // error control: the error of the kink at the touch.
+  // Order 1: an error of h times a rate, sqrt(k/m) = 77/s of the coupling, times a small factor. Higher
+  // order, or error control: the error of the kink at first touch.
   EXPECT_LT(worst, (fixed && traits.order == 1 ? 2e-2 : 1e-3) * moved);
   EXPECT_NEAR(out.q.tail<7>().head<4>().norm(), 1.0, 1e-12);
 }

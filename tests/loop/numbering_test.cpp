@@ -1,5 +1,4 @@
-// Inside, nodes are numbered in spatial order; what leaves the program goes by the numbers of the mesh's
-// file.
+// Internally nodes are numbered in spatial order; output uses the numbers of the mesh file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +21,7 @@ using namespace palpate;
 
 namespace {
 
-/// Two blocks, the second from a file whose nodes stand in no order; it swings.
+/// Two blocks, the second from a file whose nodes are in random order; it swings.
 class Numbering : public testing::Test {
  protected:
   Numbering() {
@@ -45,7 +44,7 @@ class Numbering : public testing::Test {
     scene_.record->state_period_s = 0.02;
   }
 
-  /// Expected content of part 1 of a run file where the state of `world` is `q`.
+  /// Checks part 1 of a run file against the state `q` of `world`.
   void expect_part(const store::RunReader& file, int step, const loop::World& world, const VecX& q) const {
     const dynamics::Block& block = *world.state.layout().find(world.bodies[1].block_id);
     const auto n = file_.nodes.cols();
@@ -57,7 +56,7 @@ class Numbering : public testing::Test {
       moved = std::max(moved, (points.col(written) - file_.nodes.col(written) - shift_).norm());
     }
     EXPECT_GT(moved, 1e-6);
-    // each is near its position in the file: none is mistaken for another, 5 mm away
+    // each is near its position in the file: none is confused with another, 5 mm away
     EXPECT_LT(moved, 2e-3);
   }
 
@@ -70,7 +69,7 @@ class Numbering : public testing::Test {
 TEST_F(Numbering, ARunIsWrittenInTheOrderOfTheFile) {
   const auto world = loop::assemble(scene_);
   const loop::Body& body = world->bodies[1];
-  EXPECT_NE(body.rest.tets, file_.tets);  // or there is nothing to see
+  EXPECT_NE(body.rest.tets, file_.tets);  // otherwise the test has no effect
   EXPECT_EQ(body.file_tets(), file_.tets);
   {
     loop::Recorder recorder(*world, folder_.string());

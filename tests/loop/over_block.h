@@ -3,7 +3,7 @@
 
 namespace palpate::small_scenes {
 
-/// A second body over the held block, that is not held, and contact of both once a hundredth of a second.
+/// Adds a free second body over the held block, and contact of both every hundredth of a second.
 inline void put_over_block(scene::Description& d, SoftBodySpec upper) {
   upper.name = "upper";
   upper.attachments.clear();

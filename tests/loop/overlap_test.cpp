@@ -6,12 +6,12 @@
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
 
-/// How deep a round tool of 15 mm lay in a block 20 mm high, as a run says it afterwards.
+/// Deepest overlap that a run reports, for a round tool of 15 mm in a block 20 mm high.
 namespace {
 
 using namespace palpate;
 
-/// @param depth  of the tool at the first query, when nothing has given way yet
+/// @param depth  depth of the tool at the first query, before anything has yielded
 loop::Overlap overlap_of(double depth, const std::string& method = "distance") {
   scene::Description d = small_scenes::pressed_block(depth);
   d.contacts[0].method = method;
@@ -22,14 +22,14 @@ loop::Overlap overlap_of(double depth, const std::string& method = "distance") {
   return all.at(0);
 }
 
-// The block gives way from then on, and the overlap gets smaller.
+// The block yields from then on, and the overlap decreases.
 TEST(Overlap, IsThatOfTheDeepestQuery) {
   const loop::Overlap of_points = overlap_of(0.003);
   EXPECT_EQ(of_points.pair, "block - tool");
   EXPECT_NEAR(of_points.deepest_m, 0.003, 0.02 * 0.003);
   EXPECT_NEAR(of_points.half_width_m, 0.01, 1e-12);
   EXPECT_FALSE(of_points.too_deep());
-  // of vertices, the one nearest to the axis is 1 mm and 2 mm beside it
+  // the vertex nearest to the axis is offset by 1 mm and 2 mm
   EXPECT_NEAR(overlap_of(0.003, "analytic").deepest_m, 0.015 - std::hypot(0.001, 0.002, 0.012), 1e-9);
 }
 

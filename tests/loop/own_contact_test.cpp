@@ -1,5 +1,5 @@
-// A body against itself in scenes: two blocks of one body meet as two bodies do; arms on scripted bones close
-// by any integrator and linear solver.
+// Self-contact in scenes: two blocks of one body collide as two bodies do; arms on scripted bones close with
+// any integrator and linear solver.
 #include <gtest/gtest.h>
 
 #include "contact/bent_bar.h"
@@ -23,10 +23,10 @@ using scene_checks::refusal;
 
 namespace {
 
-// height of the upper block's middle [m]: its lowest corner 0.2 mm above the lower block
+// height of the upper block's centre [m]: its lowest corner is 0.2 mm above the lower block
 constexpr double kFall = 0.02876;
 
-/// A block on the ground, and a smaller one, a little tilted, that falls on it from a fifth of a millimetre.
+/// A block on the ground, and a smaller, slightly tilted one that falls on it from a fifth of a millimetre.
 struct Blocks {
   LayeredModel lower = block({Quat::Identity(), Vec3(0, 0, 0.01)}, Vec3(0.06, 0.06, 0.02), {4, 4, 2}),
                upper = block({quaternion_of(Vec3(0.05, 0.03, 0.5)), Vec3(0.003, -0.002, kFall)},
@@ -62,12 +62,12 @@ struct Blocks {
     contact.second = d.bodies.back().name;
     contact.method = method;
     if (method == "distance") {
-      contact.quadrature_error = 1.0;  // each vertex is a point, of one body as of two
+      contact.quadrature_error = 1.0;  // each vertex is a point, for one body as for two
     }
     contact.stiffness_pa_m = 1e7;
     contact.damping_pa_s_m = 1e3;
     contact.friction = 0.3;
-    contact.friction_regularisation_m_s = 1e-3;  // the default follows the size of the body
+    contact.friction_regularisation_m_s = 1e-3;  // the default depends on the size of the body
     contact.candidate_gap_m = 1e-3;
     d.contacts.push_back(contact);
     d.integrator.name = "linearly-implicit-euler";
@@ -78,7 +78,8 @@ struct Blocks {
   }
 };
 
-/// The bar, at rest a U, whose arms are rotated towards each other by their bones until the tips meet.
+/// The bar, U-shaped at rest, whose arms are rotated towards each other by their bones until the tips
+/// collide.
 struct Fork {
   ModelOnDisk file{bent_bar::model(24, M_PI), "fork.h5"};
 
@@ -145,8 +146,8 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
 
 namespace {
 
-/// How far each node has gone, body by body in the order of its file; `pressing`: samples of contact with
-/// pressure at the end.
+/// Displacement of each node, body by body in the order of its file; `pressing`: number of contact samples
+/// with pressure at the end.
 VecX end_of(const scene::Description& d, int* pressing = nullptr) {
   const auto world = loop::assemble(d);
   const VecX start = world->state.q();
@@ -168,8 +169,8 @@ VecX end_of(const scene::Description& d, int* pressing = nullptr) {
 
 }  // namespace
 
-// With equal nodes, masses, forces and contact, a body that falls on another, or on a part of its own, moves
-// alike, but for rounding: a vertex has the same foot.  (Deflections of what sticks go with the foot of a
+// With equal nodes, masses, forces and contact, a body that falls on another body or on a part of itself
+// moves equally, to rounding: a vertex has the same foot. (Friction deflections rotate with the foot of a
 // body's own points, and with the second of two bodies.)
 TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodies) {
   const Blocks blocks;
@@ -187,7 +188,7 @@ TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodies) {
   EXPECT_GT((end_of(without) - one).norm(), 0.02 * one.norm()) << "contact is what holds it";
 }
 
-// A body without skin or proxies touches itself by default: its boundary, and by nearest points.
+// A body without skin or proxies is in self-contact by default: by its boundary, with nearest points.
 TEST(OwnContactScene, ABoundaryTouchesItself) {
   const Fork fork;
   scene::Description d = fork.scene("linearly-implicit-euler", true, "auto");
@@ -202,7 +203,7 @@ TEST(OwnContactScene, ABoundaryTouchesItself) {
   EXPECT_GT((with - end_of(d)).cwiseAbs().maxCoeff(), 5e-3) << "the tips are held apart";
 }
 
-// Every linear solver holds blocks between far nodes of one body, or says why not.
+// Every linear solver supports blocks between distant nodes of one body, or reports why not.
 TEST(OwnContactScene, EveryLinearSolverTakesIt) {
   const Fork fork;
   scene::Description d = fork.scene("linearly-implicit-euler");
@@ -217,8 +218,8 @@ TEST(OwnContactScene, EveryLinearSolverTakesIt) {
   EXPECT_GE(solvers, 5);
 }
 
-// Feet go over edges, so that an integrator under error control takes small steps: the
-// reference has a tenth of the tolerance.
+// Feet cross edges, so that an error-controlled integrator takes small steps: the reference uses a tenth of
+// the tolerance.
 TEST(OwnContactScene, ArmsCloseAlikeByNearestPoints) {
   const Fork fork;
   scene::Description fine = fork.scene("cvode-bdf");
@@ -236,7 +237,7 @@ TEST(OwnContactScene, ArmsCloseAlikeByNearestPoints) {
   }
 }
 
-// What comes near the depth beyond which nothing is pushed apart is said to be too deep.
+// An overlap close to the depth beyond which contact ends is reported as too deep.
 TEST(OwnContactScene, DeepOverlapsAreTold) {
   const Fork fork;
   for (const bool is_deep : {false, true}) {
@@ -256,7 +257,7 @@ TEST(OwnContactScene, DeepOverlapsAreTold) {
 }
 
 #ifdef PALPATE_HAS_GL
-// The summary of contact in images: what of each skin the proxies have handed on.
+// The summary of contact in images states which part of each skin the proxies passed on.
 TEST(ImageScene, TheSummarySpeaksOfBothSkins) {
   const Blocks blocks;
   const scene::Description d = blocks.scene(false, "image");

@@ -1,5 +1,5 @@
-// What the tool feels of touch-head and touch-human where they press most, by a few iterations and by
-// factors: both at the same state, so that nothing but the linearisation differs.
+// Responses of touch-head and touch-human at the point of largest pressure, by a few iterations and by
+// factorisations: both at the same state, so that only the linearisation differs.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ Answer answer(scene::Description d, const State& state, double error) {
   world->contact->refresh(world->state.view());
   const double period = d.exchange.exchange_period_s;
   long fallbacks = 0;
-  // the first of a run, which begins its iterations from nothing: later ones begin from the last exchange
+  // the first exchange of a run starts its iterations from zero: later ones start from the previous exchange
   const loop::ContactRecord record = loop::linearise_contact(*world, 1, period, fallbacks);
   Answer out;
   contact::TouchTicks ticks(d.contacts);

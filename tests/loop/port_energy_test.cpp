@@ -1,5 +1,5 @@
-// The energy at a device's port, printed by a run, against what a reader makes of its haptic.h5: handle
-// positions, and the forces sent to the motors, delayed by whole ticks, in steps, and cut.
+// Energy at a device's port as printed by a run, against a computation from its haptic.h5: handle positions,
+// and the forces sent to the motors, delayed by whole ticks, quantised and saturated.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -81,7 +81,7 @@ struct Recomputed {
   double energy = 0.0, least = 0.0, work = 0.0;
 };
 
-/// From the forces that were sent.
+/// Computes the energy from the forces that were sent.
 Recomputed recompute(const std::vector<loop::TickRecord>& ticks, const DeviceSpec& device) {
   const auto delay = static_cast<std::size_t>(std::lround(device.delay_s / kTick));
   const double step = device.force_resolution_n, r = device.encoder_resolution_m.value_or(0.0);

@@ -4,7 +4,7 @@
 #include "palpate/device/device.h"
 #include "palpate/loop/run.h"
 
-/// That the ramp of a scene's device is the one that its hand feels.
+/// The ramp of a scene's device is applied to the force on its hand.
 namespace {
 
 using namespace palpate;
@@ -14,7 +14,8 @@ struct Keep final : loop::Observer {
   std::vector<loop::TickRecord> ticks;
 };
 
-/// Force on the hand over what it would be without a limit, at each tick.  @param ramp_s  empty: the default
+/// Force on the hand relative to the unlimited force, at each tick.
+/// @param ramp_s  empty: the default
 std::vector<double> shares(const std::string& scheme, std::optional<double> ramp_s) {
   scene::Description d = small_scenes::pressed_block(0.002);
   d.device->keyframes[0].position_m.z() -= 0.002;  // a coupling that pulls from the start
@@ -31,8 +32,8 @@ std::vector<double> shares(const std::string& scheme, std::optional<double> ramp
   return out;
 }
 
-// Smoothstep over 30 ms from the first tick, then all of it.  A bounded slew lets nothing through at the
-// first tick, which no time came before.
+// Smoothstep over 30 ms from the first tick, then the full force. A bounded slew passes nothing at the first
+// tick, which has no previous time.
 TEST(Ramp, IsFeltAsTheSceneSays) {
   for (const std::string scheme : {"partitioned", "monolithic"}) {
     SCOPED_TRACE(scheme);

@@ -1,5 +1,5 @@
-// Ticks by the machine's clock: two threads, one exchange.  Times are not asserted: what is, is that nothing
-// is lost, torn or invented, whatever the machine does meanwhile.
+// Ticks by the machine's clock: two threads, one exchange. Times are not asserted; the tests assert that
+// nothing is lost, torn or invented, whatever the machine does meanwhile.
 #include "palpate/loop/real_time.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(Quantile, IsTheNearestRank) {
   EXPECT_EQ(loop::quantile({}, 0.5), 0);
 }
 
-/// Keeps all ticks, and the times of periods.
+/// Records all ticks, and the times of periods.
 struct Kept : loop::Observer {
   void tick(const loop::TickRecord& tick) override { ticks.push_back(tick); }
   void period(loop::World&, double t) override { periods.push_back(t); }
@@ -95,7 +95,7 @@ Ran run(const scene::Description& d, bool real_time) {
   return out;
 }
 
-// Each tick once and in order, at its own time, whatever the clock did.
+// Each tick is recorded once and in order, at its nominal time, whatever the clock did.
 TEST(RealTime, EveryTickIsRecordedOnce) {
   const Ran r = run(scene_of(), true);
   ASSERT_TRUE(r.result.status.ok()) << r.result.status.message;
@@ -112,8 +112,8 @@ TEST(RealTime, EveryTickIsRecordedOnce) {
   for (const float late : clock.lateness_s) EXPECT_GE(late, 0.0F);
 }
 
-// Versions of the record in force only grow, the first tick has one, and no tick has one that was made of a
-// later instant than its own.
+// Versions of the active record only increase, the first tick has one, and no tick uses a record from after
+// its time.
 TEST(RealTime, RecordsAreAdoptedInOrder) {
   const Ran r = run(scene_of(), true);
   ASSERT_GT(r.kept.ticks.size(), 100u);
@@ -122,13 +122,14 @@ TEST(RealTime, RecordsAreAdoptedInOrder) {
     return a.record_version < b.record_version;
   }));
   EXPECT_GT(r.kept.ticks.back().record_version, 1u);
-  // every exchange is made at the end of a period that was noticed, the first at the start
+  // each exchange takes place at the end of a reported period, the first one at the start
   for (const loop::TickRecord& tick : r.kept.ticks)
     EXPECT_LT(r.kept.periods.at(tick.record_version - 1), tick.time);
 }
 
-// In virtual time with the latency of a period, the slowest that a bodies' thread in time may have, and
-// without: real time lies between, to the scatter of the clock.  What differs is when records are adopted.
+// Real time lies between virtual time with a latency of one period, the largest of a bodies' thread that
+// keeps up, and virtual time without latency, to the scatter of the clock. They differ in when records are
+// adopted.
 TEST(RealTime, FeelsWhatVirtualTimeFeels) {
   const auto in_time = [](const loop::RealTimeResult& clock) {
     return clock.stretched_periods + clock.dropped_periods == 0 &&
@@ -153,7 +154,7 @@ TEST(RealTime, FeelsWhatVirtualTimeFeels) {
   EXPECT_LT(off, between + 0.05 * peak);
 }
 
-// Latency delays adoption by its ticks, and by no more.
+// A latency delays adoption by exactly its ticks.
 TEST(VirtualTime, LatencyDelaysAdoption) {
   const Ran r = run(scene_of(3), false);
   const Ran at_once = run(scene_of(), false);
@@ -182,7 +183,7 @@ TEST(RealTime, RefusesWhatItDoesNotServe) {
   EXPECT_NE(refusal(d).find("take \"partitioned\""), std::string::npos);
 }
 
-/// Nothing but a ball, held by a hand 1 mm in the floor.
+/// A single ball, held 1 mm in the floor by a hand.
 scene::Description ball_on_floor() {
   scene::Description d = scene_of();
   d.bodies.clear();
@@ -195,7 +196,7 @@ scene::Description ball_on_floor() {
   return d;
 }
 
-// An obstacle needs no exchange: at rest the floor carries what the hand presses with, by either clock.
+// An obstacle needs no exchange: at rest the floor carries the hand's force, by either clock.
 TEST(RealTime, TheToolMeetsObstacles) {
   for (const bool real_time : {false, true}) {
     const Ran r = run(ball_on_floor(), real_time);
@@ -206,15 +207,15 @@ TEST(RealTime, TheToolMeetsObstacles) {
   }
 }
 
-/// Keeps the balance of energy of each period.
+/// Records the energy balance of each period.
 struct Weighs : loop::Observer {
   bool wants_energy() const override { return true; }
   void energy(const loop::EnergyBalance& balance) override { rows.push_back(balance); }
   std::vector<loop::EnergyBalance> rows;
 };
 
-// The balance of a run in real time is one of the ticks that it had: the hand's work is theirs, and what is
-// stored is what virtual time stores, where the bodies kept up.
+// The energy balance of a real-time run follows from its ticks: the hand's work is theirs, and the stored
+// energy equals that of virtual time if the bodies kept up.
 TEST(RealTime, KeepsTheBalanceOfEnergy) {
   const auto balanced = [](bool real_time, Weighs& weighs, Kept& kept) {
     const auto world = loop::assemble(scene_of());
@@ -250,7 +251,7 @@ TEST(RealTime, KeepsTheBalanceOfEnergy) {
 
 #if PALPATE_CAN_COUNT
 /// Allocations in ticks 2 to 2500: a simulated hand clears its list of wrenches after 2048 of them.
-/// @param mode  with "control" the contact pulls the hand along, so that the controller has to act
+/// @param mode  with "control" the contact pulls the hand along, so that the controller acts
 long allocations_in_ticks(const std::string& device, device::PassivityController::Mode mode) {
   using Mode = device::PassivityController::Mode;
   scene::Description d = scene_of();
@@ -286,7 +287,8 @@ long allocations_in_ticks(const std::string& device, device::PassivityController
 #endif
 
 #if PALPATE_CAN_COUNT
-/// Allocations in ticks 31 to 300 on the floor, queries and all: the first three grow their room.
+/// Allocations in ticks 31 to 300 on the floor, including queries: the first three queries grow their
+/// buffers.
 long allocations_on_floor(bool mesh) {
   scene::Description d = ball_on_floor();
   if (mesh) {
@@ -326,7 +328,7 @@ TEST(RealTime, ATickOnAnObstacleTakesNoMemory) {
 }
 
 #if PALPATE_CAN_COUNT
-/// Allocations in ticks 150 to 400 of two tools, a mesh on top, that two hands press on each other.
+/// Allocations in ticks 150 to 400 of two tools, with a mesh on top, that two hands press on each other.
 long allocations_of_two(bool round) {
   scene::Description d = ball_on_floor();
   d.obstacles.clear();
@@ -371,8 +373,8 @@ TEST(RealTime, ATickOfTwoToolsThatMeetTakesNoMemory) {
 #endif
 }
 
-// What the ticks' thread does, tick for tick: no memory is taken, none given back, by a scripted and by a
-// simulated hand, with the passivity controller at work and without.
+// The tick thread neither allocates nor frees memory in any tick, with a scripted and with a simulated hand,
+// with and without an active passivity controller.
 TEST(RealTime, ATickTakesNoMemory) {
 #if PALPATE_CAN_COUNT
   using Mode = device::PassivityController::Mode;
@@ -384,7 +386,7 @@ TEST(RealTime, ATickTakesNoMemory) {
 #endif
 }
 
-/// A device that feels, and that fails from a time on.
+/// A device that accepts forces, and fails from a given time on.
 struct Feels : device::Device {
   explicit Feels(double when) : fails_at(when) {}
   device::DeviceSpecification specification() const override { return {}; }
@@ -402,7 +404,7 @@ struct Feels : device::Device {
   Vec3 force = Vec3::Zero();
 };
 
-// After its end a run presses on no hand, by either clock, and where the device itself fails.
+// After its end a run exerts no force on any hand, by either clock, also if the device fails.
 TEST(TickSide, EndsWithoutAForce) {
   for (const bool real_time : {false, true})
     for (const double fails_at : {1.0, 0.05}) {
@@ -422,7 +424,7 @@ TEST(TickSide, EndsWithoutAForce) {
     }
 }
 
-/// Bodies whose step ends only when it is interrupted.
+/// A stepper whose step ends only when it is interrupted.
 struct Stuck : dynamics::Stepper {
   std::string name() const override { return "stuck"; }
   dynamics::StepResult advance_to(double t_end) override {
@@ -441,8 +443,8 @@ struct Stuck : dynamics::Stepper {
   bool was_interrupted = false;
 };
 
-// A step of the bodies that would take a minute is given up once the run's time is over; the hand has had
-// every tick, and what the bodies did not reach is counted.
+// A step of the bodies that would take a minute is interrupted at the end of the run's time; the hand has had
+// every tick, and the periods that the bodies missed are counted.
 TEST(RealTime, EndsWhenItsTimeIsOver) {
   scene::Description d = scene_of();
   d.exchange.linearisation = "frozen";
@@ -463,7 +465,7 @@ TEST(RealTime, EndsWhenItsTimeIsOver) {
   EXPECT_EQ(result.real_time->dropped_periods, 30);
 }
 
-/// Keeps still below the surface; at one tick it is away for 0.1 s, as a process that was stopped.
+/// Holds still below the surface; at one tick it blocks for 0.1 s, as a stopped process.
 struct Pauses : device::Device {
   device::DeviceSpecification specification() const override { return {}; }
   device::HandleSample do_sample(double t) override {
@@ -474,8 +476,8 @@ struct Pauses : device::Device {
   }
 };
 
-// After a pause of 100 ticks the clock starts anew, and the force sets in anew: no tick is made up for.  The
-// machine may pause more often than the test does; for each of its pauses the same holds.
+// After a pause of 100 ticks the clock and the force ramp restart: missed ticks are not made up for. The
+// machine may pause more often than the test does; each pause is treated the same way.
 TEST(RealTime, ALongPauseIsNotMadeUpForInABurst) {
   scene::Description d = scene_of();
   d.device->ramp_s = 0.05;
@@ -504,7 +506,7 @@ TEST(RealTime, ALongPauseIsNotMadeUpForInABurst) {
   EXPECT_EQ(clock.stalls, stalls);
 }
 
-/// Waits for somebody, and moves by the wall's clock.
+/// Waits for a peer, and moves by the wall clock.
 struct Awaits : Pauses {
   bool is_live() const override { return true; }
   std::string awaited() const override { return "somebody"; }
@@ -534,7 +536,7 @@ TEST(RealTime, WaitsForADeviceThatIsToComeAndVirtualTimeRefusesIt) {
   }
 }
 
-// A handle outside the workspace feels nothing, and the run counts its ticks.
+// Outside the workspace the force on the handle is zero, and the run counts these ticks.
 TEST(Run, CountsTicksOutsideTheWorkspace) {
   scene::Description d = scene_of();
   EXPECT_EQ(run(d, false).result.outside_ticks, 0);

@@ -1,4 +1,4 @@
-// Regions of a body with materials of their own: by box and sphere, by the names of a mesh file and of a
+// Regions of a body with separate materials: by box and sphere, and by the names of a mesh file and of a
 // model file.
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ class Regions : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// The upper half of the held block, with what is set on it.
+/// Region of the upper half of the held block, with the given settings.
 RegionSpec upper_half() {
   RegionSpec out;
   out.name = "lid";
@@ -74,7 +74,7 @@ TEST_F(Regions, WeighWhatTheirDensitySays) {
     EXPECT_NEAR(volume, half, 1e-15);
     EXPECT_NEAR(body.regions[0].volume, half, 1e-15);
     EXPECT_EQ(body.term->materials()[1].youngs_modulus, 1e4) << "what is not given is the body's";
-    // Kinetic energy of a translation: the inertia term has the same mass.
+    // Kinetic energy of a translation: the inertia term uses the same mass.
     world->state.u().setZero();
     for (Eigen::Index i = 0; i < world->state.u().size(); i += 3) world->state.u()[i] = 1.0;
     EXPECT_NEAR(world->system.kinetic_energy(world->state.view()), 0.5 * half * 4500.0, 1e-12);
@@ -86,10 +86,10 @@ TEST_F(Regions, OfTheBodysMaterialChangeNothing) {
   lid.youngs_modulus_pa = 1e4;
   for (const char* volumetric : {"element", "nodal"}) {
     scene::Description divided = with(lid);
-    divided.integrator.linear_solver = "cholmod";  // to rounding
+    divided.integrator.linear_solver = "cholmod";  // accurate to rounding
     scene::Description whole = divided;
     divided.bodies[0].volumetric = whole.bodies[0].volumetric = volumetric;
-    // averages of dilatation do stop at a border: nothing is left for them at 0.2
+    // averages of the dilatation end at a border: at 0.2 no share is averaged
     divided.bodies[0].poissons_ratio = whole.bodies[0].poissons_ratio =
         std::string(volumetric) == "nodal" ? 0.2 : 0.45;
     whole.bodies[0].regions.clear();
@@ -107,7 +107,7 @@ TEST_F(Regions, AStifferLidSagsLess) {
   const VecX soft = end_of(with(upper_half())), stiff = end_of(with(lid));
   const auto world = loop::assemble(with(lid));
   const Points rest = world->bodies[0].placed;
-  double soft_stretch = 0.0, stiff_stretch = 0.0;  // of the lid along x
+  double soft_stretch = 0.0, stiff_stretch = 0.0;  // stretch of the lid along x
   for (Eigen::Index i = 0; i < rest.cols(); ++i) {
     if (rest(2, i) < 0.0199) continue;
     soft_stretch = std::max(soft_stretch, (soft.segment<3>(3 * i) - rest.col(i)).head<2>().norm());
@@ -145,7 +145,8 @@ TEST_F(Regions, ChangeAlongWithTheBodyOrAlone) {
   }
   EXPECT_THROW(follows->set_youngs_modulus(follows->bodies[0], -1.0, "lid"), Error);
 
-  // In a run: the same end as with the modulus from the start, from rest without forces until the change.
+  // Changed during a run: the final state equals that of a run with the modulus from the start, since there
+  // are no forces until the change.
   scene::Description changed = with(own), fresh = with(own);
   changed.bodies[0].changes = {{0.02, 3e5, "lid"}};
   changed.gravity_m_s2 = fresh.gravity_m_s2 = Vec3::Zero();
@@ -166,7 +167,7 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   d.bodies[0].mesh.file = "two.msh";
   d.bodies[0].attachments.clear();
   {
-    // without a material in the scene: of the body's own material, and still known
+    // without a material in the scene the region has the body's material, and is still listed
     const auto world = loop::assemble(d);
     ASSERT_EQ(world->bodies[0].regions.size(), 2u);
     EXPECT_EQ(world->bodies[0].regions[1].material, 0);
@@ -191,7 +192,7 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   d.bodies[0].regions[0].centre_m = Vec3::Constant(9);
   EXPECT_NE(refusal(d).find("region \"nothing\" holds no tetrahedron"), std::string::npos) << refusal(d);
 
-  // An element in two regions of the scene belongs to the last.
+  // An element in two regions of the scene belongs to the last one.
   RegionSpec all = bone;
   all.name = "all";
   all.region = "sphere";

@@ -1,5 +1,5 @@
-// What was recorded is felt again: bit for bit from the recorded exchange, and to the integrator's error when
-// the bodies are simulated anew.
+// Replay of recordings: forces are bitwise equal from the recorded exchange, and equal to the integrator's
+// error when the bodies are simulated again.
 #include "palpate/loop/replay.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ loop::HapticRecord recorded(const scene::Description& d, bool real_time, const c
   return loop::read_haptic_record(path);
 }
 
-/// Bits of what the hand felt and where the tool was.
+/// Checks that forces on the hand and tool poses are bitwise equal.
 void expect_equal(const std::vector<loop::TickRecord>& a, const std::vector<loop::TickRecord>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -66,7 +66,7 @@ double peak(const std::vector<loop::TickRecord>& ticks) {
   return out;
 }
 
-// Real time: which record a tick used is chance; its forces follow from that record alone.
+// Real time: the record that a tick used is accidental; its forces follow from that record alone.
 TEST(Replay, RetracesARunInRealTimeBitForBit) {
   const scene::Description d = pressed();
   const loop::HapticRecord record = recorded(d, true, "real.h5");
@@ -76,14 +76,14 @@ TEST(Replay, RetracesARunInRealTimeBitForBit) {
   expect_equal(loop::retrace(d, {record}), record.ticks);
 }
 
-// The contact with an obstacle is not recorded: it is the ticks' own, and follows from them.
+// Contact with an obstacle is not recorded: it is computed within the ticks, and follows from them.
 TEST(Replay, RetracesAToolOnAnObstacle) {
   for (const bool real_time : {false, true}) {
     scene::Description d = pressed();
     small_scenes::add_floor(d, d.contacts.front());
     d.contacts.back().first = "tool";
     d.contacts.back().friction = 0.3;
-    // through the floor at the block's side: the tool presses on both
+    // floor 1 mm below the block's top: the tool presses on both
     d.obstacles.back().shape = {{"position_m", Vec3(0, 0, 0.019)}};
     const loop::HapticRecord record = recorded(d, real_time, "floored.h5");
     expect_equal(loop::retrace(d, {record}), record.ticks);
@@ -96,19 +96,19 @@ TEST(Replay, RetracesAToolOnAnObstacle) {
 
 TEST(Replay, RetracesVirtualTimeWithLatency) {
   scene::Description d = pressed();
-  d.exchange.latency_ticks = 25;  // two exchanges on their way behind it
+  d.exchange.latency_ticks = 25;  // longer than two exchange periods
   const int period = static_cast<int>(std::lround(d.exchange.exchange_period_s / d.tool->tick_s));
   ASSERT_EQ(period, 10);
   loop::HapticRecord record = recorded(d, false, "later.h5");
   expect_equal(loop::retrace(d, {record}), record.ticks);
   for (std::size_t i = 0; i < record.ticks.size(); ++i) {
-    const int exchanges = std::max(0, (static_cast<int>(i) - 25) / period);  // that have come since the first
+    const int exchanges = std::max(0, (static_cast<int>(i) - 25) / period);  // adopted since the first
     EXPECT_EQ(record.ticks[i].record_version, i < 25 ? 1 : 1 + exchanges) << i;
   }
   d.exchange.latency_ticks = 4;
   record = recorded(d, false, "late.h5");
   expect_equal(loop::retrace(d, {record}), record.ticks);
-  // another exchange is another force
+  // another exchange gives another force
   loop::HapticRecord other = record;
   for (auto& model : other.models)
     for (auto& point : model.point) point.area *= 1.1;
@@ -116,10 +116,10 @@ TEST(Replay, RetracesVirtualTimeWithLatency) {
   EXPECT_NE(changed.back().device.force, record.ticks.back().device.force);
 }
 
-// What the controller took off is taken off again; without it the hand felt something else.
+// The controller's reductions are replayed; without them the force on the hand differs.
 TEST(Replay, RetracesARunUnderThePassivityController) {
   scene::Description d = pressed();
-  // to and fro every other tick, where a spring that is sampled gives more than it got
+  // reversing every other tick, where a sampled spring returns more energy than it received
   d.tool->coupling.damping_n_s_m = 0.0;
   const KeyframeSpec at = d.device->keyframes.front();
   d.device->keyframes.clear();
@@ -140,7 +140,7 @@ TEST(Replay, RetracesARunUnderThePassivityController) {
   EXPECT_GT(largest, 0.1) << "the controller did something";
 }
 
-// The same scene under the recorded hand is the same run.
+// The same scene with the recorded hand gives the same run.
 TEST(Replay, TheRecordedHandMovesAsTheHandDid) {
   const scene::Description d = pressed();
   const loop::HapticRecord first = recorded(d, false, "first.h5");
@@ -149,8 +149,8 @@ TEST(Replay, TheRecordedHandMovesAsTheHandDid) {
   EXPECT_EQ(again.start.handle.translation, first.start.handle.translation);
 }
 
-// Between ticks the hand is the cubic of its poses and twists; a path of minimum jerk differs from it by
-// h^4 / 384 times its fourth derivative, 360 * 8 mm / (0.15 s)^4 at most: 1.5e-11 m for ticks of 1 ms.
+// Between ticks the hand is the cubic of its poses and twists; a minimum-jerk path differs from it by h^4 /
+// 384 times its fourth derivative, 360 * 8 mm / (0.15 s)^4 at most: 1.5e-11 m for ticks of 1 ms.
 TEST(Replay, TheRecordedHandIsSmoothBetweenTicks) {
   const scene::Description d = pressed();
   const auto hand = loop::recorded_hand(recorded(d, false, "smooth.h5"));
@@ -165,7 +165,8 @@ TEST(Replay, TheRecordedHandIsSmoothBetweenTicks) {
   EXPECT_GT(off, 1e-14);
 }
 
-// Twists of a peer need not be the rates of its poses: whatever they are, the hand stays between two ticks.
+// Twists of a peer need not be the derivatives of its poses: for any twists the hand stays between its two
+// ticks.
 TEST(Replay, TheRecordedHandStaysBetweenTicks) {
   std::mt19937 rng(49);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -199,7 +200,7 @@ TEST(Replay, TheRecordedHandStaysBetweenTicks) {
   }
 }
 
-// The force that sets in anew after a pause is a part of what was felt.
+// The force ramp after a pause is part of the recorded force.
 TEST(Replay, RetracesAForceThatSetsInAnew) {
   scene::Description d = pressed();
   d.device->ramp_s = 0.02;
@@ -215,7 +216,7 @@ TEST(Replay, RetracesAForceThatSetsInAnew) {
   EXPECT_NEAR(again[145].device.force.norm(), record.ticks[145].device.force.norm(), 1e-12);
 }
 
-// Monolithic: one integrator follows the recorded hand at times of its own.
+// Monolithic: one integrator follows the recorded hand at arbitrary times.
 TEST(Replay, AnotherCouplingFollowsTheSameHand) {
   scene::Description d = pressed();
   const loop::HapticRecord record = recorded(d, false, "partitioned.h5");

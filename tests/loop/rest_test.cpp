@@ -1,5 +1,5 @@
-// At rest a coupled scene is in balance: whatever an exchange says of the contact, the hand feels the force
-// of the monolithic solution, and feels it constant.
+// At rest a coupled scene is in equilibrium: with every linearisation, the force on the hand is that of the
+// monolithic solution, and constant.
 #include <gtest/gtest.h>
 
 #include "palpate/loop/run.h"
@@ -13,7 +13,7 @@ struct LastTicks : loop::Observer {
   std::vector<loop::TickRecord> ticks;
 };
 
-/// Force of the contact at the end, and its range over the last two periods [N].
+/// Contact force at the end, and its range over the last two periods [N].
 struct Rest {
   Vec3 force;
   double range = 0.0;
@@ -31,7 +31,7 @@ Rest at_rest(const scene::Description& d) {
   return out;
 }
 
-/// A block of many triangles, held below, under a tool that presses it beside its middle.
+/// A block of many triangles, held below, under a tool that presses it off its centre.
 scene::Description pressed_aside(const std::string& shape, const std::string& method) {
   scene::Description d = small_scenes::pressed_block(0.004);
   d.duration_s = 1.2;
@@ -63,7 +63,7 @@ TEST_P(RestingContact, HasTheForceOfTheMonolithicSolution) {
   const RestCase c = GetParam();
   scene::Description d = pressed_aside(c.shape, c.method);
   d.integrator.name = c.integrator;
-  d.integrator.rtol = 1e-7;  // of error control: it rests as near as that
+  d.integrator.rtol = 1e-7;  // rtol of error control: the state at rest has that accuracy
   d.exchange.linearisation = c.linearisation;
   scene::Description one = d;
   one.exchange.scheme = "monolithic";

@@ -46,8 +46,8 @@ TEST(Run, BodyAtRestStaysAtRestToRounding) {
 }
 
 TEST(Run, NodalDilatationStepsUnderErrorControlAndWithOneLinearSolveAStep) {
-  // Nearly incompressible, let go under six times its weight: two integrators of different families must tell
-  // the same story.
+  // Nearly incompressible, released under six times its weight: two integrators of different families must
+  // agree.
   scene::Description d = held_block();
   d.gravity_m_s2 = Vec3(0, 20, -60);
   d.bodies[0].poissons_ratio = 0.4999;
@@ -134,7 +134,7 @@ TEST(Run, SameSceneSameNumbersBitForBit) {
     EXPECT_EQ(first.ticks[i].device.force, second.ticks[i].device.force);
 }
 
-// Observing changes no number; the energy is the one of the recorded ticks, and so is the buzz.
+// Observers change no number; the energy is that of the recorded ticks, and so is the buzz.
 TEST(Run, ObservesTheEnergyAtThePort) {
   scene::Description d = pressed_block(0.002);
   d.device->keyframes.push_back({.time_s = 0.03, .position_m = d.tool->position_m - Vec3(0, 0, 0.002)});
@@ -165,7 +165,7 @@ TEST(Run, ObservesTheEnergyAtThePort) {
   EXPECT_EQ(*result.buzz_n, *plain.buzz_n);
 }
 
-// At rest the spring of the hand carries the contact: k (x_h - x_t) + F = 0, and the block carries the same
+// At rest the spring of the hand balances the contact: k (x_h - x_t) + F = 0, and the block carries the same
 // force.
 TEST(Run, HeldHandleComesToRestInBalanceWithTheBlock) {
   const scene::Description d = pressed_block(0.003);

@@ -7,7 +7,7 @@
 
 namespace palpate::scene_checks {
 
-/// The message with which a scene is refused.
+/// Returns the message with which a scene is rejected.
 inline std::string refusal(const scene::Description& d) {
   try {
     loop::assemble(d);
@@ -15,8 +15,8 @@ inline std::string refusal(const scene::Description& d) {
   return "not refused";
 }
 
-/// (angular about the origin, linear) momentum of nodes and bones.
-/// @param inertia_of_bones  three moments about its own axes each [kg m^2]; empty where they are negligible
+/// Momentum (angular about the origin, linear) of nodes and bones.
+/// @param inertia_of_bones  three principal moments per bone about its axes [kg m^2]; empty where negligible
 inline Vec6 momentum(const loop::World& world, const VecX& inertia_of_bones = {}) {
   Vec6 out = Vec6::Zero();
   const auto add = [&](double m, const Vec3& x, const Vec3& v) {

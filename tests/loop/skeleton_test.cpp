@@ -1,4 +1,4 @@
-// Bones of a model file in scenes: welded, by a script, and on joints.
+// Bones of a model file in scenes: welded, scripted, and on joints.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -22,8 +22,8 @@ using namespace palpate::scene_checks;
 
 namespace {
 
-/// A limb along x, 24 cm long, around a chain of three bones of 6 cm; nodes on its axis within a bone are the
-/// bone's.
+/// A limb along x, 24 cm long, around a chain of three bones of 6 cm; nodes on its axis within a bone are
+/// carried by the bone.
 LayeredModel limb_model() {
   LayeredModel model;
   model.name = "limb";
@@ -52,7 +52,7 @@ LayeredModel limb_model() {
   return model;
 }
 
-/// The file is there as long as the test runs.
+/// The model file, which exists for the duration of the test.
 struct ModelOnDisk {
   TemporaryFolder folder;
   std::string path = (folder / "limb.h5").string();
@@ -135,7 +135,7 @@ TEST(Skeleton, WeldedBonesHoldTheirNodes) {
 }
 
 // Path, twist and acceleration of a chain of scripts are derivatives of one another; the joint stays
-// together; rotations are in the body's own axes.
+// connected; rotations are in the body's axes.
 TEST(Skeleton, AChainOfScriptsMovesAsItsDerivativesSay) {
   bones::PrescribedJoint first{{quaternion_of(Vec3(0.1, 0.2, -0.3)), Vec3(0.3, 0.1, 0.2)},
                                Vec3(0.25, 0.1, 0.2),
@@ -213,8 +213,8 @@ TEST(Skeleton, BonesOnJointsAreOneBlockAndCarryTheirNodes) {
   EXPECT_EQ(loop::assemble(d)->state.layout().border_size(), 6 + 3 + 1);
 }
 
-// Under its weight, held by the upper bone: nodes go with their bones, joints hold, the hand hangs lower than
-// what it hangs on.
+// Under its weight, held by the upper bone: nodes follow their bones, joints hold, and the hand hangs lower
+// than the bone that carries it.
 TEST(Skeleton, ALimbOnJointsHangsFromItsRoot) {
   const ModelOnDisk file;
   for (const char* name : {"linearly-implicit-euler", "implicit-midpoint", "cvode-bdf"}) {
@@ -242,7 +242,7 @@ TEST(Skeleton, ALimbOnJointsHangsFromItsRoot) {
   }
 }
 
-// Nothing holds it and nothing pulls: momentum stays.
+// A free limb without external forces conserves its momentum.
 TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
   const ModelOnDisk file;
   for (const auto& [name, step, bar] :
@@ -272,8 +272,8 @@ TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
   }
 }
 
-// A tool presses on the hand from above: the joints give way, the tissue between tool and bone is dented, and
-// when the tool has left the springs take the hand back.  Where the joints are welded no bone moves.
+// A tool presses on the hand from above: the joints yield, the tissue between tool and bone is dented, and
+// the springs return the hand after the tool has left. With welded joints no bone moves.
 TEST(Skeleton, AToolMovesPassiveJointsAndDentsTheFlesh) {
   const ModelOnDisk file;
   const auto pressed = [&](const std::string& joints, const std::string& linearisation, double duration_s) {
@@ -304,11 +304,11 @@ TEST(Skeleton, AToolMovesPassiveJointsAndDentsTheFlesh) {
     EXPECT_TRUE(world->state.q().allFinite());
     return world;
   };
-  const auto turned = [](const loop::World& world) {  // of the hand, about y: downwards is positive [rad]
+  const auto turned = [](const loop::World& world) {  // hand about y, positive downwards [rad]
     const Pose start = bones::tapered_bone(limb_model().skeleton.bones[2]).frame;
     return rotation_vector(world.bone_pose(world.bones[2]).rotation * start.rotation.conjugate()).y();
   };
-  const auto dent = [](const loop::World& world) {  // of the skin towards the bone, under the tool [m]
+  const auto dent = [](const loop::World& world) {  // dent of the skin towards the bone, under the tool [m]
     const loop::Body& body = world.bodies[0];
     const Points now = world.positions(body);
     Eigen::Index top = 0;

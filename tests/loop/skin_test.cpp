@@ -13,13 +13,13 @@
 #include "palpate/store/model_file.h"
 #include "temporary_folder.h"
 
-/// A body whose mesh file is a model: contact takes its skin where the scene says so, and only there.
+/// A body whose mesh file is a model: contact uses its skin if the scene specifies it, and only then.
 namespace {
 
 using namespace palpate;
 using small_scenes::held_block;
 
-/// The block of small_scenes.h as a model, with its own boundary as its skin, cut finer: the same shape with
+/// The block of small_scenes.h as a model, with its boundary, subdivided, as its skin: the same shape with
 /// many more points.
 LayeredModel block_model(bool with_skin) {
   LayeredModel model;
@@ -48,7 +48,7 @@ scene::Description block_from(const std::string& path, bool skin) {
   return d;
 }
 
-/// Pressed from above by a fixed ball, `depth` [m] deep.
+/// Adds a fixed ball that presses from above, `depth` [m] deep.
 scene::Description under_a_ball(scene::Description d, double depth) {
   ObstacleSpec ball;
   ball.name = "ball";
@@ -65,7 +65,7 @@ scene::Description under_a_ball(scene::Description d, double depth) {
   return d;
 }
 
-/// Force of the undeformed block on the ball, upwards [N].
+/// Upward force of the undeformed block on the ball [N].
 double pressing(const scene::Description& d) {
   const auto world = loop::assemble(d);
   world->contact->refresh(world->state.view());
@@ -90,10 +90,10 @@ TEST(Skin, OnlyASceneThatNamesItHasOne) {
   EXPECT_GT(skinned->bodies[0].surface_faces().cols(), 10 * plain->bodies[0].surface_faces().cols());
 }
 
-// The skin lies in the block's flat faces, so both see the same body; the skin's 0.6 mm find the dent of
-// radius 4.9 mm that the nodes' 10 mm miss. The force is k times the overlap's volume, pi d^2 (3R - d)/3, but
-// that depth, area and force are taken along the ball's normal: a factor cos^3 of its angle, 1 - 3/2
-// <r^2>/R^2 with the depth as weight, <r^2> = a^2/3 = 2 R d/3.  So 1 - d/R.
+// The skin lies in the block's flat faces, so that both describe the same body; the skin's 0.6 mm resolve the
+// dent of radius 4.9 mm, which the nodes' 10 mm miss. The force is k times the overlap's volume, pi d^2 (3R -
+// d)/3, except that depth, area and force are measured along the ball's normal: a factor cos^3 of its angle,
+// 1 - 3/2 <r^2>/R^2 weighted with the depth, <r^2> = a^2/3 = 2 R d/3. This gives 1 - d/R.
 TEST(Skin, FindsWhatLiesBetweenTheNodes) {
   const ModelOnDisk file(block_model(true));
   constexpr double d = 0.0008, R = 0.015, exact = 1e7 * M_PI * d * d * (3.0 * R - d) / 3.0 * (1.0 - d / R);

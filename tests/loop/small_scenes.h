@@ -3,7 +3,7 @@
 
 namespace palpate::small_scenes {
 
-/// A soft block of a few tetrahedra, its lower face held.
+/// A soft block of a few tetrahedra with its lower face held.
 inline scene::Description held_block() {
   scene::Description d;
   d.name = "held block";
@@ -26,7 +26,7 @@ inline scene::Description held_block() {
   return d;
 }
 
-/// The plane z = 0, and contact of a body with it.
+/// Adds the plane z = 0, and contact of a body with it.
 inline void add_floor(scene::Description& d, const ContactSpec& law) {
   ObstacleSpec floor;
   floor.name = "floor";
@@ -36,7 +36,7 @@ inline void add_floor(scene::Description& d, const ContactSpec& law) {
   d.contacts.back().second = floor.name;
 }
 
-/// The held block under a round tool whose handle stands `depth` below first touch.
+/// The held block under a round tool whose handle is `depth` below first touch.
 inline scene::Description pressed_block(double depth) {
   scene::Description d = held_block();
   d.tool.emplace();
@@ -52,7 +52,7 @@ inline scene::Description pressed_block(double depth) {
   ContactSpec contact;
   contact.first = "block";
   contact.second = "tool";
-  contact.method = "analytic";  // linear between queries, so that what is said of linearisation is exact
+  contact.method = "analytic";  // linear between queries, so that linearisations are exact
   contact.stiffness_pa_m = 1e7;
   d.contacts.push_back(contact);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;

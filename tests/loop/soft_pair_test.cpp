@@ -46,8 +46,8 @@ Vec3 force_on_first(const loop::World& world) {
   return sum;
 }
 
-/// Mean height of a block's face that is `at_rest` high in its own axes; nodes at edges stand for half, those
-/// at corners for a quarter [m].
+/// Mean height of the block's face whose rest height in the block's axes is `at_rest`; nodes on edges have
+/// weight one half, those at corners a quarter [m].
 double mean_height(const loop::World& world, std::size_t body, double at_rest) {
   const Points &rest = world.bodies[body].rest.nodes, now = world.positions(world.bodies[body]);
   double sum = 0.0, weights = 0.0;
@@ -62,9 +62,8 @@ double mean_height(const loop::World& world, std::size_t body, double at_rest) {
 }
 
 // Outer faces held, pressed into each other by d: two bars of stiffness E A / L and the contact k A in series
-// (nu = 0: no lateral strain, so that the uniform stress of a bar solves the block),
-//   F = d / (2 L / (E A) + 1 / (k A)),
-// which is one block of length 2 L compressed by the rest of d.
+// (nu = 0: no lateral strain, so that the uniform stress of a bar is the solution of the block), F = d / (2 L
+// / (E A) + 1 / (k A)), which is one block of length 2 L compressed by the rest of d.
 TEST(SoftPair, PressedTogetherTheyAreOneBlock) {
   constexpr double d = 1e-3, area = kWidth * kWidth,
                    exact = d / (2 * kLength / (kYoung * area) + 1 / (kStiffness * area));
@@ -74,8 +73,8 @@ TEST(SoftPair, PressedTogetherTheyAreOneBlock) {
   ASSERT_TRUE(loop::run(*world, {}).status.ok());
   const Vec3 force = force_on_first(*world);
   EXPECT_NEAR(-force.z() / exact, 1.0, 0.005);
-  EXPECT_LT(force.head<2>().norm(), 2e-6 * exact);  // the rim, whose triangles are no mirror images
-  // Symmetric about the middle plane: each face gives way by F L / (E A).
+  EXPECT_LT(force.head<2>().norm(), 2e-6 * exact);  // the rim, whose triangles are not symmetric
+  // Symmetric about the middle plane: each face yields by F L / (E A).
   const double lower = mean_height(*world, 0, 0.5 * kLength), upper = mean_height(*world, 1, -0.5 * kLength);
   EXPECT_NEAR(kLength - lower, exact * kLength / (kYoung * area), 0.01 * d);
   EXPECT_NEAR(upper - (kLength - d), exact * kLength / (kYoung * area), 0.01 * d);
@@ -99,7 +98,7 @@ Ran run_by(const scene::Description& description, const std::string& solver, dou
   return {world->state.q() - before, world->stepper->counters()};
 }
 
-// Contact stands beside the pattern of a fused step: one analysis whatever opens and closes, no matrix in
+// Contact is outside of the pattern of a fused step: one analysis whatever opens and closes, no matrix in
 // double, and the motion of a direct solver.
 TEST(SoftPair, ContactJoinsTheFusedSteps) {
   scene::Description d = two_blocks(-1e-3);
@@ -119,8 +118,8 @@ TEST(SoftPair, ContactJoinsTheFusedSteps) {
     }
 }
 
-// With friction as well, for two steps: where friction sticks, more of them depend on the last digit of each,
-// whichever way it is solved.
+// Friction as well, for two steps: where friction sticks, later steps depend on rounding in each step,
+// however it is solved.
 TEST(SoftPair, FrictionJoinsTheFusedSteps) {
   scene::Description d = two_blocks(-1e-3);
   d.contacts[0].friction = 0.3;
@@ -138,7 +137,7 @@ TEST(SoftPair, FrictionJoinsTheFusedSteps) {
   }
 }
 
-// A contact that is named and never touches: the same fused steps, but for the rounding of their times.
+// A specified contact that never touches: the same fused steps, except for rounding of their times.
 TEST(SoftPair, ContactThatNeverTouchesKeepsTheFusedSteps) {
   scene::Description d = two_blocks(5e-3);
   d.gravity_m_s2 = Vec3(0, 2, 0);
@@ -152,7 +151,7 @@ TEST(SoftPair, ContactThatNeverTouchesKeepsTheFusedSteps) {
   EXPECT_EQ(named.counters.solver.factorisations, without.counters.solver.factorisations);
 }
 
-// Free blocks, one thrown at the other: momentum is conserved, and passes from one to the other.
+// Free blocks, one thrown at the other: momentum is conserved, and transferred from one to the other.
 TEST(SoftPair, ACollisionKeepsMomentum) {
   scene::Description d = two_blocks(0.5e-3);
   for (auto& body : d.bodies) body.attachments.clear();

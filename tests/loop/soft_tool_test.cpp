@@ -1,5 +1,4 @@
-// A soft tool: the hand's tool carries nodes of a soft body, and ticks a thousand times a second all the
-// same.
+// A soft tool: the hand's tool carries nodes of a soft body, at a thousand ticks per second all the same.
 #include <gtest/gtest.h>
 
 #include "loop/body_side.h"
@@ -15,7 +14,7 @@ namespace {
 
 using namespace palpate;
 
-/// A block whose upper face a tool carries, its handle at rest.
+/// A block whose upper face is carried by a tool, with its handle at rest.
 scene::Description carried_block() {
   scene::Description d = small_scenes::pressed_block(0.0);
   d.contacts.clear();
@@ -33,13 +32,13 @@ scene::Description carried_block() {
 
 double mass_of(const scene::Description& d) { return d.bodies[0].density_kg_m3 * 0.04 * 0.04 * 0.02; }
 
-// What hangs on the tool weighs m g on the hand, and turns it by m g times the way to its centre.
+// A body hanging from the tool exerts m g on the hand, and a moment of m g times the distance to its centre.
 TEST(SoftTool, WeighsWhatItWeighs) {
   for (const char* linearisation : {"points", "condensed", "monolithic"}) {
     scene::Description d = carried_block();
     d.duration_s = 1.0;
     d.gravity_m_s2 = Vec3(0, 0, -9.81);
-    d.bodies[0].mass_damping_per_s = 20.0;  // it comes to rest
+    d.bodies[0].mass_damping_per_s = 20.0;  // damped to rest
     if (linearisation == std::string("monolithic"))
       d.exchange.scheme = linearisation;
     else
@@ -50,14 +49,13 @@ TEST(SoftTool, WeighsWhatItWeighs) {
     const loop::TickRecord& still = ticks.back();
     EXPECT_NEAR(still.device.force.z(), -weight, 2e-3 * weight) << linearisation;
     EXPECT_LE(still.device.force.head<2>().norm(), 2e-3 * weight) << linearisation;
-    // the tool stands 1 mm and 2 mm beside the block's middle, which hangs by the softness of the tissue
-    // aside
+    // the tool is 1 mm and 2 mm off the block's centre, which hangs sideways because of the tissue's softness
     EXPECT_NEAR(still.device.moment.x(), 0.002 * weight, 5e-5 * weight) << linearisation;
     EXPECT_NEAR(still.device.moment.y(), -0.001 * weight, 5e-5 * weight) << linearisation;
   }
 }
 
-/// The block is swung aside and down, and on its way is pressed onto the floor.
+/// The block is swung sideways and down, and pressed onto the floor on its way.
 scene::Description swung_block() {
   scene::Description d = carried_block();
   d.duration_s = 0.3;
@@ -90,8 +88,8 @@ std::vector<loop::TickRecord> swung(double period) {
   return ticks_of(*loop::assemble(d));
 }
 
-// The hand feels what it would of one system in which the tool carries the nodes rigidly: the block's inertia
-// as it is swung, and the floor through the block.  The shorter a period the less they are apart.
+// The force on the hand is that of the monolithic solution in which the tool carries the nodes rigidly: the
+// block's inertia while it swings, and the floor through the block. The difference decreases with the period.
 TEST(SoftTool, FeelsAsOneSystem) {
   scene::Description d = swung_block();
   d.exchange.scheme = "monolithic";
@@ -115,7 +113,7 @@ TEST(SoftTool, FeelsAsOneSystem) {
   EXPECT_LE(before, 0.05);
 }
 
-// A switch that grasps lets go of nothing that the tool carries.
+// A grasp switch does not release what the tool carries.
 TEST(SoftTool, AGraspDoesNotLetItGo) {
   scene::Description d = carried_block();
   d.duration_s = 0.3;
@@ -129,7 +127,7 @@ TEST(SoftTool, AGraspDoesNotLetItGo) {
   EXPECT_NEAR(world->positions(world->bodies[0]).row(2).mean(), 0.01, 5e-3) << "it hangs where it did";
 }
 
-// Each hand carries its own.
+// Each hand carries its body.
 TEST(SoftTool, ASecondHandCarriesToo) {
   for (const char* scheme : {"partitioned", "monolithic"}) {
     scene::Description d = carried_block();
@@ -141,7 +139,7 @@ TEST(SoftTool, ASecondHandCarriesToo) {
     left.name = "left";
     left.tool = *d.tool;
     left.device = *d.device;
-    d.tool->position_m.x() += 1.0;  // far from it
+    d.tool->position_m.x() += 1.0;  // far from the first one
     d.device->keyframes[0].position_m = d.tool->position_m;
     d.hands.push_back(left);
     d.bodies[0].attachments[0].to = "left";
@@ -157,7 +155,7 @@ TEST(SoftTool, ASecondHandCarriesToo) {
   }
 }
 
-// Over a time that the bodies stand still in, what the tool carries goes with it: nothing is torn.
+// While the bodies are held, the body carried by the tool moves with it: nothing is torn.
 TEST(SoftTool, TakesItsBodyAlong) {
   scene::Description d = carried_block();
   SoftBodySpec other = d.bodies[0];
@@ -191,7 +189,7 @@ TEST(SoftTool, TakesItsBodyAlong) {
   EXPECT_EQ(world->positions(world->bodies[1]), y) << "it carries that one alone";
 }
 
-// As the loop in real time does it with bodies that are late.
+// As in the real-time loop with late bodies.
 TEST(SoftTool, TakesItsBodyAlongWhereItIsLate) {
   const auto world = loop::assemble(carried_block());
   loop::RunOptions options;

@@ -15,7 +15,7 @@ class Ticks : public loop::Observer {
   std::vector<Vec3> forces;
 };
 
-/// A block that falls, and where tools are built in one that a tool presses.
+/// A falling block, or, where tools are built in, a block pressed by a tool.
 scene::Description moving_scene() {
 #ifdef PALPATE_HAS_TOOL
   return pressed_block(0.002);

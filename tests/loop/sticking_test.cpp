@@ -1,5 +1,5 @@
-// What sticks stays: friction below its limit is a spring between material points, and friction at its limit
-// is Coulomb's.
+// Sticking contact does not drift: friction below its limit is a spring between material points, and friction
+// at its limit is Coulomb's.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ scene::Description block_on_an_incline(const std::string& integrator, double rat
   block.mesh.generator = "box";
   block.mesh.size_m = Vec3(0.06, 0.05, 0.02);
   block.mesh.element_size_m = 0.02;
-  block.position_m = Vec3(0, 0, 0.00999804);  // in balance
+  block.position_m = Vec3(0, 0, 0.00999804);  // in equilibrium
   block.youngs_modulus_pa = 1e6;
   block.stiffness_damping_s = 1e-3;
   d.bodies.push_back(block);
@@ -42,7 +42,7 @@ scene::Description block_on_an_incline(const std::string& integrator, double rat
   return d;
 }
 
-/// Mean of the nodes along the slope, after a time [m].
+/// Mean position of the nodes along the slope after `duration_s` [m].
 double place(const scene::Description& d, double duration_s) {
   const auto world = loop::assemble(d);
   loop::RunOptions options;
@@ -70,7 +70,7 @@ TEST(Sticking, ABlockStaysWhereItCameToRest) {
   EXPECT_NEAR(place(d, 20.0) - place(d, 1.0), 19.0 * 0.5 * 3e-4 * std::sqrt(9.81 * 0.06), 2e-5);
 }
 
-// Between two soft bodies as well; of the lower block the mean is taken.
+// Between two soft bodies as well; the mean of the lower block is used.
 TEST(Sticking, ABlockOnABlockIsHeld) {
   scene::Description d = block_on_an_incline("linearly-implicit-euler", 0.5);
   SoftBodySpec upper = d.bodies[0];
@@ -89,7 +89,7 @@ TEST(Sticking, ABlockOnABlockIsHeld) {
 #ifdef PALPATE_HAS_TOOL
 namespace {
 
-/// A soft block under its weight, between two tools of two hands that hold still.
+/// A soft block under its weight, between the tools of two hands at rest.
 scene::Description held_by_two(const std::string& scheme) {
   scene::Description d;
   d.name = "held by two";
@@ -131,7 +131,7 @@ scene::Description held_by_two(const std::string& scheme) {
   return d;
 }
 
-/// How far the block sinks from 1 to 2 s, without a hand that moves [m].
+/// Distance that the block sinks from 1 to 2 s, with the hands at rest [m].
 double sinks(const scene::Description& d) {
   struct Heights : loop::Observer {
     void period(loop::World& world, double t) override {
@@ -152,9 +152,9 @@ double sinks(const scene::Description& d) {
 
 }  // namespace
 
-// What holds it is friction below its limit: it creeps at v_r times that share, 30 um/s, without anchors.
-// With them it stays; tools with ticks of their own settle, half a second long, from what they were let go
-// with.
+// The block is held by friction below its limit: without anchors it creeps at v_r times the ratio to the
+// limit, 30 um/s. With anchors it stays; tools with separate ticks settle from their initial state for half a
+// second.
 TEST(Sticking, WhatToolsHoldIsHeld) {
   for (const bool partitioned : {true, false}) {
     scene::Description d = held_by_two(partitioned ? "partitioned" : "monolithic");
@@ -164,8 +164,8 @@ TEST(Sticking, WhatToolsHoldIsHeld) {
   }
 }
 
-// Ticks of 10 ms over queries 1 ms apart: what holds is as slow as the ticks.  On a stiff block, so that
-// nothing else yields.
+// Ticks of 10 ms over queries 1 ms apart: the holding force is updated with the ticks. On a stiff block, so
+// that nothing else yields.
 TEST(Sticking, HoldsInTicksLongerThanTheTimeBetweenQueries) {
   scene::Description d = small_scenes::pressed_block(0.0);
   d.duration_s = 1.0;

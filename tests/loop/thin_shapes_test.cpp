@@ -4,8 +4,7 @@
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
 
-/// Shapes that the points of a body do not see by themselves: thinner than its mesh, smaller than its
-/// elements, or within it.
+/// Shapes that a body's points miss: thinner than its mesh, smaller than its elements, or inside of it.
 namespace {
 
 using namespace palpate;
@@ -57,8 +56,8 @@ TEST(ThinShapes, ABlockComesToLieOnABarThinnerThanItself) {
   EXPECT_LT(loop::overlaps_of(*world)[0].deepest_m, 0.005);
 }
 
-/// A round tool at `z` with its handle there, or on its way to `end`, over a soft ball of 50 mm that stands
-/// on its lower cap.
+/// A round tool at `z` with its handle there, or moving to `end`, over a soft ball of 50 mm that rests on its
+/// lower cap.
 scene::Description tool_and_ball(double radius, double z, double end) {
   scene::Description d;
   SoftBodySpec body;
@@ -104,9 +103,9 @@ struct LargestForce : loop::Observer {
   void tick(const loop::TickRecord& tick) override { force_n = std::max(force_n, tick.device.force.norm()); }
 };
 
-// By the points of the ball's skin alone 1.0 N, which is k pi 4 R^3/27, the most that they give at any depth:
-// on a flat skin the way to a sphere's surface shrinks from R/3 on.  Hertz with the coupling's spring: 2 N;
-// an image of the skin: 2.0 N here, 1.5 N on finer elements.
+// By the points of the ball's skin alone the force would be 1.0 N, which is k pi 4 R^3/27, their maximum at
+// any depth: on a flat skin the distance to a sphere's surface decreases from R/3 on. Hertz with the
+// coupling's spring: 2 N; an image of the skin: 2.0 N here, 1.5 N with finer elements.
 TEST(ThinShapes, AToolSmallerThanTheElementsIsFelt) {
   scene::Description d = tool_and_ball(0.006, 0.112, 0.085);
   d.duration_s = 0.4;
@@ -119,7 +118,8 @@ TEST(ThinShapes, AToolSmallerThanTheElementsIsFelt) {
   EXPECT_LT(largest.force_n, 2.1);
 }
 
-// Its skin is farther from the tool than the tool's surface everywhere: nothing that the skin's points see.
+// The body's skin is farther from the tool than the tool's surface everywhere: the skin's points do not
+// detect it.
 TEST(ThinShapes, AToolThatBeginsWithinABodyIsPushedOut) {
   scene::Description d = tool_and_ball(0.008, 0.07, 0.07);
   d.duration_s = 0.1;

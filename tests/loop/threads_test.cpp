@@ -9,7 +9,7 @@ using namespace palpate::small_scenes;
 
 namespace {
 
-/// Some ten thousand elements, which make several chunks, released from a state out of equilibrium.
+/// About ten thousand elements, in several chunks, released from a state out of equilibrium.
 scene::Description falling_block(const std::string& integrator, int threads) {
   scene::Description d = held_block();
   d.bodies[0].mesh.element_size_m = 0.0025;
@@ -22,7 +22,7 @@ scene::Description falling_block(const std::string& integrator, int threads) {
   return d;
 }
 
-/// A second block above the first, its upper end held, moving down into it.
+/// A second block above the first with its upper end held, moving down into it.
 scene::Description touching_blocks(int threads) {
   scene::Description d = falling_block("linearly-implicit-euler", threads);
   d.integrator.linear_solver = "auto";
@@ -44,8 +44,8 @@ scene::Description touching_blocks(int threads) {
 
 struct Ran {
   VecX q, u;
-  long by_second = 0;  ///< tasks of shared loops that the second thread ran
-  int threads = 0;     ///< that loops had while the World ran
+  long by_second = 0;  ///< tasks of shared loops that ran on the second thread
+  int threads = 0;     ///< threads available to loops during the run
 };
 
 class Watch : public loop::Observer {
@@ -69,7 +69,7 @@ class Threads : public testing::Test {
   void TearDown() override { workers::set_count(1); }
 };
 
-// No linear solver here: what is shared is the elements' work.
+// Without a linear solver: the elements' work is shared.
 TEST_F(Threads, ReachTheElementsAndChangeNoBitOfTheResult) {
   const Ran one = run(*loop::assemble(falling_block("rk4", 1)), 0.004);
   const Ran two = run(*loop::assemble(falling_block("rk4", 2)), 0.004);

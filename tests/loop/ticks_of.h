@@ -5,13 +5,13 @@
 
 namespace palpate {
 
-/// Keeps what the first hand felt.
+/// Records the ticks of the first hand.
 struct Ticks : loop::Observer {
   void tick(const loop::TickRecord& tick) override { all.push_back(tick); }
   std::vector<loop::TickRecord> all;
 };
 
-/// What the first hand felt in a run of the scene.
+/// Returns the first hand's ticks in a run of the scene.
 inline std::vector<loop::TickRecord> ticks_of(loop::World& world) {
   Ticks ticks;
   loop::RunOptions options;

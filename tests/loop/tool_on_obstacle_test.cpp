@@ -1,4 +1,4 @@
-// A rigid tool against obstacles, through everything that a scene goes through.
+// A rigid tool against obstacles, through a whole scene.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -79,8 +79,8 @@ std::vector<loop::TickRecord> run(const scene::Description& d, const Vec3& veloc
 
 }  // namespace
 
-// A hand draws a block over a plane, faster and faster, back, and across: whether it sticks, begins to slide,
-// turns round or comes to rest, at no tick is the force outside the cone of friction.
+// A hand drags a block over a plane, with increasing speed, back, and sideways: whether it sticks, starts to
+// slide, reverses or comes to rest, the force is within the cone of friction at every tick.
 TEST(ToolOnObstacle, NoTickIsOutsideTheConeOfFriction) {
   constexpr double kMu = 0.3;
   scene::Description d = ball_over("plane", 0.0);
@@ -122,7 +122,7 @@ TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
       for (const bool mesh : {false, true}) {
         scene::Description d = ball_over(type, 2e-4);
         d.exchange.scheme = scheme;
-        if (mesh && std::string(type) != "plane") continue;  // facets balance on no round thing
+        if (mesh && std::string(type) != "plane") continue;  // facets do not balance on a round obstacle
         if (mesh) {
           d.tool->shape = "mesh";
           d.tool->mesh.generator = "box";
@@ -138,9 +138,9 @@ TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
         EXPECT_LT(ticks.back().tool_twist.linear.norm(), 1e-4) << what;
         EXPECT_LT(ticks.back().contact.force.head<2>().norm(), 1e-6 * kMass * kG) << what;
         if (std::string(type) ==
-            "plane") {  // at the depth at which k times the depth's integral is the weight
+            "plane") {  // at the depth at which k times the integrated depth equals the weight
           const double depth = kR - ticks.back().tool.translation.z(),
-                       force = mesh ? 1e7 * 4.0 * kR * depth * (kR + depth)  // its sides, too
+                       force = mesh ? 1e7 * 4.0 * kR * depth * (kR + depth)  // includes its sides
                                     : 1e8 * std::numbers::pi * kR * depth * depth;
           EXPECT_NEAR(force / (kMass * kG), 1.0, 2e-3) << what;
         }
@@ -149,8 +149,8 @@ TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
   EXPECT_EQ(checked, 10);
 }
 
-// k pi R d^2 is the gradient of an energy: the ball leaves as fast as it came, with the opposite
-// momentum, and the contact has given it twice that.
+// k pi R d^2 is the gradient of an energy: the ball leaves at its impact speed with the opposite momentum,
+// and the contact has transferred twice that.
 TEST(ToolOnObstacle, WithoutDampingItBouncesBackAsFast) {
   scene::Description d = ball_over("plane", 1e-3);
   d.gravity_m_s2.setZero();
@@ -190,7 +190,7 @@ TEST(ToolOnObstacle, HuntAndCrossleysRestitution) {
   EXPECT_NEAR(run(d, Vec3(0, 0, -0.5)).back().tool_twist.linear.z() / 0.5, 0.593624, 5e-4);
 }
 
-// A falling ball, by ticks: its rebound tends to that of one system, at first order in the tick.
+// A falling ball in ticks: its rebound converges to the monolithic solution at first order in the tick.
 TEST(ToolOnObstacle, TicksTendToOneSystem) {
   scene::Description d = ball_over("plane", 0.01);
   d.contacts[0].hunt_crossley_s_m = 0.5;
@@ -212,7 +212,7 @@ TEST(ToolOnObstacle, TicksTendToOneSystem) {
   EXPECT_NEAR(std::log2(error[0] / error[1]), 1.0, 0.3) << error[0] << ", " << error[1];
 }
 
-// A ball set down sliding: v = v0 - mu g t, and it begins to spin at w = 5/2 mu g t / R (arm R - d).
+// A ball set down while sliding: v = v0 - mu g t, and it begins to spin at w = 5/2 mu g t / R (arm R - d).
 TEST(ToolOnObstacle, FrictionSlowsAndSpinsASlidingBall) {
   scene::Description d = ball_over("plane", 0.0);
   const double depth = std::sqrt(kMass * kG / (1e8 * std::numbers::pi * kR));
@@ -229,10 +229,10 @@ TEST(ToolOnObstacle, FrictionSlowsAndSpinsASlidingBall) {
   EXPECT_NEAR(ticks.back().tool_twist.angular.y() / (2.5 * slowed / kR), 1.0, 1e-2);
 }
 
-// A period that is long against the fall: what comes near within it is a candidate.
+// A period that is long relative to the fall: contact that occurs within it is among the candidates.
 TEST(ToolOnObstacle, WhatComesWithinAPeriodIsLookedAheadFor) {
   for (const char* scheme : {"partitioned", "monolithic"}) {
-    scene::Description d = ball_over("plane", 0.06);  // 1 cm apart at the last query before it lands
+    scene::Description d = ball_over("plane", 0.06);  // 1 cm apart at the last query before contact
     d.exchange.scheme = scheme;
     d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.02;
     d.contacts[0].hunt_crossley_s_m = 3.0;
@@ -248,7 +248,7 @@ TEST(ToolOnObstacle, WhatComesWithinAPeriodIsLookedAheadFor) {
 
 namespace {
 
-/// The block between the tool and the floor that holds both.
+/// The block between the tool and a floor, with a post that stops the tool.
 scene::Description squeezed(const char* scheme, const char* linearisation) {
   scene::Description d = small_scenes::pressed_block(0.002);
   d.exchange.scheme = scheme;
@@ -264,7 +264,7 @@ scene::Description squeezed(const char* scheme, const char* linearisation) {
   stop.stiffness_pa_m = 1e8;
   ObstacleSpec post;
   post.name = "stop";
-  post.type = "box";  // the tool's lowest point lands 1 mm into the block, then 0.5 mm into this
+  post.type = "box";  // the tool's lowest point penetrates the block by 1 mm, then this post by 0.5 mm
   post.shape = {{"size_m", Vec3(0.01, 0.01, 0.02)}, {"position_m", Vec3(0.001, 0.002, 0.0085)}};
   d.obstacles.push_back(post);
   d.contacts.push_back(stop);
@@ -275,7 +275,7 @@ scene::Description squeezed(const char* scheme, const char* linearisation) {
 
 }  // namespace
 
-// The wrench that the ticks feel is that of both partners; frozen and condensed find the same rest.
+// The tick's wrench is the sum over both partners; frozen and condensed reach the same equilibrium.
 TEST(ToolOnObstacle, BesideASoftBody) {
   double force[3], depth[3];
   int i = 0;
@@ -286,7 +286,7 @@ TEST(ToolOnObstacle, BesideASoftBody) {
     force[i] = ticks.back().contact.force.z();
     depth[i] = d.tool->position_m.z() - ticks.back().tool.translation.z();
     EXPECT_LT(ticks.back().tool_twist.linear.norm(), 1e-4) << scheme << ", " << linearisation;
-    // the coupling carries what contact gives
+    // the coupling balances the contact force
     EXPECT_NEAR(force[i], -300.0 * depth[i], 2e-3 * std::abs(force[i])) << scheme << ", " << linearisation;
     ++i;
   }
@@ -294,7 +294,7 @@ TEST(ToolOnObstacle, BesideASoftBody) {
   for (int k : {1, 2}) EXPECT_NEAR(force[k] / force[0], 1.0, 2e-3) << k;
 }
 
-// Sides have an order of their own: which is named first changes no bit.
+// Sides are ordered internally: the order in the scene changes no bit.
 TEST(ToolOnObstacle, TheOrderOfNamesChangesNoBit) {
   for (const char* scheme : {"partitioned", "monolithic"}) {
     scene::Description d = squeezed(scheme, "condensed");
@@ -329,8 +329,8 @@ TEST(ToolOnObstacle, WhatCannotTouchIsRefused) {
   EXPECT_NE(refusal("block", "nothing").find("nothing is called \"nothing\""), std::string::npos);
 }
 
-// A ball reaches a plate of 1 cm at 10 m/s, 5 cm a tick: it goes through, and is counted; or, sub-stepped, it
-// is thrown back, or stays on it.
+// A ball reaches a plate of 1 cm at 10 m/s, 5 cm per tick: it passes through and is counted; or, sub-stepped,
+// it bounces or stays on the plate.
 TEST(ToolOnObstacle, AThinPlateIsNotMissedWithSubSteps) {
   for (const bool substep : {false, true}) {
     scene::Description d = ball_over("box", 0.09);

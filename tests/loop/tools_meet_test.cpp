@@ -1,4 +1,4 @@
-// Tools that touch each other, through everything that a scene goes through.
+// Tools that touch each other, through a whole scene.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kA = 0.02, kB = 0.03, kMass = 0.1;
 
-/// A tool of half the edge, or the radius, `half`.
+/// Gives a tool the shape `kind` with half edge, or radius, `half`.
 void shape(ToolSpec& tool, const std::string& kind, double half) {
   tool.mass_kg = kMass;
   tool.radius_m = half;
@@ -33,7 +33,7 @@ void shape(ToolSpec& tool, const std::string& kind, double half) {
   tool.mesh.element_size_m = half;
 }
 
-/// Two hands that press their tools on each other along z, by 4 mm from first touch in 0.1 s, and stay.
+/// Two hands press their tools on each other along z, by 4 mm from first touch within 0.1 s, and stay.
 scene::Description pressed(const std::string& first, const std::string& second) {
   scene::Description d;
   d.name = first + " on " + second;
@@ -65,7 +65,7 @@ scene::Description pressed(const std::string& first, const std::string& second) 
   return d;
 }
 
-/// How far the two overlap where they touch [m].
+/// Overlap of the two tools in contact [m].
 double depth(const HandsFelt& both) {
   return kA + kB -
          (both.of[0].back().tool.translation - both.of[1].back().tool.translation).dot(Vec3::UnitZ());
@@ -73,11 +73,11 @@ double depth(const HandsFelt& both) {
 
 }  // namespace
 
-// At rest a tool presses as much as its hand and as the other tool, by the law.  Of two balls that is
-// k pi delta^2 R r/(R + r), to O(delta/R); of a ball's points on a flat face k pi delta^2 R, of the face's on
-// a ball k pi delta^2 (R - delta/2) (validation/b_free_tool.h), the mean where both count: the face's alone
-// where the ball is the thicker one; k A delta of a face on a larger one, whose points do not end where the
-// smaller one does.
+// At rest a tool exerts the force of its hand, and of the other tool, by the law. For two balls it is k pi
+// delta^2 R r/(R + r), to O(delta/R); for a ball's points on a flat face k pi delta^2 R, for the face's
+// points on a ball k pi delta^2 (R - delta/2) (validation/b_free_tool.h), and the mean where both count: the
+// face's points alone where the ball is the thicker one; k A delta for a face on a larger one, whose points
+// extend beyond the smaller face.
 TEST(ToolsMeet, AtRestTheyCarryEachOther) {
   for (const char* first : {"sphere", "box"})
     for (const char* second : {"sphere", "box"})
@@ -106,8 +106,8 @@ TEST(ToolsMeet, AtRestTheyCarryEachOther) {
       }
 }
 
-// Equal and opposite at every tick, to rounding, while one strikes the other, whatever the contact's
-// stiffness and with friction: their ends are found from one system.
+// Forces are equal and opposite at every tick, to rounding, during an impact, for any contact stiffness and
+// with friction: the final states of both are solved as one system.
 TEST(ToolsMeet, ForcesAreOppositeAtEveryTick) {
   for (const char* first : {"sphere", "box"})
     for (const char* second : {"sphere", "box"})
@@ -136,8 +136,8 @@ TEST(ToolsMeet, ForcesAreOppositeAtEveryTick) {
         }
 }
 
-// A free tool, struck by the other, gains the momentum that the forces of its ticks gave it, and both turn
-// about the line between them as one: the sum of angular momentum about the origin is that of the hand's.
+// A free tool struck by the other gains the momentum given by the forces of its ticks, and both rotate about
+// their line of centres as one: the total angular momentum about the origin is that from the hand.
 TEST(ToolsMeet, AStruckToolTakesTheMomentum) {
   scene::Description d = pressed("sphere", "sphere");
   d.hands[0].tool.coupling = {0.0, 0.0, 0.0, 0.0};
@@ -158,9 +158,9 @@ TEST(ToolsMeet, AStruckToolTakesTheMomentum) {
   EXPECT_LT(about_point.norm(), 1e-3 * kA * gained.norm());
 }
 
-// Of two balls all of the contact has one normal, along the line between their centres at the tick's start.
-// Where their patch shrinks, the sum of normal forces, linear in the tick, falls by a little more than that
-// of the pressures, which no ring takes below zero.
+// The contact of two balls has a single normal, along the line between their centres at the tick's start.
+// Where their patch shrinks, the sum of normal forces, linear in the tick, decreases slightly more than the
+// sum of pressures, which are not negative on any ring.
 TEST(ToolsMeet, NoTickIsOutsideTheConeOfFriction) {
   constexpr double kMu = 0.3;
   scene::Description d = pressed("sphere", "sphere");
@@ -191,7 +191,7 @@ TEST(ToolsMeet, NoTickIsOutsideTheConeOfFriction) {
   EXPECT_GT(slides, 50);
 }
 
-// The ticks' way to what one system of both does under control of its error: to first order in their length.
+// The ticks converge to the error-controlled monolithic solution of both: to first order in their length.
 TEST(ToolsMeet, TicksConvergeToTheMonolithicSystem) {
   scene::Description d = pressed("box", "sphere");
   d.device->keyframes[1].time_s = 0.02;
@@ -219,7 +219,7 @@ TEST(ToolsMeet, TicksConvergeToTheMonolithicSystem) {
   EXPECT_LT(before, 5e-5);
 }
 
-// A tool between another and the floor: what presses on top arrives below.
+// A tool between another tool and the floor: the load on its top is transmitted to the floor.
 TEST(ToolsMeet, AnObstacleCarriesAChainOfThem) {
   scene::Description d = pressed("sphere", "box");
   ObstacleSpec floor;
@@ -240,8 +240,8 @@ TEST(ToolsMeet, AnObstacleCarriesAChainOfThem) {
   EXPECT_NEAR(a.contact.force.z() / a.wanted.force.z(), 1.0, 1e-3);
 }
 
-// The lower tool lies on a soft block: the records of the bodies go on beside the other tool's contact, to
-// what one system of all three comes to.
+// The lower tool lies on a soft block: the records of the bodies act in addition to the other tool's contact,
+// and the result converges to the monolithic solution of all three.
 TEST(ToolsMeet, BesideASoftBody) {
   scene::Description d = pressed("sphere", "sphere");
   SoftBodySpec block = small_scenes::held_block().bodies[0];
@@ -289,7 +289,7 @@ TEST(ToolsMeet, KeepTheBalanceOfEnergy) {
   EXPECT_LT(std::abs(both.last->unaccounted), 1e-3 * both.last->hand + both.last->quadrature_error);
 }
 
-// Each hand's ticks again from the records of both, to the last bit.
+// Each hand's ticks are replayed bitwise from the records of both.
 TEST(ToolsMeet, AreReplayedTogether) {
   scene::Description d = pressed("box", "sphere");
   d.record.emplace();
@@ -337,7 +337,7 @@ TEST(ToolsMeet, WantTicksAtTheSameTimes) {
     EXPECT_NE(std::string(e.what()).find("\"left\" has tick_s = 0.0005, \"tool\" 0.001"), std::string::npos)
         << e.what();
   }
-  d.contacts.clear();  // tools that do not meet may have any
+  d.contacts.clear();  // without contact between tools, ticks may differ
   HandsFelt both;
   run(d, both);
   EXPECT_EQ(both.of[1].size(), 2 * both.of[0].size());

@@ -24,8 +24,8 @@ namespace {
 
 constexpr double kPeriod = 0.01;
 
-/// The block under the tool, its nodes on the way somewhere at about that speed.
-/// @param spin  of the tool, about the vertical [rad/s]
+/// The block under the tool, with its nodes moving at about `speed`.
+/// @param spin  angular velocity of the tool about the vertical [rad/s]
 std::unique_ptr<loop::World> touching(scene::Description d, const std::string& linearisation,
                                       double error = 0.0, double speed = 1e-3, double spin = 0.0) {
   d.exchange.linearisation = linearisation;
@@ -60,10 +60,11 @@ loop::ContactRecord record_of(loop::World& world) {
   return record;
 }
 
-/// Friction of a tick's end as exactly as Newton's method has it: what is compared is not its tolerance.
+/// Tolerance of the friction at a tick's end, as tight as Newton's method allows, so that comparisons do not
+/// depend on it.
 constexpr double kSettled = 1e-9;
 
-/// The first tick, whose friction is that of its end while the tool goes on as it does.
+/// The first tick, with friction at its end, while the tool continues its motion.
 Linear tick_of(loop::World& world, double length) {
   const loop::ContactRecord record = record_of(world);
   EXPECT_EQ(record.linear.source, dynamics::LinearisedContact::Source::kPoints);
@@ -79,7 +80,7 @@ Linear tick_of(loop::World& world, double length) {
   return Linear(tick);
 }
 
-/// One tick as long as the period.
+/// One tick with the length of the period.
 Linear whole_tick(loop::World& world) { return tick_of(world, kPeriod); }
 
 void expect_same(const Linear& a, const Linear& b, double error) {
@@ -90,7 +91,7 @@ void expect_same(const Linear& a, const Linear& b, double error) {
             error * (of_force(b.B).norm() + kPeriod * of_force(b.J).norm()));
 }
 
-// Galerkin's answer is exact where the exact one is in the span: one step over the period.
+// Galerkin's solution is exact where the exact solution is in the span: one step over the period.
 TEST(TouchReduction, OneTickOfAPeriodIsTheCondensedAnswer) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.005;  // several vertices press
@@ -103,8 +104,8 @@ TEST(TouchReduction, OneTickOfAPeriodIsTheCondensedAnswer) {
   expect_same(whole_tick(*world), condensed, 1e-7);
 }
 
-/// What one tick of the period would be of all nodes, whose friction is that of the tick's end while the tool
-/// goes on as it does: rows and columns of force alone.
+/// One tick of the period with all nodes, with friction at the tick's end while the tool continues its
+/// motion: rows and columns of force only.
 ///     A du = H N^T (K Z dx + D Z dv),    dF = -Z^T (K Z dx + D Z dv) + Z^T (H K + D) N du
 Linear tick_of_all_nodes(loop::World& world) {
   loop::ToolSide& side = loop::ToolSide::of(world);
@@ -119,7 +120,7 @@ Linear tick_of_all_nodes(loop::World& world) {
     world.system.step_matrix(view, 1.0, kPeriod, kPeriod * kPeriod, side.condensed_matrix);
     dynamics::LinearSolver* solver = loop::factored(world.system, side);
     samples = world.contact->touch_samples(view, side.frame_index, &tangents);
-    MatX loads = MatX::Zero(s.size(), 7);  // by x, by v, and none
+    MatX loads = MatX::Zero(s.size(), 7);  // per x, per v, and without tool motion
     loads.col(6) = loop::right_hand_side(world, kPeriod, s, w, {});
     for (std::size_t j = 0; j < samples.size(); ++j)
       for (std::size_t k = 0; k < static_cast<std::size_t>(samples[j].count); ++k) {
@@ -162,8 +163,8 @@ Linear tick_of_all_nodes(loop::World& world) {
   return linear;
 }
 
-// Where friction holds, the surface goes with a tool that moves along it: what resists is the body, not the
-// regularised friction, which is some hundred times as stiff.
+// Where friction sticks, the surface follows a tool that moves along it: the body resists, rather than the
+// regularised friction, which is several hundred times as stiff.
 TEST(TouchReduction, WhatSticksGoesWithTheTool) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.005;
@@ -180,8 +181,8 @@ TEST(TouchReduction, WhatSticksGoesWithTheTool) {
   for (const int axis : {3, 4}) EXPECT_NEAR(iterated.B(axis, axis) / exact.B(axis, axis), 1.0, 0.1);
 }
 
-// Under a tool that spins, samples hold in the middle and slide around it: each kind answers as its own
-// friction has it.
+// Under a spinning tool, samples stick at the centre and slide around it: each kind responds according to its
+// friction.
 TEST(TouchReduction, WhatSlidesIsNotTakenForWhatSticks) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.004;
@@ -201,7 +202,7 @@ TEST(TouchReduction, WhatSlidesIsNotTakenForWhatSticks) {
   ASSERT_GE(slide, 3);
   const Linear exact = tick_of_all_nodes(*world);
   expect_same(whole_tick(*world), exact, 1e-3);
-  // whatever tangents the bodies' own steps have: the ticks' friction is the same
+  // for any friction tangent of the bodies' steps, the ticks' friction is the same
   for (const char* tangent : {"full", "symmetric"}) {
     d.contacts[0].friction_tangent = tangent;
     const auto other = touching(d, "points", 0.0, kCreep, kSpin);
@@ -210,7 +211,8 @@ TEST(TouchReduction, WhatSlidesIsNotTakenForWhatSticks) {
   }
 }
 
-/// How often an exchange makes its basis anew, on shaking bodies, with friction in one contact or without.
+/// Number of times that an exchange rebuilds its basis on shaking bodies, with and without friction in one
+/// contact.
 /// @return {without, with}
 std::array<long, 2> bases_anew(scene::Description d, std::size_t contact) {
   const double friction = d.contacts[contact].friction;
@@ -224,11 +226,12 @@ std::array<long, 2> bases_anew(scene::Description d, std::size_t contact) {
   return out;
 }
 
-// The basis follows the tool's friction alone: that of a floor which the block shakes on takes no other one.
+// The basis follows the tool's friction only: friction on the floor on which the block shakes requires no
+// other basis.
 TEST(TouchReduction, FrictionElsewhereTakesNoBasis) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.005;
-  d.bodies[0].position_m.z() = 0.0097;  // 0.3 mm in the floor
+  d.bodies[0].position_m.z() = 0.0097;  // 0.3 mm deep in the floor
   d.contacts[0].friction = 0.8;
   d.contacts[0].friction_tangent = "secant";
   d.bodies[0].attachments[0].box_min_m = Vec3(-1, -1, -1);
@@ -239,11 +242,11 @@ TEST(TouchReduction, FrictionElsewhereTakesNoBasis) {
   EXPECT_LE(with, without + 1);
 }
 
-// Nor does that of two bodies which an image sees.
+// Friction between two bodies, found in an image, requires no other basis either.
 TEST(TouchReduction, FrictionBetweenBodiesTakesNoBasis) {
   scene::Description d = loop::load(PALPATE_SOURCE_DIR "/scenes/press-stack.toml");
   for (ContactSpec& contact : d.contacts) contact.friction_tangent = "secant";
-  d.tool->position_m.z() -= 0.0025;  // 1 mm in the ball
+  d.tool->position_m.z() -= 0.0025;  // 1 mm deep in the ball
   const auto [without, with] = bases_anew(d, 1);
   EXPECT_GT(without, 0);
   EXPECT_LE(with, without + 1);
@@ -262,12 +265,12 @@ TEST(TouchReduction, AFewIterationsAnswerToTheErrorAskedFor) {
   expect_same(iterated, factored, 0.01);
 }
 
-// Every part of what the iteration leaves to be worked out: a support that moves, a floor under the block, a
-// mass damping, and the inertia that a tick shorter than the period meets.
+// Includes every term that the iteration leaves to be computed: a moving support, a floor under the block,
+// mass damping, and the inertia in a tick shorter than the period.
 TEST(TouchReduction, IterationsKnowFloorSupportAndDamping) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.005;
-  d.bodies[0].position_m.z() = 0.0097;  // 0.3 mm in the floor
+  d.bodies[0].position_m.z() = 0.0097;  // 0.3 mm deep in the floor
   d.bodies[0].mass_damping_per_s = 200.0;
   d.contacts[0].damping_pa_s_m = 2e4;
   AttachmentSpec& side = d.bodies[0].attachments[0];
@@ -287,7 +290,7 @@ TEST(TouchReduction, IterationsKnowFloorSupportAndDamping) {
   }
 }
 
-// A coarse basis errs to one side: bodies are never softer than they are.
+// A coarse basis has a one-sided error: reduced bodies are never softer than the bodies.
 TEST(TouchReduction, ACrudeBasisIsTooStiffNeverTooSoft) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.004;
@@ -295,8 +298,7 @@ TEST(TouchReduction, ACrudeBasisIsTooStiffNeverTooSoft) {
   EXPECT_LT(crude.J(5, 5), factored.J(5, 5) * (1.0 + 1e-6));
 }
 
-// What a run says of it afterwards: the bound is what was asked for, or less, and nothing where all was
-// factored.
+// Error report of a run: the bound is at most the requested error, and zero if all solves were factored.
 TEST(TouchReduction, ARunSaysHowExactlyBodiesAnswered) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.004;
@@ -324,8 +326,8 @@ TEST(TouchReduction, ARunSaysHowExactlyBodiesAnswered) {
   EXPECT_TRUE(loop::answer_errors_of(*apart).empty());
 }
 
-/// The contact forces, tick by tick, of a tool that a stiff coupling presses down on the block over two long
-/// periods, with the second's record so many ticks late.
+/// Contact forces, tick by tick, of a tool that a stiff coupling presses down on the block over two long
+/// periods, with the second record `ticks` late.
 std::vector<double> forces_with_latency(int ticks) {
   scene::Description d = pressed_block(0.001);
   d.tool->coupling.stiffness_n_m = 1e5;
@@ -348,8 +350,8 @@ std::vector<double> forces_with_latency(int ticks) {
   return keep.forces;
 }
 
-// A record of an instant that is over is carried on to the tick that takes it up, along the path that the
-// tool has come since: the block is then where a prompt record would have it.
+// A record of a past time is advanced to the tick that adopts it, along the tool's path since then: the block
+// is then where a prompt record would place it.
 TEST(TouchReduction, ALateRecordKnowsWhatTheToolHasDoneSince) {
   constexpr int kLate = 25;
   constexpr std::size_t kSecond = 50, kTaken = kSecond + kLate;
@@ -359,7 +361,7 @@ TEST(TouchReduction, ALateRecordKnowsWhatTheToolHasDoneSince) {
   for (std::size_t i = kTaken; i < prompt.size(); ++i) EXPECT_NEAR(late[i], prompt[i], 0.015 * prompt[i]);
 }
 
-// A body all of whose nodes are held has points, and no mode to answer with.
+// A body whose nodes are all held has points, and no mode to respond with.
 TEST(TouchReduction, AHeldBodyHasPointsAlone) {
   for (const double error : {0.0, 0.1}) {
     scene::Description d = pressed_block(0.002);
@@ -372,7 +374,7 @@ TEST(TouchReduction, AHeldBodyHasPointsAlone) {
   }
 }
 
-/// By how much each point gives way to a force on any other, held for a period: 3 points x 3 points.
+/// Displacement of each point due to a force on any other, held for a period: 3 points x 3 points.
 MatX softness(const contact::TouchModel& model) {
   constexpr int kMost = contact::TouchModel::kMostModes;
   MatX modes(3 * model.points, kMost);
@@ -384,8 +386,8 @@ MatX softness(const contact::TouchModel& model) {
   return modes * answer.asDiagonal() * modes.transpose();
 }
 
-// Two integrators leave a body that nothing moves at rest to rounding, each in its own way: the record must
-// not know by which it came there.
+// Two integrators leave a body without motion at rest to rounding, each differently: the record must not
+// depend on the integrator.
 TEST(TouchReduction, RoundingGivesNoDirection) {
   for (const double error : {0.0, 0.1}) {
     std::vector<MatX> seen;
@@ -408,7 +410,7 @@ TEST(TouchReduction, RoundingGivesNoDirection) {
       seen.push_back(softness(record.touch));
     }
     ASSERT_EQ(seen[0].rows(), seen[1].rows());
-    // a basis of a few iterations knows the answers to the rounding of single precision
+    // a basis of a few iterations has the responses to single precision
     EXPECT_LE((seen[0] - seen[1]).norm(), (error > 0.0 ? 1e-6 : 1e-12) * seen[0].norm());
   }
 }
@@ -418,8 +420,8 @@ TEST(TouchReduction, NothingNearIsNoPoint) {
   EXPECT_EQ(record_of(*world).touch.points, 0);
 }
 
-// What the elements give to an exchange serves the step over the period that it begins, where there is such a
-// step; who steps otherwise asks for nothing, and nothing is kept.
+// The element contributions of an exchange are reused by the step over the period that it begins, if there is
+// such a step; other steps request nothing, and nothing is kept.
 TEST(TouchReduction, TheStepTakesTheElementsOfItsExchange) {
   for (const bool linearised : {true, false}) {
     scene::Description d = pressed_block(1e-3);

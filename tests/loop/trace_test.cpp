@@ -1,4 +1,4 @@
-// A scripted stepper: its attempts are those of the trace; an interruption ends the run.
+// A scripted stepper: the trace contains its attempts; an interruption ends the run.
 #include "palpate/loop/trace.h"
 
 #include <gtest/gtest.h>
@@ -17,10 +17,10 @@ using dynamics::StepAttempt;
 
 namespace {
 
-constexpr int kWorstNode = 40;  // as numbered in the state
+constexpr int kWorstNode = 40;  // in the numbering of the state
 
-/// Steps of 1 ms that change nothing; before each, one attempt of 4 ms that fails its error test at node
-/// kWorstNode, axis y.
+/// Steps of 1 ms that change nothing; each is preceded by one attempt of 4 ms that fails its error test at
+/// node kWorstNode, axis y.
 class FakeStepper final : public dynamics::Stepper {
  public:
   FakeStepper(dynamics::State& state, std::atomic<bool>* raise, int raise_after)
@@ -75,13 +75,13 @@ TEST(Trace, WritesEveryAttemptWithItsReasonAndNode) {
     EXPECT_EQ(trace.attempts(), 10);
     EXPECT_EQ(trace.rejected(), 5);
   }
-  world->stepper->advance_to(1.0);  // nobody listens any more
+  world->stepper->advance_to(1.0);  // after the trace was closed
   const store::CsvTable table = store::read_csv(path.string());
   EXPECT_EQ(table.headers, loop::TraceRecorder::columns());
   ASSERT_EQ(table.rows.size(), 10u);
   const std::vector<int>& file_node = world->bodies[0].file_node;
   EXPECT_NE(file_node[kWorstNode],
-            kWorstNode);  // otherwise the test could not tell which numbering is written
+            kWorstNode);  // otherwise the test could not detect which numbering is written
   EXPECT_EQ(table.rows[0],
             (std::vector<std::string>{"0", "0.004", "3", "7.5", "2", "error test", "block",
                                       std::to_string(file_node[kWorstNode]), "y", "block", "4", "0"}));

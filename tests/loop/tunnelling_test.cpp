@@ -4,7 +4,7 @@
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
 
-/// A free block thrown at a plate thinner than its way between two queries.
+/// A free block thrown at a plate thinner than its path between two queries.
 namespace {
 
 using namespace palpate;
@@ -12,9 +12,9 @@ using namespace palpate;
 constexpr double kThickness = 0.008, kPeriod = 0.01;
 constexpr long kBlockVertices = 66, kBottomVertices = 25, kPlateVertices = 8;
 
-/// The block flies down at `speed` and reaches the plate, z = 0 its upper face, after about a tenth of a
-/// period.  Its wave speed is 30 times its own, so it stays a block; the spring alone would stop it within
-/// speed sqrt(m / (k A)) = 3 mm, m / A = 20 kg/m^2.
+/// The block flies down at `speed` and reaches the plate, whose upper face is z = 0, after about a tenth of a
+/// period. Its wave speed is 30 times its speed, so that it remains a block; the contact spring alone would
+/// stop it within speed sqrt(m / (k A)) = 3 mm, m / A = 20 kg/m^2.
 scene::Description thrown(double speed) {
   scene::Description d = small_scenes::held_block();
   d.bodies[0].attachments.clear();
@@ -35,7 +35,7 @@ scene::Description thrown(double speed) {
   return d;
 }
 
-/// A soft plate, all of it held.
+/// A soft plate with all nodes held.
 scene::Description at_soft_plate(double speed) {
   scene::Description d = thrown(speed);
   SoftBodySpec plate = small_scenes::held_block().bodies[0];
@@ -49,7 +49,7 @@ scene::Description at_soft_plate(double speed) {
   return d;
 }
 
-/// A tool so heavy that it stays.
+/// A tool too heavy to move.
 [[maybe_unused]] scene::Description at_tool(double speed) {
   scene::Description d = thrown(speed);
   d.contacts[0].second = "tool";
@@ -70,8 +70,8 @@ scene::Description at_soft_plate(double speed) {
 
 struct Ran {
   loop::RunResult result;
-  double velocity;  ///< of the block's centre, up [m/s]
-  double height;    ///< of the block's centre; the plate's top is at 0 [m]
+  double velocity;  ///< velocity of the block's centre, upwards [m/s]
+  double height;    ///< height of the block's centre; the plate's top is at 0 [m]
   store::Summary summary;
 };
 Ran run(const scene::Description& d, bool real_time = false) {
@@ -110,7 +110,7 @@ constexpr const char* kMethods[] = {"image", "distance"};
 #else
 constexpr const char* kMethods[] = {"distance"};
 #endif
-/// visit(description, speed) of each target, by each method.
+/// Calls visit(description, speed) for each target, with each method.
 template <class Visit>
 void for_each_target(const Visit& visit) {
   for (const Target target : targets())
@@ -125,12 +125,12 @@ void for_each_target(const Visit& visit) {
 
 }  // namespace
 
-// A step of 10 ms begins before the block is there and ends beyond the plate, so nothing pushes it.  At 0.1
+// A step of 10 ms begins before the block reaches the plate and ends beyond it, so that no force acts. At 0.1
 // m/s it moves 1 mm, into the plate; at 1 m/s its lower face ends 0.5 mm below the plate; from 10 m/s on it
-// is through as a whole, over the plate's eight vertices that it met.
+// is through as a whole, having passed over the plate's eight vertices.
 TEST(Tunnelling, WhatGoesThroughABodyIsReported) {
   for_each_target([](scene::Description d, double speed) {
-    d.duration_s = 0.011;  // to the query after the passage
+    d.duration_s = 0.011;  // until the query after the passage
     Ran ran = run(d);
     const long expected = speed < 1.0 ? 0 : speed < 9.0 ? kBottomVertices : kBlockVertices + kPlateVertices;
     ASSERT_EQ(ran.result.tunnelled.size(), 1u);
@@ -143,8 +143,8 @@ TEST(Tunnelling, WhatGoesThroughABodyIsReported) {
   });
 }
 
-// Sub-stepped, the block is seen in the plate, at most half of its thickness deep, and thrown back: its
-// momentum is turned round, at any speed, with as few queries more as that takes.
+// With sub-steps the block is detected in the plate at most half of its thickness deep, and bounces: its
+// momentum is reversed at any speed, with the minimum of additional queries.
 TEST(Tunnelling, SubStepsTurnItRound) {
   for_each_target([](scene::Description d, double speed) {
     d.exchange.tunnelling = "substep";
@@ -162,8 +162,8 @@ TEST(Tunnelling, SubStepsTurnItRound) {
 }
 
 #ifdef PALPATE_HAS_TOOL
-// By the clock, too: the ticks are over when the bodies go through their period, and these look as often in
-// it as they must.
+// In real time as well: the ticks are over when the bodies advance through their period, and query contact in
+// it as often as needed.
 TEST(Tunnelling, SubStepsInRealTime) {
   scene::Description d = at_tool(10.0);
   d.exchange.tunnelling = "substep";
@@ -178,7 +178,8 @@ TEST(Tunnelling, SubStepsInRealTime) {
 }
 #endif
 
-// The limit holds: no query sooner than 2 ms, so the block goes through, and both are counted.
+// The limit is respected: no query within less than 2 ms, so that the block passes through, and both are
+// counted.
 TEST(Tunnelling, SubStepsStopAtTheirLimit) {
   scene::Description d = at_soft_plate(100.0);
   d.exchange.tunnelling = "substep";

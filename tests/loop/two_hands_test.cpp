@@ -1,4 +1,4 @@
-// Two tools, each with a device of its own, on one body.
+// Two tools, each with a device, on one body.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,8 +21,8 @@ namespace {
 
 constexpr double kRadius = 0.015, kHalf = 0.02, kPress = 0.004;
 
-/// A hand from one side, which goes in by kPress from 0.1 mm apart, within 0.1 s, and stays.
-/// @param shift  of where it presses, along y [m]
+/// A hand on one side, which starts 0.1 mm apart, penetrates by kPress within 0.1 s, and stays.
+/// @param shift  offset of its contact along y [m]
 void from(double side, double shift, ToolSpec& tool, DeviceSpec& device) {
   tool.radius_m = kRadius;
   tool.mass_kg = 0.05;
@@ -66,7 +66,7 @@ double peak(const std::vector<loop::TickRecord>& ticks) {
   return out;
 }
 
-/// RMS of the difference of the forces on a hand over the peak of the second.
+/// RMS of the difference of the forces on a hand, relative to the peak of the second.
 double difference(const std::vector<loop::TickRecord>& a, const std::vector<loop::TickRecord>& b) {
   EXPECT_EQ(a.size(), b.size());
   double sum = 0.0;
@@ -75,7 +75,7 @@ double difference(const std::vector<loop::TickRecord>& a, const std::vector<loop
   return std::sqrt(sum / static_cast<double>(a.size())) / peak(b);
 }
 
-// Action and reaction: nothing else holds the block, so that at rest each hand presses as much as the other.
+// Action and reaction: nothing else holds the block, so that at rest both hands exert equal forces.
 TEST(TwoHands, PressEquallyOnAFreeBlock) {
   for (const char* how : {"frozen", "condensed", "points", "monolithic"}) {
     scene::Description d = squeezed();
@@ -96,7 +96,7 @@ TEST(TwoHands, PressEquallyOnAFreeBlock) {
   }
 }
 
-/// A ball between two hands that press, and lift it.
+/// A ball between two hands that press and lift it.
 scene::Description hanging(const std::string& how) {
   scene::Description d = squeezed();
   if (how == "monolithic")
@@ -111,7 +111,7 @@ scene::Description hanging(const std::string& how) {
   d.bodies[0].mesh.element_size_m = 0.26 * kHalf;
   d.duration_s = 0.6;
   d.gravity_m_s2 = Vec3(0, 0, -9.81);
-  for (const double side : {1.0, -1.0}) {  // pressed from the start, more, and lifted
+  for (const double side : {1.0, -1.0}) {  // pressed from the start, pressed more, and lifted
     ToolSpec& tool = side > 0.0 ? *d.tool : d.hands[0].tool;
     DeviceSpec& device = side > 0.0 ? *d.device : d.hands[0].device;
     tool.position_m.x() = side * (kHalf + kRadius - 2e-3);
@@ -132,8 +132,8 @@ scene::Description hanging(const std::string& how) {
   return d;
 }
 
-// Friction lifts what hangs between two hands: half of the weight on each, once the block is at rest; by
-// every exchange, and where a step of tool and block together is one linear solve.
+// Friction lifts a ball between two hands: once it is at rest each carries half of the weight; with every
+// linearisation, and where a step of tool and block together is one linear solve.
 TEST(TwoHands, HoldByFriction) {
   const double weight = 9.81 * loop::assemble(hanging("points"))->bodies[0].masses.sum();
   for (const char* how : {"condensed", "points", "monolithic"}) {
@@ -147,7 +147,7 @@ TEST(TwoHands, HoldByFriction) {
   }
 }
 
-// Which of two hands is the first is a matter of names.
+// Exchanging the two hands does not change the result.
 TEST(TwoHands, ChangePlaces) {
   const scene::Description d = squeezed(0.003);
   scene::Description other = d;
@@ -160,23 +160,24 @@ TEST(TwoHands, ChangePlaces) {
   EXPECT_LT(difference(a.of[1], b.of[0]), 1e-6);
 }
 
-// Each hand's exchanges tend to one system of the block and both tools, and hear of each other: a tool that
-// holds still feels what the other does within the period.
+// Each hand's exchanges converge to the monolithic solution of the block and both tools, and depend on each
+// other: the force on a tool at rest follows the other tool's motion within the period.
 TEST(TwoHands, TendToOneSystem) {
   for (const char* linearisation : {"condensed", "points"}) {
     double error[2][2];
-    // a line is of first order in the period, and knows no end of contact; points err a tenth of that
+    // a linear model is of first order in the period and does not end contact; points have a tenth of its
+    // error
     const double bar = std::string(linearisation) == "points" ? 0.005 : 0.08;
     scene::Description whole = squeezed(0.003);
-    for (KeyframeSpec& frame : whole.hands[0].device.keyframes)  // holds still, touching
+    for (KeyframeSpec& frame : whole.hands[0].device.keyframes)  // at rest, touching
       frame.position_m.x() = -(kHalf + kRadius - 1e-3);
     whole.hands[0].tool.position_m = whole.hands[0].device.keyframes[0].position_m;
-    // so many points that what their areas change between exchanges does not show
+    // so many points that changes of their areas between exchanges are negligible
     for (ContactSpec& contact : whole.contacts) contact.quadrature_error = 2e-3;
     whole.integrator.name = "cvode-bdf";
     whole.integrator.rtol = 1e-6;
     whole.duration_s = 0.15;
-    whole.tool->tick_s = whole.hands[0].tool.tick_s = 2e-4;  // so that its own error does not show
+    whole.tool->tick_s = whole.hands[0].tool.tick_s = 2e-4;  // so that the tick's error is negligible
     whole.exchange.linearisation_error = 0.0;
     scene::Description truth = whole;
     truth.exchange.scheme = "monolithic";
@@ -201,7 +202,7 @@ TEST(TwoHands, TendToOneSystem) {
   }
 }
 
-// What both have done on the block and on their tools is stored or dissipated.
+// The work of both hands on the block and on their tools equals the stored plus the dissipated energy.
 TEST(TwoHands, BalanceTheirEnergy) {
   for (const char* scheme : {"partitioned", "monolithic"}) {
     scene::Description d = squeezed();
@@ -263,14 +264,14 @@ TEST(TwoHands, TickByOneClock) {
   } catch (const Error& e) { EXPECT_NE(std::string(e.what()).find("one clock"), std::string::npos); }
 }
 
-// Each hand grasps by its own switch: one that lets go leaves the block to the other.
+// Each hand grasps with its switch: when one releases the block, the other keeps it.
 TEST(TwoHands, GraspByThemselves) {
   scene::Description d = squeezed();
   d.duration_s = 0.6;
   d.tool->grasp_switch = d.hands[0].tool.grasp_switch = 0;
   d.device->presses = {{0, 0.15, 0.0}};
   d.hands[0].device.presses = {{0, 0.15, 0.2}};
-  for (const bool is_left : {false, true}) {  // both go to the right, the left one slower
+  for (const bool is_left : {false, true}) {  // both move to the right, the left one more slowly
     DeviceSpec& device = is_left ? d.hands[0].device : *d.device;
     KeyframeSpec away = device.keyframes.back();
     away.time_s = 0.2;
@@ -316,7 +317,7 @@ TEST(TwoHands, AreRecordedEach) {
   }
   store::Summary summary = loop::summarise(*world, result, 0.0);
   ASSERT_FALSE(summary.section("hand left").values.empty());
-  // each hand's ticks again from its own record, to the last bit, and not from the other's
+  // each hand's ticks are replayed bitwise from its record, and not from the other hand's
   const std::vector<loop::HapticRecord> records = loop::read_haptic_records(folder.string(), d);
   ASSERT_EQ(records.size(), 2u);
   for (const std::size_t hand : {0, 1}) {

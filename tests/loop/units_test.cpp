@@ -9,10 +9,8 @@
 #include "palpate/loop/registries.h"
 #include "palpate/loop/run.h"
 
-// Nothing depends on the units, nor on the size of what is simulated.
-//
-// With the unit of time kept, let every length be L times its number and every mass M times its number. The
-// equations of motion are then the same if
+// Results depend neither on units nor on the size of the simulated bodies. With the unit of time kept, let
+// every length be multiplied by L and every mass by M. The equations of motion are then the same if
 //
 //   density M/L^3     force  M L       stiffness of a coupling      M        [N/m]
 //   velocity L        moment M L^2     its damping                  M        [N s/m]
@@ -20,15 +18,15 @@
 //   inertia M L^2     onset, gap L     contact stiffness, damping   M/L^2    [Pa/m], [Pa s/m]
 //   v_r L             E, nu:  M/L, 1   Hunt and Crossley's c        1/L      [s/m]
 //
-// and relative tolerances, angles, friction, times stay. Results are compared in the first units: every
-// number differs only by the rounding of the numbers that it was computed from.
+// and relative tolerances, angles, friction and times are kept. Results are compared in the first units:
+// every number differs only by the rounding of the numbers from which it was computed.
 //   millimetres, tonnes, seconds:       L = 1e3,  M = 1e-3  (stress in MPa)
 //   kilometres, tonnes, seconds:        L = 1e-3, M = 1e-3
 //   metres, a body 1000 times smaller:  L = 1e-3, M = 1e-9  (density as before)
 //
 // Error control chooses steps from error estimates that rounding changes, and a run of hundreds of steps then
-// differs by its own error, whatever the units. With 1024 for 1000 nothing is rounded: every product and
-// quotient scales exactly, and so must the steps.
+// differs by its integration error, whatever the units. With 1024 instead of 1000 nothing is rounded: every
+// product and quotient scales exactly, and so must the steps.
 
 namespace palpate {
 namespace {
@@ -56,17 +54,17 @@ std::string vec(double unit, const Vec3& x) {
 /// Parameters of one scene; numbers in metres, kilogrammes, seconds.
 struct Scene {
   std::string integrator = "kinsol-static";
-  std::string settings{};         ///< TOML; what the integrator does not use is left out
-  std::string solver_settings{};  ///< of its linear solver
+  std::string settings{};         ///< TOML; settings that the integrator does not use are left out
+  std::string solver_settings{};  ///< TOML settings of the integrator's linear solver
   double duration = 0.1, young = 5e6, damping = 0.0, step = 0.01;
   Vec3 size = Vec3(0.4, 0.1, 0.1), gravity = Vec3(0, 0, -1);
   double element = 0.05;
   bool held = true;
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
-  std::function<std::string(const Units&)> rest{};  ///< of the scene
+  std::function<std::string(const Units&)> rest{};  ///< remaining TOML of the scene
 };
 
-/// Those lines "KEY = VALUE" whose key the integrator uses.
+/// Returns the lines "KEY = VALUE" whose key the integrator uses.
 std::string used_by(const std::string& integrator, const std::string& lines) {
   const auto& entry = find(loop::steppers(), integrator, "integrator");
   std::istringstream in(lines);
@@ -100,7 +98,7 @@ std::string text_of(const Scene& s, const Units& u) {
   return t + (s.rest ? s.rest(u) : "");
 }
 
-/// The last tick of the tool.
+/// Records the last tick of the tool.
 struct LastTick final : loop::Observer {
   loop::TickRecord last;
   void tick(const loop::TickRecord& t) override { last = t; }
@@ -108,7 +106,7 @@ struct LastTick final : loop::Observer {
 
 struct Result {
   VecX q, u;  ///< displacements and velocities of nodes
-  VecX tool;  ///< position, wrench of contact, wrench on the hand, each in units of its own
+  VecX tool;  ///< position, contact wrench, wrench on the hand, each in its units
   dynamics::StepperCounters counters;
   std::string error;
 };
@@ -166,9 +164,9 @@ void expect_same_in_all_units(const Scene& s, const Units (&all)[4] = kUnits, bo
   }
 }
 
-// --- statics
+// --- Statics
 
-/// Displacement of the beam if it were linear: one solve with the tangent at the start.
+/// Linear displacement of the beam: one solve with the initial tangent.
 VecX linear_response(const Scene& s, const Units& units) {
   const auto world = loop::assemble(loop::parse(text_of(s, units), "units.toml"));
   VecX f, x;
@@ -182,9 +180,10 @@ VecX linear_response(const Scene& s, const Units& units) {
   return x / units.length;
 }
 
-// Twelve decades of gravity, from where rotations matter to where a displacement is 1e-14 of the beam. A
-// node's position is known to eps of its size, 0.2 m, and a force to eps |K||x|, which moves the slender beam
-// by some ten times more: that is what a displacement can be compared to.
+// Twelve decades of gravity, from loads at which rotations matter to loads at which a displacement is
+// 1e-14 of the beam. A node's position has a rounding error of eps times its magnitude, 0.2 m, and a force
+// one of eps |K||x|, which moves the slender beam by about ten times more: this limits the comparison of
+// displacements.
 TEST(Units, EquilibriaFollowTheLoadOverTwelveDecades) {
   for (const Units& units : kUnits) {
     const double rounding = 100.0 * std::numeric_limits<double>::epsilon() * 0.2;
@@ -198,7 +197,7 @@ TEST(Units, EquilibriaFollowTheLoadOverTwelveDecades) {
       EXPECT_EQ(found.counters.newton_failures, 0);
       if (decade >= 5) { EXPECT_GT(found.counters.rounding_limited, 0); }
       const VecX linear = linear_response(s, units);
-      // the part that is not linear falls with the load: 1e-3 of the displacement at the first
+      // the nonlinear part decreases with the load: 1e-3 of the displacement for the first load
       const double bent = linear.cwiseAbs().maxCoeff() / s.size.x();
       EXPECT_LE((found.q - linear).cwiseAbs().maxCoeff(),
                 std::max(kRelative, bent) * linear.cwiseAbs().maxCoeff() + rounding);
@@ -213,7 +212,7 @@ TEST(Units, LargeBendingUnderADeadLoad) {
   expect_same_in_all_units(s);
 }
 
-// --- fixed steps
+// --- Fixed steps
 
 Scene swinging(const std::string& integrator) {
   Scene s;
@@ -255,7 +254,7 @@ TEST_P(ExplicitSteps, AreTheSameInAllUnits) {
 }
 INSTANTIATE_TEST_SUITE_P(Units, ExplicitSteps, testing::Values("symplectic-euler", "rk4"));
 
-// --- error control
+// --- Error control
 
 class ErrorControl : public testing::TestWithParam<std::string> {};
 TEST_P(ErrorControl, IsTheSameInAllUnits) {
@@ -268,7 +267,7 @@ INSTANTIATE_TEST_SUITE_P(Units, ErrorControl,
                          testing::Values("cvode-bdf", "cvode-adams", "ida", "ark-erk-4", "ark-dirk-esdirk324",
                                          "ark-imex-3"));
 
-// --- contact
+// --- Contact
 
 struct Contact {
   std::string integrator, law, events = "error-control";
@@ -284,7 +283,8 @@ TEST_P(OnAPlane, IsTheSameInAllUnits) {
   s.gravity = Vec3(0, 0, -9.81);
   s.step = 2e-3;
   s.duration = 0.03;
-  // under error control contact opens and closes by rounding: the run's own error is kept below the bar
+  // under error control, contact opens and closes by rounding: the run's error is kept below the acceptance
+  // limit
   const bool controlled = GetParam().integrator == "cvode-bdf";
   s.settings = fmt::format("rtol = {}\nevents = \"{}\"", controlled ? 1e-9 : 1e-5, GetParam().events);
   s.rest = [&](const Units& u) {
@@ -313,7 +313,7 @@ INSTANTIATE_TEST_SUITE_P(UnderErrorControl, OnAPlane,
                                          Contact{"cvode-bdf", "hunt_crossley", "root-finding"}),
                          [](const auto& row) { return fmt::format("Row{}", row.index); });
 
-// The gap within which candidates are kept, the mesh chooses; nothing slides.
+// The mesh determines the gap for candidates; nothing slides.
 TEST(Units, RestOnAPlane) {
   Scene s;
   s.held = false;
@@ -333,7 +333,7 @@ TEST(Units, RestOnAPlane) {
   expect_same_in_all_units(s);
 }
 
-// --- a tool on a spring and a damper
+// --- A tool on a spring and a damper
 #ifdef PALPATE_HAS_TOOL
 struct Coupling {
   std::string integrator, scheme, linearisation;
@@ -387,7 +387,7 @@ INSTANTIATE_TEST_SUITE_P(Units, PressedByATool,
                          [](const auto& row) { return fmt::format("Row{}", row.index); });
 #endif
 
-// --- modes
+// --- Modes
 
 TEST(Units, FrequenciesAndShapesOfModes) {
   for (const bool held : {true, false}) {
@@ -403,7 +403,7 @@ TEST(Units, FrequenciesAndShapesOfModes) {
       ASSERT_EQ(found.count(), first.count());
       for (int j = 0; j < found.count(); ++j)
         EXPECT_NEAR(found.omega_squared[j], first.omega_squared[j], kRelative * first.omega_squared[j]) << j;
-      // M-orthonormal: x M x = 1; the square section has pairs of modes, of which any rotation is as good
+      // M-orthonormal: x M x = 1; a square section has pairs of modes, of which any rotation is equally valid
       const double size = first.shapes.leftCols(2).norm();
       if (held) {
         EXPECT_NEAR(std::sqrt(units.mass) * found.shapes.leftCols(2).norm(), size, kRelative * size);

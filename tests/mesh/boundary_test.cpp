@@ -59,12 +59,13 @@ TEST(Quality, DihedralAnglesOfKnownTetrahedra) {
   if (tet_volume(regular, 0) < 0) std::swap(regular.tets(2, 0), regular.tets(3, 0));
   for (const double angle : dihedral_angles(regular, 0)) EXPECT_NEAR(angle, std::acos(1.0 / 3.0), 1e-15);
 
-  // Along the legs of the unit corner the faces are perpendicular; along the others, acos(1/sqrt 3).
+  // Along the legs of the unit corner the faces are perpendicular; along the other edges the angle is
+  // acos(1/sqrt 3).
   const auto corner = dihedral_angles(corner_tet({1, 1, 1}), 0);
   for (std::size_t e = 0; e < 6; ++e)
     EXPECT_NEAR(corner[e], kTetEdges[e][0] == 0 ? 90 * degree : std::acos(1 / std::sqrt(3.0)), 1e-15) << e;
 
-  // A sliver: its four nodes almost in a plane, small angles keep their relative accuracy.
+  // A sliver with its four nodes almost in a plane: small angles keep their relative accuracy.
   TetMesh sliver = corner_tet({1, 1, 1});
   const double lift = 1e-6;
   sliver.nodes << 1, -1, 0, 0, 0, 0, 1, -1, lift, lift, -lift, -lift;

@@ -6,7 +6,7 @@
 
 namespace {
 
-/// A broken file and the content of its refusal: location, element, value, remedy.
+/// A broken file and the expected content of its error message: location, element, value, remedy.
 struct Broken {
   std::string file;
   std::vector<std::string> fragments;

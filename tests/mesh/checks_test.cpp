@@ -74,8 +74,8 @@ TEST(TetChecks, RefuseWhatNoSimulationCanUse) {
   expect_contains(refusal(bad), "here: node 4 (one of 1) belongs to no tetrahedron");
 }
 
-// 6 sqrt 2 V / edge^3 with V = lift/3 and edge = 2 for the square sliver of helpers: 2.1 lift for a square of
-// diagonal 2 and half-height lift.
+// 6 sqrt 2 V / edge^3 with V = lift/3 and edge = 2 for the square sliver of helpers: 2.1 lift for a square
+// with diagonal 2 and half-height lift.
 TEST(TetChecks, KeepSliversAndRefuseOnlyWhatRoundingCannotTell) {
   const auto sliver = [](double lift, double offset) {
     TetMesh mesh = corner_tet({1, 1, 1});
@@ -86,7 +86,7 @@ TEST(TetChecks, KeepSliversAndRefuseOnlyWhatRoundingCannotTell) {
   EXPECT_EQ(refusal(sliver(1e-3, 0)), "nothing was refused");  // dihedral angles of 0.16 degree
   EXPECT_EQ(refusal(sliver(1e-8, 0)), "nothing was refused");
   expect_contains(refusal(sliver(1e-10, 0)), "is degenerate");
-  expect_contains(refusal(sliver(1e-8, 1e9)), "is degenerate");  // there, coordinates are spaced by 1e-7
+  expect_contains(refusal(sliver(1e-8, 1e9)), "is degenerate");  // coordinates there are spaced by 1e-7
   EXPECT_EQ(refusal(sliver(1e-3, 1e3)), "nothing was refused");
 }
 
@@ -113,7 +113,7 @@ TEST(SurfaceChecks, ShellsSideBySideAddAndNestedOnesAlternate) {
   EXPECT_EQ(r.flipped, 12);
   EXPECT_NEAR(r.volume, 26.0, 1e-13);
 
-  TriMesh onion = both(cavity, cube_surface(0.5, {0.1, 0, 0}));  // a grain in the cavity
+  TriMesh onion = both(cavity, cube_surface(0.5, {0.1, 0, 0}));  // a solid body inside the cavity
   EXPECT_NEAR(check_surface(onion, surface_provenance("here")).volume, 26.125, 1e-13);
 }
 
@@ -141,7 +141,7 @@ TEST(SurfaceChecks, RefuseOpenCrowdedDegenerateDuplicateAndUnreferenced) {
 
 TEST(SurfaceChecks, RefuseAShellWithoutVolume) {
   TriMesh flat = box_surface({1, 1, 1}, {3, 3, 1});
-  // pressed flat, the vertical sides folded outwards
+  // flattened, with the vertical sides folded outwards
   for (Eigen::Index v = 0; v < flat.vertices.cols(); ++v) {
     flat.vertices.col(v).head<2>() *= flat.vertices(2, v) > 0 ? 1.0 : 1.3;
     flat.vertices(2, v) = 0;

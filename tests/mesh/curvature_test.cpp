@@ -1,4 +1,4 @@
-// The radius of mean curvature of closed surfaces whose integral of H is known.
+// Radius of mean curvature of closed surfaces whose integral of H is known.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ using namespace palpate;
 
 TEST(MeanRadius, IsTheRadiusOfABall) { EXPECT_NEAR(mesh::mean_radius(mesh::sphere(0.03, 24)), 0.03, 3e-4); }
 
-// Half of the edges' lengths times pi/2, whatever triangles the faces are cut into.
+// The integral is half of the edges' lengths times pi/2, however the faces are divided into triangles.
 TEST(MeanRadius, OfABoxSitsInItsEdges) {
   const Vec3 size(0.14, 0.05, 0.01);
   const double area = 2.0 * (0.14 * 0.05 + 0.05 * 0.01 + 0.01 * 0.14);
@@ -20,7 +20,7 @@ TEST(MeanRadius, OfABoxSitsInItsEdges) {
                 1e-12);
 }
 
-// A ball with a ball-shaped hole in it: the hole's integral is negative, 4 pi (R - r) is left.
+// A ball with a spherical cavity: the cavity's integral is negative, which leaves 4 pi (R - r).
 TEST(MeanRadius, HollowPartsCountAgainstRoundOnes) {
   TriMesh shell = mesh::sphere(0.03, 24);
   const TriMesh hole = mesh::sphere(0.02, 24);

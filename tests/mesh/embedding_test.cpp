@@ -35,8 +35,9 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// Distance to the hull of four points by trying all 15 of its faces, edges, corners and itself: the nearest
-/// point of the affine space of one of them that lies inside it.  A method other than the code's.
+/// Distance to the hull of four points by trying all 15 of its faces, edges, corners and the tetrahedron
+/// itself: the nearest point of the affine space of one of them that lies inside it. Independent of the
+/// tested method.
 double brute_distance(const TetMesh& mesh, int tet, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (int mask = 1; mask < 16; ++mask) {
@@ -72,14 +73,14 @@ TEST(Embedding, NearestTetrahedraAreThoseOfBruteForce) {
   for (const TetMesh& mesh : meshes) {
     const Points points = random.points(300, 0.85);
     mesh::EmbeddingReport report;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {  // those that the limit on sum |w| admits
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {  // points permitted by the limit on sum |w|
       try {
         const auto one = mesh::embed(mesh, points.col(i), &report);
         double least = std::numeric_limits<double>::infinity();
         for (int t = 0; t < mesh.tets.cols(); ++t)
           least = std::min(least, brute_distance(mesh, t, points.col(i)));
         const double taken = brute_distance(mesh, one.tet[0], points.col(i));
-        if (taken > least + 3e-9) {  // a better one nearly as near
+        if (taken > least + 3e-9) {  // a better tetrahedron that is nearly as near
           ++farther;
           EXPECT_LE(taken, 1.25 * least + 3e-9) << i;
           double of_nearest = std::numeric_limits<double>::infinity();
@@ -110,7 +111,7 @@ TEST(Embedding, WeightsSumToOneAndGiveThePointBack) {
   mesh::evaluate(embedding, mesh.tets, mesh.nodes, back);
   EXPECT_LT((back - skin.vertices).cwiseAbs().maxCoeff(), 1e-13);
   EXPECT_EQ(report.outside, skin.vertices.cols());
-  // boundary nodes lie on the unit sphere, 0.02 below the skin; the middle of a face whose corners lie on a
+  // boundary nodes lie on the unit sphere, 0.02 below the skin; the centre of a face whose corners lie on a
   // circle of radius c <= h / sqrt(3) of the sphere (nearly equilateral) lies 1 - sqrt(1 - c^2) deeper
   EXPECT_GE(report.largest_distance, 0.02);
   EXPECT_LT(report.largest_distance, 1.02 - std::sqrt(1 - std::pow(mesh::measure(mesh).largest_edge, 2) / 3));
@@ -126,7 +127,7 @@ TEST(Embedding, AffineMapsAreExact) {
   Random random(9);
   for (int i = 0; i < 5; ++i) {
     Mat3 A;
-    for (int k = 0; k < 3; ++k) A.col(k) = random.vector(2.0);  // shears, stretches, mirrors
+    for (int k = 0; k < 3; ++k) A.col(k) = random.vector(2.0);  // shears, stretches, reflects
     const Vec3 b = random.vector(3.0);
     Points points;
     mesh::evaluate(embedding, mesh.tets, (A * mesh.nodes).colwise() + b, points);
@@ -134,7 +135,7 @@ TEST(Embedding, AffineMapsAreExact) {
   }
 }
 
-// The transposed map keeps virtual work, force and moment, at any deformed state.
+// The transposed map preserves virtual work, force and moment, in any deformed state.
 TEST(Embedding, ForcesKeepWorkResultantAndMoment) {
   const TetMesh mesh = mesh::ball(1.0, 0.3);
   const TriMesh skin = mesh::sphere(1.05, 20);
@@ -155,8 +156,8 @@ TEST(Embedding, ForcesKeepWorkResultantAndMoment) {
   EXPECT_LT(moment.norm(), 1e-11);
 }
 
-// A point on a common face, edge or node has several tetrahedra; the first is taken, whatever stood before it
-// in the list.
+// A point on a common face, edge or node belongs to several tetrahedra; the first is chosen, independently of
+// the preceding points.
 TEST(Embedding, TiesGoToTheFirstInAnyOrder) {
   const TetMesh mesh = mesh::box(Vec3(1, 1, 1), {3, 3, 3});
   std::vector<Vec3> shared;
@@ -191,7 +192,7 @@ TEST(Embedding, TiesGoToTheFirstInAnyOrder) {
 TEST(Embedding, AbsurdWeightsAreRefusedByName) {
   const TetMesh mesh = mesh::corner_tet(Vec3(1, 1, 1));
   Points points(3, 2);
-  points << 0.2, 3.0, 0.2, 3.0, 0.2, 3.0;  // sum |w| of the second: 9 + 8 = 17
+  points << 0.2, 3.0, 0.2, 3.0, 0.2, 3.0;  // sum |w| of the second point: 9 + 8 = 17
   const std::string said = error_of([&] { mesh::embed(mesh, points); });
   expect_contains(said, "skin vertex 1 at (3, 3, 3) m");
   expect_contains(said, "sum to 17");
@@ -207,8 +208,8 @@ TEST(Embedding, AbsurdWeightsAreRefusedByName) {
   expect_contains(error_of([&] { mesh::embed(TetMesh{}, points); }), "no tetrahedra");
 }
 
-// Area vectors of a closed surface cancel; areas of the vertices of a box's corner: of its three faces of two
-// triangles each, one or two touch it.
+// Area vectors of a closed surface cancel. Areas at a box's corner: of its three faces of two triangles each,
+// one or two triangles touch it.
 TEST(Embedding, NormalsAndAreas) {
   const TriMesh sphere = mesh::sphere(2.0, 30);
   Points normals, vectors;
@@ -230,8 +231,8 @@ TEST(Embedding, NormalsAndAreas) {
     EXPECT_LT((vectors.col(v).normalized() - normals.col(v)).norm(), 1e-12);
     EXPECT_LE(vectors.col(v).norm(), areas[v] * (1 + 1e-12));
   }
-  // divergence theorem: sum of x . a over the vertices is three times the enclosed volume, up to the faces'
-  // own spread
+  // divergence theorem: sum of x . a over the vertices is three times the enclosed volume, up to the
+  // extent of the faces
   EXPECT_NEAR(sphere.vertices.cwiseProduct(vectors).sum() / 3.0, mesh::enclosed_volume(sphere), 1e-10);
 
   TriMesh folded;  // two faces back to back: their normals cancel, their areas do not

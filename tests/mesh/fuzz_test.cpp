@@ -3,8 +3,8 @@
 
 #include "helpers.h"
 
-// Whatever a file holds, reading it ends in a mesh or in palpate::Error: any other exception fails the test,
-// and the sanitizers see the rest.
+// Reading any file ends in a mesh or in palpate::Error: any other exception fails the test, and sanitizers
+// detect the rest.
 namespace {
 
 struct Sample {
@@ -29,7 +29,7 @@ const std::vector<Sample> kSamples = {
      "f -7 -6 -2 -3\nf 3 4 8 7\nf 4 1 5\nf 4 5 8\n"},
 };
 
-/// Flips bytes, repeats or drops a piece, or cuts the end off.
+/// Flips bytes, repeats or removes a piece, or truncates the text.
 std::string mutated(std::string text, std::mt19937& random) {
   const auto position = [&] { return text.empty() ? 0 : random() % text.size(); };
   static const std::string kTelling = "0123456789-+.e \n$/#\0\xFF";

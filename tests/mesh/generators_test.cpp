@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A spec of each generator that has some elements across.
+/// A spec of each generator with several elements across.
 MeshSpec some_spec(const std::string& name, double grading) {
   MeshSpec spec = generator_spec(name);
   spec.size_m = {1.0, 0.5, 0.75};
@@ -53,7 +53,7 @@ double mean_edge(const TetMesh& mesh, double r_min, double r_max) {
 
 }  // namespace
 
-// The conformance suite: a generator is tested by being listed.
+// Conformance suite: a generator is tested by being listed.
 TEST(Generators, EveryTetGeneratorIsValidClosedAndDeterministic) {
   int checked = 0;
   for (const auto& generator : tet_generators())
@@ -89,7 +89,7 @@ TEST(Generators, EverySurfaceIsTheBoundaryOfTheTetrahedraOfItsName) {
         std::vector<std::array<int, 3>> out;
         for (Eigen::Index f = 0; f < faces.cols(); ++f) {
           std::array<int, 3> n = {faces(0, f), faces(1, f), faces(2, f)};
-          // keeps the sense of rotation
+          // preserves the orientation
           std::rotate(n.begin(), std::min_element(n.begin(), n.end()), n.end());
           out.push_back(n);
         }
@@ -120,7 +120,7 @@ TEST(Generators, BoxHasItsVolumeCornersAndAngles) {
   const TetMesh cube = box({2, 2, 2}, {3, 3, 3});
   EXPECT_EQ(cube.nodes.rowwise().minCoeff(), Vec3(-1, -1, -1));
   EXPECT_EQ(cube.nodes.rowwise().maxCoeff(), Vec3(1, 1, 1));
-  // between an edge-wise and the slanted face
+  // between a face along the cell's edges and the slanted face
   EXPECT_NEAR(measure(cube).smallest_dihedral_deg, std::acos(1 / std::sqrt(3.0)) * 180 / kPi, 1e-10);
 }
 
@@ -128,8 +128,8 @@ TEST(Generators, GradedCellsGrowTowardsTheMiddleByTheGrading) {
   const TetMesh graded = box({1, 1, 1}, {40, 1, 1}, 4.0);
   const double end = graded.nodes(0, 1) - graded.nodes(0, 0),
                middle = graded.nodes(0, 20) - graded.nodes(0, 19);
-  // A cell is the mean of 1 + 3 (1 - s^2) over its width of 0.05: 4 - 0.0025 in the middle,
-  // 1 + 3 (0.05 - 0.05^2 / 3) at the end.
+  // A cell is the mean of 1 + 3 (1 - s^2) over its width of 0.05: 4 - 0.0025 in the middle, 1 + 3 (0.05 -
+  // 0.05^2 / 3) at the end.
   EXPECT_NEAR(middle / end, (4 - 0.0025) / (1 + 3 * (0.05 - 0.0025 / 3)), 1e-12);
 }
 
@@ -190,7 +190,7 @@ TEST(Generators, CylinderVolumeConvergesWithOrderTwo) {
     EXPECT_EQ(mesh.nodes.row(2).maxCoeff(), 1.0);
   }
   EXPECT_NEAR(fitted_order(h, error), 2.0, 0.1);
-  // with an equal rim
+  // with the same rim
   EXPECT_NEAR(measure(cylinder(0.5, 2.0, 0.1, 2.0)).volume, measure(cylinder(0.5, 2.0, 0.1)).volume, 1e-12);
 }
 

@@ -9,8 +9,7 @@
 #include "palpate/mesh/source.h"
 #include "temporary_folder.h"
 
-/// A folder of this test's own; in memory where that is possible, because the fuzz test writes thousands of
-/// files.
+/// A temporary folder of one test, in memory where possible, because the fuzz test writes thousands of files.
 class TempFolder {
  public:
   void write(const std::string& name, std::string_view text) const { folder_.write(name, text); }
@@ -26,7 +25,7 @@ class TempFolder {
 inline palpate::MeshSpec file_spec(const std::string& name) {
   palpate::MeshSpec spec;
   spec.file = name;
-  spec.scale = 1.0;  // as the file has it
+  spec.scale = 1.0;  // as in the file
   return spec;
 }
 
@@ -38,7 +37,7 @@ inline palpate::MeshSpec generator_spec(const std::string& name) {
 
 inline bool is_surface_file(const std::string& name) { return name.ends_with(".obj"); }
 
-/// Reads tetrahedra or a surface, by the ending.
+/// Reads tetrahedra or a surface, depending on the extension.
 inline palpate::mesh::MeshReport read_any(const std::string& folder, const std::string& name) {
   palpate::mesh::MeshReport report;
   if (is_surface_file(name))
@@ -48,7 +47,7 @@ inline palpate::mesh::MeshReport read_any(const std::string& folder, const std::
   return report;
 }
 
-/// The message of the palpate::Error that `call` throws; anything else is not caught.
+/// Returns the message of the palpate::Error that `call` throws; other exceptions are not caught.
 template <class Call>
 std::string error_of(Call call) {
   try {

@@ -21,7 +21,7 @@ Vec3 twice_area(const Corners& p, const std::array<int, 3>& t) {
   return (at(1) - at(0)).cross(at(2) - at(0));
 }
 
-/// The triangles cover the polygon once: each turns as it does, and their areas add up to `area`.
+/// Checks that the triangles cover the polygon once: each has its orientation, and their areas sum to `area`.
 void expect_cover(const Corners& corners, double area, const Vec3& normal) {
   const PolygonCut cut = cut_polygon(corners);
   EXPECT_TRUE(cut.simple);
@@ -33,7 +33,7 @@ void expect_cover(const Corners& corners, double area, const Vec3& normal) {
     sum += twice.norm() / 2;
   }
   EXPECT_NEAR(sum, area, 1e-12 * std::max(area, 1.0));
-  // each edge of the outline belongs to one triangle, each other one to two, in both directions
+  // each edge of the outline belongs to one triangle, and each inner edge to two, in both directions
   std::map<std::pair<int, int>, int> edges;
   for (const auto& t : cut.triangles)
     for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
@@ -51,7 +51,7 @@ Corners flat(const std::vector<std::array<double, 2>>& points) {
   return out;
 }
 
-/// A U, whose corners 4 and 5 turn the other way.
+/// A U-shape, concave at corners 4 and 5.
 Corners notched() { return flat({{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}); }
 
 }  // namespace
@@ -77,7 +77,7 @@ TEST(Polygon, CornersOnALineAreKept) {
   expect_cover(flat({{0, 0}, {0.1, 0}, {0.2, 0}, {0.3, 0}, {0.3, 0.1}, {0.3, 0.2}}), 0.03, Vec3::UnitZ());
 }
 
-// r(a) about a point inside gives a simple outline; its area by the shoelace formula.
+// r(a) about an inner point gives a simple outline; its area follows from the shoelace formula.
 TEST(Polygon, RandomOutlinesInRandomPlanesAreCoveredOnce) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(0.05, 1.0), angle(0.0, 2 * std::numbers::pi);
@@ -106,7 +106,7 @@ TEST(Polygon, RandomOutlinesInRandomPlanesAreCoveredOnce) {
 }
 
 TEST(Polygon, AHoleBehindABridgeStaysOpen) {
-  // a square of 4 with a square hole of 1, entered and left between corners 0 and 4
+  // a square of 4 with a square hole of 1, connected by an edge between corners 0 and 4
   const Corners corners =
       flat({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}});
   const PolygonCut cut = cut_polygon(corners);
@@ -164,7 +164,7 @@ std::string extruded(const std::string& caps) {
 
 TEST(Polygon, ASurfaceWithConcaveCapsEnclosesItsOwnVolume) {
   const TempFolder folder;
-  // from a corner about which a fan would leave the outline
+  // starts at a corner about which a fan would leave the outline
   folder.write("u.obj", extruded("f 3 2 1 8 7 6 5 4\nf 11 12 13 14 15 16 9 10\n"));
   MeshReport report;
   surface(file_spec("u.obj"), folder.path(), &report);

@@ -8,8 +8,8 @@ using namespace palpate::mesh;
 
 namespace {
 
-// Two tetrahedra on the faces of the triangle (1,0,0), (0,1,0), (0,0,1): the unit corner, 1/6, and its mirror
-// point (1,1,1), 1/3.
+// Two tetrahedra on the faces of the triangle (1,0,0), (0,1,0), (0,0,1): the unit corner, 1/6, and its
+// mirrored point (1,1,1), 1/3.
 constexpr const char* kGmsh22 = R"($Comments
  any text, $Nodes too
 $EndComments
@@ -198,7 +198,7 @@ TEST(Readers, TetGenCountsFromZeroOrOneWithCommentsAttributesAndMarkers) {
 
 namespace {
 
-/// "NAME: ELEMENTS; " for each region.
+/// Returns "NAME: ELEMENTS; " for each region.
 std::string regions_of(const std::string& name, std::string_view text, const std::string& other = "",
                        std::string_view other_text = "") {
   const TempFolder folder;
@@ -253,7 +253,7 @@ TEST(Readers, AnElementInSeveralGroupsIsOneElement) {
                   "\n3 4 2 1 5 10 7 300 2000000000\n4 4 2 4 5 10 7 300 2000000000\n9 4 2 4 6 7");
   EXPECT_EQ(regions_of("a.msh", text), "tissue: 0; all: 0 1; ");
   expect_two_tets(read_text("a.msh", text));
-  // the same group again: the file holds a part twice
+  // the same group twice: the file contains a part twice
   expect_contains(error_of([&] { read_text("a.msh", replaced(text, "\n4 4 2 4", "\n4 4 2 1")); }),
                   "has the same corners as");
 }
@@ -264,10 +264,10 @@ TEST(Readers, PartsOfPartitionedVolumesKeepTheirGroups) {
                "$EndEntities\n$PartitionedEntities\n2\n1\n9 1\n1 0 0 2\n5 3 1 1 1 0 0 0 0\n"
                "1 3 1 1 1 0 0 0 1 1 1 2 7 8 0\n2 3 1 2 2 1 0 0 0 1 1 1 0 0\n$EndPartitionedEntities\n");
   EXPECT_EQ(regions_of("b.msh", parts), "region-7: 0; region-8: 0; ");
-  // a part without groups is in those of its volume
+  // a part without groups belongs to those of its volume
   EXPECT_EQ(regions_of("b.msh", replaced(parts, "1 0 0 0 1 1 1 0 0\n$EndE", "1 0 0 0 1 1 1 1 4 0\n$EndE")),
             "region-4: 1; region-7: 0; region-8: 0; ");
-  // no groups: both belong to the one volume of the model
+  // without groups both belong to the model's single volume
   EXPECT_EQ(regions_of("b.msh", replaced(parts, "1 1 1 2 7 8 0", "1 1 1 0 0")), "");
 }
 
@@ -290,7 +290,7 @@ TEST(Readers, TetGensAttributesAreRegions) {
 TEST(Readers, ARegionHasEachElementOnce) {
   const std::vector<MaterialRegion> regions = {{"a", {0, 2}}, {"b", {3}}};
   EXPECT_EQ(region_of_element(regions, 5), (std::vector<int>{0, -1, 0, 1, -1}));
-  // the smaller of two has what both hold, whichever is listed first
+  // elements in both belong to the smaller one, whichever is listed first
   EXPECT_EQ(region_of_element({{"part", {2}}, {"all", {0, 1, 2, 3, 4}}}, 5),
             (std::vector<int>{1, 1, 0, 1, 1}));
   EXPECT_THROW(region_of_element(regions, 3), std::exception);
@@ -301,7 +301,7 @@ TEST(Readers, ObjJoinsContinuedLines) {
       "# a folder: C:\\\nv 0 0 0\nv 1 \\\n0 \\\r\n 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 \\\n1 "
       "\\\n4\n";
   EXPECT_NEAR(read_text("a.obj", text).volume, 1.0 / 6, 1e-15);
-  // lines are counted as the file has them, and a joined one by its first
+  // lines are counted as in the file, and a joined line by its first
   expect_contains(error_of([&] { read_text("a.obj", replaced(text, "3 \\\n1 \\\n4", "3 \\\n1 \\\nx")); }),
                   "a.obj:11: face 4: corner \"x\"");
   std::string old = text;

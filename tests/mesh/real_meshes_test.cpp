@@ -9,7 +9,8 @@
 using namespace palpate;
 using namespace palpate::mesh;
 
-// Meshes made by other people, found through PALPATE_TEST_DATA; counts are those of the files' own headers.
+// Meshes by third parties, found through PALPATE_TEST_DATA; the expected counts are those of the files'
+// headers.
 namespace {
 
 class RealMeshes : public testing::Test {
@@ -58,8 +59,8 @@ TEST_F(RealMeshes, SphereAndBarHaveTheVolumeOfTheirShape) {
   EXPECT_NEAR(r.volume, size.prod(), 1e-6 * size.prod());
 }
 
-// Its sixth element has volume -4.5 and is reordered.  All six are numbered 44, which nothing depends on.
-// The sum of |V| was worked out by hand.
+// Its sixth element has volume -4.5 and is reordered. All six are numbered 44, which is ignored. The sum of
+// |V| was computed by hand.
 TEST_F(RealMeshes, BadSixTetsAreMended) {
   MeshReport r;
   tet_mesh(file_spec("bad-6-tets.msh"), folder_, &r);

@@ -28,7 +28,7 @@ TEST(SpatialOrder, HoldsEachPointOnce) {
 }
 
 TEST(SpatialOrder, PutsTheSamePointsInTheSameOrder) {
-  const TetMesh box = mesh::box(Vec3::Constant(1.0), {7, 7, 7});  // many in one plane
+  const TetMesh box = mesh::box(Vec3::Constant(1.0), {7, 7, 7});  // many nodes in one plane
   const auto count = static_cast<int>(box.nodes.cols());
   std::vector<int> order = shuffled(count, 3);
   mesh::spatial_order(box.nodes, order, 0, count);
@@ -75,7 +75,7 @@ TEST(SpatialOrder, RenumberedMeshIsTheSameMesh) {
   EXPECT_NE(after.tets, before.tets);
 }
 
-/// Into how many runs of successive numbers the points of a ball fall.
+/// Number of runs of consecutive numbers among the points in a ball.
 int runs_in_ball(const Points& points, const std::vector<int>& order, double radius, int* in_ball) {
   int runs = 0;
   bool before = false;
@@ -89,8 +89,8 @@ int runs_in_ball(const Points& points, const std::vector<int>& order, double rad
   return runs;
 }
 
-// Only the points at the surface of a compact part, some 4 n^(2/3) of n in a ball, can begin a run of
-// consecutive numbers; in the order of a mesher nearly every point does.
+// Only the points at the surface of a compact part, about 4 n^(2/3) of n in a ball, can begin a run of
+// consecutive numbers; in a mesher's order nearly every point does.
 TEST(SpatialOrder, ACompactPartLiesInRunsThatNumberLikeItsSurface) {
   const Points points = Points::Random(3, 200000);
   const std::vector<int> mesher = shuffled(200000, 7), spatial = mesh::spatial_order(points);

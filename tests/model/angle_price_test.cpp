@@ -17,8 +17,8 @@ constexpr double kMu = AnglePrice::kYoungsModulus / (2 * (1 + AnglePrice::kPoiss
                            ((1 + AnglePrice::kPoissonsRatio) * (1 - 2 * AnglePrice::kPoissonsRatio));
 
 // The regular tetrahedron with corners at (1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1): g_a = x_a / 4, so
-// that a displacement u_a = F x_a has the gradient F and the nodal forces V P g_a = V P x_a / 4.  With the
-// mass rho V / 4 of a node, P = 2 mu F for a symmetric F without trace and P = (3 lambda + 2 mu) F for F = I:
+// that a displacement u_a = F x_a has the gradient F and the nodal forces V P g_a = V P x_a / 4. With the
+// nodal mass rho V / 4, P = 2 mu F for a symmetric F without trace, and P = (3 lambda + 2 mu) F for F = I:
 // the eigenvalues are 2 mu / rho and (3 lambda + 2 mu) / rho.
 TEST(AnglePrice, RegularTetrahedronByHand) {
   TetMesh mesh;
@@ -35,7 +35,7 @@ TEST(AnglePrice, ScalesWithTheSizeAndGrowsWithFlatness) {
   const TetMesh mesh = mesh::ball(1.0, 0.4);
   TetMesh large = mesh, flat = mesh;
   large.nodes *= 10;
-  // K goes with the size, M with its cube.
+  // K scales with the size, M with its cube.
   EXPECT_NEAR(model::largest_eigenvalue(large) * 100, model::largest_eigenvalue(mesh),
               1e-6 * model::largest_eigenvalue(mesh));
   flat.nodes.row(2) *= 0.01;

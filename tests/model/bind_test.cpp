@@ -9,7 +9,7 @@ using namespace palpate;
 
 namespace {
 
-/// The definition itself: the least distance to any ball of the bone.
+/// Definition: the least distance to any ball of the bone.
 double by_search(const Bone& bone, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= 100000; ++i) {

@@ -53,7 +53,7 @@ TriMesh with_vertex(TriMesh mesh, int vertex, const Vec3& at) {
   return mesh;
 }
 
-/// The boundary of those tetrahedra whose middle `keep` holds for.
+/// Boundary of the tetrahedra for whose centres `keep` holds.
 TriMesh boundary_of(TetMesh mesh, const std::function<bool(const Vec3&)>& keep) {
   Eigen::Index kept = 0;
   for (Eigen::Index t = 0; t < mesh.tets.cols(); ++t) {
@@ -65,7 +65,7 @@ TriMesh boundary_of(TetMesh mesh, const std::function<bool(const Vec3&)>& keep) 
   return mesh::boundary(mesh).surface;
 }
 
-/// A pyramid of this height on each face: sharp everywhere.
+/// Adds a pyramid of this height on each face: sharp edges everywhere.
 TriMesh stellated(const TriMesh& mesh, double height) {
   const Eigen::Index n = mesh.vertices.cols(), faces = mesh.faces.cols();
   TriMesh out{Points(3, n + faces), Faces(3, 3 * faces)};
@@ -97,7 +97,7 @@ TriMesh boxes_sharing(bool edge) {
   });
 }
 
-/// A thin fin out of a ball: its two sides a finger's breadth apart at the root, none at the rim.
+/// A ball with a thin fin, a finger's breadth thick at the root and sharp at the rim.
 TriMesh finned(double sharpness) {
   return mapped(ball(1.0, 10), [&](const Vec3& p) -> Vec3 {
     const double near = std::exp(-sharpness * p.y() * p.y());
@@ -144,7 +144,7 @@ TriMesh not_finite() {
 
 TetMesh flattened(double by) {
   TetMesh out = mesh::ball(1.0, 0.4);
-  // one inner node is moved towards a face of a tetrahedron that it belongs to
+  // one inner node is moved towards a face of one of its tetrahedra
   const int tet = static_cast<int>(out.tets.cols()) / 2;
   const Vec3 foot =
       (out.nodes.col(out.tets(1, tet)) + out.nodes.col(out.tets(2, tet)) + out.nodes.col(out.tets(3, tet))) /
@@ -153,10 +153,10 @@ TetMesh flattened(double by) {
   return out;
 }
 
-/// A node of the inside pulled through the face of a neighbour.
+/// An inner node pulled through the face of a neighbouring tetrahedron.
 TetMesh inverted() { return flattened(-0.2); }
 
-/// Twelve fins from pole to pole, which come together at the poles.
+/// Twelve fins from pole to pole, which meet at the poles.
 TriMesh fins() {
   constexpr double kFins = 12.0;
   return mapped(ball(1.0, 16), [](const Vec3& p) -> Vec3 {
@@ -181,7 +181,7 @@ std::vector<Entry> entries() {
   const auto strict = options([](model::Options& o) { o.repair.wrap = false; });
   const auto hurried = options([](model::Options& o) { o.tetrahedra.limits.seconds = 1e-6; });
   const auto few_points = options([](model::Options& o) { o.tetrahedra.limits.points = 250; });
-  // enough for 1,500 tetrahedra, not for what the relief asks for
+  // enough for 1,500 tetrahedra, but not for the relief
   const auto too_few = options([](model::Options& o) {
     o.tetrahedra.limits.points = 600;
     o.creases = model::Creases::kNone;

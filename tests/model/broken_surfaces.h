@@ -5,7 +5,7 @@
 
 #include "palpate/model/make_model.h"
 
-/// Surfaces and tetrahedra that no one cleaned up, and what is to become of each.
+/// Defective surfaces and tetrahedra, with the expected outcome of each.
 namespace broken {
 
 using namespace palpate;
@@ -13,11 +13,12 @@ using namespace palpate;
 struct Entry {
   std::string name;
   std::function<model::Input()> make;
-  /// "model", or words that the refusal holds: what is wrong; it must also name a place and what to do
+  /// "model", or words in the error message that state the defect; the message must also give a location and
+  /// a remedy
   std::string expected;
-  bool quick = true;  ///< is in the subset that every run makes
+  bool quick = true;  ///< part of the quick subset of every test run
   model::Options options = {};
-  int tetrahedra = 1500;  ///< at least
+  int tetrahedra = 1500;  ///< requested number, at least
 };
 
 std::vector<Entry> entries();

@@ -1,5 +1,4 @@
-// The search for cells of the right size, with a mesher that obeys a formula: how often it goes round, and
-// what it tells of it.
+// Search for the cell size, with a mesher that follows a formula: number of rounds, and reported progress.
 #include "model/cell_search.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +14,8 @@ using namespace palpate;
 
 namespace {
 
-/// 5 V / c^3 tetrahedra of a unit volume, of which optimising leaves another share each time, never the one
-/// that was measured the time before.
+/// Mesher that makes 5 V / c^3 tetrahedra of a unit volume, of which optimisation keeps a different fraction
+/// each time, never the one measured before.
 struct FickleMesher final : model::CellMesher {
   std::vector<double> shares;
   int found = 0, taken = 0;
@@ -41,8 +40,8 @@ struct FickleMesher final : model::CellMesher {
 
 }  // namespace
 
-// Three rounds, the last of which leaves nothing, so that the search gives up: the bar has gone on through
-// all of them, and each had room.
+// Three rounds, the last of which keeps nothing, so that the search fails: the progress bar advances through
+// all of them, with room for each.
 TEST(CellSearch, TheBarNeverRunsBackOverSeveralRounds) {
   model::TetrahedraOptions options;
   options.tetrahedra = 1000;
@@ -63,7 +62,7 @@ TEST(CellSearch, TheBarNeverRunsBackOverSeveralRounds) {
 
 namespace {
 
-/// Fails in its first optimisations, as many as it is told.
+/// Fails in its first `left_to_fail` optimisations.
 struct FailingMesher final : model::CellMesher {
   int refined = 0, left_to_fail = 0, optimised = 0, found = 0;
   std::optional<Vec3> crossing(const Vec3&, const Vec3&) const override { return std::nullopt; }

@@ -13,7 +13,7 @@ TEST(CgalFailure, ReasonIsOneLine) {
   EXPECT_EQ(reason_of(std::runtime_error("no\nmemory")), "no memory");
 }
 
-// As Mesh_3 of CGAL 5.5 and 6.0 writes it.
+// The message format of Mesh_3 in CGAL 5.5 and 6.0.
 TEST(CgalFailure, ReasonHasNoAddresses) {
   const CGAL::Assertion_exception e("CGAL", "", "Refine_facets_3.h", 1504,
                                     "Mesh_3 ERROR: A facet is not in conflict with its refinement point!\n"

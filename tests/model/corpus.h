@@ -1,6 +1,6 @@
 #pragma once
-// Whatever the surface, it ends within its budget: as a model, or as a refusal that says where and what to
-// do.
+// For any surface, model generation ends within its budget: with a model, or with an error that gives a
+// location and a remedy.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ struct Share {
   int all = 0, models = 0, meant_to_be = 0;
 };
 
-/// What a model must be, however its surface was: passed by the gate, and bounded by a closed surface.
+/// Checks the requirements on a model from any surface: it passed the quality gate, and is bounded by a
+/// closed surface.
 inline void expect_sound(const model::Made& made) {
   mesh::Provenance from;
   from.source = "boundary of the model";
@@ -27,7 +28,7 @@ inline void expect_sound(const model::Made& made) {
   if (!made.angle_price) { EXPECT_GE(made.quality.smallest_dihedral_deg, made.creased ? 4.0 : 8.0); }
 }
 
-/// A refusal names a place (but for budgets that nothing can be made within), and what to do.
+/// Checks that an error gives a location (except for insufficient budgets) and a remedy.
 inline void expect_a_way_out(const std::string& refusal) {
   static const std::regex place(R"(at \(.*\) m|(vertex|face|element) \d+|--limit-s|--points)"),
       way_out("--[a-z]+|write the surface again|mesh again|the surface of a body must be closed");

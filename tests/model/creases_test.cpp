@@ -17,7 +17,7 @@ TEST(Creases, PartsHaveThem) {
 
 TEST(Creases, GrownShapesHaveNone) {
   EXPECT_EQ(model::crease_angle(surfaces::ball()), std::nullopt);
-  TriMesh rough = surfaces::ball(1.0, 24);  // its faces turn sharply here and there
+  TriMesh rough = surfaces::ball(1.0, 24);  // some of its faces form sharp angles
   for (Eigen::Index i = 0; i < rough.vertices.cols(); i += 5)
     rough.vertices.col(i) *= 1 + 0.06 * std::sin(static_cast<double>(i));
   EXPECT_EQ(model::crease_angle(rough), std::nullopt);

@@ -104,7 +104,7 @@ TEST_F(ForeignFiles, SurfacesAsBytes) {
   expect_surface(put("b.ply", ply), b, 1e-6);
 }
 
-/// Gmsh itself writes the tetrahedra of a box in every format that it has.
+/// Gmsh writes the tetrahedra of a box in each of its formats.
 TEST_F(ForeignFiles, TetrahedraByGmsh) {
   const TetMesh b = mesh::box(Vec3(2, 1, 1), {4, 2, 2});
   std::string msh = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", b.nodes.cols());
@@ -145,7 +145,7 @@ TEST_F(ForeignFiles, TetrahedraByGmsh) {
   EXPECT_EQ(read, 8);
 }
 
-/// "NAME: COUNT; " for each region.
+/// Returns "NAME: COUNT; " for each region.
 std::string regions_of(const model::SourceFile& file) {
   std::string out;
   for (const MaterialRegion& region : file.regions)
@@ -153,7 +153,7 @@ std::string regions_of(const model::SourceFile& file) {
   return out;
 }
 
-/// A box of 80 tetrahedra in two volumes of 40, in the order of the file first those of volume 2.
+/// A box of 80 tetrahedra in two volumes of 40, with those of volume 2 first in the file.
 std::string msh_of_two(const std::string& names, const std::array<int, 2>& physical) {
   const TetMesh b = mesh::box(Vec3(2, 1, 1), {4, 2, 2});
   std::string msh =
@@ -179,7 +179,7 @@ TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
                           const std::string& wanted) {
     model::start_gmsh(gmshInitialize, &error);
     gmshOptionSetNumber("General.Terminal", 0, &error);
-    gmshOptionSetNumber("Mesh.SaveAll", from == "plain.msh", &error);  // else version 2.2 forgets the groups
+    gmshOptionSetNumber("Mesh.SaveAll", from == "plain.msh", &error);  // else version 2.2 omits the groups
     gmshOpen(at(from).c_str(), &error);
     gmshOptionSetNumber("Mesh.MshFileVersion", version, &error);
     gmshOptionSetNumber("Mesh.Binary", binary, &error);
@@ -230,7 +230,7 @@ std::string raw(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// The four arrays of a VTU file, each in one of the ways in which VTK writes them.
+/// The four arrays of a VTU file, each in one of the encodings that VTK writes.
 struct Vtu {
   std::string attributes, appended, appended_encoding;
   std::function<std::string(const std::string& type, const std::string& name, int components,
@@ -284,7 +284,7 @@ TEST_F(ForeignFiles, VtuInEveryEncoding) {
   };
   expect("binary.vtu", vtu_text(b, binary) + end);
 
-  Vtu zipped;  // blocks of 1000 bytes, the sizes in base64 of their own
+  Vtu zipped;  // blocks of 1000 bytes, with the sizes in a separate base64 block
   zipped.attributes = "compressor=\"vtkZLibDataCompressor\"";
   zipped.array = [](const auto& type, const auto& name, int n, const auto& bytes, const auto&) {
     std::vector<std::uint64_t> sizes = {(bytes.size() + 999) / 1000, 1000, bytes.size() % 1000};
@@ -302,7 +302,7 @@ TEST_F(ForeignFiles, VtuInEveryEncoding) {
   };
   expect("zipped.vtu", vtu_text(b, zipped) + end);
 
-  std::string all;  // raw bytes after the XML, which is no XML any more
+  std::string all;  // raw bytes after the XML, which make the file invalid XML
   Vtu appended;
   appended.array = [&all](const auto& type, const auto& name, int n, const auto& bytes, const auto&) {
     const std::string out =
@@ -340,7 +340,7 @@ TEST_F(ForeignFiles, ArraysOfVtuCellsAreRegions) {
             std::string::npos);
 }
 
-/// Two tetrahedra on one face in Medit's binary form, by hand.
+/// Two tetrahedra on one face in Medit's binary form, assembled by hand.
 std::string meshb(int version, bool swapped, int last_corner = 5) {
   std::string out;
   const auto add = [&](auto value) {
@@ -365,7 +365,7 @@ std::string meshb(int version, bool swapped, int last_corner = 5) {
   add(std::int32_t{1});
   add(static_cast<std::int32_t>(version));
   block(3, [&] { add(std::int32_t{3}); });
-  block(77, [&] { add(std::int32_t{123456}); });  // a keyword that nobody knows
+  block(77, [&] { add(std::int32_t{123456}); });  // an unknown keyword
   block(4, [&] {
     integer(5);
     for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 1)}) {
@@ -410,7 +410,7 @@ TEST_F(ForeignFiles, MeditsBinaryForm) {
   EXPECT_NE(message(std::string("\1\0\0\0\11\0\0\0", 8)).find("has version 9"), std::string::npos);
 }
 
-/// TetGen's two files through the program's reader, attributes kept, from 0 or from 1.
+/// TetGen's two files through the program's reader, with attributes, numbered from 0 or from 1.
 TEST_F(ForeignFiles, TetGensTwoFiles) {
   for (const int first : {0, 1}) {
     const TetMesh b = mesh::box(Vec3(2, 1, 1), {4, 2, 2});
@@ -441,7 +441,7 @@ TEST_F(ForeignFiles, FieldsOfLegacyVtkCellsAreRegions) {
                           "3\nVECTORS flow float\n1 1 1 2 2 2 3 3 3\nFIELD all 2\nt 1 3 double\n1 2 3\n"
                           "Material 1 3 int\n4 8 3\n"))),
       "region-3: 1; region-4: 1; ");
-  // Gmsh's own files, as later versions of it end them.
+  // Gmsh's output, in the form in which later versions end it.
   const std::string plain = put("plain.msh", msh_of_two("", {0, 0}));
   for (const bool binary : {false, true}) {
     int error = 0;
@@ -520,7 +520,7 @@ TEST_F(ForeignFiles, RealGmsh1) {
   const model::SourceFile got = model::read_source(std::string(folder) + "/liver2.msh");
   EXPECT_EQ(got.format, "Gmsh 1");
   EXPECT_EQ(got.tets.nodes.cols(), 507);
-  EXPECT_EQ(got.tets.tets.cols(), 1493);  // beside 931 triangles, 2,424 elements in all
+  EXPECT_EQ(got.tets.tets.cols(), 1493);  // as well as 931 triangles: 2,424 elements in all
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ using namespace palpate;
 
 namespace {
 
-/// The tetrahedra of a box of unit cubes whose middle `keep` holds for; its nodes all, used or not.
+/// The tetrahedra of a box of unit cubes for whose centres `keep` holds; all nodes, used or not.
 model::FittedMesh kept(const std::function<bool(const Vec3&)>& keep) {
   model::FittedMesh out;
   out.mesh = mesh::box(Vec3::Constant(4), {4, 4, 4});
@@ -51,7 +51,7 @@ TEST(Manifold, ASoundMeshStaysToTheLastBit) {
   EXPECT_EQ(mesh.mesh.nodes, before.nodes);
 }
 
-// Half of the box, and one cube that shares an edge or a corner with it: the cube goes as a whole.
+// Half of the box, and one cube that shares an edge or a corner with it: the cube is removed as a whole.
 TEST(Manifold, WhatHangsByAnEdgeOrANodeGoes) {
   const auto in_cube = [](const Vec3& p, const Vec3& low) {
     return ((p - low).array() > 0).all() && ((p - low).array() < 1).all();
@@ -76,7 +76,7 @@ TEST(Manifold, WhatHangsByAnEdgeOrANodeGoes) {
     }
 }
 
-// A tunnel of one cube through the middle whose walls touch along an edge inside of the body.
+// A tunnel of one cube through the middle whose walls touch along an edge inside the body.
 TEST(Manifold, HolesThatTouchAreOpenedIntoEachOther) {
   model::FittedMesh mesh = kept([](const Vec3& p) {
     const bool one = p.x() > 0 && p.x() < 1 && p.y() > 0 && p.y() < 1,

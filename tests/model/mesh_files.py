@@ -1,7 +1,7 @@
-"""Writers of mesh files in the formats that palpate reads, by Python alone, each with a volume that is known.
+"""Writers of mesh files in the formats that palpate reads, in pure Python, each with a known volume.
 
 Shapes are extrusions of polygons and boxes of tetrahedra: their volumes are products of lengths, and a notch
-or a hole that is closed by mistake changes them by a tenth and more.
+or a hole that is closed by mistake changes them by a tenth or more.
 """
 import base64
 import struct
@@ -10,10 +10,10 @@ import zlib
 # ---- shapes --------------------------------------------------------------------------------------------
 
 NOTCHED = [(0, 0), (.06, 0), (.06, .06), (.04, .06), (.04, .02), (.02, .02), (.02, .06), (0, .06)]
-# walked from the corner at which a fan leaves the outline
+# starts at the corner about which a fan would leave the outline
 NOTCHED = NOTCHED[2:] + NOTCHED[:2]
 SQUARE = [(0, 0), (.06, 0), (.06, .06), (0, .06)]
-HOLE = [(.02, .02), (.02, .04), (.04, .04), (.04, .02)]  # the other way round
+HOLE = [(.02, .02), (.02, .04), (.04, .04), (.04, .02)]  # in the opposite direction
 
 
 def area(outline):
@@ -28,7 +28,7 @@ class Surface:
         return Surface([[by * x for x in p] for p in self.points], self.faces, self.volume * by ** 3)
 
     def triangles(self):
-        """Fans: right for convex faces alone."""
+        """Triangulates by fans: correct for convex faces only."""
         return Surface(self.points, [(f[0], f[i], f[i + 1]) for f in self.faces
                                      for i in range(1, len(f) - 1)], self.volume)
 
@@ -42,7 +42,7 @@ def extruded(outline, height=.02):
 
 
 def pierced(height=.02):
-    """A square tube: each cap is one polygon that goes to the hole and back along the same edge."""
+    """A square tube: each cap is one polygon that reaches the hole and returns along the same edge."""
     points = [(x, y, z) for z in (0, height) for x, y in SQUARE + HOLE]
     top = [8, 9, 10, 11, 8, 12, 13, 14, 15, 12]
     sides = [(i, (i + 1) % 4, (i + 1) % 4 + 8, i + 8) for i in range(4)]
@@ -60,7 +60,7 @@ def block():
 
 
 class Tets:
-    """A box of 0.1 x 0.05 x 0.05 m in cubes of six tetrahedra; `half` is 0 or 1, by x."""
+    """A box of 0.1 x 0.05 x 0.05 m, divided into cubes of six tetrahedra; `half` is 0 or 1, by x."""
 
     def __init__(self, cells=2, order=1):
         h = .05 / cells
@@ -82,7 +82,7 @@ class Tets:
                         for axis in path:
                             at[axis] += 1
                             corners.append(node(*at))
-                        if n in (1, 2, 5):  # odd permutations turn the other way
+                        if n in (1, 2, 5):  # odd permutations have the opposite orientation
                             corners[2], corners[3] = corners[3], corners[2]
                         self.cells.append(tuple(corners))
                         self.half.append(int(i >= cells))
@@ -119,7 +119,7 @@ def obj(s, corner=lambda i, n: str(i + 1), extra="", tail=()):
 
 
 def ply(s, form="ascii", real="double", index="int", count="uchar", name="vertex_indices", more=(), head=""):
-    """more: further properties of vertices, (type, name, value)."""
+    """more: additional vertex properties, (type, name, value)."""
     codes = {"double": "d", "float64": "d", "float": "f", "float32": "f", "int": "i", "int32": "i",
              "uint": "I", "uint32": "I", "uchar": "B", "uint8": "B", "ushort": "H", "short": "h"}
     text = f"ply\nformat {form} 1.0\n{head}element vertex {len(s.points)}\n"
@@ -162,7 +162,7 @@ def stl_bytes(s, head=b""):
 # ---- VTK -----------------------------------------------------------------------------------------------
 
 class Vtk:
-    """Legacy files: version 3 to 5.1, as text or bytes."""
+    """Legacy files: version 3 to 5.1, as text or binary."""
 
     def __init__(self, version, binary, kind, index="vtktypeint64"):
         self.version, self.binary, self.index = version, binary, index
@@ -224,7 +224,7 @@ def vtk_tets(version="3.0", binary=False, index="vtktypeint64", metadata=False, 
 
 def vtk_surface(s, version="3.0", binary=False, index="vtktypeint64", strips=False):
     file = Vtk(version, binary, "POLYDATA", index).points(s.points, "float")
-    if strips:  # the sides of a prism of n corners as one strip, its caps as polygons
+    if strips:  # the sides of a prism with n corners as one strip, its caps as polygons
         n = len(s.points) // 2
         strip = [i % n + at for i in range(n + 1) for at in (n, 0)]
         return file.cells(s.faces[:2], "POLYGONS").cells([strip], "TRIANGLE_STRIPS").out
@@ -305,7 +305,7 @@ NAMES = '$PhysicalNames\n3\n3 1 "all"\n3 2 "soft tissue"\n3 3 "hard"\n$EndPhysic
 
 
 def msh2(mesh, groups=lambda half: (2 + half,), names=NAMES, binary=False, partitioned=False, kind=4):
-    """groups: physical numbers of an element, which stands in the file once for each."""
+    """groups: physical numbers of an element, which occurs in the file once for each."""
     out = f"$MeshFormat\n2.2 {int(binary)} 8\n".encode() + (struct.pack("<i", 1) + b"\n" if binary else b"")
     out += b"$EndMeshFormat\n" + names.encode() + f"$Nodes\n{len(mesh.points)}\n".encode()
     for i, p in enumerate(mesh.points):
@@ -324,7 +324,7 @@ def msh2(mesh, groups=lambda half: (2 + half,), names=NAMES, binary=False, parti
 
 
 def msh4(mesh, groups=((1, 2), (1, 3)), names=NAMES, binary=False, partitioned=False, kind=4):
-    """groups: physical numbers of each half.  partitioned: each half in two parts, which have the groups."""
+    """groups: physical numbers of each half. partitioned: each half in two parts, which have the groups."""
     def size(*values):
         return struct.pack(f"<{len(values)}Q", *values) if binary else lines([values])[:-1].encode() + b" "
 

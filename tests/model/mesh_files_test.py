@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Public mesh formats, feature by feature: each file has a volume and names that are known apart from
-palpate, and becomes a model with them, or is refused by its right name.  Prints the share that is read right.
-docs/meshes.md has a table of what is read; each of its cells is a case here.
+"""Public mesh formats, feature by feature: each file has a volume and names known independently of palpate,
+and becomes a model with these, or is rejected with its name. Prints the share of cases that are read
+correctly. docs/meshes.md has a table of supported features; each of its cells is a case here.
 
     mesh_files_test.py PROGRAM [Class.test ...]
-    mesh_files_test.py PROGRAM --share       prints each case that fails, and the share, and exits with 0
+    mesh_files_test.py PROGRAM --share       prints each failing case, and the share, and exits with 0
 """
 import re
 import subprocess
@@ -27,7 +27,8 @@ CASES = []
 
 
 def case(format, feature, name, files, *options, volume=None, regions=None, refused=None, says=None):
-    """files: text or bytes of `name`, or a dict of several files, of which `name` is given to the program."""
+    """files: text or bytes of `name`, or a dict of several files, of which `name` is passed to the
+    program."""
     CASES.append({"format": format, "feature": feature, "name": name, "options": options, "regions": regions,
                   "files": files if isinstance(files, dict) else {name: files}, "volume": volume,
                   "refused": refused, "says": says})
@@ -43,8 +44,8 @@ def tets(format, feature, name, text, regions=None, **more):
 
 def warped():
     out = m.block()
-    out.points[6] = (.06, .06, .024)  # a corner of the top, a fifth of the height up
-    # a fan from the first corner of the top (4 of 4 5 6 7), whose diagonal goes to the raised corner: two
+    out.points[6] = (.06, .06, .024)  # a corner of the top, raised by a fifth of the height
+    # a fan from the first corner of the top (4 of 4 5 6 7), whose diagonal ends at the raised corner: two
     # tetrahedra
     out.volume += 2 * .06 * .06 / 2 * .004 / 3
     return out
@@ -102,7 +103,7 @@ surface("OFF", "comments", "a.off", m.off(PLATE, "OFF\n# made by hand\n\n"))
 surface("OFF", "line ends of other systems", "a.off", m.off(PLATE).replace("\n", "\r\n"))
 surface("OFF", "millimetres", "a.off", m.off(PLATE.scaled(1000)), PLATE, "--scale", "0.001")
 
-# STL, of the block: fans are right for convex faces alone
+# STL, of the block: fans are correct for convex faces only
 surface("STL", "triangles", "a.stl", m.stl(m.block()), m.block())
 surface("STL", "triangles", "b.stl", m.stl(m.block(), upper=True), m.block())
 surface("STL", "bytes", "a.stl", m.stl_bytes(m.block()), m.block())
@@ -189,7 +190,7 @@ tets("Medit", "bytes of the other order", "a.meshb", m.medit_bytes(BOX, ">"), RE
 
 
 def outcome(case):
-    """What is wrong; empty: nothing."""
+    """Returns the fault of a case; empty if there is none."""
     with tempfile.TemporaryDirectory() as folder:
         for name, content in case["files"].items():
             Path(folder, name).write_bytes(content.encode() if isinstance(content, str) else content)
@@ -206,7 +207,7 @@ def outcome(case):
         return f"status {done.returncode}: {done.stderr.strip()[:200]}"
     row = re.search(r"^volume \[m\^3\] +(\S+)", done.stdout, re.M)
     volume = float(row.group(1))
-    # the boundary of a surface that is filled is fitted to its volume: 1 % is what the gate leaves
+    # the boundary of a filled surface is fitted to its volume: the gate permits 1 %
     tolerance = 1e-2 if "--tetrahedra" in case["options"] else 1e-5
     if abs(volume / case["volume"] - 1) > tolerance:
         return f"volume {volume}, right is {case['volume']:.6g}"
@@ -247,7 +248,7 @@ class Files(unittest.TestCase):
 
 
 def print_table():
-    """The table of docs/meshes.md."""
+    """Prints the table of docs/meshes.md."""
     formats = list(dict.fromkeys(c["format"] for c in CASES))
     features = list(dict.fromkeys(c["feature"] for c in CASES))
     cells = {(c["format"], c["feature"]): "refused" if c["refused"] else "yes" for c in CASES}

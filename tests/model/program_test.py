@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""`palpate model` as a person meets it: outcome, messages, questions, Ctrl-C, the budget, the same bytes
-again; and palpate itself links none of it.
+"""The user interface of `palpate model`: outcome, messages, questions, Ctrl-C, the budget, reproducible
+output; and palpate itself links none of it.
 """
 import os
 import pty
@@ -33,7 +33,7 @@ def octahedron(folder, name="body.obj", faces=None):
 
 
 def scaled(source, name, factor):
-    """A copy of a file of octahedron(), its coordinates multiplied."""
+    """Writes a scaled copy of a file of octahedron()."""
     out = source.parent / name
     out.write_text("".join(
         f"v {' '.join(str(factor * float(x)) for x in line.split()[1:])}\n" if line.startswith("v")
@@ -42,7 +42,7 @@ def scaled(source, name, factor):
 
 
 def flat_tetrahedra(folder):
-    """The octahedron of four tetrahedra around its axis, and a fifth, flat one beside them."""
+    """The octahedron as four tetrahedra around its axis, and a fifth, flat one."""
     path = Path(folder) / "flat.msh"
     points = [(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (0.36, 0.36, 0.36)]
     tets = [(5, 6, 1, 2), (5, 6, 2, 3), (5, 6, 3, 4), (5, 6, 4, 1), (1, 2, 5, 7)]
@@ -55,7 +55,8 @@ def flat_tetrahedra(folder):
 
 
 def open_terminal():
-    """Both ends of a terminal; skips the test aloud where the machine has none (no /dev/pts)."""
+    """Returns both ends of a terminal; skips the test with a message where the machine has none (no
+    /dev/pts)."""
     try:
         return pty.openpty()
     except OSError as error:
@@ -63,7 +64,7 @@ def open_terminal():
 
 
 class Terminal:
-    """The program with a terminal for its input and its messages."""
+    """The program with a terminal for its input and messages."""
 
     def __init__(self, *words):
         self.leader, follower = open_terminal()
@@ -74,11 +75,11 @@ class Terminal:
         self.text = ""
 
     def read_until(self, pattern):
-        """Waits until what was printed matches, or the program has ended."""
+        """Waits until the output matches, or the program has ended."""
         while not re.search(pattern, self.text):
             try:
                 more = os.read(self.leader, 4096)
-            except OSError:  # all who could write have ended
+            except OSError:  # all writers have ended
                 more = b""
             if not more:
                 return False
@@ -96,7 +97,7 @@ class Terminal:
 
 
 def scene_of(model, more=""):
-    """One body of a model's file, and what else is said of it."""
+    """Returns a scene with one body of a model file, and additional settings."""
     return f"""
 [scene]
 name = "body"
@@ -193,7 +194,7 @@ class Program(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         row = next(line for line in done.stdout.splitlines() if line.startswith("core"))
         volume, wanted = (float(word) for word in row.split()[2:4])
-        self.assertAlmostEqual(wanted, 4 / 3 / 8, places=6)  # an octahedron of unit radius has 4/3
+        self.assertAlmostEqual(wanted, 4 / 3 / 8, places=6)  # a unit octahedron has 4/3
         self.assertLess(abs(volume / wanted - 1), 0.1)
         self.assertEqual(run("model", source, "-o", self.path / "b.h5", *options, "-q").returncode, 0)
         self.assertEqual((self.path / "a.h5").read_bytes(), (self.path / "b.h5").read_bytes())
@@ -219,7 +220,7 @@ class Program(unittest.TestCase):
         source = octahedron(self.path)
         before = sorted(self.path.iterdir())
         model = Terminal("model", source, "-o", self.path / "a.h5", "--tetrahedra", "3000000")
-        self.assertTrue(model.read_until("fill with tetrahedra"), model.text)  # its bar: it is in the middle
+        self.assertTrue(model.read_until("fill with tetrahedra"), model.text)  # the bar of this stage
         model.process.send_signal(signal.SIGINT)
         self.assertEqual(model.end(), 130)
         self.assertIn("palpate: stopped, no model was written", model.text)
@@ -228,14 +229,14 @@ class Program(unittest.TestCase):
     def test_progress_is_shown_on_a_terminal_and_grows(self):
         source = octahedron(self.path)
         model = Terminal("model", source, "-o", self.path / "a.h5", "--tetrahedra", "3000000")
-        # the bar of one refinement, told from within: nothing was finished yet
+        # progress within one refinement: nothing was finished yet
         self.assertTrue(model.read_until(r"\] +[2-9] %[^\r]*fill with tetrahedra"), model.text)
         model.process.send_signal(signal.SIGTERM)
         self.assertEqual(model.end(), 130)
         shares = [int(x) for x in re.findall(r"\] +(\d+) %[^\r]*fill with tetrahedra", model.text)]
         self.assertEqual(shares, sorted(shares))
         self.assertGreater(len(set(shares)), 1)
-        self.assertNotIn("\\x", model.text)  # the bar's own control characters reach the terminal as such
+        self.assertNotIn("\\x", model.text)  # the bar's control characters reach the terminal unescaped
         self.assertIn("\r\033[K[", model.text)
 
     def test_the_budget_ends_it(self):
@@ -250,7 +251,7 @@ class Program(unittest.TestCase):
             self.assertFalse((self.path / "a.h5").exists())
 
     def test_steps_that_cannot_be_interrupted_end_as_well(self):
-        # 1,600 tetrahedra through each other: CGAL works on their intersections for far longer than a second
+        # 1,600 intersecting tetrahedra: CGAL computes their intersections for far longer than a second
         with open(self.path / "tangle.obj", "w", encoding="ascii") as file:
             for i in range(1600):
                 for x, y, z in [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]:
@@ -351,13 +352,13 @@ class Program(unittest.TestCase):
             self.assertNotIn(library, linked)
         symbols += subprocess.run(["nm", "-C", PALPATE], capture_output=True, text=True).stdout
         self.assertIn("palpate::", symbols)
-        # of CGAL the triangulation of polygons in a plane alone (src/mesh/polygon.cpp)
+        # palpate includes only CGAL's triangulation of plane polygons (src/mesh/polygon.cpp)
         foreign = re.compile(r"CGAL::\w*(_3\b|AABB|Surface_mesh|HalfedgeDS|SM_|Polygon_mesh)|gmshOpen|"
                              r"gmshInitialize|\bmpfr_")
         self.assertEqual([line for line in symbols.splitlines() if foreign.search(line)], [])
         own = subprocess.run(["ldd", str(Path(PALPATE).parent / "palpate-model")], capture_output=True,
                              text=True).stdout.lower()
-        self.assertNotIn("gmsh", own)  # opened when a file needs it
+        self.assertNotIn("gmsh", own)  # loaded when a file requires it
         self.assertIn("gmp", own)
 
 

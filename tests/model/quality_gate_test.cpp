@@ -34,7 +34,7 @@ TEST(QualityGate, RegularTetrahedron) {
 }
 
 TEST(QualityGate, CornerTetrahedron) {
-  // Three faces at right angles; the fourth meets them at acos(1/sqrt 3).  Inscribed radius 3 V / A = (1/2) /
+  // Three faces at right angles; the fourth meets them at acos(1/sqrt 3). Inscribed radius 3 V / A = (1/2) /
   // (3/2 + sqrt(3)/2).
   const TetMesh corner = mesh::corner_tet(Vec3::Ones());
   const model::TetQuality q = model::measure_quality(corner, 1.0 / 6);
@@ -96,12 +96,12 @@ TEST(QualityGate, TetrahedraOnOneSideOfTheirFaceAreRefused) {
   TetMesh two = mesh::corner_tet(Vec3::Ones());
   two.nodes.conservativeResize(3, 5);
   two.tets.conservativeResize(4, 2);
-  // Beyond the slanted face x + y + z = 1, seen from there: sound.
+  // On the far side of the slanted face x + y + z = 1: valid.
   two.nodes.col(4) = Vec3(1, 1, 1);
   two.tets.col(1) << 1, 2, 3, 4;
   ASSERT_GT(mesh::tet_volume(two, 1), 0);
   EXPECT_EQ(refusal([&] { model::check_sides(two, "a.msh"); }), "accepted");
-  // On the first one's own side, its nodes in the order that makes its volume positive.
+  // On the same side as the first one, with its nodes in the order of positive volume.
   two.nodes.col(4) = Vec3(0.1, 0.1, 0.1);
   two.tets.col(1) << 2, 1, 3, 4;
   ASSERT_GT(mesh::tet_volume(two, 1), 0);

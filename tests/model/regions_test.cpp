@@ -40,7 +40,7 @@ TEST(Regions, AreTheTetrahedraWithTheirMiddleInside) {
   for (int t = 0; t < tets.tets.cols(); ++t) {
     const double r = middle(tets, t).norm();
     if (std::abs(r - 0.5) < 0.004)
-      ++near;  // the facets of the ball are that flat
+      ++near;  // deviation of the ball's facets
     else
       EXPECT_EQ(in[static_cast<std::size_t>(t)] != 0, r < 0.5) << r;
     if (in[static_cast<std::size_t>(t)]) volume += mesh::tet_volume(tets, t);

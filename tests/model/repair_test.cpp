@@ -77,8 +77,8 @@ TEST(Repair, ClosesASmallHoleByASmoothPatch) {
   ASSERT_LT(open.faces.cols(), ball().faces.cols());
   const model::RepairedSurface result = repaired(open);
   EXPECT_TRUE(noted(result, "1 holes were closed"));
-  // The cap that went has a volume of pi h^2 (3 - h) / 3 = 0.0077; a flat lid loses it, a smooth patch
-  // hardly.
+  // The removed cap has a volume of pi h^2 (3 - h) / 3 = 0.0077; a flat lid loses it, a smooth patch hardly
+  // any.
   EXPECT_NEAR(volume(result.surface), volume(ball()), 0.004);
 }
 
@@ -141,7 +141,7 @@ TEST(Repair, CutsOutAFold) {
   TriMesh mesh = ball(1.0, 12);
   Eigen::Index top = 0;
   mesh.vertices.row(2).maxCoeff(&top);
-  mesh.vertices.col(top) = Vec3(0.12, 0.05, -1.3);  // drawn through the opposite side
+  mesh.vertices.col(top) = Vec3(0.12, 0.05, -1.3);  // pulled through the opposite side
   const model::RepairedSurface result = repaired(mesh);
   EXPECT_FALSE(result.notes.empty());
   EXPECT_NEAR(volume(result.surface), volume(ball(1.0, 12)), 0.05 * volume(ball(1.0, 12)));
@@ -151,7 +151,7 @@ TEST(Repair, WrapsOverlappingShellsAndSaysSo) {
   const TriMesh two = together(ball(1.0, 8), ball(1.0, 8, Vec3(1, 0.02, 0.03)));
   const model::RepairedSurface result = repaired(two);
   EXPECT_TRUE(noted(result, "wrapped"));
-  // The union of two unit balls whose centres are d apart: 8/3 pi - pi (4 + d) (2 - d)^2 / 12.
+  // Union of two unit balls whose centres are d apart: 8/3 pi - pi (4 + d) (2 - d)^2 / 12.
   const double d = Vec3(1, 0.02, 0.03).norm(), exact = M_PI * (8.0 / 3 - (4 + d) * (2 - d) * (2 - d) / 12);
   EXPECT_NEAR(volume(result.surface), exact, 0.03 * exact);
   model::RepairOptions strict;

@@ -7,7 +7,7 @@
 #include "palpate/mesh/generators.h"
 #include "palpate/model/repair.h"
 
-/// Surfaces with a known answer, and ways to spoil them.
+/// Surfaces with known results, and ways to damage them.
 namespace surfaces {
 
 using namespace palpate;
@@ -32,7 +32,7 @@ inline TriMesh turned(TriMesh mesh) {
   return mesh;
 }
 
-/// Without the faces whose middle `drop` holds for.
+/// Removes the faces for whose centres `drop` holds.
 inline TriMesh without(const TriMesh& mesh, const std::function<bool(const Vec3&)>& drop) {
   TriMesh out{mesh.vertices, Faces(3, mesh.faces.cols())};
   Eigen::Index kept = 0;
@@ -45,7 +45,7 @@ inline TriMesh without(const TriMesh& mesh, const std::function<bool(const Vec3&
   return out;
 }
 
-/// Every face with vertices of its own, as STL has them.
+/// Separates the vertices of all faces, as in STL.
 inline TriMesh loose(const TriMesh& mesh) {
   TriMesh out{Points(3, 3 * mesh.faces.cols()), Faces(3, mesh.faces.cols())};
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f)
@@ -62,7 +62,7 @@ inline model::RepairedSurface repaired(const TriMesh& mesh, const model::RepairO
   return model::repair(mesh, from(), options);
 }
 
-/// The message of the Error that `work` throws; "accepted" where it throws none.
+/// Returns the message of the Error that `work` throws; "accepted" if it throws none.
 template <class Work>
 std::string refusal(Work work) {
   try {

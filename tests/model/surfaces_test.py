@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Surfaces that nobody here made, and the paper's own, become models with no option given, within the bars of
-quality, and the same bytes again.
+"""Third-party surfaces, and the paper's, become models without any option, within the acceptance limits of
+quality, and with reproducible output.
 
-    surfaces_test.py PROGRAM [Class.test ...]      the real ones are skipped, aloud, without PALPATE_TEST_DATA
+    surfaces_test.py PROGRAM [Class.test ...]      real surfaces are skipped without PALPATE_TEST_DATA
 """
 import os
 import subprocess

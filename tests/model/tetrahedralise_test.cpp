@@ -19,7 +19,7 @@ model::TetrahedraOptions number(int tetrahedra) {
   return out;
 }
 
-/// What every mesh must be: sound, and with a boundary that is one closed surface.
+/// Checks that a mesh is valid, with a boundary that is one closed surface.
 model::TetQuality sound(TetMesh mesh, double volume) {
   mesh::Provenance from;
   from.source = "test";
@@ -35,7 +35,7 @@ TEST(Tetrahedralise, MeetsTheNumberAndTheVolumeWithGoodAngles) {
     const model::TetQuality q = sound(made.mesh, volume(ball(1.0, 12)));
     EXPECT_NEAR(q.tetrahedra, wanted, 0.03 * wanted);
     EXPECT_GE(q.smallest_dihedral_deg, 8.0);
-    EXPECT_LE(q.volume_error, 1e-4);  // fitted, not only inscribed
+    EXPECT_LE(q.volume_error, 1e-4);  // fitted, rather than inscribed
   }
 }
 
@@ -103,7 +103,7 @@ TEST(Tetrahedralise, KeepsGivenLines) {
 TEST(Tetrahedralise, FillsAroundACavity) {
   const TriMesh hollow = together(ball(1.0, 10), turned(ball(0.4, 6)));
   const model::TetQuality q = sound(model::tetrahedralise(hollow, number(4000)).mesh, volume(hollow));
-  EXPECT_LE(q.volume_error, 0.005);  // 0.068 where the cavity were missed
+  EXPECT_LE(q.volume_error, 0.005);  // 0.068 without the cavity
   EXPECT_GE(q.smallest_dihedral_deg, 8.0);
 }
 
@@ -128,7 +128,7 @@ TEST(Tetrahedralise, RefusesWhatCannotBe) {
             "the implicit function is 1 at the centre (0, 0, 0) m, must be negative inside");
 }
 
-/// What the steps before took is part of the time, and the refusal names all of it: what the user gave.
+/// The time of previous steps counts, and the message states the total: the user's limit.
 TEST(Tetrahedralise, NamesTheWholeTimeWhenItIsOver) {
   model::TetrahedraOptions late = number(3'000'000);
   late.limits.seconds = 60.0;

@@ -13,7 +13,7 @@ using namespace palpate::cli;
 
 namespace {
 
-/// A child that ends by a division by zero while the stage is not left out.
+/// A child process that ends by a division by zero, unless the stage is skipped.
 int dies_in(const char* stage, bool wanted) {
   worker_stage(stage);
   worker_place("at (1, 2, 3) m");

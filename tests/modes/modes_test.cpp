@@ -58,7 +58,7 @@ MatX random_definite(int n, unsigned seed, double scale) {
                       })).asDiagonal() *
                   Q.transpose());
 }
-/// Points joined each to each by springs: no force resists the six rigid motions.
+/// All pairs of points connected by springs: no force resists the six rigid motions.
 MatX spring_network(const MatX& points, double k) {
   const int n = static_cast<int>(points.cols());
   MatX K = MatX::Zero(3 * n, 3 * n);
@@ -89,7 +89,7 @@ void expect_modes_of(const Dense& d, const Modes& modes) {
             1e-10);
 }
 
-// w_j = 2 sqrt(k) sin((2j - 1) pi/18); k itself, 100, comes from j = 2 and from y and z: nine times
+// w_j = 2 sqrt(k) sin((2j - 1) pi/18); the eigenvalue k = 100 comes from j = 2 and from y and z: nine times
 TEST(Modes, OfTheChainAreKnown) {
   Chain chain;
   const Modes modes = find_modes(chain.system, chain.state.view(), {5});

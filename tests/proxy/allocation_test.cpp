@@ -15,7 +15,7 @@ TEST(Allocation, UpdatesOfProxiesAllocateNothing) {
   model.proxies = proxy::decompose(model, {.count = 12});
   const long before_all = malloc_calls;
   proxy::ProxySet affine(model), rigid(model, {.follow = proxy::Follow::kRigid});
-  EXPECT_GT(malloc_calls, before_all);  // the counter counts
+  EXPECT_GT(malloc_calls, before_all);  // the counter works
   Points nodes = 1.3 * model.tets.nodes;
   nodes.row(0) *= -0.01;
   const long before = malloc_calls;

@@ -1,4 +1,4 @@
-// A rigid tool with a hollow, pruned as one hull and as the parts that decompose_solid makes.
+// A rigid tool with a cavity, pruned as one hull and as the parts made by decompose_solid.
 #include <gtest/gtest.h>
 
 #include "palpate/mesh/generators.h"
@@ -13,14 +13,14 @@ using namespace pruning;
 
 namespace {
 
-/// A torus about a unit ball that is wider than its hole by 2 kPress,
-/// each point of the ring's inside pressing alike.
+/// A torus around a unit ball whose diameter exceeds the hole's by 2 kPress, so that each point of the ring's
+/// inside presses equally.
 constexpr double kTube = 0.5, kPress = 0.05, kRing = 1.0 + kTube - kPress, kGap = 0.02;
 const TriMesh& ring() {
   static const TriMesh surface = tools::torus(kRing, kTube, 120, 60);
   return surface;
 }
-/// How far its vertices' polygons lie inside of it, at most.
+/// Upper bound on the distance of the torus's polygons inside of the exact surface.
 constexpr double kSag = kRing * 2e-3 + kTube * 2e-3;
 
 LayeredModel ball() {
@@ -40,7 +40,7 @@ LayeredModel block(const Vec3& size, int fine) {
   return model;
 }
 
-/// Faces with a vertex that a function calls near.
+/// Faces with a vertex for which `near` holds.
 template <class Near>
 std::set<int> near_faces(const TriMesh& skin, const Points& points, const Near& near) {
   std::vector<char> flag;
@@ -54,7 +54,7 @@ Vec3 middle_of(const TriMesh& skin, const Points& points, int face) {
          3.0;
 }
 
-/// A block about the origin, moved, against the fork that tests/proxy/tools.h describes.
+/// A block about the origin, moved, against the fork of tests/proxy/tools.h.
 struct Forked {
   LayeredModel model;
   Placed body;
@@ -71,7 +71,7 @@ struct Forked {
   }
 };
 
-/// Signed distance from the fork, outside of it: of its three boxes the nearest.
+/// Signed distance from the fork, exact outside of it: the minimum over its three boxes.
 double distance_to_fork(const Vec3& x) {
   const auto box = [&](const Vec3& middle, const Vec3& half) {
     const Vec3 beyond = (x - middle).cwiseAbs() - half;
@@ -87,16 +87,16 @@ double share(const std::set<int>& faces, const TriMesh& skin) {
 
 }  // namespace
 
-// Nothing near is lost, on either side; each region looks across the ring where it is: its normal is minus
-// the mean radius of what it holds of the ball, and no point that touches is seen at a more glancing angle
-// than the merge angle, the width of a proxy and what is near but does not touch explain.
+// No near face is lost on either side. Each region's normal is local: it is minus the mean radius of the
+// region's part of the ball, and its angle at any touching point is explained by the merge angle, the
+// width of a proxy, and faces that are near without touching.
 TEST(ConcaveTool, ATorusAroundABallTouchesAllAround) {
   const LayeredModel model = ball();
   Placed body(model);
   proxy::ProxySet tool = proxy::rigid_proxies(ring());
   EXPECT_GE(tool.size(), 6);
   proxy::Pruner pruner(body.set, tool);
-  // both, so that nothing is aligned
+  // both rotated, so that nothing is aligned
   const Pose pose{Quat(0.9, 0.1, -0.3, 0.2).normalized(), Vec3(0.3, 2.0, -1.0)};
   body.place(pose, 0.0, 0);
   tool.update(pose);
@@ -166,8 +166,8 @@ TEST(ConcaveTool, AForkStandsOnItsProngs) {
   EXPECT_LE(found.a.size(), all.a.size());
 }
 
-// A narrow block in the gap: pressed against the bridge it is seen from above; against a prong, from that
-// side.  As one hull the fork encloses it, and all of its skin is a candidate.
+// A narrow block in the gap: against the bridge its normal points up, and against a prong to that side. As
+// one hull the fork encloses it, and all of its skin is a candidate.
 TEST(ConcaveTool, BetweenTheProngsEachWallIsItsOwn) {
   const Vec3 size(0.8, 2.0, 1.6);
   Forked parts(size, {}), one(size, {.count = 1});

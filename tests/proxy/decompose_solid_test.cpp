@@ -25,12 +25,12 @@ TriMesh rotated(TriMesh surface) {
   return surface;
 }
 
-/// A cube of edge 6 with a slot into its upper half: its inside is far from its surface.
+/// A cube of edge 6 with a slot in its upper half: its inside is far from its surface.
 TriMesh slotted_cube() {
   return tools::of_cubes({12, 12, 12}, 0.5, [](int i, int, int k) { return k < 6 || i < 5 || i > 6; });
 }
 
-/// A ball with a hollow ball inside, whose surface looks inwards.
+/// A ball with a spherical cavity, whose surface is oriented inwards.
 TriMesh hollow_ball() {
   TriMesh out = mesh::sphere(1.0, 10);
   const TriMesh inner = mesh::sphere(0.5, 8);
@@ -50,8 +50,7 @@ bool is_inside(const TriMesh& surface, const Vec3& p) {
   return mesh::winding_number(surface, all, p) > 0.5;
 }
 
-/// Distance of a point from the nearest of the hulls, each inflated as the set says;
-/// not positive in one of them.
+/// Distance of a point from the nearest hull, each inflated as in the set; not positive inside one of them.
 double outside_all(const proxy::ProxySet& set, const std::vector<ProxyHull>& hulls, const Vec3& p) {
   double nearest = 1e300;
   for (int i = 0; i < set.size(); ++i) {
@@ -77,8 +76,8 @@ std::string error_of(const TriMesh& surface, const proxy::SolidOptions& options)
 
 }  // namespace
 
-// What a pruner may leave out hangs on this: points drawn at random inside, most of them far from the
-// surface, lie in an inflated hull, however many hulls.
+// Pruning depends on this property: random points inside, most of them far from the surface, lie in an
+// inflated hull, for any number of hulls.
 TEST(DecomposeSolid, CoversTheInside) {
   std::mt19937 random(3);
   const TriMesh solids[] = {rotated(torus(1.0, 0.3, 40, 20)), rotated(fork(4)), slotted_cube(),
@@ -104,9 +103,9 @@ TEST(DecomposeSolid, CoversTheInside) {
   }
 }
 
-// As many segments as the tolerance asks for: over a segment of angle t the hull leaves the inner side along
-// the chord, (R - r)(1 - cos(t/2)) off, which must be below the tolerance, and need not be below a quarter of
-// it as a cut halves t.  The hole is left open.
+// The number of segments follows from the tolerance: over a segment of angle t the hull leaves the inner side
+// along the chord, (R - r)(1 - cos(t/2)) away, which must be below the tolerance, and need not be below a
+// quarter of it, because a cut halves t. The hole remains open.
 TEST(DecomposeSolid, ATorusBecomesARing) {
   constexpr double R = 1.0, r = 0.3, tolerance = 0.02;
   const TriMesh ring = rotated(torus(R, r, 96, 32));
@@ -129,8 +128,8 @@ TEST(DecomposeSolid, ATorusBecomesARing) {
   EXPECT_LT(outside_all(set_of(ring, one), one, Vec3(3, -1, 2)), 0.0) << "one hull closes it";
 }
 
-// Planes through the fork's own corners: its parts are convex, so the hulls have its volume, 7, whichever way
-// it is rotated; the gap between the prongs is open.
+// Planes through the fork's corners: its parts are convex, so that the hulls have its volume, 7, for any
+// rotation; the gap between the prongs remains open.
 TEST(DecomposeSolid, AForkBecomesItsParts) {
   for (const TriMesh& tool : {fork(8), rotated(fork(8))}) {
     proxy::DecomposeReport report;

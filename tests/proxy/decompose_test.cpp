@@ -24,8 +24,8 @@ std::string error_of(const LayeredModel& model, const proxy::DecomposeOptions& o
 
 }  // namespace
 
-// Hulls of the cube's corners with points inside, of a square, a line and a point:
-// corners, planes and volume are known.
+// Hulls of the cube's corners with inner points, of a square, a line and a point: corners, planes and volume
+// are known.
 TEST(ConvexHull, SetsOfEveryDimension) {
   Points cube(3, 10);
   for (int i = 0; i < 8; ++i)
@@ -60,8 +60,8 @@ TEST(ConvexHull, SetsOfEveryDimension) {
   EXPECT_THROW(proxy::convex_hull(Points(3, 0)), InternalError);
 }
 
-// With enough corners the hull is the whole one;
-// with fewer it misses less and less, never by more than the one before.
+// With enough corners the hull is complete; with fewer corners its error decreases monotonically with their
+// number.
 TEST(ConvexHull, GreedyCornersMissLessAndLess) {
   const Points points = mesh::sphere(1.0, 8).vertices;
   double before = 1.0;
@@ -86,7 +86,7 @@ TEST(Decompose, EveryVertexFaceAndTetrahedronHasAProxy) {
     whole.proxies = decompose(model, {.count = count}, &report);
     EXPECT_LE(static_cast<int>(whole.proxies.size()), count);
     EXPECT_GE(static_cast<int>(whole.proxies.size()), count - count / 10);
-    // throws for a lost one
+    // throws if one has no owner
     const auto faces = proxy::owner_of_faces(model.skin.faces, model.skin.vertices.cols(), whole.proxies);
     EXPECT_EQ(std::set<int>(faces.begin(), faces.end()).size(), whole.proxies.size());
     const auto tets =
@@ -111,11 +111,11 @@ TEST(Decompose, EveryVertexFaceAndTetrahedronHasAProxy) {
         outside = std::max(outside, hulls[p].beyond(model.skin.vertices.col(v)));
         EXPECT_LE(hulls[p].beyond(model.skin.vertices.col(v)), report.hulls[p].outside + 1e-12);
       }
-    // Clusters of skin vertices leave 0.01-0.02 R outside for 16 to 32 hulls of 32 vertices; one hull has to
-    // make do with 32 for the whole ball
+    // Clusters of skin vertices leave 0.01-0.02 R outside for 16 to 32 hulls of 32 vertices; a single hull
+    // has 32 vertices for the whole ball
     EXPECT_LT(outside, count == 1 ? 0.2 : count == 8 ? 0.06 : 0.02) << count;
     EXPECT_GT(report.hull_volume, 0.8 * report.skin_volume);
-    // a wedge of diameter 0.46 takes whole elements of 0.2 in: (0.46 + 0.2)^2 / 0.46^2 = 2.06
+    // a wedge of diameter 0.46 includes whole elements of 0.2: (0.46 + 0.2)^2 / 0.46^2 = 2.06
     EXPECT_LT(report.hull_volume, 2.2 * report.skin_volume);
     EXPECT_GE(report.largest_gap, 0.0);
     EXPECT_LT(report.largest_gap, 0.15);
@@ -144,7 +144,7 @@ TEST(Decompose, ASkeletonCutsFirst) {
   }
 }
 
-// Clusters of a box's flat faces have flat hulls when there are no tetrahedra behind them.
+// Clusters on a box's flat faces have flat hulls if there are no tetrahedra behind them.
 TEST(Decompose, FlatPatchesOfASkinAlone) {
   LayeredModel model;
   model.skin = mesh::box_surface(Vec3(1, 1, 1), {6, 6, 6});

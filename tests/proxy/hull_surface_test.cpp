@@ -17,7 +17,7 @@ double volume(const TriMesh& mesh) {
   return sum;
 }
 
-/// Every edge is there once in either direction: the surface is closed and its faces agree.
+/// Checks that every edge occurs once in each direction: the surface is closed and consistently oriented.
 void expect_closed(const TriMesh& mesh) {
   std::map<std::pair<int, int>, int> edges;
   for (const auto f : mesh.faces.colwise())
@@ -35,10 +35,10 @@ TEST(HullSurface, ABoxHasTwelveTrianglesWhateverLiesOnItsFaces) {
   for (int i = 0; i < 8; ++i) points.col(i) = Vec3(3.0 + (i & 1), 2.0 * (i >> 1 & 1), 0.5 * (i >> 2 & 1));
   points.col(8) = Vec3(3.5, 1.0, 0.25);   // inside
   points.col(9) = Vec3(3.5, 1.0, 0.5);    // in a face
-  points.col(10) = Vec3(3.5, 0.0, 0.25);  // in another
+  points.col(10) = Vec3(3.5, 0.0, 0.25);  // in another face
   const TriMesh hull = proxy::hull_surface(points);
   expect_closed(hull);
-  EXPECT_NEAR(volume(hull), 1.0, 1e-12);  // outward: positive
+  EXPECT_NEAR(volume(hull), 1.0, 1e-12);  // outward orientation: positive
 }
 
 TEST(HullSurface, BallsConvergeToTheirVolume) {

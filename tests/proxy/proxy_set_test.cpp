@@ -23,7 +23,8 @@ struct Deformation {
   std::function<Vec3(const Vec3&)> map;
 };
 
-/// From gentle to impossible.  The scattered ones are not even continuous: every node goes its own way.
+/// Deformations from gentle to impossible. The scattered ones are not even continuous: every node moves
+/// independently.
 std::vector<Deformation> deformations() {
   auto random = std::make_shared<std::mt19937>(17);
   const auto noise = [random](double reach) {
@@ -74,8 +75,8 @@ LayeredModel decomposed(LayeredModel model, int count) {
 
 }  // namespace
 
-// The promise: whatever the nodes do, every vertex of the skin is in the inflated hull of each of its
-// proxies, in its box, and in its patches' balls; and every tetrahedron in its owner's.
+// Invariant: for any node positions, every skin vertex is in the inflated hull of each of its proxies, in its
+// box, and in its patches' balls; and every tetrahedron is in its owner's.
 TEST(ProxySet, NothingLeavesItsProxyUnderAnyDeformation) {
   LayeredModel bar = bar_on_bones({8, 3, 2});
   for (Eigen::Index n = 0; n < bar.tets.nodes.cols(); ++n) {
@@ -120,8 +121,8 @@ TEST(ProxySet, NothingLeavesItsProxyUnderAnyDeformation) {
   EXPECT_GT(checked, 50000);
 }
 
-// Affine motions cost the affine follower nothing, and rigid ones neither; a stretch by 1 + s costs the rigid
-// one about s times the proxy's half size.
+// Affine motions cause no inflation of the affine follower, nor do rigid ones; a stretch by 1 + s inflates
+// the rigid follower by about s times the proxy's half size.
 TEST(ProxySet, WhatFollowsExactlyInflatesNoMore) {
   const LayeredModel model = decomposed(bumpy_ball(1.0, 0.3, 14), 12);
   ProxySet affine(model), rigid(model, {.follow = Follow::kRigid});
@@ -147,15 +148,15 @@ TEST(ProxySet, WhatFollowsExactlyInflatesNoMore) {
     EXPECT_NEAR(affine.state(p).inflation, 1.2 * rest[static_cast<std::size_t>(p)], 1e-9);
     const auto& corners = model.proxies[static_cast<std::size_t>(p)].corners;
     const double extent = corners.row(0).maxCoeff() - corners.row(0).minCoeff();
-    // the farther end from the nodes' middle
+    // the end farther from the nodes' centre
     EXPECT_GT(rigid.state(p).inflation - rest[static_cast<std::size_t>(p)], 0.2 * 0.4 * extent);
   }
 }
 
-// A bend, strains up to a half: the bound against what it bounds, the largest distance of a member from where
-// the hull's motion takes it.  The map's second derivative is at most 1.25 (3/4 along x twice, 1/2
-// along x and y), so over a proxy of diameter L an affine map comes within 1.25 L^2 / 8 of it (Taylor, from
-// the middle); a rotation also pays for the strain.
+// A bend with strains up to a half: the bound against the largest distance of a member from its position
+// under the hull's motion. The map's second derivative is at most 1.25 (3/4 along x twice, 1/2 along x and
+// y), so that over a proxy of diameter L an affine map has an error of at most 1.25 L^2 / 8 (Taylor, from the
+// centre); a rotation has the strain's error as well.
 TEST(ProxySet, BoundsAreTightForModerateDeformations) {
   const LayeredModel model = decomposed(bumpy_ball(1.0, 0.2, 24), 60);
   ProxySet affine(model), rigid(model, {.follow = Follow::kRigid});
@@ -191,7 +192,7 @@ TEST(ProxySet, BoundsAreTightForModerateDeformations) {
                      static_cast<int>(1e6 * largest));
       EXPECT_LT(ratio, 3.0);
       if (set == &affine) {
-        EXPECT_LT(sum, allowed + 0.01 * set->size());  // and what lies outside at rest
+        EXPECT_LT(sum, allowed + 0.01 * set->size());  // plus the part outside at rest
         affine_sum = sum;
       } else {
         EXPECT_LT(affine_sum, 0.6 * sum);
@@ -201,7 +202,7 @@ TEST(ProxySet, BoundsAreTightForModerateDeformations) {
   EXPECT_EQ(checked, 120);
 }
 
-// A proxy of a bone moves with the nodes that the bone carries, wherever the tissue is.
+// A bone's proxy moves with the nodes that the bone carries, wherever the tissue is.
 TEST(ProxySet, ABonesProxiesFollowItsNodes) {
   LayeredModel model = bar_on_bones({8, 3, 2});
   for (Eigen::Index n = 0; n < model.tets.nodes.cols(); ++n) {
@@ -254,7 +255,7 @@ TEST(ProxySet, TheTreeFollowsTheSkeleton) {
   }
   std::sort(seen.begin(), seen.end());
   for (int p = 0; p < set.size(); ++p) EXPECT_EQ(seen[static_cast<std::size_t>(p)], p);
-  EXPECT_EQ(tree[1].proxy, -1);  // bone "left": its proxies, then bone "right" with its own
+  EXPECT_EQ(tree[1].proxy, -1);  // bone "left": its proxies, then bone "right" with its proxies
   EXPECT_EQ(tree[1].after, static_cast<int>(tree.size()));
 }
 

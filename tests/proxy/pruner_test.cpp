@@ -25,9 +25,9 @@ Pose random_pose(std::mt19937& random, double distance) {
 
 }  // namespace
 
-// The reference: all vertices of each body against all faces of the other.  Random poses from apart to
-// enclosed, waves through both bodies: no face with a vertex inside the other body is missing, every face of
-// a is there once.
+// Reference: all vertices of each body against all faces of the other. Random poses from separate to
+// enclosed, with waves through both bodies: no face with a vertex inside the other body is missing, and every
+// face of a occurs once.
 TEST(Pruner, NothingTrulyOverlappingIsMissed) {
   const LayeredModel ball = cut(bumpy_ball(1.0, 0.3, 9), 20),
                      small = cut(bumpy_ball(0.5, 0.2, 7, 0.1, 5), 12);
@@ -67,7 +67,7 @@ TEST(Pruner, NothingTrulyOverlappingIsMissed) {
             pruner.counts().apart_by_memory + pruner.counts().apart_by_search + pruner.counts().after_hulls);
 }
 
-// Points within the gap count as touching: brute force over vertices and faces' corners of the other side.
+// Points within the gap count as touching: brute force over the vertices and the other side's face corners.
 TEST(Pruner, TheGapIsHonoured) {
   const LayeredModel ball = cut(bumpy_ball(1.0, 0.3, 12), 20);
   Placed a(ball), b(ball);
@@ -86,8 +86,8 @@ TEST(Pruner, TheGapIsHonoured) {
   EXPECT_TRUE(pruner.query(0.0).empty() || handed(pruner.query(0.0)).a.size() < found.a.size());
 }
 
-// One pose, the body cut into 1, 8 and 64 proxies:
-// the same faces in contact, each once; one region whose normal is the line of centres.
+// One pose, with the body cut into 1, 8 and 64 proxies: the same faces in contact, each once; one region
+// whose normal is the line of centres.
 TEST(Pruner, TheCutDoesNotChangeWhatTouches) {
   const LayeredModel whole = bumpy_ball(1.0, 0.2, 20, 0.0);
   const Vec3 axis = Vec3(1, 2, -2) / 3;
@@ -98,7 +98,7 @@ TEST(Pruner, TheCutDoesNotChangeWhatTouches) {
     Pruner pruner(a.set, b.set);
     const auto regions = pruner.query(0.0);
     ASSERT_EQ(regions.size(), 1u) << count;
-    // libccd on the hulls alone is off by 0.27, 0.03 and 0.02 here
+    // libccd on the hulls alone has errors of 0.27, 0.03 and 0.02 here
     EXPECT_GT(regions[0].region.normal.dot(axis), std::cos(0.04)) << count;
     const Handed found = handed(regions);
     EXPECT_FALSE(found.a_twice);
@@ -114,7 +114,7 @@ TEST(Pruner, TheCutDoesNotChangeWhatTouches) {
   }
 }
 
-// Handed on <= 2 x the true patch's share + 3 % of the skin, at 60 proxies a body.
+// Faces passed on: at most 2 x the true patch's share + 3 % of the skin, with 60 proxies per body.
 TEST(Pruner, HandsOnLittleMoreThanThePatch) {
   const LayeredModel pumpkin = cut(bumpy_ball(1.0, 0.2, 20, 0.05, 8), 60);
   Placed a(pumpkin), b(pumpkin);
@@ -136,10 +136,10 @@ TEST(Pruner, HandsOnLittleMoreThanThePatch) {
   EXPECT_GE(checked, 3);
 }
 
-// A block pressed into the inner corner of two walls meets each along its own normal:
-// two regions; against one wall, one.
+// A block pressed into the inner corner of two walls has one region per wall, with that wall's normal;
+// against one wall, one region.
 TEST(Pruner, WallsThatFaceDifferentWaysAreDifferentRegions) {
-  LayeredModel wall;  // rigid: two thick slabs that make an L
+  LayeredModel wall;  // rigid: two thick slabs that form an L
   const auto slab = [](const Vec3& centre, const Vec3& size) {
     TriMesh s = mesh::box_surface(size, {6, 6, 6});
     s.vertices.colwise() += centre;
@@ -196,9 +196,9 @@ TEST(Pruner, WallsThatFaceDifferentWaysAreDifferentRegions) {
   EXPECT_FALSE(handed(regions).a_twice);
 }
 
-// One ball slides around the other, a hundredth of a radian a step, over the borders of many proxies: the
-// normal follows the line of centres, and the jumps that patches make as they come and go stay small.  What
-// turns is what was recorded: the largest `rotation` of a region is `largest_rotation`.
+// One ball slides around the other, a hundredth of a radian per step, across the borders of many proxies: the
+// normal follows the line of centres, with small jumps as patches are added and removed. The recorded
+// rotation is consistent: the largest `rotation` of a region is `largest_rotation`.
 TEST(Pruner, SlidingOverProxiesTurnsTheNormalSmoothly) {
   const LayeredModel ball = cut(bumpy_ball(1.0, 0.25, 24, 0.0), 60);
   Placed a(ball), b(ball);
@@ -218,12 +218,12 @@ TEST(Pruner, SlidingOverProxiesTurnsTheNormalSmoothly) {
   EXPECT_GT(proxies.size(), 4u);
   EXPECT_EQ(largest, pruner.counts().largest_rotation);
   EXPECT_LT(off, 0.05);
-  EXPECT_LT(largest, 0.05);  // 0.01 is the motion's own
+  EXPECT_LT(largest, 0.05);  // 0.01 is due to the motion
   RecordProperty("largest_turn_mrad", static_cast<int>(1e3 * largest));
   RecordProperty("off_mrad", static_cast<int>(1e3 * off));
 }
 
-// A ball enclosed by a bigger one still meets the skin that is above it: what it was pushed through.
+// A ball enclosed by a larger one is in contact with the skin above it, through which it was pushed.
 TEST(Pruner, SwallowedSkinLooksThroughItself) {
   const LayeredModel big = cut(bumpy_ball(1.0, 0.25, 16, 0.0), 30),
                      small = cut(bumpy_ball(0.15, 0.08, 6, 0.0), 6);
@@ -234,7 +234,7 @@ TEST(Pruner, SwallowedSkinLooksThroughItself) {
     const auto regions = pruner.query(0.01);
     if (z > 1.16) continue;
     ASSERT_GE(regions.size(), 1u) << z;
-    std::set<int> above;  // b's faces over the ball's middle, along the normal, that face up
+    std::set<int> above;  // b's upward faces above the ball's centre, along the normal
     bool seen = false;
     for (const auto& region : regions) {
       EXPECT_GT(region.region.normal.z(), 0.8) << z;

@@ -11,7 +11,7 @@
 #include "palpate/proxy/decompose.h"
 #include "palpate/proxy/pruner.h"
 
-/// What a pruner hands on, beside what brute force says is in contact.
+/// Faces passed on by a pruner, compared with contact by brute force.
 namespace pruning {
 
 using namespace palpate;
@@ -21,14 +21,14 @@ inline LayeredModel cut(LayeredModel model, int count) {
   return model;
 }
 
-/// A soft body at some positions of its nodes, with its skin there.
+/// A soft body at given node positions, with its skin.
 struct Placed {
   const LayeredModel& model;
   proxy::ProxySet set;
   Points nodes, skin;
 
   explicit Placed(const LayeredModel& m) : model(m), set(m) { place(Pose{}, 0.0, 0); }
-  /// Rigidly, after waves through it of that amplitude.
+  /// Places it rigidly, after waves of the given amplitude through it.
   void place(const Pose& pose, double wave, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> in(-2.0, 2.0);
@@ -73,7 +73,7 @@ inline double winding(const Faces& faces, const Points& skin, const Vec3& p) {
   return angle / (4 * M_PI);
 }
 
-/// Which points are truly inside a closed surface, by brute force over all its faces.
+/// Returns which points are inside a closed surface, by brute force over all its faces.
 inline std::vector<char> inside(const Points& points, const Faces& faces, const Points& skin) {
   const Vec3 low = skin.rowwise().minCoeff(), high = skin.rowwise().maxCoeff();
   std::vector<char> out(static_cast<std::size_t>(points.cols()));

@@ -20,7 +20,7 @@ Points box(const Vec3& centre, const Vec3& half, const Quat& rotation = Quat::Id
   return p;
 }
 
-/// Points evenly on a sphere (Fibonacci lattice).
+/// Uniformly distributed points on a sphere (Fibonacci lattice).
 Points sphere(const Vec3& centre, double radius, int count) {
   Points p(3, count);
   const double golden = M_PI * (3 - std::sqrt(5.0));
@@ -37,8 +37,7 @@ double brute_depth(const Points& a, const Points& b, const Vec3& n) {
 
 }  // namespace
 
-// Box a stands 0.1 deep in box b, by its face along +z:
-// the least way out, at any scale and far from the origin.
+// Box a overlaps box b by 0.1 at its face along +z: the shortest exit, at any scale and far from the origin.
 TEST(Region, BoxesAtEveryScale) {
   for (const double scale : {1e-3, 1.0, 1e3}) {
     const Vec3 far = scale * Vec3(100, -50, 20);
@@ -53,20 +52,20 @@ TEST(Region, BoxesAtEveryScale) {
   }
 }
 
-// Spheres: the normal lies along the line of centres up to the tessellation; the depth found is never less
-// than the true least depth of the hulls, and at most the depth along the line of centres.
+// Spheres: the normal lies along the line of centres up to the tessellation; the depth found is at least the
+// least depth of the hulls, and at most the depth along the line of centres.
 TEST(Region, SpheresAlongRandomDirections) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   int checked = 0;
   for (int i = 0; i < 40; ++i) {
     const Vec3 axis = Vec3(normal(random), normal(random), normal(random)).normalized();
-    const double depth = 0.02 + 0.01 * i;  // 0.02 to 0.41 of radii 1 and 0.7
+    const double depth = 0.02 + 0.01 * i;  // 0.02 to 0.41 for radii 1 and 0.7
     const Points a = sphere((1.7 - depth) * axis, 0.7, 900), b = sphere(Vec3::Zero(), 1.0, 900);
     proxy::RegionFinder finder;
     const auto region = finder.find(a, b, 0.0);
     EXPECT_TRUE(region.found);
-    // the lattice's own centroid is a little off the axis
+    // the lattice's centroid is slightly off the axis
     EXPECT_LE(region.depth, brute_depth(a, b, axis) + 1e-4);
     EXPECT_NEAR(region.depth, brute_depth(a, b, region.normal), 1e-12);
     // hulls lie inside by up to h^2/8
@@ -99,8 +98,8 @@ TEST(Region, ApartWhereCentroidsMislead) {
   EXPECT_NEAR(region.normal.z(), 1.0, 1e-5);
 }
 
-/// Depth of two boxes by their separating axes: their face normals and the products of their edges
-/// (Gottschalk, Lin and Manocha 1996).
+/// Depth of two boxes by the separating axis test: face normals and cross products of edges (Gottschalk, Lin
+/// and Manocha 1996).
 double depth_of_boxes(const Vec3& d, const Vec3& ha, const Quat& ra, const Vec3& hb, const Quat& rb) {
   const Mat3 A = ra.toRotationMatrix(), B = rb.toRotationMatrix();
   double least = std::numeric_limits<double>::infinity();
@@ -117,7 +116,7 @@ double depth_of_boxes(const Vec3& d, const Vec3& ha, const Quat& ra, const Vec3&
   return least;
 }
 
-// EPA's tolerance is a squared length: 1e-6 of it would let EPA end a thousandth of the size too early.
+// EPA's tolerance is a squared length: a value of 1e-6 would let EPA end a thousandth of the size too early.
 TEST(Region, EpaIsAsExactAsItsToleranceSays) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -140,14 +139,14 @@ TEST(Region, EpaIsAsExactAsItsToleranceSays) {
   EXPECT_GT(by_epa, 200);
 }
 
-/// Points evenly on an ellipsoid.
+/// Uniformly distributed points on an ellipsoid.
 Points ellipsoid(const Vec3& centre, const Vec3& half, const Quat& rotation, int count) {
   const Points p = rotation.toRotationMatrix() * half.asDiagonal() * sphere(Vec3::Zero(), 1.0, count);
   return p.colwise() + centre;
 }
 
-// libccd bounds no iteration of EPA.  Ended early, its direction is verified like any other: the depth is
-// that along the normal found, and never less than the true one.
+// libccd does not bound the iterations of EPA. If it ends early, its direction is verified like any other:
+// the depth is the one along the normal found, and at least the least depth.
 TEST(Region, WorkOnRoundShapesIsBounded) {
   const Points a = ellipsoid(Vec3(0.1, 0.05, -0.1), Vec3(0.9, 0.4, 0.6), quaternion_of({0.3, 1.0, -0.4}),
                              2000),
@@ -168,7 +167,7 @@ TEST(Region, WorkOnRoundShapesIsBounded) {
   }
 }
 
-// Touching, flat and degenerate shapes, where libccd alone answers with NaN or zero.
+// Touching, flat and degenerate shapes, for which libccd alone returns NaN or zero.
 TEST(Region, TouchingFlatAndDegenerateStayFinite) {
   const Points cube = box(Vec3::Zero(), Vec3::Constant(0.5));
   const std::vector<Points> others = {
@@ -192,7 +191,7 @@ TEST(Region, TouchingFlatAndDegenerateStayFinite) {
   EXPECT_NEAR(finder.find(point, point, 0.0).normal.norm(), 1.0, 1e-12);
 }
 
-// Swallowed whole, the last normal keeps its side although another way out has become no longer.
+// When a box is enclosed, the previous normal keeps its side, although another exit is no longer.
 TEST(Region, LastNormalIsACandidate) {
   proxy::RegionFinder finder;
   const Points big = box(Vec3::Zero(), Vec3::Constant(1.0));
@@ -204,8 +203,8 @@ TEST(Region, LastNormalIsACandidate) {
   EXPECT_EQ(finder.counts().queries, 2);
 }
 
-// A plate, however it stands, is as wide as it is thick, a ball as its diameter, a tetrahedron of edges a as
-// two opposite ones are apart, a / sqrt(2).
+// A plate in any orientation has its thickness as width, a ball its diameter, a tetrahedron with edge a the
+// distance of two opposite edges, a / sqrt(2).
 TEST(LeastWidth, IsThatOfKnownShapes) {
   Points tetrahedron(3, 4);
   tetrahedron << 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1, 1;

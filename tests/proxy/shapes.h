@@ -5,8 +5,8 @@
 #include "palpate/mesh/generators.h"
 #include "palpate/mesh/layered_model.h"
 
-/// A ball of tetrahedra under a bumpy skin r = radius (1 + depth cos(n azimuth) sin(polar angle)), a little
-/// outside of it at the crests.
+/// A ball of tetrahedra under a bumpy skin r = radius (1 + depth cos(n azimuth) sin(polar angle)), which
+/// extends slightly beyond the tetrahedra at the crests.
 inline palpate::LayeredModel bumpy_ball(double radius, double element, int subdivisions, double depth = 0.05,
                                         int crests = 8) {
   using namespace palpate;
@@ -26,7 +26,7 @@ inline palpate::LayeredModel bumpy_ball(double radius, double element, int subdi
   return model;
 }
 
-/// A bar along x on two bones end to end.
+/// A bar along x on two collinear bones.
 inline palpate::LayeredModel bar_on_bones(const std::array<int, 3>& cells) {
   using namespace palpate;
   LayeredModel model;

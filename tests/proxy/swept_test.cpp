@@ -1,5 +1,5 @@
-// Proxies swept by their velocity: what comes to touch within a time is found, however far apart it is now,
-// and nothing else is.
+// Proxies swept by their velocity: contact that occurs within a time is found, however large the distance is
+// now, and nothing else.
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
@@ -20,7 +20,7 @@ Vec3 random_vector(std::mt19937& random, double size) {
   return size * Vec3(normal(random), normal(random), normal(random));
 }
 
-/// Velocities of a body that moves, rotates and is stretched at random rates.
+/// Random velocities of a body that moves, rotates and stretches.
 Points random_velocities(const Points& nodes, std::mt19937& random, double speed, double rate) {
   const Vec3 v = random_vector(random, speed);
   const Mat3 L = Mat3::NullaryExpr([&] { return random_vector(random, rate).x(); });
@@ -28,12 +28,12 @@ Points random_velocities(const Points& nodes, std::mt19937& random, double speed
   return out.colwise() + v;
 }
 
-/// Whether one bound allows all that the other does.
+/// Returns whether the bound `all` includes all motions of `one`.
 bool holds_motion(const proxy::ProxyMotion& all, const proxy::ProxyMotion& one) {
   return (one.velocity - all.velocity).norm() + one.spread <= all.spread;
 }
 
-/// A slab around z = 0, its faces at +-thickness / 2.
+/// A slab around z = 0, with its faces at +-thickness / 2.
 LayeredModel slab(double width, double thickness) {
   LayeredModel model;
   model.name = "slab";
@@ -104,8 +104,8 @@ TEST(Swept, ARigidBodysTwistAndWayAreBounded) {
   }
 }
 
-// Brute force: bodies at random poses and velocities are moved on in small steps, and every face that gets a
-// vertex into the other body is in a region now.
+// Brute force: bodies at random poses and velocities are moved forward in small steps, and every face with a
+// vertex that enters the other body is in a region at the start.
 TEST(Swept, WhatComesToTouchIsFound) {
   const LayeredModel ball = cut(bumpy_ball(1.0, 0.3, 9), 20),
                      small = cut(bumpy_ball(0.4, 0.2, 7, 0.1, 5), 12);
@@ -146,14 +146,14 @@ TEST(Swept, WhatComesToTouchIsFound) {
   EXPECT_GT(touched_later, 12);
 }
 
-// A ball above a slab, d apart: a region is found if v t reaches d, and not if it does not, from 0.1 to 100
-// m/s; neither when it flies away nor past.  The region's gap is v t, its approach v.
+// A ball above a slab at a distance d: a region is found exactly if v t reaches d, from 0.1 to 100 m/s, and
+// none if it moves away or past. The region's gap is v t, its approach v.
 TEST(Swept, ABallIsFoundBeforeContactIffItGetsThere) {
   const LayeredModel ball = cut(bumpy_ball(0.05, 0.015, 8, 0.0), 12), plate = slab(0.4, 0.01);
   Placed a(ball);
   ProxySet b(plate);
   Pruner pruner(a.set, b);
-  double slack = 0.0;  // by which hulls may be wider than what they stand for
+  double slack = 0.0;  // inflation of the hulls beyond their contents
   for (const ProxySet* set : {&a.set, &b}) {
     double most = 0.0;
     for (int p = 0; p < set->size(); ++p) most = std::max(most, set->state(p).inflation);
@@ -177,7 +177,7 @@ TEST(Swept, ABallIsFoundBeforeContactIffItGetsThere) {
           EXPECT_NEAR(region.gap, std::max(1e-5, region.region.normal.z() * way), 1e-9 * way + 1e-9);
           EXPECT_NEAR(region.approach, region.region.normal.z() * speed, 1e-9 * speed);
           EXPECT_NEAR(region.thickness, 0.01, 1e-9);
-          if (way > 0.005) {  // all of the ball is in reach of the slab, trailing skin does not count
+          if (way > 0.005) {  // all of the ball is within reach of the slab; trailing skin does not count
             EXPECT_EQ(region.region.method, proxy::RegionMethod::kAreas) << speed << " m/s, " << time << " s";
           }
           EXPECT_LE(region.apart, part * way + 1e-6);
@@ -190,7 +190,7 @@ TEST(Swept, ABallIsFoundBeforeContactIffItGetsThere) {
     }
 }
 
-// The slab moves instead; a rigid body's twist.
+// The slab moves instead, with a rigid body's twist.
 TEST(Swept, EitherBodyMayBeTheOneThatMoves) {
   const LayeredModel ball = cut(bumpy_ball(0.05, 0.015, 8, 0.0), 12), plate = slab(0.4, 0.01);
   Placed a(ball);
@@ -202,7 +202,7 @@ TEST(Swept, EitherBodyMayBeTheOneThatMoves) {
   EXPECT_FALSE(pruner.query(1e-3, 0.01).empty());
   EXPECT_EQ(pruner.counts().regions_ahead, 1);
   EXPECT_TRUE(pruner.query(1e-3, 0.005).empty());
-  // it rotates about the y axis, 0.3 away along x: the part under the ball rises at 0.3 omega
+  // rotates about the y axis, 0.3 away along x: the part under the ball rises at 0.3 omega
   b.set_motion(Twist{Vec3(0, 10.0, 0), Vec3(0, 0, 3.0)});
   EXPECT_FALSE(pruner.query(1e-3, 0.01).empty());
   a.set.set_motion(Vec3(0, 0, 3.0).replicate(1, a.nodes.cols()));
@@ -210,7 +210,7 @@ TEST(Swept, EitherBodyMayBeTheOneThatMoves) {
   EXPECT_TRUE(pruner.query(1e-3, 0.01).empty()) << "they move together";
 }
 
-// Two balls of one body above a slab, one at rest and one that falls: only the region of that one looks
+// Two balls of one body above a slab, one at rest and one falling: only the region of the falling one looks
 // ahead.
 TEST(Swept, ARegionsGapIsThatOfItsOwnProxies) {
   LayeredModel one = bumpy_ball(0.05, 0.015, 8, 0.0);
@@ -251,7 +251,7 @@ TEST(Swept, ARegionsGapIsThatOfItsOwnProxies) {
   EXPECT_GE(falling, 1);
 }
 
-// Nothing moves, or all of it together: regions are those of a query without time, to the last bit.
+// If nothing moves, or everything moves together, regions are bitwise equal to those of a query without time.
 TEST(Swept, WithoutMotionTimeChangesNothing) {
   const LayeredModel ball = cut(bumpy_ball(1.0, 0.2, 12, 0.0), 30);
   Placed a(ball), b(ball);
@@ -269,8 +269,8 @@ TEST(Swept, WithoutMotionTimeChangesNothing) {
   }
 }
 
-// Where a ball that went through a slab was: all faces that met on its way, by brute force along it.  What
-// moved less than a part of the slab is not looked at.
+// Path of a ball that passed through a slab: all faces in contact on its way, by brute force along it. Motion
+// shorter than a fraction of the slab is skipped.
 TEST(Swept, WhatMetOnTheWayIsFound) {
   const LayeredModel ball = cut(bumpy_ball(0.05, 0.015, 8, 0.0), 12), plate = slab(0.4, 0.01);
   Placed a(ball);

@@ -7,12 +7,12 @@
 
 #include "palpate/mesh/mesh.h"
 
-/// Rigid tools that are not convex.
+/// Rigid tools with concave shapes.
 namespace tools {
 
 using namespace palpate;
 
-/// Around the z axis: `around` by `across` quadrilaterals, vertices on the torus.
+/// A torus around the z axis with `around` by `across` quadrilaterals and its vertices on the exact surface.
 inline TriMesh torus(double radius, double tube, int around, int across) {
   TriMesh out;
   out.vertices.resize(3, around * across);
@@ -28,8 +28,8 @@ inline TriMesh torus(double radius, double tube, int around, int across) {
   return out;
 }
 
-/// The surface of those cubes of edge `edge` that `solid` wants, cell (i, j, k) from edge (i, j, k) on; no
-/// two of them meet at an edge or a corner alone.
+/// Surface of the cubes of edge `edge` for which `solid` holds, with cell (i, j, k) starting at edge (i, j,
+/// k); no two of them may meet at an edge or a corner only.
 inline TriMesh of_cubes(const std::array<int, 3>& cells, double edge,
                         const std::function<bool(int, int, int)>& solid) {
   std::map<std::array<int, 3>, int> vertex;
@@ -77,7 +77,7 @@ inline TriMesh of_cubes(const std::array<int, 3>& cells, double edge,
 }
 
 /// Two prongs down from a bridge, x in [-1.5, 1.5], y in [-0.5, 0.5], z in [0, 3]; prongs 1 wide, the bridge
-/// above z = 2.  `fine` cubes a unit.
+/// above z = 2. `fine` cubes per unit length.
 inline TriMesh fork(int fine) {
   TriMesh out = of_cubes({3 * fine, fine, 3 * fine}, 1.0 / fine,
                          [fine](int i, int, int k) { return k >= 2 * fine || i < fine || i >= 2 * fine; });

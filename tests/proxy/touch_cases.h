@@ -11,31 +11,31 @@
 #include "palpate/store/model_file.h"
 #include "proxy/pruning.h"
 
-/// The paper's models touched as in its figures: two pumpkins in contact, the head by a
-/// sphere at the bridge of the nose, the human at the leg. A touch goes in and out once in
-/// `kPhases` queries, and dents what it touches.
+/// The paper's models in contact as in its figures: two pumpkins in contact, the head touched by a sphere at
+/// the bridge of the nose, the human at the leg. A touch moves in and out once in `kPhases` queries, and
+/// dents the body.
 namespace touch {
 
 using namespace palpate;
 using pruning::true_patch;
 
 inline constexpr int kPhases = 8;
-/// 0 to 1 and back
+/// From 0 to 1 and back.
 inline double pressed(int phase) { return 0.5 - 0.5 * std::cos(2 * M_PI * phase / kPhases); }
 
 struct Case {
   LayeredModel a, b;
-  Vec3 place = Vec3::Zero();       ///< where they touch
-  Vec3 inward = Vec3::Zero();      ///< unit, into a
-  double size = 0.0;               ///< of the dent [m]
-  double least = 0.0, most = 0.0;  ///< depth that they overlap by, at the phases' ends [m]
-  double gap = 0.0;                ///< mean edge of a's skin, as a scene asks for [m]
+  Vec3 place = Vec3::Zero();       ///< place of contact
+  Vec3 inward = Vec3::Zero();      ///< unit vector into a
+  double size = 0.0;               ///< size of the dent [m]
+  double least = 0.0, most = 0.0;  ///< depth of overlap at the first and the middle phase [m]
+  double gap = 0.0;                ///< mean edge of a's skin, the default of a scene [m]
 
   bool b_is_soft() const { return b.tets.tets.cols() > 0; }
 
-  /// Nodes of a: pushed in along `inward` by a Gaussian dent, half as deep as b goes.
+  /// Nodes of a, pushed in along `inward` by a Gaussian dent half as deep as b's depth.
   Points nodes_a(int phase) const { return dented(a.tets.nodes, inward, phase); }
-  /// Nodes of a soft b, moved as far as the phase says and dented the other way.
+  /// Nodes of a soft b, moved to the depth of the phase and dented in the opposite direction.
   Points nodes_b(int phase) const {
     const Points dent = dented(b.tets.nodes, -inward, phase);
     return dent.colwise() + depth(phase) * inward;
@@ -61,8 +61,8 @@ inline double mean_edge(const TriMesh& skin) {
   return sum / static_cast<double>(3 * skin.faces.cols());
 }
 
-/// A rigid ball that touches a's skin from in front (along y),
-/// where a line through (x, z) meets it first; depth 0.
+/// Adds a rigid ball that touches a's skin from the front (along y), where a line through (x, z) first hits
+/// it; depth 0.
 inline void add_ball(Case& out, double radius, double x, double z) {
   const double gap = mean_edge(out.a.skin);
   Eigen::Index nearest = -1;
@@ -92,7 +92,7 @@ inline Case head(const std::string& folder) {
   return out;
 }
 
-/// At the middle of the left shank.
+/// The human, touched at the middle of the left shank.
 inline Case human(const std::string& folder) {
   Case out;
   out.a = store::read_model(folder + "/human.h5").model;
@@ -108,8 +108,8 @@ inline Case human(const std::string& folder) {
   return out;
 }
 
-/// Side by side: the second is the first rotated by 180 degrees about z,
-/// so that their farthest points along x meet.
+/// Two pumpkins side by side: the second is the first rotated by 180 degrees about z, so that their extreme
+/// points along x touch.
 inline Case pumpkins(const std::string& folder) {
   Case out;
   out.a = store::read_model(folder + "/pumpkin.h5").model;
@@ -133,13 +133,13 @@ inline Case pumpkins(const std::string& folder) {
   return out;
 }
 
-/// Both sides of a case as the pruner wants them.
+/// Both sides of a case as the pruner requires them.
 struct Bodies {
   const Case& touch;
   proxy::ProxySet a, b;
   std::vector<Points> nodes_a, nodes_b;
 
-  // a tool's grain, as of rigid_proxies
+  // patch size of a tool, as in rigid_proxies
   explicit Bodies(const Case& c) : touch(c), a(c.a), b(c.b, {.patch_faces = c.b_is_soft() ? 0 : 16}) {
     for (int i = 0; i < kPhases; ++i) {
       nodes_a.push_back(c.nodes_a(i));
@@ -155,7 +155,7 @@ struct Bodies {
   }
 };
 
-/// Skin of both at a phase.
+/// Skins of both bodies at a phase.
 struct Skins {
   Points a, b;
   Skins(const Case& c, int phase) {

@@ -1,5 +1,5 @@
-// The bars on the paper's models as `palpate model` makes them;
-// their files come from the fixture in CMakeLists.txt.
+// Acceptance limits for the paper's models as made by `palpate model`; their files come from the fixture in
+// CMakeLists.txt.
 #include <gtest/gtest.h>
 
 #include "malloc_count.h"
@@ -15,8 +15,8 @@ double share(const std::set<int>& faces, const TriMesh& skin) {
   return static_cast<double>(faces.size()) / static_cast<double>(skin.faces.cols());
 }
 
-/// Handed on: all of the true patch, and at most twice its share and 3 % of the skin, on each soft skin and
-/// on both skins together (a tool is all near where it touches).
+/// Faces passed on: all of the true patch, and at most twice its share plus 3 % of the skin, on each soft
+/// skin and on both skins together (all of a tool is near where it touches).
 void check(const Case& c) {
   Bodies bodies(c);
   ASSERT_EQ(bodies.a.size(), 60);
@@ -46,7 +46,7 @@ void check(const Case& c) {
   EXPECT_LT(counts.patches_kept, counts.patches_tested);
 }
 
-/// Which proxies were fitted lately leaves no trace: a query after a long way equals one from a fresh start.
+/// The history of fitted proxies has no effect: a query after a long path equals one from a fresh start.
 void check_history(const Case& c) {
   Bodies once(c), travelled(c);
   proxy::Pruner first(once.a, once.b), last(travelled.a, travelled.b);

@@ -1,6 +1,6 @@
-"""What each test of this folder begins with: the built package on the path, the program beside it.
+"""Common start of the tests of this folder: the built package on the path, the program next to it.
 
-    X_test.py BUILD PROGRAM     exits with 77 (skipped, aloud) without arguments: built without Python
+    X_test.py BUILD PROGRAM     exits with 77 (skipped) without arguments: built without Python
 """
 import subprocess
 import sys
@@ -19,7 +19,7 @@ import palpate  # noqa: E402,F401  before NumPy, which would load OpenBLAS with 
 
 
 def run_program(*arguments):
-    """Output of the program."""
+    """Returns the output of the program."""
     done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise AssertionError(done.stdout + done.stderr)
@@ -27,7 +27,7 @@ def run_program(*arguments):
 
 
 def refusal_of_program(*arguments):
-    """What it says where it refuses something."""
+    """Returns the program's message when it rejects something."""
     done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, check=False)
     if done.returncode == 0:
         raise AssertionError("not refused: " + done.stdout)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The examples of docs/python.md print what the page says, each in a Python of its own; the notebook runs
-from its first cell to its last, and finds what its text says."""
+"""The examples of docs/python.md print the page's output, each in a separate Python process; the notebook
+runs from its first cell to its last, with the results that its text states."""
 import json
 import os
 import re
@@ -23,7 +23,7 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE), "MPLBACKEND": "Agg"}
 
 
 def examples(text):
-    """(code, output) of each example; output None where the page shows none."""
+    """Returns (code, output) of each example; output is None where the page shows none."""
     blocks = fences(text)
     after = blocks[1:] + [("", "")]
     return [(code, following if kind == "text" else None)
@@ -37,7 +37,7 @@ def run(code, folder):
 
 
 def in_scope(cells, scope):
-    """Runs the code cells in their order in one scope, as a kernel does."""
+    """Runs the code cells in order in one scope, as a kernel does."""
     for number, source in enumerate(cells, 1):
         exec(compile(source, f"cell {number}", "exec"), scope)
 
@@ -74,7 +74,7 @@ class Notebook(unittest.TestCase):
         cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
         self.assertGreaterEqual(len(cells), 5)
         self.assertEqual(len({cell["id"] for cell in notebook["cells"]}), len(notebook["cells"]))
-        for cell in notebook["cells"]:  # what it printed elsewhere is no part of it
+        for cell in notebook["cells"]:  # its stored output is not executed
             self.assertEqual(cell.get("outputs", []), [])
         os.environ["MPLBACKEND"] = "Agg"
         before = os.getcwd()

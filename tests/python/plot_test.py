@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The charts show the numbers that they are given; Matplotlib is imported only where one is drawn."""
+"""The charts show the given numbers; Matplotlib is imported only where a chart is drawn."""
 import os
 import subprocess
 import sys
@@ -30,7 +30,7 @@ class Lazy(unittest.TestCase):
                 "from palpate import plot; print('matplotlib' in sys.modules)")
         out = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, check=True,
                              env={**os.environ, "PYTHONPATH": str(PACKAGE)}).stdout
-        # nor is anything left in the environment that it loads OpenBLAS with
+        # the environment with which it loads OpenBLAS is restored as well
         code = "import os; before = dict(os.environ); import palpate; print(os.environ == before)"
         self.assertEqual(subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True,
                                         env={**os.environ, "PYTHONPATH": str(PACKAGE)}).stdout, "True\n")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scenes from files, texts and dicts: what is read, what is refused, and with which message."""
+"""Scenes from files, texts and dicts: accepted and rejected input, with the messages."""
 import os
 import tempfile
 import tomllib
@@ -98,7 +98,7 @@ class Changed(unittest.TestCase):
                 scene.set(path, value)
             self.assertEqual(scene.toml, before)
         with self.assertRaises(palpate.Error):
-            scene.set_all({"integrator.rtol": 1e-4, "body.0.name": "sphere"})  # contacts name a "ball"
+            scene.set_all({"integrator.rtol": 1e-4, "body.0.name": "sphere"})  # contacts refer to a "ball"
         self.assertEqual(scene.toml, before)
         self.assertEqual(scene.changes, [])
 

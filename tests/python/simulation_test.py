@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Simulations: the program's own numbers bit for bit, arrays that are views, and what they mean."""
+"""Simulations: numbers bitwise equal to the program's, arrays that are views, and their meaning."""
 import csv
 import gc
 import tempfile
@@ -178,7 +178,7 @@ class Views(unittest.TestCase):
         del simulation
         gc.collect()
         self.assertIsNotNone(alive())
-        for _ in range(5):  # what was freed would be used again
+        for _ in range(5):  # freed memory would be reused
             palpate.Simulation(palpate.load(BALL)).step()
         np.testing.assert_array_equal(positions, expected)
         del positions

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Ctrl-C ends a step as a KeyboardInterrupt, soon, and leaves Python's own handler in its place."""
+"""Ctrl-C promptly ends a step as a KeyboardInterrupt, and Python's handler is restored."""
 import os
 import signal
 import threading
@@ -12,7 +12,7 @@ import palpate
 
 
 def long_simulation():
-    """Minutes, in one period: only the integrator's own steps are short."""
+    """Minutes in one period: only the integrator's steps are short."""
     scene = palpate.load(str(SCENES / "one-tet.toml"))
     scene.set("integrator.max_steps", 1000000000)
     scene.set("record.state_period_s", 1000.0)
@@ -42,7 +42,7 @@ class Stop(unittest.TestCase):
         self.assertTrue(np.isfinite(simulation.body("tet").positions).all())
         with self.assertRaisesRegex(palpate.Error, "stopped"):
             simulation.step()
-        with self.assertRaises(KeyboardInterrupt):  # Python's handler is at work again
+        with self.assertRaises(KeyboardInterrupt):  # Python's handler is active again
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(5.0)
 

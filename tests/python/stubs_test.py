@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The stubs name what the module has, and nothing else; the check itself can fail."""
+"""The stubs contain the module's names, and no others; faulty examples show that the check detects errors."""
 import ast
 import inspect
 import unittest
@@ -16,7 +16,8 @@ def is_public(name):
 
 
 def names_of_stubs(text):
-    """"Scene", "Scene.set", "Scene.set(path, value)" of functions with their arguments."""
+    """Names in the stubs: "Scene", "Scene.set", "Scene.set(path, value)" for functions with their
+    arguments."""
     def signature(function):
         names = [one.arg for one in (*function.args.args, *function.args.kwonlyargs)]
         return f"({', '.join(name for name in names if name != 'self')})"
@@ -35,7 +36,7 @@ def names_of_stubs(text):
 
 
 def names_of_module(module):
-    """The same of the module; pybind11 writes a function's signature in the first line of its text."""
+    """Names in the module; pybind11 writes a function's signature in the first line of its docstring."""
     def signature(function):
         line = (function.__doc__ or "").splitlines()[0]
         arguments = line[line.index("(") + 1:line.rindex(")")]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Comparisons as arrays, and cases with a known answer."""
+"""Comparisons as arrays, and cases with a known result."""
 import math
 import sys
 import threading
@@ -15,7 +15,7 @@ import palpate
 class Compare(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        other = threading.Event()  # a thread beside it, as notebooks have
+        other = threading.Event()  # a second thread, as in notebooks
         thread = threading.Thread(target=other.wait)
         thread.start()
         scene = palpate.load(str(SCENES / "one-tet.toml"))

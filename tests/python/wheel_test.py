@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The wheel is whole by its own RECORD, pip takes it without network, and what is installed runs."""
+"""The wheel is complete according to its RECORD, pip installs it without network, and the installation
+runs."""
 import base64
 import csv
 import hashlib

@@ -10,8 +10,7 @@
 #include "palpate/core/error.h"
 #include "temporary_folder.h"
 
-// That every picture comes back, pixel by pixel, is shown by tests/cli/movie_test.py with a reader of its
-// own.
+// tests/cli/movie_test.py checks with an independent reader that every picture is recovered, pixel by pixel.
 
 using namespace palpate;
 using expectations::expect_contains;
@@ -56,11 +55,11 @@ TEST(Animation, WhatDoesNotMoveCostsNothing) {
     return bytes.size();
   };
   const std::size_t one = size(1);
-  EXPECT_GT(one, 60000u);  // noise cannot be compressed
+  EXPECT_GT(one, 60000u);  // noise is incompressible
   EXPECT_LT(size(101) - one, 100u * 100u);
 }
 
-// A program that knows only PNG.
+// For programs that support PNG only.
 TEST(Animation, ItsFirstPictureIsAPngOfItsOwn) {
   const TemporaryFolder folder;
   const Picture first = noise(50, 30);
@@ -93,7 +92,7 @@ TEST(Animation, RefusesWhatItCannotWrite) {
   EXPECT_THROW(writer.add(Picture(20, 22, {})), InternalError);
   AnimationWriter full("/dev/full", 0.04);
   expect_contains(message_of([&] { full.add(noise(200, 200)); }), "No space left on device");
-  AnimationWriter late("/dev/full", 0.04);  // so little that the disk hears of it at the end
+  AnimationWriter late("/dev/full", 0.04);  // so little data that the error occurs at the end
   late.add(Picture(20, 20, {}));
   expect_contains(message_of([&] { late.close(); }), "No space left on device");
   EXPECT_THROW(AnimationWriter(folder / "none.png", 0.04).close(), InternalError);

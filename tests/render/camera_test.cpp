@@ -53,7 +53,7 @@ TEST(ViewProjection, MapsNearAndFarToTheEndsOfDepth) {
   for (const bool perspective : {true, false}) {
     camera.perspective = perspective;
     Points points(3, 2);
-    points << 0, 0, -0.5, 7.0, 0, 0;  // the eye stands at (0, -1, 0)
+    points << 0, 0, -0.5, 7.0, 0, 0;  // the eye is at (0, -1, 0)
     const Points p = projected(camera, 1.0, points);
     EXPECT_NEAR(p(2, 0), -1.0, 1e-12);
     EXPECT_NEAR(p(2, 1), 1.0, 1e-12);
@@ -73,7 +73,7 @@ TEST(Framed, ShowsEveryPointInsideTheMarginsAndNoSmallerThanItMust) {
         const Points p = projected(camera, aspect, points);
         const double left = p.row(0).minCoeff(), right = p.row(0).maxCoeff(), bottom = p.row(1).minCoeff(),
                      top = p.row(1).maxCoeff();
-        // A margin is a fraction of the image, whose coordinates here go from -1 to 1.
+        // A margin is a fraction of the image, whose coordinates are from -1 to 1 here.
         EXPECT_GE(left, -1.0 + 2.0 * margins.left - 1e-9);
         EXPECT_LE(right, 1.0 - 2.0 * margins.right + 1e-9);
         EXPECT_GE(bottom, -1.0 + 2.0 * margins.bottom - 1e-9);

@@ -8,7 +8,7 @@ using namespace palpate;
 
 namespace {
 
-/// CIE 1976 lightness of a screen colour (IEC 61966-2-1, D65).
+/// CIE 1976 lightness of an sRGB colour (IEC 61966-2-1, D65).
 double lightness(render::Rgb c) {
   const auto linear = [](double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); };
   const double y = 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
@@ -55,7 +55,7 @@ TEST(Settled, FillsOpenEndsAndIsFinite) {
   const render::ColourScale flat = render::settled({"a", "m"}, 2.0, 2.0);
   EXPECT_TRUE(flat.is_flat());
   EXPECT_EQ(flat.low, 2.0);
-  // no finite value at all
+  // no finite value
   const render::ColourScale none = render::settled({"a", "m"}, INFINITY, -INFINITY);
   EXPECT_TRUE(none.is_flat());
   EXPECT_TRUE(std::isfinite(none.low));
@@ -64,7 +64,7 @@ TEST(Settled, FillsOpenEndsAndIsFinite) {
 TEST(Settled, RoundingIsOneColour) {
   render::ColourScale scale{"a", "m"};
   scale.resolution = 1e-9;
-  const render::ColourScale rest = render::settled(scale, 2e-18, 2.5e-17);  // a body that does not move
+  const render::ColourScale rest = render::settled(scale, 2e-18, 2.5e-17);  // a body at rest
   EXPECT_TRUE(rest.is_flat());
   EXPECT_EQ(rest.high, 0.0);
   EXPECT_EQ(render::share(rest, 2.5e-17), 0.0);

@@ -10,7 +10,7 @@ using namespace palpate;
 
 namespace {
 
-/// The message for a good scene that `spoil` made bad.
+/// Returns the message for a valid scene after `spoil` has made it invalid.
 std::string message_of(const std::function<void(render::Scene&, render::Options&)>& spoil) {
   render::Scene scene;
   scene.surfaces.push_back(cube_surface());

@@ -76,10 +76,10 @@ TEST(Draw, ColoursFollowTheValues) {
   render::Scene scene = ball_scene();
   render::Surface& ball = scene.surfaces[0];
   scene.scale = {"x", "m", -kRadius, kRadius};
-  ball.values = ball.points.row(0).transpose();  // the x coordinate itself
+  ball.values = ball.points.row(0).transpose();  // the x coordinate
   const Picture picture = render::draw(scene, options);
   for (const int x : {60, 120, 200, 260, 330}) {
-    const double value = (x + 0.5 - kPixels / 2) / kRadiusPixels;  // in radii
+    const double value = (x + 0.5 - kPixels / 2) / kRadiusPixels;  // in units of the radius
     expect_colour(picture, x, kPixels / 2, render::viridis(0.5 + 0.5 * value), 2.5);
   }
   ball.values.setConstant(0.5 * kRadius);  // three quarters of the scale
@@ -93,7 +93,7 @@ TEST(Draw, LightComesFromAboveAndTheLeft) {
   const int c = kPixels / 2, d = 80;
   EXPECT_GT(brightness(picture, c - d, c - d), brightness(picture, c + d, c + d) + 30);
   EXPECT_GT(brightness(picture, c, c - d), brightness(picture, c, c + d) + 30);
-  EXPECT_GT(brightness(picture, c, c), 150.0);  // lit at all
+  EXPECT_GT(brightness(picture, c, c), 150.0);  // lit
   expect_colour(picture, 2, 2, options.background, 1.0);
 }
 
@@ -114,7 +114,7 @@ TEST(Draw, OpacityBlendsOnlyTheNearestLayer) {
   scene.surfaces[0].colour = {0, 0, 0};
   const render::Options options = plain_options();
   const render::Rgb b = options.background;
-  // One layer of black at a quarter, not the two that a ball has.
+  // One layer of black at a quarter opacity, rather than the two layers of a ball.
   expect_colour(render::draw(scene, options), kPixels / 2, kPixels / 2,
                 {0.75f * b.r, 0.75f * b.g, 0.75f * b.b}, 1.5);
 }
@@ -164,8 +164,8 @@ TEST(Draw, IsTheSameTwiceToTheByteOnDisk) {
 }
 
 TEST(Draw, FramesFarFromTheOriginWithoutLosingPrecision) {
-  // Floats at 1 km resolve 0.06 mm: the ball's 40 mm would be
-  // rough if positions were not taken relative to the scene.
+  // Floats at 1 km resolve 0.06 mm: the ball's 40 mm would appear rough if positions were not relative to the
+  // scene.
   const render::Options options = [] {
     render::Options o;
     o.width = o.height = kPixels;
@@ -181,7 +181,7 @@ TEST(Draw, FramesFarFromTheOriginWithoutLosingPrecision) {
   EXPECT_LT(different, 40);
 }
 
-// Through two panes the farther one is seen, in whatever order the scene names them.
+// The farther of two transparent panes is visible, in any order of surfaces.
 TEST(Draw, TransparentSurfacesBlendFromBehind) {
   render::Scene scene;
   for (const double y : {-2.0, 2.0}) {
@@ -198,7 +198,7 @@ TEST(Draw, TransparentSurfacesBlendFromBehind) {
   EXPECT_EQ(render::draw(scene, options).rgba, picture.rgba);
 }
 
-// Frames of one movie: the same points frame both, so what does not move is drawn at the same pixels.
+// Frames of one movie: the same points define the camera, so that an object at rest has the same pixels.
 TEST(Draw, AGivenFrameHoldsTheCameraStill) {
   render::Options options = plain_options();
   options.camera.reset();
@@ -212,7 +212,7 @@ TEST(Draw, AGivenFrameHoldsTheCameraStill) {
   const Picture after = render::draw(scene, options);
   options.frame = Points(3, 0);
   const Picture reframed = render::draw(scene, options);
-  const auto left_edge = [&](const Picture& picture) {  // of the large ball
+  const auto left_edge = [&](const Picture& picture) {  // left edge of the large ball
     for (int x = 0; x < kPixels; ++x)
       for (int y = 0; y < kPixels; ++y)
         if (picture.pixel(x, y)[0] < 200) return x;

@@ -36,7 +36,8 @@ TEST(Field, RefusesAMisfit) {
   } catch (const Error& e) { EXPECT_STREQ(e.what(), "picture of a field: 1 values for 3 x 2"); }
 }
 
-// The deepest value has the colour of the scale's end, the rest theirs, whatever stands around the field.
+// The deepest value has the colour of the scale's end, and the others their colours, whatever surrounds the
+// field.
 TEST(Field, TheGreatestValueHasTheColourOfTheMaximum) {
   render::Field field{3, 2, {1e-3, 2e-3, 4e-3, std::nan(""), 3e-3, 0.0}};
   field.cell = 1e-4;
@@ -57,8 +58,8 @@ TEST(Field, TheGreatestValueHasTheColourOfTheMaximum) {
   expect(2, 1, 0.0);
 }
 
-// The bar under the field is as long as it says: 60 pixels a tenth of a millimetre, half of three cells at
-// most.
+// The scale bar under the field has the stated length: 60 pixels are a tenth of a millimetre, at most half of
+// three cells.
 TEST(Field, TheLengthIsToScale) {
   render::Field field{10, 2, std::vector<double>(20, 1.0)};
   field.cell = 1e-4;

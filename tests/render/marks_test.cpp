@@ -45,7 +45,7 @@ TEST(Dots, AreOutwardOctahedraAboutThePoints) {
   const double size = 0.1;
   const render::Surface dots = render::dots(points, size);
   ASSERT_EQ(dots.faces.cols(), 16);
-  EXPECT_NEAR(volume(dots), 2.0 * size * size * size / 6.0, 1e-12);  // outward: positive
+  EXPECT_NEAR(volume(dots), 2.0 * size * size * size / 6.0, 1e-12);  // outward orientation: positive
   for (Eigen::Index i = 0; i < dots.points.cols(); ++i)
     EXPECT_NEAR((dots.points.col(i) - points.col(i / 6)).norm(), size / 2, 1e-12);
 }

@@ -4,8 +4,8 @@
 
 using namespace palpate;
 
-// At a picture 900 pixels high texts have the sizes of the design: the label 18, from 32 off the edge, on a
-// plate 8 wider.
+// In a picture 900 pixels high texts have their design sizes: the label 18, 32 from the edge, on a plate 8
+// wider.
 TEST(Margins, KeepTheSceneFromUnderTheScale) {
   render::Options options;
   options.width = 1200;

@@ -11,7 +11,7 @@ using render::Picture;
 
 namespace {
 
-/// The column of the vertical mark in a strip of `height` under a picture, by its own colour.
+/// Column of the vertical mark in a strip of `height` under a picture, found by its colour.
 int mark(const Picture& page, int picture_height, int height) {
   for (int x = 0; x < page.width; ++x) {
     const std::uint8_t* p = page.pixel(x, picture_height + height / 2);
@@ -43,14 +43,14 @@ TEST(Curve, StandsUnderThePictureAndItsMarkMovesEvenly) {
     const Picture page = render::with_curve(above, curve, t, height);
     EXPECT_EQ(page.width, 600);
     EXPECT_EQ(page.height, 250);
-    EXPECT_EQ(page.pixel(599, 99)[0], above.pixel(599, 99)[0]);  // untouched
+    EXPECT_EQ(page.pixel(599, 99)[0], above.pixel(599, 99)[0]);  // unchanged
     marks.push_back(mark(page, 100, height));
     ASSERT_GE(marks.back(), 0);
   }
   for (std::size_t i = 2; i < marks.size(); ++i)
     EXPECT_NEAR(marks[i] - marks[i - 1], marks[1] - marks[0], 1.0);
   EXPECT_GT(marks[1] - marks[0], 80);
-  // pages of one curve differ at the marks alone
+  // pages of one curve differ at the marks only
   const Picture one = render::with_curve(above, curve, 0.1, height),
                 two = render::with_curve(above, curve, 0.2, height);
   for (int y = 0; y < one.height; ++y)

@@ -19,7 +19,7 @@ Surface subject(const Vec3& centre, double radius = 1.0) {
   return ball;
 }
 
-/// The part of the plane x = `at` with y below `edge`.
+/// Part of the plane x = `at` with y below `edge`.
 Surface wall(double at, double edge) {
   Surface out;
   out.points.resize(3, 4);
@@ -37,7 +37,7 @@ Surface block(const Vec3& low, const Vec3& size) {
 
 View along_x() {
   View view;
-  view.azimuth_deg = view.elevation_deg = 0.0;  // the eye lies at +x, y to its right
+  view.azimuth_deg = view.elevation_deg = 0.0;  // the eye is at +x, y to its right
   return view;
 }
 
@@ -53,8 +53,7 @@ bool is_usual(const View& view) {
 
 }  // namespace
 
-// A disc cut by a line at a distance h from its middle: the part beyond it is (acos h - h sqrt(1 - h^2)) /
-// pi.
+// A disc cut by a line at distance h from its centre: the part beyond it is (acos h - h sqrt(1 - h^2)) / pi.
 TEST(SeenShare, IsTheCircularSegmentBesideAWall) {
   for (const double h : {-0.8, -0.3, 0.0, 0.4, 0.9}) {
     const render::Scene scene{{subject(Vec3::Zero()), wall(2.0, h)}};
@@ -73,14 +72,14 @@ TEST(SeenShare, IsWholeWhereNothingOpaqueStandsInFront) {
   EXPECT_EQ(render::seen_share({}, along_x()), 1.0);
 }
 
-// A ball that sinks into a block: its part above is what an eye beside it sees.
+// A ball that sinks into a block: an eye to its side sees the part above.
 TEST(SeenShare, IsWhatStandsOutOfABody) {
   const render::Scene scene{{subject(Vec3::Zero()), block(Vec3(-5, -5, -5), Vec3(10, 10, 5))}};
   EXPECT_NEAR(render::seen_share(scene, along_x()), 0.5, 0.02);
 }
 
 TEST(ViewChoice, TurnsToTheSideWhereTheSubjectIs) {
-  // the usual eye stands at azimuth -60 degrees: the block hides what lies at 120
+  // the default eye is at azimuth -60 degrees: the block hides objects at 120
   const Vec3 behind(-2.0 * std::cos(std::numbers::pi / 3), 2.0 * std::sin(std::numbers::pi / 3), 0.0);
   const render::Scene scene{{subject(behind, 0.3), block(Vec3::Constant(-1.5), Vec3::Constant(3.0))}};
   EXPECT_LT(render::seen_share(scene, View{}), 0.1);
@@ -93,7 +92,7 @@ TEST(ViewChoice, StaysWhereEnoughIsSeenOrTurningDoesNotHelp) {
   const Surface body = block(Vec3::Constant(-1.5), Vec3::Constant(3.0));
   EXPECT_TRUE(is_usual(chosen({{subject(Vec3(0.0, -1.7, 0.0), 0.3), body}})));
   EXPECT_TRUE(is_usual(chosen({{subject(Vec3::Zero(), 0.3), body}}))) << "swallowed";
-  // within a body, and seen through a slit in its far side alone
+  // inside a body, visible only through a slit in its far side
   EXPECT_TRUE(is_usual(chosen({{subject(Vec3(0.0, 1.25, 0.0), 0.3), body}}))) << "little is seen anywhere";
   EXPECT_TRUE(is_usual(chosen({{body}}))) << "no subject";
   EXPECT_TRUE(is_usual(render::ViewChoice().best(true))) << "no instant";
@@ -105,7 +104,8 @@ TEST(ViewChoice, LooksFromBelowWhereNoGroundIs) {
   EXPECT_TRUE(is_usual(chosen(scene, false)));
 }
 
-// Two instants of a subject that goes round its body: the view that sees it in both, or most of them.
+// Two instants of a subject that moves around its body: the view in which it is visible in both, or most of
+// them.
 TEST(ViewChoice, CountsAllInstants) {
   const Surface body = block(Vec3::Constant(-1.5), Vec3::Constant(3.0));
   render::ViewChoice choice;

@@ -4,8 +4,8 @@
 
 #include "palpate/render/scene.h"
 
-/// A ball of `n` bands from pole to pole:
-/// its silhouette is a polygon within r (1 - cos(pi / 2n)) of the circle.
+/// A ball of `n` bands from pole to pole: its silhouette is a polygon within r (1 - cos(pi / 2n)) of the
+/// circle.
 inline palpate::render::Surface ball_surface(const palpate::Vec3& centre, double radius, int n) {
   using std::numbers::pi;
   palpate::render::Surface surface;
@@ -38,8 +38,8 @@ inline palpate::render::Surface cube_surface() {
   return surface;
 }
 
-/// Looks along +y at the origin, parallel: world x to the right, world z up; `half_height` metres from the
-/// middle to the top.
+/// Camera looking along +y at the origin, parallel projection: world x to the right, world z up;
+/// `half_height` metres from the centre to the top.
 inline palpate::render::Camera front_camera(double half_height) {
   palpate::render::Camera camera;
   camera.eye = {0.0, -10.0 * half_height, 0.0};

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The committed scripts of the page were made of the sources beside them, are small, hold their licences, and
-name no registry; the checks themselves can fail."""
+"""The committed scripts of the page were built from the sources in the repository, are small, contain their
+licences, and name no registry; faulty examples show that the checks detect errors."""
 import hashlib
 import json
 import re
@@ -15,7 +15,7 @@ HOLDERS = {"page.js": ["Leon Sorokin"], "view.js": ["three.js authors"]}
 
 
 def hash_of(files):
-    """As build.mjs computes it."""
+    """Returns the hash as build.mjs computes it."""
     digest = hashlib.sha256()
     for content in files:
         digest.update(content)
@@ -51,7 +51,7 @@ class Bundle(unittest.TestCase):
 
     def test_size(self):
         sizes = [(PAGE / "dist" / name).stat().st_size for name in HOLDERS]
-        self.assertGreater(min(sizes), 20_000)  # a library is in each
+        self.assertGreater(min(sizes), 20_000)  # each contains a library
         self.assertLess(sum(sizes), MOST_BYTES)
 
     def test_licences(self):

@@ -60,7 +60,7 @@ TEST(TickHistogram, MarksItsQuantiles) {
     EXPECT_EQ(plot.series[i + 1].x, (std::vector<double>{at[i], at[i]}));
     EXPECT_EQ(plot.series[i + 1].y[1], highest - 1.0);
   }
-  // the bars' outline begins and ends below one tick, and goes up to the fullest bin
+  // the bars' outline begins and ends below one tick, and reaches up to the fullest bin
   const report::Series& bars = plot.series[0];
   EXPECT_EQ(bars.mark, report::Mark::kArea);
   EXPECT_LT(bars.y.front(), 1.0);

@@ -1,5 +1,5 @@
-// No page of any kind of result shows "nan", "inf" or "null": every number of every file is taken away in
-// turn (all of them, those of the first line, those of the last), and the page's text is searched.
+// No page of any kind of result shows "nan", "inf" or "null": every number of every file is removed in turn
+// (all of them, those of the first line, those of the last), and the page's text is searched.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -85,7 +85,7 @@ constexpr const char* kHaptic =
     "exchange alone,10 ms,0.01,no,0.01,0.005,0.01,0.1,0.2,0.3,no,no,9,0.1,0.1,0.1,8.7,ok,\n"
     "tick,1 ms,0.001,yes,0.04,0.02,0.03,0.1,0.2,0.3,no,no,1,0.1,0.1,0.1,0.7,ok,\n";
 
-/// One result: the files of its folder.  The first is the one whose numbers are taken away.
+/// One kind of result with the files of its folder. Numbers are removed from the first file.
 struct Kind {
   const char* name;
   std::vector<std::pair<std::string, std::string>> files;
@@ -170,7 +170,7 @@ bool is_number(const std::string& cell) {
   return error == std::errc{} && end == cell.data() + cell.size();
 }
 
-/// Which lines of a table, or numbers of a JSON file, lose their value.
+/// Lines of a table, or numbers of a JSON file, that lose their value.
 enum class Lost { kNone, kAll, kFirst, kLast };
 
 std::string csv_without(const std::string& text, Lost lost, const std::string& word) {
@@ -190,7 +190,7 @@ std::string csv_without(const std::string& text, Lost lost, const std::string& w
   return out;
 }
 
-/// @param seen  numbers met so far
+/// @param seen  number of numbers visited so far
 void take_from_json(Json& json, Lost lost, int& seen) {
   if (json.is_structured())
     for (Json& inner : json) take_from_json(inner, lost, seen);
@@ -223,7 +223,7 @@ std::string text_of_page(const Kind& kind, Lost lost, const std::string& word) {
   for (const char* element : {"script", "style"})
     for (std::size_t at = 0; (at = html.find(fmt::format("<{}", element), at)) != std::string::npos;)
       html.erase(at, html.find(fmt::format("</{}>", element), at) + 3 + std::string(element).size() - at);
-  html = std::regex_replace(html, std::regex(" title=\"([^\"]*)\""), "> $1 <");  // shown under the pointer
+  html = std::regex_replace(html, std::regex(" title=\"([^\"]*)\""), "> $1 <");  // shown as a tooltip
   return std::regex_replace(html, std::regex("<[^>]*>"), " ");
 }
 

@@ -34,7 +34,7 @@ Plot small_plot() {
 
 }  // namespace
 
-// Exactly: what a reader reads off the page is what the result holds.
+// Exact equality: the numbers on the page are those of the result.
 TEST(PlotJson, HoldsTheNumbersThemselvesWithoutThoseThatCannotBeDrawn) {
   const json data = json::parse(report::plot_json(small_plot()));
   const json& first = data["series"][0];

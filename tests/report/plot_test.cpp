@@ -42,7 +42,7 @@ std::string message_of(const report::Plot& plot) {
   return "no error";
 }
 
-/// The variable's value comes back at the end of the scope.
+/// Sets an environment variable and restores it at the end of the scope.
 class ScopedVariable {
  public:
   ScopedVariable(const char* name, const char* value) : name_(name), old_(std::getenv(name)) {
@@ -76,7 +76,7 @@ TEST(Plot, RunsNoCommandHiddenInAName) {
 }
 
 TEST(Plot, LeavesNoBlackInAPage) {
-  // A curve in ink must follow the page's text into dark mode.
+  // A curve in the text colour must follow the page's text into dark mode.
   const std::string html = report::Page("t").add_svg(report::plot_svg(small_plot()), "").html();
   const std::string svg = html.substr(html.find("<svg"));
   for (const char* black : {"black", "rgb(  0,   0,   0)", "rgb(0,0,0)"})
@@ -88,7 +88,7 @@ TEST(Plot, IsTheSameTwice) { EXPECT_EQ(report::plot_svg(small_plot()), report::p
 TEST(Plot, LeavesOutWhatAnAxisCannotShow) {
   report::Plot plot = small_plot();
   plot.log_x = plot.log_y = true;
-  // (0, 0) has no place on logarithmic axes
+  // (0, 0) does not exist on logarithmic axes
   EXPECT_EQ(report::plot_svg(plot).find(">p0<"), std::string::npos);
 }
 

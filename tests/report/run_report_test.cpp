@@ -30,14 +30,14 @@ std::string joined(const std::vector<std::string>& cells) {
   return line + "\n";
 }
 
-/// The page without what the libraries brought; the numbers of charts stay.
+/// Removes library scripts from the page; the numbers of charts remain.
 std::string without_scripts(std::string html) {
   for (std::size_t at = html.find("<script>"); at != std::string::npos; at = html.find("<script>", at))
     html.erase(at, html.find("</script>", at) + 9 - at);
   return html;
 }
 
-/// The numbers of the chart whose y axis is called that.
+/// Returns the numbers of the chart with this y axis label.
 nlohmann::json chart_of(const std::string& html, const std::string& y_label) {
   const std::string begin = "class=\"plot-data\">", end = "</script>";
   for (std::size_t at = html.find(begin); at != std::string::npos; at = html.find(begin, at + 1)) {
@@ -48,7 +48,7 @@ nlohmann::json chart_of(const std::string& html, const std::string& y_label) {
   return nullptr;
 }
 
-/// Every file that a report is made from, small.
+/// Writes a small version of every file from which a report is made.
 void fill(const TemporaryFolder& dir) {
   put(dir / "summary.json",
       R"({"command": "palpate run press-ball", "scene": "press <ball>", "outcome": "finished",
@@ -180,7 +180,7 @@ TEST(RunReport, EmbedsTheResultsNumbersInItsCharts) {
   EXPECT_EQ(error["floor_y"], 1e-6);
 }
 
-// The question first: words before tables, the first chart open, charts of counts behind a switch.
+// Main results first: words before tables, the first chart open, charts of counts behind a switch.
 TEST(RunReport, AnswersFirstAndFoldsAwaySecondQuestions) {
   const TemporaryFolder dir;
   fill(dir);
@@ -270,7 +270,7 @@ TEST(RunReport, RefusesAMixThatHoldsAnEmptyFolderAndNamesIt) {
   EXPECT_FALSE(fs::exists(run / "page.html"));
 }
 
-// Warnings and verdicts of every kind of result stand in the head of its page, before the first section.
+// Warnings and verdicts of every kind of result are in the head of its page, before the first section.
 TEST(RunReport, HasTheRemarksOfTheCommandInItsHead) {
   const std::string summary =
       R"({"scene": "x", "outcome": "finished", "remarks": ["bodies & contact at 21.7 Hz", "not passive"]})";

@@ -90,7 +90,7 @@ TEST(StudySection, DrawsTheSweepAndTheSeeds) {
   EXPECT_NE(html.find(">2 ± 1.41</td>"), std::string::npos);
 }
 
-/// Whether the first chart of a sweep of `key` over these values is logarithmic along x.
+/// Returns whether the first chart of a sweep of `key` over these values is logarithmic along x.
 bool log_axis(const std::vector<double>& values, bool declared = false) {
   const TemporaryFolder folder;
   std::string study = "task,scene,integrator,key,status,reason,steps\n";

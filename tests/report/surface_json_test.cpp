@@ -34,7 +34,7 @@ std::vector<int> numbers_of(const std::string& text) {
   return out;
 }
 
-/// A ball that moves to +x by 1 mm a step, and a tool of one triangle that stands still.
+/// A ball that moves to +x by 1 mm per step, and a tool of one triangle at rest.
 constexpr int kSteps = 5;
 std::filesystem::path moving_ball(const TemporaryFolder& folder, const TetMesh& ball) {
   Points triangle(3, 3);
@@ -112,7 +112,7 @@ TEST(SurfaceJson, IsEmptyForARunWithoutASteps) {
   EXPECT_EQ(report::surface_json(store::RunReader(path)), "");
 }
 
-// A body that is coarser is still that body: closed, as large, and with no vertex of its own invention.
+// A decimated body keeps its shape: closed, of the same size, and with a subset of the vertices.
 TEST(Decimate, KeepsTheShapeWithFewerVertices) {
   const TriMesh fine = mesh::boundary(mesh::ball(0.05, 0.004)).surface;
   const report::CoarseSurface coarse = report::decimate(fine.vertices, fine.faces, 400);

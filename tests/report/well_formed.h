@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-/// Error of a page as XML: a tag that is not closed, or closed out of order, or a bare < or &.  Empty: none.
-/// A small checker of our own, so that the tests need no XML library; style and comments are skipped.
+/// Error of a page as XML: a tag that is not closed, or closed out of order, or a bare < or &. Empty if there
+/// is none. A small checker that avoids a dependency on an XML library; style and comments are skipped.
 inline std::string well_formed_problem(const std::string& html) {
   std::vector<std::string> open;
   for (std::size_t at = 0; at < html.size(); ++at) {

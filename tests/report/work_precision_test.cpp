@@ -13,10 +13,10 @@ namespace {
 
 /// Slowest repeat over the median, and the median over the fastest.
 constexpr double kNoise = 1.05;
-/// Of the reference: far below every point.
+/// Reference error: far below every point.
 constexpr double kExact = 1e-9;
 
-/// The cells of a column of one ladder, from the coarsest rung to the finest.
+/// Sets the cells of a column of one refinement sequence, from the coarsest level to the finest.
 void put(report::Table& table, const std::string& label, const char* column, std::vector<double> values) {
   std::size_t next = 0;
   for (auto& row : table.rows)
@@ -24,8 +24,7 @@ void put(report::Table& table, const std::string& label, const char* column, std
       row[table.column(column)] = fmt::format("{}", values[next++]);
 }
 
-/// A table with the columns of compare.csv; `fast` is of order 1 at 1/h seconds, `good` of order 2 at 3/h
-/// seconds.
+/// A table with the columns of compare.csv; `fast` has order 1 at 1/h seconds, `good` order 2 at 3/h seconds.
 report::Table compare_table() {
   report::Table table;
   table.headers = store::compare_columns();
@@ -50,14 +49,14 @@ report::Table compare_table() {
     add("fast", h, 0.5 * h, 1.0 / h, "ok", false);
     add("good", h, 2.0 * h * h, 3.0 / h, "ok", false);
   }
-  add("fast", 0.4, 1e-9, 0.001, "diverged", false);  // cheap and wrong: must count nowhere
-  add("good", 0.001, 9e-6, 5000.0, "ok", true);      // below the reference: not in the fit
+  add("fast", 0.4, 1e-9, 0.001, "diverged", false);  // fast but diverged: must not count
+  add("good", 0.001, 9e-6, 5000.0, "ok", true);      // below the reference error: not in the fit
   return table;
 }
 
 }  // namespace
 
-// Positions below their reference say nothing about the force, and the other way round.
+// Positions below their reference error imply nothing about the force, and vice versa.
 TEST(WorkPrecision, AForceIsHeldAgainstItsOwnReference) {
   report::Table table = compare_table();
   for (auto& row : table.rows) {
@@ -65,8 +64,8 @@ TEST(WorkPrecision, AForceIsHeldAgainstItsOwnReference) {
     row[table.column("force_unresolved")] = row[table.column("setting")] == "0.0125" ? "yes" : "no";
   }
   const auto orders = report::fitted_orders(table, "force_error_rms_n");
-  EXPECT_EQ(orders[0].points, 3);  // of fast: 0.1, 0.05, 0.025
-  EXPECT_EQ(orders[1].points, 4);  // of good: those and 0.001, whose position alone is below
+  EXPECT_EQ(orders[0].points, 3);  // fast: 0.1, 0.05, 0.025
+  EXPECT_EQ(orders[1].points, 4);  // good: those and 0.001, whose position alone is below
 }
 
 TEST(FittedOrders, AreTheSlopesOfPowerLaws) {
@@ -88,7 +87,7 @@ TEST(FittedOrders, OnePointHasNone) {
 }
 
 // Errors of `fast`: 0.05 0.025 0.0125 0.00625 at 10 20 40 80 s, so that error x cost = 0.5; of `good`: 0.02
-// 0.005 0.00125 0.0003125 at 30 60 120 240 s, so that error x cost^2 = 18.  Both are straight in log-log:
+// 0.005 0.00125 0.0003125 at 30 60 120 240 s, so that error x cost^2 = 18. Both are straight in log-log:
 // interpolation is exact.
 class CostAt : public testing::Test {
  protected:
@@ -123,8 +122,8 @@ TEST_F(CostAt, ExtrapolatesNothing) {
   EXPECT_EQ(at("good", 0.5).low, 0.0) << "a coarser rung that was not tried may cost anything";
 }
 
-// A rung whose error passes through zero: its finer neighbours show what the method can do.  The cheapest
-// crossing alone would give 1e-3 at 20 s.
+// A level whose error passes through zero: its finer neighbours show the method's actual accuracy. The
+// cheapest crossing alone would give 1e-3 at 20 s.
 TEST_F(CostAt, OneLuckyRungDoesNotWin) {
   put(table_, "fast", "position_error_rel_l2", {0.05, 1e-4, 0.0125, 0.00625});
   EXPECT_TRUE(std::isnan(at("fast", 1e-3).value) || at("fast", 1e-3).value > 40.0);
@@ -156,7 +155,7 @@ TEST_F(CostAt, NothingIsInterpolatedAcrossARungThatFailed) {
   EXPECT_NEAR(behind.low, 40.0 / kNoise / 2.0, 1e-9) << "the limit of its step lies somewhere between";
 }
 
-// Errors within ten times the reference's own count as that much; below, nothing has a cost.
+// Errors within ten times the reference error are uncertain by that amount; below it, nothing has a cost.
 TEST_F(CostAt, TrustsNoErrorThatTheReferenceCannotTell) {
   EXPECT_TRUE(std::isnan(at("good", 0.0005, 1e-4).value));
   EXPECT_TRUE(std::isnan(at("fast", 0.01, report::kUnknown).value)) << "of an unknown error nothing is known";
@@ -165,7 +164,7 @@ TEST_F(CostAt, TrustsNoErrorThatTheReferenceCannotTell) {
   EXPECT_NEAR(cost, 120.0 * std::pow(2.0, std::log(0.00125 / 0.00115) / std::log(0.00125 / 0.001)), 1e-9);
 }
 
-// A rung that ran once is as uncertain as its neighbours.
+// A level that ran once has the uncertainty of its neighbours.
 TEST_F(CostAt, WithoutRepeatsTheSpreadIsThatOfTheOthers) {
   for (auto& row : table_.rows)
     if (row[table_.column("label")] == "fast") {
@@ -203,7 +202,7 @@ TEST(Winners, AreTheCheapestWithTheirLead) {
 
 TEST(Winners, AreNotDeclaredWithinTheSpread) {
   report::Table table = compare_table();
-  put(table, "good", "cpu_s_median", {10.4});  // at 0.02, where fast takes 25 s; at 0.05 10 s
+  put(table, "good", "cpu_s_median", {10.4});  // at 0.02, where fast needs 25 s; at 0.05 10 s
   put(table, "good", "cpu_s_min", {9.9});
   put(table, "good", "cpu_s_max", {10.9});
   const auto wins = report::winners(table, "position_error_rel_l2", "cpu_s_median", {0.05, 0.02}, kExact);
@@ -236,7 +235,7 @@ TEST(Winners, TellHowMuchSlowerTheInteractiveMethodIs) {
   EXPECT_TRUE(std::isnan(wins[1].baseline_ratio.value)) << "it does not get there";
 }
 
-// Errors of the force are shares of its peak, against the force's own reference.
+// Errors of the force are relative to its peak, and compared with the force's reference error.
 TEST(InWords, NamesTheCheapestForTheForceOnTheHand) {
   report::Table table = compare_table();
   for (auto& row : table.rows) {
@@ -287,7 +286,8 @@ TEST(InWords, SaysWhatTheNumbersSay) {
   EXPECT_NE(report::in_words(table, {}).find("own error is not known"), std::string::npos);
 }
 
-// Ten times tighter for hardly more force evaluations: the stability limit holds the step, not the tolerance.
+// A ten times tighter tolerance needs hardly more force evaluations: the stability limit, rather than the
+// tolerance, determines the step.
 TEST(InWords, NamesExplicitMethodsAtTheirStabilityLimit) {
   report::Table table;
   table.headers = store::compare_columns();
@@ -328,7 +328,7 @@ TEST(WorkPrecisionPlot, HasOneLineALadderWithoutFailedPoints) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
 }
 
-// Forty lines are distinguished by family; what none beats is joined by one dark line, and named.
+// Forty lines are distinguished by family; the non-dominated points are joined by one dark line, and named.
 TEST(WorkPrecisionPlot, OfManyIsColouredByFamilyAndShowsTheEnvelope) {
   const report::Table two = compare_table();
   report::Table many = two;
@@ -347,8 +347,8 @@ TEST(WorkPrecisionPlot, OfManyIsColouredByFamilyAndShowsTheEnvelope) {
   EXPECT_EQ(plot.series[0].colour, plot.series[2].colour);
   const report::Series& best = plot.series.back();
   EXPECT_EQ(best.colour, "ink");
-  // In the order of cost: fast at 10 and 20 s, good at 30 s (0.02 < 0.025), fast at 40 s (0.0125 < 0.02),
-  // good at 60, 120 and 240 s.
+  // By increasing cost: fast at 10 and 20 s, good at 30 s (0.02 < 0.025), fast at 40 s (0.0125 < 0.02), good
+  // at 60, 120 and 240 s.
   EXPECT_EQ(best.x, (std::vector<double>{10, 20, 30, 40, 60, 120, 240}));
   EXPECT_EQ(best.labels, (std::vector<std::string>{"fast", "", "good", "", "", "", ""}));
   const auto panels = report::family_plots(many, "position_error_rel_l2", "error", 1e-4);

@@ -1,4 +1,4 @@
-// Each broken scene is refused at its location, with the value and what to do.
+// Each broken scene is rejected at its location, with the value and a remedy.
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"

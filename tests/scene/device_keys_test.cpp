@@ -1,4 +1,4 @@
-// Keys of [device]: what a type does not use is refused, what it uses is read, and so is every profile.
+// Keys of [device]: keys that a type does not use are rejected, the others are read, and so is every profile.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace palpate;
 
-/// What a type cannot do without.
+/// Returns the keys that a type requires.
 std::string needed_by(const std::string& type) {
   if (type == "recording") return "file = \"poses.csv\"\n";
   if (type == "udp") return "port = 4711\n";
@@ -35,7 +35,7 @@ std::string refusal(const std::string& text) {
   return "accepted";
 }
 
-/// A value that the key may hold, as TOML.
+/// Returns a valid value of the key, as TOML.
 std::string value_of(const scene::KeyRow& row) {
   static const std::map<std::string, std::string> own = {{"profile", "\"omni\""},
                                                          {"file", "\"poses.csv\""},
@@ -71,7 +71,7 @@ TEST(DeviceKeys, EveryTypeTakesItsOwnAndRefusesTheOthers) {
   int taken = 0, refused = 0, common = 0;
   for (const auto& entry : device::device_registry()) {
     for (const scene::KeyRow& row : rows) {
-      if (needed_by(entry.name).starts_with(row.name + " =")) continue;  // there already
+      if (needed_by(entry.name).starts_with(row.name + " =")) continue;  // already present
       const std::string message = refusal(held_by(entry.name, row.name + " = " + value_of(row) + "\n"));
       const bool listed = std::any_of(entry.keys.begin(), entry.keys.end(),
                                       [&](const PartKey& key) { return key.name == row.name; });

@@ -1,4 +1,4 @@
-// Damaged scenes: each is read or refused by palpate::Error, never anything else.
+// Damaged scenes: each is read or rejected by palpate::Error, without any other outcome.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -46,7 +46,7 @@ std::string damaged(std::string text, std::mt19937& random) {
   return text;
 }
 
-/// How a text fares: read, or refused with a message that has a location.
+/// Returns whether a text is read; otherwise checks that it is rejected with a message that has a location.
 bool is_read(const std::string& text, const std::vector<std::string>& overrides = {}) {
   try {
     palpate::loop::parse(text, "fuzz.toml", overrides);
@@ -77,7 +77,7 @@ TEST(Fuzz, DamagedOverridesAreAppliedOrRefused) {
   EXPECT_GT(refused, 500);
 }
 
-/// What the fuzzer keeps, read here with all registries; it itself knows a few names of each (tests/fuzz).
+/// Reads the fuzzer's corpus with all registries; the fuzzer includes only a few names of each (tests/fuzz).
 TEST(Fuzz, TheFuzzersInputsAreReadOrRefused) {
   int inputs = 0;
   for (const auto& entry :

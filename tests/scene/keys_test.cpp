@@ -1,4 +1,4 @@
-// A field of a spec that no scene could set would be a dead field: every one must have its key.
+// Every field of a spec must have a key: a field that no scene can set would be dead.
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 namespace {
 
-/// Fields whose keys go by another name, and the two that a file cannot set.
+/// Fields whose keys have another name, and the two that a file cannot set.
 const std::map<std::string, std::string> kOtherNames = {{"bodies", "body"},
                                                         {"others", "joints"},
                                                         {"changes", "change"},
@@ -64,7 +64,7 @@ TEST(Keys, EveryFieldOfEverySpecHasOne) {
   EXPECT_GE(fields, 90) << "the pattern no longer finds the fields";
 }
 
-/// What stands behind every row of the documentation that is made of them.
+/// Checks the data behind every row of the generated documentation.
 TEST(Keys, EachSaysItsUnitDefaultAndMeaning) {
   int units = 0, defaults = 0;
   std::set<std::string> seen;

@@ -1,4 +1,5 @@
-// Keys that a method, an obstacle, a generator or a device does not use are refused, by the registries.
+// Keys that a method, an obstacle, a generator or a device does not use are rejected, according to the
+// registries.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +68,7 @@ TEST(Kinds, AKeyThatTheIntegratorDoesNotUseIsRefusedAtItsLocation) {
     EXPECT_EQ(refusal(with_integrator(used)), "accepted") << used;
 }
 
-// The registry's list is what counts, for each method: a key of [integrator] is either in it or refused.
+// The registry's list is decisive for each method: a key of [integrator] is either in it or rejected.
 TEST(Kinds, EveryIntegratorRefusesEveryKeyThatItDoesNotList) {
   const auto rows = palpate::scene::key_rows(palpate::loop::kinds());
   int refused = 0, taken = 0;
@@ -114,7 +115,7 @@ TEST(Kinds, UnknownNamesAreRefusedAtTheirLocation) {
             std::string::npos);
 }
 
-// What the file says for its own method stays behind when another one is named in its place.
+// Keys of the file's method are ignored when an override replaces the method.
 TEST(Kinds, AnotherMethodTakesOnlyTheKeysThatItUses) {
   const std::string own = with_integrator(
       "name = \"generalized-alpha\"\nstep_s = 2e-3\nspectral_radius = 0.5\nlinear_solver = \"pcg\"\n"
@@ -228,7 +229,7 @@ TEST(Kinds, SpringsOfAreaAndOfPoints) {
       std::string::npos);
   EXPECT_NE(with({"contact.0.spring=per_point", "contact.0.stiffness_n_m=0.0"}).find("must be positive"),
             std::string::npos);
-  // the tool is a sphere, with exact gaps at the vertices; an image has to be asked for them
+  // the tool is a sphere, with exact gaps at the vertices; an image must be requested for vertex samples
   EXPECT_EQ(with({"contact.1.spring=per_point"}), "accepted");
   EXPECT_EQ(with({"contact.1.spring=per_point", "contact.1.method=image"}), "accepted");
 }
@@ -304,7 +305,7 @@ TEST(Kinds, Meshes) {
       std::string::npos);
 }
 
-/// A registry that lists a key which no table has would refuse nothing, and describe nothing.
+/// A registry key that is in no table would reject nothing, and describe nothing.
 TEST(Kinds, ListOnlyKeysThatThereAre) {
   const auto rows = palpate::scene::key_rows(palpate::loop::kinds());
   int keys = 0;

@@ -61,7 +61,7 @@ TEST(Load, HandsHaveToolsAndDevicesOfTheirOwn) {
   EXPECT_EQ(hands[0].name, "tool");
   EXPECT_EQ(palpate::scene::tool_named(d, "left"), &d.hands[0].tool);
   EXPECT_EQ(palpate::scene::tool_named(d, "right"), nullptr);
-  // a hand's own kinds are checked as the first's
+  // the kinds of further hands are checked like those of the first
   const std::string path = scene_texts::kScenes + "/two-hands.toml";
   for (const auto& [override, said] : {std::pair("hand.0.device.type=robot", "robot"),
                                        {"hand.0.tool.shape=cube", "shape"},
@@ -211,7 +211,7 @@ TEST(Load, ABodyTouchesItself) {
             std::string::npos);
 }
 
-// Bodies as they are listed, the tool, obstacles: whichever is named first.
+// Bodies in their order, the tool, obstacles: independently of the order in the scene.
 TEST(Load, SidesOfAContactAreInTheirOrder) {
   const auto sides = [](const std::string& between, const std::string& bodies) {
     const auto d = parse(scene_texts::kWhole + bodies, "whole.toml", {"contact.1.between=" + between});
@@ -230,7 +230,7 @@ mesh = { generator = "ball", radius_m = 0.03, element_size_m = 0.01 }
   EXPECT_EQ(sides("[\"ball\", \"apple\"]", another), "ball - apple, distance");
 }
 
-/// What two keys of one table ask of each other; the locations are covered by broken_test.
+/// Dependencies between two keys of one table; broken_test covers the locations.
 TEST(Load, KeysThatExcludeOrNeedEachOther) {
   const auto refusal = [](const std::vector<std::string>& overrides) -> std::string {
     try {

@@ -83,7 +83,7 @@ TEST(Override, ThatCannotBeAppliedSaysWhy) {
   EXPECT_NE(refusal("...=1"), "accepted");
 }
 
-/// The kept source is the scene as it ran: it parses to the same values, to the last bit.
+/// The kept source is the scene as it ran: it parses to bitwise equal values.
 TEST(Override, EffectiveSourceParsesToTheSame) {
   const double odd = 0.1 * 0.7;
   const Description d = with({fmt::format("integrator.rtol={}", odd),

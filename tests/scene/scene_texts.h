@@ -27,7 +27,7 @@ inline std::vector<std::string> in_folder(const std::string& folder) {
   return paths;
 }
 
-/// A small scene that has one of everything.
+/// A small scene with one object of every kind.
 inline const char* const kWhole = R"(
 [scene]
 name = "whole"

@@ -135,7 +135,7 @@ TEST(StudySeeds, DrawFromTheDistributionThatTheyAreSaidTo) {
     return std::pair(mean, std::sqrt(square / kSeeds - mean * mean));
   };
   const auto same = [](double x) { return x; };
-  // five standard deviations of the mean of so many
+  // five standard deviations of the mean of that many samples
   const auto uniform = moments(drawn_from("uniform", 2.0, 6.0), same);
   EXPECT_NEAR(uniform.first, 4.0, 5.0 * 4.0 / std::sqrt(12.0 * kSeeds));
   EXPECT_NEAR(uniform.second, 4.0 / std::sqrt(12.0), 0.05);
@@ -152,7 +152,7 @@ TEST(StudySeeds, DrawFromTheDistributionThatTheyAreSaidTo) {
   EXPECT_NEAR(gauss.second, 2.0, 0.12);
   normal.min = 9.0;
   normal.max = 11.0;
-  moments(normal, same);  // all of them between
+  moments(normal, same);  // all values are between the bounds
   normal.min = 100.0;
   normal.max = 101.0;
   EXPECT_THROW(drawn_value(normal, 1), Error);
@@ -170,8 +170,8 @@ TEST(StudySeeds, DependOnSeedAndKeyAlone) {
   EXPECT_GE(values.size(), 199u) << "six digits of 200 draws hardly ever meet";
 }
 
-// Worked out apart from any library, in Python, from the text of the standard: [rand.util.seedseq] for the
-// seeding, [rand.eng.mers] for the first number x of 64 bits, and floor(x / 2^11) / 2^53.
+// Computed independently of any library, in Python, from the text of the standard: [rand.util.seedseq] for
+// the seeding, [rand.eng.mers] for the first number x of 64 bits, and floor(x / 2^11) / 2^53.
 TEST(StudySeeds, AreTheSameOnEveryMachine) {
   EXPECT_EQ(drawn_value(drawn_from("uniform", 0.0, 1.0), 1), "0.0514308");
   EXPECT_EQ(drawn_value(drawn_from("uniform", 0.0, 1.0), 2), "0.843484");

@@ -1,4 +1,5 @@
-// Text that would take the parser of TOML beyond its stack, and values that no double or terminal holds.
+// Text that would exceed the stack of the TOML parser, and values that no double can represent or that a
+// terminal must not receive.
 #include <gtest/gtest.h>
 
 #include "messages.h"

@@ -23,7 +23,7 @@ double polygon_area(const GearProfile& profile) {
   return sum;
 }
 
-// Diameters by the book: pitch z m, tip (z + 2) m, root (z - 2.5) m, base z m cos 20.
+// Standard diameters: pitch z m, tip (z + 2) m, root (z - 2.5) m, base z m cos 20.
 TEST(GearProfile, HasTheDiametersOfItsModule) {
   const GearSize size;
   EXPECT_NEAR(2.0 * size.pitch_radius(), 0.092, 1e-12);
@@ -36,7 +36,8 @@ TEST(GearProfile, HasTheDiametersOfItsModule) {
   EXPECT_NEAR(least, size.root_radius(), 1e-12);
 }
 
-// A polygon on a smooth outline misses its area by O(spacing^2): four times finer, a sixteenth of the error.
+// A polygon on a smooth outline has an area error of O(spacing^2): four times finer, a sixteenth of the
+// error.
 TEST(GearProfile, AreaTendsToItsClosedForm) {
   const GearSize size;
   const double exact = shapes::gear_area(size);
@@ -47,8 +48,8 @@ TEST(GearProfile, AreaTendsToItsClosedForm) {
   EXPECT_LT(coarse / fine, 20.0);
 }
 
-// On the pitch circle a tooth is half a pitch wide: pi m / 2.  (The flank crosses it between two points;
-// linear in between is exact enough there.)
+// On the pitch circle a tooth is half a pitch wide: pi m / 2. (The flank crosses it between two points;
+// linear interpolation is sufficiently accurate there.)
 TEST(GearProfile, ToothAndGapAreEquallyWideOnThePitchCircle) {
   const GearSize size;
   const GearProfile profile = shapes::gear_profile(size, 2e-5);
@@ -63,7 +64,7 @@ TEST(GearProfile, ToothAndGapAreEquallyWideOnThePitchCircle) {
   FAIL() << "the flank never crosses the pitch circle";
 }
 
-// An involute's normals touch the base circle: |p x n| = base radius for every point of a flank.
+// An involute's normals are tangent to the base circle: |p x n| = base radius for every point of a flank.
 TEST(GearProfile, FlankNormalsTouchTheBaseCircle) {
   const GearSize size;
   const GearProfile profile = shapes::gear_profile(size, 2e-4);
@@ -78,7 +79,7 @@ TEST(GearProfile, FlankNormalsTouchTheBaseCircle) {
   EXPECT_EQ(profile.corners.size(), 46U);
 }
 
-// The secant through a point's two neighbours turns with the outline: it stands across the normal.
+// The secant through a point's two neighbours follows the outline: it is perpendicular to the normal.
 TEST(GearProfile, NormalsStandAcrossTheOutline) {
   const GearProfile profile = shapes::gear_profile({}, 1e-4);
   const std::size_t n = profile.points.size();

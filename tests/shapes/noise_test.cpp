@@ -39,8 +39,8 @@ TEST(Noise, SeedsDiffer) {
   EXPECT_LT(shapes::chance(7), 1.0);
 }
 
-// join() meets min() where the two differ by k,
-// lies k/4 below it where they are equal, and does not care for their order.
+// join() equals min() where the two differ by at least k, is k/4 below it where they are equal, and is
+// symmetric.
 TEST(Solids, JoinRoundsTheMinimum) {
   EXPECT_EQ(shapes::join(0.3, 0.1, 0.2), 0.1);
   EXPECT_DOUBLE_EQ(shapes::join(0.1, 0.1, 0.2), 0.1 - 0.05);
@@ -66,7 +66,7 @@ TEST(Solids, EllipsoidIsADistanceAtItsSurface) {
   }
 }
 
-// A limb swells by its belly where that is prescribed, and by nothing at its ends.
+// A limb has its full swelling at the prescribed position, and none at its ends.
 TEST(Solids, LimbSwellsWhereItIsTold) {
   const Vec3 a(0, 0, 0), b(0, 0, 1);
   for (const double t : {0.0, 0.25, 1.0})

@@ -9,12 +9,12 @@
 #include "palpate/render/scene.h"
 #include "palpate/shapes/shapes.h"
 
-// Draws the shapes as docs/models.md shows them: shapes_pictures FOLDER [NAME...]
+// Draws the shapes of docs/models.md: shapes_pictures FOLDER [NAME...]
 using namespace palpate;
 
 namespace {
 
-/// A surface turned about the vertical and put aside.
+/// A surface rotated about the vertical and shifted.
 render::Surface placed(const TriMesh& mesh, double turn_deg, const Vec3& shift, render::Rgb colour) {
   render::Surface surface;
   surface.points = Eigen::AngleAxisd(turn_deg * std::numbers::pi / 180.0, Vec3::UnitZ()).toRotationMatrix() *
@@ -29,7 +29,7 @@ struct Look {
   std::string name;
   render::Rgb colour;
   double apart;                ///< between two views [m]; 0: one view
-  double turn_deg, other_deg;  ///< of the two
+  double turn_deg, other_deg;  ///< rotation of either view
   double elevation_deg;
   int width, height;
   double crease_deg;

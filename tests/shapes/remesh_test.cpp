@@ -47,8 +47,8 @@ TEST(March, BallIsClosedOutwardsAndNearItsVolume) {
   EXPECT_NEAR(mesh::enclosed_volume(mesh), std::numbers::pi / 6.0, 0.005);
 }
 
-// A ball whose function is eight times as steep on its upper half as its plan says: blocks of the lattice are
-// skipped that hold its surface, which is no reason for holes.
+// A ball whose function is eight times as steep in its upper half as its plan states: lattice blocks that
+// contain its surface are skipped, which must not cause holes.
 TEST(March, IsClosedWhereTheFunctionIsSteeperThanItsBound) {
   Blueprint plan = ball_plan(0.5, false);
   const auto ball = plan.inside;
@@ -74,8 +74,8 @@ TEST(March, SymmetricBodyIsCutInItsPlane) {
   EXPECT_GT(rim, 20);
 }
 
-// The detector that the other tests rely on: two balls apart do not cut each other, two that overlap do, all
-// along the circle where they meet.
+// The detector on which the other tests rely: two separate balls do not intersect, and two overlapping ones
+// do, all along their circle of intersection.
 TEST(SelfIntersections, AreFoundWhereTheyAre) {
   const TriMesh ball = shapes::contour(ball_plan(0.5, false), 700);
   for (const double distance : {1.1, 0.7}) {
@@ -97,8 +97,8 @@ TEST(SelfIntersections, AreFoundWhereTheyAre) {
   }
 }
 
-// Volume of a sphere's inscribed triangles: V (1 - c h^2); the count is met, the triangles are good, every
-// vertex lies on the sphere.
+// Volume of a sphere's inscribed triangles: V (1 - c h^2); the requested count is met, the triangles are
+// good, every vertex lies on the sphere.
 TEST(Contour, BallHasItsVolumeCountAndShape) {
   for (const bool symmetric : {false, true}) {
     const double radius = 0.5, exact = 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3);
@@ -129,7 +129,7 @@ TEST(Contour, RingKeepsItsHoleAndItsVolume) {
   EXPECT_TRUE(is_its_mirror_image(mesh));
 }
 
-// The wanted size halves on one side: edges there are half as long.
+// The requested size halves on one side: edges there are half as long.
 TEST(Contour, FollowsTheWantedSize) {
   Blueprint plan = ball_plan(0.5, false);
   plan.size = [](const Vec3& p) { return 1.0 - 0.5 * shapes::ramp(p.z(), -0.1, 0.1); };
@@ -145,7 +145,7 @@ TEST(Contour, FollowsTheWantedSize) {
   EXPECT_NEAR((below / faces_below) / (above / faces_above), 2.0, 0.2);
 }
 
-// A square with a square hole: nothing turned over, the area exact because the rims stay as they are.
+// A square with a square hole: no triangle is inverted, and the area is exact because the rims are preserved.
 TEST(Plane, FillsBetweenTwoLoops) {
   std::vector<shapes::Point2> outer, hole;
   const auto square = [](double half, int a_side, std::vector<shapes::Point2>& out) {
@@ -159,7 +159,7 @@ TEST(Plane, FillsBetweenTwoLoops) {
   const int inside = shapes::vertices_between(outer, hole, 0.1);
   const TriMesh mesh = shapes::between(outer, hole, inside);
   EXPECT_EQ(mesh.vertices.cols(), 80 + 32 + inside);
-  EXPECT_EQ(mesh.faces.cols(), 2 * inside + 80 + 32);  // Euler, for a ring
+  EXPECT_EQ(mesh.faces.cols(), 2 * inside + 80 + 32);  // Euler's formula for a ring
   double area = 0.0;
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
     const double a =
@@ -174,7 +174,7 @@ TEST(Plane, FillsBetweenTwoLoops) {
               Vec3(outer[static_cast<std::size_t>(i)].x(), outer[static_cast<std::size_t>(i)].y(), 0));
 }
 
-// A flip there and back, a split and its collapse: the surface stays closed with each edge in two faces.
+// A flip there and back, a split and its collapse: the surface remains closed with each edge in two faces.
 TEST(CornerTable, OperationsKeepTheSurfaceClosed) {
   Faces octahedron(3, 8);
   octahedron << 0, 1, 2, 3, 1, 2, 3, 0, 1, 2, 3, 0, 0, 1, 2, 3, 4, 4, 4, 4, 5, 5, 5, 5;
@@ -198,14 +198,14 @@ TEST(CornerTable, OperationsKeepTheSurfaceClosed) {
   table.split(0, m);
   EXPECT_EQ(closed(), 10);
   EXPECT_EQ(table.valence(m), 4);
-  int possible = -1;  // towards a vertex whose collapse leaves each of the others three neighbours
+  int possible = -1;  // towards a vertex whose collapse leaves each other vertex three neighbours
   table.around(m, [&](int h) { possible = table.can_collapse(h) ? h : possible; });
   ASSERT_GE(possible, 0);
   table.collapse(possible);
   EXPECT_EQ(closed(), 8);
 }
 
-// Two faces that run along an edge the same way, and an edge in three faces.
+// Two faces with the same direction along an edge, and an edge in three faces.
 TEST(CornerTable, RefusesSurfacesThatAreNone) {
   Faces same(3, 2), three(3, 3);
   same << 0, 0, 1, 1, 2, 3;
@@ -214,7 +214,7 @@ TEST(CornerTable, RefusesSurfacesThatAreNone) {
   EXPECT_THROW(shapes::CornerTable(three, 5), InternalError);
 }
 
-// A tetrahedron has nothing to spare: its collapse would fold it flat, its flip would double an edge.
+// A tetrahedron is minimal: a collapse would flatten it, a flip would double an edge.
 TEST(CornerTable, RefusesWhatWouldBreakTheSurface) {
   Faces faces(3, 4);
   faces << 0, 0, 0, 1, 2, 1, 3, 2, 1, 3, 2, 3;

@@ -43,8 +43,8 @@ void expect_sound(const Shape& shape, const shapes::Resolution& asked) {
   expect_sound(shape.skin, asked.skin_vertices, euler, 10.0, shape.name + ", skin");
 }
 
-/// The skin is embedded in tetrahedra that fill the base; what lies inside is held, what stands out must not
-/// stand far.  One of them, of the wanted number, has the edge (6 sqrt 2 V / n)^(1/3) if it is regular.
+/// The skin is embedded in tetrahedra that fill the base; inner vertices are contained, and outer ones must
+/// not be far outside. A regular tetrahedron of the requested number has the edge (6 sqrt 2 V / n)^(1/3).
 void expect_close(const Shape& shape) {
   const double edge = std::cbrt(6.0 * std::sqrt(2.0) * mesh::enclosed_volume(shape.base) / shape.tetrahedra);
   double outside = 0.0, off_base = 0.0;
@@ -60,7 +60,7 @@ void expect_close(const Shape& shape) {
   EXPECT_LT(off_base, 1e-4) << shape.name;
 }
 
-/// Sizes that a person would expect [m].
+/// Checks realistic sizes [m].
 void expect_size(const Shape& shape) {
   const Vec3 extent = shape.skin.vertices.rowwise().maxCoeff() - shape.skin.vertices.rowwise().minCoeff();
   if (shape.name == "human") {
@@ -68,7 +68,7 @@ void expect_size(const Shape& shape) {
     EXPECT_NEAR(shape.skin.vertices.row(2).minCoeff(), 0.0, 0.005);
     EXPECT_NEAR(mesh::enclosed_volume(shape.base), 0.07, 0.012);  // about 70 kg of water
   } else if (shape.name == "head") {
-    EXPECT_NEAR(extent.z(), 0.24 + 0.066, 0.01);  // the neck goes on below the chin
+    EXPECT_NEAR(extent.z(), 0.24 + 0.066, 0.01);  // the neck extends below the chin
   } else if (shape.name == "gear") {
     EXPECT_NEAR(extent.x(), 0.10, 0.001);
     EXPECT_NEAR(extent.z(), 0.02, 1e-12);
@@ -112,16 +112,16 @@ TEST_P(EveryShape, IsSoundAtItsUsualCounts) {
   EXPECT_EQ(shape.skeleton.bones.size(), GetParam() == "human" ? 19U : 0U);
 }
 
-// The base is a prism: its area in closed form times its width,
-// but for the polygons that stand for arcs, which miss O(edge^2).
+// The base is a prism: its area in closed form times its width, except for polygons that approximate arcs,
+// with an error of O(edge^2).
 TEST(Shapes, GearHasItsVolumeInClosedForm) {
   const shapes::GearSize size;
   const double exact = (shapes::gear_area(size) - std::numbers::pi * size.bore * size.bore) * size.width;
   const Shape gear = shapes::make("gear", {29000, 12000});
   const double base = mesh::enclosed_volume(gear.base);
   EXPECT_NEAR(base / exact, 1.0, 1e-3);
-  // The first two creases are the outline and the bore above: between their polygons the prism is exact.
-  // (That the outline's polygon tends to its closed form is shown in gear_profile_test.cpp.)
+  // The first two creases are the upper outline and bore: between their polygons the prism is exact.
+  // (gear_profile_test.cpp shows that the outline's polygon converges to its closed form.)
   const auto area = [](const std::vector<Vec3>& line) {
     double sum = 0.0;
     for (std::size_t i = 0; i + 1 < line.size(); ++i) sum += 0.5 * line[i].cross(line[i + 1]).z();
@@ -130,7 +130,7 @@ TEST(Shapes, GearHasItsVolumeInClosedForm) {
   EXPECT_EQ(gear.creases[0].front(), gear.creases[0].back());
   EXPECT_NEAR(base / ((area(gear.creases[0]) - area(gear.creases[1])) * size.width), 1.0, 1e-12);
   // The skin lacks two recesses, each a ring of trapezoidal section (Pappus: by the centroids of its parts),
-  // and chamfers along outline and bore. a frustum
+  // and chamfers along outline and bore. Volume of a frustum:
   const auto cone = [](double r0, double r1, double depth) {
     return std::numbers::pi * depth / 3.0 * (r1 * r1 + r1 * r0 + r0 * r0);
   };

@@ -51,7 +51,7 @@ TEST(HumanSkeleton, LeftAndRightAreMirrorImages) {
   EXPECT_EQ(pairs, 7);
 }
 
-/// Points on the surface of a bone: circles along its line, and the two balls at its ends.
+/// Points on the surface of a bone: circles along its line, and the balls at its two ends.
 std::vector<Vec3> surface_points(const Bone& bone) {
   std::vector<Vec3> out;
   const Vec3 along = bone.tail - bone.head;
@@ -77,7 +77,7 @@ TEST(HumanSkeleton, LiesInsideTheTissue) {
     }
 }
 
-// The function of the body is even in x to the bit, which the mirrored mesh takes for granted.
+// The function of the body is bitwise even in x, on which the mirrored mesh relies.
 TEST(HumanSkeleton, BodyIsItsOwnMirrorImage) {
   for (const Bone& bone : bones())
     for (const Vec3& p : surface_points(bone))

@@ -9,7 +9,7 @@
 
 #include "palpate/mesh/mesh.h"
 
-/// What the tests ask of a surface.
+/// Properties of surfaces that the tests check.
 namespace palpate {
 
 inline Vec3 vertex(const TriMesh& m, Eigen::Index face, int k) { return m.vertices.col(m.faces(k, face)); }
@@ -26,7 +26,7 @@ inline double smallest_angle_deg(const TriMesh& m) {
   return smallest;
 }
 
-/// V - E + F of a closed surface, where E = 3 F / 2: 2 for a sphere, 0 with one hole through it.
+/// V - E + F of a closed surface, with E = 3 F / 2: 2 for a sphere, 0 with one hole through it.
 inline int euler_characteristic(const TriMesh& m) {
   return static_cast<int>(m.vertices.cols() - m.faces.cols() / 2);
 }
@@ -45,9 +45,9 @@ inline int pieces(const TriMesh& m) {
   return n;
 }
 
-/// The segment pq crosses the triangle abc, at a point inside both (five signs of
-/// volumes).  An end within 1e-9 of the triangle's size of its plane does not count:
-/// there, on a gear's flat faces, signs are rounding.
+/// Returns whether the segment pq crosses the triangle abc at an inner point of both (five signs of volumes).
+/// An end within 1e-9 of the triangle's size of its plane does not count: on a gear's flat faces, signs there
+/// are rounding.
 inline bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double before = normal.dot(p - a), after = normal.dot(q - a),
@@ -59,9 +59,9 @@ inline bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, 
   return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
 }
 
-/// Pairs of triangles without a common vertex that cut each other.  All pairs whose boxes share a cell of a
-/// grid are looked at.
-/// @param looked_at  how many pairs were tested
+/// Number of pairs of triangles without a common vertex that intersect. All pairs whose boxes share a cell of
+/// a grid are tested.
+/// @param looked_at  number of pairs tested
 inline int self_intersections(const TriMesh& m, long* looked_at) {
   double edge = 0.0;
   for (Eigen::Index f = 0; f < m.faces.cols(); ++f)
@@ -90,7 +90,7 @@ inline int self_intersections(const TriMesh& m, long* looked_at) {
     for (std::size_t x = 0; x < faces.size(); ++x)
       for (std::size_t y = x + 1; y < faces.size(); ++y) {
         const int f = faces[x], g = faces[y];
-        // the pair belongs to the first cell that both touch
+        // the pair is counted in the first cell that both touch
         const Eigen::Vector3i first = boxes[f].low.cwiseMax(boxes[g].low);
         if (key(first.x(), first.y(), first.z()) != place) continue;
         bool touch = false;
@@ -109,7 +109,7 @@ inline int self_intersections(const TriMesh& m, long* looked_at) {
   return found;
 }
 
-/// Each vertex has its image about x = 0 among the vertices, to the bit.
+/// Returns whether each vertex has its bitwise mirror image about x = 0 among the vertices.
 inline bool is_its_mirror_image(const TriMesh& m) {
   std::vector<std::array<double, 3>> points, images;
   for (Eigen::Index v = 0; v < m.vertices.cols(); ++v) {

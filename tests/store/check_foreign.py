@@ -1,4 +1,4 @@
-"""Reads a file by the readers of foreign.py and prints what stands in it as JSON; the test compares.
+"""Reads a file by the readers of foreign.py and prints its content as JSON; the test compares.
 
     check_foreign.py xdmf|vtu|pvd|obj|ply|glb FILE
 """

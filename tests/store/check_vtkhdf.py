@@ -1,4 +1,4 @@
-"""Reads a run as VTK's own reader does, and prints what it would show; the test compares.
+"""Reads a run as VTK's own reader does, and prints what VTK would show; the test compares.
 
 VTK's arithmetic for an UnstructuredGrid with Steps, per step s and with one part:
   points        Points[PointOffsets[s] :][: NumberOfPoints[PartOffsets[s]]]

@@ -1,4 +1,4 @@
-// Checkpoints on disk, and the files that a run goes on with.
+// Checkpoints on disk, and the files that a resumed run continues.
 #include "palpate/store/checkpoint_file.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(CheckpointFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(files, 1) << "nothing temporary is left";
 }
 
-// Whatever happened to the file: it is refused by name, or what it says is what was written.
+// However the file was damaged: it is rejected with its name, or its content is what was written.
 TEST(CheckpointFile, NeverSaysWhatWasNotWritten) {
   const sample_run::Folder folder;
   const std::string path = folder / "checkpoint.h5";
@@ -92,7 +92,7 @@ TEST(GoingOn, ATableFileIsMadeAnewFromItsJournal) {
     store::TableFile file(path, tables, store::TableFile::Journal{});
     fill(file, 0, 700);
     place = file.place();
-    fill(file, 700, 900);  // is cut off
+    fill(file, 700, 900);  // truncated
   }
   store::write_atomically(path, "what a kill left of it");
   {
@@ -147,7 +147,7 @@ TEST(GoingOn, ATextFileIsCutBack) {
               std::string::npos);
     EXPECT_EQ(store::read_file(path), changed) << "what is rejected stays as it is";
   }
-  store::write_atomically(path, "t,f\n0,1\n9,9\n");  // rows behind the checkpoint are computed again
+  store::write_atomically(path, "t,f\n0,1\n9,9\n");  // rows after the checkpoint are computed again
   EXPECT_EQ(message_of([&] { store::CsvWriter file(path, {"t", "f"}, place); }), "");
 }
 
@@ -209,9 +209,9 @@ TEST(GoingOn, AFlippedBitInAStateIsFound) {
   }
   const std::string whole = store::read_file(path);
   int found = 0;
-  for (double value = 0.002; value < next + 5e-4; value += 0.001) {  // each number stands in the file once
+  for (double value = 0.002; value < next + 5e-4; value += 0.001) {  // each number occurs in the file once
     double exact = 0.001;
-    while (exact < value - 5e-4) exact += 0.001;  // by the same sums
+    while (exact < value - 5e-4) exact += 0.001;  // by the same additions
     const std::size_t at = whole.find(std::string(reinterpret_cast<const char*>(&exact), sizeof exact));
     if (at == std::string::npos) continue;
     std::string flipped = whole;

@@ -1,5 +1,5 @@
-// Writes steps for ever, with a line on standard output after each that append() has returned from.
-// run_kill_test kills it.
+// Writes steps endlessly, with a line on standard output after each append() that has returned; run_kill_test
+// kills it.
 #include <cstdio>
 
 #include "store/sample_run.h"

@@ -1,6 +1,6 @@
 """Readers of the files that palpate writes for other programs.
 
-They follow the formats' own descriptions and know nothing of palpate; each demands what its format demands.
+They follow the formats' specifications, independently of palpate; each checks the requirements of its format.
 """
 import base64
 import json
@@ -27,7 +27,7 @@ NUMPY = {("Float", "8"): np.float64, ("Int", "4"): np.int32}
 
 
 def hdf(folder, item, address):
-    """The data set at FILE:PATH, of the type and shape that the item states."""
+    """Returns the data set at FILE:PATH, after checking the type and shape that the item states."""
     name, path = address.split(":", 1)
     demand(not Path(name).is_absolute(), "the sidecar must be able to move together with its file")
     with h5py.File(folder / name, "r") as file:
@@ -37,7 +37,7 @@ def hdf(folder, item, address):
 
 
 def data_item(folder, item):
-    """A DataItem, as XDMF 2 and as XDMF 3 understand it: both must see the same."""
+    """Reads a DataItem by the rules of XDMF 2 and of XDMF 3: both must give the same."""
     shape = tuple(numbers(item.get("Dimensions")))
     demand(item.get("Format") == "HDF", "Format")
     demand("ItemType" not in item.attrib, "readers of XDMF 3 cannot read what they take for a hyperslab")
@@ -84,7 +84,7 @@ def uniform_grid(folder, grid):
 
 
 def read_xdmf(path):
-    """A list of {"time", "grids"}."""
+    """Returns a list of {"time", "grids"}."""
     root = ET.parse(path).getroot()
     demand(root.tag == "Xdmf", "root")
     series = root.find("Domain/Grid")
@@ -138,7 +138,7 @@ def read_vtu(path):
 
 
 def read_pvd(path):
-    """A list of (time, name)."""
+    """Returns a list of (time, name)."""
     root = ET.parse(path).getroot()
     demand(root.get("type") == "Collection", "type")
     return [(float(one.get("timestep")), one.get("file")) for one in root.find("Collection")]
@@ -147,7 +147,7 @@ def read_pvd(path):
 # --- surfaces -----------------------------------------------------------------------------------------------
 
 def read_obj(path):
-    """A list of {"name", "points", "faces"}; faces count from zero in the object's own points."""
+    """Returns a list of {"name", "points", "faces"}; faces count from zero in the object's own points."""
     objects, before = [], 0
     for line in Path(path).read_text(encoding="utf-8").splitlines():
         word, _, rest = line.partition(" ")
@@ -171,7 +171,7 @@ PLY = {"float": "<f4", "uchar": "u1", "int": "<i4"}
 
 
 def read_ply(path):
-    """{"vertices": a table by property, "faces", "comments"}."""
+    """Returns {"vertices": a table by property, "faces", "comments"}."""
     raw = Path(path).read_bytes()
     end = raw.index(b"end_header\n") + len(b"end_header\n")
     header = raw[:end].decode("utf-8").splitlines()
@@ -209,7 +209,7 @@ def chunks_of(raw):
 
 
 class Gltf:
-    """A document with its accessors read; the constructor checks what the specification demands."""
+    """A document with its accessors read; the constructor checks the requirements of the specification."""
 
     def __init__(self, path):
         text, self.binary = chunks_of(Path(path).read_bytes())
@@ -292,7 +292,7 @@ class Gltf:
         return self.values[animation["samplers"][0]["input"]][:, 0]
 
     def animated(self, node, path, key):
-        """The value at a keyframe; the node's own where no channel names it."""
+        """Returns the value at a keyframe; the node's own value if no channel refers to it."""
         for animation in self.json.get("animations", []):
             for channel in animation["channels"]:
                 if channel["target"] == {"node": node, "path": path}:
@@ -301,7 +301,7 @@ class Gltf:
         return self.json["nodes"][node].get(path)
 
     def shown(self, name, key):
-        """Positions of a surface at a keyframe, as a viewer shows them."""
+        """Returns positions of a surface at a keyframe, as a viewer shows them."""
         node, = [i for i, one in enumerate(self.json["nodes"]) if one["name"] == name]
         mesh = self.json["meshes"][self.json["nodes"][node]["mesh"]]
         primitive = mesh["primitives"][0]
@@ -332,5 +332,5 @@ def matrix(q):
 
 
 def z_up(points):
-    """From glTF's y up back to z up."""
+    """Converts from glTF's y up back to z up."""
     return points @ np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]).T

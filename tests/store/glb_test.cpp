@@ -9,7 +9,7 @@ namespace {
 
 using namespace palpate;
 
-/// A tetrahedron that is stretched along z, another amount each time.
+/// A tetrahedron that is stretched along z by another amount at each time.
 store::MovingSurface body(int times) {
   store::MovingSurface out;
   out.name = "body";
@@ -23,7 +23,7 @@ store::MovingSurface body(int times) {
   return out;
 }
 
-/// A triangle that turns about z by 1.75 rad a time, and rises.
+/// A triangle that rotates about z by 1.75 rad per time step, and rises.
 store::MovingSurface tool(int times) {
   store::MovingSurface out;
   out.name = "tool";
@@ -85,7 +85,7 @@ TEST_F(Glb, NamesMayHoldQuotes) {
   EXPECT_TRUE(seen({odd}, {0.0, 1.0})["shown"].contains(odd.name));
 }
 
-/// glTF asks for it: without, a viewer goes the long way round between two keyframes.
+/// glTF requires it: otherwise a viewer rotates the long way round between two keyframes.
 TEST_F(Glb, NeighbouringRotationsHaveTheSameSign) {
   store::MovingSurface flipped = tool(3);
   flipped.poses[1].rotation.coeffs() *= -1.0;

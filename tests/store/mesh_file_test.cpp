@@ -24,7 +24,7 @@ TEST(MeshFile, RoundTrip) {
   EXPECT_EQ(again.tets, mesh.tets);
 }
 
-/// A data set written without the library.
+/// Writes a data set without palpate's library.
 void put(const std::string& path, bool first, const char* name, hid_t type, std::vector<hsize_t> shape,
          const void* data) {
   const hid_t file = first ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)
@@ -67,7 +67,7 @@ TEST(MeshFile, RefusesWrongShapesTypesAndValues) {
   put(path, false, "nodes", H5T_NATIVE_DOUBLE, {4, 3}, nodes);
   put(path, false, "tets", H5T_NATIVE_LLONG, {1, 4}, tet);
   EXPECT_EQ(refusal(path), ": tets[0] refers to node 4, must lie in [0, 4); indices count from 0");
-  tet[3] = 1LL << 32;  // not 0 by way of 32 bits
+  tet[3] = 1LL << 32;  // not 0 after conversion to 32 bits
   put(path, true, "nodes", H5T_NATIVE_DOUBLE, {4, 3}, nodes);
   put(path, false, "tets", H5T_NATIVE_LLONG, {1, 4}, tet);
   EXPECT_EQ(refusal(path), ": tets[0] refers to node 4294967296, must lie in [0, 4); indices count from 0");

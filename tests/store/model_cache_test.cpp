@@ -10,7 +10,7 @@ using namespace palpate;
 
 namespace {
 
-/// An environment variable for the length of a test.
+/// Sets an environment variable for the duration of a test.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) {
@@ -33,7 +33,7 @@ TEST(ModelCache, APathOfTheCacheHasItsModelsName) {
   const std::string head = store::cached_model("head");
   EXPECT_EQ(std::filesystem::path(head).filename(), "head.h5");
   EXPECT_EQ(store::name_of_cached(head), "head");
-  EXPECT_EQ(store::name_of_cached("/somewhere/models/head.h5"), "");  // not of this version
+  EXPECT_EQ(store::name_of_cached("/somewhere/models/head.h5"), "");  // another version's folder
   EXPECT_EQ(store::name_of_cached("head.h5"), "");
   EXPECT_EQ(store::name_of_cached(head + ".part"), "");
   EXPECT_EQ(store::name_of_cached(""), "");

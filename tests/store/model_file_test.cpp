@@ -15,7 +15,7 @@ using namespace palpate;
 
 namespace {
 
-/// A unit corner tetrahedron as its own skin, with everything that a model can hold.
+/// A unit corner tetrahedron as its own skin, with every optional part of a model.
 store::ModelFile small_model() {
   store::ModelFile out;
   LayeredModel& m = out.model;
@@ -92,7 +92,7 @@ TEST(ModelFile, RegionsAreReadAlone) {
       return "accepted";
     } catch (const Error& e) { return e.what(); }
   };
-  EXPECT_EQ(refusal({{"a", {0, 1}}, {"b", {1}}}), "accepted");  // groups of Gmsh overlap
+  EXPECT_EQ(refusal({{"a", {0, 1}}, {"b", {1}}}), "accepted");  // Gmsh's groups may overlap
   EXPECT_NE(refusal({{"a", {1, 1}}}).find("the tetrahedra of region \"a\" must increase strictly"),
             std::string::npos);
   EXPECT_NE(refusal({{"a", {0}}, {"a", {1}}}).find("\"a\" is the name of two regions"), std::string::npos);
@@ -126,13 +126,13 @@ TEST(ModelFile, WhatIsEmptyIsNotThere) {
 TEST(ModelFile, SameModelSameBytesAtAnotherTime) {
   const sample_run::Folder folder;
   store::write_model(folder / "one.h5", small_model());
-  // HDF5 keeps whole seconds where it keeps times
+  // HDF5 stores times in whole seconds, where it stores them
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   store::write_model(folder / "two.h5", small_model());
   EXPECT_EQ(store::read_file(folder / "one.h5"), store::read_file(folder / "two.h5"));
 }
 
-/// The message for a model that was changed before it was written; `accepted` where there is none.
+/// Returns the message for a model that was changed before it was written; `accepted` if there is none.
 template <class Change>
 std::string refusal(Change change) {
   const sample_run::Folder folder;

@@ -8,7 +8,7 @@
 
 #include "palpate/core/types.h"
 
-/// Files as programs that know nothing of palpate see them: through h5py and numpy.
+/// Reads files independently of palpate: through h5py and numpy.
 namespace python_check {
 
 struct Output {
@@ -25,14 +25,14 @@ inline Output run(const std::string& command) {
   return out;
 }
 
-/// What the script prints of the file.
+/// Returns the script's output for the file.
 inline nlohmann::json seen(const std::string& script_and_options, const std::string& path) {
   const Output out = run("'" PALPATE_TEST_PYTHON "' -B " + script_and_options + " '" + path + "'");
   EXPECT_EQ(out.status, 0) << out.text;
   return out.status == 0 ? nlohmann::json::parse(out.text) : nlohmann::json();
 }
 
-/// What foreign.py reads of it.
+/// Returns foreign.py's output for the file.
 inline nlohmann::json foreign(const std::string& kind, const std::string& path) {
   return seen("'" PALPATE_TEST_FOREIGN "' " + kind, path);
 }
@@ -45,7 +45,7 @@ inline std::vector<std::vector<double>> rows_of(const palpate::Points& points) {
 
 inline bool missing_h5py() { return run("'" PALPATE_TEST_PYTHON "' -c 'import h5py'").status != 0; }
 
-/// Cases are skipped where Debian's python3-h5py is missing.
+/// Test cases that are skipped if Debian's python3-h5py is missing.
 class Test : public testing::Test {
  protected:
   void SetUp() override {

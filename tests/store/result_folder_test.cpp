@@ -1,4 +1,4 @@
-// A folder of results belongs to one process at a time.
+// Only one process at a time may use a folder of results.
 #include "palpate/store/result_folder.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::string refusal(const std::string& path) {
   return "accepted";
 }
 
-/// A process that has the folder until it is killed.
+/// Starts a process that holds the folder until it is killed.
 pid_t holder_of(const std::string& path) {
   int ends[2];
   if (::pipe(ends) != 0) return -1;

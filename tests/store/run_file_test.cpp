@@ -66,7 +66,7 @@ TEST(RunFile, IsReadableWhileItIsWritten) {
   RunFile file(path, sample_run::parts(), sample_run::info(2));
   for (int s = 0; s < 5; ++s) {
     sample_run::append(file, s);
-    // the file as a crash now would leave it
+    // the file as after a crash at this time
     std::filesystem::copy_file(path, copy, std::filesystem::copy_options::overwrite_existing);
     expect_steps(copy, s + 1);
   }
@@ -75,7 +75,7 @@ TEST(RunFile, IsReadableWhileItIsWritten) {
 TEST(RunFile, OneChunkMayBeSmallerThanAStep) {
   const sample_run::Folder folder;
   const std::string path = folder / "large.vtkhdf";
-  const int n = 300000;  // 7 MB of positions a step
+  const int n = 300000;  // 7 MB of positions per step
   store::RunPart part{
       .name = "cloud", .reference = Points::Zero(3, n), .tets = Tets(4, 0), .faces = Faces(3, 0)};
   {
@@ -133,7 +133,7 @@ TEST(RunFile, ErrorsNameTheFile) {
   EXPECT_EQ(refusal([&] { RunReader(path).points(0); }), path + ": step 0 must lie in [0, 0)");
 }
 
-/// A file cut short or with bytes changed is read or refused, never a crash.
+/// A truncated file, or one with changed bytes, is read or rejected, without a crash.
 TEST(RunFile, DamagedFilesAreReadOrRefused) {
   const sample_run::Folder folder;
   const std::string path = folder / "run.vtkhdf", damaged = folder / "damaged.vtkhdf";

@@ -1,4 +1,4 @@
-// A process killed while it writes leaves every step that it had reported, readable, with the right numbers.
+// A process killed while it writes leaves every reported step readable, with the right numbers.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -10,8 +10,8 @@
 
 namespace {
 
-/// Starts the endless writer, kills it after it has reported `steps` steps and a while more; gives the number
-/// that it had reported by then.
+/// Starts the endless writer and kills it `more_us` after it has reported `steps` steps; returns the
+/// number of steps reported by then.
 int kill_after(const std::string& path, int expected, int steps, int more_us) {
   int ends[2];
   if (pipe(ends) != 0) return -1;
@@ -41,7 +41,7 @@ TEST(RunKill, LeavesEveryCommittedStep) {
   const sample_run::Folder folder;
   for (int i = 0; i < 30; ++i) {
     const std::string path = folder / "run.vtkhdf";
-    // room for all that it can write in the time: nothing but steps touches the file
+    // room for all steps within the time: the file is changed by steps only
     const int expected = 5000;
     const int reported =
         kill_after(path, expected, 1 + static_cast<int>(random() % 20), static_cast<int>(random() % 3000));

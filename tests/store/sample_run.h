@@ -6,13 +6,13 @@
 #include "palpate/store/run_file.h"
 #include "temporary_folder.h"
 
-/// A small made-up run whose every number follows from its step: a file's content can be checked without a
-/// second copy.
+/// A small synthetic run in which every number follows from its step, so that a file's content can be checked
+/// without a second copy.
 namespace sample_run {
 
 using namespace palpate;
 
-/// A folder that goes away with its owner.
+/// A temporary folder that is removed with its owner.
 class Folder {
  public:
   std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
@@ -21,7 +21,7 @@ class Folder {
   TemporaryFolder folder_;
 };
 
-/// Two tetrahedra of five nodes, and a triangle tool.
+/// Two tetrahedra with five nodes, and a triangle as the tool.
 inline std::vector<store::RunPart> parts() {
   store::RunPart body{.name = "ball", .reference = Points(3, 5), .tets = Tets(4, 2), .faces = Faces(3, 0)};
   body.reference << 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 1;

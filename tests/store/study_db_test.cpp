@@ -84,10 +84,10 @@ TEST_F(StudyDbTest, RefusesOtherColumnsAndOtherFiles) {
   EXPECT_THROW(store::StudyDb("/nowhere/study.sqlite", kColumns), Error);
 }
 
-// Values by an independent implementation with whole numbers of any size (Python).
+// Values from an independent implementation with integers of any size (Python).
 TEST(ContentHash, IsFnv1aOf128Bits) {
   EXPECT_EQ(store::ContentHash().hex(), "6c62272e07bb014262b821756295c58d");
-  EXPECT_EQ(store::ContentHash().add("a").hex(), "a68c894e6e8b5822836dbc791ef90399");  // of "1:a"
+  EXPECT_EQ(store::ContentHash().add("a").hex(), "a68c894e6e8b5822836dbc791ef90399");  // hash of "1:a"
   // hash of "3:abc2:de"
   EXPECT_EQ(store::ContentHash().add("abc").add("de").hex(), "91f3dfb4b204f1aebf68bef937b780e7");
   EXPECT_NE(store::ContentHash().add("ab").add("cde").hex(), store::ContentHash().add("abc").add("de").hex());

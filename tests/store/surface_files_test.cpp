@@ -11,7 +11,7 @@ namespace {
 using namespace palpate;
 using Rows = std::vector<std::vector<int>>;
 
-/// A square of two triangles, and a triangle with numbers that single precision does not hold.
+/// A square of two triangles, and a triangle with numbers that single precision cannot represent.
 std::vector<store::SurfaceState> surfaces() {
   store::SurfaceState square{"soft ball", Points(3, 4), Faces(3, 2), VecX(4), VecX(4), {}};
   square.points << 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0.5;
@@ -71,7 +71,7 @@ TEST_F(SurfaceFiles, RefuseWhatDoesNotFitTogether) {
   EXPECT_THROW(store::ply_of(broken, ""), InternalError);
 }
 
-/// Two tetrahedra on a common face have six others; each looks outwards.
+/// Two tetrahedra on a common face have six other faces; each is oriented outwards.
 TEST(PartSurface, IsTheBoundaryOfTetrahedra) {
   const store::RunPart body = sample_run::parts()[0];
   const store::PartSurface found = store::part_surface(body);

@@ -1,4 +1,4 @@
-// Tables that grow: rows come back as written, whole up to the last flush.
+// Growing tables: rows are read back as written, complete up to the last flush.
 #include "palpate/store/table_file.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(TableFile, RowsComeBack) {
   EXPECT_EQ(exchanges.row(0)[0], 7.0);
 }
 
-// A copy taken while the file is open stands for a process that was killed.
+// A copy taken while the file is open represents a killed process.
 TEST(TableFile, WhatWasFlushedIsWhole) {
   const std::string path = file("open.h5"), copy = file("copy.h5");
   store::TableFile out(path, kTables);

@@ -1,5 +1,4 @@
-// The file as a program that knows nothing of palpate sees it: through h5py, with the arithmetic of VTK's
-// reader.
+// The file read independently of palpate: through h5py, with the arithmetic of VTK's reader.
 #include <gtest/gtest.h>
 
 #include "store/python_check.h"

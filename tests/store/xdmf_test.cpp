@@ -11,7 +11,7 @@ using Rows = std::vector<std::vector<int>>;
 
 class Xdmf : public python_check::Test {
  protected:
-  /// A run of so many steps in room for `expected`.
+  /// A run of `steps` steps in a file with room for `expected`.
   std::string written(int expected, int steps) {
     const std::string path = folder_ / "run.vtkhdf";
     palpate::store::RunFile file(path, sample_run::parts(), sample_run::info(expected));
@@ -91,7 +91,7 @@ TEST_F(Xdmf, NamesMayHoldWhatXmlDoesNot) {
   EXPECT_EQ(seen[0]["grids"][0]["name"], parts[0].name);
 }
 
-/// Where the sidecar cannot be written, the run file is whole all the same.
+/// If the sidecar cannot be written, the run file is complete all the same.
 TEST_F(Xdmf, RefusalIsAnErrorBehindTheRun) {
   std::filesystem::create_directories(folder_ / "run.xdmf/in the way");
   const std::string path = folder_ / "run.vtkhdf";

@@ -6,7 +6,7 @@
 
 namespace palpate::study_scenes {
 
-/// A soft block of a few tetrahedra that swings under its weight: milliseconds a run.
+/// A soft block of a few tetrahedra that swings under its weight: milliseconds per run.
 inline const std::string kBlock = R"([scene]
 name = "block"
 duration_s = 0.02
@@ -27,7 +27,7 @@ name = "linearly-implicit-euler"
 step_s = 1e-3
 )";
 
-/// A study of block.toml in a folder of its own.
+/// A study of block.toml in a separate folder.
 /// @param study  [study] without its scenes, and what follows
 inline study::Plan plan_of(const TemporaryFolder& folder, const std::string& study) {
   folder.write("block.toml", kBlock);

@@ -1,4 +1,4 @@
-// The figures of a task against a run that the test makes and observes itself.
+// Figures of a task, compared with a run that the test makes and observes.
 #include "study/figures.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 const std::atomic<bool> kNever{false};
 
-/// Positions after every period, and the device's forces.
+/// Records positions after every period, and the device's forces.
 class Witness : public loop::Observer {
  public:
   void period(loop::World& world, double /*t*/) override { positions.push_back(world.state.q()); }

@@ -15,7 +15,7 @@ using study::Task;
 
 namespace {
 
-/// Each task's own values in one word: "cvode-bdf 1e-3 2e4".
+/// The specific values of each task in one word: "cvode-bdf 1e-3 2e4".
 std::vector<std::string> words_of(const Plan& plan) {
   std::vector<std::string> out;
   for (const Task& task : plan.tasks) {

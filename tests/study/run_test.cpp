@@ -40,7 +40,7 @@ RunOutcome run(Plan& plan, const fs::path& folder, int jobs = 2, std::vector<std
   return study::run_tasks(plan, indices.empty() ? all_of(plan) : indices, {}, options);
 }
 
-/// study.csv of what is in the folder, byte for byte.
+/// study.csv of the folder's results, byte for byte.
 std::string table_of(Plan& plan, const fs::path& folder) {
   study::settle_all(plan, {});
   study::write(plan, study::merge(plan, folder.string()), folder.string());
@@ -61,7 +61,7 @@ TEST(StudyRun, GivesTheSameTableWhicheverWayItRan) {
   run(alone, folder / "one", 1);
   EXPECT_EQ(table_of(alone, folder / "one"), two);
 
-  for (std::size_t i = plan.tasks.size(); i-- > 0;) {  // each by a plan of its own, the last one first
+  for (std::size_t i = plan.tasks.size(); i-- > 0;) {  // each with a separate plan, the last one first
     Plan single = plan_of(folder, kStudy);
     EXPECT_EQ(run(single, folder / "each", 1, {i}).run, 1u);
     EXPECT_FALSE(single.tasks[(i + 1) % plan.tasks.size()].settled) << "a list of a million costs nothing";
@@ -90,7 +90,7 @@ TEST(StudyRun, DoesOnlyWhatIsMissing) {
 
   fs::remove(study::result_path(folder.string(), plan.tasks[2]));
   const auto torn = study::result_path(folder.string(), plan.tasks[4]);
-  store::write_atomically(torn, store::read_file(torn).substr(0, 100));  // by a disk that lost its end
+  store::write_atomically(torn, store::read_file(torn).substr(0, 100));  // truncated by a failing disk
   fs::copy_file(study::result_path(folder.string(), plan.tasks[0]),
                 study::result_path(folder.string(), plan.tasks[5]), fs::copy_options::overwrite_existing);
   study::Results partial = study::merge(plan, folder.string());

@@ -1,4 +1,4 @@
-// Texts that go to Slurm; cli.slurm runs a cluster.
+// Texts passed to Slurm; cli.slurm runs a cluster.
 #include "palpate/study/slurm.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using study::elements_of;
 
 namespace {
 
-/// Programs of a folder in the place of Slurm's, for the life of this object.
+/// Replaces Slurm's programs by those of a folder during the lifetime of this object.
 class FakeSlurm {
  public:
   explicit FakeSlurm(const TemporaryFolder& folder) : folder_(folder), path_(getenv("PATH")) {

@@ -31,7 +31,7 @@ Vec6 random_vec6() {
 
 constexpr CouplingGains kGains{300.0, 2.0, 0.7, 0.02};
 
-/// Each test draws the same numbers, whichever ran before.
+/// Fixture in which each test draws the same numbers, whichever ran before.
 struct Seeded : ::testing::Test {
   Seeded() { rng.seed(11); }
 };
@@ -48,7 +48,7 @@ TEST_F(So3, jacobians_are_inverse_and_derivatives) {
         << angle;
     EXPECT_LT((left_jacobian_inverse(-theta) - left_jacobian_inverse(theta).transpose()).norm(), 1e-15);
     EXPECT_LT((left_jacobian(theta) * theta - theta).norm(), 1e-14);  // the axis is fixed
-    if (angle < 0.1) continue;  // there the difference is exact to rounding, and has no order
+    if (angle < 0.1) continue;  // the difference is exact to rounding there, and has no order
     const Vec3 rate = random_vec();
     std::vector<double> e;
     for (double h = 0.04; h > 1e-3; h /= 2) {
@@ -59,7 +59,7 @@ TEST_F(So3, jacobians_are_inverse_and_derivatives) {
   }
 }
 
-// F(x exp(h d)) = F(x) - h K d + O(h^2): the remainder falls by 4 as h halves, at random poses and near a
+// F(x exp(h d)) = F(x) - h K d + O(h^2): the remainder decreases by 4 as h halves, at random poses and near a
 // rotation by pi.
 TEST_F(Coupling, tangent_by_taylor) {
   for (int run = 0; run < 8; ++run) {
@@ -104,7 +104,7 @@ TEST_F(Coupling, contact_tangent_by_taylor) {
   EXPECT_EQ(contact_stiffness({}, random_pose()).norm() + contact_damping({}).norm(), 0.0);
 }
 
-// Force = minus the gradient of the energy in work: F . d = -dE for every direction.
+// Force is minus the gradient of the energy: F . d = -dE for every direction.
 TEST_F(Coupling, spring_is_the_gradient_of_its_energy) {
   for (int run = 0; run < 5; ++run) {
     const Pose tool = random_pose(), handle{quaternion_of(random_vec()) * tool.rotation, random_vec()};
@@ -127,8 +127,8 @@ TEST_F(Coupling, spring_is_the_gradient_of_its_energy) {
   }
 }
 
-// Power in at both ends = rate of the spring's energy + dissipation >= 0: the pair (wrench on tool, opposite
-// on hand) is passive.
+// Power supplied at both ends = rate of the spring's energy + dissipation >= 0: the pair (wrench on tool,
+// opposite on hand) is passive.
 TEST_F(Coupling, passive_at_its_two_ends) {
   for (int run = 0; run < 100; ++run) {
     CouplingGains damper = kGains;
@@ -158,8 +158,8 @@ TEST_F(Coupling, does_not_see_where_the_world_stands) {
   }
 }
 
-// The path within a tick: ends met in pose and twist, twist the derivative of pose, and fourth order for a
-// smooth handle.
+// Path within a tick: pose and twist at the ends are met, the twist is the derivative of the pose, and the
+// error is of fourth order for a smooth handle.
 TEST_F(HandlePath, hermite_in_pose_and_twist) {
   const auto hand = [](double t) {
     const Vec3 theta = Vec3(std::sin(t), t * t, std::cos(2 * t)),

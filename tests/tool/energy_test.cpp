@@ -18,8 +18,8 @@ double stored(const ToolSpec& spec, const Tool& tool) {
 
 }  // namespace
 
-// Translation and a large rotation about no principal axis, gyroscopic terms active: without damping, kinetic
-// + coupling energy is kept.
+// Translation and a large rotation about no principal axis, with gyroscopic terms: without damping, kinetic +
+// coupling energy is conserved.
 TEST(ToolEnergy, undamped_coupling_keeps_it) {
   for (const std::string name : {"simbody-rkmerson", "simbody-cpodes"}) {
     ToolSpec spec = spec_for(name);
@@ -36,9 +36,8 @@ TEST(ToolEnergy, undamped_coupling_keeps_it) {
   }
 }
 
-// The loss of energy is that of the damper:
-//     E(0) - E(T) = int (b |v|^2 + b_r |w|^2) dt,
-// by Simpson's rule over the ticks.
+// The loss of energy is the damper's: E(0) - E(T) = int (b |v|^2 + b_r |w|^2) dt, by Simpson's rule over the
+// ticks.
 TEST(ToolEnergy, the_damper_accounts_for_the_loss) {
   ToolSpec spec = spec_for("simbody-rkmerson");
   Tool tool(spec, Vec3::Zero());

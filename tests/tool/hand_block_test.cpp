@@ -1,4 +1,4 @@
-// A hand as a block of the State: derivatives, energies, momentum, and the axis that it is.
+// A hand as a block of the State: tangents, power balance, opposite forces, friction.
 #include "palpate/tool/hand_block.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using namespace palpate::tool::testing;
 
 namespace {
 
-/// A tool and a hand somewhere, moving, the hand turned by about a radian.
+/// A tool and a hand in general position and motion, with the hand rotated by about a radian.
 struct Pair {
   dynamics::State state{16, 16};
   int tool_id = -1, hand_id = -1;
@@ -109,13 +109,13 @@ TEST(HandBlock, assembled_is_applied) {
   }
 }
 
-// d(stored)/dt = power of the forces + dissipated, for a path that stands still.
+// d(stored)/dt = -(power of the forces) - dissipated power, for a path at rest.
 TEST(HandBlock, power_is_the_energys_rate_and_what_is_dissipated) {
   for (unsigned seed = 1; seed < 5; ++seed) {
     Pair pair(seed);
     pair.hand.wanted = [at = pair.hand.wanted(0.0).pose](double) { return HandleState{at, {}}; };
     pair.terms = make_hand_terms(pair.hand_id, pair.tool_id, pair.spec, pair.hand);
-    // along the motion that the state has
+    // along the state's motion
     VecX along = pair.state.u();
     const dynamics::Block& own = *pair.state.layout().find(pair.hand_id);
     along.segment<6>(own.u_offset) = pair.state.u().segment<6>(own.u_offset);
@@ -127,7 +127,7 @@ TEST(HandBlock, power_is_the_energys_rate_and_what_is_dissipated) {
       const double rate = (energy(h) - energy(-h)) / (2 * h),
                    power = force(*term, pair.state).dot(pair.state.u());
       if (seed == 1) { EXPECT_GT(std::abs(rate), 0.1) << term->name(); }
-      // the arm pulls the rotation vector towards that of the path: its power is along theta'
+      // the arm pulls the rotation vector towards the path's: its power is along theta'
       EXPECT_NEAR(power, -rate - term->dissipated_power(pair.state.view()), 1e-6 * (1.0 + std::abs(power)))
           << term->name() << ", " << seed;
     }
@@ -147,7 +147,8 @@ TEST(HandBlock, coupling_is_opposite_and_equal) {
               1e-12 * f.norm());
 }
 
-// Held still by friction, pulled beyond it, and pushed as hand.cpp says.
+// Coulomb friction and damping oppose the motion; below the regularisation speed friction is reduced: at 1e-5
+// m/s by sqrt(2).
 TEST(HandBlock, friction_is_coulombs_but_for_the_slowest) {
   Pair pair(4);
   const dynamics::Block& own = *pair.state.layout().find(pair.hand_id);

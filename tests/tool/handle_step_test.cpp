@@ -13,7 +13,7 @@ const std::vector<std::string> kErrorControlled = {"simbody-rkmerson", "simbody-
 constexpr double kShift = 0.01, kRotation = 2.5;  // [m], [rad]
 
 /// The handle has jumped by (kShift along `axis`, kRotation about it) and rests: the tool's distance from it
-/// after each tick, (rotation, shift).
+/// after each tick, as (rotation, shift).
 struct Trace {
   std::vector<double> rotation, shift;
 };
@@ -58,9 +58,9 @@ TEST(HandleStep, error_controlled_schemes_follow_the_damped_oscillator) {
   }
 }
 
-// A first-order method that keeps its local error at 1e-6.  By the estimate in error_controlled.cpp a
-// rotation at 87/s has a relative error of at most 4e-3 after 0.1 s, damping left out; and not below a
-// thousandth, or it would not be the method that it claims to be.
+// A first-order method that keeps its local error at 1e-6. By the estimate in error_controlled.cpp a rotation
+// at 87/s has a relative error of at most 4e-3 after 0.1 s, without damping; the error must also exceed a
+// thousandth, or the method would not be of first order.
 TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_digits_and_more) {
   const ToolSpec spec = spec_for("simbody-semi-explicit-euler2");
   const Trace trace = step_response(spec, 1, 1e-3, 100);
@@ -76,8 +76,8 @@ TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_
   EXPECT_GT(worst, 4e-6);
 }
 
-// A coupling of 2e6 N m/rad makes the tool oscillate at 2e5/s: by the same estimate 500 w = 1e8 steps a
-// second, 1e5 a tick.
+// A coupling of 2e6 N m/rad makes the tool oscillate at 2e5/s: by the same estimate it needs 500 w = 1e8
+// steps per second, 1e5 per tick.
 TEST(HandleStep, first_order_error_control_ends_in_words_where_a_tick_asks_for_too_many_steps) {
   ToolSpec spec = spec_for("simbody-semi-explicit-euler2");
   spec.coupling.rotational_stiffness_n_m_rad = 2e6;
@@ -149,7 +149,7 @@ TEST(HandleStep, held_below_a_wall) {
   }
 }
 
-// A handle that moves: every scheme sees the same Hermite path, and the fixed ticks converge to the
+// A moving handle: every scheme uses the same Hermite path, and the fixed ticks converge to the
 // error-controlled ones at first order.
 TEST(HandleStep, a_moving_handle_in_all_schemes) {
   const auto path = [](double t) {
@@ -168,7 +168,7 @@ TEST(HandleStep, a_moving_handle_in_all_schemes) {
     return tool.pose();
   };
   const Pose reference = end("simbody-rkmerson", 5e-4);
-  // the path's own error, O(h^4)
+  // error of the path, O(h^4)
   EXPECT_LT(pose_difference(reference, end("simbody-rkmerson", 1e-3)).norm(), 1e-7);
   EXPECT_LT(pose_difference(reference, end("simbody-cpodes", 1e-3)).norm(), 1e-6);
   for (const auto& name : kFixed) {
@@ -178,8 +178,8 @@ TEST(HandleStep, a_moving_handle_in_all_schemes) {
   }
 }
 
-// While the handle stands still and the record stays, Simbody's integrators go on without a restart; what
-// changes between two ticks must be seen all the same.
+// While the handle rests and the record does not change, Simbody's integrators continue without a restart; a
+// change between two ticks must be detected all the same.
 TEST(HandleStep, WhatChangesAfterRestIsSeen) {
   constexpr double kForce = 0.3;
   for (const std::string name : {"simbody-rkmerson", "simbody-cpodes"}) {
@@ -201,7 +201,8 @@ TEST(HandleStep, WhatChangesAfterRestIsSeen) {
     EXPECT_NEAR(tool.pose().translation.y(), kShift, 1e-6 * kShift)
         << name << ": another position of the handle";
     EXPECT_NEAR(tool.pose().translation.x(), there, 1e-6 * there) << name;
-    // from rest at kShift to rest at 0 within a tick: its ends are where it stood, the twists are not zero
+    // from rest at kShift to rest at 0 within a tick: its ends are at the previous position, and the twists
+    // are not zero
     HandleMotion slide;
     slide.pose0 = slide.pose1 = Pose{Quat::Identity(), Vec3(0, kShift, 0)};
     slide.twist0.linear = Vec3(0, 5.0, 0);

@@ -81,8 +81,8 @@ TEST(Monolithic, a_free_top_keeps_energy_and_angular_momentum) {
   EXPECT_NEAR(m.system.kinetic_energy(m.state.view()) / energy, 1.0, 1e-6);
 }
 
-// Two implementations that share no integrator and no body: Simbody's Merson and CVODE on the block, a large
-// rotation about no principal axis and a handle that moves.
+// Two independent implementations: Simbody's Merson, and CVODE on the block, with a large rotation about no
+// principal axis and a moving handle.
 TEST(Monolithic, agrees_with_the_simbody_tool) {
   const ToolSpec spec = spec_for("simbody-rkmerson");
   const Vec3 axis = Vec3(1, 2, -1).normalized();

@@ -1,4 +1,4 @@
-// The tool's own ticks take its forces in closed form; Simbody's forward dynamics is what they must be.
+// The tool's ticks use forces in closed form, which must equal Simbody's forward dynamics.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ TEST(NewtonEuler, IsSimbodysForwardDynamics) {
   }
 }
 
-// Where an explicit method diverges: an answer that says so, not an exception of Simbody's.
+// Where an explicit method diverges, the result states this, rather than throwing an exception of Simbody's.
 TEST(NewtonEuler, IsNoNumberWhereThereIsNoPlace) {
   tool::SimbodyBody body(tool::RigidParameters{});
   const double none = std::numeric_limits<double>::quiet_NaN();

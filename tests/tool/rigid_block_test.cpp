@@ -117,7 +117,7 @@ TEST(RigidBlock, symmetric_coupling_is_symmetric) {
   EXPECT_LT((A - A.transpose()).norm(), 1e-14 * A.norm());
 }
 
-// One body in Simbody and in the System: one right-hand side seen through a tick of vanishing length.
+// One body in Simbody and in the System: the same right-hand side, observed over a tick of vanishing length.
 TEST(RigidBlock, accelerates_as_the_simbody_tool_does) {
   std::mt19937 rng(8);
   for (int run = 0; run < 10; ++run) {
@@ -128,7 +128,7 @@ TEST(RigidBlock, accelerates_as_the_simbody_tool_does) {
     spec.gravity = true;
     Tool tool(spec, gravity);
     tool.set_state(0.0, pose, twist);
-    // semi-implicit: (u1 - u0)/h is the acceleration at the start, but for h times the gyroscopic rate
+    // semi-implicit: (u1 - u0)/h is the initial acceleration, up to h times the gyroscopic rate
     const double h = 1e-8;
     ASSERT_TRUE(tool.advance(h, held(handle), {}).ok());
 
@@ -154,8 +154,8 @@ TEST(RigidBlock, accelerates_as_the_simbody_tool_does) {
   }
 }
 
-// A torque-free top through the System alone (classical Runge-Kutta on q' = N u, u' = a): energy and angular
-// momentum are kept to its order, 4.
+// A torque-free top in the System (classical Runge-Kutta on q' = N u, u' = a): energy and angular momentum
+// are conserved to the method's order, 4.
 TEST(RigidBlock, a_free_top_keeps_energy_and_angular_momentum) {
   const auto drift = [](double h) {
     OneBody body({quaternion_of(Vec3(0.3, 0.2, 0.1)), Vec3::Zero()}, {Vec3(2, 30, 1), Vec3::Zero()});

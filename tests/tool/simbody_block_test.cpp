@@ -22,7 +22,7 @@ ToolSpec heavy_tool() {
   return spec;
 }
 
-/// A State with three nodes before the tool, so that its offset in q and u is not 0, at random values.
+/// A State with random values and three nodes before the tool, so that its offset in q and u is not 0.
 struct RandomState {
   dynamics::State state{32, 32};
   int id = -1;
@@ -33,7 +33,7 @@ struct RandomState {
     nodes.q_size = nodes.u_size = 9;
     const auto random = [&](int n) { return VecX(VecX::NullaryExpr(n, [&] { return uniform(rng); })); };
     state.insert(nodes, random(9), random(9));
-    id = state.insert(tool_block(spec), random(7), 20 * random(6));  // a trial quaternion, not of unit length
+    id = state.insert(tool_block(spec), random(7), 20 * random(6));  // unnormalised, as in trial steps
   }
 };
 
@@ -51,8 +51,7 @@ struct Both {
 
 }  // namespace
 
-// Two derivations of one rigid body: Simbody's recursive dynamics and Newton and Euler's equations written
-// out.
+// Two derivations of one rigid body: Simbody's recursive dynamics, and the Newton-Euler equations.
 TEST(SimbodyBlock, has_the_mass_force_and_energy_of_the_closed_form) {
   std::mt19937 rng(11);
   int checked = 0;
@@ -94,8 +93,8 @@ TEST(SimbodyBlock, assembled_mass_and_tangent_are_the_closed_forms) {
   EXPECT_FALSE(terms.simbody.symmetric()) << "a gyroscopic tangent is not";
 }
 
-// f(x + h d, u + h e) - f + h (K d + D e) falls as h^2: the tangent is that of Simbody's force, not only of
-// the closed form.
+// f(x + h d, u + h e) - f + h (K d + D e) decreases as h^2: the tangent is that of Simbody's force, as well
+// as of the closed form.
 TEST(SimbodyBlock, tangent_is_the_derivative_of_simbodys_force) {
   std::mt19937 rng(13);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

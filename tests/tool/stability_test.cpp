@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTick = 1e-3;
 
-/// Does a small distance from a resting handle stay small?
+/// Returns whether a small distance from a resting handle remains small.
 bool stays_bounded(const std::string& scheme, double k, double b) {
   ToolSpec spec = spec_for(scheme);
   spec.coupling.stiffness_n_m = k;
@@ -47,9 +47,9 @@ TEST(ToolStability, linearly_implicit_euler_has_no_limit) {
     for (double b : {0.0, 2.0}) EXPECT_TRUE(stays_bounded("linearly-implicit-euler", k, b)) << k;
 }
 
-// Any stiffness, tick and start, rotated by up to nearly pi, with and without damping, against a stiff wall:
-// the tool ends at rest on its target.  Per tick the method dissipates (w h)^2/2 of an oscillation for small
-// w h, and nearly all for large: 0.1 <= w h <= 1e4 here.
+// For any stiffness, tick and initial state, rotated by up to nearly pi, with and without damping, against a
+// stiff wall: the tool ends at rest on its target. Per tick the method dissipates (w h)^2/2 of an oscillation
+// for small w h, and nearly all for large w h: 0.1 <= w h <= 1e4 here.
 TEST(ToolStability, linearly_implicit_euler_settles_from_anywhere) {
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -71,8 +71,8 @@ TEST(ToolStability, linearly_implicit_euler_settles_from_anywhere) {
   }
 }
 
-// w1 . I w1 = w1 . I w0: the gyroscopic step never adds energy, at 1 rad a tick and far beyond; an explicit
-// one diverges.
+// w1 . I w1 = w1 . I w0: the gyroscopic step never adds energy, at 1 rad per tick and far beyond; an explicit
+// step diverges.
 class FreeSpin : public ::testing::TestWithParam<const char*> {};
 TEST_P(FreeSpin, never_gains_energy) {
   std::mt19937 rng(5);
@@ -96,13 +96,14 @@ TEST_P(FreeSpin, never_gains_energy) {
 INSTANTIATE_TEST_SUITE_P(FixedTicks, FreeSpin,
                          ::testing::Values("linearly-implicit-euler", "semi-implicit-euler"));
 
-// A handle thrown by a metre and spun at 1000 rad/s: finite and bounded by what the handle does.
+// A handle thrown by a metre and spun at 1000 rad/s: the tool remains finite and bounded by the handle's
+// motion.
 TEST(ToolStability, a_thrown_handle_stays_finite) {
   for (const auto& info : tool_integrators()) {
     if (info.name == "simbody-cpodes") continue;  // minutes: 1000 rad/s at 1e-10
     Tool tool(spec_for(info.name), Vec3::Zero());
     const Vec3 axis = Vec3(1, -2, 0.5).normalized();
-    const int ticks = info.name == "simbody-semi-explicit-euler2" ? 30 : 300;  // thousands of steps a tick
+    const int ticks = info.name == "simbody-semi-explicit-euler2" ? 30 : 300;  // thousands of steps per tick
     for (int i = 0; i < ticks; ++i) {
       const Pose p0{quaternion_of(1.0 * i * axis), i < ticks / 3 ? Vec3(0, 0, 0) : Vec3(1, 0, 0)};
       const Pose p1{quaternion_of(1.0 * (i + 1) * axis), i < ticks / 3 - 1 ? Vec3(0, 0, 0) : Vec3(1, 0, 0)};

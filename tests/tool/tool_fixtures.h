@@ -6,7 +6,7 @@
 #include "palpate/tool/tool.h"
 #include "validation/e_oscillator.h"
 
-/// Shared by the tool's tests: the oscillator and the tool of the cases in validation/, and a few makers.
+/// Shared by the tool's tests: the oscillator and the tool of the cases in validation/, and helper functions.
 namespace palpate::tool::testing {
 
 using validation::Oscillator;

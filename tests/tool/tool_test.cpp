@@ -64,7 +64,7 @@ TEST(Tool, set_state_normalises_and_moves_the_clock) {
     EXPECT_NEAR(tool.pose().rotation.norm(), 1.0, 1e-15);
     ASSERT_TRUE(tool.advance(1e-3, held({}), {}).ok());
     EXPECT_DOUBLE_EQ(tool.time(), 2.501) << info.name;
-    // A second change mid-way must reach an integrator that keeps history.
+    // A second change mid-way must reach an integrator with a history.
     tool.set_state(0.0, {Quat::Identity(), Vec3(0.2, 0, 0)}, {});
     ASSERT_TRUE(tool.advance(1e-3, held({}), {}).ok());
     EXPECT_NEAR(tool.pose().translation.x(), 0.2, 1e-3) << info.name;
@@ -103,7 +103,7 @@ TEST(Tool, what_is_not_finite_stays_out) {
     EXPECT_EQ(tool.pose().translation, before.translation);
     EXPECT_DOUBLE_EQ(tool.time(), 1e-3);
     EXPECT_TRUE(tool.advance(1e-3, held({}), {}).ok()) << info.name << " goes on";
-    // An absurd but finite record: bounded, an error as data, or both; never a NaN in the state.
+    // An extreme but finite record: bounded, an error status, or both; never a NaN in the state.
     auto huge = wall(100);
     huge.F0[5] = 1e305;
     for (int i = 0; i < 5; ++i) (void)tool.advance(1e-3, held({}), huge);
@@ -125,7 +125,7 @@ TEST(Tool, hand_feels_the_opposite) {
   Mat6 K, B;
   tool.coupling_tangent(handle, twist, K, B);
   EXPECT_NEAR(K(4, 4), 300.0, 1e-12);
-  EXPECT_NEAR(K(0, 0), 0.3, 1e-14);  // about the axis of rotation the spring is linear
+  EXPECT_NEAR(K(0, 0), 0.3, 1e-14);  // the spring is linear about the axis of rotation
   EXPECT_NEAR(B(5, 5), 2.0, 1e-15);
 }
 

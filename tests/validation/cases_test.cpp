@@ -79,7 +79,7 @@ TEST(ValidationRegistry, EveryCaseSaysWhatItIsAndHasANameOfItsOwn) {
   }
 }
 
-// `validate --quick` says something of each section.
+// `validate --quick` covers each section.
 TEST(ValidationRegistry, QuickCasesAreOfEverySectionAndNoneIsSlow) {
   std::map<std::string, std::pair<int, int>> quick_of_all;  // by section
   for (const ValidationCase& one : validation_cases()) {
@@ -88,7 +88,7 @@ TEST(ValidationRegistry, QuickCasesAreOfEverySectionAndNoneIsSlow) {
     quick += one.quick;
     ++all;
   }
-  ASSERT_GE(quick_of_all.size(), 4u);  // without tools none of E
+  ASSERT_GE(quick_of_all.size(), 4u);  // without tools, section E is absent
   int dear = 0;                        // not quick
   for (const auto& [section, counts] : quick_of_all) {
     EXPECT_GE(counts.first, 4) << section;
