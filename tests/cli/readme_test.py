@@ -18,8 +18,8 @@ PROGRAM = Path(sys.argv[1]).resolve()
 TREE = Path(__file__).resolve().parents[2]
 # Tested elsewhere: the launcher's own commands (cli.launcher), installation (package.install), a Slurm
 # cluster (cli.study_slurm).
-ELSEWHERE = [r"git clone ", r"cd palpate$", r"\./palpate test$", r"\./palpate build$",
-             r"cmake --install build/release --prefix ", r"\./palpate study .* --slurm"]
+ELSEWHERE = [r"\./palpate test$", r"\./palpate build$", r"cmake --install build/release --prefix ",
+             r"\./palpate study .* --slurm"]
 
 
 class Page:

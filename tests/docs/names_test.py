@@ -21,7 +21,8 @@ LAUNCHER = {"test": {"--slow", "--part", "--help"}, "build": set(), "package": s
 LAUNCHER_OPTIONS = {"--no-install", "--assume-packages", "--debug", "--asan", "--strict", "--minimal"}
 # Options of other programs that the pages mention.
 FOREIGN = {"--install", "--prefix"}
-FOREIGN_NAMES = {"m_specifications"}  # CHAI3D's
+FOREIGN_NAMES = {"m_specifications",  # CHAI3D's
+                 "snake_case", "p_WQ", "f_W"}  # in the conventions of CONTRIBUTING.md
 # [hand.tool] and [hand.device] have the keys of [tool] and [device].
 SAME_KEYS = {"hand.tool": "tool", "hand.device": "device"}
 
@@ -60,7 +61,7 @@ class Program:
 @cache
 def sources():
     """All text of the sources, in which a name that is no key may occur."""
-    folders = ("src", "include", "tests", "validation", "benchmarks", "shaders")
+    folders = ("src", "include", "tests", "validation", "benchmarks", "shaders", "examples")
     files = [file for folder in folders for file in (TREE / folder).rglob("*")
              if file.suffix in (".h", ".cpp", ".py", ".txt", ".inl", ".glsl", ".comp")]
     files += [TREE / "CMakeLists.txt", TREE / "palpate", TREE / ".packages"]
@@ -146,7 +147,7 @@ def span_faults(span, program):
         return out
     if re.search(r"\b(PART|NAME)\b|_NAME", span) or span in FOREIGN_NAMES:
         return []
-    if re.match(r"(src|tests|include|scenes|validation|docs|benchmarks|shaders)/[\w./-]*$", span):
+    if re.match(r"(src|tests|include|scenes|validation|docs|benchmarks|shaders|examples)/[\w./-]*$", span):
         return [] if (TREE / span).exists() else [f"file {span}"]
     dotted = re.match(r"([a-z_]+(?:\.\w+)+)(?: = .*)?$", span)
     if dotted and dotted.group(1).split(".")[0] in {table.split(".")[0] for table in program.tables}:

@@ -10,10 +10,10 @@ import unittest
 from pathlib import Path
 
 TREE = Path(__file__).resolve().parents[2]
-FOLDERS = ("include", "src", "tests", "validation", "benchmarks", "packaging")
+FOLDERS = ("include", "src", "tests", "validation", "benchmarks", "packaging", "examples")
 COLUMNS = 110
 NAMES = (".h", ".cpp", ".inl", ".py", ".toml", ".cmake", ".in", "CMakeLists.txt", ".md", "palpate", ".ci/run",
-         ".vert", ".frag", ".comp", ".glsl", ".js", ".mjs")
+         ".vert", ".frag", ".comp", ".glsl", ".js", ".mjs", ".cff", ".yml")
 # Bundled libraries, and a maintainer's npm packages.
 MADE_ELSEWHERE = ("src/report/page/dist/", "src/report/page/node_modules/")
 
@@ -48,7 +48,7 @@ def too_long(text, markdown=False):
 
 class Format(unittest.TestCase):
     def test_lines(self):
-        files = [path for top in (".", "docs", "scenes", "shaders", ".ci", *FOLDERS)
+        files = [path for top in (".", "docs", "scenes", "shaders", ".ci", ".github", *FOLDERS)
                  for path in ((TREE / top).glob("*") if top == "." else (TREE / top).rglob("*"))
                  if path.is_file() and path.as_posix().endswith(NAMES)
                  and not path.relative_to(TREE).as_posix().startswith(MADE_ELSEWHERE)]

@@ -171,15 +171,17 @@ class CleanRoot(unittest.TestCase):
         done = self.root.run("palpate", "run", "press-ball", "--report")
         self.assertIn("install the package gnuplot-nox", done.stderr)
 
-    def test_z_programs_of_ones_own(self):
+    def test_z_examples(self):
         """Last: it brings a compiler."""
         self.root.install(f"/{self.library.name}", "cmake", "g++", "make")
-        shutil.copytree(HERE / "programs", self.folder / "root/home/user/programs")
-        source = "/home/user/programs"
+        shutil.copytree(TREE / "examples", self.folder / "root/home/user/examples")
+        source = "/home/user/examples"
         os.chown(self.folder / f"root{source}", USER, USER)
-        for words in (["cmake", "-S", source, "-B", f"{source}/build", "-DWITH_LOOP=ON"],
-                      ["cmake", "--build", f"{source}/build"], [f"{source}/build/step_body"],
-                      [f"{source}/build/own_force"], [f"{source}/build/own_device"]):
+        programs = sorted(path.stem for path in (TREE / "examples").glob("*.cpp"))
+        self.assertGreaterEqual(len(programs), 5)
+        build = f"{source}/build"
+        for words in (["cmake", "-S", source, "-B", build], ["cmake", "--build", build],
+                      *([f"{build}/{program}"] for program in programs)):
             done = self.root.run(*words)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             if len(words) == 1:

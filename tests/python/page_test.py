@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The examples of docs/python.md print the page's output, each in a separate Python process; the notebook
-runs from its first cell to its last, with the results that its text states."""
+runs from its first cell to its last, with the results that its text states; the program of examples/ agrees
+with theory."""
 import json
 import os
 import re
@@ -64,6 +65,23 @@ class Page(unittest.TestCase):
             self.assertIn("No module named 'palpat'", run("import palpat", folder))
             self.assertEqual(examples("```python\nx\n```\n\n```text\ny\n```\n```python\nz\n```\n"),
                              [("x\n", "y\n"), ("z\n", None)])
+
+
+class Example(unittest.TestCase):
+    def test_result_of_scene_from_python(self):
+        text = run((TREE / "examples/scene_from_python.py").read_text(), TREE)
+        number = r"([\d.e+-]+)"
+        found = re.findall(rf"^at {number} Pa/m: force {number} N, by theory {number} N; "
+                           rf"penetration {number} m, by theory {number} m$", text, re.M)
+        self.assertEqual(len(found), 2, text)
+        self.assertEqual(len(found), len(text.splitlines()), text)
+        for row, stiffness in zip(found, (5e7, 2.5e7)):
+            used, force, weight, depth, theory = map(float, row)
+            self.assertEqual(used, stiffness)
+            self.assertAlmostEqual(weight, 1000.0 * 0.05**3 * 9.81, delta=1e-5)
+            self.assertAlmostEqual(theory, 1000.0 * 9.81 * 0.05 / stiffness, delta=1e-10)
+            self.assertAlmostEqual(force, weight, delta=1e-4 * weight)
+            self.assertAlmostEqual(depth, theory, delta=3e-3 * theory)  # the loaded face widens by nu p / E
 
 
 class Notebook(unittest.TestCase):

@@ -1,4 +1,5 @@
-// A bar of soft tissue hangs from its upper end, and swings out under its own weight.
+// Steps a soft body: a bar of tissue hangs from its upper end and stretches under gravity until it is at
+// rest. At rest the elongation is rho g L^2 / 2E.
 #include <cstdio>
 
 #include "palpate/fem/attachments.h"
@@ -16,8 +17,11 @@ int main() {
   const VecX rest = mesh.nodes.reshaped(), masses = fem::lumped_masses(mesh, tissue.density);
   const int n = static_cast<int>(rest.size());
 
+  // The state has positions q [m] and velocities u [m/s] of all nodes, three numbers per node.
   dynamics::State state;
   const int bar = state.insert({.name = "bar", .q_size = n, .u_size = n}, rest, VecX::Zero(n));
+
+  // The system M u' = f is a sum of force terms, with one mass term and the held directions.
   const std::vector<int> held = fem::dofs_of_nodes(
       fem::nodes_in_box(mesh.nodes, {-1, -1, length / 2 - 1e-9}, {1, 1, length / 2 + 1e-9}), 0, "xyz");
   dynamics::System system;
@@ -27,6 +31,7 @@ int main() {
   system.add(fem::make_fixed(held, rest(held)));
   system.prepare(state.view());
 
+  // Any integrator of `palpate list integrators`; a failure is data (StepResult::status), not an exception.
   const auto stepper = integrate::make_stepper(system, state, {.name = "cvode-bdf", .rtol = 1e-4});
   const dynamics::StepResult result = stepper->advance_to(2.0);
   const double longer = -length / 2 - Points(state.q().reshaped(3, n / 3)).row(2).minCoeff();

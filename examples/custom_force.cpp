@@ -1,5 +1,6 @@
-// A force of one's own: springs that pull each node to where it was, as stiff as its mass is large.  A body
-// that is shifted and let go then swings as a whole, x(t) = d cos(w t), and does not deform.
+// Adds a custom force: springs that pull each node to its place at rest, with a stiffness proportional to its
+// mass. A body that is shifted and released then oscillates as a whole, x(t) = d cos(w t), and does not
+// deform.
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -10,19 +11,23 @@
 
 using namespace palpate;
 
-/// f_i = -w^2 m_i (x_i - X_i);  K = w^2 diag(m), D = 0;  energy w^2/2 sum m_i |x_i - X_i|^2.
+/// f_i = -w^2 m_i (x_i - X_i);  K = -df/dx = w^2 diag(m);  energy w^2/2 sum m_i |x_i - X_i|^2.
 class Springs : public dynamics::ForceTerm {
  public:
   Springs(VecX masses, VecX places, double w) : stiffness_(w * w * masses), places_(std::move(places)) {}
   std::string_view name() const override { return "springs"; }
   dynamics::TermTraits traits() const override { return {.stiff = false, .conservative = true}; }
+  /// Adds the force, f += force.
   void add_force(const dynamics::StateView& state, VecX& f) override {
-    for (int i = 0; i < stiffness_.size(); ++i) f.segment<3>(3 * i) -= stiffness_[i] * from_place(state, i);
+    for (int i = 0; i < stiffness_.size(); ++i) f.segment<3>(3 * i) -= stiffness_[i] * extension(state, i);
   }
+  /// Adds the tangent, A += k_scale K, for implicit methods. Diagonal blocks are always in the pattern of the
+  /// matrix; a term that couples nodes also overrides add_pattern (custom_material.cpp).
   void add_tangent(const dynamics::StateView&, double k_scale, double, dynamics::BorderedMatrix& A) override {
     for (int i = 0; i < stiffness_.size(); ++i)
       A.body.add(A.body.diagonal(i), k_scale * stiffness_[i] * Mat3::Identity());
   }
+  /// Adds the product y += k_scale K x, for methods that assemble no matrix.
   void apply_tangent(const dynamics::StateView&, double k_scale, double, const VecX& x, VecX& y) override {
     for (int i = 0; i < stiffness_.size(); ++i)
       y.segment<3>(3 * i) += k_scale * stiffness_[i] * x.segment<3>(3 * i);
@@ -30,12 +35,12 @@ class Springs : public dynamics::ForceTerm {
   double energy(const dynamics::StateView& state) override {
     double sum = 0.0;
     for (int i = 0; i < stiffness_.size(); ++i)
-      sum += 0.5 * stiffness_[i] * from_place(state, i).squaredNorm();
+      sum += 0.5 * stiffness_[i] * extension(state, i).squaredNorm();
     return sum;
   }
 
  private:
-  Vec3 from_place(const dynamics::StateView& state, int i) const {
+  Vec3 extension(const dynamics::StateView& state, int i) const {
     return state.position(i) - places_.segment<3>(3 * i);
   }
   VecX stiffness_, places_;  ///< [N/m], [m]
