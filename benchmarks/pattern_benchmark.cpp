@@ -11,9 +11,9 @@
 #include <memory>
 #include <string>
 
-#include "bench/fem/beam.h"
 #include "palpate/core/clock.h"
 #include "palpate/integrate/integrators.h"
+#include "product/fem/beam.h"
 
 namespace {
 

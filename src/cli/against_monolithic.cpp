@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "progress.h"
-#include "stop.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/stop.h"
 
 namespace palpate::cli {
 namespace {

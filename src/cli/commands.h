@@ -1,21 +1,16 @@
 #pragma once
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "palpate/cli/program.h"
+#include "palpate/cli/scene_of.h"
 
 /// The commands: one function each, one file each.  Each returns the exit status; Error means that the input
 /// is at fault.
 namespace palpate::cli {
 
 class Undelivered;
-
-/// Which scene, and what is changed in it.
-struct SceneArguments {
-  std::string scene;                   ///< path or name
-  std::vector<std::string> overrides;  ///< "body.0.youngs_modulus_pa=1e5"
-  std::string integrator;              ///< instead of the scene's own; empty: the scene's
-};
 
 struct RunArguments {
   SceneArguments scene;
@@ -111,11 +106,6 @@ struct ModesArguments {
 };
 int modes(const ModesArguments& arguments);
 
-/// Replaces this process by the program palpate-model, with these words as its arguments; returns only by
-/// throwing.
-/// @throws Error where this build has no such program
-int model(const std::vector<std::string>& arguments);
-
 struct StabilityArguments {
   std::vector<std::string> rows, integrators;  ///< empty: all
   bool slow = false;                           ///< the rows that take minutes, too
@@ -176,46 +166,13 @@ struct HelpArguments {
 int help(const HelpArguments& arguments);
 bool is_help_topic(const std::string& name);
 
-struct BenchArguments {
-  std::string what;  ///< "fem", "contact", "continuity" or "leave-out"
-  /// of leave-out; empty: falling-ball and cantilever; of contact and continuity; empty: those of the paper
-  std::vector<std::string> scenes;
-  /// of contact; empty: "distance" and, where OpenGL opens, "image"; the first of continuity, else "distance"
-  std::vector<std::string> methods;
-  bool all = false;      ///< of contact: spreads of the stages
-  bool growth = false;   ///< of contact: growth with skin and region instead
-  bool check = false;    ///< of contact: compare what was measured with its bars
-  int steps = 20;        ///< of fem
-  int cells = 0;         ///< of fem, along one beam by way of a scene; 0: the sizes below
-  double step_s = 0.01;  ///< of fem with cells
-  std::vector<std::string> linear_solvers = {"auto"};
-  std::vector<std::string> sizes;        ///< of fem; empty: S and M
-  std::vector<int> threads;              ///< of fem and contact; empty: 1 and 2
-  std::vector<double> linear_rtols;      ///< of fem; empty: 1e-6 and 1e-3
-  std::vector<double> youngs_moduli_pa;  ///< of fem; empty: 1e5 and 1e6
-  std::string folder;                    ///< of fem and contact: where JSON and plot go; empty: nowhere
-  bool accuracy = false;                 ///< of fem: error against run time of one motion instead
-  std::string calibrate;                 ///< of fem: file for the measured table of linear_solver = "auto"
-  int repeats = 5;                       ///< of leave-out
-  int paths = 1000;                      ///< of continuity
-  int path_steps = 100;                  ///< of continuity
-  double quadrature_error = 1e-3;        ///< of continuity
-};
-int bench(const BenchArguments& arguments);
-
 struct DemoArguments {
   std::string folder = "out/demo";
 };
 int demo(const DemoArguments& arguments);
 
-/// The parsed command line.
-struct Invocation {
-  std::function<int()> action;    ///< empty: help was asked for and given
-  bool factorises = false;        ///< worth restarting with tuned linear algebra
-  bool starts_processes = false;  ///< core's ProcessPool is made ready before anything is opened
-  bool quiet = false, verbose = false;
-};
-/// @throws Error for a line that makes no sense
+/// Parses palpate's command line.
+/// @throws Error for an invalid line
 Invocation parse(int argc, char** argv);
 
 }  // namespace palpate::cli

@@ -7,16 +7,16 @@
 
 #include "commands.h"
 #include "compare_tables.h"
+#include "palpate/cli/paths.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/scene_of.h"
+#include "palpate/cli/stop.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
 #include "palpate/store/result_folder.h"
 #include "palpate/store/summary.h"
-#include "paths.h"
-#include "progress.h"
-#include "scene_of.h"
-#include "stop.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {

@@ -7,12 +7,12 @@
 #include <map>
 #include <numbers>
 
+#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
 #include "palpate/core/time_text.h"
 #include "palpate/render/field.h"
 #include "palpate/render/marks.h"
 #include "palpate/render/panels.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
-#include "undelivered.h"
+#include "palpate/cli/undelivered.h"
 
 namespace palpate::cli {
 

@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "palpate/cli/paths.h"
 #include "palpate/compare/felt_difference.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/loop/load.h"
 #include "palpate/scene/hands.h"
-#include "paths.h"
 
 namespace palpate::cli {
 namespace {

@@ -10,12 +10,12 @@
 #include "export_animation.h"
 #include "export_draft.h"
 #include "export_tables.h"
+#include "palpate/cli/stop.h"
 #include "palpate/core/error.h"
 #include "palpate/core/time_text.h"
 #include "palpate/store/run_file.h"
 #include "palpate/store/vtu.h"
 #include "recorded_surfaces.h"
-#include "stop.h"
 
 namespace palpate::cli {
 namespace fs = std::filesystem;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "palpate/cli/stop.h"
 #include "palpate/core/error.h"
 #include "palpate/core/rigid_fit.h"
 #include "palpate/store/glb.h"
 #include "palpate/store/provenance.h"
-#include "stop.h"
 
 namespace palpate::cli {
 namespace {

@@ -5,11 +5,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "palpate/cli/progress.h"
+#include "palpate/cli/stop.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
 #include "palpate/render/seen.h"
-#include "progress.h"
-#include "stop.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {

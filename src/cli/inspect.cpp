@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "palpate/cli/scene_of.h"
 #include "palpate/core/clock.h"
 #include "palpate/loop/memory.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
 #include "palpate/report/table.h"
-#include "scene_of.h"
 
 namespace palpate::cli {
 namespace {

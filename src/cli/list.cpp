@@ -6,13 +6,13 @@
 
 #include "commands.h"
 #include "key_page.h"
+#include "palpate/cli/paths.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
 #include "palpate/loop/registries.h"
 #include "palpate/report/table.h"
 #include "palpate/scene/study.h"
 #include "palpate/validation/validation.h"
-#include "paths.h"
 
 namespace palpate::cli {
 namespace {

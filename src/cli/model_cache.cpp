@@ -9,8 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "palpate/cli/other_program.h"
 #include "palpate/core/error.h"
-#include "palpate/core/program.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/model_cache.h"
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Runs it to its end; what it prints beside errors is dropped.
-int run_program(const std::vector<std::string>& words) {
+int run_to_end(const std::vector<std::string>& words) {
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
   for (std::string& word : copies) pointers.push_back(word.data());
@@ -44,7 +44,7 @@ void make_model(const std::string& name, const fs::path& path) {
   fmt::print(stderr, "palpate: making the model \"{}\", once; kept in {}\n", name, path.string());
   // under another name until it is whole: two runs may make it at the same time
   const fs::path draft = path.parent_path() / fmt::format("{}-{}.h5", name, ::getpid());
-  const int status = run_program({model_program(), name, "-o", draft.string()});
+  const int status = run_to_end({path_of(kModel), name, "-o", draft.string()});
   if (status != 0) {
     fs::remove(draft, error);
     fail("the model \"{}\" was not made; see above", name);
@@ -54,16 +54,6 @@ void make_model(const std::string& name, const fs::path& path) {
 }
 
 }  // namespace
-
-std::string model_program() {
-  const fs::path program = fs::path(program_path()).parent_path() / "palpate-model";
-  if (!fs::exists(program))
-    fail(
-        "model: {} is not there: this build makes no models; configure with -DPALPATE_WITH_MODEL=ON "
-        "(packages libcgal-dev, libgmsh-dev) and build the target palpate-model",
-        program.string());
-  return program.string();
-}
 
 void make_missing_models(const scene::Description& description) {
   // for "model:NAME" the loader put a place in the cache; any other file is the user's

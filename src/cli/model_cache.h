@@ -9,8 +9,4 @@ namespace palpate::cli {
 ///   makes none
 void make_missing_models(const scene::Description& description);
 
-/// Where the program behind `palpate model` is.
-/// @throws Error where this build has none
-std::string model_program();
-
 }  // namespace palpate::cli

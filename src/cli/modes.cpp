@@ -5,15 +5,15 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "palpate/cli/paths.h"
+#include "palpate/cli/scene_of.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
 #include "palpate/render/available.h"
 #include "palpate/render/scene.h"
 #include "palpate/report/table.h"
 #include "palpate/store/csv.h"
 #include "palpate/store/result_folder.h"
-#include "paths.h"
-#include "scene_of.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {

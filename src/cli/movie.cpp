@@ -5,14 +5,14 @@
 
 #include "commands.h"
 #include "frames.h"
+#include "palpate/cli/stop.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
 #include "palpate/core/rigid_fit.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/run_file.h"
 #include "recorded_scene.h"
-#include "stop.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {

@@ -1,4 +1,4 @@
-// The command line, and the help that teaches it: the only file that knows CLI11.
+// The command line, and the help that teaches it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -6,12 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
-#include <sstream>
 
 #include "commands.h"
-#include "help_formatter.h"
-#include "palpate/core/error.h"
-#include "palpate/store/provenance.h"
+#include "palpate/cli/other_program.h"
+#include "palpate/cli/program.h"
 
 namespace palpate::cli {
 namespace {
@@ -697,6 +695,10 @@ void add_help(CLI::App& app, Invocation& invocation) {
     for (const CLI::App* one : app.get_subcommands({})) arguments->commands.push_back(one->get_name());
     const bool is_command =
         std::count(arguments->commands.begin(), arguments->commands.end(), arguments->topic);
+    if (const OtherProgram* other = find_other_program(arguments->topic)) {
+      invocation.action = [other] { return start(*other, {"--help"}); };
+      return;
+    }
     if (is_command && !is_help_topic(arguments->topic)) {
       const std::string text = app.get_subcommand(arguments->topic)->help(app.get_name());
       invocation.action = [text] {
@@ -706,102 +708,6 @@ void add_help(CLI::App& app, Invocation& invocation) {
       return;
     }
     invocation.action = [arguments] { return help(*arguments); };
-  });
-}
-
-void add_bench(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("bench", "how long things take on this machine");
-  auto arguments = std::make_shared<BenchArguments>();
-  command
-      ->add_option("WHAT", arguments->what,
-                   "fem: one implicit step of a soft beam at several sizes, split into its stages; "
-                   "contact: one exchange period of the paper's scenes, split into its stages; continuity: "
-                   "how much the contact force jumps along random paths; leave-out: what absent and present "
-                   "parts cost")
-      ->required();
-  command->add_option("SCENE", arguments->scenes,
-                      "of leave-out; default falling-ball and cantilever; of contact and continuity; default "
-                      "those of the paper");
-  command
-      ->add_option("--size", arguments->sizes,
-                   "fem: XS, S, M, L, XL (1,425 to 100,000 nodes); default S and M")
-      ->delimiter(',');
-  command->add_option("--threads", arguments->threads, "fem, contact: numbers of threads; default 1,2")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 64));
-  command
-      ->add_option(
-          "--method", arguments->methods,
-          "contact, continuity: distance, image; default of contact distance and, where OpenGL opens, "
-          "image; of continuity distance")
-      ->type_name("NAME")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"distance", "image"}));
-  command->add_flag("--all", arguments->all, "contact: each stage with its least time and 99th percentile");
-  command->add_flag("--growth", arguments->growth,
-                    "contact: how a query grows with the skin's vertices and the region's area instead");
-  command->add_flag("--check", arguments->check,
-                    "contact: compare what was measured with its bars; with no scene named the growth, too");
-  command->add_option("--linear-rtol", arguments->linear_rtols, "fem: tolerances; default 1e-6,1e-3")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
-  command->add_option("--youngs-modulus-pa", arguments->youngs_moduli_pa, "fem: default 1e5,1e6")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--steps", arguments->steps,
-                   "fem: steps of 10 ms that are timed; of 1 ms ten times as many, the same motion")
-      ->check(CLI::Range(3, 1000000))
-      ->capture_default_str();
-  command->add_option("--linear-solver", arguments->linear_solvers, "fem: see `palpate list linear-solvers`")
-      ->type_name("NAME")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_flag("--accuracy", arguments->accuracy,
-                    "fem: error against run time of one motion instead of the stages of a step");
-  command
-      ->add_option("-o,--output", arguments->folder,
-                   "fem: folder for bench-fem.json and bench-fem.svg; contact: for bench-contact.json")
-      ->type_name("DIR");
-  command
-      ->add_option("--calibrate", arguments->calibrate,
-                   "fem: measure which solver is the fastest where, and write the table of \"auto\"")
-      ->type_name("FILE");
-  command->add_option("--cells", arguments->cells, "fem: one beam of so many cells along, by way of a scene")
-      ->check(CLI::Range(4, 1000));
-  command->add_option("--step-s", arguments->step_s, "fem with --cells: the step [s]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--repeats", arguments->repeats, "leave-out: runs of each variant")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--paths", arguments->paths, "continuity: random paths of a scene")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command->add_option("--path-steps", arguments->path_steps, "continuity: steps of a path")
-      ->check(CLI::Range(10, 6400))
-      ->capture_default_str();
-  command
-      ->add_option("--quadrature-error", arguments->quadrature_error,
-                   "continuity: what nearest points may err in the force")
-      ->check(CLI::Range(1e-6, 0.1))
-      ->capture_default_str();
-  command->footer(R"(Examples:
-  palpate bench fem                              3,700 and 11,172 nodes, steps of 10 and 1 ms
-  palpate bench fem --size S,M,L --threads 1 -o out/bench
-  palpate bench fem --accuracy -o out/bench
-  palpate bench fem --cells 16 --step-s 0.001
-  palpate bench contact                          the paper's pairs: stages, and contact beside a step
-  palpate bench contact touch-head --method distance,image
-  palpate bench contact --growth                 skins of 10,000 to 1,000,000 vertices
-  palpate bench contact --check -o out/bench     is each figure what it must be?
-  palpate bench continuity gears --paths 100
-  palpate bench leave-out falling-ball --repeats 9
-
-Exit status with contact --check: 0 when every figure keeps its bar, else 1.)");
-  command->callback([arguments, &invocation] {
-    invocation.action = [arguments] { return bench(*arguments); };
-    invocation.factorises = true;
   });
 }
 
@@ -821,54 +727,19 @@ void add_demo(CLI::App& app, Invocation& invocation) {
   });
 }
 
-/// Line of `palpate --help` about `palpate model`; a program of its own parses the arguments.
-void add_model(CLI::App& app, Invocation& invocation) {
-  CLI::App* command =
-      app.add_subcommand("model", "a layered model of a closed surface: tetrahedra, skin, proxies");
-  command->prefix_command();
-  command->callback([command, &invocation] {
-    invocation.action = [words = command->remaining()] { return model(words); };
-  });
+/// Line of `palpate --help` about a command of another program, which parses its arguments.
+void add_other(CLI::App& app, const OtherProgram& other) {
+  app.add_subcommand(std::string(other.command), other.summary);
 }
 
-/// Error of the line with the command whose help to read: CLI11's own messages name the option.
-void refuse(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
-  std::string command = "palpate", message = error.what();
-  for (const CLI::App* used : app.get_subcommands()) command += " " + used->get_name();
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  const auto first = std::find_if(words.begin(), words.end(),
-                                  [](const std::string& word) { return !word.starts_with("-"); });
-  if (app.get_subcommands().empty() && first != words.end()) {
-    std::vector<std::string> known;
-    for (const CLI::App* one : app.get_subcommands({})) known.push_back(one->get_name());
-    message = fmt::format("there is no command \"{}\"{}", *first, suggestion(*first, known));
-  }
-  fail("{}; see `{} --help`", message, command);
-}
-
-}  // namespace
-
-Invocation parse(int argc, char** argv) {
-  Invocation invocation;
-  CLI::App app(kDescription, "palpate");
-  app.set_version_flag("--version", [] {
-    const store::Provenance made_by = store::provenance();
-    return fmt::format("palpate {} (commit {}, {}, {})", made_by.version, made_by.commit, made_by.compiler,
-                       made_by.build_type);
-  });
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.add_flag("-q,--quiet", invocation.quiet, "only errors");
-  app.add_flag("-v,--verbose", invocation.verbose, "details, too");
-  app.footer(kExamples);
-  app.require_subcommand(1);
-  app.fallthrough();
+void add_commands(CLI::App& app, Invocation& invocation) {
   add_demo(app, invocation);
   add_run(app, invocation);
   add_compare(app, invocation);
   add_study(app, invocation);
   add_validate(app, invocation);
   add_modes(app, invocation);
-  add_model(app, invocation);
+  add_other(app, kModel);
   add_stability(app, invocation);
   add_resume(app, invocation);
   add_replay(app, invocation);
@@ -879,23 +750,20 @@ Invocation parse(int argc, char** argv) {
   add_inspect(app, invocation);
   add_list(app, invocation);
   add_help(app, invocation);
-  add_bench(app, invocation);
-  if (argc == 1) {
-    fmt::print("{}", app.help());
-    return {};
-  }
-  if (std::string(argv[1]) == "model") {  // every word after it, --help too, is the other program's
-    invocation.action = [words = std::vector<std::string>(argv + 2, argv + argc)] { return model(words); };
-    return invocation;
-  }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    std::ostringstream text;
-    app.exit(asked, text, text);
-    fmt::print("{}", text.str());
-    return {};
-  } catch (const CLI::ParseError& error) { refuse(app, error, argc, argv); }
+  add_other(app, kBench);
+}
+
+}  // namespace
+
+Invocation parse(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  const auto command = std::find_if(words.begin(), words.end(),
+                                    [](const std::string& word) { return !word.starts_with("-"); });
+  const OtherProgram* other = command == words.end() ? nullptr : find_other_program(*command);
+  if (!other) return parse_line(argc, argv, {kDescription, kExamples, add_commands});
+  words.erase(command);  // every other word, --help too, is for that program
+  Invocation invocation;
+  invocation.action = [other, words] { return start(*other, words); };
   return invocation;
 }
 

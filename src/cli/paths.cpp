@@ -1,4 +1,4 @@
-#include "paths.h"
+#include "palpate/cli/paths.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -24,8 +24,6 @@ std::vector<std::string> shipped_scenes() {
   std::sort(out.begin(), out.end());
   return out;
 }
-
-std::string shipped_file(const std::string& name) { return (share_folder() / name).string(); }
 
 std::string find_scene(const std::string& name_or_path) {
   if (fs::is_regular_file(name_or_path)) return name_or_path;

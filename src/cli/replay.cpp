@@ -5,6 +5,10 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "palpate/cli/paths.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/scene_of.h"
+#include "palpate/cli/stop.h"
 #include "palpate/compare/felt_difference.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
@@ -14,12 +18,8 @@
 #include "palpate/scene/hands.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/result_folder.h"
-#include "paths.h"
-#include "progress.h"
 #include "recorded_scene.h"
 #include "run_files.h"
-#include "scene_of.h"
-#include "stop.h"
 
 namespace palpate::cli {
 namespace {

@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/report/run_report.h"
 #include "palpate/store/result_folder.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 

@@ -12,6 +12,11 @@
 #include "commands.h"
 #include "contact_picture.h"
 #include "frames.h"
+#include "palpate/cli/paths.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/scene_of.h"
+#include "palpate/cli/stop.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -27,14 +32,9 @@
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/provenance.h"
 #include "palpate/store/result_folder.h"
-#include "paths.h"
 #include "picture.h"
-#include "progress.h"
 #include "run_files.h"
 #include "run_remarks.h"
-#include "scene_of.h"
-#include "stop.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {

@@ -1,12 +1,12 @@
-#include "scene_of.h"
+#include "palpate/cli/scene_of.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
 #include "model_cache.h"
+#include "palpate/cli/paths.h"
 #include "palpate/loop/load.h"
-#include "paths.h"
 
 namespace palpate::cli {
 

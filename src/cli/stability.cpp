@@ -7,13 +7,13 @@
 #include <map>
 
 #include "commands.h"
+#include "palpate/cli/paths.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/stop.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
 #include "palpate/store/result_folder.h"
-#include "paths.h"
-#include "progress.h"
-#include "stop.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {

@@ -6,6 +6,11 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "palpate/cli/paths.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/scene_of.h"
+#include "palpate/cli/stop.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "palpate/report/plot.h"
@@ -15,11 +20,6 @@
 #include "palpate/store/csv.h"
 #include "palpate/store/result_folder.h"
 #include "palpate/store/summary.h"
-#include "paths.h"
-#include "progress.h"
-#include "scene_of.h"
-#include "stop.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {

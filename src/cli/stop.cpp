@@ -1,4 +1,4 @@
-#include "stop.h"
+#include "palpate/cli/stop.h"
 
 #include <csignal>
 

@@ -1,4 +1,4 @@
-#include "streams.h"
+#include "palpate/cli/streams.h"
 
 #include <fcntl.h>
 #include <sys/types.h>

@@ -7,6 +7,10 @@
 #include <numeric>
 
 #include "model_cache.h"
+#include "palpate/cli/paths.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/stop.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/report/run_report.h"
@@ -14,10 +18,6 @@
 #include "palpate/store/result_folder.h"
 #include "palpate/store/summary.h"
 #include "palpate/study/results.h"
-#include "paths.h"
-#include "progress.h"
-#include "stop.h"
-#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <sstream>
 
+#include "palpate/cli/paths.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/stop.h"
 #include "palpate/core/error.h"
 #include "palpate/core/program.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/result_folder.h"
 #include "palpate/study/slurm.h"
-#include "paths.h"
-#include "progress.h"
-#include "stop.h"
 #include "study.h"
 
 namespace palpate::cli {

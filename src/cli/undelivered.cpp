@@ -1,4 +1,4 @@
-#include "undelivered.h"
+#include "palpate/cli/undelivered.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <map>
 
-#include "stop.h"
+#include "palpate/cli/stop.h"
 
 namespace palpate::cli {
 namespace {

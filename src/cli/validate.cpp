@@ -7,16 +7,16 @@
 #include <thread>
 
 #include "commands.h"
+#include "palpate/cli/paths.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/stop.h"
+#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/result_folder.h"
 #include "palpate/validation/validation.h"
-#include "paths.h"
-#include "progress.h"
-#include "stop.h"
-#include "undelivered.h"
 #include "validation_pool.h"
 
 namespace palpate::cli {

@@ -29,6 +29,8 @@ SOUND = {
     "src/cli/main.cpp": "#include <CLI/CLI.hpp>\n",
     "src/fem/CMakeLists.txt": "palpate_part(fem PUBLIC palpate::core)  # not palpate::tool\n",
     "validation/case.cpp": '#include "palpate/fem/body.h"\n',
+    "benchmarks/product/fem.h": '#include "palpate/fem/body.h"\n',
+    "benchmarks/product/program/main.cpp": '#include "product/fem.h"\n#include <CLI/CLI.hpp>\n',
     "tests/fem/body_test.cpp": '#include "fem/element.h"\n',
 }
 
@@ -103,6 +105,12 @@ class Planted(unittest.TestCase):
                      "validation/bad.cpp": '#include "palpate/cli/bad.h"\n'},
                     "validation may not include cli")
 
+    def test_benchmarks_stand_above_the_library_and_below_their_program(self):
+        self.expect({"src/loop/bad.cpp": '#include "product/fem.h"\n'}, "loop may not include bench")
+        self.expect({"include/palpate/cli/bad.h": "\n",
+                     "benchmarks/product/bad.cpp": '#include "palpate/cli/bad.h"\n'},
+                    "bench may not include cli")
+
     def test_private_header_of_another_part(self):
         self.expect({"src/contact/a.h": "\n", "src/loop/bad.cpp": '#include "contact/a.h"\n'},
                     "contact/a.h is private to contact")
@@ -158,6 +166,8 @@ class Planted(unittest.TestCase):
         self.expect({"src/core/CMakeLists.txt": "palpate_part(core\n  PUBLIC palpate::fem)\n"},
                     "src/core/CMakeLists.txt:2:",
                     "core may not link palpate::fem")
+        self.expect({"benchmarks/product/CMakeLists.txt": "target_link_libraries(b PRIVATE palpate::cli)\n"},
+                    "benchmarks/product/CMakeLists.txt:1:", "bench may not link palpate::cli")
 
     def test_long_file_is_reported_not_refused(self):
         breaches, remarks = breaches_of({"src/fem/long.cpp": "\n" * 401})

@@ -40,12 +40,23 @@ ALLOWED = {
     "compare": ["core", "scene", "loop", "store"],  # core and scene: used in loop's headers
     "study": ["core", "scene", "loop", "store"],
     "stability": BELOW_LOOP + ["loop"],  # builds its cases from the parts directly, as validation does
-    "bench": BELOW_LOOP + ["loop"],  # bench/fem: a beam built from the parts, without a scene
     "report": ["core", "mesh", "store"],
-    "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "study", "stability", "bench",
+    "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "study", "stability",
             "report", "validation"],
     "python": BELOW_LOOP + ["loop", "compare", "validation"],  # the module of `import palpate`
     "validation": BELOW_LOOP + ["loop", "compare", "report", "simbody"],  # the cases in validation/
+    # benchmarks/product; its fem/: a beam made of the parts themselves, without a scene
+    "bench": BELOW_LOOP + ["loop"],
+    # benchmarks/product/program: the program behind `palpate bench`
+    "bench_program": ["core", "scene", "store", "report", "cli", "bench"],
+}
+
+# Parts outside src/ and include/: the innermost folder counts.  #include lines name headers relative to the
+# first folder: "product/fem.h".
+ELSEWHERE = {
+    "benchmarks/product/program/": "bench_program",
+    "benchmarks/product/": "bench",
+    "validation/": "validation",
 }
 
 # Headers of external libraries, and the only folders that may include them.
@@ -61,7 +72,7 @@ OUTSIDE = [
     ("Qhull", r"libqhull", ["src/proxy"]),
     ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/linear"]),
     ("Spectra", r"Spectra/", ["src/modes"]),
-    ("CLI11", r"CLI/", ["src/cli"]),
+    ("CLI11", r"CLI/", ["src/cli", "src/palpate/cli", "benchmarks/product/program"]),
     ("pybind11", r"pybind11/", ["src/python"]),
     ("toml++", r"toml\+\+/", ["src/scene"]),
     ("SQLite", r"sqlite3\.h", ["src/store"]),
@@ -86,10 +97,12 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 
 
 def part_of(path):
-    """Returns the part that a file belongs to, by its folder under src/, src/palpate/ or include/palpate/."""
+    """Returns the part that a file belongs to, by its folder under src/, src/palpate/ or include/palpate/, or
+    by ELSEWHERE."""
     pieces = path.split("/")
-    if pieces[0] == "validation":
-        return "validation"
+    for folder, part in ELSEWHERE.items():
+        if path.startswith(folder):
+            return part
     if path.startswith((PROMISED, SHARED)) and len(pieces) > 3:
         part = pieces[2]
     elif pieces[0] == "src" and len(pieces) > 2 and not path.startswith(SHARED):
@@ -104,7 +117,7 @@ def part_of(path):
 def resolve(path, quoted, name, files):
     """Returns the file of the tree that an include refers to, or None if it is a system header."""
     beside = (Path(path).parent / name).as_posix()
-    candidates = ["include/" + name, "src/" + name]
+    candidates = ["include/" + name, "src/" + name, "benchmarks/" + name]
     if quoted:
         pieces = []
         for piece in beside.split("/"):
@@ -169,7 +182,7 @@ def source_files(tree, folders):
 def check(tree):
     """Returns (breaches, remarks): lists of strings."""
     tree = Path(tree)
-    files = source_files(tree, ["include", "src", "validation"])
+    files = source_files(tree, ["include", "src", "validation", "benchmarks/product"])
     known = set(files)
     breaches, remarks, graph = [], [], {path: [] for path in files}
 
@@ -220,14 +233,16 @@ def check(tree):
 
 
 def link_breaches(tree):
-    """Applies the same table to the libraries that a part links: palpate::PART in src/PART/CMakeLists.txt."""
+    """Applies the same table to the libraries that a part links: palpate::PART in its CMakeLists.txt."""
     out = []
-    for listing in sorted((tree / "src").glob("*/CMakeLists.txt")):
-        own = listing.parent.name
-        for number, line in enumerate(listing.read_text(encoding="utf-8").splitlines(), 1):
+    for listing in sorted([*(tree / "src").glob("*/CMakeLists.txt"),
+                           *(tree / "benchmarks/product").rglob("CMakeLists.txt")]):
+        listing = listing.relative_to(tree).as_posix()
+        own = part_of(listing)
+        for number, line in enumerate((tree / listing).read_text(encoding="utf-8").splitlines(), 1):
             for other in re.findall(r"palpate::(\w+)", line.split("#")[0]):
                 if other != own and other in ALLOWED and other not in ALLOWED.get(own, []):
-                    out.append(f"src/{own}/CMakeLists.txt:{number}: {own} may not link palpate::{other}")
+                    out.append(f"{listing}:{number}: {own} may not link palpate::{other}")
     return out
 
 

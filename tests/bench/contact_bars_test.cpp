@@ -5,7 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "palpate/bench/contact.h"
+#include "product/contact.h"
 
 namespace palpate::bench {
 namespace {

@@ -1,11 +1,11 @@
-#include "palpate/bench/contact.h"
+#include "product/contact.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bench/contact/statistics.h"
 #include "palpate/core/error.h"
+#include "product/contact/statistics.h"
 
 namespace palpate::bench {
 namespace {

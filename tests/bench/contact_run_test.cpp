@@ -1,10 +1,10 @@
 // What one run says of contact: stages, devices, prices.
 #include <gtest/gtest.h>
 #include "loop/small_scenes.h"
-#include "palpate/bench/contact.h"
 #include "palpate/contact/gpu_device.h"
 #include "palpate/core/error.h"
 #include "palpate/core/instructions.h"
+#include "product/contact.h"
 
 namespace palpate::bench {
 namespace {

@@ -1,14 +1,14 @@
 // How much the contact force jumps along smooth paths.
-#include "palpate/bench/continuity.h"
+#include "product/continuity.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <deque>
 
-#include "bench/contact/relative_path.h"
 #include "contact/block_model.h"
 #include "palpate/loop/load.h"
+#include "product/contact/relative_path.h"
 
 using namespace palpate;
 using block_model::block;

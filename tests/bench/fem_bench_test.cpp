@@ -1,13 +1,13 @@
-#include "palpate/bench/fem.h"
+#include "product/fem.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "bench/fem/peak_memory.h"
-#include "bench/fem/stage_work.h"
 #include "palpate/core/error.h"
+#include "product/fem/peak_memory.h"
+#include "product/fem/stage_work.h"
 
 namespace palpate::bench {
 namespace {

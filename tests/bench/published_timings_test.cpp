@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "palpate/bench/fem.h"
 #include "palpate/core/error.h"
+#include "product/fem.h"
 
 namespace palpate::bench {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "compare/scenes.h"
 #include "loop/small_scenes.h"
-#include "palpate/bench/bench.h"
 #include "palpate/core/error.h"
 #include "palpate/store/csv.h"
 #include "palpate/store/study_columns.h"
 #include "palpate/validation/validation.h"
+#include "product/bench.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

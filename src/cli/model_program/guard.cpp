@@ -10,7 +10,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "stop.h"
+#include "palpate/cli/stop.h"
 
 namespace palpate::cli {
 namespace {

@@ -6,20 +6,20 @@
 #include <memory>
 
 #include "guard.h"
-#include "guarded.h"
 #include "memory_question.h"
 #include "options.h"
 #include "outcome.h"
+#include "palpate/cli/guarded.h"
+#include "palpate/cli/progress.h"
+#include "palpate/cli/stop.h"
+#include "palpate/cli/streams.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "palpate/store/atomic_file.h"
 #include "pictures.h"
-#include "progress.h"
 #include "size_question.h"
 #include "sources.h"
-#include "stop.h"
-#include "streams.h"
 #include "worker.h"
 
 namespace palpate::cli {

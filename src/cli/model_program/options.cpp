@@ -9,7 +9,7 @@
 #include <memory>
 #include <sstream>
 
-#include "help_formatter.h"
+#include "palpate/cli/help_formatter.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/store/provenance.h"

@@ -1,0 +1,105 @@
+#include "bench_contact_ratios.h"
+
+#include <fmt/format.h>
+
+#include "palpate/cli/stop.h"
+#include "palpate/report/table.h"
+
+namespace palpate::cli {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// "2.31 (0.87)": a time and how much of another it is; "-" where one was not measured.
+std::string over(double ms, double other_ms) {
+  return ms > 0.0 && other_ms > 0.0 ? fmt::format("{:.2f} ({:.2f})", ms, ms / other_ms) : "-";
+}
+std::string percent(double share) { return fmt::format("{:.3g}", 100.0 * share); }
+
+void add_rows(const bench::ContactPrice& p, Rows& rows, Rows& solves, Rows& tangents) {
+  const bench::ContactBenchRow& c = p.row;
+  const bench::FrictionPrice& f = p.friction;
+  const std::string samples = fmt::format("{}", c.samples);
+  rows.push_back({p.scene, samples, fmt::format("{:.2f}", c.elements_ms), over(c.assembly_ms, c.elements_ms),
+                  fmt::format("{:.2f}", p.one_body_ms), over(c.to_forces.median, p.one_body_ms)});
+  solves.push_back({p.scene, samples, fmt::format("{:.2f}", p.bodies_ms),
+                    fmt::format("{:.2f}", p.contact_free_ms), over(c.step.median, p.bodies_ms),
+                    over(c.step.median, p.contact_free_ms), over(f.symmetric_ms, c.step.median)});
+  if (f.full_ms > 0.0)
+    tangents.push_back({p.scene, fmt::format("{:.2f}", f.symmetric_ms), over(f.full_ms, f.symmetric_ms),
+                        percent(f.left_out), percent(f.force_change)});
+}
+
+}  // namespace
+
+void print_contact_prices(const std::vector<bench::ContactPrice>& prices) {
+  Rows rows, solves, tangents;
+  for (const bench::ContactPrice& p : prices) add_rows(p, rows, solves, tangents);
+  fmt::print(
+      "Contact beside the rest of a step: nearest points, one thread, medians [ms]\n"
+      "  elements: forces and matrix over the first body's elements in one pass; samples: those of the "
+      "contact, and over the elements'\n"
+      "  step: a step of the first body without contact, 1e-3; query: the contact's, to forces on nodes, and "
+      "over that step\n{}\n",
+      report::format_table({"scene", "samples", "elements", "samples (ratio)", "step", "query (ratio)"},
+                           rows));
+  fmt::print(
+      "A step without its query, medians [ms]\n"
+      "  apart: the sum of steps of each body by itself, without contact; free: a step of all bodies "
+      "together, without contact;\n"
+      "  contact: the scene's own step, over apart and over free; friction: with friction 0.3, over contact\n"
+      "  without contact the bodies fall under their weight: at rest there is nothing to solve\n{}\n",
+      report::format_table({"scene", "samples", "apart", "free", "contact (/ apart)", "contact (/ free)",
+                            "friction (/ contact)"},
+                           solves));
+  if (tangents.empty()) return;
+  fmt::print(
+      "A step with friction 0.3, without its query, medians [ms]\n"
+      "  symmetric: friction follows the pressure one step late, friction_tangent = \"secant\", the default "
+      "of such steps; full: the unsymmetric tangent, over symmetric\n"
+      "  left out: largest friction that a step left out, of the largest friction; force: largest difference "
+      "of the contact force\n"
+      "  between both runs at the same time, of the largest force [%]\n{}\n",
+      report::format_table({"scene", "symmetric", "full (/ symmetric)", "left out [%]", "force [%]"},
+                           tangents));
+}
+
+std::vector<bench::ContactGrowth> run_contact_growth() {
+  constexpr int kSkin = 100000, kSteps = 6;
+  constexpr double kFactor = 30.0;
+  return {{"skin", bench::bench_skin_growth({10000, 30000, 100000, 300000, 1000000}, &stop_flag())},
+          {"area", bench::bench_patch_growth(kSkin, kFactor, kSteps, &stop_flag())}};
+}
+
+void print_contact_growth(const std::vector<bench::ContactGrowth>& growth) {
+  for (const bench::ContactGrowth& g : growth) {
+    Rows rows;
+    for (const bench::ContactGrowthRow& r : g.rows)
+      rows.push_back({fmt::format("{}", r.skin_vertices), fmt::format("{:.4g}", 1e4 * r.area_m2),
+                      fmt::format("{}", r.samples),
+                      fmt::format("{:.2f} / {:.2f} / {:.2f}", r.query.least, r.query.median, r.query.p99)});
+    const bool area = g.with == "area";
+    fmt::print("{}\n{}\n  the query's time grows with {} to the power {:.2f}\n\n",
+               area ? "Larger and larger regions of one skin" : "A contact region on larger and larger skins",
+               report::format_table(
+                   {"vertices", "region [cm^2]", "samples", "query: least / median / p99 [ms]"}, rows),
+               area ? "the region's area" : "the skin's vertices", g.exponent());
+  }
+}
+
+bool print_contact_bars(const std::vector<bench::ContactBar>& bars) {
+  Rows rows;
+  std::size_t missed = 0;
+  for (const bench::ContactBar& b : bars) {
+    if (!b.is_met()) ++missed;
+    rows.push_back({b.scene.empty() ? "-" : b.scene, b.what, fmt::format("{:.3g}", b.value),
+                    fmt::format("{} {:.3g}", b.at_least ? ">=" : "<=", b.bar),
+                    b.is_met() ? "met" : "missed"});
+  }
+  fmt::print("Bars: nearest points, one thread where nothing else is said\n{}\n{} of {} bars met\n",
+             report::format_table({"scene", "figure", "measured", "bar", ""}, rows), bars.size() - missed,
+             bars.size());
+  return missed == 0;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,78 @@
+#include "bench_continuity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/cli/scene_of.h"
+#include "palpate/cli/stop.h"
+#include "palpate/report/table.h"
+#include "product/continuity.h"
+
+namespace palpate::cli {
+namespace {
+
+constexpr double kPieces = 12800;  // of a path: the length that halvings end at
+
+std::string quantile(std::vector<double> values, double share) {
+  if (values.empty()) return "-";
+  std::sort(values.begin(), values.end());
+  const auto at = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) - 1;
+  return fmt::format("{:.3f}", values[std::min(at, values.size() - 1)]);
+}
+
+std::vector<std::string> row_of(const std::string& scene, const bench::ContinuityRow& r) {
+  double moment = 0.0;
+  for (const bench::ForceJump& j : r.jumps) moment = std::max(moment, j.moment);
+  std::vector<std::string> row{scene,
+                               fmt::format("{}", r.worst_of_path.size()),
+                               fmt::format("{}", r.steps),
+                               fmt::format("{}", r.jumps.size()),
+                               fmt::format("{:.3g}", r.force),
+                               quantile(r.worst_of_path, 0.5),
+                               quantile(r.worst_of_path, 0.99),
+                               quantile(r.worst_of_path, 1.0),
+                               fmt::format("{:.3f}", moment)};
+  row.push_back(fmt::format("{}", std::count_if(r.jumps.begin(), r.jumps.end(),
+                                                [](const bench::ForceJump& j) { return j.by_history; })));
+  return row;
+}
+
+}  // namespace
+
+void bench_continuity(const BenchArguments& arguments) {
+  const std::vector<std::string> scenes =
+      arguments.scenes.empty() ? std::vector<std::string>{"touch-head",   "touch-human", "two-heads",
+                                                          "two-pumpkins", "gears",       "scrape-pumpkin"}
+                               : arguments.scenes;
+  bench::ContinuityOptions options;
+  options.paths = arguments.paths;
+  options.steps = arguments.path_steps;
+  options.halvings = static_cast<int>(std::lround(std::log2(kPieces / options.steps)));
+  if (!arguments.methods.empty()) options.method = arguments.methods.front();
+  options.quadrature_error = arguments.quadrature_error;
+  std::vector<std::vector<std::string>> rows;
+  for (const std::string& scene : scenes) {
+    if (stop_flag()) break;
+    const scene::Description description = scene_of({scene, {}, ""});
+    const bench::ContinuityRow row = bench::bench_continuity(description, options, &stop_flag());
+    rows.push_back(row_of(short_name(description), row));
+    const auto worst = std::max_element(row.jumps.begin(), row.jumps.end(),
+                                        [](const auto& p, const auto& q) { return p.force < q.force; });
+    if (worst != row.jumps.end())
+      fmt::print("{}: the largest jump, {:.3f}, is on path {} at {:.5f} of its length\n",
+                 short_name(description), worst->force, worst->path, worst->at);
+  }
+  const std::vector<std::string> head{"scene", "paths", "steps", "halved", "force [N]",
+                                      "p50",   "p99",   "max",   "moment", "by history"};
+  fmt::print(
+      "\n{}\nOne body moves past the other along random smooth paths of {} steps; a step across which the "
+      "force "
+      "changes by\nmore than {:g} of itself is halved {} times.  p50, p99, max: what is left then, each "
+      "path's largest, over the\nforce; moment: the same of the moment; by history: jumps of one pose "
+      "that was reached in two ways.\n",
+      report::format_table(head, rows), options.steps, options.threshold, options.halvings);
+}
+
+}  // namespace palpate::cli

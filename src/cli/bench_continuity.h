@@ -1,9 +1,0 @@
-#pragma once
-#include "commands.h"
-
-namespace palpate::cli {
-
-/// `palpate bench continuity`: a row a scene, and its jumps by cause.
-void bench_continuity(const BenchArguments& arguments);
-
-}  // namespace palpate::cli
