@@ -47,7 +47,7 @@ set(documents ${folder}/copyright ${folder}/changelog.Debian.gz)
 install(FILES ${documents} ${folder}/changelog.gz
   DESTINATION share/doc/palpate COMPONENT program EXCLUDE_FROM_ALL)
 install(FILES ${documents} DESTINATION share/doc/libpalpate-dev COMPONENT library EXCLUDE_FROM_ALL)
-foreach(page palpate palpate-model)
+foreach(page palpate palpate-model palpate-validation)
   if(TARGET ${page})
     configure_file(${CMAKE_CURRENT_LIST_DIR}/${page}.1.in ${folder}/${page}.1 @ONLY)
     palpate_gzip(${folder}/${page}.1 ${folder}/${page}.1.gz)
@@ -95,8 +95,8 @@ and every error has its price in run time.
 .
 ")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${about}\
-This package has the programs palpate and palpate-model, their shared libraries
-and the scenes that come with them.")
+This package has the programs palpate, palpate-model and palpate-validation,
+their shared libraries and the scenes that come with them.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME palpate)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)

@@ -5,6 +5,7 @@
 
 #include "palpate/cli/program.h"
 #include "palpate/cli/scene_of.h"
+#include "palpate/cli/stability_options.h"
 
 /// The commands: one function each, one file each.  Each returns the exit status; Error means that the input
 /// is at fault.
@@ -88,16 +89,6 @@ int compare(const CompareArguments& arguments);
 int compare_haptic(const CompareArguments& arguments);
 int compare(const CompareArguments& arguments, Undelivered& missing);
 
-struct ValidateArguments {
-  std::vector<std::string> cases;  ///< empty: all
-  bool slow = false;               ///< also the slow cases, where no case is named
-  bool quick = false;              ///< the quick cases alone, where no case is named
-  int jobs = 0;                    ///< cases side by side; 0: as many as there are cores
-  bool inject_faults = false;      ///< break the physics of each case on purpose: every one must then fail
-  std::string folder;              ///< validation.json and report.html go here; empty: nowhere
-};
-int validate(const ValidateArguments& arguments);
-
 struct ModesArguments {
   SceneArguments scene;
   std::string folder;  ///< empty: out/modes-NAME
@@ -106,22 +97,6 @@ struct ModesArguments {
 };
 int modes(const ModesArguments& arguments);
 
-struct StabilityArguments {
-  std::vector<std::string> rows, integrators;  ///< empty: all
-  bool slow = false;                           ///< the rows that take minutes, too
-  bool cells = false;                          ///< print every cell, not only the unexpected ones
-  int seeds = 10, jobs = 1;
-  double limit_s = 20.0;  ///< CPU time of a cell
-  std::string folder;     ///< empty: out/stability; haptic: out/stability-haptic-NAME
-
-  // of the haptic loop of a scene
-  bool haptic = false;
-  SceneArguments scene;
-  std::optional<double> device_mass_kg, device_damping_n_s_m;  ///< the scene's where not given
-  std::optional<int> delay_ticks;
-  std::vector<double> contact_stiffness_n_m;  ///< least and greatest; empty: estimated from the scene
-};
-int stability(const StabilityArguments& arguments);
 int stability_haptic(const StabilityArguments& arguments);
 inline constexpr double kHapticDuration = 4.0;  ///< of a simulation [s]
 

@@ -3,16 +3,17 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include "commands.h"
 #include "key_page.h"
+#include "palpate/cli/other_program.h"
 #include "palpate/cli/paths.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
 #include "palpate/loop/registries.h"
 #include "palpate/report/table.h"
 #include "palpate/scene/study.h"
-#include "palpate/validation/validation.h"
 
 namespace palpate::cli {
 namespace {
@@ -20,10 +21,14 @@ namespace {
 const char* const kKeys = "keys";
 const char* const kStudyKeys = "study-keys";
 
-loop::ChoiceList case_choices() {
+/// Cases with a known answer, as palpate-validation prints them; none if it is not built, or for another
+/// list.
+loop::ChoiceList case_choices(const std::string& wanted) {
   loop::ChoiceList out{"cases", "with a known answer: palpate validate", {}};
-  for (const validation::ValidationCase& one : validation::validation_cases())
-    out.choices.push_back({one.name, one.summary + (one.slow ? " (slow)" : "")});
+  if (!(wanted.empty() || wanted == out.what) || !is_there(kCases)) return out;
+  std::istringstream lines(output_of(kCases));
+  for (std::string name, summary; std::getline(lines, name, '\t') && std::getline(lines, summary);)
+    out.choices.push_back({name, summary});
   return out;
 }
 
@@ -119,7 +124,7 @@ void print_keys(const std::vector<scene::KeyRow>& all) {
 
 int list(const ListArguments& arguments) {
   std::vector<loop::ChoiceList> lists = loop::registries();
-  lists.push_back(case_choices());
+  lists.push_back(case_choices(arguments.what));
   lists.push_back(scene_choices());
   if (arguments.markdown && arguments.what.empty()) {
     print_names_page(lists);

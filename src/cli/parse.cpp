@@ -8,8 +8,10 @@
 #include <memory>
 
 #include "commands.h"
+#include "palpate/cli/option_checks.h"
 #include "palpate/cli/other_program.h"
 #include "palpate/cli/program.h"
+#include "palpate/cli/stability_options.h"
 
 namespace palpate::cli {
 namespace {
@@ -35,26 +37,6 @@ constexpr const char* kExamples = R"(Examples:
 
 Exit status: 0 when all that the command promises was done; 1 on an error; 3 when something of it is
 missing, which the last line names; 130 after Ctrl-C.)";
-
-constexpr const char* kSceneHelp =
-    "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";
-
-/// CLI::PositiveNumber lets NaN pass, and its message spells out the largest double.
-const CLI::Validator duration(
-    [](const std::string& text) {
-      double seconds = 0.0;
-      const bool usable = CLI::detail::lexical_cast(text, seconds) && seconds > 0.0 && std::isfinite(seconds);
-      return usable ? std::string{} : fmt::format("{} must be a positive, finite number of seconds", text);
-    },
-    "");
-
-const CLI::Validator positive(
-    [](const std::string& text) {
-      double number = 0.0;
-      const bool usable = CLI::detail::lexical_cast(text, number) && number > 0.0 && std::isfinite(number);
-      return usable ? std::string{} : fmt::format("{} must be a positive, finite number", text);
-    },
-    "");
 
 /// What refuses a scene for its size asks for it (core/memory.h): here, and in processes that this one
 /// starts.
@@ -354,39 +336,6 @@ missing.)");
   });
 }
 
-void add_validate(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("validate", "run the cases with a known answer");
-  auto arguments = std::make_shared<ValidateArguments>();
-  command->add_option("CASE", arguments->cases, "only these; see `palpate list cases`");
-  CLI::Option* slow = command->add_flag("--slow", arguments->slow,
-                                        "also the cases that take minutes: a quarter of an hour on one core");
-  command
-      ->add_flag("--quick", arguments->quick,
-                 "only the cases that take seconds: a minute for all of them on one core")
-      ->excludes(slow);
-  command
-      ->add_option("--jobs", arguments->jobs,
-                   "cases side by side, each in a process of its own; default: as many as there are cores. "
-                   "With 1 nothing disturbs their run times")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--inject-faults", arguments->inject_faults,
-                    "break the library on purpose: what each fault is measured by must then fail");
-  command->add_flag("--sabotage", arguments->inject_faults)->group("");  // its name before 0.1, not shown
-  command->add_option("-o,--output", arguments->folder, "also write validation.json and report.html here")
-      ->type_name("DIR");
-  command->footer(R"(Examples:
-  palpate validate
-  palpate validate patch-test cantilever -o out/validation
-  palpate validate --inject-faults               shows that the cases can fail
-
-Exit status 0 when every measurement keeps its bar, else 1.)");
-  command->callback([arguments, &invocation] {
-    invocation.action = [arguments] { return validate(*arguments); };
-    invocation.factorises = true;
-    invocation.starts_processes = true;
-  });
-}
-
 void add_modes(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("modes", "frequencies and shapes of a scene's free vibrations");
   auto arguments = std::make_shared<ModesArguments>();
@@ -412,83 +361,14 @@ number, step by step the displaced shapes.)");
   });
 }
 
-void add_stability(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand(
-      "stability", "stiff and extreme cases against every integrator, each compared with theory");
-  auto arguments = std::make_shared<StabilityArguments>();
-  command->add_option("--row", arguments->rows, "only this row; may be given more than once")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  command->add_option("--integrator", arguments->integrators, "only this one; may be given more than once")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  command->add_flag("--slow", arguments->slow, "also the rows that take minutes");
-  command->add_flag("--cells", arguments->cells,
-                    "print every cell with its figure, not only the unexpected ones");
-  command->add_option("--seeds", arguments->seeds, "random starts of the squashed and scattered bodies")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  command->add_option("--jobs", arguments->jobs, "processes")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  command
-      ->add_option("--limit-s", arguments->limit_s,
-                   "CPU time of a cell; in rows that take minutes ten times that [s]")
-      ->type_name("SECONDS")
-      ->check(duration)
-      ->capture_default_str();
-  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/stability")
-      ->type_name("DIR");
-  CLI::Option* haptic = command->add_flag(
-      "--haptic", arguments->haptic,
-      "instead: how stiff a wall the loop of a scene's device, coupling and tool renders, by passivity, by "
-      "its exact linear map, and by simulation");
-  command->add_option("SCENE", arguments->scene.scene, std::string("haptic: ") + kSceneHelp);
-  command->add_option("--set", arguments->scene.overrides, "haptic: change one value of the scene, KEY=VALUE")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false)
-      ->needs(haptic);
-  command
-      ->add_option("--device-mass-kg", arguments->device_mass_kg,
-                   "haptic: of the device at its handle; default: the scene's, else 0.045")
-      ->check(CLI::Range(1e-4, 1e3))
-      ->needs(haptic);
-  command
-      ->add_option("--device-damping-n-s-m", arguments->device_damping_n_s_m,
-                   "haptic: of the device's own friction, without which no wall is passive; default: the "
-                   "scene's where it has a hand, else 0.1")
-      ->check(CLI::Range(0.0, 1e3))
-      ->needs(haptic);
-  command
-      ->add_option("--delay-ticks", arguments->delay_ticks,
-                   "haptic: from a sample to the force made of it; default: the scene's, else 0")
-      ->check(CLI::Range(0, 100))
-      ->needs(haptic);
-  command
-      ->add_option("--contact-stiffness-n-m", arguments->contact_stiffness_n_m,
-                   "haptic: least and greatest of the contacts at the tool; default: estimated")
-      ->type_name("LEAST GREATEST")
-      ->expected(2)
-      ->needs(haptic);
-  command->footer(R"(Examples:
-  palpate stability --jobs 2
-  palpate stability --row youngs-modulus --integrator cvode-bdf --cells
-  palpate stability --slow --seeds 100 -o out/stability
-  palpate stability --haptic press-ball --device-mass-kg 0.1 --delay-ticks 1
-
-Writes stability.csv, stability.json and report.html with the heat map; haptic: z_width.csv and z_width.svg.
-Exit status 0 when every cell is as theory expects; haptic: when passive lies within stable; else 1.)");
-  command->callback([arguments, &invocation] {
-    if (arguments->haptic && arguments->scene.scene.empty()) throw CLI::RequiredError("--haptic: SCENE");
-    // here, after options with a typing error were named: what follows such an option is no scene
-    if (!arguments->haptic && !arguments->scene.scene.empty()) throw CLI::RequiresError("SCENE", "--haptic");
-    if (arguments->haptic && !(arguments->rows.empty() && arguments->integrators.empty()))
-      throw CLI::ExcludesError("--haptic", "--row and --integrator");
-    invocation.action = [arguments] {
-      return arguments->haptic ? stability_haptic(*arguments) : stability(*arguments);
-    };
-    invocation.factorises = true;
-    invocation.starts_processes = true;
+void add_stability_of_loop_or_matrix(CLI::App& app, Invocation& invocation) {
+  add_stability(app, [&invocation](const std::shared_ptr<StabilityArguments>& arguments) {
+    if (arguments->haptic) {
+      invocation.action = [arguments] { return stability_haptic(*arguments); };
+      invocation.factorises = true;
+    } else {
+      invocation.action = [words = invocation.words] { return start(kStability, words); };
+    }
   });
 }
 
@@ -696,7 +576,7 @@ void add_help(CLI::App& app, Invocation& invocation) {
     const bool is_command =
         std::count(arguments->commands.begin(), arguments->commands.end(), arguments->topic);
     if (const OtherProgram* other = find_other_program(arguments->topic)) {
-      invocation.action = [other] { return start(*other, {"--help"}); };
+      invocation.action = [other, topic = arguments->topic] { return start(*other, {topic, "--help"}); };
       return;
     }
     if (is_command && !is_help_topic(arguments->topic)) {
@@ -737,10 +617,10 @@ void add_commands(CLI::App& app, Invocation& invocation) {
   add_run(app, invocation);
   add_compare(app, invocation);
   add_study(app, invocation);
-  add_validate(app, invocation);
+  add_other(app, kValidate);
   add_modes(app, invocation);
   add_other(app, kModel);
-  add_stability(app, invocation);
+  add_stability_of_loop_or_matrix(app, invocation);
   add_resume(app, invocation);
   add_replay(app, invocation);
   add_movie(app, invocation);
@@ -756,13 +636,12 @@ void add_commands(CLI::App& app, Invocation& invocation) {
 }  // namespace
 
 Invocation parse(int argc, char** argv) {
-  std::vector<std::string> words(argv + 1, argv + argc);
+  const std::vector<std::string> words(argv + 1, argv + argc);
   const auto command = std::find_if(words.begin(), words.end(),
                                     [](const std::string& word) { return !word.starts_with("-"); });
   const OtherProgram* other = command == words.end() ? nullptr : find_other_program(*command);
   if (!other) return parse_line(argc, argv, {kDescription, kExamples, add_commands});
-  words.erase(command);  // every other word, --help too, is for that program
-  Invocation invocation;
+  Invocation invocation;  // every word, --help too, is for that program
   invocation.action = [other, words] { return start(*other, words); };
   return invocation;
 }

@@ -46,6 +46,7 @@ int run_action(const Invocation& invocation) {
 
 Invocation parse_line(int argc, char** argv, const CommandLine& line) {
   Invocation invocation;
+  invocation.words.assign(argv + 1, argv + argc);
   CLI::App app(line.description, "palpate");
   app.set_version_flag("--version", [] {
     const store::Provenance made_by = store::provenance();

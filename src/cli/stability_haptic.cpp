@@ -13,9 +13,9 @@
 #include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/haptic_stability/z_width.h"
 #include "palpate/report/plot.h"
 #include "palpate/report/table.h"
-#include "palpate/stability/z_width.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/csv.h"
 #include "palpate/store/result_folder.h"
@@ -24,7 +24,7 @@
 namespace palpate::cli {
 namespace {
 
-using namespace palpate::stability;
+using namespace palpate::haptic_stability;
 namespace fs = std::filesystem;
 
 /// Where simulation and exact theory must agree.

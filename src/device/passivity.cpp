@@ -8,7 +8,7 @@
 #include "palpate/device/profile.h"
 
 // The observer's sum as a test of passivity. Let the loop be a wall, F = -K x - B (x_k - x_{k-1})/T, with D_k
-// = x_k - x_{k-1} and n ticks of delay. Then (src/stability/haptic_theory.cpp), for B = 0 or n = 0,
+// = x_k - x_{k-1} and n ticks of delay. Then, for B = 0 or n = 0 (src/haptic_stability/haptic_theory.cpp),
 //     sum -F_{k-1-n} D_k + b D_k^2/T  >=  K/2 (x_N^2 - x_0^2) + (b/T - (2n + 1) K/2 - |B|/T) sum D_k^2,
 // which is not negative for x_0 = 0 and b > (2n + 1) K T/2 + |B|. Without delay a triangle wave of period 2T
 // and amplitude A attains the bound: one cycle changes the sum by (8 A^2/T)(b - K T/2 - B).

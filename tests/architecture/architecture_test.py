@@ -105,6 +105,13 @@ class Planted(unittest.TestCase):
                      "validation/bad.cpp": '#include "palpate/cli/bad.h"\n'},
                     "validation may not include cli")
 
+    def test_the_matrix_is_no_part_of_the_library(self):
+        row = {"validation/stability/row.h": "\n"}
+        self.expect({**row, "src/haptic_stability/bad.cpp": '#include "stability/row.h"\n'},
+                    "haptic_stability may not include stability")
+        self.expect({**row, "validation/bad.cpp": '#include "stability/row.h"\n'},
+                    "validation may not include stability")
+
     def test_benchmarks_stand_above_the_library_and_below_their_program(self):
         self.expect({"src/loop/bad.cpp": '#include "product/fem.h"\n'}, "loop may not include bench")
         self.expect({"include/palpate/cli/bad.h": "\n",

@@ -39,12 +39,16 @@ ALLOWED = {
     "loop": BELOW_LOOP,
     "compare": ["core", "scene", "loop", "store"],  # core and scene: used in loop's headers
     "study": ["core", "scene", "loop", "store"],
-    "stability": BELOW_LOOP + ["loop"],  # builds its cases from the parts directly, as validation does
+    "haptic_stability": ["core", "mesh", "device", "tool", "scene", "loop"],
     "report": ["core", "mesh", "store"],
-    "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "study", "stability",
-            "report", "validation"],
+    "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "study",
+            "haptic_stability", "report"],
     "python": BELOW_LOOP + ["loop", "compare", "validation"],  # the module of `import palpate`
     "validation": BELOW_LOOP + ["loop", "compare", "report", "simbody"],  # the cases in validation/
+    # validation/stability: the matrix, which assembles its cases from the parts, as validation does
+    "stability": BELOW_LOOP + ["loop"],
+    # validation/program: the program behind `palpate validate` and `palpate stability`
+    "validation_program": ["core", "store", "report", "cli", "validation", "stability"],
     # benchmarks/product; its fem/: a beam made of the parts themselves, without a scene
     "bench": BELOW_LOOP + ["loop"],
     # benchmarks/product/program: the program behind `palpate bench`
@@ -52,10 +56,12 @@ ALLOWED = {
 }
 
 # Parts outside src/ and include/: the innermost folder counts.  #include lines name headers relative to the
-# first folder: "product/fem.h".
+# first folder: "product/fem.h", "stability/row.h".
 ELSEWHERE = {
     "benchmarks/product/program/": "bench_program",
     "benchmarks/product/": "bench",
+    "validation/program/": "validation_program",
+    "validation/stability/": "stability",
     "validation/": "validation",
 }
 
@@ -72,7 +78,7 @@ OUTSIDE = [
     ("Qhull", r"libqhull", ["src/proxy"]),
     ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/linear"]),
     ("Spectra", r"Spectra/", ["src/modes"]),
-    ("CLI11", r"CLI/", ["src/cli", "src/palpate/cli", "benchmarks/product/program"]),
+    ("CLI11", r"CLI/", ["src/cli", "src/palpate/cli", "benchmarks/product/program", "validation/program"]),
     ("pybind11", r"pybind11/", ["src/python"]),
     ("toml++", r"toml\+\+/", ["src/scene"]),
     ("SQLite", r"sqlite3\.h", ["src/store"]),
@@ -117,7 +123,7 @@ def part_of(path):
 def resolve(path, quoted, name, files):
     """Returns the file of the tree that an include refers to, or None if it is a system header."""
     beside = (Path(path).parent / name).as_posix()
-    candidates = ["include/" + name, "src/" + name, "benchmarks/" + name]
+    candidates = ["include/" + name, "src/" + name, "benchmarks/" + name, "validation/" + name]
     if quoted:
         pieces = []
         for piece in beside.split("/"):
@@ -236,7 +242,8 @@ def link_breaches(tree):
     """Applies the same table to the libraries that a part links: palpate::PART in its CMakeLists.txt."""
     out = []
     for listing in sorted([*(tree / "src").glob("*/CMakeLists.txt"),
-                           *(tree / "benchmarks/product").rglob("CMakeLists.txt")]):
+                           *(tree / "benchmarks/product").rglob("CMakeLists.txt"),
+                           *(tree / "validation").rglob("CMakeLists.txt")]):
         listing = listing.relative_to(tree).as_posix()
         own = part_of(listing)
         for number, line in enumerate((tree / listing).read_text(encoding="utf-8").splitlines(), 1):

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "palpate/stability/stability.h"
 #include "stability/lazy_stepper.h"
+#include "stability/stability.h"
 
 namespace palpate::lazy {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "palpate/core/error.h"
-#include "palpate/stability/stability.h"
+#include "stability/stability.h"
 
 namespace palpate::stability {
 

@@ -1,4 +1,4 @@
-#include "palpate/stability/stability.h"
+#include "stability/stability.h"
 
 #include <gtest/gtest.h>
 

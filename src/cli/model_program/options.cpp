@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "palpate/cli/help_formatter.h"
+#include "palpate/cli/option_checks.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/store/provenance.h"
@@ -47,14 +48,6 @@ The outcome is printed: counts, smallest dihedral angle (at least 8 degrees, 4 w
 error (at most 1 %), worst aspect ratio, seconds a step, peak memory.  Exit status 0, or 1 where the surface
 or the mesh was refused; the message says where, why, and what to do.  Ctrl-C ends it at once, with 130, and
 writes nothing.)";
-
-const CLI::Validator positive(
-    [](const std::string& text) {
-      double value = 0.0;
-      const bool usable = CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value);
-      return usable ? std::string{} : fmt::format("{} must be a positive, finite number", text);
-    },
-    "");
 
 void set_creases(const std::string& text, model::Options& options) {
   if (text == "auto") return;

@@ -23,15 +23,30 @@ inline constexpr OtherProgram kModel = {
 inline constexpr OtherProgram kBench = {
     "bench", "how long things take on this machine", "palpate-bench",
     "the packages do not include it; `./palpate bench` in a clone of the sources builds it"};
+inline constexpr OtherProgram kValidate = {"validate", "run the cases with a known answer",
+                                           "palpate-validation", "build the target palpate-validation"};
+inline constexpr OtherProgram kStability = {
+    "stability", "stiff and extreme cases against every integrator, each compared with theory",
+    kValidate.program, kValidate.absent};  ///< without --haptic
+inline constexpr OtherProgram kCases = {"cases", "the cases with a known answer, for `palpate list`",
+                                        kValidate.program, kValidate.absent};
 
-/// Returns the program that runs a command; null if palpate runs it.
+/// Returns the program that runs a command; null if palpate runs it, or decides by its options.
 const OtherProgram* find_other_program(std::string_view command);
 
 /// Returns the path of the program.  @throws Error if the file does not exist
 std::string path_of(const OtherProgram& other);
 
-/// Replaces this process by the program, with the command and these arguments; returns only by throwing.
+/// Returns whether the program's file exists.
+bool is_there(const OtherProgram& other);
+
+/// Replaces this process by the program; returns only by throwing.
+/// @param words  of the line, the command among them
 /// @throws Error if the program's file does not exist
-int start(const OtherProgram& other, const std::vector<std::string>& arguments);
+int start(const OtherProgram& other, std::vector<std::string> words);
+
+/// Runs the command without arguments, and returns its standard output.
+/// @throws Error if the program's file does not exist, or the program fails
+std::string output_of(const OtherProgram& other);
 
 }  // namespace palpate::cli

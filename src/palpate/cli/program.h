@@ -1,5 +1,7 @@
 #pragma once
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -14,6 +16,7 @@ struct Invocation {
   bool factorises = false;        ///< worth restarting with tuned linear algebra
   bool starts_processes = false;  ///< core's ProcessPool is made ready before anything is opened
   bool quiet = false, verbose = false;
+  std::vector<std::string> words{};  ///< of the line, without the program's name
 };
 
 /// Description of a program's command line.

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "palpate/haptic_stability/haptic_theory.h"
 #include "palpate/scene/description.h"
-#include "palpate/stability/haptic_theory.h"
 
-namespace palpate::stability {
+namespace palpate::haptic_stability {
 
 /// The stiffest virtual wall at one damping, by each verdict [N/m].  The coupling is the wall, the tool is
 /// held; `in_contact` is the stiffest coupling instead, with the tool free and pressed on the scene's
@@ -86,4 +86,4 @@ struct OperatingPoint {
 std::vector<OperatingPoint> operating_points(HapticLoop loop, const ToolContactRange& range,
                                              double duration_s);
 
-}  // namespace palpate::stability
+}  // namespace palpate::haptic_stability

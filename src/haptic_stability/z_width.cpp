@@ -1,4 +1,4 @@
-#include "palpate/stability/z_width.h"
+#include "palpate/haptic_stability/z_width.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "palpate/core/error.h"
 
-namespace palpate::stability {
+namespace palpate::haptic_stability {
 namespace {
 
 constexpr double kBisection = 2e-3;
@@ -104,4 +104,4 @@ std::vector<OperatingPoint> operating_points(HapticLoop loop, const ToolContactR
   return out;
 }
 
-}  // namespace palpate::stability
+}  // namespace palpate::haptic_stability

@@ -1,4 +1,4 @@
-#include "palpate/stability/haptic_theory.h"
+#include "palpate/haptic_stability/haptic_theory.h"
 
 #include <gtest/gtest.h>
 
@@ -6,15 +6,15 @@
 #include <cmath>
 #include <random>
 
+#include "haptic_stability/tool_section.h"
 #include "palpate/core/error.h"
 #include "palpate/device/profile.h"
+#include "palpate/haptic_stability/z_width.h"
 #include "palpate/loop/run.h"
 #include "palpate/mesh/source.h"
-#include "palpate/stability/z_width.h"
-#include "stability/tool_section.h"
 
 using namespace palpate;
-using namespace palpate::stability;
+using namespace palpate::haptic_stability;
 
 namespace {
 

@@ -7,8 +7,8 @@
 
 #include "palpate/core/error.h"
 #include "palpate/device/profile.h"
+#include "palpate/haptic_stability/z_width.h"
 #include "palpate/loop/world.h"
-#include "palpate/stability/z_width.h"
 #include "palpate/tool/tool.h"
 #include "tool_section.h"
 
@@ -23,7 +23,7 @@
 // the stiffest counts for the greatest value.  Damping: d A.  What yields by its mass (a free body) is taken
 // as held: stiffer.
 
-namespace palpate::stability {
+namespace palpate::haptic_stability {
 namespace {
 
 /// Of the tool: what its contacts depend on.
@@ -150,4 +150,4 @@ ToolContactRange contact_range(const scene::Description& d) {
   return out;
 }
 
-}  // namespace palpate::stability
+}  // namespace palpate::haptic_stability

@@ -1,7 +1,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "palpate/stability/stability.h"
+#include "stability.h"
 
 namespace palpate::stability {
 

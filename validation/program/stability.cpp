@@ -1,4 +1,4 @@
-#include "palpate/stability/stability.h"
+#include "stability/stability.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <map>
 
-#include "commands.h"
+#include "options.h"
 #include "palpate/cli/paths.h"
 #include "palpate/cli/progress.h"
 #include "palpate/cli/stop.h"

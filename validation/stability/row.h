@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "column.h"
-#include "palpate/stability/stability.h"
+#include "stability.h"
 
 namespace palpate::stability {
 

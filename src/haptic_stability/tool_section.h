@@ -1,7 +1,7 @@
 #pragma once
 #include "palpate/mesh/mesh.h"
 
-namespace palpate::stability {
+namespace palpate::haptic_stability {
 
 /// Area of the cut of a closed surface with a plane [m^2].
 /// @param normal  of the plane, a unit vector  @param height  of the plane along it [m]
@@ -12,4 +12,4 @@ double section_area(const TriMesh& surface, const Vec3& normal, double height);
 /// larger one share its planes, which costs 1.5 % at most.
 double largest_section(const TriMesh& surface);
 
-}  // namespace palpate::stability
+}  // namespace palpate::haptic_stability

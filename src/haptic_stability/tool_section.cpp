@@ -10,7 +10,7 @@
 // with corners at the heights z0 <= z1 <= z2 is below z with the share
 //     (z - z0)^2/((z1 - z0)(z2 - z0))            up to z1,
 //     1 - (z2 - z)^2/((z2 - z1)(z2 - z0))        beyond.
-namespace palpate::stability {
+namespace palpate::haptic_stability {
 namespace {
 
 Vec3 area_vector(const TriMesh& surface, Eigen::Index face) {
@@ -84,4 +84,4 @@ double largest_section(const TriMesh& surface) {
   return largest;
 }
 
-}  // namespace palpate::stability
+}  // namespace palpate::haptic_stability

@@ -1,4 +1,4 @@
-#include "palpate/stability/haptic_theory.h"
+#include "palpate/haptic_stability/haptic_theory.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -33,7 +33,7 @@
 // unit vectors.  The device is exact (arm_transition); the tool is taken by its scheme
 // (tool/fixed_tick.cpp).
 
-namespace palpate::stability {
+namespace palpate::haptic_stability {
 namespace {
 
 constexpr double kRounding = 1e-12;
@@ -175,4 +175,4 @@ double largest_damping(HapticLoop loop) {
   return low;
 }
 
-}  // namespace palpate::stability
+}  // namespace palpate::haptic_stability

@@ -4,7 +4,7 @@
 
 /// What theory says of one axis of a haptic loop (docs/theory/passivity.md).  K and B below are stiffness and
 /// damping of the coupling; with the tool held they are those of the virtual wall.
-namespace palpate::stability {
+namespace palpate::haptic_stability {
 
 using loop::HapticLoop;
 
@@ -36,4 +36,4 @@ double simulated_stiffness(HapticLoop loop, double damping, double duration_s, d
 /// The largest B at which kSoftest is stable: Z-width ends there.
 double largest_damping(HapticLoop loop);
 
-}  // namespace palpate::stability
+}  // namespace palpate::haptic_stability

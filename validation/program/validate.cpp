@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "commands.h"
+#include "options.h"
 #include "palpate/cli/paths.h"
 #include "palpate/cli/progress.h"
 #include "palpate/cli/stop.h"
@@ -187,6 +187,12 @@ int validate(const ValidateArguments& arguments) {
              arguments.inject_faults ? "faults make their cases fail" : "cases keep their bars",
              done < runs.size() ? fmt::format("; stopped before the other {}", runs.size() - done) : "");
   return missing.close(out.failed > 0 ? kExitError : 0);
+}
+
+int print_cases() {
+  for (const ValidationCase& one : validation::validation_cases())
+    fmt::print("{}\t{}{}\n", one.name, one.summary, one.slow ? " (slow)" : "");
+  return 0;
 }
 
 }  // namespace palpate::cli

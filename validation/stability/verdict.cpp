@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "palpate/stability/stability.h"
+#include "stability.h"
 
 namespace palpate::stability {
 

@@ -1,0 +1,85 @@
+#include "palpate/cli/stability_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "palpate/cli/option_checks.h"
+#include "palpate/cli/other_program.h"
+
+namespace palpate::cli {
+
+void add_stability(CLI::App& app, std::function<void(const std::shared_ptr<StabilityArguments>&)> then) {
+  CLI::App* command = app.add_subcommand(std::string(kStability.command), kStability.summary);
+  auto arguments = std::make_shared<StabilityArguments>();
+  command->add_option("--row", arguments->rows, "only this row; may be given more than once")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_option("--integrator", arguments->integrators, "only this one; may be given more than once")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_flag("--slow", arguments->slow, "also the rows that take minutes");
+  command->add_flag("--cells", arguments->cells,
+                    "print every cell with its figure, not only the unexpected ones");
+  command->add_option("--seeds", arguments->seeds, "random starts of the squashed and scattered bodies")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--jobs", arguments->jobs, "processes")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command
+      ->add_option("--limit-s", arguments->limit_s,
+                   "CPU time of a cell; in rows that take minutes ten times that [s]")
+      ->type_name("SECONDS")
+      ->check(duration)
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/stability")
+      ->type_name("DIR");
+  CLI::Option* haptic = command->add_flag(
+      "--haptic", arguments->haptic,
+      "instead: how stiff a wall the loop of a scene's device, coupling and tool renders, by passivity, by "
+      "its exact linear map, and by simulation");
+  command->add_option("SCENE", arguments->scene.scene, std::string("haptic: ") + kSceneHelp);
+  command->add_option("--set", arguments->scene.overrides, "haptic: change one value of the scene, KEY=VALUE")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)
+      ->needs(haptic);
+  command
+      ->add_option("--device-mass-kg", arguments->device_mass_kg,
+                   "haptic: of the device at its handle; default: the scene's, else 0.045")
+      ->check(CLI::Range(1e-4, 1e3))
+      ->needs(haptic);
+  command
+      ->add_option("--device-damping-n-s-m", arguments->device_damping_n_s_m,
+                   "haptic: of the device's own friction, without which no wall is passive; default: the "
+                   "scene's where it has a hand, else 0.1")
+      ->check(CLI::Range(0.0, 1e3))
+      ->needs(haptic);
+  command
+      ->add_option("--delay-ticks", arguments->delay_ticks,
+                   "haptic: from a sample to the force made of it; default: the scene's, else 0")
+      ->check(CLI::Range(0, 100))
+      ->needs(haptic);
+  command
+      ->add_option("--contact-stiffness-n-m", arguments->contact_stiffness_n_m,
+                   "haptic: least and greatest of the contacts at the tool; default: estimated")
+      ->type_name("LEAST GREATEST")
+      ->expected(2)
+      ->needs(haptic);
+  command->footer(R"(Examples:
+  palpate stability --jobs 2
+  palpate stability --row youngs-modulus --integrator cvode-bdf --cells
+  palpate stability --slow --seeds 100 -o out/stability
+  palpate stability --haptic press-ball --device-mass-kg 0.1 --delay-ticks 1
+
+Writes stability.csv, stability.json and report.html with the heat map; haptic: z_width.csv and z_width.svg.
+Exit status 0 when every cell is as theory expects; haptic: when passive lies within stable; else 1.)");
+  command->callback([arguments, then = std::move(then)] {
+    if (arguments->haptic && arguments->scene.scene.empty()) throw CLI::RequiredError("--haptic: SCENE");
+    // here, after options with a typing error were named: what follows such an option is no scene
+    if (!arguments->haptic && !arguments->scene.scene.empty()) throw CLI::RequiresError("SCENE", "--haptic");
+    if (arguments->haptic && !(arguments->rows.empty() && arguments->integrators.empty()))
+      throw CLI::ExcludesError("--haptic", "--row and --integrator");
+    then(arguments);
+  });
+}
+
+}  // namespace palpate::cli

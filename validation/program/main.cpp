@@ -1,0 +1,5 @@
+#include "options.h"
+
+int main(int argc, char** argv) {
+  return palpate::cli::run_program(argc, argv, palpate::cli::parse_validation);
+}
