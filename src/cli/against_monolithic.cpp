@@ -11,7 +11,8 @@ namespace {
 using compare::share_of_peak;
 
 std::string line_of(const char* what, double rms, double max, double peak, const char* unit) {
-  if (!(peak > compare::kLeastPeak)) return fmt::format("{} {:.3g} {} RMS: there is none", what, rms, unit);
+  if (!(peak > compare::kLeastPeak))
+    return fmt::format("{} {:.3g} {} RMS (the reference has none)", what, rms, unit);
   return fmt::format("{} {:.3g} {} RMS ({:.3g} % of the peak of {:.4g}), at most {:.3g} ({:.3g} %)", what,
                      rms, unit, 100.0 * share_of_peak(rms, peak), peak, max,
                      100.0 * share_of_peak(max, peak));
@@ -19,9 +20,9 @@ std::string line_of(const char* what, double rms, double max, double peak, const
 
 void add_lines(const std::string& whose, const compare::FeltError& felt, std::vector<std::string>& out) {
   const compare::TrajectoryError& e = felt.error;
-  out.push_back(whose + line_of("force off by", e.force_rms_n, e.force_max_n, felt.peak_force_n, "N"));
+  out.push_back(whose + line_of("force error", e.force_rms_n, e.force_max_n, felt.peak_force_n, "N"));
   out.push_back(whose +
-                line_of("torque off by", e.torque_rms_n_m, e.torque_max_n_m, felt.peak_torque_n_m, "N m"));
+                line_of("torque error", e.torque_rms_n_m, e.torque_max_n_m, felt.peak_torque_n_m, "N m"));
 }
 
 void add_figures(store::SummarySection& s, const compare::FeltError& felt) {
@@ -44,7 +45,7 @@ compare::AgainstMonolithic against_monolithic(const loop::World& world,
                                               bool real_time) {
   compare::AgainstMonolithic out;
   {
-    Progress progress("repeating it as one system");
+    Progress progress("computing the monolithic solution");
     out = compare::against_monolithic(
         world, records, real_time, [&progress](double fraction) { progress(fraction); }, &stop_flag());
   }
@@ -57,7 +58,7 @@ std::vector<std::string> against_monolithic_remarks(const scene::Description& de
   std::vector<std::string> out;
   if (!against.trouble.empty() || against.stopped) return out;
   const std::string what = fmt::format("against {}{}: ", against.made_by,
-                                       against.recorded_hand ? ", under the hand as it was recorded" : "");
+                                       against.recorded_hand ? ", with the recorded motion of the hand" : "");
   add_lines(what, against, out);
   for (std::size_t i = 0; i < against.more_hands.size(); ++i)
     add_lines(fmt::format("{}hand {}: ", what, description.hands[i].name), against.more_hands[i], out);

@@ -25,9 +25,9 @@ void print_clock(const loop::RealTimeResult& clock) {
              clock.cpu < 0 ? std::string("on any processor") : fmt::format("on processor {}", clock.cpu),
              clock.memory);
   fmt::print("  {:<18}{:>9} {:>9} {:>9} {:>9}\n", "", "p50", "p99", "p99.9", "max");
-  print_series("tick late", clock.lateness_s, 1e-6, "us");
-  print_series("tick's work", clock.work_s, 1e-6, "us");
-  print_series("exchange's latency", clock.latency_s, 1e-3, "ms");
+  print_series("tick lateness", clock.lateness_s, 1e-6, "us");
+  print_series("tick work", clock.work_s, 1e-6, "us");
+  print_series("exchange latency", clock.latency_s, 1e-3, "ms");
 }
 
 std::vector<std::string> clock_remarks(const loop::RunResult& result, const std::string& linearisation) {
@@ -39,33 +39,36 @@ std::vector<std::string> clock_remarks(const loop::RunResult& result, const std:
   add("real time: {} of {} ticks late by a tick or more; bodies and contact at {:.1f} Hz (target {:g} Hz)",
       clock.missed_ticks, clock.lateness_s.size(), clock.exchanges_per_s(), 1.0 / clock.period_s);
   if (clock.left_out_ticks > 0)
-    add("real time: the clock restarted after ticks that were more than {:g} ms late: {} ticks were left out",
+    add("real time: the clock was restarted after ticks that were more than {:g} ms late; {} ticks were "
+        "skipped",
         1e3 * clock.stall_s, clock.left_out_ticks);
   if (clock.stalls > 0)
-    add("real time: no wrench was sent for more than {:g} ms, {} times: the force ramped in again",
+    add("real time: no wrench was sent for more than {:g} ms, {} times; each time the force was ramped in "
+        "again",
         1e3 * clock.stall_s, clock.stalls);
   if (const double exchanges = static_cast<double>(clock.latency_s.size()); exchanges > 0.0) {
     const dynamics::StepperCounters& c = result.counters;
     const double step = c.force_s + c.tangent_s + c.solver.symbolic_s + c.solver.factor_s + c.solver.solve_s,
                  query = result.query_s, linearise = result.linearise_s;
-    add("real time: an exchange takes {:.1f} ms in the mean: query {:.1f}, linearisation {:.1f}, step of the "
+    add("real time: an exchange takes {:.1f} ms on average: query {:.1f}, linearisation {:.1f}, step of the "
         "bodies {:.1f}",
         1e3 * (query + linearise + step) / exchanges, 1e3 * query / exchanges, 1e3 * linearise / exchanges,
         1e3 * step / exchanges);
   }
   if (clock.stretched_periods > 0)
-    add("real time: {} periods reused the contact query of the period before, to catch up",
+    add("real time: {} periods reused the contact query of the previous period to catch up",
         clock.stretched_periods);
   if (clock.dropped_periods > 0)
-    add("real time: the bodies were not advanced in {} periods, {:.3g} s in all: they are slower than real "
-        "time",
+    add("real time: the bodies were not advanced in {} periods ({:.3g} s in total), because they are slower "
+        "than real time",
         clock.dropped_periods, clock.dropped_s());
   if (clock.stretched_periods + clock.dropped_periods > 0 && linearisation != "frozen")
     add("real time: --set exchange.linearisation={} makes an exchange cheaper{}",
         linearisation == "condensed" ? "points" : "frozen",
-        linearisation == "condensed" ? "" : ", and the error of the force far larger");
+        linearisation == "condensed" ? "" : ", but the error of the force much larger");
   if (clock.unrecorded_ticks > 0)
-    add("real time: {} ticks are not recorded: the recorder's queue was full", clock.unrecorded_ticks);
+    add("real time: {} ticks were not recorded, because the queue of the recorder was full",
+        clock.unrecorded_ticks);
   return out;
 }
 

@@ -43,7 +43,7 @@ void print_regions(const loop::World& world) {
     const auto add = [&](const std::string& name, int tetrahedra, double volume, int material) {
       const fem::Material& m = body.term->materials()[static_cast<std::size_t>(material)];
       rows.push_back({body.name, name, std::to_string(tetrahedra), fmt::format("{:.3g}", volume),
-                      fmt::format("{:.3g}", m.density * volume), material > 0 ? "its own" : "the body's",
+                      fmt::format("{:.3g}", m.density * volume), material > 0 ? "own" : "of the body",
                       fmt::format("{:.4g}", m.youngs_modulus), fmt::format("{:g}", m.poissons_ratio),
                       fmt::format("{:g}", m.density), fmt::format("{:g}", m.mass_damping),
                       fmt::format("{:g}", m.stiffness_damping)});
@@ -70,7 +70,7 @@ void print_bones(const loop::World& world) {
     const Pose pose = world.bone_pose(bone);
     const Vec3 rotation = rotation_vector(pose.rotation);
     rows.push_back({bone.name,
-                    bone.path   ? "a function of time"
+                    bone.path   ? "prescribed motion"
                     : bone.tree ? "on a joint"
                                 : "free",
                     bone.path ? "-" : fmt::format("{:.3g}", bone.mass), std::to_string(bone.dofs.size() / 3),
@@ -95,7 +95,7 @@ void print_system(loop::World& world, double assemble_s, double memory_mib) {
                        static_cast<Eigen::Index>(world.system.driven_dofs().size())));
     add("held or driven directions", std::to_string(world.system.driven_dofs().size()));
     add("blocks of the step matrix (3 x 3)", std::to_string(A.body.slot_count()));
-    if (A.border_size() > 0) add("width of its border", std::to_string(A.border_size()));
+    if (A.border_size() > 0) add("border width of the step matrix", std::to_string(A.border_size()));
     add("integrator", world.stepper->name());
   }
   add("period of the loop [s]", fmt::format("{:g}", loop::period_of(world.description)));
@@ -104,7 +104,7 @@ void print_system(loop::World& world, double assemble_s, double memory_mib) {
   add("memory of the assembled scene [MiB]", fmt::format("{:.1f}", memory_mib));
   std::vector<loop::MeshCounts> counts;
   for (const loop::Body& body : world.bodies) counts.push_back(loop::counts_of(body));
-  add("memory of its run, about [MiB]",
+  add("estimated memory of a run [MiB]",
       fmt::format("{:.0f}", loop::estimate_memory(world.description, counts).total() / 1048576.0));
   fmt::print("{}", report::format_table({"system", ""}, rows));
 }

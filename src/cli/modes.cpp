@@ -46,7 +46,7 @@ void draw_modes(const loop::World& world, const modes::Modes& modes, const std::
   for (int j = 0; j < modes.count() && pictured.size() < kPictured; ++j)
     if (modes.omega_squared[j] != 0.0) pictured.push_back(j);
   if (pictured.empty())
-    fail("--picture: the first {} modes are rigid motions; ask for more (--count)", modes.count());
+    fail("--picture: the first {} modes are rigid motions; request more modes (--count)", modes.count());
   Eigen::AlignedBox3d box;
   for (const loop::Body& body : world.bodies)
     for (const auto& x : body.placed.colwise()) box.extend(Vec3(x));
@@ -103,8 +103,8 @@ int modes(const ModesArguments& arguments) {
              arguments.picture && missing.empty() ? ", modes.png" : "");
   if (!found.converged)
     fail(
-        "the modes did not converge: see their residuals; a mesh with better elements, or fewer modes "
-        "(--count), may help");
+        "the modes did not converge (see their residuals); improve the elements of the mesh, or request "
+        "fewer modes (--count)");
   return missing.close(0);
 }
 

@@ -120,7 +120,7 @@ int movie(const MovieArguments& arguments, Undelivered& missing) {
   const double shown_s = between_s * arguments.slow;
   const std::unique_ptr<FrameSink> sink = make_movie(path, shown_s);
   frames.save(*world, {sink.get()}, true, missing);
-  fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; {:.4g} a second as it is played\n",
+  fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; {:.4g} per second when played\n",
              sink->written(), frames.count(), path, between_s, 1.0 / shown_s);
   if (!stop_flag().load()) return 0;
   fmt::print(stderr, "palpate: stopped while drawing frames; those written are complete\n");

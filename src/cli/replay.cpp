@@ -59,7 +59,9 @@ int repeat_ticks(const scene::Description& description, const std::vector<loop::
     identical &=
         print_difference(description, i, records[i].ticks, loop::retrace(description, records, i)).identical;
   if (!identical)
-    fail("replay: the ticks differ from those recorded: the run was made by another version or machine");
+    fail(
+        "replay: the ticks differ from those recorded; the run was made by another version or on another "
+        "machine");
   return 0;
 }
 
@@ -67,7 +69,8 @@ int repeat_ticks(const scene::Description& description, const std::vector<loop::
 
 int replay(const ReplayArguments& arguments) {
   const scene::Description recorded = scene_of(arguments.run, {});
-  if (!recorded.tool) fail("replay: the scene of {} has no [tool]: no hand felt anything", arguments.run);
+  if (!recorded.tool)
+    fail("replay: the scene of {} has no [tool], so there are no ticks to replay", arguments.run);
   const std::vector<loop::HapticRecord> records = loop::read_haptic_records(arguments.run, recorded);
   if (!arguments.changes()) return repeat_ticks(recorded, records);
 
@@ -76,7 +79,7 @@ int replay(const ReplayArguments& arguments) {
     overrides.push_back(fmt::format("integrator.name=\"{}\"", arguments.integrator));
   const scene::Description description = scene_of(arguments.run, overrides);
   if (description.hands.size() + 1 != records.size())
-    fail("replay: the scene has {} hands now, and {} were recorded", description.hands.size() + 1,
+    fail("replay: the scene now has {} hands, but {} were recorded", description.hands.size() + 1,
          records.size());
   if (records.front().ticks.empty()) fail("replay: the record has no ticks");
   const double start = wall_seconds();
@@ -86,10 +89,7 @@ int replay(const ReplayArguments& arguments) {
       arguments.folder.empty() ? default_folder("replay-" + short_name(description)) : arguments.folder;
   std::error_code none;
   if (std::filesystem::equivalent(folder, arguments.run, none))
-    fail(
-        "{}: is the run that is to be replayed, and the replay would write over it; choose another folder "
-        "with -o DIR",
-        folder);
+    fail("{}: the replay would overwrite the run that it replays; choose another folder with -o DIR", folder);
   const store::ResultFolder mine(folder);
   remove_run_files(description, folder);
   Ticks ticks(records.size());
@@ -114,7 +114,7 @@ int replay(const ReplayArguments& arguments) {
   if (!result.status.ok())
     fail("{} failed at t = {} s: {}", description.integrator.name, time_text(result.status.t),
          result.status.message);
-  fmt::print("force on the hand in {}, against this:\n", arguments.run);
+  fmt::print("force on the hand in {}, compared with this replay:\n", arguments.run);
   for (std::size_t i = 0; i < records.size(); ++i)
     print_difference(description, i, ticks.of[i], records[i].ticks);
   return result.stopped ? kExitStopped : 0;

@@ -22,9 +22,8 @@ bool is_complete(const std::filesystem::path& folder) {
 void check_version(const Resumption& r) {
   if (const std::string ours = store::full_version(); r.checkpoint.version != ours)
     fail(
-        "{}: was written by palpate {}, and this is {}; a run goes on under the same version alone: take "
-        "that "
-        "one, or run the scene anew",
+        "{}: was written by palpate {}, but this is {}; a run can only be resumed by the same version. Use "
+        "that version, or run the scene again",
         checkpoint_path(r.folder), r.checkpoint.version, ours);
 }
 
@@ -32,28 +31,25 @@ void check_version(const Resumption& r) {
 void compare_processors(const Resumption& r) {
   const auto compare = [](const char* what, const std::string& then, const std::string& now) {
     if (then != now)
-      fmt::print(
-          stderr,
-          "palpate: the run began {} ({}, this is {}): it continues, but its results do not match bit for "
-          "bit those of an uninterrupted run\n",
-          what, then, now);
+      fmt::print(stderr,
+                 "palpate: the run began {} ({}, this is {}); it continues, but its results are not bitwise "
+                 "identical to those of an uninterrupted run\n",
+                 what, then, now);
   };
   compare("on another processor", r.identity.cpu, store::provenance().cpu);
-  compare("with other instructions", r.identity.instructions, instructions_in_use());
+  compare("with another instruction set", r.identity.instructions, instructions_in_use());
 }
 
 scene::Description scene_of(const Resumption& r) {
   SceneArguments scene = r.identity.arguments.scene;
   scene.scene = r.identity.scene_path;
   if (!std::filesystem::exists(scene.scene))
-    fail("{}: the scene of this run is not there any more; put it back, or run another one anew",
-         scene.scene);
+    fail("{}: the scene of this run no longer exists; restore it, or start a new run", scene.scene);
   const scene::Description description = scene_of(scene);
   if (description.source != r.checkpoint.scene_source)
     fail(
-        "{}: the scene has changed since the run began, and what was recorded belongs to the old one; change "
-        "it "
-        "back, or run it anew",
+        "{}: the scene has changed since the run began, so the recorded data do not belong to it; restore "
+        "the old scene, or run it again",
         scene.scene);
   return description;
 }
@@ -62,16 +58,17 @@ scene::Description scene_of(const Resumption& r) {
 
 int resume(const ResumeArguments& arguments) {
   const std::filesystem::path folder(arguments.run);
-  if (!std::filesystem::is_directory(folder)) fail("{}: no such folder; name that of a run", arguments.run);
+  if (!std::filesystem::is_directory(folder))
+    fail("{}: no such folder; give the folder of a run", arguments.run);
   if (is_complete(folder)) {
-    fmt::print("{}: the run is complete; there is nothing to go on with\n", arguments.run);
+    fmt::print("{}: the run is complete; there is nothing to resume\n", arguments.run);
     return 0;
   }
   const std::string path = checkpoint_path(arguments.run);
   if (!std::filesystem::exists(path))
     fail(
-        "{}: no checkpoint; the run was started without --checkpoint-every, or ended before its first one: "
-        "run the scene anew",
+        "{}: no checkpoint; the run was started without --checkpoint-every, or ended before its first "
+        "checkpoint; run the scene again",
         path);
   Resumption r{arguments.run, {}, store::read_checkpoint(path), {}};
   r.from.archive = Archive(r.checkpoint.values, path);

@@ -162,7 +162,8 @@ struct Outcome {
   std::string word, message;
 };
 /// Written when the run begins, so that one that is killed is known for what it is.
-const Outcome kUnfinished{"unfinished", "it is running, or was killed; data written so far are complete"};
+const Outcome kUnfinished{"unfinished",
+                          "the run is in progress or was killed; data written so far are complete"};
 
 void keep_summary(const loop::World& world, const Ran& ran,
                   const std::optional<compare::AgainstMonolithic>& against, const RunArguments& arguments,
@@ -196,11 +197,11 @@ Look check_pictures(const RunArguments& arguments, const scene::Description& des
   if (arguments.contact_picture && description.contacts.empty())
     fail("--contact-picture: the scene has no [[contact]]");
   const bool movie = !arguments.movie.empty();
-  if (arguments.frames_per_s > 0.0 && !arguments.frames) fail("--frames-per-s belongs to --frames");
+  if (arguments.frames_per_s > 0.0 && !arguments.frames) fail("--frames-per-s needs --frames");
   if (arguments.frames_per_s > 0.0 && movie)
-    fail("--frames-per-s: beside --movie the frames are those of the movie; say --fps and --slow");
-  if ((arguments.fps > 0.0 || arguments.slow != 1.0) && !movie) fail("--fps and --slow belong to --movie");
-  if (!arguments.size.empty() && !arguments.frames && !movie) fail("--size belongs to --frames and --movie");
+    fail("--frames-per-s: with --movie the frames are those of the movie; use --fps and --slow instead");
+  if ((arguments.fps > 0.0 || arguments.slow != 1.0) && !movie) fail("--fps and --slow need --movie");
+  if (!arguments.size.empty() && !arguments.frames && !movie) fail("--size needs --frames or --movie");
   if (!arguments.picture && !arguments.contact_picture && !arguments.frames && !movie) return {};
   Look look{check_picture(arguments.shade, description)};
   if (!arguments.size.empty()) look.size = frame_size(arguments.size);
@@ -242,13 +243,13 @@ bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& a
   int least = frames.count();
   for (const FrameSink* sink : sinks) least = std::min(least, sink->written());
   if (pictures) {
-    fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; as a movie in real time:\n",
+    fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; to make a movie in real time:\n",
                pictures->written(), frames.count(), path, between_s);
     fmt::print("  ffmpeg -framerate {:g} -i {}/%04d.png -pix_fmt yuv420p {}.mp4\n", 1.0 / between_s, path,
                path);
   }
   if (movie)
-    fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; {:.4g} a second as it is played\n",
+    fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; {:.4g} per second when played\n",
                movie->written(), frames.count(), arguments.movie, between_s, 1.0 / shown_s);
   return !run_stopped && stop_flag().load() && least < frames.count();
 }
@@ -257,8 +258,10 @@ bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& a
 void print_files(const scene::Description& description, const std::string& folder) {
   fmt::print("in {}: {}\n", folder, fmt::join(run_files(description, folder), ", "));
   if (!description.record)
-    fmt::print("states{} were not kept: the scene has no [record]; --set record.states=true keeps them\n",
-               description.tool ? " and the force over time" : "");
+    fmt::print(
+        "states{} were not written, because the scene has no [record]; --set record.states=true writes "
+        "them\n",
+        description.tool ? " and the force over time" : "");
 }
 
 /// @param from  where it goes on, null at its start
@@ -313,8 +316,8 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   if (resumption) {
     if (identity.bodies != resumption->identity.bodies)
       fail(
-          "{}: a file that the scene names (a mesh, a recording) has changed since the run began; bring the "
-          "old one back, or run the scene anew",
+          "{}: a file used by the scene (a mesh, a recording) has changed since the run began; restore it, "
+          "or run the scene again",
           identity.scene_path);
     resumption->from.counted = counters::snapshot();
   }
@@ -377,7 +380,7 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   recorder.reset();
   if (trace) {
     trace->close();
-    fmt::print("trace: {} attempted steps, {} rejected; an error of 1 is the error test's tolerance\n",
+    fmt::print("trace: {} attempted steps, {} rejected; an error of 1 is the tolerance of the error test\n",
                trace->attempts(), trace->rejected());
   }
 
@@ -401,7 +404,7 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
     print_files(description, folder);
     if (frames) frames_cut = keep_frames(*world, *frames, arguments, folder, result.stopped, missing);
   } else {
-    fmt::print("no file was written: the scene has no [record]\n");
+    fmt::print("no file was written, because the scene has no [record]\n");
   }
   if (!result.status.ok())
     fail(

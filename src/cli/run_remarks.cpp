@@ -32,13 +32,13 @@ void add_device_counts(const loop::World& world, std::size_t hand, Remarks& out)
 
 void add_ticks(const loop::RunResult& result, Remarks& out) {
   if (result.rejected_ticks > 0)
-    out.push_back(
-        fmt::format("in {} ticks the wrench was not finite, or time did not advance: forces fell to zero",
-                    result.rejected_ticks));
+    out.push_back(fmt::format(
+        "in {} ticks the wrench was not finite or time did not advance; the force was ramped to zero",
+        result.rejected_ticks));
   if (result.outside_ticks > 0)
     out.push_back(
-        fmt::format("in {} ticks the handle was outside the device's workspace, where forces fade to zero; "
-                    "move it by device.workspace_center_m",
+        fmt::format("in {} ticks the handle was outside the workspace of the device, where forces fade to "
+                    "zero; move the workspace by device.workspace_center_m",
                     result.outside_ticks));
 }
 
@@ -56,7 +56,7 @@ void add_quadrature(const loop::World& world, Remarks& out) {
   for (const loop::Overlap& o : loop::overlaps_of(world)) {
     if (o.quadrature_error == 0.0) continue;
     text +=
-        fmt::format("{}{} {:.2g} % of the largest force (bound; one point has {:.2g} %)",
+        fmt::format("{}{} {:.2g} % of the largest force (bound; largest share of one point {:.2g} %)",
                     text.empty() ? "" : ", ", o.pair, 100.0 * o.quadrature_error, 100.0 * o.largest_share);
   }
   if (!text.empty()) out.push_back(fmt::format("contact quadrature: {}", text));
@@ -74,19 +74,19 @@ void add_reduction_errors(const loop::World& world, Remarks& out) {
         "{}: reduced response of the bodies: error at most {:.2g} % (bound) in {} of {} exchanges", e.tool,
         100.0 * (e.beyond > 0 ? e.wanted : e.largest), e.exchanges - e.beyond, e.exchanges);
     if (e.beyond > 0)  // a bound beyond 100 % says nothing
-      text += fmt::format("; in {} the iteration ended at its limit with bounds up to {:.2g} %{}", e.beyond,
-                          100.0 * e.largest, e.largest > 1.0 ? ", which say nothing" : "");
+      text += fmt::format("; in {} the iteration stopped at its limit with bounds up to {:.2g} %{}", e.beyond,
+                          100.0 * e.largest, e.largest > 1.0 ? ", which are not informative" : "");
     if (e.factored > 0) text += fmt::format("; exact (factored) in {}", e.factored);
     out.push_back(text);
   }
 }
 
 void add_port(const loop::PortEnergy& port, Remarks& out) {
-  out.push_back(fmt::format(
-      "energy at the device's port: least {:.3g} J, at the end {:.3g} J; the passivity controller "
-      "dissipated {:.3g} J in {} ticks, {:.2g} % of the motors' work",
-      port.least, port.energy, port.controller_dissipated, port.controller_ticks,
-      port.work > 0.0 ? 100.0 * port.controller_dissipated / port.work : 0.0));
+  out.push_back(
+      fmt::format("energy at the device port: minimum {:.3g} J, at the end {:.3g} J; the passivity "
+                  "controller dissipated {:.3g} J in {} ticks, {:.2g} % of the work of the motors",
+                  port.least, port.energy, port.controller_dissipated, port.controller_ticks,
+                  port.work > 0.0 ? 100.0 * port.controller_dissipated / port.work : 0.0));
 }
 
 }  // namespace
@@ -104,9 +104,9 @@ void OverlapWatch::look(const loop::World& world, double t) {
     most_[i] = HUGE_VAL;
     if (o.of_itself) {
       log::warn(
-          "contact {} at t = {:.6g} s: penetration reached {:.3g} mm; overlaps of a body with itself are "
-          "found up to {:.3g} mm, and what lies deeper is not pushed apart. Increase "
-          "contact.stiffness_pa_m, or press less deeply",
+          "contact {} at t = {:.6g} s: penetration reached {:.3g} mm; self-contact detects overlaps up to "
+          "{:.3g} mm, and deeper points are not separated. Increase contact.stiffness_pa_m, or press less "
+          "deeply",
           o.pair, t, 1e3 * o.deepest_m, 1e3 * o.half_width_m / loop::Overlap::kOwnShare);
       continue;
     }
@@ -114,8 +114,8 @@ void OverlapWatch::look(const loop::World& world, double t) {
         "contact {} at t = {:.6g} s: penetration reached {:.3g} mm, more than half the thickness of the "
         "thinner side ({:.3g} mm): {}",
         o.pair, t, 1e3 * o.deepest_m, 2e3 * o.half_width_m,
-        t == 0.0 ? "what begins within the other is pushed out at the nearest side, with all its force at "
-                   "once. Let the scene begin with the two apart"
+        t == 0.0 ? "bodies that overlap at the start are pushed out at the nearest side, with the full force "
+                   "at once. Separate the two in the scene"
                  : "the two may pass through each other. Increase contact.stiffness_pa_m, decrease "
                    "body.youngs_modulus_pa, or press less deeply");
   }

@@ -70,10 +70,11 @@ bool libraries_load(char** argv, char** envp) {
                : HUGE_VAL;
   };
   std::array<char, 256> text{};
-  const int size = std::snprintf(text.data(), text.size(),
-                                 "palpate: error: the libraries do not load within %.0f MiB of addresses "
-                                 "(ulimit -v, ulimit -d): OpenBLAS alone takes 128 MiB; raise the limit\n",
-                                 std::min(mib(RLIMIT_AS), mib(RLIMIT_DATA)));
+  const int size =
+      std::snprintf(text.data(), text.size(),
+                    "palpate: error: the libraries cannot be loaded within %.0f MiB of address space (ulimit "
+                    "-v, ulimit -d); OpenBLAS alone needs 128 MiB. Raise the limit\n",
+                    std::min(mib(RLIMIT_AS), mib(RLIMIT_DATA)));
   const ssize_t written = ::write(STDERR_FILENO, text.data(), static_cast<std::size_t>(std::max(size, 0)));
   ::_exit(written < 0 ? 3 : 1);
 }

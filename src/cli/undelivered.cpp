@@ -32,7 +32,7 @@ void Undelivered::add(const report::RunReport& report) {
 int Undelivered::close(int status) const {
   if (things_.empty() || status == kExitStopped) return status;
   std::fflush(stdout);  // the last line of both
-  fmt::print(stderr, "palpate: incomplete: there is no {}\n", fmt::join(things_, "; no "));
+  fmt::print(stderr, "palpate: incomplete: missing {}\n", fmt::join(things_, "; "));
   return status == 0 ? kExitIncomplete : status;
 }
 

@@ -91,8 +91,9 @@ class AnalyticSource final : public SampleSource {
   bool follows() const override { return kMaterial; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     if constexpr (kMaterial) {
-      PALPATE_CHECK(samples.size() == kept_.size(), "{}: {} samples follow, {} points were kept",
-                    Shape::kName, samples.size(), kept_.size());
+      PALPATE_CHECK(samples.size() == kept_.size(),
+                    "{}: {} samples passed to follow(), but the query kept {} points", Shape::kName,
+                    samples.size(), kept_.size());
       if (samples.empty()) return;
       surface_.update(state);
       const Pose pose = motion_->pose(state), inverse = pose.inverse();
@@ -255,8 +256,8 @@ class AnalyticSource final : public SampleSource {
     if (tunnelled_ == 0 || warned_) return;
     warned_ = true;
     log::warn(
-        "contact at t = {:.6g} s: {} {} went through the {} between two queries, unseen; refresh "
-        "contact more often (contact_refresh_s), make the contact stiffer, or the {} thicker",
+        "contact at t = {:.6g} s: {} {} tunnelled through the {} between two queries. Decrease "
+        "exchange.contact_refresh_s, increase the contact stiffness, or make the {} thicker",
         t, tunnelled_, kMaterial ? "points" : "vertices", Shape::kName, Shape::kName);
   }
 

@@ -104,8 +104,9 @@ class BallSource final : public SampleSource {
     place(state);
     followed_.clear();
     sample(nearest_.gap - ball_.radius, followed_);
-    PALPATE_CHECK(samples.size() == followed_.size(), "ball on {}: {} samples follow, the query made {}",
-                  Shape::kName, followed_.size(), samples.size());
+    PALPATE_CHECK(samples.size() == followed_.size(),
+                  "ball on {}: follow() yields {} samples, but the query made {}", Shape::kName,
+                  followed_.size(), samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) followed_[i].source = samples[i].source;
     std::copy(followed_.begin(), followed_.end(), samples.begin());
   }
@@ -117,7 +118,8 @@ class BallSource final : public SampleSource {
   double place(const dynamics::StateView& state) {
     const Pose own = ball_.motion->pose(state), shape_pose = motion_->pose(state);
     c_ = own * ball_.centre;
-    PALPATE_CHECK(c_.allFinite(), "contact query at t = {}: a ball's position is not finite", state.time);
+    PALPATE_CHECK(c_.allFinite(), "contact query at t = {}: the position of a ball is not finite",
+                  state.time);
     inverse_ = shape_pose.inverse();
     shape_.move_to(shape_pose);
     nearest_ = shape_.at(c_);
@@ -185,8 +187,8 @@ class BallSource final : public SampleSource {
     tunnelled_ += crossed;
     if (!crossed || tunnelled_ > 1) return;
     log::warn(
-        "contact at t = {:.6g} s: a ball's centre went through the {} between two queries, unseen; refresh "
-        "contact more often (contact_refresh_s), make the contact stiffer, or the {} thicker",
+        "contact at t = {:.6g} s: the centre of a ball tunnelled through the {} between two queries. "
+        "Decrease exchange.contact_refresh_s, increase the contact stiffness, or make the {} thicker",
         t, Shape::kName, Shape::kName);
   }
 

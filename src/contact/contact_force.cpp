@@ -214,7 +214,7 @@ double ContactForce::dissipated_power(const dynamics::StateView& state) {
 }
 
 SecantTangents::SecantTangents(ContactForce& contact) : contact_(*contact.impl_) {
-  PALPATE_CHECK(contact_.laws_kept.empty(), "SecantTangents lives twice");
+  PALPATE_CHECK(contact_.laws_kept.empty(), "two SecantTangents exist at the same time");
   for (auto& pair : contact_.pairs) {
     contact_.laws_kept.push_back(pair.law);
     pair.law.symmetric_tangent = pair.law.secant_friction = true;

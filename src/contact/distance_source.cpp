@@ -121,8 +121,9 @@ class DistanceSource final : public SampleSource {
   bool follows() const override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     const std::vector<distance::Spring>& springs = contact_.springs();
-    PALPATE_CHECK(samples.size() == springs.size(), "distance: {} samples follow, {} were found",
-                  samples.size(), springs.size());
+    PALPATE_CHECK(samples.size() == springs.size(),
+                  "distance: {} samples passed to follow(), but the query found {}", samples.size(),
+                  springs.size());
     if (samples.empty()) return;
     update(state);
     contact_.follow(carrying(0), carrying(1));
@@ -172,7 +173,7 @@ class DistanceSource final : public SampleSource {
     const auto found = std::find_if(faces.begin(), faces.end(), [&](int f) {
       return skin.given_face[static_cast<std::size_t>(f)] == face;
     });
-    PALPATE_CHECK(found != faces.end(), "face {} is none of its own vertex's", face);
+    PALPATE_CHECK(found != faces.end(), "face {} is missing from the faces around its first vertex", face);
     const auto cluster = [](int f) { return f / distance::kClusterFaces; };
     return contact_.may_touch(cluster(around(vertex).front()), cluster(*found));
   }

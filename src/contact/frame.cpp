@@ -39,7 +39,7 @@ class BlockFrame final : public MovingFrame {
  private:
   const dynamics::Block& block(const dynamics::StateView& state) const {
     const dynamics::Block* b = state.layout->find(block_id_);
-    PALPATE_CHECK(b && b->q_size == 7 && b->u_size == 6, "block {} is no free rigid body of this State",
+    PALPATE_CHECK(b && b->q_size == 7 && b->u_size == 6, "block {} is not a free rigid body of this State",
                   block_id_);
     return *b;
   }
@@ -55,7 +55,8 @@ Pose continued(const Pose& pose, const Twist& twist, double dt) {
 /// Returns the knot at or before t, or the first knot.
 template <class Knots>
 std::size_t knot_before(const Knots& knots, double t) {
-  PALPATE_CHECK(!knots.empty(), "a trajectory frame without a knot was asked for its pose at t = {}", t);
+  PALPATE_CHECK(!knots.empty(),
+                "pose of a trajectory frame requested at t = {}, before any knot was appended", t);
   const auto after = std::upper_bound(knots.begin(), knots.end(), t,
                                       [](double value, const auto& k) { return value < k.t; });
   return after == knots.begin() ? 0 : static_cast<std::size_t>(after - knots.begin()) - 1;
@@ -79,8 +80,8 @@ std::shared_ptr<MovingFrame> block_frame(int block_id) { return std::make_shared
 void TrajectoryFrame::clear() { knots_.clear(); }
 
 void TrajectoryFrame::append(double t, const Pose& pose, const Twist& twist) {
-  PALPATE_CHECK(knots_.empty() || t > knots_.back().t, "knot at t = {} after the one at {}", t,
-                knots_.back().t);
+  PALPATE_CHECK(knots_.empty() || t > knots_.back().t,
+                "knot at t = {} must be later than the previous knot at t = {}", t, knots_.back().t);
   knots_.push_back({t, pose, twist});
 }
 

@@ -12,7 +12,7 @@ FrameVertices::FrameVertices(FrameSurface surface) : surface_(std::move(surface)
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
     const auto corner = mesh.faces.col(f);
     PALPATE_CHECK(corner.minCoeff() >= 0 && corner.maxCoeff() < mesh.vertices.cols(),
-                  "rigid contact surface: face {} names a vertex that is not there", f);
+                  "rigid contact surface: face {} has a vertex index out of range", f);
     const Vec3 a = mesh.vertices.col(corner[0]), b = mesh.vertices.col(corner[1]),
                c = mesh.vertices.col(corner[2]);
     const Vec3 third = (b - a).cross(c - a) / 6.0;
@@ -28,8 +28,8 @@ void FrameVertices::update(const dynamics::StateView& state) {
   R_ = pose_.rotation.toRotationMatrix();
   positions_.noalias() = R_ * surface_.mesh.vertices;
   positions_.colwise() += pose_.translation;
-  PALPATE_CHECK(positions_.allFinite(), "contact query at t = {}: a rigid surface's position is not finite",
-                state.time);
+  PALPATE_CHECK(positions_.allFinite(),
+                "contact query at t = {}: the position of a rigid surface is not finite", state.time);
 }
 
 SurfacePoint FrameVertices::vertex_point(int vertex) const {

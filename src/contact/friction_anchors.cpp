@@ -101,8 +101,9 @@ void FrictionAnchors::renew(std::span<ContactSample> samples, std::span<const in
 void FrictionAnchors::follow(std::span<ContactSample> samples, const dynamics::StateView& state,
                              const std::vector<FrameState>& frames) const {
   if (anchors_.empty()) return;
-  PALPATE_CHECK(samples.size() == anchors_.size(), "friction: {} samples follow, {} have anchors",
-                samples.size(), anchors_.size());
+  PALPATE_CHECK(samples.size() == anchors_.size(),
+                "friction: {} samples passed to follow(), but {} have anchors", samples.size(),
+                anchors_.size());
   for (std::size_t i = 0; i < samples.size(); ++i)
     samples[i].deflection_rate = samples[i].gap < 0.0 && samples[i].area > 0.0
                                      ? Vec3(deflection(anchors_[i], samples[i].normal, state, frames) / tau_)

@@ -15,7 +15,7 @@ GpuDevice open_gpu() {
 
 std::unique_ptr<DepthImage> make_depth_image() {
   fail(
-      "contact method = \"image\" is not built in; take \"distance\", or configure with -DPALPATE_WITH_GL=ON "
+      "contact method = \"image\" is not built in; use \"distance\", or configure with -DPALPATE_WITH_GL=ON "
       "(packages libepoxy-dev, libegl-dev)");
 }
 

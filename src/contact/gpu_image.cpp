@@ -22,7 +22,7 @@ const char* opened(const char* name) {
   const gl::Context& context = gl::Context::shared();  // Created before any member.
   if (gl::vertex_storage_blocks() < 1)
     fail(
-        "contact on the GPU needs storage buffers in vertex shaders, which {} has not; take method = "
+        "contact on the GPU needs storage buffers in vertex shaders, which {} does not support; use method = "
         "\"distance\"",
         context.info().renderer);
   return name;

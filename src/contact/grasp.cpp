@@ -77,7 +77,7 @@ double Bonds::area() const {
 }
 
 void Bonds::tie(int frame, const std::vector<Tie>& ties) {
-  PALPATE_CHECK(count() == 0, "ties come before grasps: {} points are held", count());
+  PALPATE_CHECK(count() == 0, "ties must be set before grasps, but {} points are already held", count());
   for (const Tie& tie : ties) {
     SurfacePoint held;
     held.count = 1;
@@ -177,7 +177,8 @@ void Bonds::add_tangent(const dynamics::StateView& state, const std::vector<Fram
       for (int j = 0; j < held.count; ++j) {
         const auto ki = static_cast<std::size_t>(i), kj = static_cast<std::size_t>(j);
         const int slot = A.body.slot(held.node[ki], held.node[kj]);
-        PALPATE_CHECK(slot >= 0, "a grasp couples nodes {} and {}, which its contact did not announce",
+        PALPATE_CHECK(slot >= 0,
+                      "a grasp couples nodes {} and {}, which are missing from the pattern of its contact",
                       held.node[ki], held.node[kj]);
         A.body.add(slot, held.weight[ki] * held.weight[kj] * C);
       }

@@ -74,7 +74,7 @@ class HalfAndHalf final : public SampleSource {
 
 std::unique_ptr<SampleSource> make_half_and_half(std::unique_ptr<SampleSource> first,
                                                  std::unique_ptr<SampleSource> second) {
-  PALPATE_CHECK(first->sum_error() && second->sum_error(), "{}: a half without a quadrature error",
+  PALPATE_CHECK(first->sum_error() && second->sum_error(), "{}: one half has no quadrature error",
                 first->name());
   return std::make_unique<HalfAndHalf>(std::move(first), std::move(second));
 }

@@ -67,7 +67,7 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
   if (partners != Partners::kFrames) m.bonds.linearise(state, m.frame_states, frame, out);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     if (s.a.frame != frame && s.b.frame != frame) return;
-    PALPATE_CHECK(s.a.frame != s.b.frame, "a contact sample has frame {} on both sides", frame);
+    PALPATE_CHECK(s.a.frame != s.b.frame, "both sides of a contact sample have frame {}", frame);
     const bool two_frames = s.a.frame >= 0 && s.b.frame >= 0;
     if (partners == (two_frames ? Partners::kNodes : Partners::kFrames)) return;
     const SampleForce force = m.tangent_of(s, motion, law, false);

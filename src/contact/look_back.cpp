@@ -71,15 +71,15 @@ void LookBack::tell(std::string_view through_what, double t) {
   if (passed_.given_up() > 0 && !gave_up_) {
     gave_up_ = true;
     log::warn(
-        "contact at t = {:.6g} s: the surfaces moved so far between two queries that what went through "
-        "unseen is not counted whole; refresh contact more often (exchange.contact_refresh_s)",
+        "contact at t = {:.6g} s: surfaces moved too far between two queries for all tunnelled vertices to "
+        "be counted. Decrease exchange.contact_refresh_s",
         t);
   }
   if (count_ == 0 || warned_) return;
   warned_ = true;
   log::warn(
-      "contact at t = {:.6g} s: {} vertices went through {} between two queries, unseen; refresh contact "
-      "more often (exchange.contact_refresh_s), or set exchange.tunnelling = \"substep\"",
+      "contact at t = {:.6g} s: {} vertices tunnelled through {} between two queries. Decrease "
+      "exchange.contact_refresh_s, or set exchange.tunnelling = \"substep\"",
       t, count_, through_what);
 }
 

@@ -23,7 +23,7 @@ void check_arguments(const NodeSurface& surface, const TriMesh& rigid, const Ima
   check_arguments(surface, rigid.faces.cols(), options);
   for (Eigen::Index f = 0; f < rigid.faces.cols(); ++f)
     PALPATE_CHECK(rigid.faces.col(f).minCoeff() >= 0 && rigid.faces.col(f).maxCoeff() < rigid.vertices.cols(),
-                  "rigid surface: face {} names a vertex that is not there", f);
+                  "rigid surface: face {} has a vertex index out of range", f);
 }
 
 void check_proxies(const Faces& faces, const std::shared_ptr<proxy::ProxySet>& proxies) {
@@ -61,7 +61,7 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared
 
 std::unique_ptr<SampleSource> make_image_source(NodeSurface a, NodeSurface b, const ImageOptions& options) {
   check_arguments(a, b.faces.cols(), options);
-  PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides",
+  PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies: both sides have block {}",
                 a.block_id);
   if (b.block_id < a.block_id) return make_image_source(std::move(b), std::move(a), options);
   return make_whole_source(soft_side(std::move(a)), soft_side(std::move(b)), options);
@@ -71,7 +71,7 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<p
                                                 NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
                                                 const ImageOptions& options) {
   check_arguments(a, b.faces.cols(), options);
-  PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides",
+  PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies: both sides have block {}",
                 a.block_id);
   if (b.block_id < a.block_id)
     return make_image_source(std::move(b), std::move(proxies_b), std::move(a), std::move(proxies_a), options);

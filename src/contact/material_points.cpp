@@ -39,9 +39,7 @@ namespace {
 /// @param turn2  (R/s)^2, summed over the known curvatures  @param bend  H of the unknown curvature
 double spacing(double R, double turn2, double bend, double wanted_error) {
   constexpr double kKnown = 0.036;
-  if (!(wanted_error > 0.0))
-    fail("contact points: a quadrature error of {} asks for points without an end; it must be positive",
-         wanted_error);
+  if (!(wanted_error > 0.0)) fail("contact points: quadrature_error = {} must be positive", wanted_error);
   return 0.5 * R * std::sqrt(wanted_error / (kKnown * turn2 + 0.5 * bend * R));
 }
 
@@ -144,7 +142,7 @@ MaterialPointState::MaterialPointState(MaterialPoints points) : points_(std::mov
   PALPATE_CHECK(
       points_.area.size() == points_.triangles.cols() && points_.edges2.size() == points_.area.size(),
       "material points: {} triangles, {} areas", points_.triangles.cols(), points_.area.size());
-  PALPATE_CHECK(is_rigid() || points_.block_id >= 0, "material points of no block and no frame");
+  PALPATE_CHECK(is_rigid() || points_.block_id >= 0, "material points have neither a block nor a frame");
   for (const SurfacePoint& point : points_.at) {
     double sum = 0.0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) sum += std::abs(point.weight[k]);
@@ -159,18 +157,19 @@ void MaterialPointState::update(const dynamics::StateView& state) {
     twist_ = points_.motion->twist(state);
     R_ = pose_.rotation.toRotationMatrix();
     PALPATE_CHECK(R_.allFinite() && pose_.translation.allFinite(),
-                  "contact query at t = {}: a rigid surface's pose is not finite", state.time);
+                  "contact query at t = {}: the pose of a rigid surface is not finite", state.time);
     return;
   }
   const dynamics::Block* block = state.layout->find(points_.block_id);
   PALPATE_CHECK(block && block->kind == dynamics::BlockKind::kNodes,
-                "material points: block {} is no node block of this State", points_.block_id);
+                "material points: block {} is not a node block of this State", points_.block_id);
   if (const int offset = block->u_offset / 3; offset != node_offset_) {
     node_offset_ = offset;
     ++pattern_version_;
   }
   nodes_ = Eigen::Map<const Points>(state.q.data() + block->q_offset, 3, block->q_size / 3);
-  PALPATE_CHECK(nodes_.allFinite(), "contact query at t = {}: a node's position is not finite", state.time);
+  PALPATE_CHECK(nodes_.allFinite(), "contact query at t = {}: the position of a node is not finite",
+                state.time);
 }
 
 Vec3 MaterialPointState::position(int point, const Points& nodes, const Mat3& R, const Vec3& t) const {

@@ -6,15 +6,15 @@ namespace palpate::contact {
 
 const std::vector<MethodEntry>& method_registry() {
   static const std::vector<MethodEntry> registry = {
-      {"analytic", "exact gaps at the vertices: of obstacles, and of tools with shape = \"sphere\"", {}},
-      {"auto", "\"distance\"; \"image\" where pixels are given", part_keys({"pixels", "quadrature_error"})},
+      {"analytic", "exact gaps between vertices and obstacles, or tools with shape = \"sphere\"", {}},
+      {"auto", "\"distance\", or \"image\" where pixels is set", part_keys({"pixels", "quadrature_error"})},
       {"distance",
-       "material points of skins and their nearest points on what they touch: the gradient of an energy, "
-       "continuous; of soft bodies, themselves too, tools of any shape and obstacles",
+       "nearest points between material points of one skin and the other surface: continuous force, the "
+       "gradient of an energy; for soft bodies (self-contact too), tools of any shape and obstacles",
        part_keys({"quadrature_error"})},
       {"image",
-       "depths in image space as Galoppo et al. (2007) have them, at the vertices of soft bodies: tools of "
-       "any shape, other soft bodies; by OpenGL, without a GPU by Mesa's software rasteriser",
+       "penetration depths at the vertices of soft bodies from depth images (Galoppo et al. 2007): for tools "
+       "of any shape and other soft bodies; by OpenGL, without a GPU by Mesa's software rasteriser",
        part_keys({"pixels"})},
   };
   return registry;
@@ -22,11 +22,11 @@ const std::vector<MethodEntry>& method_registry() {
 
 const std::vector<AbsentMethod>& absent_methods() {
   static const std::vector<AbsentMethod> absent = {
-      {"cpu", "has been removed; write \"distance\", or \"image\""},
-      {"gpu", "is now \"image\""},
-      {"exact", "has been removed; write \"distance\""},
-      {"vertex", "is no method; \"analytic\" and \"image\" have their samples at vertices"},
-      {"pixel", "is no method; write \"image\""},
+      {"cpu", "has been removed; use \"distance\" or \"image\""},
+      {"gpu", "has been renamed; use \"image\""},
+      {"exact", "has been removed; use \"distance\""},
+      {"vertex", "does not exist; \"analytic\" and \"image\" sample at vertices"},
+      {"pixel", "does not exist; use \"image\""},
   };
   return absent;
 }

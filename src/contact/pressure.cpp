@@ -19,9 +19,10 @@ void require(const ContactSpec& spec, const char* key, double value, const Range
 
 const std::vector<SpringEntry>& spring_registry() {
   static const std::vector<SpringEntry> registry = {
-      {"per_area", "pressure by depth: forces do not depend on the mesh",
+      {"per_area", "pressure as a function of depth: the force does not depend on the mesh",
        part_keys({"stiffness_pa_m", "damping_pa_s_m"})},
-      {"per_point", "a spring at each colliding vertex (Galoppo et al. 2007): forces grow with their number",
+      {"per_point",
+       "one spring per colliding vertex (Galoppo et al. 2007): the force grows with their number",
        part_keys({"stiffness_n_m", "damping_n_s_m"})},
   };
   return registry;
@@ -29,8 +30,8 @@ const std::vector<SpringEntry>& spring_registry() {
 
 const std::vector<LawEntry>& law_registry() {
   static const std::vector<LawEntry> registry = {
-      {"kelvin_voigt", "spring and damper side by side", part_keys({"damping_pa_s_m", "damping_n_s_m"})},
-      {"hunt_crossley", "damping in proportion to the spring's pressure", part_keys({"hunt_crossley_s_m"})},
+      {"kelvin_voigt", "spring and damper in parallel", part_keys({"damping_pa_s_m", "damping_n_s_m"})},
+      {"hunt_crossley", "damping proportional to the elastic pressure", part_keys({"hunt_crossley_s_m"})},
   };
   return registry;
 }

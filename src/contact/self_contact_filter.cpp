@@ -76,8 +76,8 @@ SelfContactFilter::SelfContactFilter(const SurfaceState& skin, Points rest_nodes
   counters::count("contact.self_contact_filter");
   const NodeSurface& surface = skin.surface();
   PALPATE_CHECK(surface.node_of_vertex.empty() && surface.tets.cols() > 0,
-                "contact of a body with itself needs a skin on tetrahedra");
-  PALPATE_CHECK(surface.tets.maxCoeff() < rest_nodes_.cols(), "contact of a body with itself: node {} of {}",
+                "self-contact needs a skin embedded in tetrahedra");
+  PALPATE_CHECK(surface.tets.maxCoeff() < rest_nodes_.cols(), "self-contact: node {} of {}",
                 surface.tets.maxCoeff(), rest_nodes_.cols());
   across_ = neighbours(surface.tets);
   mesh::evaluate(surface.embedding, surface.tets, rest_nodes_, rest_vertices_);

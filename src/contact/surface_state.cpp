@@ -17,7 +17,7 @@ SurfaceState::SurfaceState(NodeSurface surface) : surface_(std::move(surface)) {
   for (int f = 0; f < face_count(); ++f)
     for (int k = 0; k < 3; ++k)
       PALPATE_CHECK(surface_.faces(k, f) >= 0 && surface_.faces(k, f) < vertex_count(),
-                    "contact surface: face {} names vertex {} of {}", f, surface_.faces(k, f),
+                    "contact surface: face {} refers to vertex {} of {}", f, surface_.faces(k, f),
                     vertex_count());
   if (!is_skin()) return;
   PALPATE_CHECK(surface_.embedding.weights.cols() == vertex_count(),
@@ -30,14 +30,14 @@ SurfaceState::SurfaceState(NodeSurface surface) : surface_(std::move(surface)) {
   carriers_.erase(std::unique(carriers_.begin(), carriers_.end()), carriers_.end());
   if (carriers_.empty()) return;
   PALPATE_CHECK(carriers_.front() >= 0 && carriers_.back() < surface_.tets.cols(),
-                "contact skin: a vertex hangs on tetrahedron {} of {}",
+                "contact skin: a vertex is embedded in tetrahedron {} of {}",
                 carriers_.front() < 0 ? carriers_.front() : carriers_.back(), surface_.tets.cols());
 }
 
 void SurfaceState::update(const dynamics::StateView& state) {
   const dynamics::Block* block = state.layout->find(surface_.block_id);
   PALPATE_CHECK(block && block->kind == dynamics::BlockKind::kNodes,
-                "contact surface: block {} is no node block of this State", surface_.block_id);
+                "contact surface: block {} is not a node block of this State", surface_.block_id);
   if (const int offset = block->u_offset / 3; offset != node_offset_) {
     node_offset_ = offset;
     ++pattern_version_;

@@ -41,7 +41,8 @@ void add_node_node(const Side& p, const Side& q, const Mat3& block, dynamics::Bo
       const auto ki = static_cast<std::size_t>(i), kj = static_cast<std::size_t>(j);
       const int slot = A.body.slot(p.point.node[ki], q.point.node[kj]);
       PALPATE_CHECK(slot >= 0,
-                    "contact couples nodes {} and {}, which its source did not announce in add_pattern",
+                    "contact couples nodes {} and {}, which are missing from the pattern that its source "
+                    "added in add_pattern",
                     p.point.node[ki], q.point.node[kj]);
       A.body.add(slot, p.point.weight[ki] * q.point.weight[kj] * block);
     }

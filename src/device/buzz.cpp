@@ -29,7 +29,8 @@ namespace {
 
 double warped(double tick_s, double frequency_hz) {
   PALPATE_CHECK(tick_s > 0.0 && frequency_hz > 0.0 && frequency_hz * tick_s < 0.5,
-                "a high pass of {} Hz at ticks of {} s", frequency_hz, tick_s);
+                "a high-pass filter at {} Hz needs ticks shorter than half its period, not {} s",
+                frequency_hz, tick_s);
   return std::tan(std::numbers::pi * frequency_hz * tick_s);
 }
 

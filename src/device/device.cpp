@@ -45,7 +45,7 @@ RecordingClock RecordingClock::of(const DeviceSpec& spec) {
 }
 
 void Device::archive(Archive& a) {
-  PALPATE_CHECK(can_be_archived(), "a device that cannot be archived");
+  PALPATE_CHECK(can_be_archived(), "this device cannot be archived");
   bool was_open = open_;
   a("open", was_open);
   if (was_open) open();
@@ -55,7 +55,7 @@ void Device::archive(Archive& a) {
 }
 
 void Device::feedback(double t, const Wrench& on_hand) {
-  PALPATE_CHECK(open_, "a wrench for a device that is closed, at t = {}", t);
+  PALPATE_CHECK(open_, "wrench sent to a closed device at t = {}", t);
   do_feedback(t, on_hand);
 }
 

@@ -29,7 +29,7 @@ const Registry<MakeBlend>& blend_registry() {
   static const Registry<MakeBlend> registry = {
       {"minimum_jerk", "quintic, at rest at each keyframe", 0, minimum_jerk},
       {"linear", "constant velocity", 0, linear},
-      {"step", "jumps at the keyframe's time", 0, step}};
+      {"step", "jump at the time of the keyframe", 0, step}};
   return registry;
 }
 
@@ -69,7 +69,7 @@ HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double
 
 void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::string& where) {
   if (keyframes.empty())
-    fail("{}: no keyframes; give at least one (one alone holds the handle still)", where);
+    fail("{}: no keyframes; give at least one (a single keyframe holds the handle still)", where);
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     const KeyframeSpec& key = keyframes[i];
     if (!std::isfinite(key.time_s) || !key.position_m.allFinite() || !key.rotation_vector_rad.allFinite())
@@ -82,16 +82,16 @@ void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::stri
     const KeyframeSpec& before = keyframes[i - 1];
     if (!(key.time_s > before.time_s))
       fail(
-          "{}: keyframes[{}]: time_s = {} must be greater than the one before ({}); for a jump use "
-          "interpolation = \"step\"",
+          "{}: keyframes[{}]: time_s = {} must be greater than that of the previous keyframe ({}); for a "
+          "jump use interpolation = \"step\"",
           where, i, key.time_s, before.time_s);
     // exp is a contraction from rotation vectors to rotations, so a difference of at most pi cannot hide a
     // longer rotation.
     const double angle = (key.rotation_vector_rad - before.rotation_vector_rad).norm();
     if (angle > std::numbers::pi * (1.0 + 1e-12))
       fail(
-          "{}: keyframes[{}]: rotation_vector_rad is {:.6g} rad from the one before; more than half a turn "
-          "is ambiguous, put a keyframe between",
+          "{}: keyframes[{}]: rotation_vector_rad is {:.6g} rad from that of the previous keyframe; more "
+          "than half a turn is ambiguous, so insert a keyframe",
           where, i, angle);
   }
 }

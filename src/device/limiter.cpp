@@ -47,7 +47,7 @@ Vec3 towards(const Vec3& from, const Vec3& to, double reach) {
 void check_slew(double slew, double max, const char* what) {
   const double least = kLeastSlew * max;
   if (!(slew >= least))
-    fail("device: {} = {} is too small to fall from {} to zero within 10 ms; use at least {}", what, slew,
+    fail("device: {} = {} is too small for a fall from {} to zero within 10 ms; use at least {}", what, slew,
          max, least);
 }
 

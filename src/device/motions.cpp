@@ -45,20 +45,24 @@ Displacement chirp(const MotionSpec& m, double s) {
 
 const Registry<MakeMotion>& motion_registry() {
   static const Registry<MakeMotion> registry = {
-      {"stroke", "back and forth, a sine", 0, stroke, {{.name = "duration_s"}}},
-      {"tap", "from rest to the amplitude and back, once a period", 0, tap, {{.name = "duration_s"}}},
+      {"stroke", "sinusoidal motion along amplitude_m", 0, stroke, {{.name = "duration_s"}}},
+      {"tap",
+       "motion from rest to the amplitude and back, once per period",
+       0,
+       tap,
+       {{.name = "duration_s"}}},
       {"circle",
-       "an ellipse with two half axes",
+       "motion along an ellipse with semi-axes amplitude_m and second_amplitude_m",
        0,
        circle,
        {{.name = "second_amplitude_m", .required = true}, {.name = "duration_s"}}},
       {"chirp",
-       "a sine whose frequency rises or falls linearly",
+       "sinusoidal motion whose frequency changes linearly",
        0,
        chirp,
        {{.name = "end_frequency_per_s", .required = true},
         {.name = "duration_s",
-         .range = Range::positive("it is how long the sweep takes"),
+         .range = Range::positive("it is the duration of the sweep"),
          .required = true}}},
   };
   return registry;
@@ -84,7 +88,7 @@ void check_motion(const MotionSpec& m, const std::string& where) {
   check("start_s", m.start_s, DeviceRanges::start_s);
   check("duration_s", m.duration_s, DeviceRanges::duration_s);
   if (m.kind == "chirp" && m.duration_s == 0.0)
-    fail("{}: duration_s = 0 is no sweep; say how long it takes", where);
+    fail("{}: duration_s = 0 must be positive; it is the duration of the sweep", where);
 }
 
 namespace {

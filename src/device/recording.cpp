@@ -45,14 +45,14 @@ const std::vector<std::string> kForces = {"time_s",
                                           "handle_rotation_z_rad"};
 
 constexpr const char* kColumns =
-    "a recording has time_s, px_m, py_m, pz_m, qw, qx, qy, qz, or is force.csv of a run";
+    "a recording has the columns time_s, px_m, py_m, pz_m, qw, qx, qy, qz, or is force.csv of a run";
 
 Layout layout_of(const std::vector<std::string>& headers, const std::string& path) {
   double number = 0.0;
   if (read_csv_number(headers.front(), number))
-    fail("{}:1: its first line has numbers, where the columns' names must stand; {}", path, kColumns);
+    fail("{}:1: the first line has numbers instead of column names; {}", path, kColumns);
   if (headers.size() == 1 && headers.front().find_first_of(" |:") != std::string::npos)
-    fail("{}:1: its columns are separated by neither commas, semicolons nor tabs; use one of them", path);
+    fail("{}:1: the columns are not separated by commas, semicolons or tabs; use one of these", path);
   const auto has = [&](const std::string& name) {
     return std::find(headers.begin(), headers.end(), name) != headers.end();
   };
@@ -69,8 +69,7 @@ Layout layout_of(const std::vector<std::string>& headers, const std::string& pat
 std::uint32_t switches_of(double value, const std::string& where) {
   const auto out = static_cast<std::uint32_t>(std::clamp(value, 0.0, 4294967295.0));
   if (static_cast<double>(out) != value)
-    fail("{}: switches = {} is no set of bits; bit i of a whole number is 1 where switch i is pressed", where,
-         value);
+    fail("{}: switches = {} must be a whole number whose bit i is 1 if switch i is pressed", where, value);
   return out;
 }
 
@@ -85,8 +84,8 @@ class Numbers {
     if (at == std::string::npos) return value;
     if (mark_ == '\0') mark_ = cell[at], seen_ = cell;
     if (mark_ != cell[at])
-      fail("{}: \"{}\" has a decimal {}, \"{}\" before it a {}; write all numbers alike", where, cell,
-           name(cell[at]), seen_, name(mark_));
+      fail("{}: \"{}\" has a decimal {}, but \"{}\" before it has a decimal {}; use the same for all numbers",
+           where, cell, name(cell[at]), seen_, name(mark_));
     return value;
   }
 
@@ -105,7 +104,7 @@ RecordedPose pose_of(const std::vector<double>& v, const Layout& layout, const s
   }
   const Quat q(v[4], v[5], v[6], v[7]);
   if (!(std::abs(q.norm() - 1.0) < 1e-3))
-    fail("{}: column \"qw\": the quaternion's length is {:.6g}, not 1", where, q.norm());
+    fail("{}: column \"qw\": the length of the quaternion is {:.6g}; it must be 1", where, q.norm());
   out.pose.rotation = q.normalized();
   return out;
 }
@@ -137,10 +136,10 @@ class RecordingDevice : public Device {
 std::vector<RecordedPose> read_recording(const std::string& path, const RecordingClock& clock) {
   std::ifstream in(path, std::ios::binary);
   if (!in || std::filesystem::is_directory(path))
-    fail("{}: no recording can be read; check the path (relative to the scene file)", path);
+    fail("{}: cannot read the recording; check the path (relative to the scene file)", path);
   std::vector<CsvRow> rows = read_csv_text(std::string(std::istreambuf_iterator<char>(in), {}), path);
   std::erase_if(rows, is_blank);
-  if (rows.empty()) fail("{}:1: the file is empty; its first line names the columns", path);
+  if (rows.empty()) fail("{}:1: the file is empty; its first line must be the column names", path);
   const std::vector<std::string> headers = headers_of(rows.front());
   const Layout layout = layout_of(headers, path);
   rows.erase(rows.begin());
@@ -151,17 +150,17 @@ std::vector<RecordedPose> read_recording(const std::string& path, const Recordin
     const std::string where = fmt::format("{}:{}", path, row.line);
     while (row.cells.size() > headers.size() && row.cells.back().empty()) row.cells.pop_back();
     if (row.cells.size() != headers.size())
-      fail("{}: {} cells, but {} columns have a name", where, row.cells.size(), headers.size());
+      fail("{}: {} cells, but {} column names", where, row.cells.size(), headers.size());
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] =
           numbers.of(row.cells[layout.column[i]], fmt::format("{}: column \"{}\"", where, layout.names[i]));
     values[0] = clock(values[0]);
     if (!out.empty() && !(values[0] > out.back().time))
-      fail("{}: column \"time_s\": {} does not come after {}, the line before", where, values[0],
-           out.back().time);
+      fail("{}: column \"time_s\": {} must be greater than {}, the time of the previous line", where,
+           values[0], out.back().time);
     out.push_back(pose_of(values, layout, where));
   }
-  if (out.empty()) fail("{}: no line of poses follows the names of the columns", path);
+  if (out.empty()) fail("{}: no poses follow the column names", path);
   return out;
 }
 
@@ -213,7 +212,7 @@ HandleSample sample_recording(const std::vector<RecordedPose>& poses, double t) 
 }
 
 std::unique_ptr<Device> make_recording(const DeviceSpec& spec, const std::string& folder) {
-  if (spec.file.empty()) fail("device: file is missing; name the recording (CSV) that the hand repeats");
+  if (spec.file.empty()) fail("device: file is missing; set it to the recording (CSV) of the hand");
   return std::make_unique<RecordingDevice>(spec, (std::filesystem::path(folder) / spec.file).string());
 }
 

@@ -42,7 +42,10 @@ UdpDevice::UdpDevice(const DeviceSpec& spec)
   check_range("wait_s", wait_, DeviceRanges::wait_s);
   in_addr host{};
   if (::inet_pton(AF_INET, address_.c_str(), &host) != 1)
-    fail("device: address = \"{}\" is no IPv4 address; \"127.0.0.1\" is this machine alone", address_);
+    fail(
+        "device: address = \"{}\" is not an IPv4 address; use \"127.0.0.1\" to accept only peers on this "
+        "machine",
+        address_);
   last_.pose.translation = spec.workspace_center_m;
 }
 
@@ -56,7 +59,7 @@ void UdpDevice::do_open() {
       ::getsockname(socket_, generic(own), &size) != 0) {
     const std::string why = std::strerror(errno);
     do_close();
-    fail("device: port = {} of {} cannot be opened ({}); choose another", port_, address_, why);
+    fail("device: port = {} of {} cannot be opened ({}); choose another port", port_, address_, why);
   }
   port_ = ntohs(own.sin_port);
 }
@@ -123,13 +126,14 @@ void UdpDevice::do_await(double t, const std::atomic<bool>* stop) {
     if (left_ms <= 0.0) {
       const long others = counts_.malformed + counts_.wrong_version + counts_.out_of_bounds;
       fail(
-          "device: no pose came to {}, UDP port {}, within {:g} s{}; start the peer, check its address and "
-          "port, or wait longer (device.wait_s)",
+          "device: no pose arrived at {}, UDP port {}, within {:g} s{}; start the peer, check its address "
+          "and port, or increase device.wait_s",
           address_, port_, wait_,
-          others > 0 ? fmt::format(" ({} packets came that are no poses of this scene: {} malformed, {} of "
-                                   "another version, {} out of bounds)",
-                                   others, counts_.malformed, counts_.wrong_version, counts_.out_of_bounds)
-                     : "");
+          others > 0
+              ? fmt::format(
+                    " ({} packets were rejected: {} malformed, {} of another version, {} out of bounds)",
+                    others, counts_.malformed, counts_.wrong_version, counts_.out_of_bounds)
+              : "");
     }
     pollfd readable{socket_, POLLIN, 0};
     ::poll(&readable, 1, 1 + static_cast<int>(std::min(left_ms, 50.0)));  // short enough to notice `stop`

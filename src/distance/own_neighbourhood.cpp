@@ -123,7 +123,7 @@ class Clustered {
 }  // namespace
 
 OwnNeighbourhood::OwnNeighbourhood(const Skin& skin, const Points& rest, double radius) : radius_(radius) {
-  if (!(radius > 0.0)) fail("a skin's neighbourhood of {} m; it must be positive", radius);
+  if (!(radius > 0.0)) fail("self-contact of a skin: neighbourhood radius = {} m must be positive", radius);
   Clustered clusters(skin, rest);
   std::vector<std::vector<int>> of(clusters.count());
   for (std::size_t c = 0; c < of.size(); ++c) {

@@ -80,7 +80,7 @@ int cuts_of(const Skin& skin, int face, double spacing) {
 }
 
 ContactMesh contact_mesh(const Skin& skin, double spacing) {
-  if (!(spacing > 0.0)) fail("contact points: a spacing of {} m; it must be positive", spacing);
+  if (!(spacing > 0.0)) fail("contact points: spacing = {} m must be positive", spacing);
   ContactMesh out;
   Corners corners(skin, out.points);
   for (int face = 0; face < skin.face_count(); ++face) {

@@ -149,7 +149,7 @@ void join_across_edges(Skin& skin) {
   for (const auto& [edge, at] : half_edges) {
     const auto other = half_edges.find({edge.second, edge.first});
     if (other == half_edges.end())
-      fail("contact needs a closed skin: the edge from vertex {} to vertex {} has a face on one side alone",
+      fail("contact needs a closed skin: the edge from vertex {} to vertex {} has a face on one side only",
            edge.first, edge.second);
     skin.across(at % 3, at / 3) = other->second / 3;
   }
@@ -217,7 +217,7 @@ void set_aside_far(Skin& skin) {
 Skin build(const TriMesh& rest, NodeIndices nodes, NodeWeights weights, int node_count,
            Clusters clusters = Clusters::kAny) {
   if (!rest.vertices.allFinite() || !weights.allFinite())
-    fail("contact needs a skin of finite positions and weights");
+    fail("contact needs a skin with finite positions and weights");
   Skin skin;
   skin.node_count = node_count;
   skin.nodes = std::move(nodes);
@@ -271,7 +271,8 @@ Skin make_skin(const TriMesh& rest, Clusters clusters) {
 // [0, 1].
 Skin make_rigid_skin(const TriMesh& rest, Points& corners) {
   const Vec3 low = rest.vertices.rowwise().minCoeff(), size = rest.vertices.rowwise().maxCoeff() - low;
-  if (!(size.array() > 0.0).all()) fail("contact needs a surface around a volume");
+  if (!(size.array() > 0.0).all())
+    fail("contact needs a surface that encloses a volume, but its bounding box is flat");
   corners.resize(3, 4);
   corners.colwise() = low;
   for (int k = 0; k < 3; ++k) corners(k, k + 1) += 3.0 * size[k];

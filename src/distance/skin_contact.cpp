@@ -36,7 +36,7 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::ar
       surfaces_{Surface(a), Surface(b)},
       meshes_(std::move(meshes)),
       scratch_(std::make_unique<Scratch>()) {
-  if (!(stiffness > 0.0)) fail("contact stiffness is {} Pa/m; it must be positive", stiffness);
+  if (!(stiffness > 0.0)) fail("contact stiffness = {} Pa/m must be positive", stiffness);
   std::size_t count = 0, triangles = 0, most_packets = 1;
   for (int side = 0; side < 2; ++side) {
     const Skin& skin = surfaces_[side].skin();

@@ -50,14 +50,14 @@ void BlockSparse::multiply_transposed_add(const double* x, double* y) const {
 int PatternBuilder::first_node(int block_id) const {
   if (!layout_) return 0;
   const Block* block = layout_->find(block_id);
-  PALPATE_CHECK(block && block->kind == BlockKind::kNodes, "block {} is no node block of this layout",
+  PALPATE_CHECK(block && block->kind == BlockKind::kNodes, "block {} is not a node block of this layout",
                 block_id);
   return block->u_offset / 3;
 }
 
 void PatternBuilder::add_pair(int i, int j) {
-  PALPATE_CHECK(i >= 0 && j >= 0 && i < node_count_ && j < node_count_, "pair ({}, {}) of {} nodes", i, j,
-                node_count_);
+  PALPATE_CHECK(i >= 0 && j >= 0 && i < node_count_ && j < node_count_,
+                "pair ({}, {}) is out of range: there are {} nodes", i, j, node_count_);
   pairs_.emplace_back(i, j);
   pairs_.emplace_back(j, i);
 }

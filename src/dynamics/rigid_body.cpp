@@ -83,17 +83,19 @@ void check_inertia(double mass, const Vec3& inertia, const char* where) {
   const double largest = inertia.maxCoeff();
   if (!inertia.allFinite() || !(inertia.minCoeff() > 0.0))
     fail(
-        "{}: inertia_kg_m2 = [{}, {}, {}] must have three positive entries (or three zeros, for a solid "
-        "sphere's)",
+        "{}: inertia_kg_m2 = [{}, {}, {}] must have three positive entries, or three zeros for those of a "
+        "solid sphere",
         where, inertia.x(), inertia.y(), inertia.z());
   if (largest > (inertia.sum() - largest) * (1.0 + 1e-9))
-    fail("{}: inertia_kg_m2 = [{}, {}, {}] belongs to no body: each must be at most the sum of the other two",
-         where, inertia.x(), inertia.y(), inertia.z());
+    fail(
+        "{}: inertia_kg_m2 = [{}, {}, {}] is impossible: each moment must be at most the sum of the other "
+        "two",
+        where, inertia.x(), inertia.y(), inertia.z());
 }
 
 BlockSpec rigid_block(std::string name, double length, double speed) {
-  PALPATE_CHECK(length > 0.0 && speed > 0.0, "scales of rigid block \"{}\": {} m, {} m/s", name, length,
-                speed);
+  PALPATE_CHECK(length > 0.0 && speed > 0.0, "scales of rigid block \"{}\" must be positive: {} m, {} m/s",
+                name, length, speed);
   return {std::move(name),       BlockKind::kRigidBody, 7, 6, length, speed, free_body_kinematics(),
           {1, 1, 1, 1, 0, 0, 0}, {1, 1, 1, 0, 0, 0}};
 }

@@ -5,7 +5,7 @@ namespace palpate::dynamics {
 
 const Block& rigid_block_of(const StateView& state, int block_id) {
   const Block* block = state.layout->find(block_id);
-  PALPATE_CHECK(block && block->q_size == 7 && block->u_size == 6, "block {} is no free rigid body",
+  PALPATE_CHECK(block && block->q_size == 7 && block->u_size == 6, "block {} is not a free rigid body",
                 block_id);
   return *block;
 }

@@ -27,12 +27,14 @@ void place_blocks(Layout& layout) {
 }
 
 void check_spec(const BlockSpec& spec, const ConstSegment& q, const ConstSegment& u) {
-  PALPATE_CHECK(spec.q_size == q.size() && spec.u_size == u.size(), "block \"{}\": q {} of {}, u {} of {}",
-                spec.name, q.size(), spec.q_size, u.size(), spec.u_size);
+  PALPATE_CHECK(spec.q_size == q.size() && spec.u_size == u.size(),
+                "block \"{}\": q has {} of {} entries, u {} of {}", spec.name, q.size(), spec.q_size,
+                u.size(), spec.u_size);
   PALPATE_CHECK(spec.kinematics || spec.q_size == spec.u_size,
                 "block \"{}\": q' = u needs equal sizes, got {} and {}", spec.name, spec.q_size, spec.u_size);
   PALPATE_CHECK(spec.kind != BlockKind::kNodes || (spec.u_size % 3 == 0 && !spec.kinematics),
-                "node block \"{}\" has {} u", spec.name, spec.u_size);
+                "node block \"{}\" has {} velocities; it needs three per node, and no kinematics", spec.name,
+                spec.u_size);
   PALPATE_CHECK(spec.q_scale > 0.0 && spec.u_scale > 0.0, "block \"{}\": scales {} and {} must be positive",
                 spec.name, spec.q_scale, spec.u_scale);
 }

@@ -68,7 +68,9 @@ void System::prepare(const StateView& state) {
   any_master_ = false;
   for (Driven& d : driven_) {
     for (int dof : d.motion->dofs()) {
-      PALPATE_CHECK(dof >= 0 && dof < layout.nodal_size, "driven direction {} of {}", dof, layout.nodal_size);
+      PALPATE_CHECK(dof >= 0 && dof < layout.nodal_size,
+                    "driven direction {} is out of range: there are {} nodal directions", dof,
+                    layout.nodal_size);
       if (driven_mask_[static_cast<std::size_t>(dof)]) {
         const Vec3 at = state.position(dof / 3);
         fail("the node at [{:g}, {:g}, {:g}] m is held or driven twice along {}: attachments overlap", at.x(),
@@ -81,7 +83,7 @@ void System::prepare(const StateView& state) {
     if (d.motion->master_block() < 0) continue;
     const Block* master = layout.find(d.motion->master_block());
     PALPATE_CHECK(master && master->kind != BlockKind::kNodes,
-                  "driven nodes follow block {}, which is no rigid block", d.motion->master_block());
+                  "driven nodes follow block {}, which is not a rigid block", d.motion->master_block());
     d.master_offset = master->u_offset;
     d.master_size = master->u_size;
     any_master_ = true;
@@ -106,7 +108,7 @@ void System::prepare(const StateView& state) {
   if (nodal_mass_diagonal_) {
     for (int i = 0; i < layout.nodal_size; ++i) {
       const double m = mass_.body.block(mass_.body.diagonal(i / 3))[4 * (i % 3)];
-      PALPATE_CHECK(m > 0.0, "node {} has mass {}", i / 3, m);
+      PALPATE_CHECK(m > 0.0, "the mass of node {} is {}; it must be positive", i / 3, m);
       nodal_mass_[i] = m;
       inverse_nodal_mass_[i] = 1.0 / m;
     }
@@ -114,7 +116,7 @@ void System::prepare(const StateView& state) {
   } else {
     PALPATE_CHECK(mass_solver_, "a consistent mass needs a mass solver");
     const SolveStatus status = mass_solver_->factor(mass_);
-    PALPATE_CHECK(status == SolveStatus::kOk, "the mass matrix has no factor (status {})",
+    PALPATE_CHECK(status == SolveStatus::kOk, "factorisation of the mass matrix failed (status {})",
                   static_cast<int>(status));
   }
 }
@@ -193,7 +195,7 @@ void System::solve_mass(const StateView& state, VecX& r, VecX& a) {
   }
   SolveStatus status = mass_solver_->factor(mass_);
   if (status == SolveStatus::kOk) status = mass_solver_->solve(r, a);
-  PALPATE_CHECK(status == SolveStatus::kOk, "the mass matrix has no factor (status {})",
+  PALPATE_CHECK(status == SolveStatus::kOk, "factorisation of the mass matrix failed (status {})",
                 static_cast<int>(status));
 }
 

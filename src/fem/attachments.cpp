@@ -14,7 +14,7 @@ void check_dofs(const std::vector<int>& dofs, Eigen::Index values) {
                 values);
   PALPATE_CHECK(dofs.empty() || dofs.front() >= 0, "direction {}", dofs.front());
   PALPATE_CHECK(std::adjacent_find(dofs.begin(), dofs.end(), std::greater_equal<>()) == dofs.end(),
-                "directions must ascend, each once");
+                "directions must be strictly ascending");
 }
 
 class Fixed final : public dynamics::DrivenMotion {
@@ -116,10 +116,10 @@ std::vector<int> dofs_of_nodes(const std::vector<int>& nodes, int first_node, co
   bool held[3] = {false, false, false};
   for (char c : axes) {
     if (c < 'x' || c > 'z' || held[c - 'x'])
-      fail("attachment: axes = \"{}\" must name each of x, y, z at most once, for example \"xz\"", axes);
+      fail("attachment: axes = \"{}\" must contain each of x, y, z at most once, for example \"xz\"", axes);
     held[c - 'x'] = true;
   }
-  if (axes.empty()) fail("attachment: axes = \"\" holds nothing; name at least one of x, y, z");
+  if (axes.empty()) fail("attachment: axes = \"\" holds nothing; give at least one of x, y, z");
   std::vector<int> out;
   for (int node : nodes)
     for (int axis = 0; axis < 3; ++axis)
@@ -130,7 +130,7 @@ std::vector<int> dofs_of_nodes(const std::vector<int>& nodes, int first_node, co
 
 std::shared_ptr<dynamics::DrivenMotion> make_fixed(std::vector<int> dofs, VecX x0) {
   check_dofs(dofs, x0.size());
-  PALPATE_CHECK(x0.allFinite(), "a fixed node's position is not finite");
+  PALPATE_CHECK(x0.allFinite(), "the position of a fixed node is not finite");
   return std::make_shared<Fixed>(std::move(dofs), std::move(x0));
 }
 
@@ -145,7 +145,7 @@ std::shared_ptr<dynamics::DrivenMotion> make_carried(std::vector<int> dofs, Poin
                                                      int master_block_id) {
   check_dofs(dofs, local_points_per_dof.cols());
   PALPATE_CHECK(master_block_id >= 0, "carried nodes need a rigid block, not {}", master_block_id);
-  PALPATE_CHECK(local_points_per_dof.allFinite(), "a carried node's position is not finite");
+  PALPATE_CHECK(local_points_per_dof.allFinite(), "the position of a carried node is not finite");
   return std::make_shared<Carried>(std::move(dofs), std::move(local_points_per_dof), master_block_id);
 }
 

@@ -122,7 +122,8 @@ int coupling_by_scalar(const ElementModel& model, const double* F, const double*
 namespace laws {
 extern const Law corotational;
 const Law corotational{
-    .summary = "linear elasticity in axes that rotate with each element (Mueller and Gross 2004)",
+    .summary =
+        "corotational elasticity: linear in the rotated frame of each element (Mueller and Gross 2004)",
     .warped = true,
     .nodal_dilatation = true,
     .energy_density = energy_density,

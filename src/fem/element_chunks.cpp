@@ -230,8 +230,8 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements,
     most_edges = std::max(most_edges, chunk.edges);
     chunks.push_back(chunk);
   }
-  PALPATE_CHECK(most_nodes + 4 < 65536 && most_edges + 1 < 65536, "a chunk has {} nodes and {} edges",
-                most_nodes, most_edges);
+  PALPATE_CHECK(most_nodes + 4 < 65536 && most_edges + 1 < 65536,
+                "a chunk has {} nodes and {} edges, too many for 16-bit indices", most_nodes, most_edges);
   for (std::uint64_t key : node_uses.shared) shared_nodes.first.push_back(static_cast<int>(key));
   for (std::uint64_t key : edge_uses.shared) {
     shared_edges.first.push_back(static_cast<int>(key >> 32));

@@ -110,7 +110,8 @@ LaneCounts ElementEvaluation::tangent(const ElementModels& models, const BodyFie
   fit_blocks();
   prepare(first_node, A);
   const bool symmetric = !models.front().by_position;
-  PALPATE_CHECK(symmetric || with_lower_, "no room was set aside for an unsymmetric tangent");
+  PALPATE_CHECK(symmetric || with_lower_,
+                "an unsymmetric tangent needs full_damping_tangent, which was not set");
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     ChunkMemory& memory = memory_[static_cast<std::size_t>(worker)];
@@ -137,7 +138,8 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
   fit();
   deferred_.fit(chunks_, workers::count());
   deferred_.prepare(chunks_, first_node, A);
-  PALPATE_CHECK(!models.front().by_position, "an unsymmetric tangent in a zero-row-sum matrix");
+  PALPATE_CHECK(!models.front().by_position,
+                "an unsymmetric tangent cannot be added to a zero-row-sum matrix");
   const int chunks = static_cast<int>(chunks_.chunks.size());
   workers::for_each(chunks, [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];

@@ -78,7 +78,7 @@ Points spread_over_boundary(const TetMesh& placed, const LoadSpec& load) {
   }
   const double area = share.sum();
   if (!(area > 0.0))
-    fail("load: no boundary triangle of the mesh lies in the box {}; make it larger",
+    fail("load: no boundary triangle of the mesh lies in the box {}; enlarge the box",
          describe(load.box_min_m, load.box_max_m));
   return load.force_n * (share / area).transpose();
 }

@@ -28,13 +28,14 @@ void check(const Material& m, const char* where) {
 
 void check(const Materials& materials, int elements, const char* where) {
   for (const Material& material : materials.list) check(material, where);
-  PALPATE_CHECK(!materials.list.empty(), "{}: no material", where);
+  PALPATE_CHECK(!materials.list.empty(), "{}: the list of materials is empty", where);
   if (materials.of_element.empty()) return;
   PALPATE_CHECK(static_cast<int>(materials.of_element.size()) == elements,
-                "{}: {} numbers of materials for {} elements", where, materials.of_element.size(), elements);
+                "{}: {} material indices for {} elements", where, materials.of_element.size(), elements);
   for (const int number : materials.of_element)
-    PALPATE_CHECK(number >= 0 && number < static_cast<int>(materials.list.size()), "{}: material {} of {}",
-                  where, number, materials.list.size());
+    PALPATE_CHECK(number >= 0 && number < static_cast<int>(materials.list.size()),
+                  "{}: material index {} is not below {}, the number of materials", where, number,
+                  materials.list.size());
 }
 
 }  // namespace palpate::fem

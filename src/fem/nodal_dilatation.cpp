@@ -142,7 +142,7 @@ struct NodalDilatation::Impl {
     check(materials, elements.count(), fmt::format("body \"{}\"", name).c_str());
     PALPATE_CHECK(
         options.volumetric_shares.empty() || options.volumetric_shares.size() == materials.list.size(),
-        "{} shares of {} materials", options.volumetric_shares.size(), materials.list.size());
+        "{} volumetric shares for {} materials", options.volumetric_shares.size(), materials.list.size());
     set(materials.list);
     F.resize(count());
     R.resize(count());
@@ -300,7 +300,7 @@ NodalDilatation::NodalDilatation(std::string name, const TetMesh& rest, const Ma
   counters::count("fem.nodal_dilatation");
 }
 void NodalDilatation::set_materials(const std::vector<Material>& materials) {
-  PALPATE_CHECK(materials.size() == impl_->constants.size(), "{} materials in the place of {}",
+  PALPATE_CHECK(materials.size() == impl_->constants.size(), "{} materials given, expected {}",
                 materials.size(), impl_->constants.size());
   for (const Material& material : materials) check(material, fmt::format("body \"{}\"", impl_->name).c_str());
   impl_->set(materials);

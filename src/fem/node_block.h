@@ -15,7 +15,7 @@ struct NodeBlock {
   NodeBlock(const dynamics::StateView& state, int block_id, int node_count) {
     const dynamics::Block* block = state.layout->find(block_id);
     PALPATE_CHECK(block && block->kind == dynamics::BlockKind::kNodes && block->u_size == 3 * node_count,
-                  "block {} is no block of {} nodes in this state", block_id, node_count);
+                  "block {} is not a block of {} nodes in this state", block_id, node_count);
     x = state.q.data() + block->q_offset;
     v = state.u.data() + block->u_offset;
     u_offset = block->u_offset;

@@ -19,7 +19,7 @@ RestElements make_rest_elements(const TetMesh& rest, std::string_view where) {
     const auto tet = rest.tets.col(static_cast<Eigen::Index>(e));
     for (int a = 0; a < 4; ++a) {
       if (tet[a] < 0 || tet[a] >= rest.nodes.cols())
-        fail("{}: element {} names node {} of {}; node numbers start at 0", where, e, tet[a],
+        fail("{}: element {} refers to node {} of {}; node numbers start at 0", where, e, tet[a],
              rest.nodes.cols());
       out.node[static_cast<std::size_t>(a)][e] = tet[a];
     }
@@ -29,7 +29,7 @@ RestElements make_rest_elements(const TetMesh& rest, std::string_view where) {
     if (!(std::isfinite(volume) && volume > 0.0))
       fail(
           "{}: element {} (nodes {} {} {} {}) has volume {} m^3, which must be positive; mesh::tet_mesh "
-          "mends orientation",
+          "corrects the orientation",
           where, e, tet[0], tet[1], tet[2], tet[3], volume);
     const Mat3 inverse = Dm.inverse();
     for (int r = 0; r < 3; ++r)

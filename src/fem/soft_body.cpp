@@ -24,8 +24,10 @@ const LaneKernels& kernels_of(const SoftBodyOptions& options, const std::string&
   if (options.instructions.empty()) return best_kernels();
   const LaneKernels* kernels = find_kernels(options.instructions.c_str());
   if (kernels == nullptr)
-    fail("{}: this build or this processor has no instructions \"{}\"; baseline, avx2 and avx512 exist",
-         where, options.instructions);
+    fail(
+        "{}: instructions = \"{}\" is not supported by this build or this processor; the choices are "
+        "baseline, avx2 and avx512",
+        where, options.instructions);
   return *kernels;
 }
 
@@ -63,7 +65,8 @@ struct SoftBody::Impl {
                  law, opts.full_damping_tangent) {
     check(from, elements.chunks().element_count(), where(name).c_str());
     PALPATE_CHECK(options.volumetric_shares.empty() || options.volumetric_shares.size() == from.list.size(),
-                  "{} shares of {} materials", options.volumetric_shares.size(), from.list.size());
+                  "{} volumetric shares for {} materials", options.volumetric_shares.size(),
+                  from.list.size());
     set(from.list);
   }
 
@@ -153,7 +156,7 @@ const ElementCounts& SoftBody::counts() const { return impl_->counts; }
 void SoftBody::reset_counts() { impl_->counts = {}; }
 const std::vector<Material>& SoftBody::materials() const { return impl_->materials; }
 void SoftBody::set_materials(const std::vector<Material>& materials) {
-  PALPATE_CHECK(materials.size() == impl_->materials.size(), "{} materials in the place of {}",
+  PALPATE_CHECK(materials.size() == impl_->materials.size(), "{} materials given, expected {}",
                 materials.size(), impl_->materials.size());
   for (const Material& material : materials) check(material, where(impl_->name).c_str());
   impl_->set(materials);

@@ -170,7 +170,7 @@ int projection(const ElementModel& model, const double* F, const double*, double
 namespace laws {
 extern const Law stable_neo_hookean;
 const Law stable_neo_hookean{
-    .summary = "neo-Hookean that stays stable when elements flatten or invert (Smith, de Goes and Kim 2018)",
+    .summary = "neo-Hookean elasticity, stable for flat and inverted elements (Smith, de Goes and Kim 2018)",
     .warped = false,
     .nodal_dilatation = false,
     .energy_density = energy_density,

@@ -57,7 +57,7 @@ double tightest_rtol_of_mri(const IntegratorSpec&) { return tuning::kTightestErr
 
 Range rtol_range(double tightest) {
   return Range::closed(tightest, IntegratorRanges::rtol.high,
-                       "1e-3 is usual; of less the method would make rounding");
+                       "1e-3 is usual; below the lower limit rounding dominates");
 }
 
 }  // namespace palpate::integrate

@@ -53,7 +53,8 @@ NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, W
       }
       if (!taken && !fresh) break;
     }
-    if (!taken && fresh) return failed(StepStatus::kNewtonFailed, k, size, "Newton finds no descent");
+    if (!taken && fresh)
+      return failed(StepStatus::kNewtonFailed, k, size, "Newton line search found no descent");
     if (taken) {
       x = trial_;
       contraction_ = kappa;

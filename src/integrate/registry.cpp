@@ -78,19 +78,20 @@ dynamics::StepperRegistry make_registry() {
   const auto multi_rate = [](int order, int stiff_order) {
     return dynamics::StepperTraits{
         "multi-rate",  order, stiff_order, StepControl::kFixed,
-        Stability::kA, true,  false,       "force, tangent; contact and tool as the fast side"};
+        Stability::kA, true,  false,       "force, tangent; contact and tool as the fast part"};
   };
   const std::vector<PartKey> mri_keys =
       with({"step_s", "max_steps", "newton_rtol", "atol_q", "atol_u", "events"}, kImplicit);
-  all.push_back({"ark-mri-2",
-                 "multi-rate IRK21a of Sandu 2019: bodies by an implicit slow step, contact and tool fast",
-                 multi_rate(2, 2), make_mri, mri_keys, error_test_rtol_of_mri, tightest_rtol_of_mri});
+  all.push_back(
+      {"ark-mri-2",
+       "multi-rate IRK21a of Sandu 2019: implicit slow steps for bodies, fast steps for contact and tool",
+       multi_rate(2, 2), make_mri, mri_keys, error_test_rtol_of_mri, tightest_rtol_of_mri});
   all.push_back({"ark-mri-3", "multi-rate ESDIRK34a of Sandu 2019", multi_rate(3, 2), make_mri, mri_keys,
                  error_test_rtol_of_mri, tightest_rtol_of_mri});
   all.push_back({"ark-mri-4", "multi-rate ESDIRK46a of Sandu 2019", multi_rate(4, 2), make_mri, mri_keys,
                  error_test_rtol_of_mri, tightest_rtol_of_mri});
   all.push_back({"kinsol-static",
-                 "quasi-static equilibrium of SUNDIALS KINSOL: no inertia, no velocity",
+                 "quasi-static equilibrium by SUNDIALS KINSOL: no inertia, no velocity",
                  {"statics", 1, 1, StepControl::kFixed, Stability::kStatic, true, false, "force, tangent"},
                  make_kinsol_static,
                  with({"newton_rtol"}, kImplicit)});
@@ -98,22 +99,25 @@ dynamics::StepperRegistry make_registry() {
       together(together(kFixed, kImplicit), {"newton_rtol", "atol_q", "atol_u", "factor_kept_steps"});
   const dynamics::StepperRegistry by_hand = {
       {"linearly-implicit-euler",
-       "one linear solve a step; the interactive method of Galoppo et al. 2007",
+       "linearly implicit Euler: one linear solve per step; the interactive method of Galoppo et al. 2007",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto", true},
        make_linearly_implicit_euler,
        with(kFixed, kImplicit)},
       {"backward-euler",
-       "backward Euler, Newton to its end; full, or a factor kept over factor_kept_steps",
+       "backward Euler, Newton iterated to convergence: full Newton, or a factor reused over "
+       "factor_kept_steps steps",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"},
        make_backward_euler,
        part_keys(newton_keys)},
       {"implicit-midpoint",
-       "implicit midpoint rule, Newton to its end; keeps quadratic invariants; no numerical damping",
+       "implicit midpoint rule, Newton iterated to convergence; preserves quadratic invariants; no numerical "
+       "damping",
        {"Gauss", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"},
        make_implicit_midpoint,
        part_keys(newton_keys)},
       {"bdf2",
-       "backward differences of order 2 with variable steps; starts by an L-stable SDIRK step of order 2",
+       "backward differences of order 2 with variable steps; the first step is an L-stable SDIRK step of "
+       "order 2",
        {"BDF", 2, 2, StepControl::kFixed, Stability::kL, true, true, "force, tangent", "auto"},
        make_bdf2,
        part_keys(newton_keys)},
@@ -123,17 +127,17 @@ dynamics::StepperRegistry make_registry() {
        make_newmark,
        part_keys(newton_keys)},
       {"generalized-alpha",
-       "Chung and Hulbert 1993; damps high frequencies by spectral_radius a step",
+       "Chung and Hulbert 1993; damps high frequencies by the factor spectral_radius per step",
        {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"},
        make_generalized_alpha,
        with(newton_keys, {"spectral_radius"})},
       {"symplectic-euler",
-       "velocity first, then position; one force a step, stable below 2/w_max",
+       "velocity first, then position; one force evaluation per step, stable below 2/w_max",
        {"explicit Euler", 1, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"},
        make_symplectic_euler,
        part_keys(kFixed)},
       {"rk4",
-       "the classical Runge-Kutta method of order 4; four forces a step, stable below 2.8/w_max",
+       "classical Runge-Kutta method of order 4; four force evaluations per step, stable below 2.8/w_max",
        {"explicit Runge-Kutta", 4, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"},
        make_rk4,
        part_keys(kFixed)},

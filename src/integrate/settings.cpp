@@ -23,8 +23,8 @@ Range order_range(int highest_order) { return Range::closed(0, highest_order, Ra
 void check_tightest(const IntegratorSpec& spec, double tightest_rtol) {
   if (spec.rtol >= tightest_rtol) return;
   fail(
-      "integrator \"{}\": rtol = {} is below {}, the tightest that it takes{}: of less it would make "
-      "rounding",
+      "integrator \"{}\": rtol = {} is below {}, the smallest value that this method can reach{}; below it, "
+      "rounding dominates",
       spec.name, spec.rtol, tightest_rtol,
       spec.max_order > 0 ? fmt::format(" with max_order = {}", spec.max_order) : "");
 }
@@ -37,8 +37,8 @@ void check_adaptive(const IntegratorSpec& spec, int highest_order, double tighte
   check(spec, "max_steps", spec.max_steps, Ranges::max_steps);
   if (spec.fixed_step)
     fail(
-        "integrator \"{}\": fixed_step = true, but this method chooses its steps by error control; leave it "
-        "out, or take a method that can do both (palpate list integrators)",
+        "integrator \"{}\": fixed_step = true, but this method always chooses its steps by error control; "
+        "remove fixed_step, or use a method that supports both (palpate list integrators)",
         spec.name);
 }
 

@@ -118,7 +118,7 @@ class AutoSolver final : public dynamics::LinearSolver,
     return room_ = mixed_ ? mixed_->step_matrix(pattern) : nullptr;
   }
   dynamics::StepMatrixUse factor_step_matrix() override {
-    PALPATE_CHECK(room_, "solver auto: there is no step matrix");
+    PALPATE_CHECK(room_, "solver auto: factor_step_matrix() called before step_matrix()");
     seen_ = squared_courant_number(*room_);
     values_version_ = 0;
     return mixed_->factor_step_matrix();
@@ -156,7 +156,7 @@ class AutoSolver final : public dynamics::LinearSolver,
   static constexpr std::size_t kSingle = 0, kTwoLevel = 1;
 
   dynamics::LinearSolver& chosen() {
-    PALPATE_CHECK(active_, "solver auto: solve without a factor");
+    PALPATE_CHECK(active_, "solver auto: solve() called before factor()");
     return *active_;
   }
   dynamics::StepSolves& step_solves() { return dynamic_cast<dynamics::StepSolves&>(chosen()); }

@@ -52,7 +52,7 @@ SolveStatus BorderElimination::factor_border(const BorderedMatrix& A) {
 
 SolveStatus BorderElimination::solve(const VecX& b, VecX& x) {
   if (border_ == 0) return body_solver_->solve(b, x);
-  PALPATE_CHECK(border_status_ == SolveStatus::kOk, "border elimination: solve without a factor");
+  PALPATE_CHECK(border_status_ == SolveStatus::kOk, "border elimination: solve() called before factor()");
   PALPATE_CHECK(b.size() == nodal_ + border_, "right-hand side has {} rows, the matrix {}", b.size(),
                 nodal_ + border_);
   z_ = b.head(nodal_);

@@ -75,7 +75,7 @@ SolveStatus Gmres::solve(const MatX& B, MatX& X) {
 }
 
 void Gmres::check(Eigen::Index rows) const {
-  PALPATE_CHECK(status_ == SolveStatus::kOk, "solver gmres: solve without a factor");
+  PALPATE_CHECK(status_ == SolveStatus::kOk, "solver gmres: solve() called before factor()");
   PALPATE_CHECK(matrix_->values_version == values_version_,
                 "solver gmres: the matrix changed between factor and solve");
   PALPATE_CHECK(rows == matrix_->size(), "right-hand side has {} rows, the matrix {}", rows, matrix_->size());

@@ -200,7 +200,7 @@ class Pcg final : public dynamics::LinearSolver {
 
   // --- iteration
   void check_right_hand_side(Eigen::Index rows) const {
-    PALPATE_CHECK(status_ == SolveStatus::kOk, "solver pcg: solve without a factor");
+    PALPATE_CHECK(status_ == SolveStatus::kOk, "solver pcg: solve() called before factor()");
     PALPATE_CHECK(matrix_->values_version == values_version_,
                   "solver pcg: the matrix changed between factor and solve");
     PALPATE_CHECK(rows == nodal_ + border_, "right-hand side has {} rows, the matrix {}", rows,

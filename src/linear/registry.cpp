@@ -10,28 +10,29 @@ namespace palpate::linear {
 const dynamics::LinearSolverRegistry& linear_solver_registry() {
   static const dynamics::LinearSolverRegistry registry = {
       {"cholmod",
-       "supernodal Cholesky of SuiteSparse, ordered by AMD or METIS; symmetric positive definite matrices; "
+       "supernodal Cholesky of SuiteSparse, AMD or METIS ordering, for symmetric positive definite matrices; "
        "with friction, GMRES preconditioned by the factor of the symmetric part",
        0, make_cholmod},
-      {"umfpack", "multifrontal LU of SuiteSparse; unsymmetric and indefinite matrices", 0, make_umfpack},
+      {"umfpack", "multifrontal LU of SuiteSparse, for unsymmetric and indefinite matrices", 0, make_umfpack},
       {"gmres",
-       "flexible GMRES to linear_rtol, preconditioned by conjugate gradients on the symmetric part, which "
-       "must be positive definite; unsymmetric matrices, as friction makes them",
+       "flexible GMRES to linear_rtol, for unsymmetric matrices (friction); preconditioned by conjugate "
+       "gradients on the symmetric part, which must be positive definite",
        0, make_gmres, part_keys({"linear_rtol"})},
       {"pcg",
-       "conjugate gradients, block-Jacobi, warm start, to linear_rtol; symmetric positive definite matrices",
+       "conjugate gradients to linear_rtol, block-Jacobi preconditioner, warm start, for symmetric positive "
+       "definite matrices",
        0, make_pcg, part_keys({"linear_rtol"})},
       {"auto",
-       "pcg-single, or pcg-two-level where stiffness outweighs mass in the matrix (squared Courant number of "
-       "at least 30); gmres for an unsymmetric matrix",
+       "automatic choice: pcg-single, or pcg-two-level where stiffness dominates mass (squared Courant "
+       "number >= 30); gmres for an unsymmetric matrix",
        0, make_auto, part_keys({"linear_rtol"})},
       {"pcg-single",
-       "conjugate gradients in single precision with residuals in double, block-Jacobi, start from three "
-       "solutions; linear_rtol bounds the error",
+       "conjugate gradients in single precision with residuals in double, block-Jacobi preconditioner, "
+       "initial guess from three previous solutions; linear_rtol bounds the error",
        0, make_pcg_single, part_keys({"linear_rtol"})},
       {"pcg-two-level",
-       "pcg-single with rigid motions of node clusters, large and small, beside its blocks: for stiff "
-       "bodies, long steps and fine meshes",
+       "pcg-single with coarse spaces added to the preconditioner (rigid motions of large and small node "
+       "clusters), for stiff bodies, long steps and fine meshes",
        0, make_pcg_two_level, part_keys({"linear_rtol"})},
   };
   return registry;

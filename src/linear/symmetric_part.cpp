@@ -19,7 +19,7 @@ void SymmetricPart::find_transposed(const BlockSparse& A) {
     for (int s = A.row_start()[static_cast<std::size_t>(i)];
          s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       const int other = A.slot(A.columns()[static_cast<std::size_t>(s)], i);
-      PALPATE_CHECK(other >= 0, "block ({}, {}) has no transposed one in the pattern", i,
+      PALPATE_CHECK(other >= 0, "the transpose of block ({}, {}) is missing from the pattern", i,
                     A.columns()[static_cast<std::size_t>(s)]);
       transposed_[static_cast<std::size_t>(s)] = other;
     }

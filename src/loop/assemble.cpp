@@ -80,7 +80,7 @@ void take_model(LayeredModel& model, const std::string& path, double scale, Body
 /// Takes the bones, still in the body's axes.
 void take_skeleton(const SoftBodySpec& spec, const std::string& path, const LayeredModel& model, Body& body) {
   if (model.skeleton.bones.empty())
-    fail("body \"{}\": [body.skeleton], but {} has no bones; `palpate model human` writes a file that has",
+    fail("body \"{}\": [body.skeleton]: {} has no bones; `palpate model human` writes a file with bones",
          spec.name, path);
   counters::count("loop.skeleton");
   body.skeleton = model.skeleton;
@@ -111,14 +111,14 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
     if (spec.skeleton) take_skeleton(spec, path, model, body);
     if (!spec.skin) return std::move(model.regions);
     if (model.skin.faces.cols() == 0)
-      fail("body \"{}\": skin = true, but {} has no skin; `palpate model` writes files that have one",
+      fail("body \"{}\": skin = true, but {} has no skin; `palpate model` writes files with a skin",
            spec.name, path);
     counters::count("loop.skin");
     model.skin.vertices *= spec.mesh.factor();
     std::shared_ptr<proxy::ProxySet> proxies;
     if (spec.proxies && with_proxies) {
       if (model.proxies.empty())
-        fail("body \"{}\": proxies = true, but {} has none; `palpate model` writes files that have them",
+        fail("body \"{}\": proxies = true, but {} has no proxies; `palpate model` writes files with proxies",
              spec.name, path);
       model.tets = body.rest;  // as checked, scaled and numbered
       for (ProxyHull& hull : model.proxies) hull.corners *= spec.mesh.factor();
@@ -172,8 +172,10 @@ dynamics::BlockSpec block_of(const SoftBodySpec& spec, const Body& body) {
   block.q_scale = (body.placed.rowwise().maxCoeff() - body.placed.rowwise().minCoeff()).norm();
   block.u_scale = std::sqrt(spec.youngs_modulus_pa / spec.density_kg_m3);
   if (!(block.u_scale > 0.0 && std::isfinite(block.u_scale)))
-    fail("youngs_modulus_pa = {:g} and density_kg_m3 = {:g} give a wave speed of {:g} m/s, which is none",
-         spec.youngs_modulus_pa, spec.density_kg_m3, block.u_scale);
+    fail(
+        "youngs_modulus_pa = {:g} and density_kg_m3 = {:g} give a wave speed of {:g} m/s; it must be "
+        "positive and finite",
+        spec.youngs_modulus_pa, spec.density_kg_m3, block.u_scale);
   return block;
 }
 
@@ -228,7 +230,7 @@ void check_memory(const World& world) {
       fmt::format("scene \"{}\": {} nodes and {} tetrahedra", world.description.name, all.nodes,
                   all.tetrahedra),
       estimate.total(),
-      fmt::format("{} for elements and matrix{}, {} for a direct solver's factor",
+      fmt::format("{} for elements and matrix{}, {} for the factor of a direct solver",
                   memory_text(estimate.elements + estimate.touch), skins, memory_text(estimate.factor)),
       direct ? "a larger element_size_m or integrator.linear_solver = \"pcg-single\" needs less"
              : "a larger element_size_m needs less",

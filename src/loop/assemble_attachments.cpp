@@ -36,14 +36,15 @@ void check_nodes(const Body& body, const AttachmentSpec& spec, const std::vector
   if (!nodes.empty()) return;
   const std::string where = fmt::format("body \"{}\": attachment", body.name);
   if (spec.region == "box")
-    fail("{} box [{}, {}, {}] to [{}, {}, {}] m holds no node; enlarge it or move it over the body", where,
+    fail("{} box [{}, {}, {}] to [{}, {}, {}] m contains no node; enlarge it or move it over the body", where,
          spec.box_min_m.x(), spec.box_min_m.y(), spec.box_min_m.z(), spec.box_max_m.x(), spec.box_max_m.y(),
          spec.box_max_m.z());
   if (spec.region == "sphere")
-    fail("{} sphere of radius {} m about [{}, {}, {}] m holds no node; enlarge it or move it over the body",
-         where, spec.radius_m, spec.centre_m.x(), spec.centre_m.y(), spec.centre_m.z());
+    fail(
+        "{} sphere of radius {} m about [{}, {}, {}] m contains no node; enlarge it or move it over the body",
+        where, spec.radius_m, spec.centre_m.x(), spec.centre_m.y(), spec.centre_m.z());
   fail(
-      "{}: no node lies inside \"{}\"; move it into the body, refine the mesh, or choose nodes by a box or a "
+      "{}: no node lies inside \"{}\"; move it into the body, refine the mesh, or select nodes by a box or a "
       "sphere",
       where, spec.to);
 }
@@ -117,8 +118,7 @@ void take_dofs(const Body& body, const std::vector<int>& dofs, int first, std::s
     const Vec3 node = body.placed.col(dof / 3 - first);
     fail(
         "body \"{}\": attachment {} overlaps attachment {}: both hold or drive the node at [{:g}, {:g}, "
-        "{:g}] m "
-        "along {}; make one of them smaller, or give it other axes",
+        "{:g}] m along {}; make one of them smaller, or use other axes",
         body.name, attachment + 1, at->second + 1, node.x(), node.y(), node.z(), "xyz"[dof % 3]);
   }
 }

@@ -20,7 +20,7 @@ dynamics::BlockSpec block_of(const World& world, const BoneSpec& spec) {
       length = std::max(length, tissue.q_scale);
       speed = std::max(speed, tissue.u_scale);
     }
-  if (length == 0.0) fail("bone \"{}\": carries nothing: give a body an attachment to it", spec.name);
+  if (length == 0.0) fail("bone \"{}\" carries no nodes; add a [[body.attachment]] to it", spec.name);
   return dynamics::rigid_block(spec.name, length, speed);
 }
 

@@ -40,7 +40,7 @@ struct Pair {
 
 Pair pair_of(const World& world, const ContactSpec& spec, const std::string& name) {
   const Body* body = world.find_body(name);
-  if (!body) fail("contact: no body called \"{}\"", name);
+  if (!body) fail("contact: no body is called \"{}\"", name);
   const double gap = spec.candidate_gap_m > 0.0
                          ? spec.candidate_gap_m
                          : mean_edge(body->skin ? body->skin->rest : body->boundary.surface);
@@ -64,7 +64,7 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
 contact::ImageOptions image_options(const Pair& pair) {
   if (!contact::gpu_available())
     fail(
-        "contact {} - {}: method = \"image\" is not built in; take \"distance\", or configure with "
+        "contact {} - {}: method = \"image\" is not built in; use \"distance\", or configure with "
         "-DPALPATE_WITH_GL=ON (packages libepoxy-dev, libegl-dev)",
         pair.spec.first, pair.spec.second);
   return {.pixels = pair.spec.pixels, .candidate_gap = pair.candidate_gap, .look_ahead = pair.look_ahead};
@@ -104,11 +104,11 @@ contact::MaterialPoints points_on(const Pair& pair, const contact::Characteristi
 std::unique_ptr<contact::SampleSource> pair_source(Pair a, Pair b) {
   if (a.spec.method == "distance") return distance_source(std::move(a), std::move(b.surface), b.rest);
   if (a.spec.method == "analytic")
-    fail("contact {} - {}: two soft bodies have no exact gaps; use method = \"auto\"", a.spec.first,
-         a.spec.second);
+    fail("contact {} - {}: method = \"analytic\" does not apply to two soft bodies; use method = \"auto\"",
+         a.spec.first, a.spec.second);
   if (!a.proxies != !b.proxies)
-    fail("contact {} - {}: proxies on one side alone; both need them, or neither", a.spec.first,
-         a.spec.second);
+    fail("contact {} - {}: only one side has proxies; enable proxies for both bodies or for neither",
+         a.spec.first, a.spec.second);
   const contact::ImageOptions options = image_options(a);
   if (a.proxies)
     return contact::make_image_source(std::move(a.surface), std::move(a.proxies), std::move(b.surface),
@@ -139,8 +139,8 @@ contact::NodeSurface in_tetrahedra(contact::NodeSurface surface, const TetMesh& 
 /// Returns contact of a soft body with itself.
 std::unique_ptr<contact::SampleSource> own_source(Pair pair) {
   if (pair.spec.method != "distance")
-    fail("contact {} - {}: a body touches itself by nearest points; use method = \"auto\"", pair.spec.first,
-         pair.spec.second);
+    fail("contact {} - {}: self-contact needs method = \"distance\" (nearest points); use method = \"auto\"",
+         pair.spec.first, pair.spec.second);
   try {
     return contact::make_own_distance_source(in_tetrahedra(std::move(pair.surface), pair.body), pair.rest,
                                              pair.body.nodes, options_of(pair));
@@ -180,8 +180,8 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side,
                         motion);
   if (!sphere)
     fail(
-        "contact {} - {}: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = "
-        "\"auto\"",
+        "contact {} - {}: method = \"analytic\" needs a tool with shape = \"sphere\", not \"{}\"; use method "
+        "= \"auto\"",
         pair.spec.first, pair.spec.second, tool.shape);
   return contact::make_sphere_source(std::move(pair.surface), side.frame_index, motion, Vec3::Zero(),
                                      tool.radius_m, pair.candidate_gap, pair.look_ahead);
@@ -219,8 +219,10 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
   contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
   if (auto source = rigid_source(world, spec)) return source;
   if (!world.find_body(spec.first))
-    fail("contact {} - {}: one must be a soft body, or a tool where the other is an obstacle or another tool",
-         spec.first, spec.second);
+    fail(
+        "contact {} - {}: one side must be a soft body, or a tool if the other is an obstacle or another "
+        "tool",
+        spec.first, spec.second);
   Pair pair = pair_of(world, spec, spec.first);
   if (ToolSide* const tool = ToolSide::named(world, spec.second))
     return tool_source(world, *tool, std::move(pair));
@@ -228,8 +230,8 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
     if (obstacle.name == spec.second) return obstacle_source(world, std::move(pair), obstacle);
   if (spec.second == spec.first) return own_source(std::move(pair));
   if (world.find_body(spec.second)) return pair_source(std::move(pair), pair_of(world, spec, spec.second));
-  fail("contact {} - {}: nothing is called \"{}\"; name soft bodies, obstacles or \"tool\"", spec.first,
-       spec.second, spec.second);
+  fail("contact {} - {}: nothing is called \"{}\"; use the names of soft bodies, obstacles or tools",
+       spec.first, spec.second, spec.second);
 }
 
 void add_contact(World& world, ContactSpec& given) {

@@ -40,14 +40,14 @@ Region& region_for(const SoftBodySpec& spec, const RegionSpec& wanted, std::vect
     if (found != regions.end()) return *found;
     if (regions.empty())
       fail(
-          "body \"{}\": [[body.region]] \"{}\", but {} has no regions; `palpate model` makes some "
-          "(--region), or say which elements by box_min_m and box_max_m, or by centre_m and radius_m",
+          "body \"{}\": [[body.region]] \"{}\": {} has no regions; create them with `palpate model "
+          "--region`, or select elements by box_min_m and box_max_m, or by centre_m and radius_m",
           spec.name, wanted.name, spec.mesh.file);
     fail("body \"{}\": {} has no region \"{}\"{}", spec.name, spec.mesh.file, wanted.name,
          suggestion(wanted.name, names_of(regions)));
   }
   if (found != regions.end())
-    fail("body \"{}\": region \"{}\" is one of {} too; give the {} another name", spec.name, wanted.name,
+    fail("body \"{}\": region \"{}\" also exists in {}; give the {} another name", spec.name, wanted.name,
          spec.mesh.file, wanted.region);
   regions.push_back({wanted.name, elements_in(wanted, body.placed, body.rest.tets)});
   return regions.back();
@@ -118,16 +118,15 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
     if (region.material == 0 && static_cast<Eigen::Index>(region.tets.size()) < body.rest.tets.cols())
       unnamed.push_back(region.name);
   if (!unnamed.empty())
-    log::info("body \"{}\": of the body's own material, as the scene does not name {}: {} of {}", spec.name,
-              unnamed.size() == 1 ? "it" : "them", fmt::join(unnamed, ", "), spec.mesh.file);
+    log::info("body \"{}\": the scene does not list {}, so the material of the body applies: {} of {}",
+              spec.name, unnamed.size() == 1 ? "it" : "them", fmt::join(unnamed, ", "), spec.mesh.file);
   for (Region& region : body.regions)
     for (const int tet : region.tets) region.volume += mesh::tet_volume(body.rest, tet);
   for (const Region& region : body.regions)
     if (region.tets.empty())
       fail(
-          "{}: region \"{}\" holds no tetrahedron; a box or a sphere takes those whose centroid it holds, "
-          "and "
-          "the last region that holds one has it",
+          "{}: region \"{}\" contains no tetrahedron; a box or a sphere selects tetrahedra by their "
+          "centroids, and where regions overlap the last one applies",
           where, region.name);
   if (out.list.size() == 1) return out;
   counters::count("loop.regions");

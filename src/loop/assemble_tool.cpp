@@ -24,8 +24,8 @@ tool::HandlePath path_of(const device::Device& handle, const DeviceSpec& spec) {
   auto path = handle.path();
   if (!path)
     fail(
-        "exchange: scheme = \"monolithic\" needs a handle whose path is known beforehand; that of [device] "
-        "type = \"{}\" is not; take scheme = \"partitioned\"",
+        "exchange: scheme = \"monolithic\" needs a handle with a prescribed path, which [device] type = "
+        "\"{}\" does not have; use scheme = \"partitioned\"",
         spec.type);
   return [path = std::move(path)](double t) {
     const device::HandleSample s = path(t);
@@ -49,8 +49,8 @@ void assemble_hand(World& world, ToolSide& side, const dynamics::BlockSpec& tool
   const scene::Description& d = world.description;
   if (d.record && d.record->energy)
     fail(
-        "exchange: scheme = \"monolithic\" with a simulated hand: record.energy = true keeps the balance of "
-        "what a hand does from outside, and this one is a part of the system; set it to false");
+        "exchange: scheme = \"monolithic\" with a simulated hand: record.energy = true records the work of "
+        "an external hand, but a simulated hand is part of the system; set it to false");
   ToolSide::HandInState& hand = side.hand_in_state.emplace();
   hand.model = device::hand_model(*side.device_spec);
   hand.hand = hand_of(hand.model);
@@ -68,8 +68,8 @@ void assemble_block(World& world, ToolSide& side, bool own_device) {
   const ToolSpec& spec = *side.spec;
   if (spec.tick_s != world.description.tool->tick_s)
     fail(
-        "exchange: scheme = \"monolithic\" reads all tools at the same ticks: hand \"{}\" has tick_s = {}, "
-        "the first {}; make them equal",
+        "exchange: scheme = \"monolithic\" samples all tools at the same ticks, but hand \"{}\" has tick_s = "
+        "{}, the first hand {}; make them equal",
         side.name, spec.tick_s, world.description.tool->tick_s);
   const Quat r = quaternion_of(spec.rotation_vector_rad);
   VecX q(7);
@@ -105,8 +105,8 @@ void warn_of_limit(const ToolSide& side) {
     const double most = 4.0 * mass / (h * h) - 2.0 * damping / h;
     if (stiffness < most) return;
     log::warn(
-        "{}: semi-implicit-euler diverges with ticks of {:g} s: its {} of {:g} {} is not below {:g} {}; take "
-        "tool.integrator = \"linearly-implicit-euler\", which has no such limit",
+        "{}: semi-implicit-euler diverges with ticks of {:g} s: {} = {:g} {} is not below its stability "
+        "limit of {:g} {}; use tool.integrator = \"linearly-implicit-euler\", which has none",
         side.name, h, what, stiffness, unit, std::max(0.0, most), unit);
   };
   const auto& c = spec.coupling;
@@ -148,7 +148,7 @@ TriMesh tool_surface(const ToolSpec& spec, const std::string& folder) {
     const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
     TriMesh skin = store::read_model(path).model.skin;
     if (skin.faces.cols() == 0)
-      fail("tool: mesh: {} has no skin; `palpate model` writes files that have one", path);
+      fail("tool: mesh: {} has no skin; `palpate model` writes files with a skin", path);
     skin.vertices *= spec.mesh.factor();
     return skin;
   }

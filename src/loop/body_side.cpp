@@ -27,7 +27,7 @@ BodySide::BodySide(World& world, const RunOptions& options, RunResult& result)
   period_ = period_of(d);
   if (!(duration_ / period_ < 1e9))
     fail(
-        "duration_s = {} makes {:.3g} exchange periods of {} s, more than can be counted; choose a shorter "
+        "duration_s = {} is {:.3g} exchange periods of {} s, more than the limit of 1e9; choose a shorter "
         "duration",
         duration_, duration_ / period_, period_);
   periods_ = whole_number(std::ceil(duration_ / period_ - 1e-9));

@@ -83,12 +83,11 @@ std::string fingerprint(const World& world) {
 }
 
 std::string why_no_checkpoints(const World& world, const RunOptions& options) {
-  if (options.real_time)
-    return "a run in real time follows the machine's clock and the hand, which cannot be had again";
+  if (options.real_time) return "a run in real time follows the clock and the hand, which cannot be restored";
   for (const auto& side : ToolSide::all(world))
     if (side->handle && !side->handle->can_be_archived())
       return fmt::format(
-          "the device \"{}\" is held by a hand outside this program, which cannot be had again",
+          "the device \"{}\" is moved from outside this program, and its motion cannot be restored",
           side->device_spec->type);
   return {};
 }
@@ -98,12 +97,12 @@ void check_checkpoints(const scene::Description& description, double every_s, do
                duration = duration_s > 0.0 ? duration_s : description.duration_s;
   if (every_s < period * (1.0 - kSamePeriod))
     fail(
-        "a checkpoint every {} s: the loop of this scene goes on in periods of {} s, and a checkpoint is at "
-        "the end of one; take {} s or longer{}",
+        "a checkpoint every {} s: checkpoints are written at the end of a period of the loop, which is {} s "
+        "in this scene; choose {} s or longer{}",
         every_s, period, period,
         description.tool || !description.contacts.empty() ? "" : ", or a shorter record.state_period_s");
   if (!(every_s < duration * (1.0 - kSamePeriod)))
-    fail("a checkpoint every {} s: the run is over at {} s, before the first one; take a shorter time",
+    fail("a checkpoint every {} s: the run ends at {} s, before the first checkpoint; choose a shorter time",
          every_s, duration);
 }
 

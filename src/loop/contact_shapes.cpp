@@ -60,8 +60,10 @@ std::unique_ptr<contact::SampleSource> obstacle_source(const Shape& shape, const
                                                        contact::ContactSide side, double candidate_gap,
                                                        double look_ahead, const ObstacleSpec& obstacle) {
   if (scene::is_in_images(spec))
-    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"auto\"", spec.first,
-         obstacle.name, obstacle.type);
+    fail(
+        "contact {} - {}: method = \"image\" does not apply to a {}, which has exact gaps; use method = "
+        "\"auto\"",
+        spec.first, obstacle.name, obstacle.type);
   return contact::obstacle_entry(obstacle).make_source(std::move(side), shape.frame, shape.motion,
                                                        contact::obstacle_shape(obstacle), candidate_gap,
                                                        look_ahead);

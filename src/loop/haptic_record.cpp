@@ -151,7 +151,8 @@ template <class Visit, class Record>
 std::vector<Record> read(Visit visit, Record empty, const std::string& path, const std::string& name) {
   const store::Table table = store::read_table(path, name);
   if (table.columns != names_of(visit, empty))
-    fail("{}: the columns of {} are not those of this version of palpate; record the run anew", path, name);
+    fail("{}: the columns of {} differ from those of this version of palpate; record the run again", path,
+         name);
   std::vector<Record> out(table.rows(), empty);
   for (std::size_t i = 0; i < out.size(); ++i) {
     auto at = table.row(i).begin();
@@ -170,7 +171,7 @@ std::vector<contact::TouchModel> read_models(const std::string& path, std::size_
   out.resize(exchanges);
   const auto model_of = [&](std::uint64_t version) -> contact::TouchModel& {
     if (version == 0 || version > exchanges)
-      fail("{}: a contact model is of exchange {}, of which there is no record", path, version);
+      fail("{}: a contact model refers to exchange {}, which was not recorded", path, version);
     return out[version - 1];
   };
   for (const ModelRow& row : models) {
@@ -181,7 +182,7 @@ std::vector<contact::TouchModel> read_models(const std::string& path, std::size_
   for (const PointRow& row : read(kVisitPoint, PointRow{}, path, "points")) {
     contact::TouchModel& model = model_of(row.version);
     if (model.points == contact::TouchModel::kMostPoints)
-      fail("{}: exchange {} has more contact points than this version of palpate has room for", path,
+      fail("{}: exchange {} has more contact points than this version of palpate supports", path,
            row.version);
     model.point[static_cast<std::size_t>(model.points++)] = row.point;
   }
@@ -250,11 +251,10 @@ void HapticRecorder::exchanged(const ContactRecord& record) {
 
 HapticRecord read_haptic_record(const std::string& path) {
   if (!std::filesystem::exists(path))
-    fail("{}: no such file; a run with a tool keeps it with --realtime, and where the scene has [record]",
-         path);
+    fail("{}: no such file; a run with a tool writes it if the scene has [record], or with --realtime", path);
   HapticRecord out;
   const std::vector<StartRow> start = read(kVisitStart, StartRow{}, path, "start");
-  if (start.size() != 1) fail("{}: it has no start; the run ended before its first tick", path);
+  if (start.size() != 1) fail("{}: the record has no start; the run ended before its first tick", path);
   out.start = start.front().tick;
   out.passivity = start.front().passivity;
   out.ticks = read(kVisitTick, TickRecord{}, path, "ticks");

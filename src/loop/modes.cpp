@@ -32,7 +32,7 @@ double scale_of(const World& world, const VecX& shape) {
 
 modes::Modes find_modes(World& world, int count) {
   if (world.bodies.empty())
-    fail("{}: modes are of soft bodies, and the scene has no [[body]]", world.description.path);
+    fail("{}: modes are computed for soft bodies, but the scene has no [[body]]", world.description.path);
   if (world.contact) world.refresh_contact();
   return modes::find_modes(world.system, world.state.view(), {count});
 }

@@ -32,7 +32,8 @@ TickRecord tick_of(const World& world, const ToolSide& side, double t, const dyn
 
 MonolithicTicks::MonolithicTicks(World& world, Emit emit)
     : world_(world), emit_(std::move(emit)), tick_s_(world.description.tool->tick_s) {
-  PALPATE_CHECK(world.monolithic() && world.stepper, "ticks of a tool that is no block of the State");
+  PALPATE_CHECK(world.monolithic() && world.stepper,
+                "monolithic ticks need a tool that is a block of the State");
   follows_ = world.stepper->follow(this);
 }
 
@@ -57,8 +58,9 @@ dynamics::StepResult MonolithicTicks::advance_to(double t1) {
 void MonolithicTicks::stepped(const dynamics::Stepper& stepper, double t0, double t1) {
   while (due(t1)) {
     const double t = std::clamp(next(), t0, t1);
-    PALPATE_CHECK(stepper.dense_output(t, q_, u_), "{} has no value at t = {} within its step from {} to {}",
-                  stepper.name(), t, t0, t1);
+    PALPATE_CHECK(stepper.dense_output(t, q_, u_),
+                  "{} has no dense output at t = {} within its step from {} to {}", stepper.name(), t, t0,
+                  t1);
     emit_at(next(), dynamics::make_view(world_.state.layout(), t, q_.data(), u_.data()));
   }
 }

@@ -101,7 +101,7 @@ PressedWall press_wall(const HapticLoop& loop, double duration_s, double force_n
   ticks.start(0.0);
   side.limiter->limit(0.0, {}, true);  // its first output is zero, whatever is requested
   const int count = static_cast<int>(std::ceil(duration_s / loop.tick_s));
-  PALPATE_CHECK(count >= 8, "{} ticks are too few to see a growth", count);
+  PALPATE_CHECK(count >= 8, "{} ticks are too few to measure growth; at least 8 are needed", count);
   PressedWall out;
   double second = 0.0, last = 0.0;
   for (int i = 1; i <= count; ++i) {

@@ -39,8 +39,9 @@ void schedule(RealTimeResult& out) {
   out.scheduling =
       refused == 0
           ? fmt::format("SCHED_FIFO {}", kPriority)
-          : fmt::format("SCHED_OTHER (SCHED_FIFO refused: {}; run as root, or raise \"ulimit -r\" to {})",
-                        std::strerror(refused), kPriority);
+          : fmt::format(
+                "SCHED_OTHER (SCHED_FIFO not permitted: {}; run as root, or raise \"ulimit -r\" to {})",
+                std::strerror(refused), kPriority);
 }
 
 // Locks the current pages only: ticks allocate no new ones. Locking future pages (MCL_FUTURE) would make

@@ -34,11 +34,11 @@ void check_recorded_times(const device::Device& handle, const DeviceSpec& spec, 
     remedy = fmt::format("device.time_scale = {:g} if they are in units of {:g} s", unit, unit);
   const double begin = unit * (first - spec.time_offset_s);  // after scaling
   if (apart)
-    remedy += fmt::format("{}device.time_offset_s = {:.12g} to begin with the scene",
+    remedy += fmt::format("{}device.time_offset_s = {:.12g} to start with the scene",
                           remedy.empty() ? "" : ", and ", 0.0 - begin);
   if (!apart) remedy += ", device.time_scale = 1 if they are seconds";
   fail(
-      "device: {}: the recording's times reach from {:.12g} to {:.12g} s, the scene's from 0 to {:g} s; set "
+      "device: {}: the times of the recording are {:.12g} to {:.12g} s, those of the scene 0 to {:g} s; set "
       "{}",
       spec.file, first, last, duration_s, remedy);
 }

@@ -207,13 +207,13 @@ Recorder::Recorder(const World& world, const std::string& folder, bool goes_on, 
   if (goes_on) return;  // archive() opens the files
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
-  if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
+  if (failed) fail("{}: cannot create the results folder: {}", folder, failed.message());
   m.open(nullptr);
 }
 
 void Recorder::archive(Archive& a) {
   Impl& m = *impl_;
-  PALPATE_CHECK(m.resumable, "a recorder of a run without checkpoints");
+  PALPATE_CHECK(m.resumable, "this recorder belongs to a run without checkpoints and cannot be archived");
   a("seen", m.seen);
   if (!m.description.record) return;
   Places at;

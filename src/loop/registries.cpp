@@ -58,9 +58,9 @@ std::vector<Choice> part_choices() {
       contact::gpu_available()
           ? "compiled in"
           : "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev)";
-  return {{"bodies", "soft bodies of linear tetrahedra: always there"},
-          {"contact", "penalty contact by nearest points, and with analytic obstacles: always there"},
-          {"proxies", "convex proxies of skins, broad and narrow phase (libccd): always there"},
+  return {{"bodies", "soft bodies of linear tetrahedra: always compiled in"},
+          {"contact", "penalty contact by nearest points, and with analytic obstacles: always compiled in"},
+          {"proxies", "convex proxies of skins, broad and narrow phase (libccd): always compiled in"},
           {"tool", "rigid tool under a virtual coupling (Simbody): " + tool},
           {"gl", "contact images by OpenGL, and pictures (EGL): " + gl}};
 }
@@ -78,20 +78,24 @@ std::vector<Choice> tool_steppers() {
 
 std::vector<ChoiceList> registries() {
   return {
-      {"integrators", "of soft bodies: [integrator] name, --integrator", stepper_choices()},
-      {"linear-solvers", "of implicit integrators: [integrator] linear_solver",
+      {"integrators", "time integrators of soft bodies: [integrator] name, --integrator", stepper_choices()},
+      {"linear-solvers", "linear solvers of implicit integrators: [integrator] linear_solver",
        choices(linear::linear_solver_registry())},
       {"materials", "constitutive laws: [[body]] material", choices(fem::law_registry())},
-      {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_steppers()},
+      {"tool-integrators", "integrators of the haptic ticks: [tool] integrator", tool_steppers()},
       {"obstacles", "rigid shapes in the world: [[obstacle]] type", named(contact::obstacle_registry())},
-      {"contact-methods", "how gaps are found: [[contact]] method", named(contact::method_registry())},
-      {"contact-springs", "what stiffness and damping are of: [[contact]] spring",
+      {"contact-methods", "methods of gap computation: [[contact]] method",
+       named(contact::method_registry())},
+      {"contact-springs", "stiffness and damping per area or per vertex: [[contact]] spring",
        named(contact::spring_registry())},
-      {"contact-laws", "pressure by depth and its rate: [[contact]] law", named(contact::law_registry())},
-      {"generators", "of meshes: [body.mesh] generator", choices(mesh::tet_generators())},
-      {"devices", "what the hand holds: [device] type", choices(device::device_registry())},
-      {"device-profiles", "published figures of devices: [device] profile", named(device::device_profiles())},
-      {"motions", "on top of keyframes: [[device.motion]] kind", choices(device::motion_registry())},
+      {"contact-laws", "contact laws, pressure as a function of depth and its rate: [[contact]] law",
+       named(contact::law_registry())},
+      {"generators", "mesh generators: [body.mesh] generator", choices(mesh::tet_generators())},
+      {"devices", "haptic devices: [device] type", choices(device::device_registry())},
+      {"device-profiles", "published specifications of devices: [device] profile",
+       named(device::device_profiles())},
+      {"motions", "motions added to the keyframes: [[device.motion]] kind",
+       choices(device::motion_registry())},
       {"parts", "optional parts of this build", part_choices()}};
 }
 

@@ -116,12 +116,12 @@ scene::Description tools_alone(const scene::Description& d, const std::vector<st
 void refuse_what_cannot_be_retraced(const scene::Description& d, const HapticRecord& record) {
   if (!d.tool || d.exchange.scheme == "monolithic")
     fail(
-        "replay: the ticks of this run used no exchange (monolithic, or no tool); change something to run it "
-        "again");
+        "replay: this run has no exchanges to replay (it is monolithic, or has no tool); change a setting "
+        "(--set) to simulate it again");
   for (std::size_t i = 0; i < record.ticks.size(); ++i) {
     const double start = i == 0 ? 0.0 : record.ticks[i - 1].time;
     if (std::abs(record.ticks[i].time - start - record.ticks[i].length) > kSameTime)
-      fail("replay: ticks are missing before t = {:g} s; the recorder had fallen behind",
+      fail("replay: ticks are missing before t = {:g} s, because the recorder could not keep up",
            record.ticks[i].time);
   }
 }
@@ -173,8 +173,8 @@ struct Retraced {
     // Versions count from 1, one per exchange.
     const std::size_t version = record.ticks[tick].record_version;
     if (version > record.exchanges.size())
-      fail("replay: the tick at {:g} s used exchange {}, of which there is no record",
-           record.ticks[tick].time, version);
+      fail("replay: the tick at {:g} s used exchange {}, which was not recorded", record.ticks[tick].time,
+           version);
     if (version != 0) contact.linear = record.exchanges[version - 1];
     if (version != 0 && !record.models.empty()) contact.touch = record.models[version - 1];
     return contact;
@@ -193,8 +193,10 @@ std::vector<TickRecord> retrace(const scene::Description& description,
   for (const std::size_t i : hands) {
     refuse_what_cannot_be_retraced(description, records.at(i));
     if (records[i].ticks.size() != records[hand].ticks.size())
-      fail("replay: {} and {} ticks were recorded of two hands that meet", records[hand].ticks.size(),
-           records[i].ticks.size());
+      fail(
+          "replay: {} and {} ticks were recorded for two hands whose tools can touch; their numbers must be "
+          "equal",
+          records[hand].ticks.size(), records[i].ticks.size());
   }
   const scene::Description alone = tools_alone(description, hands);
   std::vector<std::unique_ptr<device::Device>> devices;
@@ -206,7 +208,7 @@ std::vector<TickRecord> retrace(const scene::Description& description,
     retraced.back().ticks.start(0.0);
   }
   std::vector<TickGroup> group = TickGroup::all(retraced);
-  PALPATE_CHECK(group.size() == 1, "{} groups of hands that meet", group.size());
+  PALPATE_CHECK(group.size() == 1, "{} groups of hands whose tools can touch, expected 1", group.size());
   std::vector<TickRecord> out;
   for (std::size_t n = 0; n < records[hand].ticks.size(); ++n) {
     const TickRecord& tick = records[hand].ticks[n];

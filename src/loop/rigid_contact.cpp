@@ -62,8 +62,10 @@ std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, cons
                                                         const ContactSpec& spec, const ObstacleSpec& obstacle,
                                                         contact::ContactForce& force) {
   if (tool.is_round() && spec.spring == "per_point")
-    fail("contact {} - {}: spring = \"per_point\" is for vertices, and a sphere has none", spec.first,
-         obstacle.name);
+    fail(
+        "contact {} - {}: spring = \"per_point\" needs vertices, but a tool with shape = \"sphere\" has "
+        "none; use \"per_area\"",
+        spec.first, obstacle.name);
   const Shape shape = shape_of(force, obstacle);
   return rigid_on_shape(world, tool, spec, shape, [&](contact::ContactSide side) {
     return obstacle_source(shape, spec, std::move(side), spec.candidate_gap_m, tool.look_ahead, obstacle);
@@ -74,8 +76,10 @@ std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, cons
 std::unique_ptr<contact::SampleSource> tool_on_tool(const World& world, const RigidSide& a,
                                                     const RigidSide& b, const ContactSpec& spec) {
   if (spec.method != "distance")
-    fail("contact {} - {}: two tools touch by nearest points; use method = \"auto\"", spec.first,
-         spec.second);
+    fail(
+        "contact {} - {}: contact between two tools needs method = \"distance\" (nearest points); use method "
+        "= \"auto\"",
+        spec.first, spec.second);
   if (b.is_round())
     return rigid_on_shape(
         world, a, spec, round_tool(b.tool.radius_m, b.frame, b.motion), [&](contact::ContactSide side) {
@@ -155,8 +159,8 @@ void make_rigid_touch(World& world) {
     if (side.spec->tick_s != leader.spec->tick_s)
       at_place(world, scene::hands_of(d)[i].tool_key + ".tick_s", "", [&] {
         fail(
-            "tools that meet each other have ticks at the same times: that of \"{}\" has tick_s = {}, \"{}\" "
-            "{}; make them equal",
+            "tools that can touch each other must have the same ticks, but the tool of \"{}\" has tick_s = "
+            "{}, that of \"{}\" {}; make them equal",
             side.name, side.spec->tick_s, leader.name, leader.spec->tick_s);
       });
     side.rigid =

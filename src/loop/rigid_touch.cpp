@@ -54,7 +54,8 @@ std::shared_ptr<contact::MovingFrame> RigidTouch::motion(int tool) const {
 }
 
 void RigidTouch::place(double t, std::span<const dynamics::RigidMotion> tools) {
-  PALPATE_CHECK(tools.size() == tools_.size(), "{} tools, {} meet", tools.size(), tools_.size());
+  PALPATE_CHECK(tools.size() == tools_.size(), "{} tool motions given for {} tools", tools.size(),
+                tools_.size());
   state_.set_time(t);
   for (std::size_t i = 0; i < tools.size(); ++i) {
     const Pose& pose = tools[i].pose;

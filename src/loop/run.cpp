@@ -19,19 +19,20 @@ void check_clock(const World& world, bool real_time) {
     for (const auto& side : ToolSide::all(world))
       if (side->handle && side->handle->is_live())
         fail(
-            "device: type = \"{}\": somebody moves it while the run goes on, by the wall's clock; run in "
-            "real "
-            "time (palpate run --realtime)",
+            "device: type = \"{}\" is driven from outside, by the wall clock; run in real time (palpate run "
+            "--realtime)",
             side->device_spec ? side->device_spec->type : "");
     return;
   }
-  if (!d.tool) fail("real time: the scene has no [tool], so nothing that a hand would feel");
+  if (!d.tool) fail("real time: the scene has no [tool], so there is no force for a hand to feel");
   if (!world.has_tool_of_ticks())
-    fail("real time: exchange.scheme = \"monolithic\" has no ticks of its own; take \"partitioned\"");
+    fail("real time: exchange.scheme = \"monolithic\" has no separate haptic loop; use \"partitioned\"");
   for (const scene::HandSpec& hand : d.hands)
     if (hand.tool.tick_s != d.tool->tick_s)
-      fail("real time: hand \"{}\" ticks every {} s, the first every {} s; one clock serves one tick_s",
-           hand.name, hand.tool.tick_s, d.tool->tick_s);
+      fail(
+          "real time: hand \"{}\" has tick_s = {}, the first hand {}; all hands share one clock, so make "
+          "them equal",
+          hand.name, hand.tool.tick_s, d.tool->tick_s);
 }
 
 RunResult run(World& world, const RunOptions& options) {

@@ -59,7 +59,7 @@ int SteppedRun::periods_done() const { return impl_->clock.periods(); }
 int SteppedRun::periods() const { return impl_->bodies.periods(); }
 
 void SteppedRun::archive(Archive& a) {
-  PALPATE_CHECK(!a.gives_back(), "a SteppedRun is given back by its constructor");
+  PALPATE_CHECK(!a.gives_back(), "a SteppedRun can only be restored by its constructor");
   const workers::Count threads(impl_->world.description.integrator.threads);
   impl_->bodies.look_once_more();
   impl_->clock.archive(a);

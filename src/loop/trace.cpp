@@ -26,7 +26,8 @@ const std::vector<std::string>& TraceRecorder::columns() {
 
 TraceRecorder::TraceRecorder(World& world, const std::string& path) : world_(world), csv_(path, columns()) {
   if (!world_.stepper)
-    fail("scene \"{}\": --trace shows the steps of bodies, and this scene has none", world_.description.name);
+    fail("scene \"{}\": --trace records the steps of bodies, but this scene has no body",
+         world_.description.name);
   world_.stepper->set_trace(this);
 }
 

@@ -55,7 +55,7 @@ void World::set_youngs_modulus(Body& body, double youngs_modulus_pa, const std::
       std::vector<std::string> names;
       for (const Region& r : body.regions)
         if (r.material > 0) names.push_back(r.name);
-      fail("body \"{}\": no region \"{}\" has a material of its own{}", body.name, region,
+      fail("body \"{}\": no region \"{}\" with a separate material{}", body.name, region,
            suggestion(region, names));
     }
     set(found->material, youngs_modulus_pa);
@@ -137,7 +137,7 @@ Twist World::tool_twist(std::size_t hand) const {
 }
 
 void World::refresh_contact() {
-  PALPATE_CHECK(contact, "a World without contact has nothing to ask");
+  PALPATE_CHECK(contact, "refresh_contact() called for a World without contact");
   for (const auto& side : tool_sides_)
     if (side->trajectory) {
       side->trajectory->clear();

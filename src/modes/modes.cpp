@@ -52,11 +52,11 @@ class Pencil {
     if (!K_.symmetric)
       fail(
           "modes: the tangent is unsymmetric (friction, or a damping that depends on position): vibration "
-          "has no real modes; leave that term out");
+          "has no real modes; remove that term");
     system.step_matrix(state, 1.0, 0.0, 0.0, M_);
     for (int i = 0; i < state.layout->u_size; ++i)
       if (!system.driven_mask()[static_cast<std::size_t>(i)]) free_.push_back(i);
-    if (free_.empty()) fail("modes: no direction is free to move");
+    if (free_.empty()) fail("modes: all directions are held or driven, so nothing is free to move");
     full_.setZero(state.layout->u_size);
   }
   Eigen::Index size() const { return static_cast<Eigen::Index>(free_.size()); }
@@ -263,7 +263,7 @@ Pairs rayleigh_ritz(const Pencil& pencil, MatX X, bool lowest, Eigen::Index want
   const MatX k = X.transpose() * pencil.stiffness_of_all(X), m = X.transpose() * pencil.mass_of_all(X);
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> small(0.5 * (k + k.transpose()),
                                                              0.5 * (m + m.transpose()));
-  PALPATE_CHECK(small.info() == Eigen::Success, "modes: {} Ritz vectors are dependent", X.cols());
+  PALPATE_CHECK(small.info() == Eigen::Success, "modes: {} Ritz vectors are linearly dependent", X.cols());
   return ordered(small.eigenvalues(), X * small.eigenvectors(), lowest, wanted);
 }
 
@@ -271,7 +271,7 @@ Pairs all_by_dense(const Pencil& pencil, bool lowest, Eigen::Index wanted) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> solver(pencil.dense(pencil.K()),
                                                               pencil.dense(pencil.M()));
   if (solver.info() != Eigen::Success)
-    fail("modes: the stiffness is not finite, or the mass not positive definite, at this state");
+    fail("modes: at this state the stiffness is not finite, or the mass is not positive definite");
   return ordered(solver.eigenvalues(), solver.eigenvectors(), lowest, wanted);
 }
 

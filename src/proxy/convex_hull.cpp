@@ -68,7 +68,7 @@ class Qhull {
     char command[] = "qhull Pp";
     const int failed = qh_new_qhull(&qh_, dimension, static_cast<int>(coordinates.cols()), coordinates.data(),
                                     False, command, nullptr, log_.get());
-    PALPATE_CHECK(failed == 0, "Qhull gave code {} for {} points in {} dimensions", failed,
+    PALPATE_CHECK(failed == 0, "Qhull returned error {} for {} points in {} dimensions", failed,
                   coordinates.cols(), dimension);
     Facets out;
     qh_getarea(&qh_, qh_.facet_list);
@@ -98,8 +98,8 @@ class Qhull {
 // A facet reads n . y + o <= 0 in the coordinates y = axes^T (x - origin) / size of its span, which is (axes
 // n) . x <= (axes n) . origin - o size.
 ConvexHull convex_hull(const Points& points) {
-  PALPATE_CHECK(points.cols() > 0 && points.allFinite(), "convex hull of {} points, or not finite ones",
-                points.cols());
+  PALPATE_CHECK(points.cols() > 0 && points.allFinite(),
+                "convex hull: {} points; at least one is needed, and all must be finite", points.cols());
   const Span in = span(points);
   const int d = in.dimension;
   MatX y = in.axes.leftCols(d).transpose() * (points.colwise() - in.origin);

@@ -14,16 +14,16 @@ namespace palpate::proxy {
 namespace {
 
 void check(const LayeredModel& model, const DecomposeOptions& options) {
-  if (model.skin.faces.cols() == 0) fail("convex decomposition of \"{}\": it has no skin", model.name);
-  if (options.count < 1) fail("convex decomposition: {} hulls; ask for one at least", options.count);
+  if (model.skin.faces.cols() == 0) fail("convex decomposition: model \"{}\" has no skin", model.name);
+  if (options.count < 1) fail("convex decomposition: count = {} must be at least 1", options.count);
   if (options.max_corners < 4)
-    fail("convex decomposition: hulls of {} corners; 4 at least", options.max_corners);
+    fail("convex decomposition: max_corners = {} must be at least 4", options.max_corners);
   if (!(options.normal_weight >= 0.0) || !std::isfinite(options.normal_weight))
     fail("convex decomposition: normal weight = {} must not be negative", options.normal_weight);
   if (!(options.tolerance >= 0.0))
     fail("convex decomposition: tolerance = {} must not be negative", options.tolerance);
   if (model.tets.tets.cols() > 0 && model.embedding.size() != model.skin.vertices.cols())
-    fail("convex decomposition of \"{}\": {} of its {} skin vertices are embedded", model.name,
+    fail("convex decomposition of \"{}\": only {} of {} skin vertices are embedded; all must be", model.name,
          model.embedding.size(), model.skin.vertices.cols());
 }
 

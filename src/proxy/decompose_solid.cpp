@@ -221,9 +221,9 @@ ProxyHull proxy_of(const SolidPiece& piece, const Solid& solid, const SolidOptio
 
 void check(const TriMesh& surface, const SolidOptions& options) {
   if (surface.faces.cols() == 0) fail("convex decomposition: the surface has no faces");
-  if (options.count < 1) fail("convex decomposition: {} hulls; ask for one at least", options.count);
+  if (options.count < 1) fail("convex decomposition: count = {} must be at least 1", options.count);
   if (options.max_corners < 4)
-    fail("convex decomposition: hulls of {} corners; 4 at least", options.max_corners);
+    fail("convex decomposition: max_corners = {} must be at least 4", options.max_corners);
   if (!(options.tolerance >= 0.0))
     fail("convex decomposition: tolerance = {} must not be negative", options.tolerance);
 }

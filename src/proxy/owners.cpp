@@ -11,7 +11,8 @@ std::vector<int> owner_of_vertices(Eigen::Index vertices, const std::vector<Prox
   std::vector<int> owner(static_cast<std::size_t>(vertices), -1);
   for (std::size_t p = 0; p < proxies.size(); ++p)
     for (const int v : proxies[p].members) {
-      if (v < 0 || v >= vertices) fail("proxy {}: member {} is none of the {} skin vertices", p, v, vertices);
+      if (v < 0 || v >= vertices)
+        fail("proxy {}: member {} is not one of the {} skin vertices", p, v, vertices);
       if (owner[static_cast<std::size_t>(v)] < 0) owner[static_cast<std::size_t>(v)] = static_cast<int>(p);
     }
   return owner;
@@ -21,7 +22,7 @@ std::vector<int> owner_of_faces(const Faces& faces, Eigen::Index vertices,
                                 const std::vector<ProxyHull>& proxies) {
   const std::vector<int> first = owner_of_vertices(vertices, proxies);
   for (std::size_t v = 0; v < first.size(); ++v)
-    if (first[v] < 0) fail("skin vertex {} belongs to no proxy: list it in the members of one", v);
+    if (first[v] < 0) fail("skin vertex {} belongs to no proxy; add it to the members of one", v);
   std::vector<int> owner(static_cast<std::size_t>(faces.cols()), -1);
   std::vector<char> is_member(first.size(), 0);
   std::vector<std::vector<int>> faces_of_vertex(first.size());
@@ -37,7 +38,8 @@ std::vector<int> owner_of_faces(const Faces& faces, Eigen::Index vertices,
     for (const int v : proxies[p].members) is_member[static_cast<std::size_t>(v)] = 0;
   }
   for (std::size_t f = 0; f < owner.size(); ++f)
-    if (owner[f] < 0) fail("skin face {} belongs to no proxy: no one's members hold its three vertices", f);
+    if (owner[f] < 0)
+      fail("skin face {} belongs to no proxy; add its three vertices to the members of one", f);
   return owner;
 }
 

@@ -88,8 +88,9 @@ void ProxySet::Impl::measure_motion(int proxy) {
 
 void ProxySet::set_motion(const Eigen::Ref<const Points>& given) {
   Impl& s = *impl_;
-  PALPATE_CHECK(s.soft && given.cols() == s.node_count, "{} node velocities for proxies of a body of {}",
-                given.cols(), s.node_count);
+  PALPATE_CHECK(s.soft && given.cols() == s.node_count,
+                "{} node velocities given for the proxies of a body with {} nodes", given.cols(),
+                s.node_count);
   ++s.motions_set;
   s.velocities = given;
   s.whole.velocity = given.rowwise().mean();
@@ -102,7 +103,7 @@ void ProxySet::set_motion(const Eigen::Ref<const Points>& given) {
 }
 
 void ProxySet::Impl::set_rigid_motion(const Mat3& linear, const Vec3& offset, double norm) {
-  PALPATE_CHECK(!soft, "a soft body moves as its nodes do");
+  PALPATE_CHECK(!soft, "the motion of a soft body must be given by node velocities");
   PALPATE_CHECK(offset.allFinite() && std::isfinite(norm), "proxies: the velocity of a pose is not finite");
   ++motions_set;
   rate = linear;

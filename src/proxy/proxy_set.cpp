@@ -145,8 +145,9 @@ double ProxySet::Impl::loosen() {
 void ProxySet::update(const Eigen::Ref<const Points>& nodes) {
   constexpr double kLoose = 1.2;
   Impl& s = *impl_;
-  PALPATE_CHECK(s.soft && nodes.cols() == s.node_count, "{} node positions for proxies of a body of {}",
-                nodes.cols(), s.node_count);
+  PALPATE_CHECK(s.soft && nodes.cols() == s.node_count,
+                "{} node positions given for the proxies of a body with {} nodes", nodes.cols(),
+                s.node_count);
   ++s.moment;
   s.rest();
   s.motion.update(nodes);
@@ -157,7 +158,7 @@ void ProxySet::update(const Eigen::Ref<const Points>& nodes) {
     for (int p = 0; p < s.count; ++p) {
       const ProxyState& state = s.ready(p);
       PALPATE_CHECK(std::isfinite(state.inflation) && state.low.allFinite() && state.high.allFinite(),
-                    "proxy {}: a position of its nodes is not finite", p);
+                    "proxy {}: the position of a node is not finite", p);
       s.kept_boxes[static_cast<std::size_t>(p)] = {state.low, state.high};
       s.kept_size += 0.5 * (state.high - state.low).sum();
     }
@@ -168,7 +169,7 @@ void ProxySet::update(const Eigen::Ref<const Points>& nodes) {
 
 void ProxySet::update(const Pose& pose) {
   Impl& s = *impl_;
-  PALPATE_CHECK(!s.soft, "a soft body's proxies follow its nodes, not a pose");
+  PALPATE_CHECK(!s.soft, "proxies of a soft body must be updated by node positions, not by a pose");
   ++s.moment;
   s.rest();
   for (int p = 0; p < s.count; ++p) {

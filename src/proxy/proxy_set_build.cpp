@@ -102,9 +102,9 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options)
     : impl_(std::make_unique<Impl>()) {
   Impl& s = *impl_;
   counters::count("proxy.proxy_set");
-  if (model.proxies.empty()) fail("body \"{}\": it has no proxies", model.name);
+  if (model.proxies.empty()) fail("body \"{}\" has no proxies", model.name);
   if (options.patch_faces < 0)
-    fail("body \"{}\": patches of {} faces; one at least, or 0 for a 2000th of the skin", model.name,
+    fail("body \"{}\": patch_faces = {} must not be negative; 0 chooses 1/2000 of the skin", model.name,
          options.patch_faces);
   s.options = options;
   if (options.patch_faces == 0)
@@ -114,8 +114,8 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options)
   s.count = static_cast<int>(model.proxies.size());
   const Eigen::Index vertices = model.skin.vertices.cols();
   if (s.soft && model.embedding.size() != vertices)
-    fail("body \"{}\": {} of its {} skin vertices are embedded", model.name, model.embedding.size(),
-         vertices);
+    fail("body \"{}\": only {} of {} skin vertices are embedded; all must be", model.name,
+         model.embedding.size(), vertices);
   const std::vector<int> owner_of_face = owner_of_faces(model.skin.faces, vertices, model.proxies);
   s.skin = skin_patches(model.skin, owner_of_face, s.count, s.options.patch_faces);
 
@@ -142,9 +142,9 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options)
     const auto at = static_cast<std::size_t>(p);
     const ProxyHull& hull = model.proxies[at];
     if (hull.corners.cols() == 0 || !hull.corners.allFinite())
-      fail("body \"{}\": proxy {} has no corners, or one that is not finite", model.name, p);
+      fail("body \"{}\": proxy {} has no corners, or a corner that is not finite", model.name, p);
     if (hull.bone >= static_cast<int>(model.skeleton.bones.size()))
-      fail("body \"{}\": proxy {} goes with bone {} of {}", model.name, p, hull.bone,
+      fail("body \"{}\": proxy {} is attached to bone {}, but there are {} bones", model.name, p, hull.bone,
            model.skeleton.bones.size());
     s.bone.push_back(hull.bone);
     s.first_corner.push_back(s.rest_corners.size());

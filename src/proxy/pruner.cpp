@@ -165,7 +165,8 @@ Pruner::Pruner(Pruner&&) noexcept = default;
 
 std::span<const ContactRegion> Pruner::query(double gap, double time) {
   Impl& s = *impl_;
-  PALPATE_CHECK(gap >= 0.0 && time >= 0.0, "contact regions: gap = {} m, time = {} s", gap, time);
+  PALPATE_CHECK(gap >= 0.0 && time >= 0.0, "contact regions: gap = {} m and time = {} s must not be negative",
+                gap, time);
   ++s.counts.queries;
   s.used = 0;
   s.find_pairs(gap, time);

@@ -88,8 +88,8 @@ class ErrorControlled : public TickScheme {
             max_steps_,
             0.0,
             fmt::format("{} at t = {:.9g} s: more than {} steps in a tick of {:.3g} s: the tool rotates or "
-                        "swings too fast for its accuracy of {:g}; use "
-                        "linearly-implicit-euler, which has no limit, or a softer coupling",
+                        "oscillates too fast for the accuracy of {:g}; use tool.integrator = "
+                        "\"linearly-implicit-euler\", which has no step limit, or a softer coupling",
                         integrator_->getMethodName(), input.t0, max_steps_, input.h,
                         integrator_->getAccuracyInUse())};
   }

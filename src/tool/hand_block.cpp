@@ -26,7 +26,7 @@ constexpr double kSmooth = 1e-5, kSmoothRotation = 1e-4;  ///< v_r [m/s, rad/s]
 
 const dynamics::Block& block_of(const StateView& state, int id) {
   const dynamics::Block* block = state.layout->find(id);
-  PALPATE_CHECK(block && block->u_size == 6 && block->q_size == 6, "block {} is no hand's", id);
+  PALPATE_CHECK(block && block->u_size == 6 && block->q_size == 6, "block {} is not a hand", id);
   return *block;
 }
 

@@ -20,7 +20,7 @@ RigidParameters rigid_parameters(const ToolSpec& spec, const Vec3& gravity) {
   RigidParameters p{spec.mass_kg, spec.inertia_kg_m2, spec.gravity ? gravity : Vec3(Vec3::Zero())};
   if (p.inertia.isZero(0.0)) {
     if (!ToolRanges::radius_m.holds(spec.radius_m))
-      fail("tool: radius_m = {} {}; it gives the inertia where inertia_kg_m2 is left out", spec.radius_m,
+      fail("tool: radius_m = {} {}; it determines the inertia if inertia_kg_m2 is omitted", spec.radius_m,
            ToolRanges::radius_m.demand());
     p.inertia.setConstant(0.4 * p.mass * spec.radius_m * spec.radius_m);
   }

@@ -53,7 +53,7 @@ void Tool::set_state(double t, const Pose& pose, const Twist& twist) {
 
 dynamics::StepResult Tool::advance(double h, const HandleMotion& handle,
                                    const dynamics::LinearisedContact& contact) {
-  PALPATE_CHECK(h > 0.0 && std::isfinite(h), "tick of {} s", h);
+  PALPATE_CHECK(h > 0.0 && std::isfinite(h), "tick length = {} s must be positive and finite", h);
   Impl& me = *impl_;
   me.input.t0 = me.time;
   me.input.h = h;
@@ -68,13 +68,13 @@ dynamics::StepResult Tool::advance(double h, const HandleMotion& handle,
         0,
         0,
         0.0,
-        fmt::format("tool at t = {:.9g} s: {} not finite; the tool stays where it was", me.time, what)};
+        fmt::format("tool at t = {:.9g} s: {} not finite; the tool keeps its last state", me.time, what)};
   };
-  if (!is_finite(me.input)) return not_finite("handle or contact record is");
+  if (!is_finite(me.input)) return not_finite("the handle state or the contact record is");
   RigidMotion next = me.motion;
   dynamics::StepResult result = me.scheme->advance(me.input, next);
   if (!result.ok()) return result;
-  if (!is_finite(next)) return not_finite("its new state is");
+  if (!is_finite(next)) return not_finite("the new state of the tool is");
   me.motion = next;
   me.time += h;
   return result;

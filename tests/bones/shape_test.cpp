@@ -81,7 +81,7 @@ TEST(Bone, GivenNumbersComeBeforeTheShapes) {
   EXPECT_EQ(bone_inertia(spec).principal, spec.inertia_kg_m2);
   spec.inertia_kg_m2 = Vec3(1e-4, 2e-4, 4e-4);
   expect_contains(message_of([&] { bone_inertia(spec); }),
-                  "bone \"sphere\": inertia_kg_m2 = [0.0001, 0.0002, 0.0004] belongs to no body");
+                  "bone \"sphere\": inertia_kg_m2 = [0.0001, 0.0002, 0.0004] is impossible");
   spec.shape = "spere";
   expect_contains(message_of([&] { bone_volume(spec); }),
                   "bone \"sphere\": unknown shape \"spere\" (did you mean \"sphere\"?)");

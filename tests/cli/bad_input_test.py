@@ -307,7 +307,7 @@ class EarlierRun(Case):
         text = self.refused("run", "press/again.toml", "-o", "press")
         self.assertIn("is the recording that the hand repeats", text)
         self.assertEqual((self.folder / "press/force.csv").read_bytes(), force)
-        self.assertIn("would write over it", self.refused("replay", "press", "--integrator",
+        self.assertIn("would overwrite the run", self.refused("replay", "press", "--integrator",
                                                           "linearly-implicit-euler", "-o", "press"))
 
 
@@ -338,7 +338,7 @@ step_s = 0.01
 class Memory(Case):
     def compare(self, *scene):
         text = self.good("inspect", *scene)
-        said = float(re.search(r"memory of its run, about \[MiB\] +(\d+)", text).group(1))
+        said = float(re.search(r"estimated memory of a run \[MiB\] +(\d+)", text).group(1))
         with open(os.devnull, "w", encoding="utf-8") as null:
             process = subprocess.Popen([PROGRAM, "run", *scene, "--duration-s", "0.01", "-o", "x"],
                                        cwd=self.folder, stdout=null)

@@ -160,7 +160,7 @@ class Incomplete(Cli):
         done = self.call(*arguments, **environment)
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
         last = done.stderr.splitlines()[-1]
-        self.assertTrue(last.startswith("palpate: incomplete: there is no "), done.stderr)
+        self.assertTrue(last.startswith("palpate: incomplete: missing "), done.stderr)
         return last
 
     QUICK = ["--limit-s", "1", "--duration-s", "0.02", "--repeats", "1",

@@ -148,7 +148,7 @@ class Judgements(Cli):
         text = self.good("run", "press-ball", "--duration-s", "0.2", "--realtime", "--passivity", "observe",
                          "-o", "first")
         self.assertIn("clock.csv", os.listdir(self.folder / "first"))
-        parts = re.search(r"an exchange takes (\S+) ms in the mean: query (\S+), linearisation (\S+), "
+        parts = re.search(r"an exchange takes (\S+) ms on average: query (\S+), linearisation (\S+), "
                           r"step of the bodies (\S+)\n", text)
         whole, *shares = map(float, parts.groups())
         self.assertGreater(whole, 0.0)
@@ -198,9 +198,7 @@ class Judgements(Cli):
                 time.sleep(0.01)
             text, error = done.communicate()
         self.assertEqual(done.returncode, 1, text)
-        packets = re.search(r"within 0\.3 s \((\d+) packets came that are no poses of this scene: "
-                            r"(\d+) malformed",
-                            error)
+        packets = re.search(r"within 0\.3 s \((\d+) packets were rejected: (\d+) malformed", error)
         self.assertGreater(int(packets[1]), 3)
         self.assertEqual(packets[1], packets[2])
 
@@ -209,17 +207,18 @@ class Judgements(Cli):
                "tool.integrator=semi-implicit-euler", "--set"]
         # limit 4 m/h^2 - 2 b/h with 0.01 kg, 3 N s/m and ticks of 1 ms
         done = self.call(*run, "tool.coupling.stiffness_n_m=3.5e4")
-        self.assertRegex(done.stderr, r"stiffness_n_m of 35000 N/m is not below 34000 N/m")
+        self.assertRegex(done.stderr,
+                         r"stiffness_n_m = 35000 N/m is not below its stability limit of 34000 N/m")
         done = self.call(*run, "tool.coupling.stiffness_n_m=3.3e4")
         self.assertNotIn("diverges", done.stderr)
         done = self.call(*run, "tool.coupling.rotational_stiffness_n_m_rad=1e4")
-        self.assertRegex(done.stderr, r"rotational_stiffness_n_m_rad of 10000 N m/rad is not below")
+        self.assertRegex(done.stderr, r"rotational_stiffness_n_m_rad = 10000 N m/rad is not below")
 
     def test_each_of_two_hands_is_replayed_and_compared(self):
         text = self.good("run", "two-hands", "--duration-s", "0.2", "--against-monolithic", "-o", "first",
                          "--set", "compare.haptic.reference_rtol=1e-4",
                          "--set", "compare.haptic.reference_refresh_s=4e-3")
-        off = re.findall(r"(?m)^against .*?: (hand left: )?force off by \S+ N RMS \((\S+) % of the peak",
+        off = re.findall(r"(?m)^against .*?: (hand left: )?force error \S+ N RMS \((\S+) % of the peak",
                          text)
         self.assertEqual([whose for whose, _ in off], ["", "hand left: "], text)
         for _, share in off:
@@ -267,11 +266,11 @@ class Judgements(Cli):
         run = ["run", "press-ball", "--duration-s", "0.1", "--against-monolithic", *self.HAPTIC, "-o", "held"]
         text = self.good(*run)
         self.assertRegex(text,
-                         r"(?m)^against .*: force off by \S+ N RMS \(\S+ % of the peak of \S+\), at most ")
-        self.assertNotIn("as it was recorded", text)
+                         r"(?m)^against .*: force error \S+ N RMS \(\S+ % of the peak of \S+\), at most ")
+        self.assertNotIn("recorded motion of the hand", text)
         kept = json.loads((self.folder / "held/summary.json").read_text())["figures"]["against monolithic"]
         self.assertLess(kept["force_error_rms_of_peak"], 0.2)
-        self.assertIn("under the hand as it was recorded", self.good(*run, "--realtime"))
+        self.assertIn("with the recorded motion of the hand", self.good(*run, "--realtime"))
         self.assertIn("there is no [tool]", self.refused("run", "one-tet", "--against-monolithic"))
 
     def test_a_scene_is_judged_as_a_haptic_loop(self):

@@ -68,7 +68,7 @@ class Movie(unittest.TestCase):
         done = self.call(*arguments, **environment)
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
         last = done.stderr.splitlines()[-1]
-        self.assertTrue(last.startswith("palpate: incomplete: there is no movie "), done.stderr)
+        self.assertTrue(last.startswith("palpate: incomplete: missing movie "), done.stderr)
         return last
 
     def press(self, seconds, *arguments):
@@ -87,7 +87,8 @@ class Frames(Movie):
     def test_every_frame_is_there_and_moves(self):
         text = self.good(*self.press(0.2, "--movie", "deep/in/press.png", "--frames", "--slow", "4",
                                      "-o", "here"))
-        self.assertIn("20 of 20 frames in deep/in/press.png, one every 0.01 s of simulated time; 25 a second",
+        self.assertIn("20 of 20 frames in deep/in/press.png, one every 0.01 s of simulated time; "
+                      "25 per second",
                       text)
         self.assertIn("--movie deep/in/press.png --slow 4 --size 240x218 ",
                       json.loads((self.folder / "here/summary.json").read_text())["command"])
@@ -125,7 +126,7 @@ class Frames(Movie):
                         (self.folder / "here/summary.json").unlink()
                         (self.folder / "here/scene.toml").unlink()
                     text = self.good("movie", "here", *SMALL, "-o", "b.png")
-                    self.assertIn("5 of 5 frames in b.png, one every 0.04 s of simulated time; 25 a second",
+                    self.assertIn("5 of 5 frames in b.png, one every 0.04 s of simulated time; 25 per second",
                                   text)
                     was, now = Animation(self.folder / "a.png"), Animation(self.folder / "b.png")
                     self.assertEqual(was.delays, now.delays)
@@ -213,12 +214,12 @@ class Refusals(Movie):
         for option in "--fps", "--slow":
             for value in "0", "-1", "nan", "inf", "fast":
                 self.assertIn(option, self.refused(*movie, option, value))
-            self.assertIn("belong to --movie", self.refused("run", "press-ball", option, "3"))
-        self.assertIn("say --fps and --slow", self.refused(*movie, "--frames", "--frames-per-s", "10"))
+            self.assertIn("need --movie", self.refused("run", "press-ball", option, "3"))
+        self.assertIn("use --fps and --slow", self.refused(*movie, "--frames", "--frames-per-s", "10"))
         for size in "640", "640x481", "20x20", "640x99999", "axb":
             self.assertIn(f"--size {size}: ", self.refused("run", "press-ball", "--movie", "a.png", "--size",
                                                            size))
-        self.assertIn("belongs to --frames and --movie", self.refused("run", "press-ball", *SMALL))
+        self.assertIn("needs --frames or --movie", self.refused("run", "press-ball", *SMALL))
         self.assertFalse(list(self.folder.iterdir()))
 
     def test_places(self):

@@ -91,7 +91,7 @@ class Readme(Page, unittest.TestCase):
         names = {path.name for path in (self.folder / "out/press-ball").iterdir()}
         self.assertLessEqual({"run.vtkhdf", "force.csv", "summary.json", "picture.png", "report.html"}, names)
         self.assertIn("first-touch", self.said_by("./palpate help"))
-        self.assertRegex(self.said_by("--against-monolithic"), r"force off by \S+ N RMS")
+        self.assertRegex(self.said_by("--against-monolithic"), r"force error \S+ N RMS")
 
 
 class FirstTouch(Page, unittest.TestCase):
@@ -131,7 +131,7 @@ class FirstTouch(Page, unittest.TestCase):
         self.assertIn("youngs_modulus_pa", done.stderr)
 
     def test_errors_are_printed(self):
-        self.assertRegex(self.said_by("--against-monolithic"), r"force off by \S+ N RMS \(\S+ % of the peak")
+        self.assertRegex(self.said_by("--against-monolithic"), r"force error \S+ N RMS \(\S+ % of the peak")
         table = self.said_by("compare touch.toml")
         for method in ("cvode-bdf", "linearly-implicit-euler"):
             self.assertGreaterEqual(len(re.findall(rf"^{method} +\S", table, re.M)), 3)

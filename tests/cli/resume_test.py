@@ -221,7 +221,7 @@ class Resume(unittest.TestCase):
                                          + "\n# changed\n")
         self.assertIn("the scene has changed", self.refused("resume", run))
         (where / "mine.toml").unlink()
-        self.assertIn("not there any more", self.refused("resume", run))
+        self.assertIn("no longer exists", self.refused("resume", run))
         (where / "mine.toml").write_text(source)
 
         states = (run / "run.vtkhdf").read_bytes()
@@ -245,10 +245,10 @@ class Resume(unittest.TestCase):
                                 (["--against-monolithic"], "palpate replay")):
             with self.subTest(options):
                 self.assertIn(reason, self.refused(*start, "0.1", *options))
-        self.assertIn("periods of 0.01 s", self.refused(*start, "0.001"))
-        self.assertIn("before the first one", self.refused(*start, "9"))
+        self.assertIn("which is 0.01 s in this scene", self.refused(*start, "0.001"))
+        self.assertIn("before the first checkpoint", self.refused(*start, "9"))
         port = ["--set", 'device={type="udp",port=47000}']
-        self.assertIn("hand outside", self.refused(*start, "0.1", *port))
+        self.assertIn("moved from outside", self.refused(*start, "0.1", *port))
 
     def test_a_run_without_checkpoints_leaves_none_of_an_earlier_one(self):
         killed = self.run_killed(self.command("body alone, adaptive"), 2)

@@ -59,7 +59,7 @@ class MemoryLimits(Bounded):
         ended, refused = 0, 0
         for name, scene in self.SCENES.items():
             text = self.good("inspect", *[word for word in scene if word not in ("--duration-s", "0.01")])
-            said = float(re.search(r"memory of its run, about \[MiB\] +(\d+)", text).group(1))
+            said = float(re.search(r"estimated memory of a run \[MiB\] +(\d+)", text).group(1))
             for kind, number in self.KINDS.items():
                 for share in (0.5, 0.8, 1.0, 1.2, 1.5, 2.0):
                     size = int(share * said * MIB)
@@ -262,7 +262,8 @@ class Places(Bounded):
                 (self.BODY % "1e-6", "s.toml:7:8: body \"block\": ", "gives about"),
                 (self.BODY % "0.05" + self.HELD % "0" + self.HELD % "1", "s.toml:11:1: body \"block\": ",
                  "attachment 2 overlaps attachment 1"),
-                (self.BODY % "0.05" + self.HELD % "-0.9", "s.toml:8:1: body \"block\": ", "holds no node")):
+                (self.BODY % "0.05" + self.HELD % "-0.9", "s.toml:8:1: body \"block\": ",
+                 "contains no node")):
             with self.subTest(what=what):
                 (self.folder / "s.toml").write_text(text)
                 message = self.refused("run", "s.toml")
@@ -331,7 +332,7 @@ class Resumed(Bounded):
     def test_other_instructions_are_said(self):
         done = self.call("resume", "run", PALPATE_INSTRUCTIONS="baseline")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("began with other instructions", done.stderr)
+        self.assertIn("began with another instruction set", done.stderr)
         self.assertIn("baseline", done.stderr)
 
 

@@ -282,7 +282,7 @@ TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
   ASSERT_EQ(c.points.size(), 2u);
   EXPECT_EQ(c.points[0].status, PointStatus::kOk);
   EXPECT_EQ(c.points[1].status, PointStatus::kFailed);
-  EXPECT_NE(c.points[1].reason.find("steps before t_end"), std::string::npos) << c.points[1].reason;
+  EXPECT_NE(c.points[1].reason.find("reached max_steps"), std::string::npos) << c.points[1].reason;
   const compare::TrajectoryError& e = c.points[1].error;
   for (const double value :
        {e.position_rel_l2, e.position_max_m, e.force_rms_n, e.torque_rms_n_m, e.energy_j})

@@ -102,7 +102,7 @@ TEST(MaterialPoints, SpacingFollowsRadiiAndError) {
   EXPECT_EQ(contact::point_spacing(ball, kHalfSpace, 1e-4), HUGE_VAL);
   EXPECT_NEAR(contact::point_spacing(kHalfSpace, faceted, 1e-2), 0.025 * std::sqrt(1e-2 / 0.536), 1e-12);
   expectations::expect_contains(expectations::message_of([&] { contact::point_spacing(ball, ball, 0.0); }),
-                                "it must be positive");
+                                "quadrature_error = 0 must be positive");
 }
 
 // Each skin point is carried by one tetrahedron, so that four nodes take all of its force.

@@ -278,12 +278,12 @@ TEST(Methods, ThatAreNotThereSayWhatToTake) {
   };
   for (const auto& method : contact::method_registry()) EXPECT_EQ(message(method.name), "accepted");
   const std::string known = " (known: analytic, auto, distance, image)";
-  EXPECT_EQ(message("vertex"),
-            "contact a - b: method = \"vertex\" is no method; \"analytic\" and \"image\" have their samples "
-            "at vertices" +
-                known);
-  EXPECT_EQ(message("pixel"), "contact a - b: method = \"pixel\" is no method; write \"image\"" + known);
-  EXPECT_EQ(message("gpu"), "contact a - b: method = \"gpu\" is now \"image\"" + known);
+  EXPECT_EQ(
+      message("vertex"),
+      "contact a - b: method = \"vertex\" does not exist; \"analytic\" and \"image\" sample at vertices" +
+          known);
+  EXPECT_EQ(message("pixel"), "contact a - b: method = \"pixel\" does not exist; use \"image\"" + known);
+  EXPECT_EQ(message("gpu"), "contact a - b: method = \"gpu\" has been renamed; use \"image\"" + known);
   EXPECT_EQ(message("spheres"), "contact a - b: method = \"spheres\" is not known" + known);
 }
 

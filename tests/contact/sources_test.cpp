@@ -449,7 +449,7 @@ TEST(Sources, BadInputIsRefused) {
   bad.faces(1, 0) = 1000;
   EXPECT_NE(message([&] {
               contact::make_plane_source(bad, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.1);
-            }).find("names vertex 1000"),
+            }).find("refers to vertex 1000"),
             std::string::npos);
   world.state.q()[8] = std::nan("");
   auto source = contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.1);

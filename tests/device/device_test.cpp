@@ -57,7 +57,7 @@ TEST(Device, opens_before_its_first_sample_and_closes_once) {
   Counted device;
   EXPECT_EQ(device.opened, 0);
   EXPECT_EQ(device.position(), Vec3(0, 0, 0));
-  expect_contains(message_of([&] { device.feedback(0.0, {}); }), "a wrench for a device that is closed");
+  expect_contains(message_of([&] { device.feedback(0.0, {}); }), "wrench sent to a closed device");
   device.sample(0.5);
   device.sample(0.6);
   EXPECT_EQ(device.opened, 1);

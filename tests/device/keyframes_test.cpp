@@ -123,7 +123,7 @@ TEST(Keyframes, bad_paths_are_refused) {
   const Vec3 o = Vec3::Zero();
   EXPECT_NE(message({}).find("device: no keyframes; give at least one"), std::string::npos);
   EXPECT_NE(message({key(0, o), key(0, o)})
-                .find("keyframes[1]: time_s = 0 must be greater than the one before (0)"),
+                .find("keyframes[1]: time_s = 0 must be greater than that of the previous keyframe (0)"),
             std::string::npos);
   EXPECT_NE(message({key(0, o), key(1, o, o, "minimum_jerc")})
                 .find("unknown interpolation \"minimum_jerc\" (did you mean \"minimum_jerk\"?)"),

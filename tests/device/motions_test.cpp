@@ -102,7 +102,8 @@ TEST(Motions, bad_ones_are_refused) {
   refused([](MotionSpec& m) { m.end_frequency_per_s = -1.0; }, ": end_frequency_per_s = -1");
   refused([](MotionSpec& m) { m.start_s = -1.0; }, ": start_s = -1 must not be negative");
   refused([](MotionSpec& m) { m.duration_s = -1.0; }, ": duration_s = -1");
-  refused([](MotionSpec& m) { m.duration_s = 0.0; }, ": duration_s = 0 is no sweep");
+  refused([](MotionSpec& m) { m.duration_s = 0.0; },
+          ": duration_s = 0 must be positive; it is the duration of the sweep");
   refused([](MotionSpec& m) { m.amplitude_m.x() = NAN; }, ": amplitudes must be finite");
   DeviceSpec spec;
   spec.keyframes = {KeyframeSpec{}};

@@ -240,26 +240,27 @@ TEST(Recording, malformed_files_are_refused_with_line_and_column) {
   };
   refused("", ":1: the file is empty");
   refused("time_s,px_m,py_m,pz_m,qw,qx,qy\n", ":1: no column \"qz\"");
-  refused(kHeader, ": no line of poses");
+  refused(kHeader, ": no poses follow");
   refused(kHeader + "0,0,0,0,1,0,0,0\n1,0,0,x,1,0,0,0\n",
           ":3: column \"pz_m\": \"x\" is not a finite number");
   refused(kHeader + "0,0,nan,0,1,0,0,0\n", ":2: column \"py_m\": \"nan\" is not a finite number");
   refused(kHeader + "0,0,0,0,1,0,0,0 1\n", ":2: column \"qz\": \"0 1\" is not a finite number");
-  refused(kHeader + "0,0,0,0,1,0,0\n", ":2: 7 cells, but 8 columns have a name");
-  refused(kHeader + "0,0,0,0,1,0,0,0\n0,0,0,0,1,0,0,0\n", ":3: column \"time_s\": 0 does not come after 0");
-  refused(kHeader + "0,0,0,0,0.5,0,0,0\n", ":2: column \"qw\": the quaternion's length is 0.5, not 1");
-  refused("switches," + kHeader + "-1,0,0,0,0,1,0,0,0\n", ":2: switches = -1 is no set of bits");
-  refused("switches," + kHeader + "1.5,0,0,0,0,1,0,0,0\n", ":2: switches = 1.5 is no set of bits");
-  refused("0,0,0,0,1,0,0,0\n", ":1: its first line has numbers, where the columns' names must stand");
+  refused(kHeader + "0,0,0,0,1,0,0\n", ":2: 7 cells, but 8 column names");
+  refused(kHeader + "0,0,0,0,1,0,0,0\n0,0,0,0,1,0,0,0\n", ":3: column \"time_s\": 0 must be greater than 0");
+  refused(kHeader + "0,0,0,0,0.5,0,0,0\n",
+          ":2: column \"qw\": the length of the quaternion is 0.5; it must be 1");
+  refused("switches," + kHeader + "-1,0,0,0,0,1,0,0,0\n", ":2: switches = -1 must be a whole number");
+  refused("switches," + kHeader + "1.5,0,0,0,0,1,0,0,0\n", ":2: switches = 1.5 must be a whole number");
+  refused("0,0,0,0,1,0,0,0\n", ":1: the first line has numbers instead of column names");
   refused("time_s px_m py_m pz_m qw qx qy qz\n0 0 0 0 1 0 0 0\n",
-          ":1: its columns are separated by neither commas");
+          ":1: the columns are not separated by commas");
   refused(kHeader + "0,0,\"0,5\",0.5,1,0,0,0\n",
-          ":2: column \"pz_m\": \"0.5\" has a decimal point, \"0,5\" before it a comma");
+          ":2: column \"pz_m\": \"0.5\" has a decimal point, but \"0,5\" before it has a decimal comma");
   refused(std::string("\xff\xfet\0i\0", 6), ":1: the file is in UTF-16");
   EXPECT_EQ(checked, 15);
   DeviceSpec spec;
   spec.type = "recording";
   expect_contains(message_of([&] { make_device(spec); }), "device: file is missing");
   spec.file = "none.csv";
-  expect_contains(message_of([&] { make_device(spec, folder.string()); }), "no recording can be read");
+  expect_contains(message_of([&] { make_device(spec, folder.string()); }), "cannot read the recording");
 }

@@ -273,11 +273,10 @@ TEST(Udp, waits_for_the_first_pose_with_a_limit) {
             fmt::format("the first pose at 127.0.0.1, UDP port {}, for up to 0.05 s", alone.port()));
   Peer stranger(alone.port());
   stranger.send(std::vector<unsigned char>(7, 0));
-  expect_contains(
-      message_of([&] { alone.await(0.0, nullptr); }),
-      fmt::format("device: no pose came to 127.0.0.1, UDP port {}, within 0.05 s (1 packets came that are no "
-                  "poses of this scene: 1 malformed",
-                  alone.port()));
+  expect_contains(message_of([&] { alone.await(0.0, nullptr); }),
+                  fmt::format("device: no pose arrived at 127.0.0.1, UDP port {}, within 0.05 s (1 packets "
+                              "were rejected: 1 malformed",
+                              alone.port()));
   spec.wait_s = 600.0;  // the test ends long before
   UdpDevice met(spec);
   met.open();
@@ -329,5 +328,5 @@ TEST(Udp, bad_settings_are_refused) {
   expect_contains(message_of([&] { UdpDevice{spec}; }), "wait_s = 0 must be positive");
   spec.wait_s = 1.0;
   spec.address = "localhost";
-  expect_contains(message_of([&] { UdpDevice{spec}; }), "address = \"localhost\" is no IPv4 address");
+  expect_contains(message_of([&] { UdpDevice{spec}; }), "address = \"localhost\" is not an IPv4 address");
 }

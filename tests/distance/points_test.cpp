@@ -89,6 +89,6 @@ TEST(ContactMesh, IsOrderedByFace) {
 
 TEST(ContactMesh, RejectsASpacingThatIsNone) {
   const Skin skin = make_skin(mesh::sphere(1.0, 2));
-  expect_message([&] { contact_mesh(skin, 0.0); }, {"a spacing of 0 m"});
-  expect_message([&] { contact_mesh(skin, std::nan("")); }, {"it must be positive"});
+  expect_message([&] { contact_mesh(skin, 0.0); }, {"spacing = 0 m"});
+  expect_message([&] { contact_mesh(skin, std::nan("")); }, {"must be positive"});
 }

@@ -362,5 +362,5 @@ TEST(SkinContactMemory, NothingIsAllocatedAfterConstruction) {
 
 TEST(SkinContact, RejectsAStiffnessThatIsNone) {
   const Skin skin = make_skin(mesh::sphere(1.0, 2));
-  expect_message([&] { SkinContact(skin, skin, {.stiffness_pa_m = 0.0}); }, {"stiffness is 0", "positive"});
+  expect_message([&] { SkinContact(skin, skin, {.stiffness_pa_m = 0.0}); }, {"stiffness = 0", "positive"});
 }

@@ -42,7 +42,7 @@ TEST(DistanceSkin, NeighboursShareTheEdgeAndFansTheVertex) {
 TEST(DistanceSkin, RejectsWhatHasNoInside) {
   TriMesh open = mesh::sphere(1.0, 2);
   open.faces.conservativeResize(3, open.faces.cols() - 1);
-  expect_message([&] { make_skin(open); }, {"closed skin", "one side alone"});
+  expect_message([&] { make_skin(open); }, {"closed skin", "one side only"});
   TriMesh flipped = mesh::sphere(1.0, 2);
   std::swap(flipped.faces(0, 3), flipped.faces(1, 3));
   expect_message([&] { make_skin(flipped); }, {"closed skin", "twice in the same direction"});

@@ -203,5 +203,5 @@ TEST(Carried, BadInputIsRefused) {
                   "radius_m = 0 must be positive");
   BoneInTissue b;
   b.system.add(make_carried({0}, Points::Zero(3, 1), b.tissue));
-  expect_contains(message_of([&] { b.prepare(); }), "which is no rigid block");
+  expect_contains(message_of([&] { b.prepare(); }), "which is not a rigid block");
 }

@@ -180,8 +180,8 @@ TEST(Lanes, InstructionsByNameAndByEnvironment) {
   EXPECT_EQ(baseline.instructions(), "baseline");
   expect_contains(
       message_of([] { SoftBody("liver", one_tet(), soft_material(), {.instructions = "mmx"}, 0); }),
-      "body \"liver\": this build or this processor has no instructions \"mmx\"; baseline, avx2 and avx512 "
-      "exist");
+      "body \"liver\": instructions = \"mmx\" is not supported by this build or this processor; the choices "
+      "are baseline, avx2 and avx512");
   setenv("PALPATE_INSTRUCTIONS", "baseline", 1);
   EXPECT_EQ(SoftBody("b", one_tet(), soft_material(), {}, 0).instructions(), "baseline");
   setenv("PALPATE_INSTRUCTIONS", "sse9", 1);

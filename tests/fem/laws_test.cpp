@@ -348,10 +348,9 @@ TEST_P(Laws, WhatALawDoesNotHaveIsRefusedWithTheWayOut) {
   if (law().warped)
     EXPECT_EQ(warped, "");
   else
-    expect_contains(
-        warped, fmt::format("body \"liver\": tangent = \"warped\" is not there for material = \"{}\"; use "
-                            "\"exact\" or \"projected\"",
-                            GetParam()));
+    expect_contains(warped, fmt::format("body \"liver\": tangent = \"warped\" is not available for material "
+                                        "= \"{}\"; use \"exact\" or \"projected\"",
+                                        GetParam()));
   SoftBodyOptions split = with(Tangent::kExact), by_material = split;
   split.volumetric_share = 0.5;
   by_material.volumetric_shares = {0.5};
@@ -359,7 +358,7 @@ TEST_P(Laws, WhatALawDoesNotHaveIsRefusedWithTheWayOut) {
     if (law().nodal_dilatation)
       EXPECT_EQ(make(options), "");
     else
-      expect_contains(make(options), "volumetric = \"nodal\" is not there for material");
+      expect_contains(make(options), "volumetric = \"nodal\" is not available for material");
   const std::string nodal =
       message_of([&] { NodalDilatation("liver", one_tet(), soft_material(), split, 0); });
   EXPECT_EQ(nodal.empty(), law().nodal_dilatation) << nodal;

@@ -313,10 +313,11 @@ TEST(Materials, WhatDoesNotFitIsRefused) {
   beyond.of_element[2] = 3;
   bad.list[2].poissons_ratio = 0.5;
   expect_contains(message_of([&] { SoftBody("b", m.rest, short_of_one, {}, 0); }),
-                  "5 numbers of materials for 6 elements");
-  expect_contains(message_of([&] { SoftBody("b", m.rest, beyond, {}, 0); }), "material 3 of 3");
+                  "5 material indices for 6 elements");
+  expect_contains(message_of([&] { SoftBody("b", m.rest, beyond, {}, 0); }),
+                  "material index 3 is not below 3");
   expect_contains(message_of([&] { SoftBody("b", m.rest, bad, {}, 0); }), "poissons_ratio = 0.5");
-  expect_contains(message_of([&] { lumped_masses(m.rest, beyond); }), "material 3 of 3");
+  expect_contains(message_of([&] { lumped_masses(m.rest, beyond); }), "material index 3 is not below 3");
   SoftBody body("b", m.rest, m.materials, {}, 0);
-  expect_contains(message_of([&] { body.set_materials({soft()}); }), "1 materials in the place of 3");
+  expect_contains(message_of([&] { body.set_materials({soft()}); }), "1 materials given, expected 3");
 }

@@ -121,7 +121,7 @@ TEST(SoftBody, RefusesBadMeshesWithElementAndValue) {
   TetMesh outside = one_tet();
   outside.tets(2, 0) = 4;
   expect_contains(message_of([&] { SoftBody("b", outside, soft_material(), {}, 0); }),
-                  "element 0 names node 4 of 4");
+                  "element 0 refers to node 4 of 4");
 }
 
 TEST(SoftBody, RefusesABadMaterialNamingTheBody) {
@@ -136,7 +136,8 @@ TEST(SoftBody, RefusesABadMaterialNamingTheBody) {
 TEST(SoftBody, RefusesAStateWithoutItsBlock) {
   const OneBody at(VecX::Zero(15), VecX::Zero(15));
   SoftBody body("b", one_tet(), soft_material(), {}, at.id);
-  expect_contains(message_of([&] { body.energy(at.state.view()); }), "is no block of 4 nodes in this state");
+  expect_contains(message_of([&] { body.energy(at.state.view()); }),
+                  "is not a block of 4 nodes in this state");
   SoftBody lost("b", one_tet(), soft_material(), {}, 77);
-  expect_contains(message_of([&] { lost.energy(at.state.view()); }), "block 77 is no block of 4 nodes");
+  expect_contains(message_of([&] { lost.energy(at.state.view()); }), "block 77 is not a block of 4 nodes");
 }

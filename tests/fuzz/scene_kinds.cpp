@@ -83,7 +83,7 @@ scene::Kinds make() {
       {.table = "contact",
        .selector = "method",
        .kinds = {{"analytic", part_keys({"gaps"})}, {"auto", part_keys({"gaps", "pixels", "samples"})}},
-       .absent = {{"vertex", "is no method"}},
+       .absent = {{"vertex", "does not exist"}},
        .unsaid = [](const Description&) { return ContactSpec{}.method; },
        .lists = {"compare.contact_methods"}},
       {.table = "contact", .selector = "spring", .kinds = named({"linear"})},

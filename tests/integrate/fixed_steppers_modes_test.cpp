@@ -210,8 +210,8 @@ TEST(HandSteppers, EndAnExplosionWithAFiniteState) {
     double growth = 0.0;
     const StepResult result = excite(name, 30.0, 0.0, growth);
     EXPECT_EQ(result.status, StepStatus::kNotFinite);
-    EXPECT_NE(result.message.find(name + ": the force or the velocity is not finite; an explicit step must "
-                                         "stay below its stability limit (t = "),
+    EXPECT_NE(result.message.find(name + ": the force or the velocity is not finite; step_s of an explicit "
+                                         "method must be below its stability limit (t = "),
               std::string::npos)
         << result.message;
     EXPECT_NE(result.message.find(", h = 10)"), std::string::npos) << result.message;

@@ -315,7 +315,7 @@ TEST_P(Steppers, StopAtTheStepLimit) {
   const auto stepper = integrate::make_stepper(chain.system, chain.state, s);
   const StepResult result = stepper->advance_to(1.0);
   EXPECT_EQ(result.status, StepStatus::kTooManySteps);
-  EXPECT_NE(result.message.find("5 steps before t_end = 1"), std::string::npos) << result.message;
+  EXPECT_NE(result.message.find("max_steps = 5 before t_end = 1"), std::string::npos) << result.message;
   EXPECT_EQ(stepper->counters().steps, 5);
   EXPECT_GT(chain.state.time(), 0.0);
 }

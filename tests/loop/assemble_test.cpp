@@ -85,7 +85,7 @@ TEST(Assemble, EveryKindOfIntegratorRunsEveryMaterial) {
 TEST(Assemble, AttachmentsThatHoldNothingOrOverlapAreRefused) {
   scene::Description d = held_block();
   d.bodies[0].attachments[0].box_min_m = d.bodies[0].attachments[0].box_max_m = Vec3(5, 5, 5);
-  expect_refused(d, {"block", "holds no node", "5"});
+  expect_refused(d, {"block", "contains no node", "5"});
   d = held_block();
   d.bodies[0].attachments.push_back(d.bodies[0].attachments[0]);
   expect_refused(
@@ -99,9 +99,9 @@ TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
   expect_refused(d, {"blok"});
   d = pressed_block(0.0);
   d.contacts[0].method = "vertex";
-  expect_refused(d, {"vertex", "is no method"});
+  expect_refused(d, {"vertex", "does not exist"});
   d.contacts[0].method = "pixel";
-  expect_refused(d, {"pixel", "write \"image\""});
+  expect_refused(d, {"pixel", "use \"image\""});
   d = pressed_block(0.0);
   d.tool->shape = "mesh";
   d.tool->mesh.generator = "ball";
@@ -112,7 +112,7 @@ TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
   d = pressed_block(0.0);
   d.contacts[0].second = "block";
   d.contacts[0].method = "analytic";
-  expect_refused(d, {"touches itself by nearest points", "use method = \"auto\""});
+  expect_refused(d, {"self-contact needs method = \"distance\"", "use method = \"auto\""});
 }
 #endif
 

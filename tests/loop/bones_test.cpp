@@ -192,7 +192,7 @@ TEST(Bones, NodesThatNoBoneHoldsAreRefused) {
   d = limb();
   d.bodies[0].attachments[0].to = "tool";
   d.bodies[0].attachments[0].region = "box";
-  EXPECT_NE(refusal(d).find("bone \"bone\": carries nothing"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("bone \"bone\" carries no nodes"), std::string::npos) << refusal(d);
   d.bones.clear();
   d.bodies[0].attachments[0].region = "sphere";
   d.bodies[0].attachments[0].radius_m = 0.02;

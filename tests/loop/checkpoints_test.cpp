@@ -378,8 +378,8 @@ TEST(CheckpointsRefused, WhereThereCanBeNone) {
     return {};
   };
   EXPECT_EQ(message(c.every_s), "");
-  EXPECT_NE(message(1e-5).find("periods of 0.002 s"), std::string::npos) << message(1e-5);
-  EXPECT_NE(message(1.0).find("before the first one"), std::string::npos) << message(1.0);
+  EXPECT_NE(message(1e-5).find("which is 0.002 s in this scene"), std::string::npos) << message(1e-5);
+  EXPECT_NE(message(1.0).find("before the first checkpoint"), std::string::npos) << message(1.0);
 }
 
 TEST(CheckpointsRefused, ThoseOfAnotherScene) {

@@ -43,27 +43,28 @@ TEST(RecordedTimes, OfAnotherClockAreRefusedWithTheKeysThatMendThem) {
     std::vector<double> times;
     std::string expected;
   };
-  const std::string ranges = "device: hand.csv: the recording's times reach from ";
+  const std::string ranges = "device: hand.csv: the times of the recording are ";
   const Case cases[] = {
       {{1.7e9, 1.7e9 + 0.5},
-       "1700000000 to 1700000000.5 s, the scene's from 0 to 0.5 s; set device.time_offset_s = -1700000000 to "
-       "begin with the scene"},
+       "1700000000 to 1700000000.5 s, those of the scene 0 to 0.5 s; set device.time_offset_s = -1700000000 "
+       "to start with the scene"},
       {{1.7e12, 1.7e12 + 500},
-       "1.7e+12 to 1.7000000005e+12 s, the scene's from 0 to 0.5 s; set device.time_scale = 0.001 if they "
-       "are in units of 0.001 s, and device.time_offset_s = -1700000000 to begin with the scene"},
+       "1.7e+12 to 1.7000000005e+12 s, those of the scene 0 to 0.5 s; set device.time_scale = 0.001 if they "
+       "are in units of 0.001 s, and device.time_offset_s = -1700000000 to start with the scene"},
       {{1.7e15, 1.7e15 + 500000},
-       "1.7e+15 to 1.7000000005e+15 s, the scene's from 0 to 0.5 s; set device.time_scale = 1e-06 if they "
-       "are in units of 1e-06 s, and device.time_offset_s = -1700000000 to begin with the scene"},
+       "1.7e+15 to 1.7000000005e+15 s, those of the scene 0 to 0.5 s; set device.time_scale = 1e-06 if they "
+       "are in units of 1e-06 s, and device.time_offset_s = -1700000000 to start with the scene"},
       {{0, 10, 490},
-       "0 to 490 s, the scene's from 0 to 0.5 s; set device.time_scale = 0.001 if they are in units of 0.001 "
-       "s, device.time_scale = 1 if they are seconds"},
+       "0 to 490 s, those of the scene 0 to 0.5 s; set device.time_scale = 0.001 if they are in units of "
+       "0.001 s, device.time_scale = 1 if they are seconds"},
       {{0, 1000, 490000},
-       "0 to 490000 s, the scene's from 0 to 0.5 s; set device.time_scale = 1e-06 if they are in units of "
+       "0 to 490000 s, those of the scene 0 to 0.5 s; set device.time_scale = 1e-06 if they are in units of "
        "1e-06 s, device.time_scale = 1 if they are seconds"},
       {{-3, -1},
-       "-3 to -1 s, the scene's from 0 to 0.5 s; set device.time_offset_s = 3 to begin with the scene"},
+       "-3 to -1 s, those of the scene 0 to 0.5 s; set device.time_offset_s = 3 to start with the scene"},
       {{0.5, 0.9},
-       "0.5 to 0.9 s, the scene's from 0 to 0.5 s; set device.time_offset_s = -0.5 to begin with the scene"}};
+       "0.5 to 0.9 s, those of the scene 0 to 0.5 s; set device.time_offset_s = -0.5 to start with the "
+       "scene"}};
   for (const Case& one : cases) {
     const std::string said = refusal(held_by(folder, one.times));
     EXPECT_TRUE(said.ends_with(": " + ranges + one.expected)) << said;
@@ -115,7 +116,7 @@ TEST(RecordedTimes, OfARunsRecordAreShiftedAndScaled) {
     EXPECT_LT((path(0.03 + 2.0 * t).twist.linear - 0.5 * truth(t).twist.linear).norm(), 1e-6) << t;
   }
   slow.device->time_offset_s = 1e6;
-  EXPECT_NE(refusal(slow).find("haptic.h5: the recording's times reach from 1000000 to 1000000.2 s"),
+  EXPECT_NE(refusal(slow).find("haptic.h5: the times of the recording are 1000000 to 1000000.2 s"),
             std::string::npos);
 }
 

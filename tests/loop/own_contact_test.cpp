@@ -138,8 +138,9 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
   scene::Description d = fork.scene("linearly-implicit-euler");
   for (const char* method : {"analytic", "image"}) {
     d.contacts[0].method = method;
-    EXPECT_NE(refusal(d).find("a body touches itself by nearest points; use method = \"auto\""),
-              std::string::npos)
+    EXPECT_NE(
+        refusal(d).find("self-contact needs method = \"distance\" (nearest points); use method = \"auto\""),
+        std::string::npos)
         << refusal(d);
   }
 }

@@ -139,7 +139,7 @@ TEST_F(Regions, ChangeAlongWithTheBodyOrAlone) {
     FAIL();
   } catch (const Error& e) {
     EXPECT_NE(
-        std::string(e.what()).find("no region \"lit\" has a material of its own (did you mean \"lid\"?)"),
+        std::string(e.what()).find("no region \"lit\" with a separate material (did you mean \"lid\"?)"),
         std::string::npos)
         << e.what();
   }
@@ -185,12 +185,12 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   d.bodies[0].regions[0].name = "bone";
   d.bodies[0].regions[0].region = "sphere";
   d.bodies[0].regions[0].radius_m = 1.0;
-  EXPECT_NE(refusal(d).find("region \"bone\" is one of two.msh too; give the sphere another name"),
+  EXPECT_NE(refusal(d).find("region \"bone\" also exists in two.msh; give the sphere another name"),
             std::string::npos)
       << refusal(d);
   d.bodies[0].regions[0].name = "nothing";
   d.bodies[0].regions[0].centre_m = Vec3::Constant(9);
-  EXPECT_NE(refusal(d).find("region \"nothing\" holds no tetrahedron"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("region \"nothing\" contains no tetrahedron"), std::string::npos) << refusal(d);
 
   // An element in two regions of the scene belongs to the last one.
   RegionSpec all = bone;
@@ -201,7 +201,7 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   d.bodies[0].regions = {all, bone};
   EXPECT_NEAR(loop::assemble(d)->bodies[0].masses.sum(), 2000.0 / 6.0 + 4000.0 / 3.0, 1e-9);
   d.bodies[0].regions = {bone, all};
-  EXPECT_NE(refusal(d).find("region \"bone\" holds no tetrahedron"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("region \"bone\" contains no tetrahedron"), std::string::npos) << refusal(d);
 
   store::write_mesh(at("plain.h5"), loop::assemble(d =
                                                        [&] {
@@ -213,7 +213,7 @@ TEST_F(Regions, OfAMeshFileGoByName) {
                                         .rest);
   d.bodies[0].mesh.file = "plain.h5";
   d.bodies[0].regions = {bone};
-  EXPECT_NE(refusal(d).find("plain.h5 has no regions; `palpate model` makes some (--region)"),
+  EXPECT_NE(refusal(d).find("plain.h5 has no regions; create them with `palpate model --region`"),
             std::string::npos)
       << refusal(d);
 }

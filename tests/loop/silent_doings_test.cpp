@@ -19,9 +19,9 @@ TEST(SilentDoings, AreNamedWithTheirCounts) {
   counters.most_halvings = 2;
   counters.leaps = 5;
   counters.clamped = 7;
-  EXPECT_EQ(
-      silent_doings(counters),
-      "3 steps taken in 12 parts, the smallest 1/4, 5 solves without descent, 7 element tangents bounded");
+  EXPECT_EQ(silent_doings(counters),
+            "3 steps divided into 12 parts, the smallest 1/4 of a step, 5 solves repeated with undamped "
+            "Newton corrections, 7 clamped element tangents");
 }
 
 }  // namespace

@@ -183,10 +183,10 @@ TEST(SoftPair, RefusesWhatItCannotDo) {
   };
   scene::Description d = two_blocks(0.0);
   d.contacts[0].method = "analytic";
-  EXPECT_NE(refusal(d).find("two soft bodies have no exact gaps"), std::string::npos);
+  EXPECT_NE(refusal(d).find("method = \"analytic\" does not apply to two soft bodies"), std::string::npos);
   d = two_blocks(0.0);
   d.contacts[0].second = "blok";
-  EXPECT_NE(refusal(d).find("nothing is called \"blok\"; name soft bodies, obstacles or \"tool\""),
+  EXPECT_NE(refusal(d).find("nothing is called \"blok\"; use the names of soft bodies, obstacles or tools"),
             std::string::npos);
 }
 

@@ -323,7 +323,7 @@ TEST(ToolOnObstacle, WhatCannotTouchIsRefused) {
   };
   for (const auto& [a, b] : {std::pair{"floor", "stop"}, {"tool", "tool"}, {"stop", "nothing"}})
     EXPECT_NE(refusal(a, b).find(
-                  "one must be a soft body, or a tool where the other is an obstacle or another tool"),
+                  "one side must be a soft body, or a tool if the other is an obstacle or another tool"),
               std::string::npos)
         << refusal(a, b);
   EXPECT_NE(refusal("block", "nothing").find("nothing is called \"nothing\""), std::string::npos);

@@ -334,7 +334,8 @@ TEST(ToolsMeet, WantTicksAtTheSameTimes) {
     loop::assemble(d);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("\"left\" has tick_s = 0.0005, \"tool\" 0.001"), std::string::npos)
+    EXPECT_NE(std::string(e.what()).find("\"left\" has tick_s = 0.0005, that of \"tool\" 0.001"),
+              std::string::npos)
         << e.what();
   }
   d.contacts.clear();  // without contact between tools, ticks may differ

@@ -157,8 +157,9 @@ TEST(Decompose, FlatPatchesOfASkinAlone) {
 
 TEST(Decompose, RefusesWhatItCannotDo) {
   LayeredModel model = bar_on_bones({2, 1, 1});
-  EXPECT_NE(error_of(model, {.count = 0}).find("0 hulls"), std::string::npos);
-  EXPECT_NE(error_of(model, {.max_corners = 3}).find("3 corners"), std::string::npos);
+  EXPECT_NE(error_of(model, {.count = 0}).find("count = 0 must be at least 1"), std::string::npos);
+  EXPECT_NE(error_of(model, {.max_corners = 3}).find("max_corners = 3 must be at least 4"),
+            std::string::npos);
   EXPECT_NE(error_of(model, {.normal_weight = -1}).find("normal weight"), std::string::npos);
   EXPECT_NE(error_of(model, {.tolerance = -1}).find("tolerance"), std::string::npos);
   model.embedding = {};

@@ -97,7 +97,7 @@ TEST(Kinds, RangesAreThoseOfTheMethod) {
   EXPECT_EQ(refusal(with_integrator("name = \"linearly-implicit-euler\"\nlinear_rtol = 0.5\n")),
             "s.toml:10:15: integrator: linear_rtol = 0.5 must lie in [1e-15, 0.1]; 1e-8 is usual");
   EXPECT_EQ(refusal(with_integrator("max_order = 6\n")),
-            "s.toml:9:13: integrator: max_order = 6 must lie in [0, 5]; 0 leaves the order to the method");
+            "s.toml:9:13: integrator: max_order = 6 must lie in [0, 5]; with 0 the method chooses the order");
   EXPECT_EQ(refusal(with_integrator("name = \"cvode-adams\"\nmax_order = 6\n")), "accepted");
   EXPECT_NE(refusal(with_integrator("rtol = 0.5\n")).find("rtol = 0.5 must lie in (0, 0.1]; 1e-3 is usual"),
             std::string::npos);
@@ -187,18 +187,17 @@ TEST(Kinds, ContactMethods) {
             "method = \"analytic\"; remove it (used by auto, image)");
   EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=image"}), "accepted");
   EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=gpu"}),
-            "--set contact.1.method=gpu: contact between \"ball\" and \"tool\": method = \"gpu\" is now "
-            "\"image\" (known: analytic, auto, distance, image)");
+            "--set contact.1.method=gpu: contact between \"ball\" and \"tool\": method = \"gpu\" has been "
+            "renamed; use \"image\" (known: analytic, auto, distance, image)");
   EXPECT_EQ(
       with({"contact.1.method=vertex"}),
-      "--set contact.1.method=vertex: contact between \"ball\" and \"tool\": method = \"vertex\" is no "
-      "method; \"analytic\" and \"image\" have their samples at vertices (known: analytic, auto, distance, "
-      "image)");
+      "--set contact.1.method=vertex: contact between \"ball\" and \"tool\": method = \"vertex\" does not "
+      "exist; \"analytic\" and \"image\" sample at vertices (known: analytic, auto, distance, image)");
   EXPECT_NE(with({"contact.1.method=spheres"})
                 .find("method = \"spheres\" is not known (known: analytic, auto, distance, image)"),
             std::string::npos);
   EXPECT_NE(with({"compare.contact_methods=[\"analytic\", \"vertex\"]"})
-                .find("compare: contact_methods = \"vertex\" is no method; "),
+                .find("compare: contact_methods = \"vertex\" does not exist; "),
             std::string::npos);
 }
 
@@ -271,7 +270,7 @@ TEST(Kinds, ToolDeviceAndExchange) {
   EXPECT_EQ(refusal(kBlock + "[tool]\n[device]\nmax_force_n = 1.0\n"),
             "s.toml:9:1: device: keyframe is missing: device type \"script\" needs it");
   EXPECT_NE(
-      with({"device.max_force_n=-1"}).find("max_force_n = -1 must be positive; a desktop device gives 3.3"),
+      with({"device.max_force_n=-1"}).find("max_force_n = -1 must be positive; a desktop device reaches 3.3"),
       std::string::npos);
 }
 

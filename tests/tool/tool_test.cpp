@@ -98,7 +98,8 @@ TEST(Tool, what_is_not_finite_stays_out) {
     for (const auto& result : {tool.advance(1e-3, held({Quat::Identity(), Vec3(kNaN, 0, 0)}), {}),
                                tool.advance(1e-3, held({}), bad_record)}) {
       EXPECT_EQ(result.status, dynamics::StepStatus::kNotFinite);
-      EXPECT_NE(result.message.find("handle or contact record is not finite"), std::string::npos);
+      EXPECT_NE(result.message.find("the handle state or the contact record is not finite"),
+                std::string::npos);
     }
     EXPECT_EQ(tool.pose().translation, before.translation);
     EXPECT_DOUBLE_EQ(tool.time(), 1e-3);
@@ -142,8 +143,7 @@ TEST(Tool, bad_settings_are_refused) {
   EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.integrator = "semi-implicit"; }),
                   "unknown tool integrator \"semi-implicit\""));
   EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.mass_kg = 0; }), "tool: mass_kg = 0 must be positive"));
-  EXPECT_TRUE(
-      has(message_with([](ToolSpec& s) { s.inertia_kg_m2 = Vec3(1, 1, 2.1); }), "belongs to no body"));
+  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.inertia_kg_m2 = Vec3(1, 1, 2.1); }), "is impossible"));
   EXPECT_TRUE(
       has(message_with([](ToolSpec& s) { s.inertia_kg_m2 = Vec3(1, 0, 1); }), "three positive entries"));
   EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.inertia_kg_m2.setZero(), s.radius_m = 0; }),

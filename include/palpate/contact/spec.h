@@ -59,22 +59,22 @@ struct ContactSpec {
 struct ContactRanges {
   /// [Pa/m]
   static constexpr Range stiffness_pa_m =
-      Range::positive("10 x Young's modulus / the size of the dent is a start");
+      Range::positive("a good start is 10 x Young's modulus / size of the indentation");
   /// [N/m]
   static constexpr Range stiffness_n_m =
-      Range::positive("stiffness_pa_m times the area of a vertex is a start");
+      Range::positive("a good start is stiffness_pa_m times the area per vertex");
   static constexpr Range damping_pa_s_m = Range::at_least(0.0);     ///< [Pa s/m]
   static constexpr Range damping_n_s_m = Range::at_least(0.0);      ///< [N s/m]
   static constexpr Range hunt_crossley_s_m = Range::at_least(0.0);  ///< [s/m]
   /// [m]
   static constexpr Range onset_width_m =
-      Range::at_least(0.0, "0 lets the pressure set in at once; a tenth of the depth is a smooth onset");
+      Range::at_least(0.0, "0 gives an immediate onset with a kink, a tenth of the depth a smooth one");
   static constexpr Range friction = Range::at_least(0.0);  ///< [-]
   /// [m/s]
-  static constexpr Range friction_regularisation_m_s =
-      Range::at_least(0.0, "below this sliding speed friction is viscous; 0 lets the scene choose");
+  static constexpr Range friction_regularisation_m_s = Range::at_least(
+      0.0, "below this sliding speed friction is viscous; with 0 it is chosen from the scene");
   /// [m]
-  static constexpr Range candidate_gap_m = Range::at_least(0.0, "0 lets the mesh choose");
+  static constexpr Range candidate_gap_m = Range::at_least(0.0, "with 0 it is chosen from the mesh");
   static constexpr Range pixels = Range::closed(16, 4096);  ///< Along the longer edge of an image.
   /// Relative error of a contact's force; the spacing of points is proportional to its square root.
   static constexpr Range quadrature_error = Range::closed(1e-6, 0.1, "1e-2 is the default");

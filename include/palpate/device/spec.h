@@ -89,30 +89,31 @@ struct DeviceSpec {
 /// Valid ranges of the parameters, checked by the scene loader and by the device.
 struct DeviceRanges {
   /// Maximum force [N].
-  static constexpr Range max_force_n = Range::positive("a desktop device gives 3.3");
+  static constexpr Range max_force_n = Range::positive("a desktop device reaches 3.3");
   /// Maximum torque [N m].
-  static constexpr Range max_torque_n_m = Range::at_least(0.0, "0 drives no torque; others give 0.2");
+  static constexpr Range max_torque_n_m =
+      Range::at_least(0.0, "0 disables torque; desktop devices reach 0.2");
   /// Slew rates [N/s, N m/s].
   static constexpr Range slew = Range::positive("a fall to zero within 10 ms needs 150 times the maximum");
-  static constexpr Range ramp_s = Range::at_least(0.0, "0 is no ramp");  ///< [s]
+  static constexpr Range ramp_s = Range::at_least(0.0, "0 disables the ramp");  ///< [s]
   /// Each extent of the box [m].
-  static constexpr Range workspace_size_m = Range::positive("leave it out for no box");
-  static constexpr Range workspace_radius_m = Range::at_least(0.0, "0 is no ball");  ///< [m]
-  static constexpr Range workspace_margin_m = Range::positive("0.01 is usual");      ///< [m]
+  static constexpr Range workspace_size_m = Range::positive("omit it for no box");
+  static constexpr Range workspace_radius_m = Range::at_least(0.0, "0 disables the ball");  ///< [m]
+  static constexpr Range workspace_margin_m = Range::positive("0.01 is usual");             ///< [m]
   /// Mass or moment of inertia [kg, kg m^2].
-  static constexpr Range inertia = Range::positive("0.05 kg is a light device's, 1e-3 kg m^2 a hand's");
-  static constexpr Range arm = Range::at_least(0.0, "0 leaves it out");    ///< Spring or damper of the arm.
+  static constexpr Range inertia = Range::positive("a light device has 0.05 kg, a hand 1e-3 kg m^2");
+  static constexpr Range arm = Range::at_least(0.0, "0 disables it");      ///< Spring or damper of the arm.
   static constexpr Range resolution = Range::at_least(0.0, "0 is exact");  ///< Positions, angles, forces.
   /// Delay of the motors [s].
-  static constexpr Range delay_s = Range::closed(0.0, 1.0, "a loop of 1 kHz has one of 0.001");
+  static constexpr Range delay_s = Range::closed(0.0, 1.0, "a loop of 1 kHz has 0.001");
   static constexpr Range frequency =
       Range::positive("a hand moves at up to 10");  ///< Motion, or cut-off of the velocity filter [1/s].
   /// Start of a motion or a press [s].
   static constexpr Range start_s = Range::at_least(0.0, "0 is the start of the run");
-  static constexpr Range duration_s = Range::at_least(0.0, "0 is to the end");  ///< [s]
-  static constexpr Range switches = Range::closed(0, 31, "the first is 0");     ///< Index of a switch.
+  static constexpr Range duration_s = Range::at_least(0.0, "0 means until the end");  ///< [s]
+  static constexpr Range switches = Range::closed(0, 31, "the first switch is 0");    ///< Index of a switch.
   /// UDP port.
-  static constexpr Range port = Range::closed(1, 65535, "above 1023 no rights are needed");
+  static constexpr Range port = Range::closed(1, 65535, "ports above 1023 need no privileges");
   /// Age at which the last pose becomes invalid [s].
   static constexpr Range time_out_s = Range::positive("two ticks, 0.002, are usual");
   /// Longest wait for the first pose [s].

@@ -49,7 +49,7 @@ struct IntegratorRanges {
   static constexpr Range atol_u = Range::positive("0.1 is usual");   ///< Dimensionless.
   static constexpr Range step_s = Range::positive("1e-3 is usual");  ///< Step [s].
   /// Highest order of a multistep method.
-  static constexpr Range max_order = Range::closed(0, 12, "0 leaves the order to the method");
+  static constexpr Range max_order = Range::closed(0, 12, "with 0 the method chooses the order");
   /// Number of internal steps.
   static constexpr Range max_steps = Range::at_least(1, "it bounds the internal steps between two outputs");
   static constexpr Range factor_kept_steps = Range::at_least(1, "1 is full Newton");  ///< Number of steps.
@@ -57,7 +57,7 @@ struct IntegratorRanges {
       Range::closed(1e-14, 0.1, "1e-8 is usual");  ///< Share of the tolerance.
   /// Spectral radius at infinite frequency.
   static constexpr Range spectral_radius =
-      Range::closed(0.0, 1.0, "0 damps what the step cannot resolve at once, 1 not at all");
+      Range::closed(0.0, 1.0, "0 removes unresolved frequencies in one step, 1 does not damp them");
   /// Relative residual, or relative error in the energy norm.
   static constexpr Range linear_rtol = Range::closed(1e-15, 0.1, "1e-8 is usual");
   /// Number of threads.

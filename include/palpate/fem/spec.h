@@ -103,9 +103,10 @@ struct MaterialRanges {
   static constexpr Range poissons_ratio = Range::open(-1.0, 0.5, "use 0.49 for nearly incompressible tissue");
   /// Density [kg/m^3]
   static constexpr Range density_kg_m3 = Range::positive("water and soft tissue have about 1000");
-  static constexpr Range mass_damping_per_s = Range::at_least(0.0, "0 is none");  ///< alpha [1/s]
+  static constexpr Range mass_damping_per_s = Range::at_least(0.0, "0 disables it");  ///< alpha [1/s]
   /// Stiffness damping beta [s]
-  static constexpr Range stiffness_damping_s = Range::at_least(0.0, "1e-3 damps lightly, 1e-2 strongly");
+  static constexpr Range stiffness_damping_s =
+      Range::at_least(0.0, "1e-3 gives light damping, 1e-2 strong damping");
 };
 
 }  // namespace palpate

@@ -39,9 +39,10 @@ struct ToolSpec {
 struct ToolRanges {
   static constexpr Range radius_m = Range::positive();     ///< [m]
   static constexpr Range coupling = Range::at_least(0.0);  ///< Each of the four coupling parameters.
-  static constexpr Range grasp_switch = Range::closed(-1, 31, "-1 grasps nothing");  ///< Index of a switch.
+  static constexpr Range grasp_switch =
+      Range::closed(-1, 31, "-1 disables grasping");  ///< Index of a switch.
   /// Tick length [s].
-  static constexpr Range tick_s = Range::open(0.0, 0.1, "a haptic device asks for 0.001");
+  static constexpr Range tick_s = Range::open(0.0, 0.1, "a haptic device needs 0.001");
 };
 
 }  // namespace palpate

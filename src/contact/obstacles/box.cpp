@@ -82,14 +82,14 @@ std::unique_ptr<SampleSource> make_box_source(ContactSide side, int frame,
 const ObstacleEntry& box_obstacle() {
   static const ObstacleEntry entry = {
       "box",
-      "box with the edges size_m, centred at position_m",
-      {position_key("the centre"),
+      "box with edge lengths size_m, centred at position_m",
+      {position_key("centre"),
        rotation_key(),
        {.name = "size_m",
         .range = MeshRanges::length,
         .required = true,
         .fallback = Vec3(Vec3::Ones()),
-        .meaning = "the three edges"}},
+        .meaning = "edge lengths along the local axes"}},
       [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
          double look_ahead) {
         return make_box_source(std::move(side), frame, std::move(motion), pose_of(shape), size_of(shape), gap,

@@ -128,9 +128,9 @@ std::unique_ptr<SampleSource> make_cylinder_source(ContactSide side, int frame,
 const ObstacleEntry& cylinder_obstacle() {
   static const ObstacleEntry entry = {
       "cylinder",
-      "cylinder along its own z between flat ends, centred at position_m",
-      {position_key("the centre"), rotation_key(), length_key("radius_m", "radius of the round side"),
-       length_key("length_m", "from one end to the other")},
+      "cylinder along its local z axis with flat ends, centred at position_m",
+      {position_key("centre"), rotation_key(), length_key("radius_m", "radius"),
+       length_key("length_m", "length along the local z axis")},
       [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
          double look_ahead) {
         return make_cylinder_source(std::move(side), frame, std::move(motion), pose_of(shape),

@@ -14,7 +14,7 @@ inline PartKey position_key(const char* meaning) {
 inline PartKey rotation_key() {
   return {.name = "rotation_vector_rad",
           .fallback = Vec3(Vec3::Zero()),
-          .meaning = "from the axes of the world to its own: along the axis, as long as the angle"};
+          .meaning = "rotation from world axes to local axes: rotation axis times angle"};
 }
 inline PartKey length_key(const char* name, const char* meaning) {
   return {.name = name, .range = MeshRanges::length, .required = true, .fallback = 1.0, .meaning = meaning};

@@ -69,11 +69,11 @@ std::unique_ptr<SampleSource> make_plane_source(ContactSide side, int frame,
 const ObstacleEntry& plane_obstacle() {
   static const ObstacleEntry entry = {
       "plane",
-      "everything below a plane through position_m",
-      {position_key("a point of the plane"),
+      "half-space below a plane through position_m",
+      {position_key("a point in the plane"),
        {.name = "normal",
         .fallback = Vec3(Vec3::UnitZ()),
-        .meaning = "direction out of the plane; of any length",
+        .meaning = "outward normal, of any length",
         .fault = fault_of_normal}},
       [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
          double look_ahead) {

@@ -70,8 +70,8 @@ std::unique_ptr<SampleSource> make_sphere_source(ContactSide side, int frame,
 const ObstacleEntry& sphere_obstacle() {
   static const ObstacleEntry entry = {
       "sphere",
-      "ball of radius_m around position_m",
-      {position_key("the centre"), length_key("radius_m", "radius of the ball")},
+      "ball of radius radius_m, centred at position_m",
+      {position_key("centre"), length_key("radius_m", "radius")},
       [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
          double look_ahead) {
         return make_sphere_source(std::move(side), frame, std::move(motion), position_of(shape),

@@ -60,7 +60,7 @@ void FixedStep::prepare(double interval) {
 
 StepResult FixedStep::advance_to(double t_end) {
   const double start = state_.time();
-  PALPATE_CHECK(t_end > start, "t_end = {} is not after t = {}", t_end, start);
+  PALPATE_CHECK(t_end > start, "t_end = {} must be later than t = {}", t_end, start);
   StepResult result;
   result.t = t_end;
   if (layout().u_size == 0) {  // No body: only time advances.
@@ -84,7 +84,7 @@ StepResult FixedStep::cover(double t1, double h, double t_end) {
     if (halvings > 0 && interrupted()) return failure(StepStatus::kInterrupted, part, 0, "interrupted");
     if (taken_ == spec_.max_steps)
       return failure(StepStatus::kTooManySteps, part, 0,
-                     fmt::format("{} steps before t_end = {}", taken_, t_end));
+                     fmt::format("reached max_steps = {} before t_end = {}", taken_, t_end));
     const bool last = halvings == 0 || t1 - state_.time() <= part * (1.0 + tuning::kRoundingOfStep);
     const double to = last ? t1 : state_.time() + part, length = halvings == 0 ? h : to - state_.time();
     q1_.resize(layout().q_size);
@@ -100,8 +100,9 @@ StepResult FixedStep::cover(double t1, double h, double t_end) {
       if (!tried.recoverable) return failure(tried.status, length, tried.iterations, tried.what);
       if (halvings == 0) ++counters_.halved_steps;
       if (++halvings > tuning::kHalvings)
-        return failure(tried.status, length, tried.iterations,
-                       fmt::format("{}, not even at h/{}", tried.what, 1 << tuning::kHalvings));
+        return failure(
+            tried.status, length, tried.iterations,
+            fmt::format("{}, even with the step reduced to h/{}", tried.what, 1 << tuning::kHalvings));
       counters_.most_halvings = std::max<long>(counters_.most_halvings, halvings);
       part /= 2.0;
       continue;

@@ -66,7 +66,8 @@ class RungeKutta4 final : public FixedStep {
   void forget(ReinitReason) override { start_a_.resize(0); }
 
   static constexpr const char* kBlowUp =
-      "the force or the velocity is not finite; an explicit step must stay below its stability limit";
+      "the force or the velocity is not finite; step_s of an explicit method must be below its stability "
+      "limit";
   VecX start_a_, end_a_, a_, rate_, q_sum_, u_sum_;
 };
 

@@ -43,7 +43,8 @@ class SymplecticEuler final : public FixedStep {
   void forget(ReinitReason) override { start_a_.resize(0); }
 
   static constexpr const char* kBlowUp =
-      "the force or the velocity is not finite; an explicit step must stay below its stability limit";
+      "the force or the velocity is not finite; step_s of an explicit method must be below its stability "
+      "limit";
   VecX start_a_, end_a_, theta_, scratch_;
 };
 

@@ -92,7 +92,7 @@ void Adapter::start() {
 // --- stepping
 
 StepResult Adapter::advance_to(double t_end) {
-  PALPATE_CHECK(t_end > problem_->time(), "t_end = {} is not after t = {}", t_end, problem_->time());
+  PALPATE_CHECK(t_end > problem_->time(), "t_end = {} must be later than t = {}", t_end, problem_->time());
   if (problem_->size() == 0) {  // No body: only time advances.
     problem_->set_time(t_end);
     StepResult result;
@@ -156,7 +156,7 @@ StepResult Adapter::failure(int flag, double t, double t_end) {
   StepResult failed = result(flag >= 0 ? StepStatus::kTooManySteps : status_of(flag));
   // A force that is not finite is the reason why the iteration could not converge.
   if (!finite_ && failed.status == StepStatus::kNewtonFailed) failed.status = StepStatus::kNotFinite;
-  if (flag >= 0) message_ = fmt::format("{} steps before t_end = {}", spec_.max_steps, t_end);
+  if (flag >= 0) message_ = fmt::format("reached max_steps = {} before t_end = {}", spec_.max_steps, t_end);
   failed.message =
       fmt::format("{}: {} at t = {}, h = {:.9g}: {}", name(), flag >= 0 ? "TOO_MUCH_WORK" : flag_name(flag),
                   t, failed.h, message_ + remedy(flag));

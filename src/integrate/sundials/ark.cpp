@@ -175,12 +175,12 @@ class Ark final : public Adapter {
   /// With a fixed step no accuracy was requested: the solution is out of proportion to the weights.
   std::string remedy(int flag) const override {
     if (flag == ARK_CONV_FAILURE && spec().fixed_step)
-      return fmt::format("  Not even at h/{}: a smaller step_s, or error control", 1 << tuning::kHalvings);
+      return fmt::format("  Not even a step of h/{} converges: decrease step_s, or use error control",
+                         1 << tuning::kHalvings);
     if (flag != ARK_TOO_MUCH_ACC || !spec().fixed_step) return {};
-    return has_implicit() ? "  The solution has grown out of bounds at this fixed step: a smaller step_s, or "
-                            "error control"
-                          : "  The solution has grown out of bounds: an explicit step_s must stay below its "
-                            "stability limit";
+    return has_implicit()
+               ? "  The solution diverges at this fixed step: decrease step_s, or use error control"
+               : "  The solution diverges: step_s of an explicit method must be below its stability limit";
   }
   bool interpolate(double t, N_Vector out) const override {
     return ARKStepGetDky(memory_, t, 0, out) == ARK_SUCCESS;

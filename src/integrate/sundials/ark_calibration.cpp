@@ -56,7 +56,7 @@ ArkCalibration calibrate(const ArkMethod& method) {
   if (out.defect < kRounding) out.defect = 0.0;
   out.order = p;
   out.error = c;
-  PALPATE_CHECK(c > kRounding && d > kRounding, "{}: no error on linear motion", method.name);
+  PALPATE_CHECK(c > kRounding && d > kRounding, "{}: the error on linear motion is zero", method.name);
 
   out.power = (embedded + (method.sharper_on_linear_motion ? 0.5 : 0.0) + 1.0) / p;
   const double a = kUsualMotion, T = d * a * std::pow(kMiddle / (c * a), (m + 1.0) / p);

@@ -52,7 +52,7 @@ StepperTraits explicit_(int order) {
 // not stiff.
 StepperTraits additive(int order) {
   return {"ImEx Runge-Kutta", order, 2,     StepControl::kEither,
-          Stability::kL,      true,  false, "force, tangent; what is not stiff on the explicit side"};
+          Stability::kL,      true,  false, "force, tangent; non-stiff terms on the explicit side"};
 }
 
 constexpr auto kA = Stability::kA;
@@ -68,8 +68,9 @@ const std::vector<ArkMethod>& ark_methods() {
        ARKODE_BOGACKI_SHAMPINE_4_2_3, explicit_(3)},
       {"ark-erk-4", "Zonneveld 1963, 4(3); stable below 2.8/w_max", 3, -1, ARKODE_ZONNEVELD_5_3_4,
        explicit_(4)},
-      {"ark-erk-5", "Cash and Karp 1990, 5(4); checks references; amplifies undamped motion at every step", 4,
-       -1, ARKODE_CASH_KARP_6_4_5, explicit_(5)},
+      {"ark-erk-5",
+       "Cash and Karp 1990, 5(4); used to check references; amplifies undamped motion at every step", 4, -1,
+       ARKODE_CASH_KARP_6_4_5, explicit_(5)},
 
       {"ark-dirk-sdirk212", "SDIRK 2(1), two stages", 1, ARKODE_SDIRK_2_1_2, -1, implicit(2, 1, kA)},
       {"ark-dirk-billington332", "SDIRK of Billington 1983, 2(3)", 3, ARKODE_BILLINGTON_3_3_2, -1,
@@ -78,7 +79,7 @@ const std::vector<ArkMethod>& ark_methods() {
        implicit(2, 2, kL)},
       {"ark-dirk-kvaerno423", "ESDIRK of Kvaerno 2004, 3(2)", 2, ARKODE_KVAERNO_4_2_3, -1,
        implicit(3, 2, kL)},
-      {"ark-dirk-ark324", "ESDIRK half of ARK3(2)4L[2]SA, Kennedy and Carpenter 2003, 3(2)", 2,
+      {"ark-dirk-ark324", "ESDIRK part of ARK3(2)4L[2]SA, Kennedy and Carpenter 2003, 3(2)", 2,
        ARKODE_ARK324L2SA_DIRK_4_2_3, -1, implicit(3, 2, kL)},
       {"ark-dirk-cash524", "SDIRK of Cash 1979, 4(2)", 2, ARKODE_CASH_5_2_4, -1, implicit(4, 1, kL)},
       {"ark-dirk-cash534", "SDIRK of Cash 1979, 4(3)", 3, ARKODE_CASH_5_3_4, -1, implicit(4, 1, kL)},
@@ -86,15 +87,15 @@ const std::vector<ArkMethod>& ark_methods() {
        implicit(4, 1, kL)},
       {"ark-dirk-kvaerno534", "ESDIRK of Kvaerno 2004, 4(3); R(-inf) = 0.72 in SUNDIALS' table", 3,
        ARKODE_KVAERNO_5_3_4, -1, implicit(4, 2, kA)},
-      {"ark-dirk-ark436", "ESDIRK half of ARK4(3)6L[2]SA, Kennedy and Carpenter 2003, 4(3)", 3,
+      {"ark-dirk-ark436", "ESDIRK part of ARK4(3)6L[2]SA, Kennedy and Carpenter 2003, 4(3)", 3,
        ARKODE_ARK436L2SA_DIRK_6_3_4, -1, implicit(4, 2, kL)},
-      {"ark-dirk-ark437", "ESDIRK half of ARK4(3)7L[2]SA1, Kennedy and Carpenter 2019, 4(3)", 3,
+      {"ark-dirk-ark437", "ESDIRK part of ARK4(3)7L[2]SA1, Kennedy and Carpenter 2019, 4(3)", 3,
        ARKODE_ARK437L2SA_DIRK_7_3_4, -1, implicit(4, 2, kL)},
       {"ark-dirk-kvaerno745", "ESDIRK of Kvaerno 2004, 5(4)", 4, ARKODE_KVAERNO_7_4_5, -1,
        implicit(5, 2, kL)},
-      {"ark-dirk-ark548", "ESDIRK half of ARK5(4)8L[2]SA, Kennedy and Carpenter 2003, 5(4)", 4,
+      {"ark-dirk-ark548", "ESDIRK part of ARK5(4)8L[2]SA, Kennedy and Carpenter 2003, 5(4)", 4,
        ARKODE_ARK548L2SA_DIRK_8_4_5, -1, implicit(5, 2, kL), true},
-      {"ark-dirk-ark548b", "ESDIRK half of ARK5(4)8L[2]SA2, Kennedy and Carpenter 2019, 5(4)", 4,
+      {"ark-dirk-ark548b", "ESDIRK part of ARK5(4)8L[2]SA2, Kennedy and Carpenter 2019, 5(4)", 4,
        ARKODE_ARK548L2SAb_DIRK_8_4_5, -1, implicit(5, 2, kL)},
 
       {"ark-dirk-esdirk324", "ESDIRK3(2)4L[2]SA, Kennedy and Carpenter 2016", 2, ARKODE_ESDIRK324L2SA_4_2_3,
@@ -126,8 +127,8 @@ const std::vector<ArkMethod>& ark_methods() {
       {"ark-imex-5", "ARK5(4)8L[2]SA, Kennedy and Carpenter 2003", 4, ARKODE_ARK548L2SA_DIRK_8_4_5,
        ARKODE_ARK548L2SA_ERK_8_4_5, additive(5), true},
       {"ark-imex-5b",
-       "ARK5(4)8L[2]SA2, Kennedy and Carpenter 2019; its error estimate misses kinks: with contact, events = "
-       "\"root-finding\"",
+       "ARK5(4)8L[2]SA2, Kennedy and Carpenter 2019; its error estimate misses kinks: with contact, use "
+       "events = \"root-finding\"",
        4, ARKODE_ARK548L2SAb_DIRK_8_4_5, ARKODE_ARK548L2SAb_ERK_8_4_5, additive(5)},
   };
   return methods;

@@ -51,6 +51,8 @@ void check(long flag, const char* call, double t, double h) {
   PALPATE_CHECK(flag >= 0, "{} returned {} ({}) at t = {}, h = {}", call, flag_name(call, flag), flag, t, h);
 }
 
-void check(const void* object, const char* call) { PALPATE_CHECK(object, "{} returned nothing", call); }
+void check(const void* object, const char* call) {
+  PALPATE_CHECK(object, "{} returned a null pointer", call);
+}
 
 }  // namespace palpate::integrate::sun

@@ -69,7 +69,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   std::string name() const override { return "kinsol-static"; }
 
   StepResult advance_to(double t_end) override {
-    PALPATE_CHECK(t_end > state_.time(), "t_end = {} is not after t = {}", t_end, state_.time());
+    PALPATE_CHECK(t_end > state_.time(), "t_end = {} must be later than t = {}", t_end, state_.time());
     const int n = state_.layout().u_size;
     if (n == 0) {
       state_.set_time(t_end);
@@ -479,7 +479,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   }
   std::string describe(int flag) const {
     return fmt::format(
-        "{} at load {:.3g} of 1: no equilibrium found ({}); is the body held, and the load bearable?",
+        "{} at {:.3g} of the load: no equilibrium found ({}). Check that the body is held by attachments and "
+        "that the load is not too large",
         flag_name("KINSol", flag), s_, message_);
   }
   StepResult failure(StepStatus status, const std::string& what) const {

@@ -49,7 +49,7 @@ const ArkMethod* find_ark(std::string_view name) {
 
 void check_square(const MatX& Z, Eigen::Index rows) {
   if (Z.rows() != Z.cols() || Z.rows() != rows)
-    fail("a matrix of a linear step is {} x {}, not {} x {}", Z.rows(), Z.cols(), rows, rows);
+    fail("a matrix of a linear step is {} x {}; it must be {} x {}", Z.rows(), Z.cols(), rows, rows);
 }
 
 }  // namespace
@@ -66,7 +66,8 @@ MatX split_step(std::string_view method, const MatX& Z, const MatX& other) {
   check_square(other, Z.rows());
   const ArkMethod* ark = find_ark(method);
   if (!ark) return sun::multirate_step(method, Z, other, 1.0);
-  if (ark->implicit_table < 0 || ark->explicit_table < 0) fail("{} does not split a system", method);
+  if (ark->implicit_table < 0 || ark->explicit_table < 0)
+    fail("{} is not an additive method and cannot split a system", method);
   const ButcherTable second = explicit_table(*ark);
   return runge_kutta_step(implicit_table(*ark), Z, &second, other);
 }

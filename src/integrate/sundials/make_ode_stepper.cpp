@@ -10,7 +10,7 @@ std::unique_ptr<dynamics::Stepper> make_ode_stepper(std::unique_ptr<OdeProblem> 
   if (spec.name.starts_with("cvode-")) return sun::make_cvode(std::move(problem), spec);
   if (spec.name.starts_with("ark-mri-")) return sun::make_mri(std::move(problem), spec);
   if (spec.name.starts_with("ark-")) return sun::make_ark(std::move(problem), spec);
-  fail("integrator \"{}\" steps no plain y' = f(t, y)", spec.name);
+  fail("integrator \"{}\" cannot solve y' = f(t, y)", spec.name);
 }
 
 }  // namespace palpate::integrate

@@ -140,7 +140,7 @@ class Mri final : public Adapter {
   std::string remedy(int flag) const override {
     if (flag == ARK_INNERSTEP_FAIL) return "  " + fast_message_;
     return flag == ARK_CONV_FAILURE
-               ? fmt::format("  Not even at h/{}: a smaller step_s", 1 << tuning::kHalvings)
+               ? fmt::format("  Not even a step of h/{} converges: decrease step_s", 1 << tuning::kHalvings)
                : std::string();
   }
   bool interpolate(double t, N_Vector out) const override {
@@ -174,7 +174,7 @@ class Mri final : public Adapter {
   }
 
   static void on_fast_error(const char*, const char* text, void* data) {
-    self(data).fast_message_ = fmt::format("Fast side: {}", text);
+    self(data).fast_message_ = fmt::format("Fast part: {}", text);
   }
   static Mri& self(void* data) { return static_cast<Mri&>(*static_cast<Adapter*>(data)); }
   static int slow_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {

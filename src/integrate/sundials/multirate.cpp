@@ -97,7 +97,7 @@ MatX step_matrix(const Coupling& coupling, const MatX& slow, const MatX& fast, d
 const MultirateMethod& multirate_method(std::string_view name) {
   const auto* m = std::find_if(std::begin(kMethods), std::end(kMethods),
                                [&](const MultirateMethod& x) { return name == x.name; });
-  if (m == std::end(kMethods)) fail("\"{}\" is no multi-rate method", name);
+  if (m == std::end(kMethods)) fail("\"{}\" is not a multi-rate method", name);
   return *m;
 }
 
@@ -109,8 +109,8 @@ MatX multirate_step(std::string_view method, const MatX& slow, const MatX& fast,
 
 double multirate_amplification(std::string_view method, const MatX& slow, const MatX& fast, double step_s) {
   if (slow.rows() != slow.cols() || fast.rows() != slow.rows() || fast.cols() != slow.cols())
-    fail("the slow side is {} x {} and the fast one {} x {}: both must be square, of one size", slow.rows(),
-         slow.cols(), fast.rows(), fast.cols());
+    fail("the slow matrix is {} x {} and the fast one {} x {}; both must be square and of the same size",
+         slow.rows(), slow.cols(), fast.rows(), fast.cols());
   return sun::multirate_step(method, slow, fast, step_s).eigenvalues().cwiseAbs().maxCoeff();
 }
 

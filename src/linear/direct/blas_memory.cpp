@@ -59,9 +59,9 @@ void reserve() {
   if (addresses_are_limited() && !comes_back(dgemm)) {
     const AvailableMemory left = available_memory();
     fail(
-        "the BLAS gets no memory to work in: OpenBLAS takes about 128 MiB of addresses, and {} are left "
-        "({}); raise "
-        "the limit, or take integrator.linear_solver = \"pcg-single\", which needs none",
+        "the BLAS cannot allocate its working memory: OpenBLAS needs about 128 MiB of address space, and {} "
+        "are left ({}). Raise the limit, or set integrator.linear_solver = \"pcg-single\", which does not "
+        "need the BLAS",
         memory_text(left.bytes), left.limited_by);
   }
   multiply(dgemm);
@@ -75,7 +75,7 @@ void reserve_blas_memory() {
 }
 
 void refuse_factor_beyond_memory(double unknowns, double bytes) {
-  refuse_beyond_memory(fmt::format("the factor of {:.0f} unknowns: its numbers", unknowns), bytes, "",
+  refuse_beyond_memory(fmt::format("the entries of the factor of {:.0f} unknowns", unknowns), bytes, "",
                        "a coarser mesh or integrator.linear_solver = \"pcg-single\" needs less");
 }
 

@@ -77,7 +77,7 @@ void DirectSolver::solve_border(MatX& Y) const {
 }
 
 void DirectSolver::solve_columns(const double* b, double* x, Eigen::Index count) {
-  PALPATE_CHECK(status_ == SolveStatus::kOk, "solver {}: solve without a factor", name_);
+  PALPATE_CHECK(status_ == SolveStatus::kOk, "solver {}: solve() called before factor()", name_);
   const ScopedTimer timer(counters_.solve_s);
   counters_.solves += count;
   const Eigen::OuterStride<> stride(nodal_ + border_);

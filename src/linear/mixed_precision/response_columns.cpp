@@ -54,8 +54,9 @@ MatX Columns::inner(const Columns& W) const {
 }
 
 void Columns::add(const Columns& V, const MatX& Y) {
-  PALPATE_CHECK(Y.rows() == V.count() && Y.cols() == count_, "{} x {} shares of {} columns in {}", Y.rows(),
-                Y.cols(), V.count(), count_);
+  PALPATE_CHECK(Y.rows() == V.count() && Y.cols() == count_,
+                "{} x {} coefficients do not fit {} columns added to {}", Y.rows(), Y.cols(), V.count(),
+                count_);
   const Eigen::MatrixXf shares = Y.cast<float>();
   if (shares.size() > 0)
     kernels_->add_columns(V.count(), count_, pointers(V).data(), shares.data(), pointers(*this).data(),

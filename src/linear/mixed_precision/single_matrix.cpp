@@ -166,7 +166,8 @@ SolveStatus SingleMatrix::take_step_matrix(int count, Singles* from, Singles* to
   original_ = nullptr;
   const std::size_t n = order_.node.size();
   PALPATE_CHECK(written_.diagonal.size() == static_cast<Eigen::Index>(3 * n),
-                "a zero-row-sum matrix of {} nodes with {} masses", n, written_.diagonal.size());
+                "zero-row-sum matrix of {} nodes: {} masses, but 3 per node needed", n,
+                written_.diagonal.size());
   find_held();
   points_.take(written_.points, place_of_node_, order_, written_.scale);
   point_stiffness_ = 0.0;

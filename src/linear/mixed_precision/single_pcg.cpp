@@ -280,7 +280,7 @@ class SinglePcg final : public dynamics::LinearSolver,
   // --- per right-hand side
   void check_right_hand_side(Eigen::Index rows) const {
     PALPATE_CHECK(status_ == SolveStatus::kOk && (matrix_ || use_ == StepMatrixUse::kSolve),
-                  "solver {}: solve without a factor", name_);
+                  "solver {}: solve() called before factor()", name_);
     PALPATE_CHECK(!matrix_ || matrix_->values_version == values_version_,
                   "solver {}: the matrix changed between factor and solve", name_);
     PALPATE_CHECK(rows == 3 * nodes(), "right-hand side has {} rows, the matrix {}", rows, 3 * nodes());

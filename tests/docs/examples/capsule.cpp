@@ -84,9 +84,9 @@ ObstaclePicture picture(const Settings& shape, const View&) {
 const ObstacleEntry& capsule_obstacle() {
   static const ObstacleEntry entry = {
       "capsule",
-      "cylinder along its own z with a half ball at either end, centred at position_m",
-      {position_key("the centre"), rotation_key(), length_key("radius_m", "radius of cylinder and balls"),
-       length_key("length_m", "between the centres of the balls")},
+      "cylinder along its local z axis with hemispherical ends, centred at position_m",
+      {position_key("centre"), rotation_key(), length_key("radius_m", "radius of cylinder and hemispheres"),
+       length_key("length_m", "distance between the centres of the hemispheres")},
       [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
          double look_ahead) {
         return make_analytic_source(std::move(side), frame, std::move(motion), capsule_of(shape), gap,
