@@ -102,10 +102,10 @@ FieldError compare_fields(const std::vector<contact::ContactSample>& samples, co
     return pixel.covered && pixel.gap < 0.0;
   };
   // whether all pixels around one overlap, or none does: it is more than a pixel from the silhouette then
-  const auto around = [&](int column, int row, bool wanted) {
+  const auto around = [&](int column, int row, bool requested) {
     for (int v = std::max(0, row - 1); v <= std::min(grid.height - 1, row + 1); ++v)
       for (int u = std::max(0, column - 1); u <= std::min(grid.width - 1, column + 1); ++u)
-        if (overlaps(u, v) != wanted) return false;
+        if (overlaps(u, v) != requested) return false;
     return true;
   };
   std::vector<char> seen(truth.size(), 0);

@@ -70,7 +70,7 @@ double true_depth(const Pair& pair, const Vec3& p, const Vec3& n) {
 
 /// Defects of an image: a depth kept in 16 bits of the slab, a row of pixels lost, each pixel with its
 /// neighbour's depth.
-void spoil(std::vector<contact::ContactSample>& samples, const std::string& fault) {
+void seed_defect(std::vector<contact::ContactSample>& samples, const std::string& fault) {
   if (fault == "sixteen-bits")
     for (auto& s : samples) s.gap = std::round(s.gap * 65536.0 / kDepth) * kDepth / 65536.0;
   if (fault == "neighbours-depth")
@@ -88,7 +88,7 @@ std::vector<contact::ContactSample> samples_of(const Pair& pair, int pixels, con
   options.candidate_gap = 1e-3;
   const auto source = contact::make_image_source(body.surface, pair.b, 0, contact::fixed_frame(), options);
   std::vector<contact::ContactSample> samples = pixels_of(*source, body.state.view());
-  spoil(samples, fault);
+  seed_defect(samples, fault);
   return samples;
 }
 

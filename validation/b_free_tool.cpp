@@ -38,7 +38,8 @@ scene::Description free_tool_scene(double length, double width, double element_s
   return d;
 }
 
-std::vector<loop::TickRecord> run_free_tool(const scene::Description& description, const Spoiler& spoil) {
+std::vector<loop::TickRecord> run_free_tool(const scene::Description& description,
+                                            const Spoiler& seed_defect) {
   struct Keep final : loop::Observer {
     std::vector<loop::TickRecord> ticks;
     void tick(const loop::TickRecord& tick) override { ticks.push_back(tick); }
@@ -50,7 +51,7 @@ std::vector<loop::TickRecord> run_free_tool(const scene::Description& descriptio
   end.time_s = d.duration_s;
   d.device->keyframes = {start, end};
   const auto world = loop::assemble(d);
-  if (spoil) spoil(*world);
+  if (seed_defect) seed_defect(*world);
   loop::RunOptions options;
   options.observers = {&keep};
   const loop::RunResult result = loop::run(*world, options);

@@ -34,7 +34,8 @@ struct SphereOnSkin {
 };
 
 /// What each tick showed, a millisecond apart.
-std::vector<loop::TickRecord> run_free_tool(const scene::Description& description, const Spoiler& spoil = {});
+std::vector<loop::TickRecord> run_free_tool(const scene::Description& description,
+                                            const Spoiler& seed_defect = {});
 
 /// Mean acceleration of the tool along x between two times [m/s^2].
 double mean_acceleration(const std::vector<loop::TickRecord>& ticks, double from_s, double to_s);

@@ -191,8 +191,8 @@ std::vector<Measurement> run(const std::string& fault) {
         entry.traits.family == "ImEx Runge-Kutta" ||
         std::find(kBlindToKinks.begin(), kBlindToKinks.end(), entry.name) != kBlindToKinks.end();
     spec.events = coarse || blind ? "root-finding" : "error-control";
-    const double wanted = entry.traits.order <= 2 ? 1e-7 : std::max(1e-10, entry.tightest_rtol(spec));
-    spec.rtol = fault == "tolerance-ignored" ? 1e-2 : wanted;
+    const double requested = entry.traits.order <= 2 ? 1e-7 : std::max(1e-10, entry.tightest_rtol(spec));
+    spec.rtol = fault == "tolerance-ignored" ? 1e-2 : requested;
     spec.max_steps = 100'000'000;
     for (const double damping : {0.0, 2e6}) {
       const Fall::Outcome fall = drop_rigid(spec, damping, fault);

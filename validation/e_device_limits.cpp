@@ -14,10 +14,10 @@ namespace {
 constexpr double kForce = 3.3, kTorque = 0.2, kForceSlew = 600.0, kTorqueSlew = 40.0;
 
 /// Output of a program without such limits: the last finite wrench that was wanted, clipped by component.
-Wrench careless(const Wrench& wanted, bool clip) {
-  return clip ? Wrench{wanted.moment.cwiseMax(-kTorque).cwiseMin(kTorque),
-                       wanted.force.cwiseMax(-kForce).cwiseMin(kForce)}
-              : wanted;
+Wrench careless(const Wrench& requested, bool clip) {
+  return clip ? Wrench{requested.moment.cwiseMax(-kTorque).cwiseMin(kTorque),
+                       requested.force.cwiseMax(-kForce).cwiseMin(kForce)}
+              : requested;
 }
 
 std::vector<Measurement> run(const std::string& fault) {
@@ -33,16 +33,16 @@ std::vector<Measurement> run(const std::string& fault) {
   for (int i = 0; i < 200000; ++i) {
     const double dt = 1e-3 * std::pow(3.0, uniform(rng));
     t += dt;
-    Wrench wanted{vec(kTorque * std::pow(10.0, 6 * uniform(rng))),
-                  vec(kForce * std::pow(10.0, 6 * uniform(rng)))};
+    Wrench requested{vec(kTorque * std::pow(10.0, 6 * uniform(rng))),
+                     vec(kForce * std::pow(10.0, 6 * uniform(rng)))};
     const bool valid = (i / 50) % 3 != 0;
     if (uniform(rng) > 0.98 && fault != "componentwise-clip")
-      wanted.force.x() = std::numeric_limits<double>::quiet_NaN();
-    if (valid && wanted.force.allFinite()) last_valid = t;
-    const Wrench out = fault == "no-limiter" ? careless(wanted, false)
+      requested.force.x() = std::numeric_limits<double>::quiet_NaN();
+    if (valid && requested.force.allFinite()) last_valid = t;
+    const Wrench out = fault == "no-limiter" ? careless(requested, false)
                        : fault == "componentwise-clip"
-                           ? careless(wanted, true)
-                           : limiter.limit(t, wanted, valid || fault == "no-timeout");
+                           ? careless(requested, true)
+                           : limiter.limit(t, requested, valid || fault == "no-timeout");
     not_finite += !(out.force.allFinite() && out.moment.allFinite());
     force = std::max({force, out.force.norm() / kForce, out.moment.norm() / kTorque});
     slew = std::max({slew, (out.force - before.force).norm() / (kForceSlew * dt),

@@ -69,7 +69,7 @@ scene::Description press_block() {
 struct ContactMoment final : loop::Observer {
   void tick(const loop::TickRecord& tick) override {
     moment = std::max(moment, tick.contact.moment.norm());
-    torque = std::max(torque, tick.wanted.moment.norm());
+    torque = std::max(torque, tick.requested.moment.norm());
     speed = std::max(speed, tick.tool_twist.linear.head<2>().norm() +
                                 press_block().tool->radius_m * tick.tool_twist.angular.norm());
   }
@@ -90,7 +90,7 @@ ContactMoment contact_moment(scene::Description d) {
 std::vector<Measurement> run(const std::string& fault) {
   const scene::Description parts = press_block();
   compare::ExchangeOptions options;
-  options.spoil = [&](loop::World& world) {
+  options.seed_defect = [&](loop::World& world) {
     if (fault == "half-contact") add_to(world, scaled(world.contact, {.force = -0.5}));
     if (fault == "half-stiffness")
       world.set_youngs_modulus(world.bodies[0], 0.5 * parts.bodies[0].youngs_modulus_pa);

@@ -25,8 +25,8 @@ const std::string& image_error() {
 
 class SpoiledSource final : public contact::SampleSource {
  public:
-  SpoiledSource(std::unique_ptr<contact::SampleSource> source, Spoil spoil)
-      : source_(std::move(source)), spoil_(std::move(spoil)) {}
+  SpoiledSource(std::unique_ptr<contact::SampleSource> source, Spoil seed_defect)
+      : source_(std::move(source)), spoil_(std::move(seed_defect)) {}
   std::string_view name() const override { return source_->name(); }
   void add_pattern(dynamics::PatternBuilder& pattern) const override { source_->add_pattern(pattern); }
   std::uint64_t pattern_version() const override { return source_->pattern_version(); }
@@ -91,31 +91,32 @@ std::unique_ptr<contact::SampleSource> held(std::unique_ptr<contact::SampleSourc
   return spoiled(std::move(source), [](auto&) {});
 }
 
-std::unique_ptr<contact::SampleSource> spoiled(std::unique_ptr<contact::SampleSource> source, Spoil spoil) {
-  return std::make_unique<SpoiledSource>(std::move(source), std::move(spoil));
+std::unique_ptr<contact::SampleSource> spoiled(std::unique_ptr<contact::SampleSource> source,
+                                               Spoil seed_defect) {
+  return std::make_unique<SpoiledSource>(std::move(source), std::move(seed_defect));
 }
 
 GridShift grid_shift(int i) {
   return {std::fmod(0.754877666 * (i + 1), 1.0), std::fmod(0.569840291 * (i + 1), 1.0)};
 }
 
-Measurement over_pixels(Measurement wanted, const std::vector<int>& pixels,
+Measurement over_pixels(Measurement requested, const std::vector<int>& pixels,
                         const std::function<double(int, const GridShift&)>& sampled) {
   std::vector<double> h, error;
   for (const int count : pixels) {
     double squares = 0.0;
     for (int i = 0; i < kGridShifts; ++i) {
-      wanted.computed = sampled(count, grid_shift(i));
-      squares += std::pow(wanted.computed / wanted.exact - 1.0, 2) / kGridShifts;
+      requested.computed = sampled(count, grid_shift(i));
+      squares += std::pow(requested.computed / requested.exact - 1.0, 2) / kGridShifts;
     }
     h.push_back(1.0 / count);
     error.push_back(std::sqrt(squares));
   }
-  wanted.error = error.back();
-  wanted.order = fitted_order(h, error);
-  wanted.note = fmt::format("order in pixel size over {} to {}", pixels.front(), pixels.back());
-  wanted.refinement = {"pixel / edge of the image", h, error};
-  return wanted;
+  requested.error = error.back();
+  requested.order = fitted_order(h, error);
+  requested.note = fmt::format("order in pixel size over {} to {}", pixels.front(), pixels.back());
+  requested.refinement = {"pixel / edge of the image", h, error};
+  return requested;
 }
 
 }  // namespace palpate::validation

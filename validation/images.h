@@ -23,7 +23,8 @@ double overlap_volume(const std::vector<contact::ContactSample>& samples);  ///<
 
 /// A source whose samples `spoil` changes after each query: the library with a defect.
 using Spoil = std::function<void(std::vector<contact::ContactSample>& samples)>;
-std::unique_ptr<contact::SampleSource> spoiled(std::unique_ptr<contact::SampleSource> source, Spoil spoil);
+std::unique_ptr<contact::SampleSource> spoiled(std::unique_ptr<contact::SampleSource> source,
+                                               Spoil seed_defect);
 
 /// A source whose samples stay those of the last query: gaps are linear in the positions, and their tangent
 /// is exact.
@@ -40,7 +41,7 @@ GridShift grid_shift(int i);
 /// shifts of the grid: error at the last one, and order in pixel size.
 /// @param wanted   quantity, exact value, bar and bounds of the order
 /// @param sampled  (pixels along the longer edge, shift)
-Measurement over_pixels(Measurement wanted, const std::vector<int>& pixels,
+Measurement over_pixels(Measurement requested, const std::vector<int>& pixels,
                         const std::function<double(int, const GridShift&)>& sampled);
 
 }  // namespace palpate::validation

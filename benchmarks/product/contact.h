@@ -109,7 +109,7 @@ struct FrictionPrice {
 
 /// Contact by nearest points beside the rest of a step, as ratios of one run: medians of periods, one thread
 /// [ms].
-struct ContactPrice {
+struct ContactCost {
   std::string scene;
   /// A step of the first body without contact or tool, with linear_rtol = 1e-3.  As all that is without
   /// contact it moves under its weight: at rest there is nothing to solve.
@@ -119,8 +119,8 @@ struct ContactPrice {
   ContactBenchRow row;
   FrictionPrice friction;  ///< zeros of a scene with a tool, and where nothing touches
 };
-ContactPrice bench_contact_price(const scene::Description& description,
-                                 const std::atomic<bool>* stop = nullptr);
+ContactCost bench_contact_price(const scene::Description& description,
+                                const std::atomic<bool>* stop = nullptr);
 
 /// A rigid sphere pressed into a ball under a fine skin, as one query by nearest points sees it.
 struct ContactGrowthRow {
@@ -153,7 +153,7 @@ struct ContactBenchReport {
     const ContactBenchRow* find(const std::string& method, int threads) const;
   };
   std::vector<Scene> scenes;
-  std::vector<ContactPrice> prices;
+  std::vector<ContactCost> prices;
   std::vector<ContactGrowth> growth;
   std::string no_image;  ///< why "image" was left out; empty: it was not
 };

@@ -308,7 +308,7 @@ void BoneTree::tangent(const VecX& q, double k_scale, double d_scale, MatX& A) c
   Impl& i = *impl_;
   A.setZero(i.u_size, i.u_size);
   if (k_scale != 0.0 && !i.gravity.isZero(0.0)) {
-    std::vector<HeldForce> weights(i.bones.size());
+    std::vector<ConstantForce> weights(i.bones.size());
     for (std::size_t b = 0; b < weights.size(); ++b) weights[b].force = i.bones[b].mass * i.gravity;
     add_geometric_stiffness(q, weights, A);
     A *= k_scale;

@@ -30,7 +30,7 @@ Vec6 BoneTree::bias(const VecX&, const VecX&, int) const { no_joints(); }
 const MatX& BoneTree::mass(const VecX&) const { no_joints(); }
 VecX BoneTree::force(const VecX&, const VecX&) const { no_joints(); }
 void BoneTree::tangent(const VecX&, double, double, MatX&) const { no_joints(); }
-void BoneTree::add_geometric_stiffness(const VecX&, const std::vector<HeldForce>&, MatX&) const {
+void BoneTree::add_geometric_stiffness(const VecX&, const std::vector<ConstantForce>&, MatX&) const {
   no_joints();
 }
 double BoneTree::potential_energy(const VecX&) const { no_joints(); }

@@ -25,7 +25,7 @@ Vec3 moment(const Mat3& S) { return {S(1, 2) - S(2, 1), S(2, 0) - S(0, 2), S(0, 
 //   direction is constant).
 // K is symmetric between different joints.  Within a ball or a free root it is symmetric up to the cross
 // matrix of m, as for one rigid body.
-void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<HeldForce>& held, MatX& K) const {
+void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<ConstantForce>& held, MatX& K) const {
   Impl& t = *impl_;
   t.go_to(q, t.at_u.size() == t.u_size ? t.at_u : VecX(VecX::Zero(t.u_size)));
   t.need_jacobian();

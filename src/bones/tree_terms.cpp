@@ -114,8 +114,8 @@ class TreeCarried final : public dynamics::DrivenMotion {
   void add_geometric_stiffness(const StateView& state, const VecX& f, MatX& K) const override {
     const Coordinates at(state, block_of(state, block_id_, *tree_));
     const Mat3 R = tree_->motion(at.q, at.u, bone_).pose.rotation.toRotationMatrix();
-    std::vector<HeldForce> held(static_cast<std::size_t>(tree_->size()));
-    HeldForce& mine = held[static_cast<std::size_t>(bone_)];
+    std::vector<ConstantForce> held(static_cast<std::size_t>(tree_->size()));
+    ConstantForce& mine = held[static_cast<std::size_t>(bone_)];
     for (Eigen::Index i = 0; i < local_.cols(); ++i) {
       mine.force[axis(i)] += f[i];
       mine.moment.col(axis(i)) += f[i] * (R * local_.col(i));

@@ -18,14 +18,14 @@ std::string line_of(const char* what, double rms, double max, double peak, const
                      100.0 * share_of_peak(max, peak));
 }
 
-void add_lines(const std::string& whose, const compare::FeltError& felt, std::vector<std::string>& out) {
+void add_lines(const std::string& whose, const compare::HandError& felt, std::vector<std::string>& out) {
   const compare::TrajectoryError& e = felt.error;
   out.push_back(whose + line_of("force error", e.force_rms_n, e.force_max_n, felt.peak_force_n, "N"));
   out.push_back(whose +
                 line_of("torque error", e.torque_rms_n_m, e.torque_max_n_m, felt.peak_torque_n_m, "N m"));
 }
 
-void add_figures(store::SummarySection& s, const compare::FeltError& felt) {
+void add_figures(store::SummarySection& s, const compare::HandError& felt) {
   const compare::TrajectoryError& e = felt.error;
   s.values.insert(s.values.end(),
                   {{"force_error_rms_n", e.force_rms_n},

@@ -46,6 +46,6 @@ struct Resumption {
   store::Checkpoint checkpoint;
   loop::Resumed from;  ///< what `checkpoint` holds
 };
-int resume_run(Resumption& resumption, const scene::Description& description, Undelivered& missing);
+int resume_run(Resumption& resumption, const scene::Description& description, MissingOutputs& missing);
 
 }  // namespace palpate::cli

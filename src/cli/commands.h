@@ -11,7 +11,7 @@
 /// is at fault.
 namespace palpate::cli {
 
-class Undelivered;
+class MissingOutputs;
 
 struct RunArguments {
   SceneArguments scene;
@@ -30,7 +30,7 @@ struct RunArguments {
 };
 int run(const RunArguments& arguments);
 /// Runs as a part of another command, which prints and closes what is missing.
-int run(const RunArguments& arguments, Undelivered& missing);
+int run(const RunArguments& arguments, MissingOutputs& missing);
 
 struct ResumeArguments {
   std::string run;  ///< folder of a run with checkpoints
@@ -87,7 +87,7 @@ struct CompareArguments {
 };
 int compare(const CompareArguments& arguments);
 int compare_haptic(const CompareArguments& arguments);
-int compare(const CompareArguments& arguments, Undelivered& missing);
+int compare(const CompareArguments& arguments, MissingOutputs& missing);
 
 struct ModesArguments {
   SceneArguments scene;

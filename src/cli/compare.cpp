@@ -73,7 +73,7 @@ report::ReferenceError reference_of(const compare::Reference& r) {
 }
 
 /// Adds to `missing` what a finished comparison lacks.
-void add_missing(const compare::Comparison& comparison, Undelivered& missing) {
+void add_missing(const compare::Comparison& comparison, MissingOutputs& missing) {
   for (const compare::SceneComparison& scene : comparison.scenes) {
     if (!scene.reference.trouble.empty())
       missing.add("checked reference of " + scene.scene, scene.reference.trouble);
@@ -85,11 +85,11 @@ void add_missing(const compare::Comparison& comparison, Undelivered& missing) {
 }  // namespace
 
 int compare(const CompareArguments& arguments) {
-  Undelivered missing;
+  MissingOutputs missing;
   return missing.close(compare(arguments, missing));
 }
 
-int compare(const CompareArguments& arguments, Undelivered& missing) {
+int compare(const CompareArguments& arguments, MissingOutputs& missing) {
   const std::vector<scene::Description> scenes = scenes_of(arguments);
   const std::string folder =
       arguments.folder.empty() ? default_folder(default_name(scenes)) : arguments.folder;

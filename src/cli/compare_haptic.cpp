@@ -153,7 +153,7 @@ void keep_summary(const CompareArguments& a, const scene::Description& d, const 
 }
 
 /// Adds to `missing` what a finished comparison lacks.
-void add_missing(const HapticComparison& c, Undelivered& missing) {
+void add_missing(const HapticComparison& c, MissingOutputs& missing) {
   if (!c.reference.trouble.empty()) missing.add("checked reference of " + c.scene, c.reference.trouble);
 }
 
@@ -180,7 +180,7 @@ int compare_haptic(const CompareArguments& arguments) {
     fmt::print(stderr, "palpate: stopped; the same command goes on from {}\n", folder);
     return kExitStopped;
   }
-  Undelivered missing;
+  MissingOutputs missing;
   missing.add(written);
   add_missing(comparison, missing);
   return missing.close(0);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "palpate/loop/silent_doings.h"
+#include "palpate/loop/describe_fallbacks.h"
 #include "palpate/report/work_precision.h"
 
 namespace palpate::cli {
@@ -17,7 +17,7 @@ constexpr std::size_t kPointsOnScreen = 80;
 
 std::string outcome_text(const compare::ComparePoint& p) {
   if (p.status == compare::PointStatus::kOk) {
-    const std::string silent = loop::silent_doings(p.result.counters);
+    const std::string silent = loop::describe_fallbacks(p.result.counters);
     if (!p.unresolved) return silent;
     return "not distinguishable from the reference" + (silent.empty() ? "" : "; " + silent);
   }

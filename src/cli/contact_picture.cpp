@@ -284,7 +284,8 @@ void ContactSnapshot::queried(loop::World& world, double t) {
   instant_ = instant_of(world, t, Shade::kPenetration);
 }
 
-void ContactSnapshot::save(const loop::World& world, const std::string& folder, Undelivered& missing) const {
+void ContactSnapshot::save(const loop::World& world, const std::string& folder,
+                           MissingOutputs& missing) const {
   const auto keep = [&](const char* name, auto draw) {
     const std::string path = (std::filesystem::path(folder) / name).string();
     std::error_code none;

@@ -6,7 +6,7 @@
 
 namespace palpate::cli {
 
-class Undelivered;
+class MissingOutputs;
 
 /// Keeps the query of a run with the largest contact force, for two pictures: what Figures 4 and 5 of Galoppo
 /// et al. (2007) show.
@@ -17,7 +17,7 @@ class ContactSnapshot : public loop::Observer {
   /// contact.png: the proxies in contact, outlined, beside the patch of skin with the largest overlap, seen
   /// from what touches it, with its penetration and its colliding vertices.  depth.png: the penetration over
   /// the pixels of the region with the largest overlap, in an image.
-  void save(const loop::World& world, const std::string& folder, Undelivered& missing) const;
+  void save(const loop::World& world, const std::string& folder, MissingOutputs& missing) const;
 
  private:
   bool touched() const { return contact_.force_n > 0.0; }

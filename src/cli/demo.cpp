@@ -11,7 +11,7 @@ int demo(const DemoArguments& arguments) {
   touch.scene.scene = "press-ball";
   touch.folder = arguments.folder;
   touch.picture = true;
-  Undelivered missing;
+  MissingOutputs missing;
   if (const int status = run(touch, missing); status != 0) return missing.close(status);
 
   fmt::print("\nThe same touch by each integrator: how far from the reference, at what price?\n\n");

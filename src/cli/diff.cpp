@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "palpate/cli/paths.h"
-#include "palpate/compare/felt_difference.h"
+#include "palpate/compare/perceptible_difference.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/loop/load.h"
 #include "palpate/scene/hands.h"
@@ -32,7 +32,7 @@ int diff(const DiffArguments& arguments) {
     const auto ticks = [&](const std::filesystem::path& folder) {
       return loop::read_haptic_record((folder / name).string()).ticks;
     };
-    return compare::text_of(compare::felt_difference(ticks(reference), ticks(other)));
+    return compare::text_of(compare::perceptible_difference(ticks(reference), ticks(other)));
   };
   const std::string first = difference("haptic.h5");
   const std::vector<std::string> mine = more_hands(reference), theirs = more_hands(other);

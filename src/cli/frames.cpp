@@ -107,7 +107,7 @@ void check_rate(const scene::Description& d, double per_s, const std::string& as
 /// Writes a picture to every sink that still works, and names those that stop working.
 class Writer {
  public:
-  Writer(const std::vector<FrameSink*>& sinks, Undelivered& missing) : sinks_(sinks), missing_(missing) {}
+  Writer(const std::vector<FrameSink*>& sinks, MissingOutputs& missing) : sinks_(sinks), missing_(missing) {}
   bool idle() const { return sinks_.empty(); }
   void add(const render::Picture& picture) {
     each([&](FrameSink& sink) { sink.add(picture); });
@@ -133,7 +133,7 @@ class Writer {
     });
   }
   std::vector<FrameSink*> sinks_;
-  Undelivered& missing_;
+  MissingOutputs& missing_;
 };
 
 }  // namespace
@@ -228,7 +228,7 @@ void Frames::keep(Instant instant) {
 }
 
 void Frames::save(const loop::World& world, const std::vector<FrameSink*>& sinks, bool stoppable,
-                  Undelivered& missing) {
+                  MissingOutputs& missing) {
   Writer writer(sinks, missing);
   try {
     if (instants_.count() == 0) fail("the run ended before the first frame");

@@ -10,7 +10,7 @@
 
 namespace palpate::cli {
 
-class Undelivered;
+class MissingOutputs;
 
 /// Simulated time from frame to frame [s], in whole periods of the loop: what it can be seen in.
 /// @param per_s  frames a second of simulated time; 0: at the scene's state_period_s, else every period
@@ -53,7 +53,7 @@ class Frames : public loop::Observer {
   /// @param stoppable  false where Ctrl-C has ended the run: what it recorded is then drawn
   /// @param missing    gets what a sink could not write, or what cannot be drawn; the other sinks go on
   void save(const loop::World& world, const std::vector<FrameSink*>& sinks, bool stoppable,
-            Undelivered& missing);
+            MissingOutputs& missing);
   int count() const;  ///< frames of what was run
 
  private:

@@ -23,9 +23,9 @@ const char* const kStudyKeys = "study-keys";
 
 /// Cases with a known answer, as palpate-validation prints them; none if it is not built, or for another
 /// list.
-loop::ChoiceList case_choices(const std::string& wanted) {
+loop::ChoiceList case_choices(const std::string& requested) {
   loop::ChoiceList out{"cases", "with a known answer: palpate validate", {}};
-  if (!(wanted.empty() || wanted == out.what) || !is_there(kCases)) return out;
+  if (!(requested.empty() || requested == out.what) || !is_there(kCases)) return out;
   std::istringstream lines(output_of(kCases));
   for (std::string name, summary; std::getline(lines, name, '\t') && std::getline(lines, summary);)
     out.choices.push_back({name, summary});

@@ -88,7 +88,7 @@ int modes(const ModesArguments& arguments) {
       arguments.folder.empty() ? default_folder("modes-" + short_name(description)) : arguments.folder;
   const store::ResultFolder mine(folder);
   const std::filesystem::path base(folder);
-  Undelivered missing;
+  MissingOutputs missing;
   write_table(found, (base / "modes.csv").string());
   loop::write_modes(*world, found, (base / "modes.vtkhdf").string());
   if (arguments.picture) {

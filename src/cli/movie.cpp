@@ -71,13 +71,13 @@ double between(const std::vector<double>& times, double fps, double slow, const 
          times.size() == 1 ? "" : "s");
   const double state = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   const double rate = fps > 0.0 ? fps : std::min(kMovieRate, 1.0 / (state * slow));
-  const double wanted = 1.0 / (rate * slow);
-  if (wanted < 0.999 * state)
+  const double requested = 1.0 / (rate * slow);
+  if (requested < 0.999 * state)
     fail(
         "--fps {:g} --slow {:g}: the run kept a state every {:g} s (record.state_period_s), which is {:g} a "
         "second as it is played; ask for at most that",
         rate, slow, state, 1.0 / (state * slow));
-  return static_cast<double>(std::max(1L, std::lround(wanted / state))) * state;
+  return static_cast<double>(std::max(1L, std::lround(requested / state))) * state;
 }
 
 /// Shows a state when the ticks up to it are known, so that the handle stands where the hand was then.
@@ -92,7 +92,7 @@ void show(Frames& frames, const States& states, int steps, Shade shade,
   for (; tick != ticks.end(); ++tick) frames.tick(*tick);
 }
 
-int movie(const MovieArguments& arguments, Undelivered& missing) {
+int movie(const MovieArguments& arguments, MissingOutputs& missing) {
   const std::filesystem::path folder(arguments.run);
   const std::string states_file = (folder / "run.vtkhdf").string();
   if (!std::filesystem::exists(states_file))
@@ -130,7 +130,7 @@ int movie(const MovieArguments& arguments, Undelivered& missing) {
 }  // namespace
 
 int movie(const MovieArguments& arguments) {
-  Undelivered missing;
+  MissingOutputs missing;
   return missing.close(movie(arguments, missing));
 }
 

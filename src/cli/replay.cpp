@@ -9,7 +9,7 @@
 #include "palpate/cli/progress.h"
 #include "palpate/cli/scene_of.h"
 #include "palpate/cli/stop.h"
-#include "palpate/compare/felt_difference.h"
+#include "palpate/compare/perceptible_difference.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/time_text.h"
@@ -44,11 +44,11 @@ class Ticks : public loop::Observer {
 };
 
 /// Prints how a hand's ticks differ from others; with several hands, whose they are.
-compare::FeltDifference print_difference(const scene::Description& description, std::size_t hand,
-                                         const std::vector<loop::TickRecord>& reference,
-                                         const std::vector<loop::TickRecord>& other) {
+compare::PerceptibleDifference print_difference(const scene::Description& description, std::size_t hand,
+                                                const std::vector<loop::TickRecord>& reference,
+                                                const std::vector<loop::TickRecord>& other) {
   if (!description.hands.empty()) fmt::print("{}:\n", scene::hands_of(description)[hand].name);
-  const compare::FeltDifference difference = compare::felt_difference(reference, other);
+  const compare::PerceptibleDifference difference = compare::perceptible_difference(reference, other);
   fmt::print("{}", compare::text_of(difference));
   return difference;
 }

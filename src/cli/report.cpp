@@ -18,7 +18,7 @@ int report(const ReportArguments& arguments) {
     store::ResultFolder::make(page.parent_path().string());
   const report::RunReport written = report::write_report(folders, page);
   fmt::print("written: {}\n", written.page.string());
-  Undelivered missing;
+  MissingOutputs missing;
   missing.add(written);
   return missing.close(0);
 }

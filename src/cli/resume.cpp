@@ -77,7 +77,7 @@ int resume(const ResumeArguments& arguments) {
   compare_processors(r);
   const scene::Description description = scene_of(r);
   fmt::print("{} resumes at t = {} s\n", arguments.run, time_text(r.checkpoint.time_s));
-  Undelivered missing;
+  MissingOutputs missing;
   return missing.close(resume_run(r, description, missing));
 }
 

@@ -78,7 +78,7 @@ void print_tolerance(const IntegratorSpec& spec) {
 }
 
 /// Result of one run and its cost.
-struct Ran {
+struct RunOutput {
   loop::RunResult result;
   std::vector<std::string> remarks;  ///< run_remarks()
   double assemble_s = 0.0;
@@ -87,7 +87,7 @@ struct Ran {
 };
 
 /// The largest force and torque on each hand, as summary.json keeps them.
-void add_peaks(store::Summary& summary, const scene::Description& description, const Ran& ran) {
+void add_peaks(store::Summary& summary, const scene::Description& description, const RunOutput& ran) {
   if (ran.result.ticks == 0) return;
   const std::vector<scene::Hand> hands = scene::hands_of(description);
   for (std::size_t i = 0; i < std::min(hands.size(), ran.peak.of.size()); ++i) {
@@ -101,7 +101,7 @@ void add_peaks(store::Summary& summary, const scene::Description& description, c
   }
 }
 
-void print_outcome(const loop::World& world, const Ran& ran) {
+void print_outcome(const loop::World& world, const RunOutput& ran) {
   const loop::RunResult& result = ran.result;
   const PeakWrench& peak = ran.peak;
   fmt::print("{}: {} s simulated in {:.2f} s, assembled in {:.2f} s, peak memory {:.0f} MiB\n",
@@ -165,7 +165,7 @@ struct Outcome {
 const Outcome kUnfinished{"unfinished",
                           "the run is in progress or was killed; data written so far are complete"};
 
-void keep_summary(const loop::World& world, const Ran& ran,
+void keep_summary(const loop::World& world, const RunOutput& ran,
                   const std::optional<compare::AgainstMonolithic>& against, const RunArguments& arguments,
                   const std::string& folder, const std::optional<Outcome>& outcome = {}) {
   store::Summary summary = loop::summarise(world, ran.result, ran.assemble_s);
@@ -186,14 +186,14 @@ void keep_summary(const loop::World& world, const Ran& ran,
 }
 
 /// How pictures are to look.
-struct Look {
+struct PictureOptions {
   Shade shade = Shade::kDisplacement;
   double between_s = 0.0;  ///< simulated time from frame to frame
   FrameSize size = {};     ///< of frames
 };
 
 /// Refuses at the start what could not be drawn at the end.
-Look check_pictures(const RunArguments& arguments, const scene::Description& description) {
+PictureOptions check_pictures(const RunArguments& arguments, const scene::Description& description) {
   if (arguments.contact_picture && description.contacts.empty())
     fail("--contact-picture: the scene has no [[contact]]");
   const bool movie = !arguments.movie.empty();
@@ -203,7 +203,7 @@ Look check_pictures(const RunArguments& arguments, const scene::Description& des
   if ((arguments.fps > 0.0 || arguments.slow != 1.0) && !movie) fail("--fps and --slow need --movie");
   if (!arguments.size.empty() && !arguments.frames && !movie) fail("--size needs --frames or --movie");
   if (!arguments.picture && !arguments.contact_picture && !arguments.frames && !movie) return {};
-  Look look{check_picture(arguments.shade, description)};
+  PictureOptions look{check_picture(arguments.shade, description)};
   if (!arguments.size.empty()) look.size = frame_size(arguments.size);
   if (movie)
     look.between_s = between_movie_frames(description, arguments.fps, arguments.slow);
@@ -214,7 +214,7 @@ Look check_pictures(const RunArguments& arguments, const scene::Description& des
 }
 
 void keep_picture(const loop::World& world, const Snapshot& snapshot, const std::string& folder,
-                  Undelivered& missing) {
+                  MissingOutputs& missing) {
   const std::string path = (std::filesystem::path(folder) / "picture.png").string();
   try {
     snapshot.save(world, path);
@@ -222,7 +222,7 @@ void keep_picture(const loop::World& world, const Snapshot& snapshot, const std:
 }
 
 /// Ends the files of states; the sidecar is made then.
-void close_records(loop::Recorder& recorder, const std::string& folder, Undelivered& missing) {
+void close_records(loop::Recorder& recorder, const std::string& folder, MissingOutputs& missing) {
   try {
     recorder.close();
   } catch (const Error& e) {
@@ -232,7 +232,7 @@ void close_records(loop::Recorder& recorder, const std::string& folder, Undelive
 
 /// Draws the frames, says where they are, and whether Ctrl-C has ended it.
 bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& arguments,
-                 const std::string& folder, bool run_stopped, Undelivered& missing) {
+                 const std::string& folder, bool run_stopped, MissingOutputs& missing) {
   const std::string path = (std::filesystem::path(folder) / "frames").string();
   const double between_s = frames.between_s(), shown_s = between_s * arguments.slow;
   std::unique_ptr<FrameSink> pictures, movie;
@@ -265,9 +265,10 @@ void print_files(const scene::Description& description, const std::string& folde
 }
 
 /// @param from  where it goes on, null at its start
-loop::RunResult run_watched(std::unique_ptr<loop::World>& world, const RunArguments& arguments,
-                            std::vector<loop::Observer*> observers, const loop::CheckpointPlan* checkpoints,
-                            loop::CheckpointCost& cost, loop::Resumed* from) {
+loop::RunResult run_with_progress(std::unique_ptr<loop::World>& world, const RunArguments& arguments,
+                                  std::vector<loop::Observer*> observers,
+                                  const loop::CheckpointPlan* checkpoints, loop::CheckpointCost& cost,
+                                  loop::Resumed* from) {
   Progress progress(fmt::format("running {}", short_name(world->description)));
   loop::RunOptions options;
   options.duration_s = arguments.duration_s;
@@ -286,11 +287,12 @@ loop::RunResult run_watched(std::unique_ptr<loop::World>& world, const RunArgume
 
 /// A run whose end is told in its folder, also where that end is an error: of a disk that is full, say.
 /// @param ran  with all but its result
-loop::RunResult run_kept(std::unique_ptr<loop::World>& world, const RunArguments& arguments,
-                         std::vector<loop::Observer*> observers, const loop::CheckpointPlan* checkpoints,
-                         Ran& ran, loop::Resumed* from, const std::string& folder) {
+loop::RunResult run_with_summary(std::unique_ptr<loop::World>& world, const RunArguments& arguments,
+                                 std::vector<loop::Observer*> observers,
+                                 const loop::CheckpointPlan* checkpoints, RunOutput& ran, loop::Resumed* from,
+                                 const std::string& folder) {
   try {
-    return run_watched(world, arguments, std::move(observers), checkpoints, ran.checkpoints, from);
+    return run_with_progress(world, arguments, std::move(observers), checkpoints, ran.checkpoints, from);
   } catch (const Error& e) {
     try {
       if (world) keep_summary(*world, ran, {}, arguments, folder, Outcome{"failed", e.what()});
@@ -299,16 +301,16 @@ loop::RunResult run_kept(std::unique_ptr<loop::World>& world, const RunArguments
   }
 }
 
-int run(const RunArguments& arguments, const scene::Description& description, Undelivered& missing,
+int run(const RunArguments& arguments, const scene::Description& description, MissingOutputs& missing,
         Resumption* resumption) {
-  const Look look = check_pictures(arguments, description);
+  const PictureOptions look = check_pictures(arguments, description);
   const bool checkpoints = arguments.checkpoint_every_s > 0.0;
   if (checkpoints) check_checkpoints(arguments, description);
   if (arguments.against_monolithic) compare::refuse_against_monolithic(description);
   const double start = wall_seconds();
   if (resumption) counters::reset();
   std::unique_ptr<loop::World> world = loop::assemble(description);
-  Ran ran;
+  RunOutput ran;
   ran.assemble_s = wall_seconds() - start;
   RunIdentity identity{arguments, std::filesystem::absolute(description.path).lexically_normal().string(),
                        checkpoints ? loop::fingerprint(*world) : "", store::provenance().cpu,
@@ -373,8 +375,8 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
   if (checkpoints) plan = checkpoint_plan(identity, description, folder);
   const loop::CheckpointPlan* const kept = checkpoints ? &plan : nullptr;
   loop::Resumed* const from = resumption ? &resumption->from : nullptr;
-  ran.result = keep ? run_kept(world, arguments, observers, kept, ran, from, folder)
-                    : run_watched(world, arguments, observers, kept, ran.checkpoints, from);
+  ran.result = keep ? run_with_summary(world, arguments, observers, kept, ran, from, folder)
+                    : run_with_progress(world, arguments, observers, kept, ran.checkpoints, from);
   const loop::RunResult& result = ran.result;
   if (recorder) close_records(*recorder, folder, missing);
   recorder.reset();
@@ -430,11 +432,11 @@ int run(const RunArguments& arguments, const scene::Description& description, Un
 }  // namespace
 
 int run(const RunArguments& arguments) {
-  Undelivered missing;
+  MissingOutputs missing;
   return missing.close(run(arguments, missing));
 }
 
-int run(const RunArguments& arguments, Undelivered& missing) {
+int run(const RunArguments& arguments, MissingOutputs& missing) {
   scene::Description description = scene_of(arguments.scene);
   // what the hand did in real time is not to be had again: it is kept, so that it can be replayed
   if (arguments.real_time && description.tool && !description.record)
@@ -442,7 +444,7 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   return run(arguments, description, missing, nullptr);
 }
 
-int resume_run(Resumption& resumption, const scene::Description& description, Undelivered& missing) {
+int resume_run(Resumption& resumption, const scene::Description& description, MissingOutputs& missing) {
   return run(resumption.identity.arguments, description, missing, &resumption);
 }
 

@@ -6,7 +6,7 @@
 
 #include "clock_figures.h"
 #include "palpate/core/log.h"
-#include "palpate/loop/silent_doings.h"
+#include "palpate/loop/describe_fallbacks.h"
 #include "palpate/loop/summary.h"
 #include "palpate/scene/hands.h"
 
@@ -72,7 +72,7 @@ void add_reduction_errors(const loop::World& world, Remarks& out) {
     }
     std::string text = fmt::format(
         "{}: reduced response of the bodies: error at most {:.2g} % (bound) in {} of {} exchanges", e.tool,
-        100.0 * (e.beyond > 0 ? e.wanted : e.largest), e.exchanges - e.beyond, e.exchanges);
+        100.0 * (e.beyond > 0 ? e.requested : e.largest), e.exchanges - e.beyond, e.exchanges);
     if (e.beyond > 0)  // a bound beyond 100 % says nothing
       text += fmt::format("; in {} the iteration stopped at its limit with bounds up to {:.2g} %{}", e.beyond,
                           100.0 * e.largest, e.largest > 1.0 ? ", which are not informative" : "");
@@ -124,7 +124,7 @@ void OverlapWatch::look(const loop::World& world, double t) {
 std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result) {
   Remarks out;
   if (world.stepper)
-    if (const std::string fallbacks = loop::silent_doings(result.counters); !fallbacks.empty())
+    if (const std::string fallbacks = loop::describe_fallbacks(result.counters); !fallbacks.empty())
       out.push_back(fmt::format("fallbacks of {}: {}", world.stepper->name(), fallbacks));
   if (result.ticks > 0)
     for (std::size_t i = 0; i <= result.more_hands.size(); ++i) add_device_counts(world, i, out);

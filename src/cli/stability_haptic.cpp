@@ -34,7 +34,7 @@ std::string stiffness_text(double value) {
   return std::isinf(value) ? fmt::format("> {:g}", kStiffest) : fmt::format("{:.4g}", value);
 }
 
-std::string arm_text(const HapticLoop::Axis& device) {
+std::string arm_text(const HapticLoopModel::Axis& device) {
   if (!device.held()) return {};
   return fmt::format(" in an arm of {:g} kg, {:g} N s/m, {:g} N/m", device.arm_mass_kg,
                      device.arm_damping_n_s_m, device.arm_stiffness_n_m);
@@ -104,7 +104,8 @@ report::Series curve(const std::string& name, const std::vector<ZWidthRow>& rows
   return series;
 }
 
-report::Plot plot_of(const ZWidth& z, const HapticLoop& loop, const std::vector<OperatingPoint>& points) {
+report::Plot plot_of(const ZWidth& z, const HapticLoopModel& loop,
+                     const std::vector<OperatingPoint>& points) {
   report::Plot plot;
   plot.x_label = "damping B [N s/m]";
   plot.y_label = "largest stiffness K [N/m]";
@@ -199,7 +200,7 @@ void keep_summary(const StabilityArguments& a, const scene::Description& d, cons
 
 int stability_haptic(const StabilityArguments& a) {
   const scene::Description description = scene_of(a.scene);
-  HapticLoop loop = loop_of(description);
+  HapticLoopModel loop = loop_of(description);
   loop.device.mass_kg = a.device_mass_kg.value_or(loop.device.mass_kg);
   loop.device.damping_n_s_m = a.device_damping_n_s_m.value_or(loop.device.damping_n_s_m);
   loop.delay_ticks = a.delay_ticks.value_or(loop.delay_ticks);
@@ -233,7 +234,7 @@ int stability_haptic(const StabilityArguments& a) {
   fmt::print("\n");
   print_rotation(rotation, turning);
 
-  Undelivered missing;
+  MissingOutputs missing;
   write_csv(z, (fs::path(folder) / "z_width.csv").string());
   const double scale = rotation.lever_m * rotation.lever_m;
   const std::vector<std::string> verdicts = verdicts_of(z, loop.tick_s, points, turning, scale);

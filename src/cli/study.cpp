@@ -160,7 +160,7 @@ int run_some(Plan& plan, const StudyArguments& arguments, const std::string& fol
   fmt::print("{} run, {} done before, {} refused by their scenes; results in {}/tasks\n", outcome.run,
              outcome.reused, outcome.refused, folder);
   if (outcome.stopped) return kExitStopped;
-  Undelivered missing;
+  MissingOutputs missing;
   for (const study::LostTask& one : outcome.lost)
     missing.add(fmt::format("result of task {}", one.index), one.why);
   return missing.close(0);
@@ -237,7 +237,7 @@ int study(const StudyArguments& arguments) {
     fmt::print(stderr, "palpate: stopped; the same command goes on from {}\n", folder);
     return kExitStopped;
   }
-  Undelivered missing;
+  MissingOutputs missing;
   if (!results.missing.empty())
     missing.add(fmt::format("result of task{} {}", results.missing.size() == 1 ? "" : "s",
                             study::text_of(results.missing)),

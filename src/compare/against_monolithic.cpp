@@ -8,7 +8,7 @@
 namespace palpate::compare {
 namespace {
 
-Trajectory felt_in(const loop::HapticRecord& record) {
+Trajectory hand_series(const loop::HapticRecord& record) {
   WrenchRecorder recorder;
   for (const loop::TickRecord& tick : record.ticks) recorder.tick(tick);
   return recorder.trajectory();
@@ -25,8 +25,8 @@ class EachHand : public loop::Observer {
   std::vector<WrenchRecorder> of_;
 };
 
-FeltError felt_error(const Trajectory& felt, const Trajectory& reference) {
-  FeltError out;
+HandError hand_error(const Trajectory& felt, const Trajectory& reference) {
+  HandError out;
   for (const Wrench& w : reference.device) {
     out.peak_force_n = std::max(out.peak_force_n, w.force.norm());
     out.peak_torque_n_m = std::max(out.peak_torque_n_m, w.moment.norm());
@@ -79,9 +79,9 @@ AgainstMonolithic against_monolithic(const loop::World& run, const std::vector<l
       fail("{} failed at t = {:g} s: {}", whole.description.integrator.name, result.status.t,
            result.status.message);
     if (result.stopped) fail("stopped at t = {:g} s", result.time);
-    static_cast<FeltError&>(out) = felt_error(felt_in(records.front()), felt.of(0));
+    static_cast<HandError&>(out) = hand_error(hand_series(records.front()), felt.of(0));
     for (std::size_t i = 1; i < records.size(); ++i)
-      out.more_hands.push_back(felt_error(felt_in(records[i]), felt.of(i)));
+      out.more_hands.push_back(hand_error(hand_series(records[i]), felt.of(i)));
   } catch (const Error& e) { out.trouble = e.what(); }
   return out;
 }

@@ -84,7 +84,7 @@ class Study {
     if (!task.is_point()) {
       const auto kept = database_.artefact(ledger_.artefact_key(task));
       if (!kept || (kept->status == "out of time" && kept->cpu_s < ledger_.limit_of(task))) return;
-      if (!Ledger::is_whole(task, *kept)) return;
+      if (!Ledger::is_complete(task, *kept)) return;
       reuse(task, *kept);
       return;
     }
@@ -107,7 +107,7 @@ class Study {
     task.started = true;
     timed_runs_ = options_.jobs <= 0 && !task.is_reference();
     Task* at = &task;
-    pool_.start(do_order, order(task), ledger_.limit_of(task),
+    pool_.start(run_job, order(task), ledger_.limit_of(task),
                 [this, at](const Outcome& outcome) { done(*at, outcome); });
   }
 
@@ -117,15 +117,15 @@ class Study {
     const double limit_s = ledger_.limit_of(task);
     switch (task.kind) {
       case Task::Kind::kPrimary:
-        return order_of(WorkKind::kReference, scene.planned.primary, limit_s, nullptr);
-      case Task::Kind::kCheck: return order_of(WorkKind::kReference, scene.planned.check, limit_s, nullptr);
-      case Task::Kind::kExchange: return order_of(WorkKind::kExchange, scene.description, limit_s, nullptr);
-      case Task::Kind::kMethods: return order_of(WorkKind::kMethods, scene.description, limit_s, nullptr);
+        return encode_job(WorkKind::kReference, scene.planned.primary, limit_s, nullptr);
+      case Task::Kind::kCheck: return encode_job(WorkKind::kReference, scene.planned.check, limit_s, nullptr);
+      case Task::Kind::kExchange: return encode_job(WorkKind::kExchange, scene.description, limit_s, nullptr);
+      case Task::Kind::kMethods: return encode_job(WorkKind::kMethods, scene.description, limit_s, nullptr);
       case Task::Kind::kPoint:
       case Task::Kind::kRestart: break;
     }
-    return order_of(WorkKind::kPoint, ledger_.point_of(task).description, limit_s,
-                    ledger_.reference_of(task));
+    return encode_job(WorkKind::kPoint, ledger_.point_of(task).description, limit_s,
+                      ledger_.reference_of(task));
   }
 
   /// Stores and uses a result; runs in the study's process.

@@ -79,7 +79,7 @@ ExchangeStudy compare_exchange(const scene::Description& d, const ExchangeOption
   for (double period : periods) {
     if (options.stop && options.stop->load()) return out;
     const Run run = run_once(with_scheme(d, "partitioned", period, refresh), d.compare.duration_s,
-                             options.stop, options.spoil);
+                             options.stop, options.seed_defect);
     done(fmt::format("exchange period {:g} s", period));
     if (run.result.stopped) return out;
     ExchangePoint point{period, no_distance(), run.result.cpu_s};

@@ -32,7 +32,7 @@ struct Job {
   const scene::Description* description;
   int repeat;
   std::function<void(const Ended&)> take;
-  std::function<bool()> wanted = {};  ///< Evaluated when the job is due; empty: always run.
+  std::function<bool()> requested = {};  ///< Evaluated when the job is due; empty: always run.
 };
 
 PointStatus status_of(const std::string& text) {
@@ -62,7 +62,7 @@ class Runner {
       while (!jobs.empty() && pool.has_room()) {
         const Job job = std::move(jobs.front());
         jobs.pop_front();
-        if (!job.wanted || job.wanted()) begin(pool, job, limit_s);
+        if (!job.requested || job.requested()) begin(pool, job, limit_s);
       }
       if (!pool.idle()) pool.wait(0.2);
     }
@@ -77,7 +77,7 @@ class Runner {
       finish(job, *kept);
       return;
     }
-    pool.start(do_order, order_of(WorkKind::kHaptic, *job.description, limit_s, nullptr), limit_s,
+    pool.start(run_job, encode_job(WorkKind::kHaptic, *job.description, limit_s, nullptr), limit_s,
                [this, job, key, limit_s](const Outcome& outcome) {
                  if (stopped()) return;  // The run may have been interrupted.
                  const store::StudyArtefact made = artefact_of(key, outcome, limit_s);
@@ -185,7 +185,7 @@ std::deque<Job> jobs_of(std::vector<HapticPoint*> points, const CompareOptions& 
     for (HapticPoint* point : points) {
       Job job{&point->description, repeat,
               [point, repeat, &reference](const Ended& e) { take(*point, repeat, e, reference); }};
-      if (repeat > 0) job.wanted = [point, limit = options.limit_s] { return is_short(*point, limit); };
+      if (repeat > 0) job.requested = [point, limit = options.limit_s] { return is_short(*point, limit); };
       jobs.push_back(std::move(job));
     }
   return jobs;

@@ -42,13 +42,13 @@ void Ledger::add_tasks() {
   for (std::size_t s = 0; s < work.size(); ++s) {
     tasks.push_back({Task::Kind::kPrimary, s});
     tasks.push_back({Task::Kind::kCheck, s});
-    for (std::size_t p = 0; p < out.scenes[s].points.size(); ++p) most = std::max(most, rung(s, p) + 1);
+    for (std::size_t p = 0; p < out.scenes[s].points.size(); ++p) most = std::max(most, level(s, p) + 1);
   }
   for (int repeat = 0; repeat < std::max(1, options_.repeats); ++repeat) {
     for (std::size_t r = 0; r < most; ++r)
       for (std::size_t s = 0; s < work.size(); ++s)
         for (std::size_t p = 0; p < out.scenes[s].points.size(); ++p)
-          if (rung(s, p) == r) tasks.push_back({Task::Kind::kPoint, s, p, repeat});
+          if (level(s, p) == r) tasks.push_back({Task::Kind::kPoint, s, p, repeat});
     if (repeat > 0 || trials_) continue;
     for (std::size_t s = 0; s < work.size(); ++s) {
       for (std::size_t p = 0; p < out.scenes[s].restarts.size(); ++p)
@@ -60,7 +60,7 @@ void Ledger::add_tasks() {
   }
 }
 
-std::size_t Ledger::rung(std::size_t s, std::size_t p) const {
+std::size_t Ledger::level(std::size_t s, std::size_t p) const {
   const auto& points = out.scenes[s].points;
   std::size_t n = 0;
   while (p > 0 && points[p - 1].label == points[p].label) --p, ++n;

@@ -67,7 +67,7 @@ class Ledger {
   void take(const Task& task, const store::StudyArtefact& kept);
   /// Returns false for a chart with missing parts: the cause (a library, a display) may be resolved by now,
   /// so the chart is made again.
-  static bool is_whole(const Task& task, const store::StudyArtefact& kept);
+  static bool is_complete(const Task& task, const store::StudyArtefact& kept);
   /// Returns the reference for a point's error: the primary one, or its check where the method is of the
   /// primary's family and shares its errors; the other one where one failed.
   ReferenceUsed reference_used(const Task& task) const;
@@ -83,7 +83,7 @@ class Ledger {
   void add_tasks();
   void take_chart(const Task& task, const store::StudyArtefact& kept);
   /// Returns the number of coarser levels in the same sequence.
-  std::size_t rung(std::size_t scene, std::size_t point) const;
+  std::size_t level(std::size_t scene, std::size_t point) const;
   bool reference_tasks_done(std::size_t scene) const;
   bool is_at_the_end(const Task& task) const;
   const CompareOptions& options_;

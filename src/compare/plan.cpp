@@ -29,13 +29,13 @@ bool contains(const std::vector<std::string>& list, const std::string& name) {
 
 /// Whether the user's list contains a sequence: by its label, or by its integrator where no sequence has that
 /// name as label.
-bool is_named(const std::vector<std::string>& wanted, const scene::LadderSpec& ladder,
+bool is_named(const std::vector<std::string>& requested, const scene::LadderSpec& ladder,
               const std::vector<scene::LadderSpec>& all) {
-  if (contains(wanted, label_of(ladder))) return true;
+  if (contains(requested, label_of(ladder))) return true;
   const auto has_that_label = [&](const scene::LadderSpec& other) {
     return label_of(other) == ladder.integrator;
   };
-  return contains(wanted, ladder.integrator) && std::none_of(all.begin(), all.end(), has_that_label);
+  return contains(requested, ladder.integrator) && std::none_of(all.begin(), all.end(), has_that_label);
 }
 
 constexpr double kLoosestRtol = 0.1;
@@ -97,14 +97,14 @@ void check_ladder(const scene::Description& d, const scene::LadderSpec& ladder) 
 
 /// Returns the requested sequences: the scene's first, in their order.
 std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const CompareOptions& options) {
-  const std::vector<std::string>& wanted = options.integrators;
-  const bool everything = wanted.empty() || options.all, tool_only = d.bodies.empty();
+  const std::vector<std::string>& requested = options.integrators;
+  const bool everything = requested.empty() || options.all, tool_only = d.bodies.empty();
   std::vector<scene::LadderSpec> out;
   std::set<std::string> labels, integrators, met;
   if (!tool_only)
     for (scene::LadderSpec ladder : d.compare.ladders) {
       check_ladder(d, ladder);
-      const bool named = is_named(wanted, ladder, d.compare.ladders);
+      const bool named = is_named(requested, ladder, d.compare.ladders);
       if (named) met.insert({ladder.integrator, label_of(ladder)});
       if (!everything && !named) continue;
       if (!labels.insert(label_of(ladder)).second)
@@ -117,7 +117,7 @@ std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const Com
   std::vector<std::string> known;
   const auto add = [&](const std::string& name, bool by_default, auto make) {
     known.push_back(name);
-    const bool named = contains(wanted, name);
+    const bool named = contains(requested, name);
     if (named) met.insert(name);
     if (integrators.contains(name) || !(named || (everything && by_default))) return;
     out.push_back(make());
@@ -130,7 +130,7 @@ std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const Com
       add(entry.name, entry.traits.stability != Stability::kStatic, [&] { return default_ladder(d, entry); });
     for (const scene::LadderSpec& ladder : d.compare.ladders) known.push_back(label_of(ladder));
   }
-  for (const std::string& name : wanted)
+  for (const std::string& name : requested)
     if (!met.contains(name))
       fail("{}: no integrator and no [[compare.ladder]] is called \"{}\"{}", d.path, name,
            suggestion(name, known));

@@ -78,7 +78,7 @@ void Ledger::take_chart(const Task& task, const store::StudyArtefact& kept) {
   }
 }
 
-bool Ledger::is_whole(const Task& task, const store::StudyArtefact& kept) {
+bool Ledger::is_complete(const Task& task, const store::StudyArtefact& kept) {
   if (task.is_reference()) return true;
   if (kept.status != "ok") return false;
   const auto good = [](const auto& point) { return point.trouble.empty(); };

@@ -182,12 +182,12 @@ namespace {
 /// Assembles and runs a description.  @tparam Recorder  observer with a trajectory()
 template <class Recorder>
 Run run_with(const scene::Description& description, double duration_s, const std::atomic<bool>* stop,
-             const std::function<void(loop::World&)>& spoil = {}) {
+             const std::function<void(loop::World&)>& seed_defect = {}) {
   Run run;
   const double start = thread_cpu_seconds();
   const auto world = loop::assemble(description);
   run.setup_s = thread_cpu_seconds() - start;
-  if (spoil) spoil(*world);
+  if (seed_defect) seed_defect(*world);
   Recorder recorder;
   loop::RunOptions options;
   options.duration_s = duration_s;
@@ -203,8 +203,8 @@ Run run_with(const scene::Description& description, double duration_s, const std
 }  // namespace
 
 Run run_once(const scene::Description& description, double duration_s, const std::atomic<bool>* stop,
-             const std::function<void(loop::World&)>& spoil) {
-  return run_with<TrajectoryRecorder>(description, duration_s, stop, spoil);
+             const std::function<void(loop::World&)>& seed_defect) {
+  return run_with<TrajectoryRecorder>(description, duration_s, stop, seed_defect);
 }
 
 Run run_for_wrenches(const scene::Description& description, double duration_s,

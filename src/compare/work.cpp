@@ -9,15 +9,15 @@
 
 namespace palpate::compare {
 
-std::string order_of(WorkKind kind, const scene::Description& description, double limit_s,
-                     const Trajectory* reference) {
+std::string encode_job(WorkKind kind, const scene::Description& description, double limit_s,
+                       const Trajectory* reference) {
   ByteWriter out;
   out.put(kind).put(description.source).put(description.path).put(limit_s);
   out.put(reference ? bytes_of(*reference) : std::string());
   return out.take();
 }
 
-std::string do_order(const std::string& order, const std::atomic<bool>& out_of_time) {
+std::string run_job(const std::string& order, const std::atomic<bool>& out_of_time) {
   ByteReader in(order);
   const auto kind = in.get<WorkKind>();
   const auto source = in.get<std::string>(), path = in.get<std::string>();

@@ -12,11 +12,11 @@ enum class WorkKind { kReference, kPoint, kExchange, kMethods, kHaptic };
 /// depends on its text only, and its mesh files are found relative to the same folder.
 /// @param limit_s  CPU limit of the process [s], for its message
 /// @param reference  reference for a point's error; null: no error is measured
-std::string order_of(WorkKind kind, const scene::Description& description, double limit_s,
-                     const Trajectory* reference);
+std::string encode_job(WorkKind kind, const scene::Description& description, double limit_s,
+                       const Trajectory* reference);
 
-/// Does the work encoded by order_of(); a ProcessPool::Work.  @return bytes_of() a Run (wrenches only for
+/// Does the work encoded by encode_job(); a ProcessPool::Work.  @return bytes_of() a Run (wrenches only for
 /// kHaptic), a PointRun, the exchange study or the methods' points
-std::string do_order(const std::string& order, const std::atomic<bool>& out_of_time);
+std::string run_job(const std::string& order, const std::atomic<bool>& out_of_time);
 
 }  // namespace palpate::compare

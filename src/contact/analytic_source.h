@@ -111,16 +111,16 @@ class AnalyticSource final : public SampleSource {
   static constexpr bool kMaterial = std::is_same_v<Surface, MaterialPointState>;
 
   void take_samples(const Pose& inverse, std::vector<ContactSample>& samples) {
-    surface_.area_vectors(wanted_, areas_);
+    surface_.area_vectors(requested_, areas_);
     for (int v = 0; v < surface_.vertex_count(); ++v) {
-      if (!wanted_[static_cast<std::size_t>(v)]) continue;
+      if (!requested_[static_cast<std::size_t>(v)]) continue;
       const ContactSample sample = sample_at(v, inverse);
       if (sample.area > 0.0) samples.push_back(sample);
     }
   }
 
   void take_points(const Pose& inverse, std::vector<ContactSample>& samples) {
-    gaps_->start(wanted_);
+    gaps_->start(requested_);
     kept_ = gaps_->points();
     place_points();
     for (std::size_t i = 0; i < kept_.size(); ++i) samples.push_back(sample_of_point(i, inverse));
@@ -210,7 +210,7 @@ class AnalyticSource final : public SampleSource {
     bool any = false;
     safe_time_ = HUGE_VAL;
     const Twist twist = motion_->twist(state);
-    wanted_.assign(static_cast<std::size_t>(surface_.vertex_count()), 0);
+    requested_.assign(static_cast<std::size_t>(surface_.vertex_count()), 0);
     if constexpr (kMaterial)
       for (const int run : open_) clear_[static_cast<std::size_t>(run)] = HUGE_VAL;
     for_each_near([&](int v) {
@@ -224,7 +224,7 @@ class AnalyticSource final : public SampleSource {
                                              twist.at(x - nearest.gap * nearest.normal - pose.translation));
       safe_time_ = std::min(safe_time_, time_to_middle(nearest.gap, rate, thickness_));
       if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < (kMaterial ? near_ : candidate_gap_)) {
-        wanted_[static_cast<std::size_t>(v)] = 1;
+        requested_[static_cast<std::size_t>(v)] = 1;
         any = true;
       }
     });
@@ -268,7 +268,7 @@ class AnalyticSource final : public SampleSource {
   double thickness_, candidate_gap_, look_ahead_;
   /// candidate_gap_, for material points increased by the largest lowering of their gaps.
   double near_ = 0.0;
-  std::vector<char> wanted_;
+  std::vector<char> requested_;
   Points areas_;
   Points seen_;                ///< Vertices at the last query, in the frame.
   Pose seen_from_;             ///< Material points: pose that maps into the frame, at the last query.

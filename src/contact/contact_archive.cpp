@@ -58,7 +58,7 @@ void ContactForce::archive(Archive& a, const dynamics::StateView& state) {
   a("bonds", m.bonds);
   a.list("grasp", m.grasps, [&](Impl::Grasp& grasp) {
     a("frame", grasp.frame);
-    a("wanted", grasp.wanted);
+    a("wanted", grasp.requested);
     a("closed", grasp.closed);
   });
   GraspCounts& grasped = m.grasp_counts;
@@ -73,7 +73,7 @@ void ContactForce::archive(Archive& a, const dynamics::StateView& state) {
   contact::archive(a, "largest_after", m.resultants.largest_after);
   a("largest_friction_lag", m.largest_friction_lag);
   a("largest_friction", m.largest_friction);
-  if (!a.gives_back()) return;
+  if (!a.is_restoring()) return;
   m.query(state);
   m.check_samples(state);
 }

@@ -43,7 +43,7 @@ struct ContactForce::Impl {
   /// Requested and actual state of a frame's grasp; the actual state changes at a refresh.
   struct Grasp {
     int frame;
-    bool wanted = false, closed = false;
+    bool requested = false, closed = false;
   };
   std::vector<Grasp> grasps;
   Bonds bonds;

@@ -61,8 +61,8 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
 bool ContactForce::Impl::take_grasps(const dynamics::StateView& state) {
   bool changed = false;
   for (Grasp& grasp : grasps) {
-    if (grasp.wanted == grasp.closed) continue;
-    grasp.closed = grasp.wanted;
+    if (grasp.requested == grasp.closed) continue;
+    grasp.closed = grasp.requested;
     if (!grasp.closed) {
       changed = changed || bonds.count_of(grasp.frame) > 0;
       bonds.let_go(grasp.frame);
@@ -88,9 +88,9 @@ void ContactForce::set_grasp(int frame, bool closed) {
   const auto of_frame = std::find_if(m.grasps.begin(), m.grasps.end(),
                                      [&](const Impl::Grasp& grasp) { return grasp.frame == frame; });
   if (of_frame != m.grasps.end())
-    of_frame->wanted = closed;
+    of_frame->requested = closed;
   else if (closed)
-    m.grasps.push_back({.frame = frame, .wanted = true});
+    m.grasps.push_back({.frame = frame, .requested = true});
 }
 
 void ContactForce::tie(int frame, const std::vector<Tie>& ties) {

@@ -46,7 +46,7 @@ struct ImageTimes {
 /// Renderer of the two depth images of a contact region, both seen along the normal: of a the lowest point
 /// above each pixel's centre counts, of b the highest. Back faces (a's that face up, b's that face down) are
 /// not drawn: tissue of the same body lies in front of them. Coordinates are single precision: an image
-/// determines which triangles are opposite, never the gap (facing.h).
+/// determines which triangles are opposite, never the gap (triangle_pair_gap.h).
 class DepthImage {
  public:
   virtual ~DepthImage() = default;

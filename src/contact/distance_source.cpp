@@ -19,9 +19,9 @@
 #include <span>
 
 #include "contact/coupled_nodes.h"
-#include "contact/look_back.h"
 #include "contact/safe_time.h"
 #include "contact/self_contact_filter.h"
+#include "contact/tunnelling_monitor.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -79,13 +79,13 @@ class DistanceSource final : public SampleSource {
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     update(state);
     if (own_)
-      look_back_.look_at_itself(
-          *a_, thickness_, [this](int vertex, int face) { return may_meet(vertex, face); }, state.time);
+      tunnelling_.check_self(
+          *a_, thickness_, [this](int vertex, int face) { return may_collide(vertex, face); }, state.time);
     // Otherwise the source of the other surface's points checks for tunnelling.
     else if (!contact_.points(0).empty())
-      look_back_.look(
+      tunnelling_.check(
           *a_, b(),
-          [&](LookBack::Met& met) {
+          [&](TunnellingMonitor::Met& met) {
             find_all_met(*a_, b(), thickness_, met.a, met.b);
             return thickness_;
           },
@@ -153,9 +153,9 @@ class DistanceSource final : public SampleSource {
   }
   double safe_time() const override { return safe_time_; }
   long fast_regions() const override { return fast_; }
-  long tunnelled() const override { return look_back_.count(); }
+  long tunnelled() const override { return tunnelling_.count(); }
   void archive(Archive& a) override {
-    look_back_.archive(a);
+    tunnelling_.archive(a);
     a("fast", fast_);
     a("sum_error", sum_error_);
   }
@@ -163,7 +163,7 @@ class DistanceSource final : public SampleSource {
  private:
   /// Returns whether a vertex and a face of a skin in self-contact, in the original numbering, are not
   /// neighbours.
-  bool may_meet(int vertex, int face) const {
+  bool may_collide(int vertex, int face) const {
     const distance::Skin& skin = skins_[0];
     const auto around = [&](int v) {
       const auto at = static_cast<std::size_t>(v);
@@ -308,7 +308,7 @@ class DistanceSource final : public SampleSource {
   std::uint64_t counted_in_ = 0;
   double safe_time_ = HUGE_VAL;
   long fast_ = 0;
-  LookBack look_back_;
+  TunnellingMonitor tunnelling_;
   SumError sum_error_;
 };
 

@@ -39,10 +39,10 @@ SurfacePoint FrameVertices::vertex_point(int vertex) const {
   return point;
 }
 
-void FrameVertices::area_vectors(const std::vector<char>& wanted, Points& areas) const {
+void FrameVertices::area_vectors(const std::vector<char>& requested, Points& areas) const {
   areas.setZero(3, areas_.cols());
   for (Eigen::Index v = 0; v < areas_.cols(); ++v)
-    if (wanted[static_cast<std::size_t>(v)]) areas.col(v).noalias() = R_ * areas_.col(v);
+    if (requested[static_cast<std::size_t>(v)]) areas.col(v).noalias() = R_ * areas_.col(v);
 }
 
 }  // namespace palpate::contact

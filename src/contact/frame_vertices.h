@@ -24,7 +24,7 @@ class FrameVertices {
   SurfacePoint vertex_point(int vertex) const;
   /// Computes one third of the area vectors of the faces adjacent to each vertex in `wanted`, world axes,
   /// outward [m^2].
-  void area_vectors(const std::vector<char>& wanted, Points& areas) const;
+  void area_vectors(const std::vector<char>& requested, Points& areas) const;
   double mean_edge() const { return mean_edge_; }  ///< Mean edge length of the faces [m].
 
   void add_vertex_pattern(dynamics::PatternBuilder&) const {}  // A frame has no nodes.

@@ -121,7 +121,7 @@ void FrictionAnchors::archive(Archive& a) {
     visit(anchor.point);
     visit(anchor.deflection_at_query);
   });
-  if (!a.gives_back()) return;
+  if (!a.is_restoring()) return;
   for (Anchor& anchor : deflected) anchor.is_fresh = false;
   anchors_ = std::move(deflected);
 }

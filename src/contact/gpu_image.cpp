@@ -81,7 +81,7 @@ void GpuImage::answer_tiles(std::span<DepthRequest* const> requests) {
   append_pairs();
   instants_.mark(2);
   gl::finish("the contact images");
-  hand_out(requests);
+  distribute_pairs(requests);
   // The device's clock is not the host's: measured stages are limited to the time that the host waited.
   const double waited = wall_seconds() - start - upload;
   const double passes = std::min(instants_.seconds(0, 1), waited);
@@ -173,7 +173,7 @@ void GpuImage::draw(std::span<DepthRequest* const> requests, bool of_a) {
     draw_.set("camera", rows);
     draw_.set("first_point", layer.surface->points->first);
     gl::set_window(static_cast<int>(tile.x), static_cast<int>(tile.y), camera.width, camera.height);
-    layer.surface->layout.attribute_a_draw(2, draws_sent_, sizeof(Draw), offsetof(Draw, first_face));
+    layer.surface->layout.attribute_per_draw(2, draws_sent_, sizeof(Draw), offsetof(Draw, first_face));
     gl::draw_ranges(layer.surface->layout, draws_sent_, layer.first_draw * sizeof(Draw), layer.draw_count,
                     sizeof(Draw));
   }
@@ -211,7 +211,7 @@ void invert(const Patch& patch, const PatchSource& source, std::vector<std::int3
 
 }  // namespace
 
-void GpuImage::hand_out(std::span<DepthRequest* const> requests) {
+void GpuImage::distribute_pairs(std::span<DepthRequest* const> requests) {
   std::uint32_t count = 0;
   std::memcpy(&count, pairs_found_.data(), sizeof count);
   PALPATE_CHECK(count <= atlas_.pixels(), "{} pairs of {} pixels", count, atlas_.pixels());

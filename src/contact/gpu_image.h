@@ -47,7 +47,7 @@ class GpuImage final : public DepthImage {
   Layer add_draws(const PatchSource& source);
   void draw(std::span<DepthRequest* const> requests, bool of_a);
   void append_pairs();
-  void hand_out(std::span<DepthRequest* const> requests);
+  void distribute_pairs(std::span<DepthRequest* const> requests);
 
   gl::Program draw_, pair_;
   /// Timestamps before the passes, between passes and gathering, and after gathering.

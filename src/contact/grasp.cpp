@@ -285,9 +285,9 @@ void Bonds::linearise(const dynamics::StateView& state, const std::vector<FrameS
   }
 }
 
-void Bonds::append_touch_samples(const dynamics::StateView& state, const std::vector<FrameState>& frames,
-                                 int frame, std::vector<TouchSample>& out,
-                                 std::vector<TouchTangent>* tangents) const {
+void Bonds::append_reduced_samples(const dynamics::StateView& state, const std::vector<FrameState>& frames,
+                                   int frame, std::vector<ReducedSample>& out,
+                                   std::vector<ReducedTangent>* tangents) const {
   for (const Bond& bond : bonds_) {
     if (bond.frame != frame) continue;
     const BondForce b = force(bond, state, frames);

@@ -3,7 +3,7 @@
 
 #include "contact/pressure.h"
 #include "contact/tangent.h"
-#include "palpate/contact/touch_model.h"
+#include "palpate/contact/reduced_contact_model.h"
 #include "palpate/core/archive.h"
 #include "palpate/dynamics/point_stiffness.h"
 
@@ -84,9 +84,9 @@ class Bonds {
   Wrench wrench(const dynamics::StateView& state, const std::vector<FrameState>& frames, int frame) const;
   void linearise(const dynamics::StateView& state, const std::vector<FrameState>& frames, int frame,
                  FrameLinearisation& out) const;
-  void append_touch_samples(const dynamics::StateView& state, const std::vector<FrameState>& frames,
-                            int frame, std::vector<TouchSample>& out,
-                            std::vector<TouchTangent>* tangents) const;
+  void append_reduced_samples(const dynamics::StateView& state, const std::vector<FrameState>& frames,
+                              int frame, std::vector<ReducedSample>& out,
+                              std::vector<ReducedTangent>* tangents) const;
 
  private:
   BondForce force(const Bond& bond, const dynamics::StateView& state,

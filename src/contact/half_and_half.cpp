@@ -7,9 +7,9 @@
 namespace palpate::contact {
 namespace {
 
-class HalfAndHalf final : public SampleSource {
+class TwoPassSource final : public SampleSource {
  public:
-  HalfAndHalf(std::unique_ptr<SampleSource> first, std::unique_ptr<SampleSource> second)
+  TwoPassSource(std::unique_ptr<SampleSource> first, std::unique_ptr<SampleSource> second)
       : first_(std::move(first)), second_(std::move(second)) {}
 
   std::string_view name() const override { return first_->name(); }
@@ -76,7 +76,7 @@ std::unique_ptr<SampleSource> make_half_and_half(std::unique_ptr<SampleSource> f
                                                  std::unique_ptr<SampleSource> second) {
   PALPATE_CHECK(first->sum_error() && second->sum_error(), "{}: one half has no quadrature error",
                 first->name());
-  return std::make_unique<HalfAndHalf>(std::move(first), std::move(second));
+  return std::make_unique<TwoPassSource>(std::move(first), std::move(second));
 }
 
 }  // namespace palpate::contact

@@ -5,8 +5,8 @@
 
 #include "contact/coupled_nodes.h"
 #include "contact/depth_image.h"
-#include "contact/facing.h"
 #include "contact/region_mesh.h"
+#include "contact/triangle_pair_gap.h"
 #include "contact/vertex_rule.h"
 #include "palpate/contact/sources.h"
 
@@ -45,7 +45,7 @@ class ImageRegion {
   /// Gathers the faces of the region, fits its camera, and prepares its image request.
   void start(const RegionPlane& plane);
   /// Returns the requested image; null: nothing to see.
-  DepthRequest* wanted() { return asks_ ? &request_ : nullptr; }
+  DepthRequest* requested() { return asks_ ? &request_ : nullptr; }
   /// Evaluates the image at the vertices. @pre the request was answered
   void see();
   /// Appends the samples of the region.

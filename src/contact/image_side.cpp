@@ -27,7 +27,7 @@ class SoftSide final : public ImageSide {
     way_ = state_.carrying_points() - kept_;
     return around_mean(way_);
   }
-  void set_way(proxy::ProxySet& proxies) override {
+  void set_motion(proxy::ProxySet& proxies) override {
     way_ = state_.carrying_points() - kept_;
     proxies.set_motion(way_);
   }
@@ -110,7 +110,7 @@ class RigidSide final : public ImageSide {
     const double angle = rotation_vector(pose_.rotation * kept_.rotation.conjugate()).norm();
     return {pose_ * centre_ - kept_ * centre_, 2.0 * std::sin(0.5 * angle) * reach_};
   }
-  void set_way(proxy::ProxySet& proxies) override { proxies.set_motion_from(kept_); }
+  void set_motion(proxy::ProxySet& proxies) override { proxies.set_motion_from(kept_); }
   Vec3 kept_vertex(int vertex) const override { return kept_ * Vec3(surface_.vertices.col(vertex)); }
   Pose frame() const override { return pose_; }
   Pose kept_frame() const override { return kept_; }

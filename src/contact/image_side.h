@@ -29,10 +29,11 @@ class ImageSide {
   virtual void set_motion(proxy::ProxySet& proxies, const dynamics::StateView& state) const = 0;
 
   // Displacement since the surface was last kept.
-  virtual void keep() = 0;                             ///< Keeps the present configuration.
-  virtual proxy::ProxyMotion way() = 0;                ///< Mean displacement and spread since keep() [m].
-  virtual void set_way(proxy::ProxySet& proxies) = 0;  ///< Sets this displacement as the motion of proxies.
-  virtual Vec3 kept_vertex(int vertex) const = 0;      ///< Position of a vertex when kept [m].
+  virtual void keep() = 0;               ///< Keeps the present configuration.
+  virtual proxy::ProxyMotion way() = 0;  ///< Mean displacement and spread since keep() [m].
+  virtual void set_motion(
+      proxy::ProxySet& proxies) = 0;               ///< Sets this displacement as the motion of proxies.
+  virtual Vec3 kept_vertex(int vertex) const = 0;  ///< Position of a vertex when kept [m].
   /// Returns the frame of a rigid surface, now and when it was kept; for a soft surface the world frame.
   virtual Pose frame() const { return {}; }
   virtual Pose kept_frame() const { return {}; }

@@ -30,7 +30,7 @@ std::uint64_t ImageSource::sides_version() const {
 std::uint64_t ImageSource::pattern_version() const { return sides_version() + coupled_.version(); }
 
 void ImageSource::archive(Archive& a) {
-  look_back_.archive(a);
+  tunnelling_.archive(a);
   a("fast", context_.fast_regions);
   a("near", context_.options.candidate_gap);  // Chosen from the skin at the first query.
   QueryStages& s = context_.stages;
@@ -65,8 +65,8 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
   if (options.candidate_gap == 0.0) options.candidate_gap = 0.25 * a.soft()->mean_edge();
   {
     const ScopedTimer timer(context_.stages.regions_s);
-    look_back_.look(
-        a, b, [&](LookBack::Met& met) { return find_met(met.a, met.b); }, state.time);
+    tunnelling_.check(
+        a, b, [&](TunnellingMonitor::Met& met) { return collect_candidate_faces(met.a, met.b); }, state.time);
     context_.safe_time = HUGE_VAL;
     if (context_.view) *context_.view = {};
     planes_.clear();
@@ -79,7 +79,7 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
   const bool is_coupled = b.soft() != nullptr;
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     ImageRegion& region = *regions_[i];
-    if (!region.wanted()) continue;
+    if (!region.requested()) continue;
     region.see();
     region.append_samples(samples, is_coupled ? &joints_ : nullptr);
     if (region.presses()) take_pressing(i);
@@ -97,7 +97,7 @@ void ImageSource::answer() {
   }
   requests_.clear();
   for (std::size_t i = 0; i < planes_.size(); ++i)
-    if (DepthRequest* request = regions_[i]->wanted()) requests_.push_back(request);
+    if (DepthRequest* request = regions_[i]->requested()) requests_.push_back(request);
   if (requests_.empty()) return;
   image_->start_query();
   image_->answer(requests_);

@@ -5,7 +5,7 @@
 
 #include "contact/coupled_nodes.h"
 #include "contact/image_region.h"
-#include "contact/look_back.h"
+#include "contact/tunnelling_monitor.h"
 
 namespace palpate::contact {
 
@@ -24,7 +24,7 @@ class ImageSource : public SampleSource {
   const QueryStages* stages() const final { return &context_.stages; }
   void keep_view() final { context_.view.emplace(); }
   const QueryView* view() const final { return context_.view ? &*context_.view : nullptr; }
-  long tunnelled() const final { return look_back_.count(); }
+  long tunnelled() const final { return tunnelling_.count(); }
   double safe_time() const final { return context_.safe_time; }
   long fast_regions() const final { return context_.fast_regions; }
   void archive(Archive& a) override;
@@ -34,7 +34,7 @@ class ImageSource : public SampleSource {
   virtual void find_regions(const dynamics::StateView& state, std::vector<RegionPlane>& out) = 0;
   /// Collects the faces of either side that may have come into contact since the sides were kept; empty where
   /// tunnelling is impossible. @return thickness of the thinner side [m]
-  virtual double find_met(std::vector<int>& faces_a, std::vector<int>& faces_b) = 0;
+  virtual double collect_candidate_faces(std::vector<int>& faces_a, std::vector<int>& faces_b) = 0;
   /// Notifies that region `number` of find_regions() was evaluated and presses.
   virtual void take_pressing(std::size_t number) = 0;
 
@@ -45,7 +45,7 @@ class ImageSource : public SampleSource {
   std::uint64_t sides_version() const;  // Increases with the pairs that either side couples alone.
   void couple();
 
-  LookBack look_back_;
+  TunnellingMonitor tunnelling_;
   std::unique_ptr<DepthImage> image_;  ///< Created in the first query.
   std::vector<RegionPlane> planes_;
   std::vector<std::unique_ptr<ImageRegion>> regions_;  ///< The first planes_.size() belong to the last query.

@@ -27,7 +27,7 @@ MaterialGaps::MaterialGaps(const MaterialPoints& points, double curvature)
     }
 }
 
-void MaterialGaps::start(const std::vector<char>& wanted) {
+void MaterialGaps::start(const std::vector<char>& requested) {
   near_.clear();
   taken_.clear();
   const auto take = [&](int point) {
@@ -35,8 +35,8 @@ void MaterialGaps::start(const std::vector<char>& wanted) {
     if (place < 0) taken_.push_back(point);
     place = 0;
   };
-  for (std::size_t p = 0; p < wanted.size(); ++p) {
-    if (!wanted[p]) continue;
+  for (std::size_t p = 0; p < requested.size(); ++p) {
+    if (!requested[p]) continue;
     for (int i = fan_begin_[p]; i < fan_begin_[p + 1]; ++i) {
       const int t = fan_[static_cast<std::size_t>(i)];
       char& is_near = is_near_[static_cast<std::size_t>(t)];

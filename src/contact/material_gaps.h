@@ -21,7 +21,7 @@ class MaterialGaps {
 
   /// Selects the requested points and all points that share a triangle with one of them.
   /// @param wanted  per point, whether it is requested
-  void start(const std::vector<char>& wanted);
+  void start(const std::vector<char>& requested);
   /// Returns the selected points, ascending.
   const std::vector<int>& points() const { return taken_; }
 

@@ -48,10 +48,10 @@ class PrunedSource final : public ImageSource {
           {region.region.origin, region.region.normal, region.gap, &region.faces_a, &region.faces_b});
     }
   }
-  double find_met(std::vector<int>& faces_a, std::vector<int>& faces_b) override {
+  double collect_candidate_faces(std::vector<int>& faces_a, std::vector<int>& faces_b) override {
     place();
-    context_.a->set_way(*proxies_a_);
-    context_.b->set_way(*proxies_b_);
+    context_.a->set_motion(*proxies_a_);
+    context_.b->set_motion(*proxies_b_);
     pruner_.met_on_the_way(faces_a, faces_b);
     placed_ = context_.options.look_ahead > 0.0;  // Without look-ahead the proxies must be at rest.
     return std::min(proxies_a_->rest_thickness(), proxies_b_->rest_thickness());

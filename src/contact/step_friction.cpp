@@ -34,7 +34,7 @@ SampleStep of_state(const SurfacePoint& point, const PointMotion& motion,
 
 }  // namespace
 
-bool ContactForce::bends_at(const dynamics::StateView& state) {
+bool ContactForce::has_onset_at(const dynamics::StateView& state) {
   Impl& m = *impl_;
   m.place_frames(state);
   bool sticks = false;

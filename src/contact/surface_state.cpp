@@ -269,12 +269,12 @@ CarriedPoint SurfaceState::carried(int face, const Vec3& weights, const Vec3& x,
 }
 
 // Area vector of a face: (x1 - x0) x (x2 - x0) / 2, outward.
-void SurfaceState::area_vectors(const std::vector<char>& wanted, Points& areas) const {
+void SurfaceState::area_vectors(const std::vector<char>& requested, Points& areas) const {
   areas.setZero(3, vertex_count());
   for (int f = 0; f < face_count(); ++f) {
     const int i = surface_.faces(0, f), j = surface_.faces(1, f), k = surface_.faces(2, f);
-    if (!wanted[static_cast<std::size_t>(i)] && !wanted[static_cast<std::size_t>(j)] &&
-        !wanted[static_cast<std::size_t>(k)])
+    if (!requested[static_cast<std::size_t>(i)] && !requested[static_cast<std::size_t>(j)] &&
+        !requested[static_cast<std::size_t>(k)])
       continue;
     const Vec3 edge1 = position(j) - position(i), edge2 = position(k) - position(i);
     const Vec3 third = edge1.cross(edge2) / 6.0;

@@ -60,7 +60,7 @@ class SurfaceState {
   CarriedPoint carried(int face, const Vec3& weights, const Vec3& x, const Vec3& normal) const;
   /// Computes one third of the area vectors of the adjacent faces for each vertex in `wanted`, in the
   /// deformed configuration, outward [m^2].
-  void area_vectors(const std::vector<char>& wanted, Points& areas) const;
+  void area_vectors(const std::vector<char>& requested, Points& areas) const;
   /// Returns the mean edge length of the faces at the last update [m].
   double mean_edge() const;
 

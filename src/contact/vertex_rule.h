@@ -3,13 +3,13 @@
 #include <vector>
 
 #include "contact/depth_image.h"
-#include "contact/facing.h"
+#include "contact/triangle_pair_gap.h"
 
 namespace palpate::contact {
 
 /// Sample before it is assigned to bodies: a vertex, the triangle opposite, and the area that it represents.
 struct Hit {
-  Facing at;
+  TrianglePairGap at;
   int face_a, face_b;  ///< Faces of the patches.
   double area;         ///< Projected area [m^2].
 };

@@ -59,7 +59,7 @@ class WholeSource final : public ImageSource {
     if (plane.found && plane.depth >= -gap)
       out.push_back({plane.origin, plane.normal, gap, &faces_a_, &faces_b_});
   }
-  double find_met(std::vector<int>& faces_a, std::vector<int>& faces_b) override {
+  double collect_candidate_faces(std::vector<int>& faces_a, std::vector<int>& faces_b) override {
     find_all_met(*context_.a, *context_.b, thickness(), faces_a, faces_b);
     return thickness();
   }

@@ -10,7 +10,7 @@ namespace palpate {
 Archive::Archive(Values values, std::string where)
     : values_(std::move(values)), where_(std::move(where)), gives_back_(true) {}
 
-void Archive::check_all_given_back() const {
+void Archive::check_all_restored() const {
   for (const auto& [name, value] : values_)
     if (!asked_.contains(name))
       fail("{}: unexpected entry \"{}\"; the file belongs to another scene", where_, name);
@@ -33,10 +33,10 @@ void Archive::refuse_kind(std::string_view name) const {
   fail("{}: \"{}\" has the wrong type", where_, full(name));
 }
 
-void Archive::check_count(std::string_view name, std::size_t kept, std::size_t wanted) const {
-  if (kept != wanted)
+void Archive::check_count(std::string_view name, std::size_t kept, std::size_t requested) const {
+  if (kept != requested)
     fail("{}: \"{}\" has {} numbers, must have {}; the file belongs to another scene", where_, full(name),
-         kept, wanted);
+         kept, requested);
 }
 
 void Archive::numbers(std::string_view name, std::span<double> values) {

@@ -42,17 +42,17 @@ bool find_instructions(std::string_view name, Instructions& set) {
   return false;
 }
 
-Instructions choose_instructions(std::string_view wanted, Instructions widest) {
-  if (wanted.empty()) return widest;
+Instructions choose_instructions(std::string_view requested, Instructions widest) {
+  if (requested.empty()) return widest;
   std::string there;
   for (const Instructions known : kAll) {
     if (known > widest) break;
-    if (wanted == name_of(known)) return known;
+    if (requested == name_of(known)) return known;
     there += fmt::format("{}{}", there.empty() ? "" : ", ", name_of(known));
   }
   const bool exists = std::any_of(std::begin(kAll), std::end(kAll),
-                                  [&](Instructions known) { return wanted == name_of(known); });
-  fail("PALPATE_INSTRUCTIONS = \"{}\": {}; set it to one of {}, or unset it", wanted,
+                                  [&](Instructions known) { return requested == name_of(known); });
+  fail("PALPATE_INSTRUCTIONS = \"{}\": {}; set it to one of {}, or unset it", requested,
        exists ? "this processor does not support it" : "unknown instruction set", there);
 }
 
@@ -60,8 +60,8 @@ Instructions best_instructions() {
   Instructions widest = Instructions::kBaseline;
   for (const Instructions set : kAll)
     if (has_instructions(set)) widest = set;
-  const char* wanted = std::getenv("PALPATE_INSTRUCTIONS");
-  return choose_instructions(wanted ? wanted : "", widest);
+  const char* requested = std::getenv("PALPATE_INSTRUCTIONS");
+  return choose_instructions(requested ? requested : "", widest);
 }
 
 }  // namespace palpate

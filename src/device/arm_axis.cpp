@@ -30,7 +30,7 @@ void ArmAxis::archive(Archive& a) {
   a("x", x_);
   a("v", v_);
   a("usual_step", kept_length_);
-  if (a.gives_back() && kept_length_ > 0.0) kept_ = arm_transition(a_, kept_length_);
+  if (a.is_restoring() && kept_length_ > 0.0) kept_ = arm_transition(a_, kept_length_);
 }
 
 ArmAxis::Point ArmAxis::at(double s, double p, double q) const {

@@ -13,12 +13,12 @@
 
 namespace palpate::device {
 
-Buzz::Section Buzz::section(double w, double q) {
+VibrationMeter::Section VibrationMeter::section(double w, double q) {
   const double n = 1.0 + w / q + w * w;
   return {1.0 / n, 2.0 * (w * w - 1.0) / n, (1.0 - w / q + w * w) / n};
 }
 
-Vec3 Buzz::Section::operator()(const Vec3& x) {
+Vec3 VibrationMeter::Section::operator()(const Vec3& x) {
   const Vec3 y = c * (x - 2.0 * x1 + x2) - a1 * y1 - a2 * y2;
   x2 = x1, x1 = x;
   y2 = y1, y1 = y;
@@ -36,11 +36,11 @@ double warped(double tick_s, double frequency_hz) {
 
 }  // namespace
 
-Buzz::Buzz(double tick_s, double frequency_hz)
+VibrationMeter::VibrationMeter(double tick_s, double frequency_hz)
     : first_(section(warped(tick_s, frequency_hz), 0.5 / std::cos(std::numbers::pi / 8.0))),
       second_(section(warped(tick_s, frequency_hz), 0.5 / std::cos(3.0 * std::numbers::pi / 8.0))) {}
 
-void Buzz::add(const Vec3& force) {
+void VibrationMeter::add(const Vec3& force) {
   if (!started_) first_.x1 = first_.x2 = force;
   started_ = true;
   const Vec3 high = second_(first_(force));
@@ -49,14 +49,14 @@ void Buzz::add(const Vec3& force) {
   ++count_;
 }
 
-void Buzz::Section::archive(Archive& a) {
+void VibrationMeter::Section::archive(Archive& a) {
   a("x1", x1);
   a("x2", x2);
   a("y1", y1);
   a("y2", y2);
 }
 
-void Buzz::archive(Archive& a) {
+void VibrationMeter::archive(Archive& a) {
   a("first", first_);
   a("second", second_);
   a("started", started_);
@@ -65,6 +65,8 @@ void Buzz::archive(Archive& a) {
   a("count", count_);
 }
 
-double Buzz::rms() const { return count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : 0.0; }
+double VibrationMeter::rms() const {
+  return count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : 0.0;
+}
 
 }  // namespace palpate::device

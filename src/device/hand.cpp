@@ -74,7 +74,9 @@ class Axes {
     for (int i = 0; i < 3; ++i) axes_[i].place(x[i], 0.0);
   }
   /// Returns the pull of the arm without its part -k x - b x'.
-  Vec3 pull(const Vec3& wanted, const Vec3& wanted_rate) const { return k_ * wanted + b_ * wanted_rate; }
+  Vec3 pull(const Vec3& requested, const Vec3& wanted_rate) const {
+    return k_ * requested + b_ * wanted_rate;
+  }
   void advance(double h, const Vec3& p0, const Vec3& p1) {
     for (int i = 0; i < 3; ++i) axes_[i].advance(h, p0[i], p1[i]);
   }
@@ -110,7 +112,7 @@ class HandDevice : public Device {
  public:
   explicit HandDevice(const DeviceSpec& spec) : HandDevice(spec, hand_model(spec)) {}
   HandDevice(const DeviceSpec& spec, const HandModel& model)
-      : wanted_(model.wanted),
+      : requested_(model.requested),
         figures_(figures_of(spec)),
         motors_(motor_figures(spec)),
         translation_(model.translation, model.arm_damping),
@@ -156,22 +158,22 @@ class HandDevice : public Device {
     started_ = true;
     time_ = t;
     motors_.advance(t);
-    const HandleSample wanted = wanted_(t);
-    switches_ = wanted.switches;
-    first_ = wanted.pose.rotation;
-    translation_.place(wanted.pose.translation);
+    const HandleSample requested = requested_(t);
+    switches_ = requested.switches;
+    first_ = requested.pose.rotation;
+    translation_.place(requested.pose.translation);
     rotation_.place(Vec3::Zero());
-    position_.start(wanted.pose.translation);
+    position_.start(requested.pose.translation);
     angle_.start(Vec3::Zero());
-    pull_ = translation_.pull(wanted.pose.translation, wanted.twist.linear);
+    pull_ = translation_.pull(requested.pose.translation, requested.twist.linear);
   }
 
   void advance(double t) {
     const double h = t - time_;
-    const HandleSample wanted = wanted_(t);
-    switches_ = wanted.switches;
-    const Vec3 theta = unwrapped(wanted.pose.rotation * first_.conjugate(), theta_),
-               pull = translation_.pull(wanted.pose.translation, wanted.twist.linear),
+    const HandleSample requested = requested_(t);
+    switches_ = requested.switches;
+    const Vec3 theta = unwrapped(requested.pose.rotation * first_.conjugate(), theta_),
+               pull = translation_.pull(requested.pose.translation, requested.twist.linear),
                twist = rotation_.pull(theta, (theta - theta_) / h);
     motors_.advance(t, [&](const Motors::Span& span) {
       const double length = span.to - span.from, s0 = (span.from - time_) / h, s1 = (span.to - time_) / h;
@@ -187,7 +189,7 @@ class HandDevice : public Device {
     angle_.read(rotation_.x(), rotation_.v(), h);
   }
 
-  DevicePath wanted_;
+  DevicePath requested_;
   DeviceFigures figures_;
   Motors motors_;
   Axes translation_, rotation_;

@@ -93,9 +93,9 @@ void WrenchLimiter::restart() {
   last_ = {};
 }
 
-Wrench WrenchLimiter::limit(double t, const Wrench& wanted, bool valid) {
+Wrench WrenchLimiter::limit(double t, const Wrench& requested, bool valid) {
   const bool good_time = std::isfinite(t) && (!started_ || t > last_time_);
-  const bool good_wrench = wanted.force.allFinite() && wanted.moment.allFinite();
+  const bool good_wrench = requested.force.allFinite() && requested.moment.allFinite();
   if (!good_time || (valid && !good_wrench)) ++rejected_;
   if (!good_time) {
     stalled_ += last_dt_;
@@ -105,23 +105,23 @@ Wrench WrenchLimiter::limit(double t, const Wrench& wanted, bool valid) {
   last_time_ = t;
   stalled_ = 0.0;
   started_ = true;
-  return last_ = valid && good_wrench ? follow(t, last_dt_, wanted) : fall(t - last_valid_);
+  return last_ = valid && good_wrench ? follow(t, last_dt_, requested) : fall(t - last_valid_);
 }
 
-Wrench WrenchLimiter::follow(double t, double dt, const Wrench& wanted) {
+Wrench WrenchLimiter::follow(double t, double dt, const Wrench& requested) {
   if (!live_ || t - last_valid_ >= kFallTime) start_ = t;
   live_ = true;
   last_valid_ = t;
-  if (wanted.force.stableNorm() > max_force_ ||
-      (max_torque_ > 0.0 && wanted.moment.stableNorm() > max_torque_))
+  if (requested.force.stableNorm() > max_force_ ||
+      (max_torque_ > 0.0 && requested.moment.stableNorm() > max_torque_))
     ++limited_;
   const double inside_workspace = device_ ? workspace_.share(device_->position()) : 1.0;
   outside_ += inside_workspace < 1.0;
   const double ramp = (ramp_ > 0.0 ? smoothstep((t - start_) / ramp_) : 1.0) * inside_workspace;
-  held_.force =
-      inside(towards(last_.force, ramp * saturate(wanted.force, max_force_), force_slew_ * dt), max_force_);
-  held_.moment = inside(towards(last_.moment, ramp * saturate(wanted.moment, max_torque_), torque_slew_ * dt),
-                        max_torque_);
+  held_.force = inside(towards(last_.force, ramp * saturate(requested.force, max_force_), force_slew_ * dt),
+                       max_force_);
+  held_.moment = inside(
+      towards(last_.moment, ramp * saturate(requested.moment, max_torque_), torque_slew_ * dt), max_torque_);
   return held_;
 }
 

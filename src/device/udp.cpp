@@ -69,7 +69,7 @@ void UdpDevice::do_close() {
   socket_ = -1;
 }
 
-std::vector<std::pair<std::string, long long>> UdpDevice::tallies() const {
+std::vector<std::pair<std::string, long long>> UdpDevice::counters() const {
   return {{"packets_accepted", counts_.accepted},
           {"packets_malformed", counts_.malformed},
           {"packets_of_another_version", counts_.wrong_version},

@@ -45,9 +45,9 @@ bool SkinContact::overlaps(const ContactPoint& point, const Vec3& x, const Foot&
 // whenever their cluster is near another one.
 void SkinContact::find_clusters_of_own(double near) {
   mark_near_itself();
-  const std::vector<Whereabouts>& where = where_[0];
+  const std::vector<SideOfSurface>& where = where_[0];
   for (std::size_t c = 0; c < where.size(); ++c)
-    if (where[c] == Whereabouts::kNear && clear_[0][c] < travelled_ + near)
+    if (where[c] == SideOfSurface::kNear && clear_[0][c] < travelled_ + near)
       find_cluster(0, static_cast<int>(c), -1, near);
 }
 
@@ -56,8 +56,8 @@ void SkinContact::find_clusters_of_own(double near) {
 void SkinContact::mark_near_itself() {
   const Surface& own = surfaces_[0];
   const std::vector<ClusterNode>& tree = own.skin().tree;
-  std::vector<Whereabouts>& where = where_[0];
-  std::fill(where.begin(), where.end(), Whereabouts::kOutside);
+  std::vector<SideOfSurface>& where = where_[0];
+  std::fill(where.begin(), where.end(), SideOfSurface::kOutside);
   const double within2 = own_->depth() * own_->depth();
   const auto apart2 = [&](int i, int j) { return own.box(i).squaredExteriorDistance(own.box(j)); };
   // Each pop pushes three entries at most and descends one level in one of two trees of fewer than 64 levels.
@@ -85,7 +85,7 @@ void SkinContact::mark_near_itself() {
       own.place(b.begin);
       if (apart2(i, j) > within2) continue;
       where[static_cast<std::size_t>(a.begin)] = where[static_cast<std::size_t>(b.begin)] =
-          Whereabouts::kNear;
+          SideOfSurface::kNear;
     }
   }
 }

@@ -214,8 +214,8 @@ void SkinContact::find_side(int side, double near) {
   const Eigen::AlignedBox3d reach = widened(surfaces_[1 - side].box(0), near);
   const std::vector<ClusterNode>& tree = own.skin().tree;
   std::vector<double>& clear = clear_[side];
-  std::vector<Whereabouts>& where = where_[side];
-  std::fill(where.begin(), where.end(), Whereabouts::kOutside);
+  std::vector<SideOfSurface>& where = where_[side];
+  std::fill(where.begin(), where.end(), SideOfSurface::kOutside);
   whole_.clear();
   int near_leaf = -1, open[64], depth = 0;
   open[depth++] = 0;
@@ -229,7 +229,7 @@ void SkinContact::find_side(int side, double near) {
     const double gap = gap_of(side, own.box(i), near, near_leaf);
     if (gap > near) {
       for (int c = node.begin; c < node.end; ++c) {
-        where[static_cast<std::size_t>(c)] = Whereabouts::kWhole;
+        where[static_cast<std::size_t>(c)] = SideOfSurface::kWhole;
         clear[static_cast<std::size_t>(c)] = std::max(clear[static_cast<std::size_t>(c)], travelled_ + gap);
         whole_.push_back({c, i});
       }
@@ -237,14 +237,14 @@ void SkinContact::find_side(int side, double near) {
       open[depth++] = node.right;
       open[depth++] = i + 1;
     } else {
-      where[static_cast<std::size_t>(node.begin)] = Whereabouts::kNear;
+      where[static_cast<std::size_t>(node.begin)] = SideOfSurface::kNear;
     }
   }
   for (const Part& part : whole_)
-    if (where[static_cast<std::size_t>(part.cluster)] == Whereabouts::kWhole) settle(side, part);
+    if (where[static_cast<std::size_t>(part.cluster)] == SideOfSurface::kWhole) settle(side, part);
   int last = 0;
   for (std::size_t c = 0; c < where.size(); ++c) {
-    if (where[c] == Whereabouts::kOutside) continue;
+    if (where[c] == SideOfSurface::kOutside) continue;
     int& start = starts_[side][c];
     start = last = find_cluster(side, static_cast<int>(c), start < 0 ? last : start, near);
   }
@@ -255,25 +255,25 @@ void SkinContact::settle(int side, const Part& part) {
   const Surface& own = surfaces_[side];
   const Surface& other = surfaces_[1 - side];
   const Skin& skin = own.skin();
-  std::vector<Whereabouts>& where = where_[side];
+  std::vector<SideOfSurface>& where = where_[side];
   bool is_outside = false;
   joined_.clear();
   joined_.push_back(part.cluster);
-  where[static_cast<std::size_t>(part.cluster)] = Whereabouts::kInside;
+  where[static_cast<std::size_t>(part.cluster)] = SideOfSurface::kInside;
   for (std::size_t i = 0; i < joined_.size(); ++i) {
     const auto c = static_cast<std::size_t>(joined_[i]);
     for (int k = skin.joined_begin[c]; k < skin.joined_begin[c + 1]; ++k) {
-      Whereabouts& at = where[static_cast<std::size_t>(skin.joined[static_cast<std::size_t>(k)])];
-      is_outside |= at == Whereabouts::kOutside;
-      if (at != Whereabouts::kWhole) continue;
-      at = Whereabouts::kInside;
+      SideOfSurface& at = where[static_cast<std::size_t>(skin.joined[static_cast<std::size_t>(k)])];
+      is_outside |= at == SideOfSurface::kOutside;
+      if (at != SideOfSurface::kWhole) continue;
+      at = SideOfSurface::kInside;
       joined_.push_back(skin.joined[static_cast<std::size_t>(k)]);
     }
   }
   if (!is_outside) is_outside = !other.is_inside(other.nearest(own.box(part.tree_node).center()));
   for (const int c : joined_) {
     if (is_outside)
-      where[static_cast<std::size_t>(c)] = Whereabouts::kOutside;
+      where[static_cast<std::size_t>(c)] = SideOfSurface::kOutside;
     else
       clear_[side][static_cast<std::size_t>(c)] = -1.0;
   }

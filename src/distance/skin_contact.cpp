@@ -59,7 +59,7 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::ar
     feet_[side].assign(static_cast<std::size_t>(first_packet_[side].back()), none);
     starts_[side].assign(clusters, -1);
     clear_[side].assign(clusters, -1.0);
-    where_[side].assign(clusters, Whereabouts::kOutside);
+    where_[side].assign(clusters, SideOfSurface::kOutside);
     whole_.reserve(std::max(whole_.capacity(), clusters));
     joined_.reserve(whole_.capacity());
     packets_clear_[side].assign(static_cast<std::size_t>(first_packet_[side].back()), -1.0);

@@ -111,7 +111,7 @@ bool alike(const VecX& kept, const VecX& now, Eigen::Index size) {
 
 bool StepAssembly::is_kept(const StateView& state, const VecX& shift, double d_scale, double k_scale,
                            const ZeroRowSumMatrix& A) const {
-  const KeptStep& kept = system_.kept_step();
+  const CachedStep& kept = system_.kept_step();
   const Eigen::Index nodal = state.layout->nodal_size;
   return !kept.versions.empty() && kept.versions == step_versions_ && A.slot_map_key != 0 &&
          kept.slot_map_key == A.slot_map_key && kept.values.size() == A.values.size() &&
@@ -124,7 +124,7 @@ bool StepAssembly::is_kept(const StateView& state, const VecX& shift, double d_s
 /// @pre f is zero, and A holds m_scale M only
 void StepAssembly::add_fused(const StateView& state, const VecX& shift, double d_scale, double k_scale,
                              VecX& f, ZeroRowSumMatrix& A, bool keep) {
-  KeptStep& kept = system_.kept_step();
+  CachedStep& kept = system_.kept_step();
   const bool knows = (keep || !kept.versions.empty()) && find_versions();
   if (knows && is_kept(state, shift, d_scale, k_scale, A)) {
     counters::count("dynamics.kept_step_taken");

@@ -49,14 +49,14 @@ void MatrixScatter::prepare(const ElementChunks& chunks, int first_node, const d
                  chunks.nodes[static_cast<std::size_t>(chunk.first_node + chunks.ends[other])]);
       }
   find_both_sides(chunks.shared_edges, slot, shared_slots_);
-  find_bare_slots(chunks, first_node, A);
+  find_unwritten_slots(chunks, first_node, A);
   prefer_huge_pages(slots_);
   pattern_version_ = A.pattern_version();
   first_node_ = first_node;
 }
 
-void MatrixScatter::find_bare_slots(const ElementChunks& chunks, int first_node,
-                                    const dynamics::BlockSparse& A) {
+void MatrixScatter::find_unwritten_slots(const ElementChunks& chunks, int first_node,
+                                         const dynamics::BlockSparse& A) {
   const auto row = [&](int node) { return A.row_start()[static_cast<std::size_t>(first_node + node)]; };
   const int first = row(0), end = row(chunks.node_count());
   std::vector<char> filled(static_cast<std::size_t>(end - first), 0);

@@ -28,7 +28,7 @@ class MatrixScatter {
   std::size_t scratch_bytes() const;
 
  private:
-  void find_bare_slots(const ElementChunks& chunks, int first_node, const dynamics::BlockSparse& A);
+  void find_unwritten_slots(const ElementChunks& chunks, int first_node, const dynamics::BlockSparse& A);
 
   std::vector<double> shared_upper_, shared_lower_, shared_diagonal_;  ///< nine numbers per contribution
   // maps

@@ -91,8 +91,8 @@ void VertexArray::attribute_unsigned(unsigned location, const Buffer& buffer, in
                          reinterpret_cast<const void*>(offset));
 }
 
-void VertexArray::attribute_a_draw(unsigned location, const MappedBuffer& buffer, int stride,
-                                   std::size_t offset) {
+void VertexArray::attribute_per_draw(unsigned location, const MappedBuffer& buffer, int stride,
+                                     std::size_t offset) {
   glBindVertexArray(id_);
   glBindBuffer(GL_ARRAY_BUFFER, buffer.id());
   glEnableVertexAttribArray(location);

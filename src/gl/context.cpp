@@ -75,14 +75,14 @@ EGLContext create_context(EGLDisplay display) {
   if (!eglChooseConfig(display, config_wanted, &config, 1, &count) || count < 1) config = nullptr;
   for (const int minor : {5, 3})
     for (const bool told_of_resets : {true, false}) {  // EGL 1.5
-      std::vector<EGLint> wanted = {EGL_CONTEXT_MAJOR_VERSION,       4,
-                                    EGL_CONTEXT_MINOR_VERSION,       minor,
-                                    EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+      std::vector<EGLint> requested = {EGL_CONTEXT_MAJOR_VERSION,       4,
+                                       EGL_CONTEXT_MINOR_VERSION,       minor,
+                                       EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
       if (told_of_resets)
-        wanted.insert(wanted.end(),
-                      {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
-      wanted.push_back(EGL_NONE);
-      if (const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted.data()))
+        requested.insert(requested.end(),
+                         {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
+      requested.push_back(EGL_NONE);
+      if (const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, requested.data()))
         return context;
     }
   return EGL_NO_CONTEXT;

@@ -58,7 +58,7 @@ ToolContact patch(const ContactSpec& contact, double modulus, double area) {
 
 /// A simulated hand is what its keys say, the arm that holds it included.  Of another device the scene knows
 /// the profile's mass at most.
-void add_device(const DeviceSpec& spec, HapticLoop& loop) {
+void add_device(const DeviceSpec& spec, HapticLoopModel& loop) {
   const device::DeviceFigures figures = device::figures_of(spec);
   loop.device.mass_kg = figures.mass;
   if (spec.type != "hand") return;
@@ -71,7 +71,7 @@ void add_device(const DeviceSpec& spec, HapticLoop& loop) {
 
 }  // namespace
 
-HapticLoop loop_of(const scene::Description& d) {
+HapticLoopModel loop_of(const scene::Description& d) {
   if (!d.tool)
     fail("{}: haptic stability: the scene has no [tool], so nothing that a hand would feel", d.name);
   if (d.exchange.scheme == "monolithic")
@@ -79,7 +79,7 @@ HapticLoop loop_of(const scene::Description& d) {
         "{}: haptic stability: exchange.scheme = \"monolithic\" has no ticks of its own; take "
         "--set exchange.scheme=partitioned",
         d.name);
-  HapticLoop loop;
+  HapticLoopModel loop;
   loop.tick_s = d.tool->tick_s;
   loop.coupling_stiffness_n_m = d.tool->coupling.stiffness_n_m;
   loop.coupling_damping_n_s_m = d.tool->coupling.damping_n_s_m;
@@ -92,7 +92,7 @@ HapticLoop loop_of(const scene::Description& d) {
 // A contact turns the tool back by the lever of its force.  At the least a patch of radius a lies under the
 // middle, and its springs resist a tilt: integral of k x^2 over the disc = K a^2/4.  At the most the contact
 // lies at the tool's farthest point, R from its origin: K R^2.
-RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoop& loop,
+RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoopModel& loop,
                                   const ToolContactRange& range) {
   constexpr double kStylus = 0.05;  // lever of a device's mass about its handle [m]
   constexpr double kHeld = 1e6;     // times the tool
@@ -104,7 +104,7 @@ RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoop&
   out.lever_m = std::sqrt(a2);
   out.loop.coupling_stiffness_n_m = d.tool->coupling.rotational_stiffness_n_m_rad / a2;
   out.loop.coupling_damping_n_s_m = d.tool->coupling.rotational_damping_n_m_s_rad / a2;
-  HapticLoop::Axis& device = out.loop.device;
+  HapticLoopModel::Axis& device = out.loop.device;
   if (d.device && d.device->type == "hand") {
     device = {};
     device.mass_kg = d.device->rotational_inertia_kg_m2 / a2;

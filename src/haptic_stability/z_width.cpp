@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBisection = 2e-3;
 
-ZWidthRow by_theory(const HapticLoop& free, const HapticLoop& held, double damping) {
+ZWidthRow by_theory(const HapticLoopModel& free, const HapticLoopModel& held, double damping) {
   ZWidthRow row;
   row.damping = damping;
   row.passive = passive_stiffness(held, damping);
@@ -23,7 +23,7 @@ ZWidthRow by_theory(const HapticLoop& free, const HapticLoop& held, double dampi
 }
 
 /// 0, and then in equal ratios up to shortly before the damping that is unstable by itself.
-std::vector<double> dampings(const HapticLoop& held, int count) {
+std::vector<double> dampings(const HapticLoopModel& held, int count) {
   const double b = held.device.damping_n_s_m, last = 0.97 * largest_damping(held);
   const double first = std::min(b > 0.0 ? 0.1 * b : 1e-3 * last, 0.1 * last);
   std::vector<double> out = {0.0};
@@ -50,9 +50,9 @@ double ZWidth::largest_difference() const {
   return largest;
 }
 
-ZWidth z_width(const HapticLoop& loop, const ZWidthOptions& options) {
+ZWidth z_width(const HapticLoopModel& loop, const ZWidthOptions& options) {
   PALPATE_CHECK(options.rows >= 3, "{} rows", options.rows);
-  HapticLoop held = loop;
+  HapticLoopModel held = loop;
   held.tool_held = true;
   ZWidth out;
   for (const double damping : dampings(held, 60)) out.fine.push_back(by_theory(loop, held, damping));
@@ -82,7 +82,7 @@ std::string OperatingPoint::words(double tick_s, double scale, const std::string
                      held ? "held so" : "let go", held ? "another" : "some", limit);
 }
 
-std::vector<OperatingPoint> operating_points(HapticLoop loop, const ToolContactRange& range,
+std::vector<OperatingPoint> operating_points(HapticLoopModel loop, const ToolContactRange& range,
                                              double duration_s) {
   std::vector<OperatingPoint> out(3);
   out[0].name = "tool in the air";
@@ -97,7 +97,7 @@ std::vector<OperatingPoint> operating_points(HapticLoop loop, const ToolContactR
     point.series = k + K > 0.0 ? k * K / (k + K) : 0.0;
     point.radius = spectral_radius(loop);
     point.largest_coupling = spectral_stiffness(loop, loop.coupling_damping_n_s_m);
-    point.simulated_stable = loop::press_wall(loop, duration_s).stable;
+    point.simulated_stable = loop::simulate_virtual_wall(loop, duration_s).stable;
     point.passive = is_passive(loop);
     point.held = loop.device.held();
   }

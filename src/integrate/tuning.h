@@ -74,7 +74,7 @@ inline constexpr double kNegativeCurvature = 0.1;
 /// Largest number of Newton iterations per load step.
 inline constexpr long kStaticIterations = 25;
 /// Smallest load step, as a share of the load; largest number of proximal steps per load step.
-inline constexpr double kShortestRung = 1.0 / 64.0;
+inline constexpr double kShortestLoadStep = 1.0 / 64.0;
 inline constexpr int kProximalSteps = 200;
 /// Iterative refinement at the rounding limit: largest number of corrections, each of which must lower the
 /// residual at least to this share.

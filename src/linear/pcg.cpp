@@ -126,7 +126,7 @@ class Pcg final : public dynamics::LinearSolver {
     if (W_.rows() != nodal_ || W_.cols() != border_) W_.setZero(nodal_, border_);
     AZ_ = A.right;
     for (Eigen::Index c = 0; c < border_; ++c) {
-      if (const SolveStatus status = answer_of_nodes(A, c); status != SolveStatus::kOk) return status;
+      if (const SolveStatus status = nodal_response(A, c); status != SolveStatus::kOk) return status;
       A.body.multiply_add(W_.col(c).data(), AZ_.col(c).data());
       ++counters_.iterations;
     }
@@ -139,7 +139,7 @@ class Pcg final : public dynamics::LinearSolver {
 
   /// Computes column c of W, B w = -R_c, approximately; the last w is the initial guess where it reduces the
   /// error.
-  SolveStatus answer_of_nodes(const BorderedMatrix& A, Eigen::Index c) {
+  SolveStatus nodal_response(const BorderedMatrix& A, Eigen::Index c) {
     auto w = W_.col(c);
     r_ = -A.right.col(c);
     if (r_.isZero(0.0)) {

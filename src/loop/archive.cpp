@@ -7,7 +7,7 @@
 // was interrupted.
 #include <algorithm>
 
-#include "body_side.h"
+#include "body_loop.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "virtual_time.h"
@@ -33,13 +33,13 @@ void archive_tool(Archive& a, tool::Tool& tool) {
   a("time", time);
   a("pose", pose);
   a("twist", twist);
-  if (a.gives_back()) tool.set_state(time, pose, twist);
+  if (a.is_restoring()) tool.set_state(time, pose, twist);
 }
 
-void archive_side(Archive& a, ToolSide& side) {
-  a("known_time", side.known.time);
-  a("known_pose", side.known.pose);
-  a("known_twist", side.known.twist);
+void archive_side(Archive& a, ToolInstance& side) {
+  a("known_time", side.exchanged.time);
+  a("known_pose", side.exchanged.pose);
+  a("known_twist", side.exchanged.twist);
   a("handle_now", side.handle_now);
   if (side.handle) {
     const Archive::Group group(a, "device");
@@ -61,7 +61,7 @@ void archive_side(Archive& a, ToolSide& side) {
 
 }  // namespace
 
-void BodySide::look_once_more() {
+void BodyLoop::query_before_checkpoint() {
   if (!world_.contact) return;
   if (ledger_) ledger_->before_query();
   {
@@ -72,7 +72,7 @@ void BodySide::look_once_more() {
 }
 
 /// Repeats the changes of change_materials() up to now, in order of time.
-void BodySide::change_materials_so_far() {
+void BodyLoop::change_materials_so_far() {
   const double last = changed_;
   for (changed_ = 0.0;;) {
     const double next = next_change();
@@ -86,29 +86,29 @@ void BodySide::change_materials_so_far() {
   changed_ = last;
 }
 
-void BodySide::archive_counts(Archive& a) {
-  if (!a.gives_back()) sum_up();
+void BodyLoop::archive_counts(Archive& a) {
+  if (!a.is_restoring()) sum_up();
   visit_counters([&](const char* name, auto& value) { a(name, value); }, result_);
   a("most_halvings", result_.counters.most_halvings);
   a("ordering", result_.counters.solver.ordering);
-  if (a.gives_back()) counted_before_ = result_.counters;
+  if (a.is_restoring()) counted_before_ = result_.counters;
 }
 
-void BodySide::archive(Archive& a) {
+void BodyLoop::archive(Archive& a) {
   {
     const Archive::Group group(a, "state");
     archive_state(a, world_.state);
   }
   a("changed", changed_);
-  if (a.gives_back()) change_materials_so_far();
-  const auto& sides = ToolSide::all(world_);
+  if (a.is_restoring()) change_materials_so_far();
+  const auto& sides = ToolInstance::all(world_);
   a.each("hand", sides, [&](const auto& side) { archive_side(a, *side); });
-  a.each("felt", felt_, [&](Felt& felt) {
+  a.each("felt", hand_ticks_, [&](HandTicks& felt) {
     a("version", felt.version);
     a("ticks", felt.ticks);
-    if (felt.buzz) a("buzz", *felt.buzz);
+    if (felt.vibration) a("buzz", *felt.vibration);
   });
-  if (a.gives_back()) {
+  if (a.is_restoring()) {
     restart_path();
     if (world_.stepper) {
       world_.stepper->set_interrupt(options_.stop);
@@ -121,10 +121,10 @@ void BodySide::archive(Archive& a) {
   }
   const auto& observers = options_.observers;
   if (std::any_of(observers.begin(), observers.end(), [](const Observer* o) { return o->wants_energy(); })) {
-    if (a.gives_back()) ledger_.emplace(world_);
+    if (a.is_restoring()) ledger_.emplace(world_);
     const Archive::Group group(a, "energy");
     ledger_->archive(a);
-    if (a.gives_back()) result_.energy = ledger_->balance();
+    if (a.is_restoring()) result_.energy = ledger_->balance();
   }
   const Archive::Group group(a, "counts");
   archive_counts(a);

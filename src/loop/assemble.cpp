@@ -20,7 +20,7 @@
 #include "palpate/scene/load.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 namespace {
@@ -292,15 +292,15 @@ std::unique_ptr<World> assemble(const scene::Description& description,
   assemble_bodies(*world);
   if (!description.bones.empty()) at_place(*world, "bone", "", [&] { assemble_bones(*world); });
   assemble_skeletons(*world);
-  ToolSide::make(*world);
-  for (std::size_t i = 0; i < ToolSide::all(*world).size(); ++i) {
-    ToolSide& side = ToolSide::of(*world, i);
+  ToolInstance::make(*world);
+  for (std::size_t i = 0; i < ToolInstance::all(*world).size(); ++i) {
+    ToolInstance& side = ToolInstance::of(*world, i);
     if (i < hands.size()) side.handle = std::move(hands[i]);
     if (side.spec)
       at_place(*world, scene::hands_of(description)[i].tool_key, "", [&] { assemble_tool(*world, i); });
   }
   assemble_attachments(*world);
-  const auto& sides = ToolSide::all(*world);
+  const auto& sides = ToolInstance::all(*world);
   const bool carries =
       std::any_of(sides.begin(), sides.end(), [](const auto& side) { return !side->ties.empty(); });
   if (carries || !description.contacts.empty()) assemble_contact(*world);

@@ -6,7 +6,7 @@
 #include "palpate/bones/shape.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 namespace {
@@ -82,7 +82,7 @@ Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
               {quaternion_of(placed.rotation_vector_rad), placed.position_m},
               &bone.dofs};
     }
-  const ToolSide* const tool = ToolSide::named(world, spec.to);
+  const ToolInstance* const tool = ToolInstance::named(world, spec.to);
   if (!tool) fail("body \"{}\": attachment to = \"{}\" is neither a bone nor a tool", body.name, spec.to);
   return {tool->block_id, {}, start_of(*tool->spec), nullptr};
 }
@@ -96,7 +96,7 @@ constexpr double kStiffer = 100.0;
 // size R, with at least (R/a)^2 nodes on a cut through it, has a stiffness of E R, and its springs have
 // kStiffer E a (R/a)^2: relative to the body, the springs deflect by a/(kStiffer R).
 void tie(const Body& body, const SoftBodySpec& tissue, const std::vector<int>& nodes, int first,
-         ToolSide& tool) {
+         ToolInstance& tool) {
   const Pose from_world = start_of(*tool.spec).inverse();
   for (const int node : nodes) {
     const double length = std::cbrt(body.masses[node] / tissue.density_kg_m3),
@@ -130,7 +130,7 @@ void attach(World& world, const Body& body, const SoftBodySpec& tissue, std::siz
   const std::vector<int> nodes = nodes_inside(world, body, spec);
   check_nodes(body, spec, nodes);
   const int first = world.state.layout().find(body.block_id)->u_offset / 3;
-  ToolSide* const tool = spec_of(world, spec.to) ? nullptr : ToolSide::named(world, spec.to);
+  ToolInstance* const tool = spec_of(world, spec.to) ? nullptr : ToolInstance::named(world, spec.to);
   if (tool && !world.monolithic()) return tie(body, tissue, nodes, first, *tool);
   const Carrier carrier = carrier_of(world, body, spec);
   const std::vector<int> dofs = fem::dofs_of_nodes(nodes, first, spec.axes);

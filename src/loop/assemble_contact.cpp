@@ -15,7 +15,7 @@
 #include "palpate/proxy/region.h"
 #include "palpate/scene/contact_sides.h"
 #include "rigid_contact.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 namespace {
@@ -161,7 +161,7 @@ std::unique_ptr<contact::SampleSource> image_source(Pair pair, TriMesh rigid,
                                     rigid_proxies, frame, std::move(motion), options);
 }
 
-std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolSide& side, Pair pair) {
+std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolInstance& side, Pair pair) {
   const ToolSpec& tool = *side.spec;
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
   const bool sphere = tool.shape == "sphere";
@@ -207,11 +207,11 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
 }
 
 /// Creates the model reduction for a tool with ticks that contacts or carries bodies, unless it exists.
-void make_touch(World& world, ToolSide& side) {
+void make_touch(World& world, ToolInstance& side) {
   if (!side.trajectory || side.touch || world.description.exchange.linearisation != "points") return;
-  const bool others_ask = steps_are_linearised(world) || ToolSide::all(world).size() > 1;
+  const bool others_ask = steps_are_linearised(world) || ToolInstance::all(world).size() > 1;
   side.touch =
-      std::make_unique<TouchReduction>(world, world.description.exchange.linearisation_error, others_ask);
+      std::make_unique<ModelReduction>(world, world.description.exchange.linearisation_error, others_ask);
 }
 
 /// @pre the names are in canonical order (scene::order_sides)
@@ -224,7 +224,7 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
         "tool",
         spec.first, spec.second);
   Pair pair = pair_of(world, spec, spec.first);
-  if (ToolSide* const tool = ToolSide::named(world, spec.second))
+  if (ToolInstance* const tool = ToolInstance::named(world, spec.second))
     return tool_source(world, *tool, std::move(pair));
   for (const ObstacleSpec& obstacle : world.description.obstacles)
     if (obstacle.name == spec.second) return obstacle_source(world, std::move(pair), obstacle);
@@ -246,9 +246,9 @@ void add_contact(World& world, ContactSpec& given) {
   if (spec.friction_tangent == "auto")
     spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
   // No step matrix contains tools with separate ticks; their ticks are a single solve each.
-  if (ToolSide::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
+  if (ToolInstance::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
   world.contact->add_pair(source_of(world, spec), spec);
-  ToolSide* const side = ToolSide::named(world, spec.second);
+  ToolInstance* const side = ToolInstance::named(world, spec.second);
   if (side && world.find_body(spec.first)) make_touch(world, *side);
 }
 
@@ -256,11 +256,11 @@ void add_contact(World& world, ContactSpec& given) {
 
 void assemble_contact(World& world) {
   world.contact = std::make_shared<contact::ContactForce>();
-  make_rigid_touch(world);
+  make_rigid_contact_solver(world);
   std::vector<ContactSpec>& contacts = world.description.contacts;
   for (std::size_t i = 0; i < contacts.size(); ++i)
     at_place(world, fmt::format("contact[{}]", i), "", [&] { add_contact(world, contacts[i]); });
-  for (const auto& side : ToolSide::all(world)) {
+  for (const auto& side : ToolInstance::all(world)) {
     if (side->ties.empty()) continue;
     tool_motion(world, *side);
     world.contact->tie(side->frame_index, side->ties);

@@ -32,36 +32,36 @@ std::vector<int> elements_in(const RegionSpec& spec, const Points& placed, const
 }
 
 /// Returns the region for a table of the scene: one of the file, or a new one.
-Region& region_for(const SoftBodySpec& spec, const RegionSpec& wanted, std::vector<Region>& regions,
+Region& region_for(const SoftBodySpec& spec, const RegionSpec& requested, std::vector<Region>& regions,
                    const Body& body) {
   const auto found =
-      std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return r.name == wanted.name; });
-  if (wanted.region == "file") {
+      std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return r.name == requested.name; });
+  if (requested.region == "file") {
     if (found != regions.end()) return *found;
     if (regions.empty())
       fail(
           "body \"{}\": [[body.region]] \"{}\": {} has no regions; create them with `palpate model "
           "--region`, or select elements by box_min_m and box_max_m, or by centre_m and radius_m",
-          spec.name, wanted.name, spec.mesh.file);
-    fail("body \"{}\": {} has no region \"{}\"{}", spec.name, spec.mesh.file, wanted.name,
-         suggestion(wanted.name, names_of(regions)));
+          spec.name, requested.name, spec.mesh.file);
+    fail("body \"{}\": {} has no region \"{}\"{}", spec.name, spec.mesh.file, requested.name,
+         suggestion(requested.name, names_of(regions)));
   }
   if (found != regions.end())
-    fail("body \"{}\": region \"{}\" also exists in {}; give the {} another name", spec.name, wanted.name,
-         spec.mesh.file, wanted.region);
-  regions.push_back({wanted.name, elements_in(wanted, body.placed, body.rest.tets)});
+    fail("body \"{}\": region \"{}\" also exists in {}; give the {} another name", spec.name, requested.name,
+         spec.mesh.file, requested.region);
+  regions.push_back({requested.name, elements_in(requested, body.placed, body.rest.tets)});
   return regions.back();
 }
 
 /// Returns the material of a region: values set in the scene, else those of `base`, which is the body's
 /// material times the factors of a model file.
-fem::Material material_of(const RegionSpec& wanted, const fem::Material& base) {
+fem::Material material_of(const RegionSpec& requested, const fem::Material& base) {
   fem::Material out = base;
-  if (wanted.youngs_modulus_pa) out.youngs_modulus = *wanted.youngs_modulus_pa;
-  if (wanted.poissons_ratio) out.poissons_ratio = *wanted.poissons_ratio;
-  if (wanted.density_kg_m3) out.density = *wanted.density_kg_m3;
-  if (wanted.mass_damping_per_s) out.mass_damping = *wanted.mass_damping_per_s;
-  if (wanted.stiffness_damping_s) out.stiffness_damping = *wanted.stiffness_damping_s;
+  if (requested.youngs_modulus_pa) out.youngs_modulus = *requested.youngs_modulus_pa;
+  if (requested.poissons_ratio) out.poissons_ratio = *requested.poissons_ratio;
+  if (requested.density_kg_m3) out.density = *requested.density_kg_m3;
+  if (requested.mass_damping_per_s) out.mass_damping = *requested.mass_damping_per_s;
+  if (requested.stiffness_damping_s) out.stiffness_damping = *requested.stiffness_damping_s;
   return out;
 }
 
@@ -102,12 +102,12 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
       out.list.push_back(base);
     }
   }
-  for (const RegionSpec& wanted : spec.regions) {
-    Region& region = region_for(spec, wanted, body.regions, body);
+  for (const RegionSpec& requested : spec.regions) {
+    Region& region = region_for(spec, requested, body.regions, body);
     const auto number = static_cast<std::size_t>(&region - body.regions.data());
     region.material = static_cast<int>(out.list.size());
-    region.own_stiffness = wanted.youngs_modulus_pa.has_value();
-    out.list.push_back(material_of(wanted, number < bases.size() ? bases[number] : out.list[0]));
+    region.own_stiffness = requested.youngs_modulus_pa.has_value();
+    out.list.push_back(material_of(requested, number < bases.size() ? bases[number] : out.list[0]));
     fem::check(out.list.back(), fmt::format("{}: region \"{}\"", where, region.name).c_str());
   }
   if (body.regions.empty()) return out;

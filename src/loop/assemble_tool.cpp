@@ -12,7 +12,7 @@
 #include "palpate/tool/tool.h"
 #include "pose_bounds.h"
 #include "recorded_times.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 
@@ -38,20 +38,20 @@ tool::HandBlock hand_of(const device::HandModel& model) {
     return tool::HandBlock::Axis{p.mass, p.stiffness, arm_damping, p.damping - arm_damping, p.friction};
   };
   return {axis(model.translation, model.arm_damping), axis(model.rotation, model.arm_rotational_damping),
-          [wanted = model.wanted](double t) {
-            const device::HandleSample s = wanted(t);
+          [requested = model.requested](double t) {
+            const device::HandleSample s = requested(t);
             return tool::HandleState{s.pose, s.twist};
           }};
 }
 
 /// Adds the hand to the State, as one block coupled to the tool.
-void assemble_hand(World& world, ToolSide& side, const dynamics::BlockSpec& tool_spec) {
+void assemble_hand(World& world, ToolInstance& side, const dynamics::BlockSpec& tool_spec) {
   const scene::Description& d = world.description;
   if (d.record && d.record->energy)
     fail(
         "exchange: scheme = \"monolithic\" with a simulated hand: record.energy = true records the work of "
         "an external hand, but a simulated hand is part of the system; set it to false");
-  ToolSide::HandInState& hand = side.hand_in_state.emplace();
+  ToolInstance::HandInState& hand = side.hand_in_state.emplace();
   hand.model = device::hand_model(*side.device_spec);
   hand.hand = hand_of(hand.model);
   hand.block_id = world.state.insert(tool::hand_block(tool_spec.q_scale, tool_spec.u_scale),
@@ -64,7 +64,7 @@ void assemble_hand(World& world, ToolSide& side, const dynamics::BlockSpec& tool
 
 /// Adds the tool to the State, as one block coupled to the bodies.
 /// @param own_device  whether the device is the scene's, not a replacement
-void assemble_block(World& world, ToolSide& side, bool own_device) {
+void assemble_block(World& world, ToolInstance& side, bool own_device) {
   const ToolSpec& spec = *side.spec;
   if (spec.tick_s != world.description.tool->tick_s)
     fail(
@@ -94,7 +94,7 @@ std::unique_ptr<device::Device> own_device_of(const DeviceSpec& spec, const std:
 
 /// Warns if semi-implicit Euler diverges in the coupling alone, beyond k = 4 m/h^2 - 2 b/h
 /// (tool/fixed_tick.cpp), in translation or about the axis of the smallest moment of inertia.
-void warn_of_limit(const ToolSide& side) {
+void warn_of_limit(const ToolInstance& side) {
   const ToolSpec& spec = *side.spec;
   if (spec.integrator != "semi-implicit-euler") return;
   const Mat6 M = side.tool->mass_matrix();
@@ -119,7 +119,7 @@ void warn_of_limit(const ToolSide& side) {
 
 void assemble_tool(World& world, std::size_t hand) {
   const scene::Description& d = world.description;
-  ToolSide& side = ToolSide::of(world, hand);
+  ToolInstance& side = ToolInstance::of(world, hand);
   const bool own_device = !side.handle;
   if (own_device) {
     side.handle = own_device_of(*side.device_spec, world.folder);
@@ -136,7 +136,7 @@ void assemble_tool(World& world, std::size_t hand) {
     assemble_block(world, side, own_device);
   else if (d.exchange.scheme == "partitioned") {
     side.tool = side.another_tool(d.gravity_m_s2);
-    side.known = {side.tool->time(), side.tool->pose(), side.tool->twist()};
+    side.exchanged = {side.tool->time(), side.tool->pose(), side.tool->twist()};
     warn_of_limit(side);
   } else
     fail("exchange: unknown scheme \"{}\"{}", d.exchange.scheme,

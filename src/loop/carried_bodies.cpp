@@ -7,8 +7,8 @@ namespace palpate::loop {
 // With equal positions r = r' of a node in the tool's axes before and now, and Q the rotation of these axes,
 //     x' = p' + Q (x - p),      u' = v'(x') + Q (u - v(x)),
 // with v the velocity of the tool's material at a point.
-void carry_along(World& world, const ToolSide& side, const Pose& before, const Twist& twist_before) {
-  const KnownTool& now = side.known;
+void carry_along(World& world, const ToolInstance& side, const Pose& before, const Twist& twist_before) {
+  const ExchangedTool& now = side.exchanged;
   const Quat turn = now.pose.rotation * before.rotation.conjugate();
   auto q = world.state.q();
   auto u = world.state.u();

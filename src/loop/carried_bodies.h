@@ -1,5 +1,5 @@
 #pragma once
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 
@@ -7,6 +7,6 @@ namespace palpate::loop {
 /// their positions and velocities relative to the tool do not change. If a body is held elsewhere, too, the
 /// next step returns the held nodes.
 /// @param before  pose of the tool at the State's time; its current pose is `side.known`
-void carry_along(World& world, const ToolSide& side, const Pose& before, const Twist& twist_before);
+void carry_along(World& world, const ToolInstance& side, const Pose& before, const Twist& twist_before);
 
 }  // namespace palpate::loop

@@ -12,7 +12,7 @@
 #include "palpate/loop/stepped_run.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/content_hash.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 namespace {
@@ -84,7 +84,7 @@ std::string fingerprint(const World& world) {
 
 std::string why_no_checkpoints(const World& world, const RunOptions& options) {
   if (options.real_time) return "a run in real time follows the clock and the hand, which cannot be restored";
-  for (const auto& side : ToolSide::all(world))
+  for (const auto& side : ToolInstance::all(world))
     if (side->handle && !side->handle->can_be_archived())
       return fmt::format(
           "the device \"{}\" is moved from outside this program, and its motion cannot be restored",
@@ -115,7 +115,7 @@ RunResult run_with_checkpoints(std::unique_ptr<World>& world, const RunOptions& 
     from->archive("cost", cost);
     count_on(*from);
     run.emplace(*world, options, from->archive);
-    from->archive.check_all_given_back();
+    from->archive.check_all_restored();
   } else {
     run.emplace(*world, options);
   }

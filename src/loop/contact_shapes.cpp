@@ -35,10 +35,10 @@ std::optional<contact::ShapePoints> own_points(const Shape& shape,
     const Mat3 x = coarse.vertices(Eigen::all, coarse.faces.col(f));
     area += 0.5 * (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm();
   }
-  const double wanted = contact::shape_spacing(shape.lengths, other, error),
+  const double requested = contact::shape_spacing(shape.lengths, other, error),
                least = std::sqrt(area / (0.43 * kMostTriangles));  // triangle area: 0.43 e^2
-  if (least * least > kMostError * wanted * wanted) return {};
-  const double spacing = std::max(wanted, least);
+  if (least * least > kMostError * requested * requested) return {};
+  const double spacing = std::max(requested, least);
   return contact::ShapePoints{
       {shape.surface(spacing), shape.frame, shape.motion}, spacing, shape.onto, shape.centre};
 }

@@ -5,7 +5,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/tool/rigid_block.h"
 #include "palpate/tool/tool.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 
@@ -69,7 +69,7 @@ EnergyLedger::Dissipation EnergyLedger::dissipation() const {
   const dynamics::StateView view = world_.state.view();
   for (const auto& term : world_.system.terms())
     (term == world_.contact ? out.contact : out.bodies) += term->dissipated_power(view);
-  const auto& sides = ToolSide::all(world_);
+  const auto& sides = ToolInstance::all(world_);
   for (std::size_t i = 0; i < sides.size(); ++i) {
     if (!sides[i]->spec) continue;
     const VirtualCouplingSpec& c = sides[i]->spec->coupling;
@@ -90,29 +90,29 @@ void EnergyLedger::take_stored() {
   balance_.other =
       world_.system.potential_energy(view) - balance_.elastic - balance_.contact - other_at_start_;
   balance_.kinetic_of_tools = balance_.coupling = 0.0;
-  const auto& sides = ToolSide::all(world_);
+  const auto& sides = ToolInstance::all(world_);
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (!sides[i]->as_known) continue;
-    tool::Tool& known = *sides[i]->as_known;
-    known.set_state(world_.state.time(), world_.tool_pose(i), world_.tool_twist(i));
+    if (!sides[i]->energy_probe) continue;
+    tool::Tool& exchanged = *sides[i]->energy_probe;
+    exchanged.set_state(world_.state.time(), world_.tool_pose(i), world_.tool_twist(i));
     const Pose& handle = sides[i]->handle_now.pose;
-    balance_.kinetic_of_tools += known.kinetic_energy();
-    balance_.coupling += known.coupling_energy(handle);
+    balance_.kinetic_of_tools += exchanged.kinetic_energy();
+    balance_.coupling += exchanged.coupling_energy(handle);
     if (!sides[i]->tool) continue;  // terms of the System
-    balance_.kinetic += known.kinetic_energy();
-    balance_.other += known.potential_energy(handle);
+    balance_.kinetic += exchanged.kinetic_energy();
+    balance_.other += exchanged.potential_energy(handle);
   }
 }
 
 void EnergyLedger::make_tools() {
-  for (const auto& side : ToolSide::all(world_))
-    if (side->spec) side->as_known = side->another_tool(world_.description.gravity_m_s2);
+  for (const auto& side : ToolInstance::all(world_))
+    if (side->spec) side->energy_probe = side->another_tool(world_.description.gravity_m_s2);
 }
 
 void EnergyLedger::archive(Archive& a) {
-  if (a.gives_back()) {
+  if (a.is_restoring()) {
     make_tools();
-    hands_.resize(ToolSide::all(world_).size());
+    hands_.resize(ToolInstance::all(world_).size());
   }
   a("time", balance_.time);
   visit_energies([&](const char* name, double& value) { a(name, value); }, balance_);
@@ -135,8 +135,8 @@ void EnergyLedger::start() {
   balance_.other = 0.0;
   stored_at_start_ = balance_.stored();
   hands_.clear();
-  for (std::size_t i = 0; i < ToolSide::all(world_).size(); ++i) {
-    const ToolSide& side = ToolSide::of(world_, i);
+  for (std::size_t i = 0; i < ToolInstance::all(world_).size(); ++i) {
+    const ToolInstance& side = ToolInstance::of(world_, i);
     const device::HandleSample& handle = side.handle_now;
     double power = 0.0;
     if (side.spec)

@@ -4,7 +4,7 @@
 #include "assemble_parts.h"
 #include "palpate/scene/contact_sides.h"
 #include "palpate/scene/hands.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 namespace {
@@ -38,7 +38,7 @@ void set_friction_speed(World& world, ContactSpec& contact) {
   if (contact.friction == 0.0 || contact.friction_regularisation_m_s > 0.0) return;
   double length = HUGE_VAL;
   for (const std::string& name : {contact.first, contact.second}) {
-    if (const ToolSide* const side = ToolSide::named(world, name)) {
+    if (const ToolInstance* const side = ToolInstance::named(world, name)) {
       contact.friction_regularisation_m_s = tool_friction_speed(world, *side->spec);
       return;
     }

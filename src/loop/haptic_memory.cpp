@@ -1,13 +1,13 @@
 #include "palpate/loop/haptic_memory.h"
 
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 
 void HapticMemory::period(World& world, double t) {
   if (t > 0.0) return;
   records_.clear();
-  for (const auto& side : ToolSide::all(world)) {
+  for (const auto& side : ToolInstance::all(world)) {
     const device::HandleSample& handle = side->handle_now;
     TickRecord& start = records_.emplace_back().start;
     start.handle = handle.pose;

@@ -5,7 +5,7 @@
 #include "palpate/core/error.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/table_file.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 namespace {
@@ -45,7 +45,7 @@ void visit_tick(F&& f, Tick& t) {
   visit_pose(f, "tool", t.tool);
   visit_pair(f, "tool_angular", t.tool_twist.angular, "_rad_s", "tool_linear", t.tool_twist.linear, "_m_s");
   visit_pair(f, "contact_torque", t.contact.moment, "_n_m", "contact_force", t.contact.force, "_n");
-  visit_pair(f, "wanted_torque", t.wanted.moment, "_n_m", "wanted_force", t.wanted.force, "_n");
+  visit_pair(f, "wanted_torque", t.requested.moment, "_n_m", "wanted_force", t.requested.force, "_n");
   visit_pair(f, "device_torque", t.device.moment, "_n_m", "device_force", t.device.force, "_n");
   visit_pair(f, "motors_torque", t.motors.moment, "_n_m", "motors_force", t.motors.force, "_n");
 }
@@ -121,11 +121,11 @@ void visit_point(F&& f, Row& r) {
 /// Rows of the tables of models; the version identifies the exchange.
 struct ModelRow {
   std::uint64_t version = 0;
-  contact::TouchModel model;  ///< Its points are separate rows.
+  contact::ReducedContactModel model;  ///< Its points are separate rows.
 };
 struct PointRow {
   std::uint64_t version = 0;
-  contact::TouchModel::Point point;
+  contact::ReducedContactModel::Point point;
 };
 
 template <class Visit, class Record>
@@ -164,24 +164,24 @@ std::vector<Record> read(Visit visit, Record empty, const std::string& path, con
 enum Tables : std::size_t { kStart, kTicks, kExchanges, kModels, kPoints };
 
 /// Reads the models, one per exchange; empty if no exchange has points.
-std::vector<contact::TouchModel> read_models(const std::string& path, std::size_t exchanges) {
-  std::vector<contact::TouchModel> out;
+std::vector<contact::ReducedContactModel> read_models(const std::string& path, std::size_t exchanges) {
+  std::vector<contact::ReducedContactModel> out;
   const std::vector<ModelRow> models = read(kVisitModel, ModelRow{}, path, "models");
   if (models.empty()) return out;
   out.resize(exchanges);
-  const auto model_of = [&](std::uint64_t version) -> contact::TouchModel& {
+  const auto model_of = [&](std::uint64_t version) -> contact::ReducedContactModel& {
     if (version == 0 || version > exchanges)
       fail("{}: a contact model refers to exchange {}, which was not recorded", path, version);
     return out[version - 1];
   };
   for (const ModelRow& row : models) {
-    contact::TouchModel& model = model_of(row.version);
+    contact::ReducedContactModel& model = model_of(row.version);
     model = row.model;
     model.points = 0;
   }
   for (const PointRow& row : read(kVisitPoint, PointRow{}, path, "points")) {
-    contact::TouchModel& model = model_of(row.version);
-    if (model.points == contact::TouchModel::kMostPoints)
+    contact::ReducedContactModel& model = model_of(row.version);
+    if (model.points == contact::ReducedContactModel::kMostPoints)
       fail("{}: exchange {} has more contact points than this version of palpate supports", path,
            row.version);
     model.point[static_cast<std::size_t>(model.points++)] = row.point;
@@ -218,7 +218,7 @@ store::TableFile::Journal HapticRecorder::place() { return impl_->file.place(); 
 
 void HapticRecorder::period(World& world, double t) {
   if (t == 0.0) {
-    const ToolSide& side = ToolSide::of(world, impl_->hand);
+    const ToolInstance& side = ToolInstance::of(world, impl_->hand);
     StartRow start;
     start.tick.handle = side.handle_now.pose;
     start.tick.handle_twist = side.handle_now.twist;

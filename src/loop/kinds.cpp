@@ -36,7 +36,7 @@ void add_hand(const std::string& prefix, scene::Kinds& out) {
                              .selector = "integrator",
                              .what = "tool integrator",
                              .kinds = {},
-                             .unsaid = [](const Description&) { return ToolSpec{}.integrator; }};
+                             .default_kind = [](const Description&) { return ToolSpec{}.integrator; }};
   for (const tool::ToolIntegratorInfo& info : tool::tool_integrators())
     tool_integrators.kinds.push_back({info.name});
   // Without Simbody there are none: assemble() reports the package that provides tools.
@@ -45,7 +45,7 @@ void add_hand(const std::string& prefix, scene::Kinds& out) {
                  .selector = "type",
                  .what = "device type",
                  .kinds = kinds_of(device::device_registry()),
-                 .unsaid = [](const Description&) { return DeviceSpec{}.type; }});
+                 .default_kind = [](const Description&) { return DeviceSpec{}.type; }});
   KindTable profiles{
       .table = prefix + "device", .selector = "profile", .what = "device profile", .kinds = {}};
   for (const device::DeviceProfile& one : device::device_profiles()) profiles.kinds.push_back({one.name});
@@ -54,7 +54,7 @@ void add_hand(const std::string& prefix, scene::Kinds& out) {
                  .selector = "kind",
                  .what = "motion",
                  .kinds = kinds_of(device::motion_registry()),
-                 .unsaid = [](const Description&) { return MotionSpec{}.kind; }});
+                 .default_kind = [](const Description&) { return MotionSpec{}.kind; }});
 }
 
 scene::Kinds make_kinds() {
@@ -63,17 +63,18 @@ scene::Kinds make_kinds() {
                  .selector = "name",
                  .what = "integrator",
                  .kinds = kinds_of(integrate::stepper_registry()),
-                 .unsaid = [](const Description& d) { return d.integrator.name; },
+                 .default_kind = [](const Description& d) { return d.integrator.name; },
                  .lists = {"compare.haptic.integrators"}});
-  out.push_back({.table = "integrator",
-                 .selector = "linear_solver",
-                 .what = "linear solver",
-                 .kinds = kinds_of(linear::linear_solver_registry()),
-                 .unsaid = [](const Description& d) { return integrate::linear_solver_of(d.integrator); }});
+  out.push_back(
+      {.table = "integrator",
+       .selector = "linear_solver",
+       .what = "linear solver",
+       .kinds = kinds_of(linear::linear_solver_registry()),
+       .default_kind = [](const Description& d) { return integrate::linear_solver_of(d.integrator); }});
   out.push_back({.table = "body",
                  .selector = "material",
                  .kinds = kinds_of(fem::law_registry()),
-                 .unsaid = [](const Description&) { return SoftBodySpec{}.material; }});
+                 .default_kind = [](const Description&) { return SoftBodySpec{}.material; }});
   out.push_back(mesh_kinds("body.mesh", kinds_of(mesh::tet_generators())));
   for (const char* table : {"tool.mesh", "hand.tool.mesh"})
     out.push_back(mesh_kinds(table, kinds_of(mesh::surface_generators())));
@@ -84,7 +85,7 @@ scene::Kinds make_kinds() {
   KindTable methods{.table = "contact",
                     .selector = "method",
                     .kinds = kinds_of(contact::method_registry()),
-                    .unsaid = [](const Description&) { return ContactSpec{}.method; },
+                    .default_kind = [](const Description&) { return ContactSpec{}.method; },
                     .lists = {"compare.contact_methods"}};
   for (const contact::AbsentMethod& one : contact::absent_methods())
     methods.absent.push_back({one.name, one.answer});
@@ -92,20 +93,20 @@ scene::Kinds make_kinds() {
   out.push_back({.table = "contact",
                  .selector = "spring",
                  .kinds = kinds_of(contact::spring_registry()),
-                 .unsaid = [](const Description&) { return ContactSpec{}.spring; }});
+                 .default_kind = [](const Description&) { return ContactSpec{}.spring; }});
   out.push_back({.table = "contact",
                  .selector = "law",
                  .kinds = kinds_of(contact::law_registry()),
-                 .unsaid = [](const Description&) { return ContactSpec{}.law; }});
+                 .default_kind = [](const Description&) { return ContactSpec{}.law; }});
   out.push_back(
       {.table = "exchange",
        .selector = "scheme",
        .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error"})}, {"monolithic"}},
-       .unsaid = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
+       .default_kind = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
   out.push_back({.table = "exchange",
                  .selector = "tunnelling",
                  .kinds = {{"report"}, {"substep", part_keys({"shortest_refresh_s"})}},
-                 .unsaid = [](const Description&) { return scene::CosimulationSpec{}.tunnelling; }});
+                 .default_kind = [](const Description&) { return scene::CosimulationSpec{}.tunnelling; }});
   for (const std::string prefix : {"", "hand."}) add_hand(prefix, out);
   return out;
 }

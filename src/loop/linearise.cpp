@@ -8,7 +8,7 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/tool/tool.h"
-#include "step_answer.h"
+#include "reduced_step.h"
 
 namespace palpate::loop {
 
@@ -71,15 +71,15 @@ void known_motion(World& world, double H, VecX& s, VecX& w) {
 
 // Another tool continues with its twist v, and the implicit step uses its position at the end, H later:
 //     f1 = ... - K_no H v,     so that H f gains H^2 rate with rate = -K_no v.
-VecX rate_by_other_tools(const World& world, const ToolSide& mine) {
+VecX rate_by_other_tools(const World& world, const ToolInstance& mine) {
   VecX rate;
-  for (const auto& other : ToolSide::all(world)) {
+  for (const auto& other : ToolInstance::all(world)) {
     if (other.get() == &mine || other->frame_index < 0) continue;
     contact::FrameLinearisation c;
     world.contact->linearise(world.state.view(), other->frame_index, c, contact::Partners::kNodes);
     if (c.active == 0) continue;
     Vec6 v;
-    v << other->known.twist.angular, other->known.twist.linear;
+    v << other->exchanged.twist.angular, other->exchanged.twist.linear;
     if (rate.size() == 0) rate = VecX::Zero(world.state.layout().u_size);
     rate.head(c.K_body.rows()) -= c.K_body * v;
   }
@@ -104,7 +104,7 @@ VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w, const
   return r - H * stiff;
 }
 
-dynamics::LinearSolver* factored(const dynamics::System& system, ToolSide& side) {
+dynamics::LinearSolver* factored(const dynamics::System& system, ToolInstance& side) {
   if (!side.condenser) {
     counters::count("loop.condenser");
     side.condenser = linear::make_linear_solver(system.symmetric() ? "cholmod" : "umfpack");
@@ -122,7 +122,8 @@ dynamics::LinearSolver* factored(const dynamics::System& system, ToolSide& side)
 namespace {
 
 /// Computes the response after a time H. Returns false if the step matrix has no factor.
-bool answer_after(World& world, ToolSide& side, double H, const contact::FrameLinearisation& c, Answer& out) {
+bool answer_after(World& world, ToolInstance& side, double H, const contact::FrameLinearisation& c,
+                  Answer& out) {
   world.system.step_matrix(world.state.view(), 1.0, H, H * H, side.condensed_matrix);
   dynamics::LinearSolver* solver = factored(world.system, side);
   if (!solver) return false;
@@ -173,7 +174,7 @@ bool answer_after(World& world, ToolSide& side, double H, const contact::FrameLi
 // periods of 5 and 2.5 ms. A stiff contact that the last period has left out of balance is relaxed within the
 // first tick, as in the implicit step of the bodies; a line that began at the present wrench would press with
 // it for half the period. Without stiffness, the line begins at the present wrench to O(tick^2).
-bool condense(World& world, ToolSide& side, double period, const contact::FrameLinearisation& c,
+bool condense(World& world, ToolInstance& side, double period, const contact::FrameLinearisation& c,
               dynamics::LinearisedContact& record) {
   const double tick = side.spec->tick_s;
   Answer last, first;
@@ -181,7 +182,7 @@ bool condense(World& world, ToolSide& side, double period, const contact::FrameL
   Vec6 F0 = last.wrench, F1 = Vec6::Zero();
   if (tick < period * (1.0 - 1e-9)) {
     if (!answer_after(world, side, tick, c, first)) return false;
-    const Twist twist = side.known.twist;
+    const Twist twist = side.exchanged.twist;
     Vec6 v0;
     v0 << twist.angular, twist.linear;
     const Vec6 after_tick = first.wrench + tick * (first.J * v0),
@@ -203,14 +204,14 @@ bool condense(World& world, ToolSide& side, double period, const contact::FrameL
 ContactRecord linearise_contact(World& world, std::uint64_t version, double period_s, long& frozen_fallbacks,
                                 std::size_t hand) {
   counters::count("loop.exchange_record");
-  ToolSide& side = ToolSide::of(world, hand);
+  ToolInstance& side = ToolInstance::of(world, hand);
   ContactRecord out;
   dynamics::LinearisedContact& record = out.linear;
   record.version = version;
   record.time = world.state.time();
   if (!side.trajectory) return out;
-  const Twist v0 = side.known.twist;
-  record.x0 = flat(side.known.pose);
+  const Twist v0 = side.exchanged.twist;
+  record.x0 = flat(side.exchanged.pose);
   Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
   if (side.touch) {
     frozen_fallbacks += !side.touch->reduce(world, side, period_s, out.touch);

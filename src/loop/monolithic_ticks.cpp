@@ -1,7 +1,7 @@
 #include "monolithic_ticks.h"
 
 #include "palpate/core/error.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 /// numbers.
 constexpr double kSameTick = 1e-6;
 
-TickRecord tick_of(const World& world, const ToolSide& side, double t, const dynamics::StateView& state) {
+TickRecord tick_of(const World& world, const ToolInstance& side, double t, const dynamics::StateView& state) {
   const dynamics::Block& block = *state.layout->find(side.block_id);
   const auto q = state.q.segment<7>(block.q_offset);
   const auto u = state.u.segment<6>(block.u_offset);
@@ -22,7 +22,7 @@ TickRecord tick_of(const World& world, const ToolSide& side, double t, const dyn
     const tool::HandleState handle = tool::hand_motion(state, hand->block_id, hand->hand);
     tick.handle = handle.pose;
     tick.handle_twist = handle.twist;
-    tick.switches = hand->model.wanted(t).switches;
+    tick.switches = hand->model.requested(t).switches;
   }
   if (side.frame_index >= 0) tick.contact = world.contact->frame_wrench(state, side.frame_index);
   return tick;
@@ -67,8 +67,8 @@ void MonolithicTicks::stepped(const dynamics::Stepper& stepper, double t0, doubl
 
 void MonolithicTicks::emit_at(double t, const dynamics::StateView& state) {
   ++count_;
-  for (std::size_t i = 0; i < ToolSide::all(world_).size(); ++i)
-    emit_(i, tick_of(world_, ToolSide::of(world_, i), t, state));
+  for (std::size_t i = 0; i < ToolInstance::all(world_).size(); ++i)
+    emit_(i, tick_of(world_, ToolInstance::of(world_, i), t, state));
 }
 
 }  // namespace palpate::loop

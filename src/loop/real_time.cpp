@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "body_side.h"
+#include "body_loop.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/spsc_ring.h"
@@ -60,7 +60,7 @@ float seconds(std::int64_t ns) { return static_cast<float>(1e-9 * static_cast<do
 
 class RealTime {
  public:
-  RealTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result)
+  RealTime(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result)
       : world_(world),
         bodies_(bodies),
         options_(options),
@@ -71,7 +71,7 @@ class RealTime {
         tick_ns_(std::llround(1e9 * tick_s_)),
         count_(static_cast<long>(per_period_) * bodies.periods()),
         queue_(kQueue) {
-    for (const auto& side : ToolSide::all(world)) hands_.emplace_back(world.description, *side);
+    for (const auto& side : ToolInstance::all(world)) hands_.emplace_back(world.description, *side);
     groups_ = TickGroup::all(hands_);
     contact_of_.resize(hands_.size());
     for (const TickGroup& group : groups_)
@@ -100,7 +100,7 @@ class RealTime {
     bodies_.query();
     publish();
     if (world_.stepper) world_.stepper->prepare(bodies_.period());
-    for (const auto& side : ToolSide::all(world_))
+    for (const auto& side : ToolInstance::all(world_))
       if (side->touch) side->touch->prepare(world_, bodies_.period());
     std::thread thread([this] { tick_to_the_end(); });
     ready_.wait();
@@ -113,7 +113,7 @@ class RealTime {
     }
     quit_.store(true);
     thread.join();
-    told_to_stop();
+    stop_requested();
     drain(ticked_.load());
     if (failure_) std::rethrow_exception(failure_);
     if (result_.status.ok()) result_.status = tick_status_;
@@ -125,13 +125,13 @@ class RealTime {
  private:
   /// Returns false if the run was stopped before it began.
   bool await_devices() {
-    for (const auto& side : ToolSide::all(world_)) {
+    for (const auto& side : ToolInstance::all(world_)) {
       side->handle->open();
       const std::string awaited = side->handle->awaited();
       if (awaited.empty()) continue;
       if (options_.waiting) options_.waiting(awaited);
       side->handle->await(0.0, options_.stop);
-      if (told_to_stop()) return false;
+      if (stop_requested()) return false;
     }
     return true;
   }
@@ -177,7 +177,7 @@ class RealTime {
           return hands_[hand].records.latest();
         });
       for (timed.hand = 0; timed.hand < hands_.size(); ++timed.hand) {
-        TickSide& ticks = hands_[timed.hand].ticks;
+        HapticLoop& ticks = hands_[timed.hand].ticks;
         if (ramps_in) ticks.ramp_in();
         tick_status_ = ticks.tick(t, tick_s_, *contact_of_[timed.hand], timed.record);
         if (!tick_status_.ok()) return;
@@ -194,26 +194,26 @@ class RealTime {
   /// Makes one exchange: waits for the ticks of a period, follows them, and publishes. Returns false at the
   /// end of the run.
   bool one_step() {
-    const long wanted = done_ + per_period_;
-    if (told_to_stop()) return false;
-    sleep_until_ns(start_ns_ + wanted * tick_ns_);
+    const long requested = done_ + per_period_;
+    if (stop_requested()) return false;
+    sleep_until_ns(start_ns_ + requested * tick_ns_);
     long ticked = 0;
-    for (bool over = false; (ticked = ticked_.load(std::memory_order_acquire)) < wanted;) {
+    for (bool over = false; (ticked = ticked_.load(std::memory_order_acquire)) < requested;) {
       if (over) return false;
       over = over_.load(std::memory_order_acquire);
-      if (told_to_stop()) return false;
+      if (stop_requested()) return false;
       sleep_until_ns(now_ns() + 20'000);
     }
     if (interrupt_.load()) {
-      if (!told_to_stop()) give_up_steps(done_);
+      if (!stop_requested()) give_up_steps(done_);
       return false;
     }
     const long behind = (ticked - done_) / per_period_;
     const long dropped = std::max(0L, behind - kStretched), taken = behind - dropped;
-    if (dropped > 0) stand_still(dropped);
+    if (dropped > 0) hold_bodies(dropped);
     const long from = done_;
     advance(taken);
-    if (result_.status.status == dynamics::StepStatus::kInterrupted && !told_to_stop()) {
+    if (result_.status.status == dynamics::StepStatus::kInterrupted && !stop_requested()) {
       result_.status = {};
       give_up_steps(from);
       return false;
@@ -231,7 +231,7 @@ class RealTime {
       hands_[i].records.publish(bodies_.linearise(i, bodies_.period()));
   }
 
-  bool told_to_stop() {
+  bool stop_requested() {
     result_.stopped = options_.stop && options_.stop->load();
     return result_.stopped;
   }
@@ -244,15 +244,15 @@ class RealTime {
     if (done_ <= from) return;
     out_.dropped_periods += (done_ - from) / per_period_;
     drain(done_);
-    bodies_.stand_still(time_of(done_));
+    bodies_.hold_bodies(time_of(done_));
     bodies_.close_period(time_of(done_));
   }
 
-  void stand_still(long periods) {
+  void hold_bodies(long periods) {
     out_.dropped_periods += periods;
     done_ += periods * per_period_;
     drain(done_);
-    bodies_.stand_still(time_of(done_));
+    bodies_.hold_bodies(time_of(done_));
     bodies_.restart_path();
     bodies_.query();
   }
@@ -273,7 +273,7 @@ class RealTime {
     for (TimedTick timed; drained_ < all && queue_.pop(timed);) {
       drained_ = (timed.number - 1) * static_cast<long>(hands_.size()) + static_cast<long>(timed.hand) + 1;
       bodies_.follow(timed.hand, timed.record.time, timed.record.tool, timed.record.tool_twist);
-      bodies_.felt(timed.hand, timed.record);
+      bodies_.record_tick(timed.hand, timed.record);
       if (timed.hand + 1 < hands_.size()) continue;
       out_.lateness_s.push_back(timed.lateness_s);
       out_.work_s.push_back(timed.work_s);
@@ -284,13 +284,13 @@ class RealTime {
   }
 
   struct Hand {
-    Hand(const scene::Description& d, ToolSide& side) : ticks(d, side) {}
-    TickSide ticks;
+    Hand(const scene::Description& d, ToolInstance& side) : ticks(d, side) {}
+    HapticLoop ticks;
     dynamics::Exchange<ContactRecord> records;
   };
 
   World& world_;
-  BodySide& bodies_;
+  BodyLoop& bodies_;
   const RunOptions& options_;
   RunResult& result_;
   RealTimeResult& out_;
@@ -314,7 +314,7 @@ class RealTime {
 
 }  // namespace
 
-void run_in_real_time(World& world, BodySide& bodies, const RunOptions& options, RunResult& result) {
+void run_in_real_time(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result) {
   check_clock(world, true);
   RealTime(world, bodies, options, result).run();
 }

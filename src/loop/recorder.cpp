@@ -141,7 +141,7 @@ struct Recorder::Impl {
 /// Brings all recorded data to disk and returns the positions: no checkpoint is ahead of the files.
 Places Recorder::Impl::places() {
   Places at;
-  const auto safe = [&](const std::string& name) { store::bring_to_disk(path(name)); };
+  const auto safe = [&](const std::string& name) { store::sync_file(path(name)); };
   if (states) at.states = states->place(), safe(kRunFile);
   if (bones) at.bones = bones->place(), safe(kBoneFile);
   if (energy) at.energy = energy->place(), safe(kEnergyFile);
@@ -150,7 +150,7 @@ Places Recorder::Impl::places() {
     at.haptic.push_back(haptic[i]->place());
     safe(store::TableFile::journal_path(names[i]));
   }
-  for (const auto& one : forces) at.forces.push_back(one->place()), store::bring_to_disk(one->path());
+  for (const auto& one : forces) at.forces.push_back(one->place()), store::sync_file(one->path());
   return at;
 }
 
@@ -217,7 +217,7 @@ void Recorder::archive(Archive& a) {
   a("seen", m.seen);
   if (!m.description.record) return;
   Places at;
-  if (!a.gives_back()) at = m.places();
+  if (!a.is_restoring()) at = m.places();
   a("states", at.states.steps);
   a("states_content", at.states.content);
   a.list("forces", at.forces, [&](store::CsvWriter::Place& place) { place.archive(a); });
@@ -227,7 +227,7 @@ void Recorder::archive(Archive& a) {
   });
   a("bones", at.bones);
   a("energy", at.energy);
-  if (a.gives_back()) m.open(&at);
+  if (a.is_restoring()) m.open(&at);
 }
 
 Recorder::~Recorder() = default;

@@ -78,7 +78,7 @@ class RecordedHand : public device::Device {
 
 /// Returns the hands whose tools meet that hand's tool, including it, in their order.
 std::vector<std::size_t> hands_with(const scene::Description& d, std::size_t hand) {
-  const std::vector<std::size_t> first = scene::meeting_tools(d);
+  const std::vector<std::size_t> first = scene::connected_tools(d);
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < first.size(); ++i)
     if (first[i] == first.at(hand)) out.push_back(i);
@@ -152,7 +152,7 @@ namespace {
 
 /// Hand that repeats its recorded motion.
 struct Retraced {
-  Retraced(const scene::Description& recorded, const World& world, const HapticRecord& of, ToolSide& side)
+  Retraced(const scene::Description& recorded, const World& world, const HapticRecord& of, ToolInstance& side)
       : record(of),
         laws(laws_of(recorded, world, *side.spec)),
         ticks(*side.spec, side, of.models.empty() ? nullptr : &laws) {
@@ -181,7 +181,7 @@ struct Retraced {
   }
   const HapticRecord& record;
   const std::vector<ContactSpec> laws;
-  TickSide ticks;
+  HapticLoop ticks;
   ContactRecord contact{};
 };
 
@@ -204,7 +204,7 @@ std::vector<TickRecord> retrace(const scene::Description& description,
   const auto world = assemble(alone, std::move(devices));
   std::deque<Retraced> retraced;
   for (std::size_t i = 0; i < hands.size(); ++i) {
-    retraced.emplace_back(description, *world, records[hands[i]], ToolSide::of(*world, i));
+    retraced.emplace_back(description, *world, records[hands[i]], ToolInstance::of(*world, i));
     retraced.back().ticks.start(0.0);
   }
   std::vector<TickGroup> group = TickGroup::all(retraced);

@@ -5,11 +5,11 @@
 #include "assemble_parts.h"
 #include "contact_shapes.h"
 #include "palpate/core/error.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 
-std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolSide& side) {
+std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolInstance& side) {
   if (side.motion) return side.motion;
   if (world.monolithic())
     side.motion = contact::block_frame(side.block_id);
@@ -97,11 +97,11 @@ std::unique_ptr<contact::SampleSource> tool_on_tool(const World& world, const Ri
 /// @param make  make(tools in order, contact)
 template <class Make>
 std::unique_ptr<contact::SampleSource> make_for_ticks_and_world(World& world,
-                                                                const std::vector<ToolSide*>& sides,
+                                                                const std::vector<ToolInstance*>& sides,
                                                                 const ContactSpec& spec, const Make& make) {
   std::vector<RigidSide> in_ticks, in_world;
   const scene::CosimulationSpec& exchange = world.description.exchange;
-  for (ToolSide* side : sides) {
+  for (ToolInstance* side : sides) {
     const auto motion = tool_motion(world, *side);
     const double look_ahead = side->trajectory ? exchange.exchange_period_s : exchange.contact_refresh_s;
     in_world.push_back({*side->spec, side->frame_index, motion, look_ahead});
@@ -126,8 +126,8 @@ const ObstacleSpec* obstacle_named(const World& world, const std::string& name) 
 }  // namespace
 
 std::unique_ptr<contact::SampleSource> rigid_source(World& world, const ContactSpec& spec) {
-  ToolSide *const first = ToolSide::named(world, spec.first), *const second =
-                                                                  ToolSide::named(world, spec.second);
+  ToolInstance *const first = ToolInstance::named(world, spec.first), *const second = ToolInstance::named(
+                                                                          world, spec.second);
   const ObstacleSpec* const obstacle = obstacle_named(world, spec.second);
   if (first && obstacle)
     return make_for_ticks_and_world(world, {first}, spec,
@@ -141,21 +141,21 @@ std::unique_ptr<contact::SampleSource> rigid_source(World& world, const ContactS
                                   });
 }
 
-void make_rigid_touch(World& world) {
+void make_rigid_contact_solver(World& world) {
   const scene::Description& d = world.description;
   if (world.monolithic()) return;
-  const std::vector<std::size_t> first = scene::meeting_tools(d);
+  const std::vector<std::size_t> first = scene::connected_tools(d);
   for (std::size_t i = 0; i < first.size(); ++i) {
-    ToolSide& side = ToolSide::of(world, i);
+    ToolInstance& side = ToolInstance::of(world, i);
     const bool meets = std::any_of(d.contacts.begin(), d.contacts.end(), [&](const ContactSpec& contact) {
       const auto with = [&](const std::string& name) {
-        return obstacle_named(world, name) || ToolSide::named(world, name);
+        return obstacle_named(world, name) || ToolInstance::named(world, name);
       };
       return (contact.first == side.name && with(contact.second)) ||
              (contact.second == side.name && with(contact.first));
     });
     if (!meets) continue;
-    const ToolSide& leader = ToolSide::of(world, first[i]);
+    const ToolInstance& leader = ToolInstance::of(world, first[i]);
     if (side.spec->tick_s != leader.spec->tick_s)
       at_place(world, scene::hands_of(d)[i].tool_key + ".tick_s", "", [&] {
         fail(
@@ -166,7 +166,7 @@ void make_rigid_touch(World& world) {
     side.rigid =
         leader.rigid
             ? leader.rigid
-            : std::make_shared<RigidTouch>(std::max(d.exchange.contact_refresh_s, side.spec->tick_s));
+            : std::make_shared<RigidContactSolver>(std::max(d.exchange.contact_refresh_s, side.spec->tick_s));
     side.number_in_rigid = side.rigid->add(*side.spec);
   }
 }

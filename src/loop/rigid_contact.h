@@ -6,18 +6,18 @@
 
 namespace palpate::loop {
 
-struct ToolSide;
+struct ToolInstance;
 
-/// Creates the RigidTouch objects through which tools with ticks contact obstacles and each other, one per
-/// group of tools that meet.
-void make_rigid_touch(World& world);
+/// Creates the RigidContactSolver objects through which tools with ticks contact obstacles and each other,
+/// one per group of tools that meet.
+void make_rigid_contact_solver(World& world);
 
 /// Returns the frame of a tool in contact: its block of the State, or its motion over one exchange period.
-std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolSide& side);
+std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolInstance& side);
 
 /// Returns contact of a tool with an obstacle or another tool; null for other pairs. Ticks use a separate
-/// contact in the RigidTouch; the returned one, on the bodies' side, follows the paths of the tools and
-/// serves energies and pictures.
+/// contact in the RigidContactSolver; the returned one, on the bodies' side, follows the paths of the tools
+/// and serves energies and pictures.
 /// @param spec  its names in canonical order (scene::order_sides)
 std::unique_ptr<contact::SampleSource> rigid_source(World& world, const ContactSpec& spec);
 

@@ -1,6 +1,6 @@
 #include "palpate/loop/run.h"
 
-#include "body_side.h"
+#include "body_loop.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/workers.h"
@@ -16,7 +16,7 @@ double period_of(const scene::Description& d) {
 void check_clock(const World& world, bool real_time) {
   const scene::Description& d = world.description;
   if (!real_time) {
-    for (const auto& side : ToolSide::all(world))
+    for (const auto& side : ToolInstance::all(world))
       if (side->handle && side->handle->is_live())
         fail(
             "device: type = \"{}\" is driven from outside, by the wall clock; run in real time (palpate run "
@@ -38,7 +38,7 @@ void check_clock(const World& world, bool real_time) {
 RunResult run(World& world, const RunOptions& options) {
   const workers::Count threads(world.description.integrator.threads);
   RunResult result;
-  BodySide bodies(world, options, result);
+  BodyLoop bodies(world, options, result);
   const double wall = wall_seconds(), cpu = cpu_seconds();
   if (options.real_time)
     run_in_real_time(world, bodies, options, result);

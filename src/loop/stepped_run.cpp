@@ -21,7 +21,7 @@ struct SteppedRun::Impl {
   World& world;
   RunOptions options;
   RunResult result;
-  BodySide bodies;
+  BodyLoop bodies;
   VirtualTime clock;
   bool over = false;
 };
@@ -59,9 +59,9 @@ int SteppedRun::periods_done() const { return impl_->clock.periods(); }
 int SteppedRun::periods() const { return impl_->bodies.periods(); }
 
 void SteppedRun::archive(Archive& a) {
-  PALPATE_CHECK(!a.gives_back(), "a SteppedRun can only be restored by its constructor");
+  PALPATE_CHECK(!a.is_restoring(), "a SteppedRun can only be restored by its constructor");
   const workers::Count threads(impl_->world.description.integrator.threads);
-  impl_->bodies.look_once_more();
+  impl_->bodies.query_before_checkpoint();
   impl_->clock.archive(a);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "model_reduction.h"
 #include "palpate/contact/gpu_device.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/clock.h"
@@ -15,8 +16,7 @@
 #include "palpate/scene/hands.h"
 #include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"
-#include "tool_side.h"
-#include "touch_reduction.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 namespace {
@@ -133,7 +133,7 @@ void add_jumps(store::Summary& summary, const World& world) {
 void add_answers(store::Summary& summary, const World& world) {
   for (const AnswerError& e : answer_errors_of(world))
     summary.section("answers to " + e.tool).values = {
-        {"wanted_error", e.wanted},
+        {"wanted_error", e.requested},
         {"largest_error_bound", e.largest},
         {"mean_error_bound", e.mean},
         {"exchanges", static_cast<long long>(e.exchanges)},
@@ -281,15 +281,15 @@ double depth_within_itself(const Body& body) {
 }  // namespace
 
 std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand) {
-  const ToolSide& side = ToolSide::of(world, hand);
-  return side.handle ? side.handle->tallies() : std::vector<std::pair<std::string, long long>>{};
+  const ToolInstance& side = ToolInstance::of(world, hand);
+  return side.handle ? side.handle->counters() : std::vector<std::pair<std::string, long long>>{};
 }
 
 std::vector<AnswerError> answer_errors_of(const World& world) {
   std::vector<AnswerError> out;
-  for (const auto& side : ToolSide::all(world)) {
-    if (!side->touch || side->touch->missing().exchanges == 0) continue;
-    const AnswersMissing& m = side->touch->missing();
+  for (const auto& side : ToolInstance::all(world)) {
+    if (!side->touch || side->touch->error_bound().exchanges == 0) continue;
+    const ReductionError& m = side->touch->error_bound();
     out.push_back({side->name, world.description.exchange.linearisation_error, m.largest,
                    m.sum / static_cast<double>(m.exchanges), m.exchanges, m.beyond_wanted, m.factored});
   }

@@ -29,20 +29,20 @@ std::vector<TickGroup> TickGroup::of(const std::vector<Member>& all) {
 // step of the tools under the records; the scheme of each tool then uses the resulting record. The motion of
 // the other tools within the tick is treated the same way.
 void TickGroup::find(double h) {
-  bool rubs = false;
+  bool has_friction = false;
   motions_.clear();
   for (const Member& member : members_) {
-    rubs = rubs || member.ticks->rubs();
+    has_friction = has_friction || member.ticks->has_friction();
     const tool::Tool& tool = *member.ticks->side().tool;
     motions_.push_back({tool.pose(), tool.twist()});
   }
   if (rigid_) rigid_->begin_tick(members_.front().ticks->side().tool->time(), motions_);
   const bool touches = rigid_ && rigid_->touches();
-  if (rubs || (touches && (rigid_->rubs() || members_.size() > 1)))
+  if (has_friction || (touches && (rigid_->has_friction() || members_.size() > 1)))
     while (!solve_and_improve(h)) {
       // All contacts are linearised about the same guess of the end.
-      for (const Member& member : members_) member.ticks->again();
-      if (touches) rigid_->again();
+      for (const Member& member : members_) member.ticks->relinearise();
+      if (touches) rigid_->relinearise();
     }
   for (std::size_t i = 0; i < members_.size(); ++i) {
     found_[i] = members_[i].ticks->contact_with_bodies();
@@ -59,11 +59,11 @@ bool TickGroup::solve_and_improve(double h) {
         h, touches ? rigid_->about_now(static_cast<int>(i), of_bodies) : of_bodies);
   }
   if (touches) rigid_->solve(h, equations_);
-  bool done = !touches || rigid_->improve();
+  bool done = !touches || rigid_->update_friction();
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const Vec6 change = touches ? rigid_->change(static_cast<int>(i))
                                 : Vec6(equations_[i].A.partialPivLu().solve(equations_[i].r));
-    done = members_[i].ticks->improve(h, change) && done;
+    done = members_[i].ticks->update_friction(h, change) && done;
   }
   return done;
 }

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "tick_side.h"
+#include "haptic_loop.h"
 
 namespace palpate::loop {
 
@@ -12,10 +12,10 @@ class TickGroup {
   /// One hand of the group.
   struct Member {
     std::size_t hand;  ///< In the numbering of scene::hands_of().
-    TickSide* ticks;
+    HapticLoop* ticks;
   };
-  /// @param members  pointees must outlive the group; hands that share a RigidTouch are complete and in its
-  /// order
+  /// @param members  pointees must outlive the group; hands that share a RigidContactSolver are complete and
+  /// in its order
   explicit TickGroup(std::vector<Member> members);
   /// Returns one group per set of hands that meet, ordered by the first hand of each.
   /// @param hands  all hands, each with a member `ticks`; they must outlive the groups
@@ -44,7 +44,7 @@ class TickGroup {
   bool solve_and_improve(double h);
 
   std::vector<Member> members_;
-  RigidTouch* rigid_;  ///< null if these tools contact only bodies
+  RigidContactSolver* rigid_;  ///< null if these tools contact only bodies
   std::vector<dynamics::LinearisedContact> found_;
   std::vector<dynamics::RigidMotion> motions_;
   std::vector<tool::StepEquation> equations_;

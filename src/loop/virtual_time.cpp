@@ -4,7 +4,7 @@
 
 namespace palpate::loop {
 
-VirtualTime::VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result)
+VirtualTime::VirtualTime(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result)
     : world_(world), bodies_(bodies), options_(options), result_(result) {
   make_hands();
   for (Hand& hand : hands_) hand.ticks.start(0.0);
@@ -12,7 +12,7 @@ VirtualTime::VirtualTime(World& world, BodySide& bodies, const RunOptions& optio
   bodies.start();
 }
 
-VirtualTime::VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result,
+VirtualTime::VirtualTime(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result,
                          Archive& from)
     : world_(world), bodies_(bodies), options_(options), result_(result) {
   make_hands();
@@ -23,12 +23,12 @@ void VirtualTime::make_hands() {
   const scene::Description& d = world_.description;
   if (!d.tool) return;
   check_clock(world_, false);
-  for (const auto& side : ToolSide::all(world_)) hands_.emplace_back(d, *side);
+  for (const auto& side : ToolInstance::all(world_)) hands_.emplace_back(d, *side);
   groups_ = TickGroup::all(hands_);
   if (!world_.monolithic()) return;
   dense_.emplace(world_, [this](std::size_t hand, TickRecord tick) {
-    hands_[hand].ticks.feel(tick);
-    bodies_.felt(hand, tick);
+    hands_[hand].ticks.render_force(tick);
+    bodies_.record_tick(hand, tick);
   });
   bodies_.set_ticks(&*dense_);
 }
@@ -97,11 +97,11 @@ void VirtualTime::tick(TickGroup& group, double t, double h) {
     result_.status = ticks->tick(t, h, group.contact(i), tick);
     if (!result_.status.ok()) return;
     bodies_.follow(hand, t, tick.tool, tick.tool_twist);
-    bodies_.felt(hand, tick);
+    bodies_.record_tick(hand, tick);
   }
 }
 
-void run_in_virtual_time(World& world, BodySide& bodies, const RunOptions& options, RunResult& result) {
+void run_in_virtual_time(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result) {
   VirtualTime clock(world, bodies, options, result);
   while (clock.next()) {}
   clock.end();

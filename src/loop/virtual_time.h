@@ -2,7 +2,7 @@
 #include <deque>
 #include <optional>
 
-#include "body_side.h"
+#include "body_loop.h"
 #include "palpate/loop/contact_record.h"
 #include "tick_group.h"
 
@@ -13,9 +13,9 @@ namespace palpate::loop {
 class VirtualTime {
  public:
   /// Starts a run; observers are called for the start.
-  VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result);
+  VirtualTime(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result);
   /// Resumes from an archive, with a World that has not been advanced; observers are not called.
-  VirtualTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result, Archive& from);
+  VirtualTime(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result, Archive& from);
   /// Advances by one period. Returns false if no period is left, or if the period was not completed.
   bool next();
   int periods() const { return periods_; }  ///< Completed periods.
@@ -30,9 +30,9 @@ class VirtualTime {
     ContactRecord record;
   };
   struct Hand {
-    Hand(const scene::Description& d, ToolSide& side) : tick_s(side.spec->tick_s), ticks(d, side) {}
+    Hand(const scene::Description& d, ToolInstance& side) : tick_s(side.spec->tick_s), ticks(d, side) {}
     double tick_s;
-    TickSide ticks;
+    HapticLoop ticks;
     ContactRecord in_force;
     std::deque<Coming> coming;
     long count = 0;  ///< Number of ticks.
@@ -47,7 +47,7 @@ class VirtualTime {
   void tick(TickGroup& group, double t, double h);
 
   World& world_;
-  BodySide& bodies_;
+  BodyLoop& bodies_;
   const RunOptions& options_;
   RunResult& result_;
   int periods_ = 0;  ///< Completed periods.

@@ -6,11 +6,11 @@
 #include "palpate/dynamics/rigid_body.h"
 
 #include "palpate/bones/tree.h"
-#include "tool_side.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
 
-World::World() { tool_sides_.push_back(std::make_unique<ToolSide>()); }
+World::World() { tool_sides_.push_back(std::make_unique<ToolInstance>()); }
 World::~World() = default;
 
 Points Body::surface_points(const Points& nodes) const {
@@ -123,15 +123,15 @@ bool World::has_tool_of_ticks() const { return tool_sides_.front()->tool != null
 int World::tool_frame_index() const { return tool_sides_.front()->frame_index; }
 
 Pose World::tool_pose(std::size_t hand) const {
-  const ToolSide& side = ToolSide::of(*this, hand);
-  if (!monolithic()) return side.known.pose;
+  const ToolInstance& side = ToolInstance::of(*this, hand);
+  if (!monolithic()) return side.exchanged.pose;
   const auto q = state.q().segment<7>(state.layout().find(side.block_id)->q_offset);
   return {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
 }
 
 Twist World::tool_twist(std::size_t hand) const {
-  const ToolSide& side = ToolSide::of(*this, hand);
-  if (!monolithic()) return side.known.twist;
+  const ToolInstance& side = ToolInstance::of(*this, hand);
+  if (!monolithic()) return side.exchanged.twist;
   const auto u = state.u().segment<6>(state.layout().find(side.block_id)->u_offset);
   return {u.head<3>(), u.tail<3>()};
 }
@@ -141,7 +141,7 @@ void World::refresh_contact() {
   for (const auto& side : tool_sides_)
     if (side->trajectory) {
       side->trajectory->clear();
-      side->trajectory->append(side->known.time, side->known.pose, side->known.twist);
+      side->trajectory->append(side->exchanged.time, side->exchanged.pose, side->exchanged.twist);
     }
   contact->refresh(state.view());
 }

@@ -19,9 +19,9 @@ constexpr double kLeastStretch = 0.5, kMostStretch = 1.45;
 /// double size.
 bool should_halve(const Ring& ring, const Ring& outermost, double grading) {
   const double size = ring.radius / ring.frequency, surface_size = outermost.radius / outermost.frequency;
-  const double wanted =
+  const double requested =
       std::min(surface_size + kGrowth * (outermost.radius - ring.radius), grading * surface_size);
-  return ring.frequency % 2 == 0 && ring.frequency > 2 && wanted >= std::sqrt(2.0) * size * (1 - 1e-12);
+  return ring.frequency % 2 == 0 && ring.frequency > 2 && requested >= std::sqrt(2.0) * size * (1 - 1e-12);
 }
 
 }  // namespace

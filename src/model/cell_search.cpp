@@ -68,9 +68,9 @@ struct Sizes {
     constexpr double kNodesByFacet = 1.3, kRatioByCell = 0.2, kLargestStep = 0.4;
     const auto step = [&](double x) { return std::exp(std::clamp(x, -kLargestStep, kLargestStep)); };
     facet *= step(std::log(static_cast<double>(std::max(found.nodes, 1)) / options.nodes) / kNodesByFacet);
-    const double wanted = static_cast<double>(options.nodes) / options.tetrahedra,
+    const double requested = static_cast<double>(options.nodes) / options.tetrahedra,
                  ratio = std::max(found.nodes, 1) / (std::max(found.tetrahedra, 1) * left);
-    cell = std::clamp(cell * step(std::log(wanted / ratio) / kRatioByCell), 0.5 * facet, 6.0 * facet);
+    cell = std::clamp(cell * step(std::log(requested / ratio) / kRatioByCell), 0.5 * facet, 6.0 * facet);
   }
 };
 
@@ -87,12 +87,12 @@ void check(const TetrahedraOptions& options, double volume) {
           "--element-size-m {} gives about {:.2g} tetrahedra in {:.4g} m^3, must give between 20 and {}; "
           "check the unit of length, which --scale changes",
           options.element_size_m, number, volume, kLargestNumber);
-  const double wanted = options.element_size_m > 0
-                            ? kCellsPerVolume * volume / std::pow(options.element_size_m / kEdgePerCell, 3)
-                            : options.tetrahedra;
-  if (kPointsPerCell * wanted > options.limits.points)
+  const double requested = options.element_size_m > 0
+                               ? kCellsPerVolume * volume / std::pow(options.element_size_m / kEdgePerCell, 3)
+                               : options.tetrahedra;
+  if (kPointsPerCell * requested > options.limits.points)
     fail("{:.3g} tetrahedra have about {:.3g} points, more than the limit of {}; raise it with --points",
-         wanted, kPointsPerCell * wanted, options.limits.points);
+         requested, kPointsPerCell * requested, options.limits.points);
 }
 
 /// Optimises; if a stage fails, remakes the mesh of these sizes and optimises it without that stage.

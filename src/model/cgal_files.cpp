@@ -9,7 +9,7 @@
 
 #include "cells.h"
 #include "palpate/core/error.h"
-#include "palpate/core/rehearsal.h"
+#include "palpate/core/sandbox.h"
 #include "palpate/store/atomic_file.h"
 
 namespace palpate::model {

@@ -106,7 +106,8 @@ double scale_for(const Movement& by, double volume) {
 
 /// Halves the movement of the nodes of elements with angles below `bearable`; returns false if there are
 /// none.
-bool hold_back(const TetMesh& moved, double bearable, const std::vector<int>& vertex_of_node, Movement& by) {
+bool damp_movement(const TetMesh& moved, double bearable, const std::vector<int>& vertex_of_node,
+                   Movement& by) {
   std::vector<char> held(static_cast<std::size_t>(by.step.cols()), 0);
   bool any = false;
   for (int t = 0; t < static_cast<int>(moved.tets.cols()); ++t) {
@@ -136,7 +137,7 @@ void fit_volume(FittedMesh& mesh, const SurfaceQuery& surface, double cell_size,
   const double bearable = std::min(0.9 * before, 10.0 * std::numbers::pi / 180);
   for (int round = 0; round < kRounds; ++round) {
     TetMesh trial = moved(mesh.mesh, by, volume ? scale_for(by, *volume) : 1.0);
-    if (hold_back(trial, bearable, vertex_of_node, by)) continue;
+    if (damp_movement(trial, bearable, vertex_of_node, by)) continue;
     mesh.mesh = std::move(trial);
     return;
   }

@@ -20,7 +20,7 @@ namespace {
 /// Runs named steps, records their times, and starts none when the time is over.
 class Steps {
  public:
-  Steps(Watcher& watcher, Made& made, const std::string& source, double limit)
+  Steps(ProgressListener& watcher, Made& made, const std::string& source, double limit)
       : watcher_(watcher), made_(made), source_(source), limit_(limit) {}
 
   template <class Work>
@@ -38,7 +38,7 @@ class Steps {
   double left() const { return limit_ - spent(); }
 
  private:
-  Watcher& watcher_;
+  ProgressListener& watcher_;
   Made& made_;
   const std::string& source_;
   double limit_, start_ = wall_seconds();
@@ -60,7 +60,7 @@ void scale(Input& input, double by) {
 }
 
 TriMesh mended(Input& input, const Options& options, std::vector<std::string>& notes,
-               const Progress& progress, Watcher& watcher) {
+               const Progress& progress, ProgressListener& watcher) {
   if (input.sound) {
     mesh::check_surface(input.surface, input.from);
     mesh::Provenance skin;
@@ -68,9 +68,9 @@ TriMesh mended(Input& input, const Options& options, std::vector<std::string>& n
     if (input.skin.vertices.cols() > 0) mesh::check_surface(input.skin, skin);
     return input.surface;
   }
-  RepairOptions wanted = options.repair;
-  wanted.place = [&](const std::string& where) { watcher.place(where); };
-  RepairedSurface repaired = repair(input.surface, input.from, wanted, progress);
+  RepairOptions requested = options.repair;
+  requested.place = [&](const std::string& where) { watcher.place(where); };
+  RepairedSurface repaired = repair(input.surface, input.from, requested, progress);
   notes.insert(notes.end(), repaired.notes.begin(), repaired.notes.end());
   return std::move(repaired.surface);
 }
@@ -78,7 +78,7 @@ TriMesh mended(Input& input, const Options& options, std::vector<std::string>& n
 /// Takes a user's tetrahedra: they must be sound, or are rejected.  Returns their boundary, mended like any
 /// other surface if it is to be filled anew.
 TriMesh take_tets(Input& input, const Options& options, std::vector<std::string>& notes,
-                  const Progress& progress, Watcher& watcher) {
+                  const Progress& progress, ProgressListener& watcher) {
   const mesh::MeshReport report = mesh::check_tets(input.tets, input.from);
   if (report.flipped > 0)
     notes.push_back(fmt::format("{} inverted tetrahedra were reoriented", report.flipped));
@@ -197,13 +197,13 @@ QualityGate gate_of(const Options& options, bool creased, bool given) {
 
 Tetrahedra filled(const Filling& filling, std::optional<double> crease_deg, double spent,
                   const Progress& progress) {
-  TetrahedraOptions wanted = filling.options.tetrahedra;
-  wanted.limits.spent = spent;
-  wanted.crease_deg = crease_deg;
-  if (filling.options.creases != Creases::kNone) wanted.creases = filling.input.creases;
-  Tetrahedra out = tetrahedralise(filling.surface, wanted, progress);
+  TetrahedraOptions requested = filling.options.tetrahedra;
+  requested.limits.spent = spent;
+  requested.crease_deg = crease_deg;
+  if (filling.options.creases != Creases::kNone) requested.creases = filling.input.creases;
+  Tetrahedra out = tetrahedralise(filling.surface, requested, progress);
   const TetQuality quality = measure_quality(out.mesh, mesh::enclosed_volume(filling.surface));
-  pass_gate(out.mesh, quality, gate_of(filling.options, crease_deg || !wanted.creases.empty(), false),
+  pass_gate(out.mesh, quality, gate_of(filling.options, crease_deg || !requested.creases.empty(), false),
             filling.input.source, filling.surface);
   return out;
 }
@@ -245,7 +245,7 @@ mesh::Embedding embedded(const LayeredModel& model, const std::string& source,
 
 }  // namespace
 
-Made make_model(Input input, const Options& given_options, Watcher& watcher) {
+Made make_model(Input input, const Options& given_options, ProgressListener& watcher) {
   Options options = given_options;
   options.tetrahedra.stage = [&](const std::string& stage) { watcher.stage(stage); };
   options.tetrahedra.place = [&](const Vec3& at) { watcher.point(at); };
@@ -280,9 +280,9 @@ Made make_model(Input input, const Options& given_options, Watcher& watcher) {
     QualityGate gate = gate_of(options, made.creased, as_given);
     if (as_given && options.accept_angles &&
         made.quality.smallest_dihedral_deg < gate.smallest_dihedral_deg) {
-      made.angle_price = price_of_angles(model.tets, gate.smallest_dihedral_deg);
+      made.angle_cost = price_of_angles(model.tets, gate.smallest_dihedral_deg);
       gate.smallest_dihedral_deg = 0.0;
-      record.notes.push_back(text(*made.angle_price));
+      record.notes.push_back(text(*made.angle_cost));
     }
     pass_gate(model.tets, made.quality, gate, input.source, surface);
     mesh::Provenance own;
@@ -304,14 +304,14 @@ Made make_model(Input input, const Options& given_options, Watcher& watcher) {
   proxy::DecomposeReport hulls;
   if (options.proxies > 0)
     step("cut into convex proxies", [&] {
-      proxy::DecomposeOptions wanted;
-      wanted.count = options.proxies;
-      model.proxies = proxy::decompose(model, wanted, &hulls);
+      proxy::DecomposeOptions requested;
+      requested.count = options.proxies;
+      model.proxies = proxy::decompose(model, requested, &hulls);
     });
   record.figures = figures(model, made.quality, embedding, hulls);
-  if (made.angle_price) {
-    record.figures.emplace_back("explicit_step_s", made.angle_price->explicit_step_s);
-    record.figures.emplace_back("condition_number", made.angle_price->condition);
+  if (made.angle_cost) {
+    record.figures.emplace_back("explicit_step_s", made.angle_cost->explicit_step_s);
+    record.figures.emplace_back("condition_number", made.angle_cost->condition);
   }
   for (const RegionFigures& region : made.regions)
     record.figures.emplace_back(fmt::format("volume_of_region_{}_m3", region.name), region.volume);

@@ -226,7 +226,7 @@ Mended mend_unguarded(const Soup& soup, double largest_hole,
 
 }  // namespace
 
-int turn_to_agree(Soup& soup) {
+int orient_consistently(Soup& soup) {
   return guarded(soup, [&] { return turn(soup); });
 }
 

@@ -10,7 +10,7 @@ namespace palpate::model {
 /// Orients the faces of each connected piece consistently, keeping the orientation of the majority, and
 /// separates the surface where more than two faces meet at an edge, or pieces touch in a point.  Returns the
 /// number of faces that were turned.
-int turn_to_agree(Soup& soup);
+int orient_consistently(Soup& soup);
 
 /// Result of `mend`.
 struct Mended {

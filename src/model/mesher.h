@@ -78,7 +78,7 @@ class Mesher : public CellMesher {
 
   void optimise(const Progress& progress) override {
     using Sliver = CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation>;
-    using Perturber = CGAL::Mesh_3::Sliver_perturber<Complex, Domain, Sliver, Told>;
+    using Perturber = CGAL::Mesh_3::Sliver_perturber<Complex, Domain, Sliver, ProgressVisitor>;
     constexpr double kWantedDeg = 12.0;  // the bound is raised degree by degree up to this value
     stage(kMovingVertices, optimisation_.move_vertices, optimisation_.why_not_moved, [&] {
       const Sliver sliver(kWantedDeg, complex_.triangulation());
@@ -86,7 +86,7 @@ class Mesher : public CellMesher {
       for (auto* perturbation : CGAL::default_perturbation_vector(complex_, domain_, sliver))
         perturber.add_perturbation(perturbation);
       perturber.set_time_limit(meter_.seconds_left());
-      perturber(Told{&progress, kWantedDeg});
+      perturber(ProgressVisitor{&progress, kWantedDeg});
       meter_.check("while vertices were moved for larger angles");
     });
     stage(kExudingSlivers, optimisation_.exude_slivers, optimisation_.why_not_exuded, [&] {
@@ -155,15 +155,15 @@ class Mesher : public CellMesher {
   /// Runs one stage of optimisation.  If CGAL throws in it, the complex is in an undefined state: the stage
   /// is skipped from now on.
   template <class Work>
-  void stage(const char* name, bool& wanted, std::string& why_not, const Work& work) {
-    if (!wanted) return;
+  void stage(const char* name, bool& requested, std::string& why_not, const Work& work) {
+    if (!requested) return;
     if (stage_) stage_(name);
     try {
       work();
     } catch (const Error&) { throw; } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& e) {
-      wanted = false;
+      requested = false;
       why_not = reason_of(e);
       throw OptimisationFailed{};
     }
@@ -236,11 +236,11 @@ class Mesher : public CellMesher {
   }
 
   /// Visitor of the perturber; receives each bound that was reached [degrees].
-  struct Told {
+  struct ProgressVisitor {
     const Progress* progress = nullptr;
-    double wanted = 1.0;
+    double requested = 1.0;
     void bound_reached(double bound) const {
-      if (progress && *progress) (*progress)(0.7 * bound / wanted);
+      if (progress && *progress) (*progress)(0.7 * bound / requested);
     }
     void end_of_perturbation_iteration(std::size_t) const {}
   };

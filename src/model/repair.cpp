@@ -91,7 +91,7 @@ RepairedSurface repair(const TriMesh& faces, const mesh::Provenance& from, const
   if (soup.faces.empty()) fail("{}: no face has three different corners", from.source);
   note(out.notes, weld_seams(soup), "vertices along seams were merged, 1e-6 of the diagonal apart at most");
   tell(0.2);
-  note(out.notes, turn_to_agree(soup), "faces were reoriented to agree with their neighbours");
+  note(out.notes, orient_consistently(soup), "faces were reoriented to agree with their neighbours");
   const double meant = absolute_volume(soup);
   Mended mended = mend(soup, options.largest_hole, options.place);
   if (mended.holes > 0)

@@ -59,9 +59,9 @@ class Legacy {
     return text_.substr(begin, at_ - begin);
   }
   /// Reads the next word in lower case; consumes it only if it is `wanted`.
-  bool take(const char* wanted) {
+  bool take(const char* requested) {
     const std::size_t before = at_;
-    if (lower(word()) == wanted) return true;
+    if (lower(word()) == requested) return true;
     at_ = before;
     return false;
   }

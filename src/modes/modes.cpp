@@ -231,15 +231,15 @@ VecX start_vector(Eigen::Index n) {
 
 /// Computes up to `wanted` modes nearest to the shift in the M-complement of `found`; the columns are
 /// M-orthonormal.
-MatX lanczos(const Pencil& pencil, const ShiftedFactor& factor, Eigen::Index wanted, const MatX& found) {
+MatX lanczos(const Pencil& pencil, const ShiftedFactor& factor, Eigen::Index requested, const MatX& found) {
   const Eigen::Index n = pencil.size();
   const double unit_mass = pencil.mean_mass();
   const MatX mass_found = pencil.mass_of_all(found);
   Inverse inverse(factor, std::abs(factor.shift()) * unit_mass, found, mass_found, n);
   Mass mass(pencil, unit_mass);
-  const Eigen::Index room = std::min(n, std::max<Eigen::Index>(2 * wanted + 10, 20));
-  Spectra::SymGEigsShiftSolver<Inverse, Mass, Spectra::GEigsMode::ShiftInvert> solver(inverse, mass, wanted,
-                                                                                      room, -factor.sign());
+  const Eigen::Index room = std::min(n, std::max<Eigen::Index>(2 * requested + 10, 20));
+  Spectra::SymGEigsShiftSolver<Inverse, Mass, Spectra::GEigsMode::ShiftInvert> solver(
+      inverse, mass, requested, room, -factor.sign());
   VecX start = start_vector(n);
   if (found.cols() > 0) start -= found * (mass_found.transpose() * start);
   solver.init(start.data());
@@ -253,32 +253,32 @@ struct Pairs {
   VecX squared;
   MatX shapes;
 };
-Pairs ordered(const VecX& squared, const MatX& shapes, bool lowest, Eigen::Index wanted) {
-  const Eigen::Index count = std::min(wanted, squared.size());  // Ascending from the dense solver.
+Pairs ordered(const VecX& squared, const MatX& shapes, bool lowest, Eigen::Index requested) {
+  const Eigen::Index count = std::min(requested, squared.size());  // Ascending from the dense solver.
   if (lowest) return {squared.head(count), shapes.leftCols(count)};
   return {squared.tail(count).reverse(), shapes.rightCols(count).rowwise().reverse()};
 }
-Pairs rayleigh_ritz(const Pencil& pencil, MatX X, bool lowest, Eigen::Index wanted) {
+Pairs rayleigh_ritz(const Pencil& pencil, MatX X, bool lowest, Eigen::Index requested) {
   for (Eigen::Index c = 0; c < X.cols(); ++c) X.col(c) /= std::sqrt(X.col(c).dot(pencil.mass(X.col(c))));
   const MatX k = X.transpose() * pencil.stiffness_of_all(X), m = X.transpose() * pencil.mass_of_all(X);
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> small(0.5 * (k + k.transpose()),
                                                              0.5 * (m + m.transpose()));
   PALPATE_CHECK(small.info() == Eigen::Success, "modes: {} Ritz vectors are linearly dependent", X.cols());
-  return ordered(small.eigenvalues(), X * small.eigenvectors(), lowest, wanted);
+  return ordered(small.eigenvalues(), X * small.eigenvectors(), lowest, requested);
 }
 
-Pairs all_by_dense(const Pencil& pencil, bool lowest, Eigen::Index wanted) {
+Pairs all_by_dense(const Pencil& pencil, bool lowest, Eigen::Index requested) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> solver(pencil.dense(pencil.K()),
                                                               pencil.dense(pencil.M()));
   if (solver.info() != Eigen::Success)
     fail("modes: at this state the stiffness is not finite, or the mass is not positive definite");
-  return ordered(solver.eigenvalues(), solver.eigenvectors(), lowest, wanted);
+  return ordered(solver.eigenvalues(), solver.eigenvectors(), lowest, requested);
 }
 
 /// Repeats the search in the complement of the modes found until no mode precedes the last one.
-Pairs by_lanczos(const Pencil& pencil, const ShiftedFactor& factor, bool lowest, Eigen::Index wanted) {
+Pairs by_lanczos(const Pencil& pencil, const ShiftedFactor& factor, bool lowest, Eigen::Index requested) {
   Pairs pairs =
-      rayleigh_ritz(pencil, lanczos(pencil, factor, wanted, MatX(pencil.size(), 0)), lowest, wanted);
+      rayleigh_ritz(pencil, lanczos(pencil, factor, requested, MatX(pencil.size(), 0)), lowest, requested);
   while (pairs.squared.size() > 0) {
     const MatX more = lanczos(pencil, factor, 1, pairs.shapes);
     if (more.cols() == 0) break;
@@ -286,14 +286,14 @@ Pairs by_lanczos(const Pencil& pencil, const ShiftedFactor& factor, bool lowest,
     const double squared = x.dot(pencil.stiffness(x)) / x.dot(pencil.mass(x)),
                  last = pairs.squared[pairs.squared.size() - 1];
     const double before = (lowest ? last - squared : squared - last) - 1e-9 * std::abs(last - factor.shift());
-    if (pairs.squared.size() == wanted && before <= 0.0) break;
+    if (pairs.squared.size() == requested && before <= 0.0) break;
     MatX X(pencil.size(), pairs.shapes.cols() + 1);
     X << pairs.shapes, x;
-    pairs = rayleigh_ritz(pencil, X, lowest, wanted);
+    pairs = rayleigh_ritz(pencil, X, lowest, requested);
   }
   MatX X = pencil.mass_of_all(pairs.shapes);
   for (Eigen::Index c = 0; c < X.cols(); ++c) X.col(c) = factor.solve(X.col(c));
-  return rayleigh_ritz(pencil, X, lowest, wanted);
+  return rayleigh_ritz(pencil, X, lowest, requested);
 }
 
 /// Returns the shape with driven directions: v = G u_master, the linear part of the imposed velocities.
@@ -315,18 +315,18 @@ Modes find_modes(System& system, const StateView& state, const ModesOptions& opt
   if (options.count < 1) fail("modes: count = {} must be at least 1", options.count);
   const Pencil pencil(system, state);
   const bool lowest = options.end == ModesOptions::End::kLowest;
-  const Eigen::Index wanted = std::min<Eigen::Index>(options.count, pencil.size());
+  const Eigen::Index requested = std::min<Eigen::Index>(options.count, pencil.size());
   Modes out;
   Pairs pairs;
-  if (2 * wanted >= pencil.size()) {
-    pairs = all_by_dense(pencil, lowest, wanted);
+  if (2 * requested >= pencil.size()) {
+    pairs = all_by_dense(pencil, lowest, requested);
   } else {
     const ShiftedFactor factor(pencil, options.end);
-    pairs = by_lanczos(pencil, factor, lowest, wanted);
+    pairs = by_lanczos(pencil, factor, lowest, requested);
     out.factorisations = factor.counters().factorisations;
     out.solves = factor.counters().solves;
   }
-  out.converged = pairs.squared.size() == wanted;
+  out.converged = pairs.squared.size() == requested;
   out.omega_squared = pairs.squared;
   out.residuals.resize(pairs.squared.size());
   out.shapes.setZero(state.layout->u_size, pairs.squared.size());

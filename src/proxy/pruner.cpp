@@ -114,7 +114,7 @@ void Pruner::Impl::find_pairs(double new_gap, double new_time) {
 /// body cannot enter through trailing skin.
 void Pruner::Impl::keep_patches(Side& side, int own, const Side& other, int against, const Reach& reach,
                                 const Vec3& toward) {
-  Facing& facing = side.facing_of(own, pass);
+  SkinOrientation& facing = side.facing_of(own, pass);
   const auto keep = [&](const Reach& within, bool by_motion) {
     counts.patches_tested += static_cast<long>(side.set.patches(own).size());
     side.set.patches_near(own, other.set, against, within, toward, side.kept, near);

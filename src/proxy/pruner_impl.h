@@ -10,14 +10,14 @@
 namespace palpate::proxy {
 
 /// Skin kept on one side: sum of its area vectors, and its area.
-struct Facing {
+struct SkinOrientation {
   Vec3 area = Vec3::Zero();
   double size = 0.0;
   void add(const Vec3& patch) {
     area += patch;
     size += patch.norm();
   }
-  void add(const Facing& other) {
+  void add(const SkinOrientation& other) {
     area += other.area;
     size += other.size;
   }
@@ -27,7 +27,7 @@ struct Facing {
 };
 
 /// Returns D; zero if one of the two has no skin.
-inline Vec3 facing(const Facing& a, const Facing& b) {
+inline Vec3 facing(const SkinOrientation& a, const SkinOrientation& b) {
   return a.size > 0.0 && b.size > 0.0 ? Vec3(b.area / b.size - a.area / a.size) : Vec3(Vec3::Zero());
 }
 /// |D| is 2 for flat skins that face each other and 0 for enclosed skin; above kClear it counts as a
@@ -40,9 +40,9 @@ struct Side {
   std::span<const SkinPatch> patches;
   std::vector<Ball> balls;
   std::vector<Vec3> areas;
-  std::vector<long> measured_at;    // per patch
-  std::vector<unsigned char> kept;  // per patch, in this query
-  std::vector<Facing> facing;       // per proxy, of its kept skin
+  std::vector<long> measured_at;        // per patch
+  std::vector<unsigned char> kept;      // per patch, in this query
+  std::vector<SkinOrientation> facing;  // per proxy, of its kept skin
   std::vector<long> facing_at;
 
   explicit Side(const ProxySet& s)
@@ -63,7 +63,7 @@ struct Side {
     areas[patch] = set.area(patches[patch]);
   }
   /// Returns the proxy's kept skin, reset at the first call of a query.
-  Facing& facing_of(int proxy, long query) {
+  SkinOrientation& facing_of(int proxy, long query) {
     const auto at = static_cast<std::size_t>(proxy);
     if (std::exchange(facing_at[at], query) != query) facing[at] = {};
     return facing[at];
@@ -78,7 +78,7 @@ struct Pair {
 /// Kept skin of one proxy of a, and of all proxies of b paired with it.
 struct Active {
   int proxy;
-  Facing a, b;
+  SkinOrientation a, b;
   int region = -1;
   Vec3 direction() const { return facing(a, b); }
 };
@@ -106,7 +106,7 @@ struct Pruner::Impl {
   std::vector<ContactRegion> regions;  // the first `used` belong to the last query
   std::size_t used = 0;
   long serial = 0;
-  bool faces_a = false, faces_b = false;  // Facing::directed of the current region
+  bool faces_a = false, faces_b = false;  // SkinOrientation::directed of the current region
 
   Impl(const ProxySet& set_a, const ProxySet& set_b, const PruneOptions& given)
       : options(given),

@@ -92,7 +92,7 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   region.pairs.clear();
   proxies_a.clear();
   proxies_b.clear();
-  Facing facing_a, facing_b;
+  SkinOrientation facing_a, facing_b;
   finder.forget();
   for (const Active& one : active) {
     if (one.region != number) continue;

@@ -18,8 +18,8 @@ void on_interrupt(int signal) {
 
 }  // namespace
 
-Interrupt::Interrupt(std::atomic<bool>& stop, bool wanted) {
-  if (!wanted || flag.load()) return;
+Interrupt::Interrupt(std::atomic<bool>& stop, bool requested) {
+  if (!requested || flag.load()) return;
   sigaction(SIGINT, nullptr, &before_);
   if (before_.sa_handler == SIG_IGN) return;
   flag = &stop;

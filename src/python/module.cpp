@@ -10,7 +10,7 @@ PYBIND11_MODULE(_palpate, module) {
   module.doc() = "Scenes, simulations and studies of palpate; SI units, arrays with one row per point.";
   py::register_exception<Error>(module, "Error", PyExc_ValueError).doc() =
       "A scene, a name or a value is invalid; the message says what is wrong, where, and what to do.";
-  py::register_exception<python::GaveUp>(module, "IntegratorError", PyExc_RuntimeError).doc() =
+  py::register_exception<python::StepFailure>(module, "IntegratorError", PyExc_RuntimeError).doc() =
       "An integrator failed; the state is the last valid one.";
   python::bind_scene(module);
   python::bind_body(module);

@@ -51,7 +51,7 @@ bool Simulation::next() {
   }
   const dynamics::StepResult& last = result().status;
   if (!last.ok())
-    throw GaveUp(
+    throw StepFailure(
         fmt::format("{} failed at t = {:g} s: {}; a smaller tolerance or step often helps "
                     "(integrator.rtol, integrator.step_s)",
                     world_->description.integrator.name, last.t, last.message));

@@ -10,7 +10,7 @@
 namespace palpate::python {
 
 /// Failure of an integrator.
-class GaveUp : public std::runtime_error {
+class StepFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -36,13 +36,14 @@ class Simulation {
   Simulation(const scene::Description& description, double duration_s);
 
   /// Advances by one period; returns false at the end.
-  /// @throws GaveUp where the integrator has failed, now or before; Error where the run was stopped, or is in
+  /// @throws StepFailure where the integrator has failed, now or before; Error where the run was stopped, or
+  /// is in
   ///   use
   bool step();
   /// Advances by whole periods until `seconds` of simulated time have passed, or to the end.
   /// @throws Error for a time that is not positive, and as step()
   void advance(double seconds);
-  /// Advances to the end.  @throws GaveUp, Error as step()
+  /// Advances to the end.  @throws StepFailure, Error as step()
   void run();
 
   /// Flag that stops the run when set.

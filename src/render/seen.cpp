@@ -72,7 +72,7 @@ class DepthImage {
 
 }  // namespace
 
-double seen_share(const Scene& scene, const View& view) {
+double visible_share(const Scene& scene, const View& view) {
   const Mat3 axes = camera_axes(backwards_of(view), Vec3::UnitZ());
   std::vector<Points> turned;
   Eigen::AlignedBox2d box;
@@ -114,7 +114,7 @@ ViewChoice::ViewChoice() {
 }
 
 void ViewChoice::add(const Scene& instant) {
-  for (std::size_t i = 0; i < views_.size(); ++i) seen_[i] += seen_share(instant, views_[i]);
+  for (std::size_t i = 0; i < views_.size(); ++i) seen_[i] += visible_share(instant, views_[i]);
   ++instants_;
 }
 

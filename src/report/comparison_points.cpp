@@ -18,8 +18,8 @@ std::string point_text(const Table& compare, std::size_t row) {
 std::string achieved_text(const Table& compare, std::size_t row) {
   if (compare.rows[row][compare.column("setting_name")] != "rtol") return "-";
   const double error = to_number(compare.rows[row][compare.column("position_error_rel_l2")]),
-               wanted = to_number(compare.rows[row][compare.column("setting")]);
-  return std::isfinite(error) ? short_number(error / wanted) : "-";
+               requested = to_number(compare.rows[row][compare.column("setting")]);
+  return std::isfinite(error) ? short_number(error / requested) : "-";
 }
 
 /// One line a point, under the columns of compare.csv that are named.

@@ -69,7 +69,7 @@ std::vector<double> from_the_end(std::vector<double> values, Choice choice) {
 
 struct Crossing {
   double cost = kUnknown;
-  std::size_t rung = 0;
+  std::size_t level = 0;
   bool at_most = false;
 };
 
@@ -109,9 +109,9 @@ Cost cost_at(const Ladder& ladder, double target, double reference_error) {
   Cost out{value.cost, low.cost, high.cost, value.at_most};
   // A coarser rung that was not tried, or one between the last that failed and the first that did not, might
   // be cheaper still.
-  if (low.at_most && low.rung == 0 && !points[0].behind_failure && !ladder.coarsest_tried) out.low = 0.0;
-  if (low.at_most && points[low.rung].behind_failure && ladder.setting_name != "rtol")
-    out.low *= points[low.rung].setting / points[low.rung].failed_before;
+  if (low.at_most && low.level == 0 && !points[0].behind_failure && !ladder.coarsest_tried) out.low = 0.0;
+  if (low.at_most && points[low.level].behind_failure && ladder.setting_name != "rtol")
+    out.low *= points[low.level].setting / points[low.level].failed_before;
   return out;
 }
 

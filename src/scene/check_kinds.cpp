@@ -41,7 +41,7 @@ void find_instances(const toml::table& from, const std::string& dotted, const st
 std::string chosen(const KindTable& kinds, const toml::table& table, const Description& description) {
   if (!kinds.alternative.empty() && table.contains(kinds.alternative)) return kinds.alternative;
   if (const auto name = table[kinds.selector].value<std::string>(); name && !name->empty()) return *name;
-  return kinds.unsaid ? kinds.unsaid(description) : "";
+  return kinds.default_kind ? kinds.default_kind(description) : "";
 }
 
 /// Returns the kind that the file selects without overrides; empty where the file alone is no valid scene.
@@ -133,7 +133,7 @@ class KindCheck {
     refuse_name(kinds, location(node ? node->source() : at.table->source()), at.where, kinds.selector, name_);
   }
 
-  void check(std::vector<LeftKey>& left) const {
+  void check(std::vector<DroppedKey>& left) const {
     for (const auto& [key, node] : *at_.table)
       check_key(std::string(key.str()), location(key.source()), node, left);
     if (!kind_) return;
@@ -145,14 +145,14 @@ class KindCheck {
 
  private:
   void check_key(const std::string& key, const std::string& key_location, const toml::node& node,
-                 std::vector<LeftKey>& left) const {
+                 std::vector<DroppedKey>& left) const {
     if (key == kinds_.selector || key == kinds_.alternative) return;
     if (const PartKey* known = kind_ ? find_key(*kind_, key) : nullptr) return check_value(*known, node);
     const Names users = users_of(kinds_, key);
     if (!users.empty()) {
       if (replaced_ && !from_override(node))
         left.push_back({at_.path, key});
-      else if (kind_ || kinds_.unsaid)
+      else if (kind_ || kinds_.default_kind)
         refuse(location(node.source()), at_.where,
                fmt::format("{} does not apply to {}{}; remove it (used by {})", key, subject(kinds_, name_),
                            keys_taken(), fmt::join(users, ", ")));
@@ -198,9 +198,9 @@ std::optional<Description> read_original(const Document& document) {
 
 }  // namespace
 
-std::vector<LeftKey> check_kinds(const Document& document, const Description& description,
-                                 const Kinds& kinds) {
-  std::vector<LeftKey> left;
+std::vector<DroppedKey> check_kinds(const Document& document, const Description& description,
+                                    const Kinds& kinds) {
+  std::vector<DroppedKey> left;
   const std::optional<Description> before = read_original(document);
   for (const KindTable& table : kinds) {
     for (const std::string& list : table.lists) check_list(document, table, list);

@@ -5,13 +5,13 @@
 namespace palpate::scene {
 
 /// Key of the file that does not apply to the kind chosen by an override.
-struct LeftKey {
+struct DroppedKey {
   std::string table, key;  ///< "contact[1]", "pixels"
 };
 
 /// Rejects names that `kinds` does not contain, and keys that do not apply to the chosen kinds, are missing,
 /// or have a bad value.  @return keys that apply to the file's kinds only, where overrides chose others
-std::vector<LeftKey> check_kinds(const Document& document, const Description& description,
-                                 const Kinds& kinds);
+std::vector<DroppedKey> check_kinds(const Document& document, const Description& description,
+                                    const Kinds& kinds);
 
 }  // namespace palpate::scene

@@ -16,7 +16,7 @@ std::vector<Hand> hands_of(const Description& d) {
   return out;
 }
 
-std::vector<std::size_t> meeting_tools(const Description& d) {
+std::vector<std::size_t> connected_tools(const Description& d) {
   const std::vector<Hand> hands = hands_of(d);
   std::vector<std::size_t> out(hands.size());
   std::iota(out.begin(), out.end(), std::size_t{0});

@@ -16,9 +16,9 @@ Description parse(const std::string& text, const std::string& path, const std::v
   read_table(document.root, "", description_keys(), description);
   std::vector<std::string> not_carried_over;
   for (;;) {  // Removing a key may change the chosen kind.
-    const std::vector<LeftKey> left = check_kinds(document, description, kinds);
+    const std::vector<DroppedKey> left = check_kinds(document, description, kinds);
     if (left.empty()) break;
-    for (const LeftKey& one : left) {
+    for (const DroppedKey& one : left) {
       leave_out(document, one.table, one.key);
       not_carried_over.push_back(one.table + "." + one.key);
     }

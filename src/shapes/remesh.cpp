@@ -306,12 +306,12 @@ void Remesher::trim(double edge, int vertices) {
     for (int h = 0; h < static_cast<int>(table_.origin.size()); ++h)
       if (real(h) && h < table_.twin[h]) order.emplace_back(split ? -relative(h) : relative(h), h);
     std::sort(order.begin(), order.end());
-    int wanted = std::abs(now - vertices) / least;
+    int requested = std::abs(now - vertices) / least;
     for (const auto& [length, h] : order) {
-      if (wanted == 0) break;
+      if (requested == 0) break;
       if (!real(h) || std::abs(relative(h) - std::abs(length)) > 1e-12) continue;  // changed in this pass
       if (split ? try_split(h) : try_collapse(h, 1.6 * edge) || try_collapse(table_.twin[h], 1.6 * edge))
-        --wanted;
+        --requested;
     }
     flip_by_valence();
     move();

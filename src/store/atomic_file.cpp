@@ -31,13 +31,13 @@ void write(const std::string& path, std::string_view content, bool durably) {
            reason);
     }
   }
-  if (durably) bring_to_disk(temporary);
+  if (durably) sync_file(temporary);
   std::error_code error;
   std::filesystem::rename(temporary, path, error);
   if (!error) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     // The folder's entry for the new name.
-    if (durably) bring_to_disk(folder.empty() ? "." : folder.string());
+    if (durably) sync_file(folder.empty() ? "." : folder.string());
     return;
   }
   std::error_code ignored;
@@ -62,7 +62,7 @@ void check_can_write(const std::string& path) {
   std::filesystem::remove(draft, none);
 }
 
-void bring_to_disk(const std::string& path) {
+void sync_file(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   // EINVAL: the file cannot be synchronised.
   const bool done = file >= 0 && (fsync(file) == 0 || errno == EINVAL);
@@ -80,7 +80,7 @@ void check_reaches(const std::string& path, std::int64_t bytes) {
          size, bytes);
 }
 
-void cut_to(const std::string& path, std::int64_t bytes) {
+void truncate_file(const std::string& path, std::int64_t bytes) {
   check_reaches(path, bytes);
   std::error_code error;
   std::filesystem::resize_file(path, static_cast<std::uintmax_t>(bytes), error);

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
-#include "palpate/core/rehearsal.h"
+#include "palpate/core/sandbox.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/content_hash.h"
 #include "store/h5.h"

@@ -54,7 +54,7 @@ CsvWriter::CsvWriter(const std::string& path, std::vector<std::string> headers, 
   check_reaches(path, place.bytes);
   content_.add_part(std::string_view(read_file(path)).substr(0, static_cast<std::size_t>(place.bytes)));
   check_content(path, content_, place.content);
-  cut_to(path, place.bytes);
+  truncate_file(path, place.bytes);
   out_.rdbuf()->pubsetbuf(nullptr, 0);
   errno = 0;
   out_.open(path, std::ios::binary | std::ios::app);

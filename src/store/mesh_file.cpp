@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "palpate/core/error.h"
-#include "palpate/core/rehearsal.h"
+#include "palpate/core/sandbox.h"
 #include "store/h5.h"
 #include "store/model_format.h"
 

@@ -1,7 +1,7 @@
 #include "palpate/store/model_file.h"
 
 #include "palpate/core/error.h"
-#include "palpate/core/rehearsal.h"
+#include "palpate/core/sandbox.h"
 #include "palpate/store/atomic_file.h"
 #include "store/h5.h"
 #include "store/model_format.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "palpate/core/error.h"
-#include "palpate/core/rehearsal.h"
+#include "palpate/core/sandbox.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
 #include "store/h5.h"
@@ -74,11 +74,11 @@ class Group {
   }
 
  private:
-  Eigen::Index counted(const char* name, hsize_t found, Eigen::Index wanted) const {
+  Eigen::Index counted(const char* name, hsize_t found, Eigen::Index requested) const {
     if (found > static_cast<hsize_t>(std::numeric_limits<int>::max()))
       fail("{} has {} rows, more than {}", full(name), found, std::numeric_limits<int>::max());
-    if (wanted >= 0 && found != static_cast<hsize_t>(wanted))
-      fail("{} has {} rows, must have {}", full(name), found, wanted);
+    if (requested >= 0 && found != static_cast<hsize_t>(requested))
+      fail("{} has {} rows, must have {}", full(name), found, requested);
     return static_cast<Eigen::Index>(found);
   }
 

@@ -25,14 +25,15 @@ namespace {
 long owner_of_lock(int folder) {
   struct stat status {};
   if (::fstat(folder, &status) != 0) return 0;
-  const std::string wanted =
+  const std::string requested =
       fmt::format("{:02x}:{:02x}:{}", major(status.st_dev), minor(status.st_dev), status.st_ino);
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
     std::istringstream words(line);
     std::string number, kind, mode, access, place;
     long process = 0;
-    if (words >> number >> kind >> mode >> access >> process >> place && kind == "FLOCK" && place == wanted)
+    if (words >> number >> kind >> mode >> access >> process >> place && kind == "FLOCK" &&
+        place == requested)
       return process;
   }
   return 0;

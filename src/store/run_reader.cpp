@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
-#include "palpate/core/rehearsal.h"
+#include "palpate/core/sandbox.h"
 #include "palpate/store/run_file.h"
 #include "store/h5.h"
 
@@ -103,7 +103,7 @@ void RunReader::read_through() const {
 }
 
 RunReader::RunReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
-  rehearse(path, "HDF5", [&] { RunReader(path).read_through(); });
+  sandboxed_read(path, "HDF5", [&] { RunReader(path).read_through(); });
   const h5::Quiet quiet;
   Impl& d = *impl_;
   d.path = path;

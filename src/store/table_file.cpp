@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "palpate/core/error.h"
-#include "palpate/core/rehearsal.h"
+#include "palpate/core/sandbox.h"
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/content_hash.h"
 #include "store/series.h"
@@ -156,7 +156,7 @@ TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tabl
   if (from.bytes > 0) {
     impl_->take_journal(journal, from.bytes);
     impl_->journal_content = content_of_journal(journal, from.bytes);
-    cut_to(journal, from.bytes);
+    truncate_file(journal, from.bytes);
   }
   impl_->journal.emplace(journal, std::ios::binary | (from.bytes > 0 ? std::ios::app : std::ios::trunc));
   if (!*impl_->journal)

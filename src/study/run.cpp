@@ -24,7 +24,7 @@ using Outcome = ProcessPool::Outcome;
 constexpr const char* kNoMemory = "no memory";
 
 /// Encodes one task for a process that has no access to the study.
-std::string order_of(const Plan& plan, const Task& task) {
+std::string encode_job(const Plan& plan, const Task& task) {
   const StudyScene& scene = plan.scenes[task.scene];
   ByteWriter out;
   out.put(scene.text).put(scene.path).put(plan.spec.repeats).put(task.overrides.size());
@@ -32,8 +32,8 @@ std::string order_of(const Plan& plan, const Task& task) {
   return out.take();
 }
 
-/// Runs a task encoded by order_of(); a ProcessPool::Work.
-std::string do_order(const std::string& order, const std::atomic<bool>& out_of_time) {
+/// Runs a task encoded by encode_job(); a ProcessPool::Work.
+std::string run_job(const std::string& order, const std::atomic<bool>& out_of_time) {
   ByteReader in(order);
   const auto text = in.get<std::string>(), path = in.get<std::string>();
   const int repeats = in.get<int>();
@@ -73,7 +73,7 @@ class Runner {
   bool stopped() const { return options_.stop && options_.stop->load(); }
 
   void start(const Task& task) {
-    pool_.start(do_order, order_of(plan_, task), plan_.spec.limit_s,
+    pool_.start(run_job, encode_job(plan_, task), plan_.spec.limit_s,
                 [this, &task](const Outcome& outcome) { done(task, outcome); });
   }
 

@@ -75,7 +75,7 @@ class HandInertia : public dynamics::InertiaTerm {
 class ArmTerm : public dynamics::ForceTerm {
  public:
   ArmTerm(int hand_id, const HandBlock& hand)
-      : hand_id_(hand_id), wanted_(hand.wanted), first_(hand.wanted(0.0).pose.rotation) {
+      : hand_id_(hand_id), requested_(hand.requested), first_(hand.requested(0.0).pose.rotation) {
     const auto fill = [](Vec6& out, double rotation, double translation) {
       out << Vec3::Constant(rotation), Vec3::Constant(translation);
     };
@@ -120,10 +120,10 @@ class ArmTerm : public dynamics::ForceTerm {
     At(const ArmTerm& arm, const StateView& state) {
       const dynamics::Block& block = block_of(state, arm.hand_id_);
       u_offset = block.u_offset;
-      const HandleState wanted = arm.wanted_(state.time);
-      const Vec3 theta = rotation_vector(wanted.pose.rotation * arm.first_.conjugate());
-      behind << theta, wanted.pose.translation;
-      rate_behind << left_jacobian_inverse(theta) * wanted.twist.angular, wanted.twist.linear;
+      const HandleState requested = arm.requested_(state.time);
+      const Vec3 theta = rotation_vector(requested.pose.rotation * arm.first_.conjugate());
+      behind << theta, requested.pose.translation;
+      rate_behind << left_jacobian_inverse(theta) * requested.twist.angular, requested.twist.linear;
       behind -= state.q.segment<6>(block.q_offset);
       rate = state.u.segment<6>(block.u_offset);
       rate_behind -= rate;
@@ -139,7 +139,7 @@ class ArmTerm : public dynamics::ForceTerm {
   }
 
   int hand_id_;
-  HandlePath wanted_;
+  HandlePath requested_;
   Quat first_;
   Vec6 k_, b_, c_, f_, smooth_;
 };
@@ -245,7 +245,7 @@ dynamics::BlockSpec hand_block(double length, double speed) {
 
 VecX hand_at_start(const HandBlock& hand) {
   VecX q = VecX::Zero(6);
-  q.tail<3>() = hand.wanted(0.0).pose.translation;
+  q.tail<3>() = hand.requested(0.0).pose.translation;
   return q;
 }
 
@@ -253,7 +253,7 @@ HandleState hand_motion(const StateView& state, int hand_id, const HandBlock& ha
   const dynamics::Block& block = block_of(state, hand_id);
   const Vec3 theta = state.q.segment<3>(block.q_offset);
   return {
-      {quaternion_of(theta) * hand.wanted(0.0).pose.rotation, state.q.segment<3>(block.q_offset + 3)},
+      {quaternion_of(theta) * hand.requested(0.0).pose.rotation, state.q.segment<3>(block.q_offset + 3)},
       {left_jacobian(theta) * state.u.segment<3>(block.u_offset), state.u.segment<3>(block.u_offset + 3)}};
 }
 

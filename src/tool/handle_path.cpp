@@ -34,7 +34,7 @@ TickInput with_handle_held(const TickInput& input, const Pose& pose, const Twist
 
 namespace {
 
-bool stands_still(const HandleMotion& m) {
+bool handle_at_rest(const HandleMotion& m) {
   return m.pose0.translation == m.pose1.translation &&
          m.pose0.rotation.coeffs() == m.pose1.rotation.coeffs() && m.twist0.linear.isZero(0.0) &&
          m.twist0.angular.isZero(0.0) && m.twist1.linear.isZero(0.0) && m.twist1.angular.isZero(0.0);
@@ -47,7 +47,7 @@ bool same_wrench(const TickInput& a, const TickInput& b) {
   const bool contact = c.time == d.time && c.x0 == d.x0 && c.v0 == d.v0 && c.F0 == d.F0 && c.F1 == d.F1 &&
                        c.J == d.J && c.B == d.B;
   const CouplingGains &g = a.gains, &f = b.gains;
-  return contact && stands_still(a.handle) && stands_still(b.handle) &&
+  return contact && handle_at_rest(a.handle) && handle_at_rest(b.handle) &&
          a.handle.pose0.translation == b.handle.pose0.translation &&
          a.handle.pose0.rotation.coeffs() == b.handle.pose0.rotation.coeffs() && g.k == f.k && g.b == f.b &&
          g.k_r == f.k_r && g.b_r == f.b_r;

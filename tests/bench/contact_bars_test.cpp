@@ -19,8 +19,8 @@ ContactBenchRow row(const std::string& method, int threads, double query_ms) {
 }
 
 /// Contact with a price of one thing each, on its bar.
-ContactPrice price(const std::string& scene, double query_ms) {
-  ContactPrice out;
+ContactCost price(const std::string& scene, double query_ms) {
+  ContactCost out;
   out.scene = scene;
   out.one_body_ms = 3.0;
   out.bodies_ms = 10.0;

@@ -96,7 +96,7 @@ TEST(ContactRun, NamesWhatFindsTheGaps) {
 // step's end: something is left out, and the force differs, by what a step of that length leaves open.  Of
 // the truth (64 steps a period) both err by a half and a quarter of the force, in these 10 steps.
 TEST(ContactRun, PricesStandWithBothTangents) {
-  const ContactPrice price = bench_contact_price(rubbing_blocks());
+  const ContactCost price = bench_contact_price(rubbing_blocks());
   EXPECT_EQ(price.scene, "rubbing blocks");
   EXPECT_GT(price.one_body_ms, 0.0);
   EXPECT_GT(price.bodies_ms, 0.0);
@@ -113,8 +113,8 @@ TEST(ContactRun, PricesStandWithBothTangents) {
 
 // The two tangents' forces tend to each other: by a tenth of the step to less than a fifth of the difference.
 TEST(ContactRun, TheDifferenceOfBothTangentsGoesWithTheStep) {
-  const ContactPrice coarse = bench_contact_price(rubbing_blocks(5e-3)),
-                     fine = bench_contact_price(rubbing_blocks(5e-4));
+  const ContactCost coarse = bench_contact_price(rubbing_blocks(5e-3)),
+                    fine = bench_contact_price(rubbing_blocks(5e-4));
   EXPECT_GT(fine.friction.force_change, 1e-9);
   EXPECT_LT(fine.friction.force_change, 0.2 * coarse.friction.force_change);
 }

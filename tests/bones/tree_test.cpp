@@ -214,7 +214,7 @@ TEST(BoneTree, HeldForcesStiffenItAsTheirDerivativeSays) {
     }
     return Q;
   };
-  std::vector<HeldForce> held(static_cast<std::size_t>(tree.size()));
+  std::vector<ConstantForce> held(static_cast<std::size_t>(tree.size()));
   for (const Pull& p : pulls) {
     held[static_cast<std::size_t>(p.bone)].force += p.force;
     held[static_cast<std::size_t>(p.bone)].moment +=

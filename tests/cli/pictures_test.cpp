@@ -103,7 +103,7 @@ TEST_F(Pictures, ContactHasProxiesInOnePanelAndVerticesInTheOther) {
   const auto world = loop::assemble(blocks(true));
   cli::ContactSnapshot snapshot;
   ASSERT_TRUE(run(*world, snapshot).status.ok());
-  cli::Undelivered missing;
+  cli::MissingOutputs missing;
   snapshot.save(*world, folder_.path().string(), missing);
   EXPECT_TRUE(missing.empty());
   const Png contact = read_png(folder_ / "contact.png");
@@ -119,7 +119,7 @@ TEST_F(Pictures, WithoutProxiesNoHullsAreDrawn) {
   const auto world = loop::assemble(blocks(false));
   cli::ContactSnapshot snapshot;
   ASSERT_TRUE(run(*world, snapshot).status.ok());
-  cli::Undelivered missing;
+  cli::MissingOutputs missing;
   snapshot.save(*world, folder_.path().string(), missing);
   EXPECT_TRUE(missing.empty());
   const Png contact = read_png(folder_ / "contact.png");
@@ -166,7 +166,7 @@ TEST_F(Pictures, TheDeepestPixelsHaveTheColourOfTheMaximum) {
   const auto world = loop::assemble(d);
   cli::ContactSnapshot snapshot;
   ASSERT_TRUE(run(*world, snapshot).status.ok());
-  cli::Undelivered missing;
+  cli::MissingOutputs missing;
   snapshot.save(*world, folder_.path().string(), missing);
   const Png depth = read_png(folder_ / "depth.png");
   // 23 mm x 29 mm of the blocks' faces overlap
@@ -179,7 +179,7 @@ TEST_F(Pictures, NothingThatTouchesIsSaidToBeMissing) {
   const auto world = loop::assemble(d);
   cli::ContactSnapshot snapshot;
   ASSERT_TRUE(run(*world, snapshot).status.ok());
-  cli::Undelivered missing;
+  cli::MissingOutputs missing;
   snapshot.save(*world, folder_.path().string(), missing);
   EXPECT_FALSE(missing.empty());
   EXPECT_FALSE(std::filesystem::exists(folder_ / "contact.png"));
@@ -196,7 +196,7 @@ TEST_F(Pictures, FramesShareCameraAndColours) {
   cli::Frames frames(*world, folder_.path().string(), cli::Shade::kDisplacement, between_s, d.duration_s);
   ASSERT_TRUE(run(*world, frames).status.ok());
   EXPECT_EQ(frames.count(), 5);
-  cli::Undelivered missing;
+  cli::MissingOutputs missing;
   const long before = counters::counter("render.picture");
   const auto sink = cli::make_frame_folder((folder_ / "frames").string());
   frames.save(*world, {sink.get()}, true, missing);
@@ -261,7 +261,7 @@ TEST_F(Pictures, FramesKeepTheirTimeWhereBodiesStandStill) {
   cli::Frames frames(*world, folder_.path().string(), cli::Shade::kDisplacement, 0.02, 0.2, {240, 218});
   for (const double t : {0.0, 0.01, 0.02, 0.09, 0.10, 0.2}) frames.period(*world, t);
   EXPECT_EQ(frames.count(), 10);  // states at 0, 20, 90 (for 80) and 100 ms; the end of the run adds none
-  cli::Undelivered missing;
+  cli::MissingOutputs missing;
   const long before = counters::counter("render.picture");
   const auto sink = cli::make_frame_folder((folder_ / "frames").string());
   frames.save(*world, {sink.get()}, true, missing);
@@ -312,7 +312,7 @@ TEST_F(Pictures, AFrameThatCannotBeWrittenIsNamed) {
   const auto world = loop::assemble(blocks(false));
   cli::Frames frames(*world, folder_.path().string(), cli::Shade::kDisplacement, 0.01, 0.04, {240, 218});
   ASSERT_TRUE(run(*world, frames).status.ok());
-  cli::Undelivered missing;
+  cli::MissingOutputs missing;
   std::filesystem::create_directories(folder_ / "frames/0002.part");  // blocks the temporary file
   const auto folder = cli::make_frame_folder((folder_ / "frames").string());
   const auto movie = cli::make_movie((folder_ / "all.png").string(), 0.01);

@@ -157,9 +157,9 @@ TEST(DistanceSource, FollowsAsAQueryFinds) {
       }
     }
     fresh.term.refresh(fresh.a.state.view());
-    const VecX wanted = force(fresh.term, fresh.a.state);
-    EXPECT_LT((force(exact.term, exact.a.state) - wanted).norm(), 1e-9 * wanted.norm());
-    EXPECT_GT((before - wanted).norm(), 0.1 * wanted.norm()) << "else there is nothing to follow";
+    const VecX requested = force(fresh.term, fresh.a.state);
+    EXPECT_LT((force(exact.term, exact.a.state) - requested).norm(), 1e-9 * requested.norm());
+    EXPECT_GT((before - requested).norm(), 0.1 * requested.norm()) << "else there is nothing to follow";
     EXPECT_EQ(exact.term.queries(), 1);
   }
 }

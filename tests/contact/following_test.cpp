@@ -55,10 +55,10 @@ TEST(Following, AForceBetweenQueriesIsThatOfAQueryThere) {
   const VecX before = exact.force();
   for (Touch* one : {&exact, &fresh}) one->deform();
   fresh.term.refresh(fresh.world.state.view());
-  const VecX wanted = fresh.force();
-  ASSERT_GT(wanted.norm(), 0.0);
-  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
-  EXPECT_GT((before - wanted).norm(), 0.1 * wanted.norm()) << "else there is nothing to follow";
+  const VecX requested = fresh.force();
+  ASSERT_GT(requested.norm(), 0.0);
+  EXPECT_LT((exact.force() - requested).norm(), 1e-13 * requested.norm());
+  EXPECT_GT((before - requested).norm(), 0.1 * requested.norm()) << "else there is nothing to follow";
   EXPECT_EQ(exact.term.queries(), 1);
 }
 
@@ -70,13 +70,13 @@ TEST(Following, EnergyWrenchEventsAndProductsAreOfTheSameState) {
   const dynamics::StateView at = exact.world.state.view(), there = fresh.world.state.view();
   EXPECT_NEAR(exact.term.energy(at), fresh.term.energy(there), 1e-12 * fresh.term.energy(there));
   ASSERT_EQ(exact.term.event_count(), fresh.term.event_count()) << "all are candidates at both queries";
-  VecX g(exact.term.event_count()), wanted(g.size());
+  VecX g(exact.term.event_count()), requested(g.size());
   exact.deform();
   fresh.deform();
   exact.term.events(at, g.data());  // first evaluation at this state
   fresh.term.refresh(there);
-  fresh.term.events(there, wanted.data());
-  EXPECT_LT((g - wanted).cwiseAbs().maxCoeff(), 1e-13);
+  fresh.term.events(there, requested.data());
+  EXPECT_LT((g - requested).cwiseAbs().maxCoeff(), 1e-13);
   exact.deform();
   fresh.deform();
   fresh.term.refresh(there);
@@ -97,8 +97,8 @@ TEST(Following, TheShapeMovesWithItsFrame) {
   exact.term.refresh(exact.world.state.view());
   for (Touch* one : {&exact, &fresh}) one->world.state.set_time(0.5);
   fresh.term.refresh(fresh.world.state.view());
-  const VecX wanted = fresh.force();
-  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
+  const VecX requested = fresh.force();
+  EXPECT_LT((exact.force() - requested).norm(), 1e-13 * requested.norm());
 }
 
 /// A tool's path is extended between ticks, which changes the pose at the same time: samples must follow the
@@ -111,8 +111,8 @@ TEST(Following, APathThatIsKnownBetterIsSeenAtTheSameTime) {
   exact.force();
   for (const auto& one : {path, whole}) one->append(1.0, Pose{Quat::Identity(), Vec3(0.2, 0, 0.05)}, {});
   fresh.term.refresh(fresh.world.state.view());
-  const VecX wanted = fresh.force();
-  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
+  const VecX requested = fresh.force();
+  EXPECT_LT((exact.force() - requested).norm(), 1e-13 * requested.norm());
 }
 
 TEST(Following, ARefreshChangesNoForceSoThatNoMethodRestarts) {

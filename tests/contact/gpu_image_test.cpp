@@ -34,7 +34,7 @@ struct Look {
   }
   std::size_t pairs_in(contact::DepthImage& image, const Vec3& origin, const Vec3& normal) {
     region.start({origin, normal.normalized(), 0.02, &faces_a, &faces_b});
-    contact::DepthRequest* request = region.wanted();
+    contact::DepthRequest* request = region.requested();
     if (!request) return 0;
     image.answer({&request, 1});
     return request->pairs.size();

@@ -81,10 +81,10 @@ Errors errors_at(double spacing) {
 // A flat skin and a ball of known curvature: the remaining error is of second order, and no larger than
 // requested.
 TEST(MaterialPoints, ErrByWhatWasAskedFor) {
-  for (const double wanted : {3e-2, 1e-2, 3e-3}) {
-    const Errors errors = errors_at(contact::point_spacing(kHalfSpace, kBall, wanted));
-    EXPECT_LT(errors.standard, wanted);
-    EXPECT_GT(errors.standard, 0.3 * wanted) << "more points than that takes";
+  for (const double requested : {3e-2, 1e-2, 3e-3}) {
+    const Errors errors = errors_at(contact::point_spacing(kHalfSpace, kBall, requested));
+    EXPECT_LT(errors.standard, requested);
+    EXPECT_GT(errors.standard, 0.3 * requested) << "more points than that takes";
     EXPECT_GE(errors.bounded, 95);
   }
 }
@@ -351,7 +351,7 @@ TEST(MaterialPoints, SumsErrorsLargestOnesGoOn) {
   Archive gives(keeps.values(), "kept");
   contact::SumError on;
   on.archive(gives);
-  gives.check_all_given_back();
+  gives.check_all_restored();
   on.take({2.0, 0.1, 0.1});
   EXPECT_EQ(on.largest(), 0.1);
   EXPECT_EQ(on.largest_share(), 0.125);

@@ -311,13 +311,15 @@ TEST(RigidSides, ABallFollowsTheState) {
       one->world.state.u().setZero();
     }
     fresh.term.refresh(fresh.world.state.view());
-    const VecX wanted = force(fresh.term, fresh.world.state);
-    ASSERT_GT(wanted.norm(), 0.1);
-    EXPECT_LT((force(exact.term, exact.world.state) - wanted).norm(), 1e-10 * wanted.norm()) << entry.name;
-    exact.place(start + 5.0 * kR * wanted.tail<3>().normalized());
+    const VecX requested = force(fresh.term, fresh.world.state);
+    ASSERT_GT(requested.norm(), 0.1);
+    EXPECT_LT((force(exact.term, exact.world.state) - requested).norm(), 1e-10 * requested.norm())
+        << entry.name;
+    exact.place(start + 5.0 * kR * requested.tail<3>().normalized());
     EXPECT_EQ(force(exact.term, exact.world.state).norm(), 0.0) << entry.name;
     exact.place(there);
-    EXPECT_LT((force(exact.term, exact.world.state) - wanted).norm(), 1e-10 * wanted.norm()) << entry.name;
+    EXPECT_LT((force(exact.term, exact.world.state) - requested).norm(), 1e-10 * requested.norm())
+        << entry.name;
     EXPECT_EQ(exact.term.queries(), 1);
   }
 }

@@ -59,9 +59,9 @@ struct TwoBalls {
     return contact::make_image_source(b.surface, b.proxies, a.surface, a.proxies, options());
   }
   std::unique_ptr<contact::SampleSource> source(bool pruned) const { return source(pruned, options()); }
-  std::unique_ptr<contact::SampleSource> source(bool pruned, const contact::ImageOptions& wanted) const {
-    return pruned ? contact::make_image_source(a.surface, a.proxies, b.surface, b.proxies, wanted)
-                  : contact::make_image_source(a.surface, b.surface, wanted);
+  std::unique_ptr<contact::SampleSource> source(bool pruned, const contact::ImageOptions& requested) const {
+    return pruned ? contact::make_image_source(a.surface, a.proxies, b.surface, b.proxies, requested)
+                  : contact::make_image_source(a.surface, b.surface, requested);
   }
   int nodes_of_a() const { return static_cast<int>(a.model.tets.nodes.cols()); }
 };

@@ -94,7 +94,7 @@ TEST(Archive, GivesBackWhatItKeptToTheLastBit) {
   Archive back(values, "file");
   Outer o;
   o.archive(back);
-  back.check_all_given_back();
+  back.check_all_restored();
   EXPECT_EQ(kept(o), values);
   EXPECT_TRUE(std::signbit(o.list[2]));
   EXPECT_EQ(o.inner.count, 1L << 60);
@@ -108,7 +108,7 @@ TEST(Archive, NamesWhatIsMissingOrDoesNotFit) {
     Archive back(other, "file.h5");
     Outer o;
     o.archive(back);
-    back.check_all_given_back();
+    back.check_all_restored();
   };
   for (const auto& [name, value] : values) {
     SCOPED_TRACE(name);

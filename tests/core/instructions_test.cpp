@@ -10,9 +10,9 @@ using palpate::Instructions;
 
 namespace {
 
-std::string refusal(const char* wanted, Instructions widest) {
+std::string refusal(const char* requested, Instructions widest) {
   try {
-    choose_instructions(wanted, widest);
+    choose_instructions(requested, widest);
   } catch (const palpate::Error& e) { return e.what(); }
   return "accepted";
 }

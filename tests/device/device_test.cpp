@@ -178,8 +178,8 @@ TEST(Device, a_jump_of_the_pose_is_no_jump_of_the_force_in_a_hand) {
     const double most = std::max(stiffness * 1.0, 150.0 * figures.max_force) * 1e-3;  // a wall hit at 1 m/s
     double before = 0.0;
     for (int i = 0; i <= 100; ++i) {
-      const double wanted = i < 50 ? -1e6 : 1e6;
-      const double force = limiter.limit(1e-3 * i, {Vec3::Zero(), Vec3(0, 0, wanted)}, true).force.z();
+      const double requested = i < 50 ? -1e6 : 1e6;
+      const double force = limiter.limit(1e-3 * i, {Vec3::Zero(), Vec3(0, 0, requested)}, true).force.z();
       EXPECT_LE(std::abs(force - before), most * (1.0 + 1e-9)) << profile << ", tick " << i;
       before = force;
       ++checked;

@@ -172,13 +172,13 @@ TEST(WrenchLimiter, property_over_random_inputs) {
     for (int i = 0; i < 4000; ++i) {
       const double dt = 1e-3 * std::pow(10.0, uniform(rng));
       t += dt;
-      Wrench wanted = wrench(vec(force * std::pow(10.0, 4 * uniform(rng))),
-                             vec(torque * std::pow(10.0, 4 * uniform(rng))));
+      Wrench requested = wrench(vec(force * std::pow(10.0, 4 * uniform(rng))),
+                                vec(torque * std::pow(10.0, 4 * uniform(rng))));
       bool valid = (i / 40) % 3 != 0 || uniform(rng) > 0.9;
-      if (uniform(rng) > 0.98) wanted.force[i % 3] = kNaN;
-      if (uniform(rng) > 0.98) wanted.moment[i % 3] = -kInf;
-      if (valid && wanted.force.allFinite() && wanted.moment.allFinite()) last_valid = t;
-      const Wrench out = limiter.limit(t, wanted, valid);
+      if (uniform(rng) > 0.98) requested.force[i % 3] = kNaN;
+      if (uniform(rng) > 0.98) requested.moment[i % 3] = -kInf;
+      if (valid && requested.force.allFinite() && requested.moment.allFinite()) last_valid = t;
+      const Wrench out = limiter.limit(t, requested, valid);
       ASSERT_TRUE(out.force.allFinite() && out.moment.allFinite());
       ASSERT_LE(out.force.norm(), force);
       ASSERT_LE(out.moment.norm(), torque);

@@ -39,13 +39,13 @@ struct Loop {
         motors(figures),
         controller(mode, {.damping = own, .delay = figures.delay, .tick = T}) {}
   void tick(double hand) {
-    const double wanted = x > 0.0 ? -K * x - B * (x - last) / T : 0.0, D = x - last;
+    const double requested = x > 0.0 ? -K * x - B * (x - last) / T : 0.0, D = x - last;
     motors.advance(time);
     if (!sent.empty()) {
       energy += -F * D + b * D * D / T;
       least = std::min(least, energy);
     }
-    sent.push_back(controller.apply(time, at(x), motors, force(wanted)).force.x());
+    sent.push_back(controller.apply(time, at(x), motors, force(requested)).force.x());
     motors.send(time, force(sent.back()));
     const std::size_t delay = static_cast<std::size_t>(std::lround(motors.delay() / T));
     F = sent.size() > delay ? motors.shaped(force(sent[sent.size() - 1 - delay])).force.x() : 0.0;
@@ -243,15 +243,15 @@ TEST(Passivity, reduced_wrenches_are_shares_of_the_wanted_ones) {
   Motors motors;
   int reduced = 0;
   for (int i = 0; i < 20; ++i) {
-    const Wrench wanted{Vec3(0, 0.1, 0), Vec3(i % 2 ? 1.5 : -1.5, 0.3, 0)};
+    const Wrench requested{Vec3(0, 0.1, 0), Vec3(i % 2 ? 1.5 : -1.5, 0.3, 0)};
     motors.advance(i * T);
-    const Wrench out = controller.apply(i * T, at(i % 2 ? 1e-3 : -1e-3), motors, wanted);
+    const Wrench out = controller.apply(i * T, at(i % 2 ? 1e-3 : -1e-3), motors, requested);
     motors.send(i * T, out);
     const double share = out.force.y() / 0.3;
     EXPECT_GE(share, 0.0);
     EXPECT_LE(share, 1.0);
-    EXPECT_LT((out.force - share * wanted.force).norm(), 1e-15);
-    EXPECT_LT((out.moment - share * wanted.moment).norm(), 1e-15);
+    EXPECT_LT((out.force - share * requested.force).norm(), 1e-15);
+    EXPECT_LT((out.moment - share * requested.moment).norm(), 1e-15);
     reduced += share < 1.0;
   }
   EXPECT_GT(reduced, 5);
@@ -260,9 +260,9 @@ TEST(Passivity, reduced_wrenches_are_shares_of_the_wanted_ones) {
   EXPECT_THROW(PassivityController::mode_of("contrl"), Error);
 }
 
-TEST(Buzz, a_tone_passes_above_30_hz_and_not_below) {
+TEST(VibrationMeter, a_tone_passes_above_30_hz_and_not_below) {
   for (const double f : {5.0, 10.0, 30.0, 60.0, 100.0, 400.0}) {
-    Buzz buzz(T);
+    VibrationMeter buzz(T);
     const int count = 20000;  // whole periods
     for (int i = 0; i < count; ++i) {
       const double x = 2.0 * std::sin(2.0 * std::numbers::pi * f * i * T);
@@ -272,8 +272,8 @@ TEST(Buzz, a_tone_passes_above_30_hz_and_not_below) {
     const double exact = 2.0 / std::sqrt(2.0) / std::sqrt(1.0 + std::pow(ratio, 8));
     EXPECT_NEAR(buzz.rms(), exact, 0.01 * exact + 2e-3) << f;
   }
-  Buzz constant(T);
+  VibrationMeter constant(T);
   for (int i = 0; i < 100; ++i) constant.add(Vec3(1, 2, 3));
   EXPECT_EQ(constant.rms(), 0.0);
-  EXPECT_EQ(Buzz(T).rms(), 0.0);
+  EXPECT_EQ(VibrationMeter(T).rms(), 0.0);
 }

@@ -179,12 +179,12 @@ TEST(Udp, what_is_no_new_pose_of_the_peer_is_counted_and_dropped) {
   EXPECT_EQ(device.counts().stale, 2);
   EXPECT_EQ(device.counts().foreign, 1);
   EXPECT_EQ(device.counts().accepted, 1);
-  const std::vector<std::pair<std::string, long long>> tallies = {
+  const std::vector<std::pair<std::string, long long>> counters = {
       {"packets_accepted", 1},           {"packets_malformed", 9},
       {"packets_of_another_version", 1}, {"packets_stale", 2},
       {"packets_far_ahead", 0},          {"packets_out_of_bounds", 0},
       {"packets_from_another_peer", 1},  {"wrenches_unsent", 0}};
-  EXPECT_EQ(device.tallies(), tallies);
+  EXPECT_EQ(device.counters(), counters);
   EXPECT_FALSE(device.sample(0.01).valid) << "none of them kept it alive";
   peer.send(encode(pose(12, 0.3)));
   EXPECT_TRUE(device.sample(0.011).valid);

@@ -52,8 +52,8 @@ TEST(Workspace, the_limiter_fades_the_force_of_a_handle_that_leaves_it) {
   int inside = 0, fading = 0, outside = 0;
   for (int i = 0; i <= 1000; ++i) {
     const double t = 1e-3 * i, x = device->sample(t).pose.translation.x();
-    const Wrench wanted{Vec3(0, 0.05, 0), Vec3(1.0, 0, 0)}, full = free.limit(t, wanted, true),
-                                                            out = limiter.limit(t, wanted, true);
+    const Wrench requested{Vec3(0, 0.05, 0), Vec3(1.0, 0, 0)}, full = free.limit(t, requested, true),
+                                                               out = limiter.limit(t, requested, true);
     const double share = figures.workspace.share(Vec3(x, 0, 0));
     EXPECT_NEAR(out.force.x(), share * full.force.x(), 1e-15);
     EXPECT_NEAR(out.moment.y(), share * full.moment.y(), 1e-15);

@@ -95,15 +95,15 @@ std::map<int, double> near_ones(const SkinContact& contact, double near) {
   return out;
 }
 
-void expect_equal(const std::map<int, double>& found, const std::map<int, double>& wanted,
+void expect_equal(const std::map<int, double>& found, const std::map<int, double>& requested,
                   const std::string& what) {
-  for (const auto& [point, gap] : wanted) {
+  for (const auto& [point, gap] : requested) {
     ASSERT_TRUE(found.contains(point)) << what << ": point " << point << ", gap " << gap;
     // the search may take either face if their distances agree to single precision
     EXPECT_NEAR(found.at(point), gap, 1e-7) << what << ": point " << point;
   }
   for (const auto& [point, gap] : found)
-    EXPECT_TRUE(wanted.contains(point) || gap > 0.0) << what << ": point " << point << ", gap " << gap;
+    EXPECT_TRUE(requested.contains(point) || gap > 0.0) << what << ": point " << point << ", gap " << gap;
 }
 
 }  // namespace
@@ -125,14 +125,14 @@ TEST(OwnSkinContact, FindsWhatASearchThroughAllFacesFinds) {
       through.find(x, near);
       Own anew(bar, 0.12);
       anew.find(x, near);
-      const auto wanted = anew.by_all_faces(x, near);
-      expect_equal(near_ones(anew.contact, near), wanted, "anew, " + what);
+      const auto requested = anew.by_all_faces(x, near);
+      expect_equal(near_ones(anew.contact, near), requested, "anew, " + what);
       ASSERT_EQ(through.contact.springs().size(), anew.contact.springs().size()) << what;
       for (std::size_t i = 0; i < anew.contact.springs().size(); ++i) {
         EXPECT_EQ(through.contact.springs()[i].gap, anew.contact.springs()[i].gap) << what;
         EXPECT_EQ(through.contact.springs()[i].force, anew.contact.springs()[i].force) << what;
       }
-      for (const auto& [point, gap] : wanted) overlaps += gap < 0.0;
+      for (const auto& [point, gap] : requested) overlaps += gap < 0.0;
     }
   }
   EXPECT_GT(overlaps, 500);

@@ -217,7 +217,8 @@ TEST(Step, MatricesOfTwoOrdersTakeTurns) {
   EXPECT_EQ(counters::counter("fem.scatter_map") - before, 2);
 }
 
-// The key of a kept step (dynamics::KeptStep) changes with materials and tangents, and is restored with them.
+// The key of a kept step (dynamics::CachedStep) changes with materials and tangents, and is restored with
+// them.
 TEST(Step, VersionsTellWhenItWouldBeAnother) {
   const Case c(0.01);
   OneBody at(c.x, c.v);

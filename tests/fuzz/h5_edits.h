@@ -6,7 +6,7 @@ namespace palpate::fuzz {
 
 /// Interprets bytes as a list of changes to a valid HDF5 file, which HDF5 itself applies: removed objects,
 /// other shapes, types or numbers. This tests palpate's readers rather than HDF5, which does not survive
-/// every damaged byte (core/rehearsal.h). A change has 12 bytes: object, what, row, column, 8 bytes of a
+/// every damaged byte (core/sandbox.h). A change has 12 bytes: object, what, row, column, 8 bytes of a
 /// number.
 /// @param write_seed  makes the good file at a path
 /// @return the changed file's path; valid until the next call

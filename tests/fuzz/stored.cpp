@@ -3,7 +3,7 @@
 #include "fuzz/input.h"
 #include "fuzz/seeds.h"
 #include "fuzz/targets.h"
-#include "palpate/core/rehearsal.h"
+#include "palpate/core/sandbox.h"
 #include "palpate/store/bone_file.h"
 #include "palpate/store/checkpoint_file.h"
 #include "palpate/store/force_file.h"
@@ -70,19 +70,19 @@ void checkpoint_file(std::string_view bytes) { read_checkpoint(InputFile("fuzz.h
 
 // A valid file with other content: tests palpate's readers only, in this process.
 void mesh_content(std::string_view bytes) {
-  const WithoutRehearsal here;
+  const NoSandbox here;
   read_mesh(edited("mesh.h5", write_mesh_seed, bytes));
 }
 void model_content(std::string_view bytes) {
-  const WithoutRehearsal here;
+  const NoSandbox here;
   read_model(edited("model.h5", write_model_seed, bytes));
 }
 void run_content(std::string_view bytes) {
-  const WithoutRehearsal here;
+  const NoSandbox here;
   read_run(edited("run.vtkhdf", write_run_seed, bytes));
 }
 void checkpoint_content(std::string_view bytes) {
-  const WithoutRehearsal here;
+  const NoSandbox here;
   read_checkpoint(edited("checkpoint.h5", write_checkpoint_seed, bytes));
 }
 

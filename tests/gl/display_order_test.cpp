@@ -10,15 +10,15 @@ using namespace palpate::gl;
 
 TEST(DisplayOrder, HardwareIsTriedBeforeSoftware) {
   using enum DisplayKind;
-  const std::vector<DisplayKind> wanted = {kHardwareDevice, kHardwareDevice, kSurfaceless, kSoftwareDevice,
-                                           kSoftwareDevice};
-  std::vector<DisplayKind> listed = wanted;
+  const std::vector<DisplayKind> requested = {kHardwareDevice, kHardwareDevice, kSurfaceless, kSoftwareDevice,
+                                              kSoftwareDevice};
+  std::vector<DisplayKind> listed = requested;
   std::sort(listed.begin(), listed.end());
   int orders = 0;
   do {
     std::vector<DisplayKind> tried = listed;
     std::stable_sort(tried.begin(), tried.end(), is_tried_before);
-    EXPECT_EQ(tried, wanted);
+    EXPECT_EQ(tried, requested);
     ++orders;
   } while (std::next_permutation(listed.begin(), listed.end()));
   EXPECT_EQ(orders, 30);  // 5! / (2! 2!)

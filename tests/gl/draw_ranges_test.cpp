@@ -59,7 +59,7 @@ TEST(GlDrawRanges, NumbersFacesOfEachRangeFromItsOwn) {
   layout.indices(corner_buffer);
   const std::vector<Range> ranges = {{0, 0, 0, 0, 0, 0}, {3, 1, 6, 0, 1, 100}, {6, 1, 0, 0, 2, 40}};
   fill(ranges_sent, ranges.data(), ranges.size() * sizeof(Range));
-  layout.attribute_a_draw(2, ranges_sent, sizeof(Range), offsetof(Range, number));
+  layout.attribute_per_draw(2, ranges_sent, sizeof(Range), offsetof(Range, number));
   const std::array<Eigen::Vector4f, 3> camera = {Eigen::Vector4f::UnitX(), Eigen::Vector4f::UnitY(),
                                                  Eigen::Vector4f::UnitZ()};
   program.set("camera", camera);

@@ -144,12 +144,12 @@ TEST_P(StepResponses, LackAboutWhatTheySayTheyLack) {
   const MatX B = of.right();
   const MatX exact = B.transpose() * of.matrix(stiffness(), step()).ldlt().solve(B);
   begin(response, of, B);
-  for (const double wanted : {1e-1, 1e-2, 1e-3, 1e-4}) {
+  for (const double requested : {1e-1, 1e-2, 1e-3, 1e-4}) {
     for (int k = 0; k < 60; ++k) {
-      if ((response.missing().array() <= wanted * exact.diagonal().array()).all()) break;
+      if ((response.missing().array() <= requested * exact.diagonal().array()).all()) break;
       advance(response, 1);
     }
-    EXPECT_LT(apart(response.response(), exact), wanted);
+    EXPECT_LT(apart(response.response(), exact), requested);
   }
 }
 

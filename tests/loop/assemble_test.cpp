@@ -2,7 +2,7 @@
 
 #include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
-#include "loop/tool_side.h"
+#include "loop/tool_instance.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
@@ -122,9 +122,9 @@ TEST(Assemble, WhatASceneDoesNotNameIsNotMade) {
   const auto world = loop::assemble(d);
   EXPECT_TRUE(loop::run(*world, {}).status.ok());
   EXPECT_EQ(world->contact, nullptr);
-  EXPECT_EQ(loop::ToolSide::of(*world).tool, nullptr);
-  EXPECT_EQ(loop::ToolSide::of(*world).trajectory, nullptr);
-  EXPECT_EQ(loop::ToolSide::of(*world).condenser, nullptr);
+  EXPECT_EQ(loop::ToolInstance::of(*world).tool, nullptr);
+  EXPECT_EQ(loop::ToolInstance::of(*world).trajectory, nullptr);
+  EXPECT_EQ(loop::ToolInstance::of(*world).condenser, nullptr);
   for (const char* part : {"contact.force", "loop.skin", "proxy.region_finder", "tool.simbody_system",
                            "gl.context", "store.run_file", "render.picture", "integrate.cvode-bdf"})
     EXPECT_EQ(counters::counter(part), 0) << part;

@@ -32,7 +32,7 @@ class Log : public loop::Observer {
     add(tick.handle);
     add(tick.handle_twist);
     add(tick.contact);
-    add(tick.wanted);
+    add(tick.requested);
     add(tick.device);
   }
   void exchanged_of(std::size_t, const loop::ContactRecord& record) override {

@@ -25,8 +25,8 @@ namespace {
 
 struct Rows final : loop::Observer {
   std::vector<loop::EnergyBalance> rows;
-  bool wanted = true;
-  bool wants_energy() const override { return wanted; }
+  bool requested = true;
+  bool wants_energy() const override { return requested; }
   void energy(const loop::EnergyBalance& balance) override { rows.push_back(balance); }
 };
 
@@ -256,7 +256,7 @@ TEST(EnergyLedger, ContactPointsLeaveTheTicksOwnLossAlone) {
 TEST(EnergyLedger, ARunThatDoesNotAskHasNone) {
   const auto world = loop::assemble(dropped("cvode-bdf", 1e-3));
   Rows keep;
-  keep.wanted = false;
+  keep.requested = false;
   loop::RunOptions options;
   options.observers = {&keep};
   EXPECT_FALSE(loop::run(*world, options).energy);

@@ -7,7 +7,7 @@
 #include "loop/linearise.h"
 #include "loop/small_scenes.h"
 #include "loop/ticks_of.h"
-#include "loop/tool_side.h"
+#include "loop/tool_instance.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/loop/replay.h"
@@ -163,14 +163,14 @@ TEST(Grasp, IsRetracedBitForBit) {
     ASSERT_TRUE(loop::run(*world, options).status.ok());
   }
   const loop::HapticRecord record = loop::read_haptic_record(path);
-  const auto again = loop::retrace(d, {record});
-  ASSERT_EQ(again.size(), record.ticks.size());
-  for (std::size_t i = 0; i < again.size(); ++i) {
-    ASSERT_EQ(again[i].device.force, record.ticks[i].device.force) << i;
-    ASSERT_EQ(again[i].contact.moment, record.ticks[i].contact.moment) << i;
-    ASSERT_EQ(again[i].switches, record.ticks[i].switches) << i;
+  const auto relinearise = loop::retrace(d, {record});
+  ASSERT_EQ(relinearise.size(), record.ticks.size());
+  for (std::size_t i = 0; i < relinearise.size(); ++i) {
+    ASSERT_EQ(relinearise[i].device.force, record.ticks[i].device.force) << i;
+    ASSERT_EQ(relinearise[i].contact.moment, record.ticks[i].contact.moment) << i;
+    ASSERT_EQ(relinearise[i].switches, record.ticks[i].switches) << i;
   }
-  EXPECT_GT(pull(again), 0.3);
+  EXPECT_GT(pull(relinearise), 0.3);
   EXPECT_EQ(record.ticks.front().switches, 0u);
   EXPECT_EQ(record.ticks.back().switches, 4u);
   // the recorded hand closes the same switch
@@ -207,7 +207,7 @@ TEST(Grasp, ModesAnswerWhatIsHeld) {
     d.exchange.linearisation_error = 0.0;
     d.tool->tick_s = kPeriod;
     auto world = loop::assemble(d);
-    loop::ToolSide& side = loop::ToolSide::of(*world);
+    loop::ToolInstance& side = loop::ToolInstance::of(*world);
     side.trajectory->append(0.0, side.tool->pose(), {});
     world->contact->set_grasp(side.frame_index, true);
     world->contact->refresh(world->state.view());
@@ -216,14 +216,14 @@ TEST(Grasp, ModesAnswerWhatIsHeld) {
     away.translation += Vec3(1e-4, 0.0, pull);
     side.trajectory->clear();
     side.trajectory->append(0.0, away, {});
-    side.known.pose = away;
+    side.exchanged.pose = away;
     side.tool->set_state(0.0, away, {});
     world->contact->refresh(world->state.view());
     long fallbacks = 0;
     const loop::ContactRecord out = loop::linearise_contact(*world, 1, kPeriod, fallbacks);
     EXPECT_EQ(fallbacks, 0);
     if (linearisation == "condensed") return out.linear;
-    contact::TouchTicks ticks(d.contacts);
+    contact::ReducedContactStepper ticks(d.contacts);
     ticks.adopt(out.touch);
     return ticks.linearise(kPeriod, kPeriod, {away, {}});
   };

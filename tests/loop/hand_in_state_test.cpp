@@ -47,12 +47,12 @@ TEST(HandInState, YieldsToTheForce) {
   d.device->arm_damping_n_s_m = 40.0;  // damped to rest
   const auto ticks = ticks_of(d);
   const loop::TickRecord& end = ticks.back();
-  const KeyframeSpec& wanted = d.device->keyframes.back();
+  const KeyframeSpec& requested = d.device->keyframes.back();
   EXPECT_GT(end.device.force.z(), 0.1);
   // at rest the arm's spring carries the force on the hand
   const double gives = end.device.force.z() / d.device->arm_stiffness_n_m;
   EXPECT_GT(gives, 1e-4);
-  EXPECT_NEAR(end.handle.translation.z() - wanted.position_m.z(), gives, 0.02 * gives);
+  EXPECT_NEAR(end.handle.translation.z() - requested.position_m.z(), gives, 0.02 * gives);
   d.device->arm_stiffness_n_m *= 100.0;
   d.device->arm_damping_n_s_m *= 10.0;
   EXPECT_GT(ticks_of(d).back().device.force.z(), 1.02 * end.device.force.z());

@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "loop/small_scenes.h"
-#include "loop/tool_side.h"
+#include "loop/tool_instance.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
@@ -17,7 +17,7 @@ using namespace palpate::small_scenes;
 
 namespace {
 
-loop::ToolSide& side_of(loop::World& world) { return loop::ToolSide::of(world); }
+loop::ToolInstance& side_of(loop::World& world) { return loop::ToolInstance::of(world); }
 
 dynamics::LinearisedContact record_of(loop::World& world, std::uint64_t version, double period_s,
                                       long& frozen_fallbacks) {
@@ -140,7 +140,7 @@ struct Struck {
   void back() {
     hold(x0, {}, t0);
     side_of(*world).tool->set_state(t0, x0, {});
-    side_of(*world).known = {t0, x0, {}};
+    side_of(*world).exchanged = {t0, x0, {}};
     world->state.set_time(t0);
     world->state.q() = q;
     world->state.u() = u;

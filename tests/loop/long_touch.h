@@ -48,8 +48,8 @@ inline Drift rest(const scene::Description& d, long ticks, long settled) {
         out.pressing_n = tick.device.force.norm();
       }
       out.pose = std::max(out.pose, pose_difference(first.tool, tick.tool).norm());
-      out.force = std::max(out.force, (tick.wanted.force - first.wanted.force).norm());
-      out.moment = std::max(out.moment, (tick.wanted.moment - first.wanted.moment).norm());
+      out.force = std::max(out.force, (tick.requested.force - first.requested.force).norm());
+      out.moment = std::max(out.moment, (tick.requested.moment - first.requested.moment).norm());
       finite = finite && tick.tool.translation.allFinite() && tick.device.force.allFinite();
     }
     long count = 0, settled = 0;

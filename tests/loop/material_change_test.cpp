@@ -101,7 +101,7 @@ TEST(MaterialChange, IsFeltByTheHand) {
   struct Feel : loop::Observer {
     double before = 0.0, after = 0.0;
     void period(loop::World&, double) override {}
-    void tick(const loop::TickRecord& t) override { (t.time < 0.3 ? before : after) = t.wanted.force.z(); }
+    void tick(const loop::TickRecord& t) override { (t.time < 0.3 ? before : after) = t.requested.force.z(); }
   } feel;
   const auto world = loop::assemble(d);
   loop::RunOptions options;

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "loop/linearise.h"
-#include "loop/tool_side.h"
+#include "loop/tool_instance.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/loop/load.h"
 #include "palpate/loop/run.h"
@@ -18,7 +18,7 @@ namespace {
 
 struct State {
   VecX q, u;
-  loop::KnownTool known;
+  loop::ExchangedTool exchanged;
   double device_force = 0.0;
 };
 
@@ -32,7 +32,7 @@ State pressed(const scene::Description& d, double time) {
   options.duration_s = time;
   options.observers = {&feel};
   EXPECT_TRUE(loop::run(*world, options).status.ok());
-  return {world->state.q(), world->state.u(), loop::ToolSide::of(*world).known, feel.force};
+  return {world->state.q(), world->state.u(), loop::ToolInstance::of(*world).exchanged, feel.force};
 }
 
 struct Answer {
@@ -44,9 +44,9 @@ Answer answer(scene::Description d, const State& state, double error) {
   d.exchange.linearisation = "points";
   d.exchange.linearisation_error = error;
   const auto world = loop::assemble(d);
-  loop::ToolSide& side = loop::ToolSide::of(*world);
-  side.known = state.known;
-  side.trajectory->append(0.0, side.known.pose, side.known.twist);
+  loop::ToolInstance& side = loop::ToolInstance::of(*world);
+  side.exchanged = state.exchanged;
+  side.trajectory->append(0.0, side.exchanged.pose, side.exchanged.twist);
   world->state.q() = state.q;
   world->state.u() = state.u;
   world->contact->refresh(world->state.view());
@@ -55,10 +55,10 @@ Answer answer(scene::Description d, const State& state, double error) {
   // the first exchange of a run starts its iterations from zero: later ones start from the previous exchange
   const loop::ContactRecord record = loop::linearise_contact(*world, 1, period, fallbacks);
   Answer out;
-  contact::TouchTicks ticks(d.contacts);
+  contact::ReducedContactStepper ticks(d.contacts);
   ticks.adopt(record.touch);
   const dynamics::LinearisedContact linear =
-      ticks.linearise(period, period, {side.known.pose, side.known.twist});
+      ticks.linearise(period, period, {side.exchanged.pose, side.exchanged.twist});
   out.F = Eigen::Map<const Vec6>(linear.F0.data());
   out.J = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(linear.J.data());
   out.B = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(linear.B.data());

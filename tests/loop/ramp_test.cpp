@@ -28,7 +28,7 @@ std::vector<double> shares(const std::string& scheme, std::optional<double> ramp
   EXPECT_TRUE(loop::run(*world, options).status.ok());
   std::vector<double> out;
   for (const loop::TickRecord& tick : keep.ticks)
-    out.push_back(tick.device.force.norm() / tick.wanted.force.norm());
+    out.push_back(tick.device.force.norm() / tick.requested.force.norm());
   return out;
 }
 

@@ -203,7 +203,7 @@ TEST(RealTime, TheToolMeetsObstacles) {
     ASSERT_TRUE(r.result.status.ok()) << r.result.status.message;
     const loop::TickRecord& last = r.kept.ticks.back();
     EXPECT_GT(last.device.force.z(), 0.3) << real_time;
-    EXPECT_NEAR(last.contact.force.z() / last.wanted.force.z(), 1.0, 1e-3) << real_time;
+    EXPECT_NEAR(last.contact.force.z() / last.requested.force.z(), 1.0, 1e-3) << real_time;
   }
 }
 
@@ -231,8 +231,8 @@ TEST(RealTime, KeepsTheBalanceOfEnergy) {
   balanced(false, now, kept_now);
   double work = 0.0, power = 0.0, time = 0.0;
   for (const loop::TickRecord& tick : kept.ticks) {
-    const double next =
-        -tick.wanted.force.dot(tick.handle_twist.linear) - tick.wanted.moment.dot(tick.handle_twist.angular);
+    const double next = -tick.requested.force.dot(tick.handle_twist.linear) -
+                        tick.requested.moment.dot(tick.handle_twist.angular);
     work += 0.5 * (tick.time - time) * (power + next);
     power = next;
     time = tick.time;
@@ -262,9 +262,9 @@ long allocations_in_ticks(const std::string& device, device::PassivityController
   d.device->velocity_cutoff_per_s = 100.0;
   d.device->force_resolution_n = 0.01;
   const auto world = loop::assemble(d);
-  loop::ToolSide& side = loop::ToolSide::of(*world);
+  loop::ToolInstance& side = loop::ToolInstance::of(*world);
   side.passivity = device::make_passivity_controller(mode, *d.device, d.tool->tick_s);
-  loop::TickSide ticks(*d.tool, side);
+  loop::HapticLoop ticks(*d.tool, side);
   ticks.start(0.0);
   dynamics::LinearisedContact record;
   for (std::size_t i = 0; i < 6; ++i) record.J[7 * i] = i < 3 ? -0.1 : -1e3;
@@ -280,7 +280,7 @@ long allocations_in_ticks(const std::string& device, device::PassivityController
   for (int i = 2; i <= 2500; ++i) ok = ticks.tick(1e-3 * i, 1e-3, record, out).ok() && ok;
   const long taken = malloc_calls - before;
   EXPECT_TRUE(ok);
-  EXPECT_GT(out.wanted.force.norm(), 0.1);
+  EXPECT_GT(out.requested.force.norm(), 0.1);
   EXPECT_EQ(side.passivity && side.passivity->active_ticks() > 0, mode == Mode::kControl);
   return taken;
 }
@@ -299,7 +299,7 @@ long allocations_on_floor(bool mesh) {
     d.tool->inertia_kg_m2 = Vec3::Constant(1e-5);
   }
   const auto world = loop::assemble(d);
-  loop::TickSide ticks(d, loop::ToolSide::of(*world));
+  loop::HapticLoop ticks(d, loop::ToolInstance::of(*world));
   loop::TickGroup group(std::vector<loop::TickGroup::Member>{{0, &ticks}});
   ticks.start(0.0);
   loop::TickRecord out;
@@ -345,8 +345,8 @@ long allocations_of_two(bool round) {
   d.contacts[0].method = "auto";
   d.contacts[0].friction = 0.3;
   const auto world = loop::assemble(d);
-  std::deque<loop::TickSide> ticks;
-  for (std::size_t i = 0; i < 2; ++i) ticks.emplace_back(d, loop::ToolSide::of(*world, i)).start(0.0);
+  std::deque<loop::HapticLoop> ticks;
+  for (std::size_t i = 0; i < 2; ++i) ticks.emplace_back(d, loop::ToolInstance::of(*world, i)).start(0.0);
   loop::TickGroup group(std::vector<loop::TickGroup::Member>{{0, &ticks[0]}, {1, &ticks[1]}});
   const loop::ContactRecord none;
   loop::TickRecord out;
@@ -405,7 +405,7 @@ struct Feels : device::Device {
 };
 
 // After its end a run exerts no force on any hand, by either clock, also if the device fails.
-TEST(TickSide, EndsWithoutAForce) {
+TEST(HapticLoop, EndsWithoutAForce) {
   for (const bool real_time : {false, true})
     for (const double fails_at : {1.0, 0.05}) {
       auto hand = std::make_unique<Feels>(fails_at);
@@ -501,7 +501,7 @@ TEST(RealTime, ALongPauseIsNotMadeUpForInABurst) {
   }
   EXPECT_TRUE(kept.ticks[150].ramps_in) << "the one behind the pause";
   EXPECT_GE(kept.ticks[150].left_out, 90u);
-  EXPECT_GT(kept.ticks[149].wanted.force.norm(), 0.1);
+  EXPECT_GT(kept.ticks[149].requested.force.norm(), 0.1);
   EXPECT_EQ(clock.left_out_ticks, left_out);
   EXPECT_EQ(clock.stalls, stalls);
 }
@@ -546,7 +546,7 @@ TEST(Run, CountsTicksOutsideTheWorkspace) {
   const Ran r = run(d, false);
   EXPECT_EQ(r.result.outside_ticks, 300);
   EXPECT_EQ(r.kept.ticks.back().device.force.norm(), 0.0);
-  EXPECT_GT(r.kept.ticks.back().wanted.force.norm(), 0.1);
+  EXPECT_GT(r.kept.ticks.back().requested.force.norm(), 0.1);
 }
 
 }  // namespace

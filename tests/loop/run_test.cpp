@@ -195,12 +195,12 @@ TEST(Run, ForceAboveTheDevicesMaximumNeverGetsOut) {
   Log log;
   const loop::RunResult result = run_with(d, log, 0.1);
   ASSERT_TRUE(result.status.ok());
-  double wanted = 0.0, sent = 0.0;
+  double requested = 0.0, sent = 0.0;
   for (const loop::TickRecord& tick : log.ticks) {
-    wanted = std::max(wanted, tick.wanted.force.norm());
+    requested = std::max(requested, tick.requested.force.norm());
     sent = std::max(sent, tick.device.force.norm());
   }
-  EXPECT_GT(wanted, 0.1);
+  EXPECT_GT(requested, 0.1);
   EXPECT_LE(sent, 0.05);
   EXPECT_GT(result.limited_ticks, 0);
 }

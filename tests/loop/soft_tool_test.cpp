@@ -1,11 +1,11 @@
 // A soft tool: the hand's tool carries nodes of a soft body, at a thousand ticks per second all the same.
 #include <gtest/gtest.h>
 
-#include "loop/body_side.h"
+#include "loop/body_loop.h"
 #include "loop/carried_bodies.h"
 #include "loop/small_scenes.h"
 #include "loop/ticks_of.h"
-#include "loop/tool_side.h"
+#include "loop/tool_instance.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
@@ -164,8 +164,8 @@ TEST(SoftTool, TakesItsBodyAlong) {
   other.attachments.clear();
   d.bodies.push_back(other);
   const auto world = loop::assemble(d);
-  loop::ToolSide& side = loop::ToolSide::of(*world);
-  const Pose before = side.known.pose;
+  loop::ToolInstance& side = loop::ToolInstance::of(*world);
+  const Pose before = side.exchanged.pose;
   const Twist twist{Vec3(0.1, 0.2, -0.3), Vec3(0.4, 0.0, 0.1)};
   VecX u = world->state.u();
   for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = 0.01 * std::sin(1.0 + 7.0 * static_cast<double>(i));
@@ -173,7 +173,7 @@ TEST(SoftTool, TakesItsBodyAlong) {
   const Points x = world->positions(world->bodies[0]), y = world->positions(world->bodies[1]);
   const Pose moved{Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())) * before.rotation,
                    before.translation + Vec3(0.05, -0.03, 0.02)};
-  side.known = {0.5, moved, {Vec3(-1, 2, 0.5), Vec3(0.1, -0.2, 0.3)}};
+  side.exchanged = {0.5, moved, {Vec3(-1, 2, 0.5), Vec3(0.1, -0.2, 0.3)}};
   loop::carry_along(*world, side, before, twist);
   const Points now = world->positions(world->bodies[0]);
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
@@ -181,9 +181,9 @@ TEST(SoftTool, TakesItsBodyAlong) {
     EXPECT_LT((moved.inverse() * Vec3(now.col(i)) - place).norm(), 1e-15);
     const Vec3 against = before.rotation.conjugate() *
                          (u.segment<3>(3 * i) - twist.at(Vec3(x.col(i)) - before.translation)),
-               still =
-                   moved.rotation.conjugate() * (Vec3(world->state.u().segment<3>(3 * i)) -
-                                                 side.known.twist.at(Vec3(now.col(i)) - moved.translation));
+               still = moved.rotation.conjugate() *
+                       (Vec3(world->state.u().segment<3>(3 * i)) -
+                        side.exchanged.twist.at(Vec3(now.col(i)) - moved.translation));
     EXPECT_LT((still - against).norm(), 1e-14);
   }
   EXPECT_EQ(world->positions(world->bodies[1]), y) << "it carries that one alone";
@@ -194,13 +194,13 @@ TEST(SoftTool, TakesItsBodyAlongWhereItIsLate) {
   const auto world = loop::assemble(carried_block());
   loop::RunOptions options;
   loop::RunResult result;
-  loop::BodySide bodies(*world, options, result);
+  loop::BodyLoop bodies(*world, options, result);
   bodies.restart_path();
-  const Pose before = loop::ToolSide::of(*world).known.pose;
+  const Pose before = loop::ToolInstance::of(*world).exchanged.pose;
   const Points x = world->positions(world->bodies[0]);
   const Vec3 way(0.03, -0.01, 0.02);
   bodies.follow(0, 0.5, {before.rotation, before.translation + way}, {});
-  bodies.stand_still(0.5);
+  bodies.hold_bodies(0.5);
   EXPECT_EQ(world->state.time(), 0.5);
   EXPECT_LT((world->positions(world->bodies[0]) - (x.colwise() + way)).norm(), 1e-14);
 }

@@ -90,7 +90,7 @@ TEST(ToolsMeet, AtRestTheyCarryEachOther) {
         const std::string what = std::string(first) + ", " + second + ", " + scheme;
         const loop::TickRecord &a = both.of[0].back(), &b = both.of[1].back();
         EXPECT_GT(a.contact.force.z(), 0.3) << what;
-        EXPECT_NEAR(a.contact.force.z() / a.wanted.force.z(), 1.0, 1e-3) << what;
+        EXPECT_NEAR(a.contact.force.z() / a.requested.force.z(), 1.0, 1e-3) << what;
         EXPECT_LT((a.contact.force + b.contact.force).norm(), 1e-9) << what;
         EXPECT_LT(a.contact.force.head<2>().norm(), 1e-6) << what;
         EXPECT_LT(a.tool_twist.linear.norm(), 1e-4) << what;
@@ -237,7 +237,7 @@ TEST(ToolsMeet, AnObstacleCarriesAChainOfThem) {
   const loop::TickRecord &a = both.of[0].back(), &b = both.of[1].back();
   EXPECT_GT(a.contact.force.z(), 0.3);
   EXPECT_LT(b.contact.force.norm(), 1e-3 * a.contact.force.z()) << "as much from below as from above";
-  EXPECT_NEAR(a.contact.force.z() / a.wanted.force.z(), 1.0, 1e-3);
+  EXPECT_NEAR(a.contact.force.z() / a.requested.force.z(), 1.0, 1e-3);
 }
 
 // The lower tool lies on a soft block: the records of the bodies act in addition to the other tool's contact,
@@ -308,13 +308,14 @@ TEST(ToolsMeet, AreReplayedTogether) {
   }
   const std::vector<loop::HapticRecord> records = loop::read_haptic_records(folder.string(), d);
   for (const std::size_t hand : {0, 1}) {
-    const auto again = loop::retrace(d, records, hand);
-    ASSERT_EQ(again.size(), both.of[hand].size());
-    for (std::size_t i = 0; i < again.size(); ++i) {
-      ASSERT_EQ(again[i].device.force, both.of[hand][i].device.force) << hand << " at " << again[i].time;
-      ASSERT_EQ(again[i].contact.force, both.of[hand][i].contact.force);
+    const auto relinearise = loop::retrace(d, records, hand);
+    ASSERT_EQ(relinearise.size(), both.of[hand].size());
+    for (std::size_t i = 0; i < relinearise.size(); ++i) {
+      ASSERT_EQ(relinearise[i].device.force, both.of[hand][i].device.force)
+          << hand << " at " << relinearise[i].time;
+      ASSERT_EQ(relinearise[i].contact.force, both.of[hand][i].contact.force);
     }
-    EXPECT_GT(again.back().contact.force.norm(), 0.3);
+    EXPECT_GT(relinearise.back().contact.force.norm(), 0.3);
   }
 }
 

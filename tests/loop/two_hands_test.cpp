@@ -220,8 +220,8 @@ TEST(TwoHands, BalanceTheirEnergy) {
       const auto& ticks = both.of[hand];
       for (std::size_t i = 1; i < ticks.size(); ++i)
         works[hand] -= 0.5 * (ticks[i].time - ticks[i - 1].time) *
-                       (ticks[i].wanted.force.dot(ticks[i].handle_twist.linear) +
-                        ticks[i - 1].wanted.force.dot(ticks[i - 1].handle_twist.linear));
+                       (ticks[i].requested.force.dot(ticks[i].handle_twist.linear) +
+                        ticks[i - 1].requested.force.dot(ticks[i - 1].handle_twist.linear));
     }
     EXPECT_GT(works[1], 1e-4);
     EXPECT_NEAR(both.last->hand / (works[0] + works[1]), 1.0, 1e-3) << scheme;
@@ -322,14 +322,14 @@ TEST(TwoHands, AreRecordedEach) {
   ASSERT_EQ(records.size(), 2u);
   for (const std::size_t hand : {0, 1}) {
     const auto& felt = both.of[hand];
-    const auto again = loop::retrace(d, records, hand);
-    ASSERT_EQ(again.size(), felt.size());
+    const auto relinearise = loop::retrace(d, records, hand);
+    ASSERT_EQ(relinearise.size(), felt.size());
     EXPECT_EQ(records[hand].exchanges.size(), static_cast<std::size_t>(result.periods));
     std::size_t touching = 0;
     for (std::size_t i = 0; i < felt.size(); ++i) {
-      EXPECT_EQ(again[i].device.force, felt[i].device.force) << hand << " at " << felt[i].time;
-      EXPECT_EQ(again[i].device.moment, felt[i].device.moment);
-      EXPECT_EQ(again[i].tool.translation, felt[i].tool.translation);
+      EXPECT_EQ(relinearise[i].device.force, felt[i].device.force) << hand << " at " << felt[i].time;
+      EXPECT_EQ(relinearise[i].device.moment, felt[i].device.moment);
+      EXPECT_EQ(relinearise[i].tool.translation, felt[i].tool.translation);
       touching += felt[i].contact.force.norm() > 0.1;
     }
     EXPECT_GT(touching, felt.size() / 4);

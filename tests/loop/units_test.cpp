@@ -127,8 +127,8 @@ Result result_of(const Scene& s, const Units& units) {
   if (world->description.tool) {
     out.tool.resize(15);
     out.tool << tick.last.tool.translation / units.length, tick.last.contact.force / units.force(),
-        tick.last.contact.moment / units.moment(), tick.last.wanted.force / units.force(),
-        tick.last.wanted.moment / units.moment();
+        tick.last.contact.moment / units.moment(), tick.last.requested.force / units.force(),
+        tick.last.requested.moment / units.moment();
   }
   return out;
 }

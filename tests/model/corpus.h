@@ -25,7 +25,7 @@ inline void expect_sound(const model::Made& made) {
   TriMesh skin = mesh::boundary(made.file.model.tets).surface;
   EXPECT_NO_THROW(mesh::check_surface(skin, from));
   EXPECT_LE(made.quality.volume_error, 0.01);
-  if (!made.angle_price) { EXPECT_GE(made.quality.smallest_dihedral_deg, made.creased ? 4.0 : 8.0); }
+  if (!made.angle_cost) { EXPECT_GE(made.quality.smallest_dihedral_deg, made.creased ? 4.0 : 8.0); }
 }
 
 /// Checks that an error gives a location (except for insufficient budgets) and a remedy.
@@ -36,16 +36,16 @@ inline void expect_a_way_out(const std::string& refusal) {
   EXPECT_TRUE(std::regex_search(refusal, way_out)) << refusal;
 }
 
-inline Share make_all(const std::function<bool(const broken::Entry&)>& wanted) {
+inline Share make_all(const std::function<bool(const broken::Entry&)>& requested) {
   Share share;
   for (const broken::Entry& entry : broken::entries()) {
-    if (!wanted(entry)) continue;
+    if (!requested(entry)) continue;
     SCOPED_TRACE(entry.name);
     model::Options options = entry.options;
     options.tetrahedra.tetrahedra = entry.tetrahedra;
     options.tetrahedra.at_least = true;
     options.proxies = 0;
-    model::Watcher silent;
+    model::ProgressListener silent;
     const double start = wall_seconds();
     std::string outcome = "model";
     try {

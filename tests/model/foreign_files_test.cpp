@@ -45,12 +45,12 @@ std::string words(const TriMesh& mesh, const std::string& before_point, const st
   return out;
 }
 
-void expect_surface(const std::string& path, const TriMesh& wanted, double tolerance) {
+void expect_surface(const std::string& path, const TriMesh& requested, double tolerance) {
   const model::SourceFile got = model::read_source(path);
   const model::RepairedSurface result = model::repair(got.surface, got.from);
-  EXPECT_EQ(result.surface.vertices.cols(), wanted.vertices.cols()) << path;
-  EXPECT_EQ(result.surface.faces.cols(), wanted.faces.cols()) << path;
-  EXPECT_NEAR(volume(result.surface), volume(wanted), tolerance) << path;
+  EXPECT_EQ(result.surface.vertices.cols(), requested.vertices.cols()) << path;
+  EXPECT_EQ(result.surface.faces.cols(), requested.faces.cols()) << path;
+  EXPECT_NEAR(volume(result.surface), volume(requested), tolerance) << path;
 }
 
 TEST_F(ForeignFiles, SurfacesAsText) {
@@ -176,7 +176,7 @@ TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
   put("half.msh", msh_of_two(names, {0, 9}));
   int error = 0, read = 0;
   const auto expect = [&](const std::string& from, const std::string& name, double version, double binary,
-                          const std::string& wanted) {
+                          const std::string& requested) {
     model::start_gmsh(gmshInitialize, &error);
     gmshOptionSetNumber("General.Terminal", 0, &error);
     gmshOptionSetNumber("Mesh.SaveAll", from == "plain.msh", &error);  // else version 2.2 omits the groups
@@ -187,7 +187,7 @@ TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
     EXPECT_EQ(error, 0) << name;
     gmshFinalize(&error);
     const model::SourceFile got = model::read_source(at(name));
-    ASSERT_EQ(regions_of(got), wanted) << name << " of " << from;
+    ASSERT_EQ(regions_of(got), requested) << name << " of " << from;
     for (const int tet : got.regions[0].tets)
       EXPECT_LT(got.tets.nodes(0, got.tets.tets.col(tet)).mean(), 0.0) << name;
     ++read;

@@ -27,7 +27,7 @@ model::Options small() {
 }
 
 model::Made made(model::Input from, const model::Options& options = small()) {
-  model::Watcher silent;
+  model::ProgressListener silent;
   return model::make_model(std::move(from), options, silent);
 }
 

@@ -114,7 +114,7 @@ TEST(Regions, GoThroughTheWholeOfIt) {
   options.proxies = 0;
   options.regions = {source("core", ball(0.4))};
   options.scale = 1e-3;
-  model::Watcher silent;
+  model::ProgressListener silent;
   const model::Made taken = model::make_model(input, options, silent);
   ASSERT_EQ(taken.file.model.regions.size(), 2u);
   ASSERT_EQ(taken.regions.size(), 2u);

@@ -30,10 +30,10 @@ model::TetQuality sound(TetMesh mesh, double volume) {
 }
 
 TEST(Tetrahedralise, MeetsTheNumberAndTheVolumeWithGoodAngles) {
-  for (const int wanted : {500, 3000}) {
-    const model::Tetrahedra made = model::tetrahedralise(ball(1.0, 12), number(wanted));
+  for (const int requested : {500, 3000}) {
+    const model::Tetrahedra made = model::tetrahedralise(ball(1.0, 12), number(requested));
     const model::TetQuality q = sound(made.mesh, volume(ball(1.0, 12)));
-    EXPECT_NEAR(q.tetrahedra, wanted, 0.03 * wanted);
+    EXPECT_NEAR(q.tetrahedra, requested, 0.03 * requested);
     EXPECT_GE(q.smallest_dihedral_deg, 8.0);
     EXPECT_LE(q.volume_error, 1e-4);  // fitted, rather than inscribed
   }
@@ -47,9 +47,9 @@ TEST(Tetrahedralise, MeetsTheElementSize) {
 }
 
 TEST(Tetrahedralise, ProgressNeverRunsBack) {
-  for (const int wanted : {400, 800}) {
+  for (const int requested : {400, 800}) {
     std::vector<double> told;
-    model::tetrahedralise(ball(), number(wanted), [&](double fraction) { told.push_back(fraction); });
+    model::tetrahedralise(ball(), number(requested), [&](double fraction) { told.push_back(fraction); });
     ASSERT_GT(told.size(), 3u);
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     EXPECT_GE(told.front(), 0.0);

@@ -14,10 +14,10 @@ using namespace palpate::cli;
 namespace {
 
 /// A child process that ends by a division by zero, unless the stage is skipped.
-int dies_in(const char* stage, bool wanted) {
+int dies_in(const char* stage, bool requested) {
   worker_stage(stage);
   worker_place("at (1, 2, 3) m");
-  if (wanted) std::raise(SIGFPE);
+  if (requested) std::raise(SIGFPE);
   return 7;
 }
 
@@ -56,9 +56,9 @@ TEST(Worker, AStageThatEndsTheProcessIsLeftOutOfTheNextAttempt) {
   for (const char* stage : {model::kMovingVertices, model::kExudingSlivers}) {
     const bool moving = stage == model::kMovingVertices;
     const WorkerEnd end = run_attempts({}, [&](const model::Optimisation& optimisation) {
-      const bool wanted = moving ? optimisation.move_vertices : optimisation.exude_slivers;
+      const bool requested = moving ? optimisation.move_vertices : optimisation.exude_slivers;
       const std::string& why = moving ? optimisation.why_not_moved : optimisation.why_not_exuded;
-      return wanted || why == "Floating point exception" ? dies_in(stage, wanted) : 1;
+      return requested || why == "Floating point exception" ? dies_in(stage, requested) : 1;
     });
     EXPECT_EQ(end.signal, "");
     EXPECT_EQ(end.status, 7);

@@ -35,7 +35,7 @@ inline TriMesh of_cubes(const std::array<int, 3>& cells, double edge,
   std::map<std::array<int, 3>, int> vertex;
   std::vector<Vec3> points;
   std::vector<Eigen::Vector3i> faces;
-  const auto wanted = [&](std::array<int, 3> c) {
+  const auto requested = [&](std::array<int, 3> c) {
     for (int axis = 0; axis < 3; ++axis)
       if (c[static_cast<std::size_t>(axis)] < 0 ||
           c[static_cast<std::size_t>(axis)] >= cells[static_cast<std::size_t>(axis)])
@@ -55,7 +55,7 @@ inline TriMesh of_cubes(const std::array<int, 3>& cells, double edge,
             const std::array<int, 3> cell{i, j, k};
             std::array<int, 3> next = cell;
             next[axis] += side ? 1 : -1;
-            if (!wanted(cell) || wanted(next)) continue;
+            if (!requested(cell) || requested(next)) continue;
             std::array<int, 4> corner{};
             for (std::size_t c = 0; c < 4; ++c) {  // counter-clockwise about +axis
               std::array<int, 3> place = cell;

@@ -11,12 +11,12 @@ using namespace palpate;
 namespace {
 
 /// Returns the message for a valid scene after `spoil` has made it invalid.
-std::string message_of(const std::function<void(render::Scene&, render::Options&)>& spoil) {
+std::string message_of(const std::function<void(render::Scene&, render::Options&)>& seed_defect) {
   render::Scene scene;
   scene.surfaces.push_back(cube_surface());
   scene.surfaces[0].name = "cube";
   render::Options options;
-  spoil(scene, options);
+  seed_defect(scene, options);
   try {
     render::draw(scene, options);
   } catch (const Error& e) { return e.what(); }
@@ -24,8 +24,8 @@ std::string message_of(const std::function<void(render::Scene&, render::Options&
 }
 
 testing::AssertionResult says(const std::string& part,
-                              const std::function<void(render::Scene&, render::Options&)>& spoil) {
-  const std::string message = message_of(spoil);
+                              const std::function<void(render::Scene&, render::Options&)>& seed_defect) {
+  const std::string message = message_of(seed_defect);
   return (message.find(part) != std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure())
          << message;
 }

@@ -58,34 +58,34 @@ TEST(SeenShare, IsTheCircularSegmentBesideAWall) {
   for (const double h : {-0.8, -0.3, 0.0, 0.4, 0.9}) {
     const render::Scene scene{{subject(Vec3::Zero()), wall(2.0, h)}};
     const double expected = (std::acos(h) - h * std::sqrt(1.0 - h * h)) / std::numbers::pi;
-    EXPECT_NEAR(render::seen_share(scene, along_x()), expected, 0.02) << h;
+    EXPECT_NEAR(render::visible_share(scene, along_x()), expected, 0.02) << h;
   }
 }
 
 TEST(SeenShare, IsWholeWhereNothingOpaqueStandsInFront) {
-  EXPECT_EQ(render::seen_share({{subject(Vec3::Zero()), wall(-2.0, 9.0)}}, along_x()), 1.0);
+  EXPECT_EQ(render::visible_share({{subject(Vec3::Zero()), wall(-2.0, 9.0)}}, along_x()), 1.0);
   render::Scene glass{{subject(Vec3::Zero()), wall(2.0, 9.0)}};
-  EXPECT_EQ(render::seen_share(glass, along_x()), 0.0);
+  EXPECT_EQ(render::visible_share(glass, along_x()), 0.0);
   glass.surfaces[1].opacity = 0.9;
-  EXPECT_EQ(render::seen_share(glass, along_x()), 1.0);
-  EXPECT_EQ(render::seen_share({{wall(2.0, 9.0)}}, along_x()), 1.0) << "no subject";
-  EXPECT_EQ(render::seen_share({}, along_x()), 1.0);
+  EXPECT_EQ(render::visible_share(glass, along_x()), 1.0);
+  EXPECT_EQ(render::visible_share({{wall(2.0, 9.0)}}, along_x()), 1.0) << "no subject";
+  EXPECT_EQ(render::visible_share({}, along_x()), 1.0);
 }
 
 // A ball that sinks into a block: an eye to its side sees the part above.
 TEST(SeenShare, IsWhatStandsOutOfABody) {
   const render::Scene scene{{subject(Vec3::Zero()), block(Vec3(-5, -5, -5), Vec3(10, 10, 5))}};
-  EXPECT_NEAR(render::seen_share(scene, along_x()), 0.5, 0.02);
+  EXPECT_NEAR(render::visible_share(scene, along_x()), 0.5, 0.02);
 }
 
 TEST(ViewChoice, TurnsToTheSideWhereTheSubjectIs) {
   // the default eye is at azimuth -60 degrees: the block hides objects at 120
   const Vec3 behind(-2.0 * std::cos(std::numbers::pi / 3), 2.0 * std::sin(std::numbers::pi / 3), 0.0);
   const render::Scene scene{{subject(behind, 0.3), block(Vec3::Constant(-1.5), Vec3::Constant(3.0))}};
-  EXPECT_LT(render::seen_share(scene, View{}), 0.1);
+  EXPECT_LT(render::visible_share(scene, View{}), 0.1);
   const View view = chosen(scene);
   EXPECT_FALSE(is_usual(view));
-  EXPECT_GT(render::seen_share(scene, view), 0.95);
+  EXPECT_GT(render::visible_share(scene, view), 0.95);
 }
 
 TEST(ViewChoice, StaysWhereEnoughIsSeenOrTurningDoesNotHelp) {
@@ -116,5 +116,5 @@ TEST(ViewChoice, CountsAllInstants) {
   for (const double azimuth : {75.0, 120.0, 165.0}) choice.add({{subject(at(azimuth), 0.3), body}});
   const View view = choice.best(true);
   for (const double azimuth : {75.0, 120.0, 165.0})
-    EXPECT_GT(render::seen_share({{subject(at(azimuth), 0.3), body}}, view), 0.9) << azimuth;
+    EXPECT_GT(render::visible_share({{subject(at(azimuth), 0.3), body}}, view), 0.9) << azimuth;
 }

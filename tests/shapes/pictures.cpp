@@ -76,9 +76,9 @@ int main(int argc, char** argv) {
     bool of_base = false;
     for (int i = 2; i < argc; ++i) of_base = of_base || std::string(argv[i]) == "--base";
     for (const Look& look : kLooks) {
-      bool wanted = argc == 2 || (argc == 3 && of_base);
-      for (int i = 2; i < argc; ++i) wanted = wanted || look.name == argv[i];
-      if (wanted) draw(look, argv[1], of_base);
+      bool requested = argc == 2 || (argc == 3 && of_base);
+      for (int i = 2; i < argc; ++i) requested = requested || look.name == argv[i];
+      if (requested) draw(look, argv[1], of_base);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

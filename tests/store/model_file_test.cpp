@@ -42,51 +42,51 @@ store::ModelFile small_model() {
 
 TEST(ModelFile, RoundTripOfEverything) {
   const sample_run::Folder folder;
-  const store::ModelFile wanted = small_model();
-  store::write_model(folder / "m.h5", wanted);
+  const store::ModelFile requested = small_model();
+  store::write_model(folder / "m.h5", requested);
   const store::ModelFile got = store::read_model(folder / "m.h5");
   EXPECT_EQ(got.model.name, "corner");
-  EXPECT_EQ(got.model.tets.nodes, wanted.model.tets.nodes);
-  EXPECT_EQ(got.model.tets.tets, wanted.model.tets.tets);
-  EXPECT_EQ(got.model.skin.vertices, wanted.model.skin.vertices);
-  EXPECT_EQ(got.model.skin.faces, wanted.model.skin.faces);
-  EXPECT_EQ(got.model.embedding.tet, wanted.model.embedding.tet);
-  EXPECT_EQ(got.model.embedding.weights, wanted.model.embedding.weights);
+  EXPECT_EQ(got.model.tets.nodes, requested.model.tets.nodes);
+  EXPECT_EQ(got.model.tets.tets, requested.model.tets.tets);
+  EXPECT_EQ(got.model.skin.vertices, requested.model.skin.vertices);
+  EXPECT_EQ(got.model.skin.faces, requested.model.skin.faces);
+  EXPECT_EQ(got.model.embedding.tet, requested.model.embedding.tet);
+  EXPECT_EQ(got.model.embedding.weights, requested.model.embedding.weights);
   ASSERT_EQ(got.model.proxies.size(), 2u);
   for (std::size_t p = 0; p < 2; ++p) {
-    EXPECT_EQ(got.model.proxies[p].corners, wanted.model.proxies[p].corners);
-    EXPECT_EQ(got.model.proxies[p].members, wanted.model.proxies[p].members);
-    EXPECT_EQ(got.model.proxies[p].bone, wanted.model.proxies[p].bone);
+    EXPECT_EQ(got.model.proxies[p].corners, requested.model.proxies[p].corners);
+    EXPECT_EQ(got.model.proxies[p].members, requested.model.proxies[p].members);
+    EXPECT_EQ(got.model.proxies[p].bone, requested.model.proxies[p].bone);
   }
   ASSERT_EQ(got.model.skeleton.bones.size(), 2u);
   EXPECT_EQ(got.model.skeleton.bones[1].name, "tip of it");
   EXPECT_EQ(got.model.skeleton.bones[1].parent, 0);
   EXPECT_EQ(got.model.skeleton.bones[1].tail, Vec3::UnitY());
   EXPECT_EQ(got.model.skeleton.bones[1].tail_radius, 0.1 + 0.2);
-  EXPECT_EQ(got.model.bone_of_node, wanted.model.bone_of_node);
+  EXPECT_EQ(got.model.bone_of_node, requested.model.bone_of_node);
   ASSERT_EQ(got.model.regions.size(), 2u);
   EXPECT_EQ(got.model.regions[1].name, "hard");
   EXPECT_EQ(got.model.regions[1].tets, std::vector<int>{1});
   EXPECT_EQ(got.model.regions[1].youngs_modulus_factor, 20.0);
   EXPECT_EQ(got.record.source, "corner.obj");
   EXPECT_EQ(got.record.options, "--tetrahedra 2");
-  EXPECT_EQ(got.record.notes, wanted.record.notes);
-  EXPECT_EQ(got.record.figures, wanted.record.figures);
+  EXPECT_EQ(got.record.notes, requested.record.notes);
+  EXPECT_EQ(got.record.figures, requested.record.figures);
 }
 
 TEST(ModelFile, RegionsAreReadAlone) {
   const sample_run::Folder folder;
-  store::ModelFile wanted = small_model();
-  store::write_model(folder / "m.h5", wanted);
+  store::ModelFile requested = small_model();
+  store::write_model(folder / "m.h5", requested);
   const std::vector<MaterialRegion> got = store::read_regions(folder / "m.h5", 2);
   ASSERT_EQ(got.size(), 2u);
   EXPECT_EQ(got[0].name, "soft");
   EXPECT_EQ(got[1].density_factor, 1.1);
-  store::write_mesh(folder / "mesh.h5", wanted.model.tets);
+  store::write_mesh(folder / "mesh.h5", requested.model.tets);
   EXPECT_TRUE(store::read_regions(folder / "mesh.h5", 2).empty());
   const auto refusal = [&](std::vector<MaterialRegion> regions) -> std::string {
-    wanted.model.regions = std::move(regions);
-    store::write_model(folder / "bad.h5", wanted);
+    requested.model.regions = std::move(regions);
+    store::write_model(folder / "bad.h5", requested);
     try {
       store::read_regions(folder / "bad.h5", 2);
       return "accepted";
@@ -103,11 +103,11 @@ TEST(ModelFile, RegionsAreReadAlone) {
 
 TEST(ModelFile, TetrahedraAreReadByTheMeshReader) {
   const sample_run::Folder folder;
-  const store::ModelFile wanted = small_model();
-  store::write_model(folder / "m.h5", wanted);
-  EXPECT_EQ(store::read_mesh(folder / "m.h5").tets, wanted.model.tets.tets);
+  const store::ModelFile requested = small_model();
+  store::write_model(folder / "m.h5", requested);
+  EXPECT_EQ(store::read_mesh(folder / "m.h5").tets, requested.model.tets.tets);
   EXPECT_TRUE(store::is_model(folder / "m.h5"));
-  store::write_mesh(folder / "mesh.h5", wanted.model.tets);
+  store::write_mesh(folder / "mesh.h5", requested.model.tets);
   EXPECT_FALSE(store::is_model(folder / "mesh.h5"));
 }
 

@@ -27,7 +27,7 @@ struct Pair {
     const auto vec = [&](double scale) { return Vec3(scale * Vec3(in(rng), in(rng), in(rng))); };
     hand.translation = {0.8, 500.0, 5.0, 2.0, 0.7};
     hand.rotation = {1e-3, 2.0, 0.03, 0.01, 0.02};
-    hand.wanted = [turn = vec(0.4), rate = vec(0.2), x = vec(0.1), v = vec(0.3)](double t) {
+    hand.requested = [turn = vec(0.4), rate = vec(0.2), x = vec(0.1), v = vec(0.3)](double t) {
       return HandleState{{quaternion_of(t * rate) * quaternion_of(turn), x + t * v}, {rate, v}};
     };
     VecX q(7), u(6);
@@ -113,7 +113,7 @@ TEST(HandBlock, assembled_is_applied) {
 TEST(HandBlock, power_is_the_energys_rate_and_what_is_dissipated) {
   for (unsigned seed = 1; seed < 5; ++seed) {
     Pair pair(seed);
-    pair.hand.wanted = [at = pair.hand.wanted(0.0).pose](double) { return HandleState{at, {}}; };
+    pair.hand.requested = [at = pair.hand.requested(0.0).pose](double) { return HandleState{at, {}}; };
     pair.terms = make_hand_terms(pair.hand_id, pair.tool_id, pair.spec, pair.hand);
     // along the state's motion
     VecX along = pair.state.u();

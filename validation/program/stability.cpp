@@ -105,7 +105,7 @@ int stability(const StabilityArguments& arguments) {
     fmt::print(stderr, "palpate: stopped; the cells that were finished are in {}\n", folder);
     return kExitStopped;
   }
-  Undelivered missing;
+  MissingOutputs missing;
   missing.add(written);
   return missing.close(unexpected > 0 ? kExitError : 0);
 }

@@ -141,7 +141,7 @@ void print_meanings(const std::vector<const ValidationCase*>& cases) {
   fmt::print("{}\n", report::format_table({"case", "section", "what it measures"}, rows));
 }
 
-void write_results(const Run& run, const std::string& folder, Undelivered& missing) {
+void write_results(const Run& run, const std::string& folder, MissingOutputs& missing) {
   const store::ResultFolder mine(folder);
   const std::string path = (std::filesystem::path(folder) / "validation.json").string();
   store::write_atomically(path, Json{{"cases", run.cases}}.dump(2) + "\n");
@@ -181,7 +181,7 @@ int validate(const ValidateArguments& arguments) {
                                                           : Headers{"case", "quantity", "computed", "exact",
                                                                     "error", "bar", "order", "verdict"},
                                   out.rows));
-  Undelivered missing;
+  MissingOutputs missing;
   if (!arguments.folder.empty() && !arguments.inject_faults) write_results(out, arguments.folder, missing);
   fmt::print("{} of {} {}{}\n", done - static_cast<std::size_t>(out.failed), done,
              arguments.inject_faults ? "faults make their cases fail" : "cases keep their bars",

@@ -16,15 +16,15 @@ using validation::ValidationCase;
 
 constexpr double kLimitS = 7200.0;  // of CPU: what takes longer hangs
 
-std::string order_of(const CaseRun& run) {
+std::string encode_job(const CaseRun& run) {
   ByteWriter out;
   out.put(run.one - validation::validation_cases().data());
   out.put(run.fault ? run.fault->name : std::string());
   return out.take();
 }
 
-/// A ProcessPool::Work: runs the case that order_of() said.
-std::string do_order(const std::string& order, const std::atomic<bool>&) {
+/// A ProcessPool::Work: runs the case that encode_job() said.
+std::string run_job(const std::string& order, const std::atomic<bool>&) {
   ByteReader in(order);
   const ValidationCase& one =
       validation::validation_cases().at(static_cast<std::size_t>(in.get<std::ptrdiff_t>()));
@@ -77,7 +77,7 @@ std::vector<std::optional<CaseEnd>> run_cases(
   std::size_t next = 0, done = 0;
   ProcessPool pool(jobs);
   const auto start = [&](std::size_t index) {
-    pool.start(do_order, order_of(runs[index]), kLimitS, [&, index](const ProcessPool::Outcome& outcome) {
+    pool.start(run_job, encode_job(runs[index]), kLimitS, [&, index](const ProcessPool::Outcome& outcome) {
       out[index] = outcome.end == ProcessPool::Outcome::End::kDone ? case_end_of(outcome.bytes)
                                                                    : CaseEnd{{}, 0.0, outcome.bytes};
       progress(static_cast<double>(++done) / static_cast<double>(runs.size()), runs[index].one->name);

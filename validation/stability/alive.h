@@ -11,6 +11,6 @@ namespace palpate::stability {
 /// find a body that leaves a floor still in it.)  What is missing of that; empty for nothing, and for
 /// statics, which knows no speed.
 /// @param d  without gravity
-std::string does_not_move(const Lab& lab, scene::Description d, double rtol);
+std::string does_not_move(const CaseContext& context, scene::Description d, double rtol);
 
 }  // namespace palpate::stability

@@ -25,7 +25,7 @@ StabilityCell cell_of(const Task& task, const ProcessPool::Outcome& outcome) {
 }
 
 /// A cell as bytes, for a process that knows nothing of this matrix but the rows, which are always the same.
-std::string order_of(const Task& task, const StabilityOptions& options, double limit_s) {
+std::string encode_job(const Task& task, const StabilityOptions& options, double limit_s) {
   const auto registry = options.registry ? options.registry : &integrate::stepper_registry;
   ByteWriter out;
   out.put(task.row->name).put(task.sub_case->name).put(task.column->label);
@@ -34,14 +34,14 @@ std::string order_of(const Task& task, const StabilityOptions& options, double l
 }
 
 template <typename Named>
-const Named& named(const std::vector<Named>& all, std::string Named::*name, const std::string& wanted) {
+const Named& named(const std::vector<Named>& all, std::string Named::*name, const std::string& requested) {
   for (const Named& one : all)
-    if (one.*name == wanted) return one;
-  fail("the process of a cell does not know \"{}\"", wanted);
+    if (one.*name == requested) return one;
+  fail("the process of a cell does not know \"{}\"", requested);
 }
 
-/// A ProcessPool::Work: runs the cell that order_of() said.
-std::string do_order(const std::string& order, const std::atomic<bool>& expired) {
+/// A ProcessPool::Work: runs the cell that encode_job() said.
+std::string run_job(const std::string& order, const std::atomic<bool>& expired) {
   ByteReader in(order);
   const auto row_name = in.get<std::string>(), case_name = in.get<std::string>(),
              label = in.get<std::string>();
@@ -65,7 +65,7 @@ std::vector<StabilityCell> run_cells(const std::vector<Task>& tasks, const Stabi
   const auto start = [&](std::size_t index) {
     const Task& task = tasks[index];
     const double limit_s = (task.row->slow ? kLongerInSlowRows : 1.0) * options.limit_s;
-    pool.start(do_order, order_of(task, options, limit_s), limit_s,
+    pool.start(run_job, encode_job(task, options, limit_s), limit_s,
                [&, index](const ProcessPool::Outcome& outcome) {
                  cells[index] = cell_of(tasks[index], outcome);
                  ++done;

@@ -6,12 +6,12 @@
 namespace palpate::stability {
 namespace {
 
-StabilityCell guarded(const Task& task, const Lab& lab) {
+StabilityCell guarded(const Task& task, const CaseContext& context) {
   StabilityCell cell;
   Verdicts expected;
   try {
-    expected = task.sub_case->expect(lab);
-    cell = task.sub_case->run(lab);
+    expected = task.sub_case->expect(context);
+    cell = task.sub_case->run(context);
   } catch (const Error& refusal) {
     cell.verdict = Verdict::kError;
     cell.reason = fmt::format("refused: {}", refusal.what());

@@ -37,14 +37,14 @@ LinearBars linear_bars(const Column& column, const LinearProblem& problem, doubl
 
 /// Theoretical expectation of a column on a linear problem with periods (and fixed steps) of `H`; derivation
 /// in linear_theory.cpp.
-Verdicts expect_linear(const Lab& lab, const LinearProblem& problem, double H);
+Verdicts expect_linear(const CaseContext& context, const LinearProblem& problem, double H);
 
 /// The time [s] that a column under error control must have reached, accurately, before it may say that it
 /// has no steps left.
 double least_progress(const Column& column, const LinearProblem& problem);
 
 /// Runs the column over the problem and compares it with the exact motion, and with its own formula.
-StabilityCell linear_cell(const Lab& lab, const LinearProblem& problem, double H);
+StabilityCell linear_cell(const CaseContext& context, const LinearProblem& problem, double H);
 
 /// A case of a row: expect_linear() and linear_cell() of the problem that `make` builds.
 SubCase linear_case(std::string name, std::function<LinearProblem()> make, double H);

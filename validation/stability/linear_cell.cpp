@@ -25,17 +25,17 @@ struct Course {
   bool left_linear = false;  ///< of elements: grown, as predicted, beyond where they are linear
 };
 
-Course follow(const Lab& lab, const LinearProblem& problem, LinearProblem::Instance& run,
+Course follow(const CaseContext& context, const LinearProblem& problem, LinearProblem::Instance& run,
               dynamics::Stepper& stepper, double H) {
-  const bool by_formula = has_modal_steps(lab.column);
+  const bool by_formula = has_modal_steps(context.column);
   // stiff transients of a fixed step are over by then
-  const int settled = lab.column.fixed || is_static(lab.column) ? kLinearPeriods / 2 : 0;
+  const int settled = context.column.fixed || is_static(context.column) ? kLinearPeriods / 2 : 0;
   std::optional<PredictedCourse> formula;
-  if (by_formula) formula.emplace(lab.column, problem, H);
-  const bool followed = by_formula && predict_linear(lab.column, problem, H).overflows;
+  if (by_formula) formula.emplace(context.column, problem, H);
+  const bool followed = by_formula && predict_linear(context.column, problem, H).overflows;
   Course course;
   for (int i = 1; i <= (followed ? kLastPeriod : kLinearPeriods); ++i) {
-    if (lab.time_is_up()) course.interrupted = true;
+    if (context.time_is_up()) course.interrupted = true;
     if (course.interrupted) break;
     course.result = stepper.advance_to(i * H);
     if (formula) {
@@ -58,23 +58,23 @@ Course follow(const Lab& lab, const LinearProblem& problem, LinearProblem::Insta
     }
     if (i > settled && i <= kLinearPeriods)
       course.seen.error = std::max(
-          course.seen.error, is_static(lab.column) ? problem.from_rest(run) : problem.error(run, i * H));
+          course.seen.error, is_static(context.column) ? problem.from_rest(run) : problem.error(run, i * H));
   }
   return course;
 }
 
 /// An end with an error must have a reason: overflow of a fixed step, the limit of steps under error control.
-void judge_early_end(const Lab& lab, const LinearProblem& problem, const Course& course,
+void judge_early_end(const CaseContext& context, const LinearProblem& problem, const Course& course,
                      const LinearProblem::Instance& last, double bar, StabilityCell& cell) {
   if (cell.verdict != Verdict::kError) return;
   std::string mistake;
-  if (has_modal_steps(lab.column)) {
+  if (has_modal_steps(context.column)) {
     const bool fast_contact =
-        lab.column.entry->traits.family == "multi-rate" && problem.contact_share() > 0.0;
+        context.column.entry->traits.family == "multi-rate" && problem.contact_share() > 0.0;
     if (!(course.predicted > (fast_contact ? kOverflowingOnItsWay : kOverflowing)))
       mistake = fmt::format("gave up where its formula has {:.1e} of the start's energy", course.predicted);
-  } else if (!lab.column.fixed) {
-    const double least = least_progress(lab.column, problem), t = last.state.time();
+  } else if (!context.column.fixed) {
+    const double least = least_progress(context.column, problem), t = last.state.time();
     const double error = problem.error(last, t);
     if (t < least)
       mistake = fmt::format("gave up at {:.1e} s, where its steps reach {:.1e} s at least", t, least);
@@ -86,24 +86,25 @@ void judge_early_end(const Lab& lab, const LinearProblem& problem, const Course&
 
 }  // namespace
 
-StabilityCell linear_cell(const Lab& lab, const LinearProblem& problem, double H) {
+StabilityCell linear_cell(const CaseContext& context, const LinearProblem& problem, double H) {
   StabilityCell cell;
   const auto run = problem.start();
-  IntegratorSpec spec = spec_of(lab.column, linear_rtol(problem), H);
+  IntegratorSpec spec = spec_of(context.column, linear_rtol(problem), H);
   if (problem.contact_share() > 0.0) spec.explicit_side = "contact";
-  const auto stepper = make_stepper(lab.column, run->system, run->state, spec);
-  stepper->set_interrupt(lab.expired);
-  const Course course = follow(lab, problem, *run, *stepper, H);
+  const auto stepper = make_stepper(context.column, run->system, run->state, spec);
+  stepper->set_interrupt(context.expired);
+  const Course course = follow(context, problem, *run, *stepper, H);
   cell.steps = stepper->counters().steps;
-  const LinearBars bars = linear_bars(lab.column, problem, H, course.seen.highest, cell.steps);
+  const LinearBars bars = linear_bars(context.column, problem, H, course.seen.highest, cell.steps);
   cell.gain = course.seen.highest - 1.0;
   cell.error = course.seen.error;
   cell.figure = fmt::format("energy {:+.1e}, error {:.1e} of {:.1e}", cell.gain, cell.error, bars.error);
-  if (has_modal_steps(lab.column)) cell.figure += fmt::format(", {:.0e} from its formula", course.departure);
+  if (has_modal_steps(context.column))
+    cell.figure += fmt::format(", {:.0e} from its formula", course.departure);
 
-  if (ended_early(lab.column, course.result, course.finite, course.interrupted,
-                  cell.gain > bars.gain && !has_modal_steps(lab.column), cell)) {
-    judge_early_end(lab, problem, course, *run, bars.error, cell);
+  if (ended_early(context.column, course.result, course.finite, course.interrupted,
+                  cell.gain > bars.gain && !has_modal_steps(context.column), cell)) {
+    judge_early_end(context, problem, course, *run, bars.error, cell);
   } else {
     cell.verdict = course.left_linear ? Verdict::kBounded : verdict_of(course.seen, bars);
   }
@@ -116,8 +117,9 @@ StabilityCell linear_cell(const Lab& lab, const LinearProblem& problem, double H
 }
 
 SubCase linear_case(std::string name, std::function<LinearProblem()> make, double H) {
-  return {std::move(name), [make, H](const Lab& lab) { return expect_linear(lab, make(), H); },
-          [make, H](const Lab& lab) { return linear_cell(lab, make(), H); }};
+  return {std::move(name),
+          [make, H](const CaseContext& context) { return expect_linear(context, make(), H); },
+          [make, H](const CaseContext& context) { return linear_cell(context, make(), H); }};
 }
 
 }  // namespace palpate::stability

@@ -136,13 +136,13 @@ Verdict verdict_of(const LinearOutcome& outcome, const LinearBars& bars) {
   return gain <= bars.kept ? Verdict::kStable : Verdict::kBounded;
 }
 
-Verdicts expect_linear(const Lab& lab, const LinearProblem& problem, double H) {
-  if (is_static(lab.column)) return {Verdict::kAccurate};
-  if (!lab.column.fixed) return expect_error_control(lab.column, problem, H);
-  const LinearOutcome predicted = predict_linear(lab.column, problem, H);
+Verdicts expect_linear(const CaseContext& context, const LinearProblem& problem, double H) {
+  if (is_static(context.column)) return {Verdict::kAccurate};
+  if (!context.column.fixed) return expect_error_control(context.column, problem, H);
+  const LinearOutcome predicted = predict_linear(context.column, problem, H);
   if (predicted.overflows && !problem.is_by_elements()) return {Verdict::kError};
   if (predicted.highest > kLinearUpTo && problem.is_by_elements()) return {Verdict::kBounded};
-  const LinearBars bars = linear_bars(lab.column, problem, H, predicted.highest, kLinearPeriods);
+  const LinearBars bars = linear_bars(context.column, problem, H, predicted.highest, kLinearPeriods);
   Verdicts out;
   for (const double by : {1.0 - kNearABar, 1.0, 1.0 + kNearABar})
     out.add(verdict_of({1.0 + by * (predicted.highest - 1.0), by * predicted.error},

@@ -8,13 +8,13 @@
 namespace palpate::stability {
 namespace {
 
-bool chosen(const std::string& name, const std::vector<std::string>& wanted) {
-  return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+bool chosen(const std::string& name, const std::vector<std::string>& requested) {
+  return requested.empty() || std::find(requested.begin(), requested.end(), name) != requested.end();
 }
 
-void check_names(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+void check_names(const std::vector<std::string>& requested, const std::vector<std::string>& known,
                  const char* what) {
-  for (const std::string& name : wanted)
+  for (const std::string& name : requested)
     if (std::find(known.begin(), known.end(), name) == known.end())
       fail("unknown {} \"{}\"{}", what, name, suggestion(name, known));
 }

@@ -10,7 +10,7 @@
 namespace palpate::stability {
 
 /// Input of a case.
-struct Lab {
+struct CaseContext {
   const Column& column;
   int seeds = 10;
   const std::atomic<bool>* expired = nullptr;  ///< the cell's time is up
@@ -29,9 +29,9 @@ void mark_wrong(const std::string& mistake, StabilityCell& cell);
 
 struct SubCase {
   std::string name;
-  std::function<Verdicts(const Lab&)> expect;  ///< from theory, before anything of the case has run
+  std::function<Verdicts(const CaseContext&)> expect;  ///< from theory, before anything of the case has run
   /// Runs it: verdict and figures.  May throw Error (a refusal: that is an acceptable end).
-  std::function<StabilityCell(const Lab&)> run;
+  std::function<StabilityCell(const CaseContext&)> run;
 };
 
 /// Which columns a row has.

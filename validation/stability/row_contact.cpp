@@ -18,8 +18,8 @@ Row contact_stiffness_row() {
   for (int decade = 2; decade <= 12; decade += 2) {
     const scene::Description thrown = thrown_cube(std::pow(10.0, decade));
     row.cases.push_back({fmt::format("k = 1e{} Pa/m", decade),
-                         [thrown](const Lab& lab) { return expect_thrown(lab, thrown); },
-                         [thrown](const Lab& lab) { return thrown_cell(lab, thrown); }});
+                         [thrown](const CaseContext& context) { return expect_thrown(context, thrown); },
+                         [thrown](const CaseContext& context) { return projectile_case(context, thrown); }});
   }
   row.core = 2;
   return row;

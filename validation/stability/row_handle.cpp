@@ -35,9 +35,9 @@ namespace {
 
 constexpr double kTick = 1e-3;
 
-ToolSpec tool_spec(const Lab& lab) {
+ToolSpec tool_spec(const CaseContext& context) {
   ToolSpec spec;
-  spec.integrator = lab.column.name;
+  spec.integrator = context.column.name;
   spec.coupling.rotational_damping_n_m_s_rad = 1e-3;
   return spec;
 }
@@ -50,11 +50,11 @@ struct Motion {
 };
 
 /// `handle(i)`: pose and twist at the end of tick i.
-Motion move(const Lab& lab, tool::Tool& tool, int ticks,
+Motion move(const CaseContext& context, tool::Tool& tool, int ticks,
             const std::function<std::pair<Pose, Twist>(int)>& handle) {
   Motion motion;
   for (int i = 0; i < ticks; ++i) {
-    if (lab.time_is_up()) {
+    if (context.time_is_up()) {
       motion.interrupted = true;
       break;
     }
@@ -75,12 +75,12 @@ Motion move(const Lab& lab, tool::Tool& tool, int ticks,
 }
 
 /// @param follows  whether the tool went along with the handle as it must
-StabilityCell judge_ratio(const Lab& lab, const Motion& motion, double ratio, bool follows,
+StabilityCell judge_ratio(const CaseContext& context, const Motion& motion, double ratio, bool follows,
                           const char* what) {
   StabilityCell cell;
   cell.gain = ratio - 1.0;
   cell.figure = fmt::format("{} {:.3f} of what the coupling can give", what, ratio);
-  if (ended_early(lab.column, motion.result, motion.finite, motion.interrupted, ratio > 10.0, cell))
+  if (ended_early(context.column, motion.result, motion.finite, motion.interrupted, ratio > 10.0, cell))
     return cell;
   cell.verdict = ratio <= 1.01 ? Verdict::kStable : ratio <= 10.0 ? Verdict::kBounded : Verdict::kGrew;
   if (follows || ratio > 10.0) return cell;
@@ -89,38 +89,38 @@ StabilityCell judge_ratio(const Lab& lab, const Motion& motion, double ratio, bo
   return cell;
 }
 
-StabilityCell thrown(const Lab& lab) {
-  const ToolSpec spec = tool_spec(lab);
+StabilityCell thrown(const CaseContext& context) {
+  const ToolSpec spec = tool_spec(context);
   tool::Tool tool(spec, Vec3::Zero());
-  const Motion motion = move(lab, tool, 300, [](int i) {
+  const Motion motion = move(context, tool, 300, [](int i) {
     return std::pair{Pose{Quat::Identity(), i < 10 ? Vec3(0, 0, 0) : Vec3(1, 0, 0)}, Twist{}};
   });
   const double fastest = std::sqrt(spec.coupling.stiffness_n_m / spec.mass_kg),
                s = 0.5 * spec.coupling.damping_n_s_m / spec.mass_kg,
                left = 2.0 * std::exp(-s * 0.29) / std::sqrt(1.0 - std::pow(s / fastest, 2));
-  return judge_ratio(lab, motion, std::max(motion.distance, motion.speed / fastest),
+  return judge_ratio(context, motion, std::max(motion.distance, motion.speed / fastest),
                      motion.last_distance <= left, "distance and speed");
 }
 
-StabilityCell spun(const Lab& lab, int ticks) {
+StabilityCell spun(const CaseContext& context, int ticks) {
   constexpr double kSpin = 1000.0;
-  const ToolSpec spec = tool_spec(lab);
+  const ToolSpec spec = tool_spec(context);
   tool::Tool tool(spec, Vec3::Zero());
   const Vec3 axis = Vec3(1, -2, 0.5).normalized();
-  const Motion motion = move(lab, tool, ticks, [&](int i) {
+  const Motion motion = move(context, tool, ticks, [&](int i) {
     return std::pair{Pose{quaternion_of(std::remainder(kSpin * kTick * i, 2.0 * M_PI) * axis), Vec3::Zero()},
                      Twist{kSpin * axis, Vec3::Zero()}};
   });
   const double by_spring =
       spec.coupling.rotational_stiffness_n_m_rad * M_PI / spec.coupling.rotational_damping_n_m_s_rad;
-  return judge_ratio(lab, motion, motion.spin / (kSpin + by_spring),
+  return judge_ratio(context, motion, motion.spin / (kSpin + by_spring),
                      motion.last_spin >= 0.9 * (kSpin - by_spring), "spin");
 }
 
 /// Largest distance from where it should rest, over a million ticks, after the first ten thousand.
-StabilityCell million(const Lab& lab, double force) {
+StabilityCell million(const CaseContext& context, double force) {
   constexpr int kTicks = 1000000, kSettling = 10000;
-  const ToolSpec spec = tool_spec(lab);
+  const ToolSpec spec = tool_spec(context);
   tool::Tool tool(spec, Vec3::Zero());
   dynamics::LinearisedContact pull;
   pull.version = 1;
@@ -134,7 +134,7 @@ StabilityCell million(const Lab& lab, double force) {
   for (int i = 0; i < kTicks && result.ok() && !interrupted; ++i) {
     if (i == kSettling) memory = resident_memory_mib();
     result = tool.advance(kTick, {}, pull);
-    interrupted = lab.time_is_up();
+    interrupted = context.time_is_up();
     if (i < kSettling) continue;
     drift = std::max(drift, (tool.pose().translation - rest).norm());
     rotation = std::max(rotation, rotation_vector(tool.pose().rotation).norm());
@@ -144,13 +144,14 @@ StabilityCell million(const Lab& lab, double force) {
   cell.error = drift;
   cell.figure =
       fmt::format("drift {:.1e} m of {:.0e}, {:.1e} rad, memory {:+.1f} MiB", drift, bar, rotation, grown);
-  if (ended_early(lab.column, result, std::isfinite(drift + rotation), interrupted, false, cell)) return cell;
+  if (ended_early(context.column, result, std::isfinite(drift + rotation), interrupted, false, cell))
+    return cell;
   cell.verdict = drift <= bar && rotation <= 1e-12 && grown < 1.0 ? Verdict::kAccurate : Verdict::kGrew;
   return cell;
 }
 
-Verdicts passive(const Lab&) { return {Verdict::kStable, Verdict::kBounded}; }
-Verdicts accurate(const Lab&) { return {Verdict::kAccurate}; }
+Verdicts passive(const CaseContext&) { return {Verdict::kStable, Verdict::kBounded}; }
+Verdicts accurate(const CaseContext&) { return {Verdict::kAccurate}; }
 
 }  // namespace
 
@@ -164,7 +165,7 @@ Row thrown_handle_row() {
       RowColumns::kTools,
       false,
       {{"jumps by 1 m", passive, thrown},
-       {"spins at 1000 rad/s", passive, [](const Lab& lab) { return spun(lab, 50); }}}};
+       {"spins at 1000 rad/s", passive, [](const CaseContext& context) { return spun(context, 50); }}}};
 }
 
 Row million_tool_ticks_row() {
@@ -174,8 +175,9 @@ Row million_tool_ticks_row() {
           "a million ticks of the tool alone.  Finds drift and leaks of the ticks",
           RowColumns::kTools,
           true,
-          {{"unloaded", accurate, [](const Lab& lab) { return million(lab, 0.0); }},
-           {"under a constant force", accurate, [](const Lab& lab) { return million(lab, 1.0); }}}};
+          {{"unloaded", accurate, [](const CaseContext& context) { return million(context, 0.0); }},
+           {"under a constant force", accurate,
+            [](const CaseContext& context) { return million(context, 1.0); }}}};
 }
 
 }  // namespace palpate::stability

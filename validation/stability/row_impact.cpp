@@ -76,7 +76,9 @@ class Crossings {
 scene::Description on_plane(double speed) { return thrown_at(thin_slab(), floor_plane(), speed, 1e9); }
 scene::Description on_plate(double speed) { return thrown_at(thin_slab(), thin_plate(), speed, 1e7); }
 
-StabilityCell run_on_plane(const Lab& lab, const scene::Description& d) { return thrown_cell(lab, d); }
+StabilityCell run_on_plane(const CaseContext& context, const scene::Description& d) {
+  return projectile_case(context, d);
+}
 
 /// Whether the spring alone takes more than the plate's thickness to stop the slab.
 bool goes_through(const scene::Description& d) {
@@ -85,10 +87,10 @@ bool goes_through(const scene::Description& d) {
          kThickness;
 }
 
-StabilityCell run_on_plate(const Lab& lab, const scene::Description& d) {
+StabilityCell run_on_plate(const CaseContext& context, const scene::Description& d) {
   Crossings crossings;
-  StabilityCell cell = thrown_cell(
-      lab, d,
+  StabilityCell cell = projectile_case(
+      context, d,
       [&](loop::World& world, double) {
         if (!crossings.gone()) crossings.probe(world);
       },
@@ -110,9 +112,10 @@ Row impact_row() {
       "a plate as thin as itself: what goes through is counted.  Finds bodies that are not turned round or "
       "leave with more energy than they came with, and vertices that go through uncounted"};
   const auto add = [&row](std::string name, const scene::Description& thrown,
-                          StabilityCell (*run)(const Lab&, const scene::Description&)) {
-    row.cases.push_back({std::move(name), [thrown](const Lab& lab) { return expect_thrown(lab, thrown); },
-                         [thrown, run](const Lab& lab) { return run(lab, thrown); }});
+                          StabilityCell (*run)(const CaseContext&, const scene::Description&)) {
+    row.cases.push_back({std::move(name),
+                         [thrown](const CaseContext& context) { return expect_thrown(context, thrown); },
+                         [thrown, run](const CaseContext& context) { return run(context, thrown); }});
   };
   for (const double speed : {0.1, 1.0, 10.0, 100.0})
     add(fmt::format("{:g} m/s", speed), on_plane(speed), run_on_plane);

@@ -75,7 +75,7 @@ scene::Description on_a_floor(double slope) {
   return d;
 }
 
-StabilityCell run(const Lab& lab, double slope) {
+StabilityCell run(const CaseContext& context, double slope) {
   const double speed = kRegularisation * slope / kFriction;
   Settled start;
   if (slope > 0.0) start = settle(on_a_floor(slope), kSettling);
@@ -88,7 +88,7 @@ StabilityCell run(const Lab& lab, double slope) {
     drift = std::max(drift, (now - first - Vec3(speed * t, 0, 0)).norm());
   };
   const SceneCourse course =
-      run_scene(lab, on_a_floor(slope), kRtol, 10.0, probe, slope > 0.0 ? &start : nullptr);
+      run_scene(context, on_a_floor(slope), kRtol, 10.0, probe, slope > 0.0 ? &start : nullptr);
   const double grown = resident_memory_mib() - memory,
                bar = slope > 0.0 ? 1e-4 * speed * kDuration : kDuration / kPeriod * kEps * kSize;
   StabilityCell cell;
@@ -97,19 +97,20 @@ StabilityCell run(const Lab& lab, double slope) {
   cell.figure = fmt::format("drift {:.1e} m of {:.0e} beside a creep of {:.1e} m, memory {:+.1f} MiB", drift,
                             bar, speed * kDuration, grown);
   std::string mistake;
-  if (ended_early(lab.column, course.result, course.finite, course.interrupted, drift > 1e3 * bar, cell)) {
-    if (cell.verdict == Verdict::kError && !(is_multirate(lab.column) && drift > bar))
-      mistake = gave_up_early(lab, course);
+  if (ended_early(context.column, course.result, course.finite, course.interrupted, drift > 1e3 * bar,
+                  cell)) {
+    if (cell.verdict == Verdict::kError && !(is_multirate(context.column) && drift > bar))
+      mistake = gave_up_early(context, course);
   } else {
     cell.verdict = drift <= bar && grown < 2.0 ? Verdict::kAccurate : Verdict::kGrew;
-    if (slope == 0.0) mistake = does_not_move(lab, on_a_floor(slope), kMovingRtol);
+    if (slope == 0.0) mistake = does_not_move(context, on_a_floor(slope), kMovingRtol);
   }
   mark_wrong(mistake, cell);
   return cell;
 }
 
-Verdicts expect(const Lab& lab) {
-  if (is_static(lab.column)) return {Verdict::kAccurate, Verdict::kError};
+Verdicts expect(const CaseContext& context) {
+  if (is_static(context.column)) return {Verdict::kAccurate, Verdict::kError};
   return {Verdict::kAccurate};
 }
 
@@ -122,12 +123,12 @@ double amplification_on_slope(const Column& column) {
   return multirate_amplification_at(column, *world, settled.q, settled.u, kPeriod);
 }
 
-Verdicts expect_on_slope(const Lab& lab) {
-  if (is_explicit(lab.column) && lab.column.fixed) return {Verdict::kError};
-  if (is_multirate(lab.column) &&
-      kDuration / kPeriod * std::log(amplification_on_slope(lab.column)) > std::log(kGrown))
+Verdicts expect_on_slope(const CaseContext& context) {
+  if (is_explicit(context.column) && context.column.fixed) return {Verdict::kError};
+  if (is_multirate(context.column) &&
+      kDuration / kPeriod * std::log(amplification_on_slope(context.column)) > std::log(kGrown))
     return {Verdict::kGrew, Verdict::kError};
-  return expect(lab);
+  return expect(context);
 }
 
 }  // namespace
@@ -137,9 +138,9 @@ Row million_ticks_row() {
           "a cube on a floor for a million ticks (1000 s).  Finds drift, leaks, creep that is not the law's",
           RowColumns::kSteppers,
           true,
-          {{"unloaded", expect, [](const Lab& lab) { return run(lab, 0.0); }},
+          {{"unloaded", expect, [](const CaseContext& context) { return run(context, 0.0); }},
            {"on an incline, held by friction", expect_on_slope,
-            [](const Lab& lab) { return run(lab, kSlope); }}}};
+            [](const CaseContext& context) { return run(context, kSlope); }}}};
 }
 
 }  // namespace palpate::stability

@@ -31,11 +31,11 @@ scene::Description pressed() {
   return d;
 }
 
-StabilityCell press(const Lab& lab) {
+StabilityCell press(const CaseContext& context) {
   const scene::Description d = pressed();
   double memory = 0.0, moved = 0.0, energy = 0.0, changed = 0.0, carried = 0.0;
   Vec3 rest = Vec3::Zero();
-  const SceneCourse course = run_scene(lab, d, kRtol, 1.0, [&](loop::World& world, double t) {
+  const SceneCourse course = run_scene(context, d, kRtol, 1.0, [&](loop::World& world, double t) {
     const Vec3 tool = world.tool_pose().translation;
     const double now = world.bodies[0].term->energy(world.state.view());
     if (memory == 0.0 && t >= kSettled) {
@@ -55,7 +55,7 @@ StabilityCell press(const Lab& lab) {
   cell.figure =
       fmt::format("tool moved {:.1e} of its depth, energy {:.1e}, carried {:.1e} m, memory {:+.1f} MiB",
                   moved, changed, carried, grown);
-  if (ended_early(lab.column, course.result, course.finite && std::isfinite(moved + changed),
+  if (ended_early(context.column, course.result, course.finite && std::isfinite(moved + changed),
                   course.interrupted, moved > 1.0, cell))
     return cell;
   if (!(carried > 0.01 * kDepth && energy > 0.0)) {
@@ -67,7 +67,7 @@ StabilityCell press(const Lab& lab) {
   return cell;
 }
 
-Verdicts expect(const Lab&) { return {Verdict::kAccurate}; }
+Verdicts expect(const CaseContext&) { return {Verdict::kAccurate}; }
 
 }  // namespace
 

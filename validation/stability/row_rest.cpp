@@ -41,27 +41,27 @@ double moved(const loop::World& world) {
   return most;
 }
 
-Verdicts expect_rest(const Lab& lab) {
+Verdicts expect_rest(const CaseContext& context) {
   // a free body: its matrix is singular
-  if (is_static(lab.column)) return {Verdict::kAccurate, Verdict::kError};
-  if (is_explicit(lab.column)) return {Verdict::kAccurate, Verdict::kBounded};
+  if (is_static(context.column)) return {Verdict::kAccurate, Verdict::kError};
+  if (is_explicit(context.column)) return {Verdict::kAccurate, Verdict::kBounded};
   return {Verdict::kAccurate};
 }
 
-StabilityCell stays(const Lab& lab, const scene::Description& d) {
+StabilityCell stays(const CaseContext& context, const scene::Description& d) {
   StabilityCell cell;
   double most = 0.0;
-  const SceneCourse course =
-      run_scene(lab, d, kRtol, 1.0, [&](loop::World& world, double) { most = std::max(most, moved(world)); });
+  const SceneCourse course = run_scene(
+      context, d, kRtol, 1.0, [&](loop::World& world, double) { most = std::max(most, moved(world)); });
   cell.steps = course.steps;
   cell.error = most / d.bodies[0].mesh.size_m.norm();
   cell.figure = fmt::format("moved {:.1e} of its size", cell.error);
-  if (ended_early(lab.column, course.result, course.finite, course.interrupted, cell.error > 0.1, cell))
+  if (ended_early(context.column, course.result, course.finite, course.interrupted, cell.error > 0.1, cell))
     return cell;
   cell.verdict = cell.error <= kRest  ? Verdict::kAccurate
                  : cell.error <= 1e-6 ? Verdict::kBounded
                                       : Verdict::kGrew;
-  mark_wrong(does_not_move(lab, d, kRtol), cell);
+  mark_wrong(does_not_move(context, d, kRtol), cell);
   return cell;
 }
 
@@ -89,12 +89,12 @@ double bar_of_fall(const Column& column) {
          (column.entry->traits.order == 1 || column.entry->traits.multistep ? 1.0001 * kH / kFall : 0.0);
 }
 
-Verdicts expect_fall(const Lab& lab) {
-  if (is_static(lab.column)) return {Verdict::kError};
+Verdicts expect_fall(const CaseContext& context) {
+  if (is_static(context.column)) return {Verdict::kError};
   return {Verdict::kAccurate};
 }
 
-StabilityCell fall(const Lab& lab) {
+StabilityCell fall(const CaseContext& context) {
   scene::Description d;
   d.duration_s = kFall;
   d.gravity_m_s2 = Vec3(0, 0, -kG);
@@ -107,16 +107,16 @@ StabilityCell fall(const Lab& lab) {
   d.record.emplace();
   d.record->state_period_s = kH;
   StabilityCell cell;
-  const SceneCourse course = run_scene(lab, d, kRtol, 1.0, [&](loop::World& world, double t) {
+  const SceneCourse course = run_scene(context, d, kRtol, 1.0, [&](loop::World& world, double t) {
     const Points shift = world.positions(world.bodies[0]) - world.bodies[0].placed;
     cell.error = std::max(
         std::isnan(cell.error) ? 0.0 : cell.error,
         (shift.colwise() - Vec3(0, 0, -0.5 * kG * t * t)).cwiseAbs().maxCoeff() / (0.5 * kG * kFall * kFall));
   });
   cell.steps = course.steps;
-  const double bar = bar_of_fall(lab.column);
+  const double bar = bar_of_fall(context.column);
   cell.figure = fmt::format("error of the path {:.1e} of {:.1e}", cell.error, bar);
-  if (ended_early(lab.column, course.result, course.finite, course.interrupted, cell.error > 0.1, cell))
+  if (ended_early(context.column, course.result, course.finite, course.interrupted, cell.error > 0.1, cell))
     return cell;
   cell.verdict = cell.error <= bar   ? Verdict::kAccurate
                  : cell.error <= 0.1 ? Verdict::kBounded
@@ -124,18 +124,18 @@ StabilityCell fall(const Lab& lab) {
   return cell;
 }
 
-StabilityCell nothing(const Lab& lab) {
+StabilityCell nothing(const CaseContext& context) {
   StabilityCell cell;
   dynamics::State state;
   dynamics::System system;
   system.prepare(state.view());
-  const auto stepper = make_stepper(lab.column, system, state, spec_of(lab.column, kRtol, kH));
+  const auto stepper = make_stepper(context.column, system, state, spec_of(context.column, kRtol, kH));
   const dynamics::StepResult result = stepper->advance_to(1.0);
   cell.figure = fmt::format("time {:g} of 1 s", state.time());
-  if (ended_early(lab.column, result, std::isfinite(state.time()), false, false, cell)) return cell;
+  if (ended_early(context.column, result, std::isfinite(state.time()), false, false, cell)) return cell;
   cell.error = std::abs(state.time() - 1.0);
   cell.verdict = state.time() == 1.0 ? Verdict::kAccurate : Verdict::kGrew;
-  if (is_static(lab.column) || fall(lab).verdict == Verdict::kAccurate) return cell;
+  if (is_static(context.column) || fall(context).verdict == Verdict::kAccurate) return cell;
   cell.verdict = Verdict::kWrong;
   cell.reason = "time passes, but an element does not fall as it must";
   return cell;
@@ -150,11 +150,12 @@ Row rest_row() {
           "forces that rounding makes, and steppers that do nothing",
           RowColumns::kSteppers,
           false,
-          {{"a free cube", expect_rest, [](const Lab& lab) { return stays(lab, resting(false, false)); }},
+          {{"a free cube", expect_rest,
+            [](const CaseContext& context) { return stays(context, resting(false, false)); }},
            {"a cube that is rotated", expect_rest,
-            [](const Lab& lab) { return stays(lab, resting(true, false)); }},
+            [](const CaseContext& context) { return stays(context, resting(true, false)); }},
            {"a cube that just touches a floor", expect_rest,
-            [](const Lab& lab) { return stays(lab, resting(false, true)); }}}};
+            [](const CaseContext& context) { return stays(context, resting(false, true)); }}}};
 }
 
 Row size_row() {
@@ -163,7 +164,7 @@ Row size_row() {
           RowColumns::kSteppers,
           false,
           {{"one element falls", expect_fall, fall},
-           {"no body", [](const Lab&) { return Verdicts{Verdict::kAccurate}; }, nothing}}};
+           {"no body", [](const CaseContext&) { return Verdicts{Verdict::kAccurate}; }, nothing}}};
 }
 
 }  // namespace palpate::stability

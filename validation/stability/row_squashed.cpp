@@ -150,16 +150,17 @@ std::vector<double> period_ends(double duration, bool short_steps) {
 }
 
 /// False where a step failed; the tally then has its result, and the rise of the energy until then.
-bool let_go(const Lab& lab, Body& body, const Bars& bars, bool short_steps, Tally& tally) {
+bool let_go(const CaseContext& context, Body& body, const Bars& bars, bool short_steps, Tally& tally) {
   if (body.inverted() && body.system.inspect(body.state.view()).first.element < 0) tally.unreported = true;
-  const auto stepper = make_stepper(lab.column, body.system, body.state, spec_of(lab.column, kRtol, kH));
-  stepper->set_interrupt(lab.expired);
+  const auto stepper =
+      make_stepper(context.column, body.system, body.state, spec_of(context.column, kRtol, kH));
+  stepper->set_interrupt(context.expired);
   const double start = body.energy();
   double lowest = start;
   for (const double end : period_ends(bars.duration, short_steps)) {
     if (!(lowest > kSettled * start)) break;
     const dynamics::StepResult result = stepper->advance_to(end);
-    tally.interrupted = lab.time_is_up() || result.status == dynamics::StepStatus::kInterrupted;
+    tally.interrupted = context.time_is_up() || result.status == dynamics::StepStatus::kInterrupted;
     if (tally.interrupted) return true;
     if (!result.ok()) {
       tally.failure = result;
@@ -180,7 +181,7 @@ bool let_go(const Lab& lab, Body& body, const Bars& bars, bool short_steps, Tall
   return true;
 }
 
-StabilityCell verdict_on(const Lab& lab, const Bars& bars, const Tally& tally) {
+StabilityCell verdict_on(const CaseContext& context, const Bars& bars, const Tally& tally) {
   StabilityCell cell;
   cell.steps = tally.steps;
   cell.gain = tally.rise;
@@ -189,14 +190,14 @@ StabilityCell verdict_on(const Lab& lab, const Bars& bars, const Tally& tally) {
       "{:.1e}, fall {:.2f}",
       tally.at_rest, tally.starts, tally.elsewhere, tally.moving, tally.failed, tally.short_steps, tally.rise,
       tally.least_fall);
-  const bool may_fail = lab.column.fixed && !is_explicit(lab.column) && !is_static(lab.column);
+  const bool may_fail = context.column.fixed && !is_explicit(context.column) && !is_static(context.column);
   const bool gave_up = tally.starts - tally.failed < (may_fail ? kShareAtRest : 1.0) * tally.starts;
   if (tally.silent) {
     cell.verdict = Verdict::kSilent;
     cell.reason = "a start failed without a message";
     return cell;
   }
-  if (ended_early(lab.column, gave_up ? tally.failure : dynamics::StepResult{}, tally.finite,
+  if (ended_early(context.column, gave_up ? tally.failure : dynamics::StepResult{}, tally.finite,
                   tally.interrupted, tally.beyond(), cell))
     return cell;
   if (tally.unreported) {
@@ -219,26 +220,26 @@ StabilityCell verdict_on(const Lab& lab, const Bars& bars, const Tally& tally) {
   return cell;
 }
 
-Verdicts expect(const Lab& lab) {
-  if (!lab.column.fixed) return {Verdict::kAccurate};
-  if (is_static(lab.column)) return {Verdict::kAccurate, Verdict::kStable, Verdict::kError};
+Verdicts expect(const CaseContext& context) {
+  if (!context.column.fixed) return {Verdict::kAccurate};
+  if (is_static(context.column)) return {Verdict::kAccurate, Verdict::kStable, Verdict::kError};
   Verdicts out{Verdict::kAccurate, Verdict::kStable, Verdict::kBounded};
-  if (lab.column.name == "ark-dirk-sdirk212") out.add(Verdict::kError);
+  if (context.column.name == "ark-dirk-sdirk212") out.add(Verdict::kError);
   return out;
 }
 
-Verdicts expect_moving(const Lab& lab) {
-  if (!lab.column.fixed) return {Verdict::kStable};
-  if (is_static(lab.column)) return expect(lab);
+Verdicts expect_moving(const CaseContext& context) {
+  if (!context.column.fixed) return {Verdict::kStable};
+  if (is_static(context.column)) return expect(context);
   return {Verdict::kStable, Verdict::kBounded};
 }
 
 using Velocities = std::function<void(VecX&, std::mt19937&)>;
 
-StabilityCell run(const Lab& lab, const Bars& bars, int seeds, const Placement& place,
+StabilityCell run(const CaseContext& context, const Bars& bars, int seeds, const Placement& place,
                   const Velocities& throw_it) {
   Tally tally;
-  if (lab.column.fixed) tally.bound = std::max(1.0, bound_of_a_step());
+  if (context.column.fixed) tally.bound = std::max(1.0, bound_of_a_step());
   for (int seed = 0; seed < seeds && !tally.interrupted && tally.finite; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed) + 1);
     Points placed = mesh::box(Vec3::Constant(kSize), {1, 1, 1}).nodes;
@@ -249,19 +250,19 @@ StabilityCell run(const Lab& lab, const Bars& bars, int seeds, const Placement& 
     for (const bool short_steps : {false, true}) {
       Body body(placed);
       body.state.u() = speeds;
-      done = let_go(lab, body, bars, short_steps, tally);
+      done = let_go(context, body, bars, short_steps, tally);
       if (done && short_steps) ++tally.short_steps;
-      if (done || !lab.column.fixed || is_static(lab.column)) break;
+      if (done || !context.column.fixed || is_static(context.column)) break;
     }
     ++tally.starts;
     if (!done) ++tally.failed;
   }
-  return verdict_on(lab, bars, tally);
+  return verdict_on(context, bars, tally);
 }
 
 SubCase start_of(std::string name, const Placement& place) {
   return {std::move(name), expect,
-          [place](const Lab& lab) { return run(lab, {}, lab.seeds, place, nullptr); }};
+          [place](const CaseContext& context) { return run(context, {}, context.seeds, place, nullptr); }};
 }
 
 void scatter(Points& x, std::mt19937& random) {
@@ -291,9 +292,10 @@ Row squashed_row() {
   row.cases = {start_of("on a plane", along(Vec3(1, 1, 0))), start_of("on a line", along(Vec3(1, 0, 0))),
                start_of("mirror image", along(Vec3(1, 1, -1))), start_of("on a point", along(Vec3::Zero())),
                start_of("scattered", scatter)};
-  row.cases.push_back({"scattered and moving", expect_moving, [](const Lab& lab) {
+  row.cases.push_back({"scattered and moving", expect_moving, [](const CaseContext& context) {
                          const Bars bars{.duration = 0.2, .fall = kFallMoving, .must_rest = false};
-                         return run(lab, bars, (lab.column.fixed ? 10 : 1) * lab.seeds, scatter, throw_apart);
+                         return run(context, bars, (context.column.fixed ? 10 : 1) * context.seeds, scatter,
+                                    throw_apart);
                        }});
   row.core = 4;
   return row;

@@ -34,24 +34,24 @@ Verdict verdict_on(double amplitude, double y) {
   return amplitude <= 20.0 / y ? Verdict::kAccurate : amplitude <= 1.0 ? Verdict::kStable : Verdict::kBounded;
 }
 
-Verdicts expect(const Lab& lab, double y) {
-  if (is_explicit(lab.column)) return {Verdict::kError};
-  if (lab.column.entry->traits.stability == dynamics::Stability::kL) return {Verdict::kAccurate};
+Verdicts expect(const CaseContext& context, double y) {
+  if (is_explicit(context.column)) return {Verdict::kError};
+  if (context.column.entry->traits.stability == dynamics::Stability::kL) return {Verdict::kAccurate};
   const LinearProblem problem = mode(y);
-  PredictedCourse course(lab.column, problem, kH);
+  PredictedCourse course(context.column, problem, kH);
   for (int i = 0; i < kFew; ++i) course.advance();
-  if (lab.column.entry->traits.family == "Newmark" && y >= kRoundsAcceleration)
+  if (context.column.entry->traits.family == "Newmark" && y >= kRoundsAcceleration)
     return {Verdict::kStable, Verdict::kBounded};
   return {verdict_on(std::sqrt(problem.energy(course.modes())), y)};
 }
 
-StabilityCell run(const Lab& lab, double y) {
+StabilityCell run(const CaseContext& context, double y) {
   const LinearProblem problem = mode(y);
-  StabilityCell cell = linear_cell(lab, problem, kH);
+  StabilityCell cell = linear_cell(context, problem, kH);
   if (cell.verdict > Verdict::kBounded) return cell;
   const auto few = problem.start();
   const auto stepper =
-      make_stepper(lab.column, few->system, few->state, spec_of(lab.column, kLinearRtol, kH));
+      make_stepper(context.column, few->system, few->state, spec_of(context.column, kLinearRtol, kH));
   for (int i = 1; i <= kFew; ++i)
     if (!stepper->advance_to(i * kH).ok()) {
       mark_wrong("forty steps went well, and a few do not", cell);
@@ -72,8 +72,9 @@ Row stiff_modes_row() {
           RowColumns::kFixedSteppers};
   for (const int decade : {2, 3, 4, 6, 8}) {
     const double y = std::pow(10.0, decade);
-    row.cases.push_back({fmt::format("w H = 1e{}", decade), [y](const Lab& lab) { return expect(lab, y); },
-                         [y](const Lab& lab) { return run(lab, y); }});
+    row.cases.push_back({fmt::format("w H = 1e{}", decade),
+                         [y](const CaseContext& context) { return expect(context, y); },
+                         [y](const CaseContext& context) { return run(context, y); }});
   }
   row.core = 2;
   return row;

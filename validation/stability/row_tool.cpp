@@ -69,13 +69,13 @@ double growth_of_cube(const Column& column, scene::Description d) {
   return ModalSteps(column, w * period, 0.5 * d.bodies[0].stiffness_damping_s * w).spectral_radius();
 }
 
-Verdicts expect(const Lab& lab, const scene::Description& d) {
-  if (is_static(lab.column)) return {Verdict::kStable, Verdict::kBounded, Verdict::kError};
+Verdicts expect(const CaseContext& context, const scene::Description& d) {
+  if (is_static(context.column)) return {Verdict::kStable, Verdict::kBounded, Verdict::kError};
   const double rate = d.tool->coupling.damping_n_s_m / d.tool->mass_kg;
   const bool out_of_steps = d.exchange.scheme == "monolithic" && rate * period_of(d) / 10.0 > kMaxSteps;
-  if (out_of_steps && (is_explicit(lab.column) || is_multirate(lab.column))) return {Verdict::kError};
-  if (!lab.column.fixed) return {Verdict::kStable};
-  if (is_explicit(lab.column) && growth_of_cube(lab.column, d) > 1.0) return {Verdict::kError};
+  if (out_of_steps && (is_explicit(context.column) || is_multirate(context.column))) return {Verdict::kError};
+  if (!context.column.fixed) return {Verdict::kStable};
+  if (is_explicit(context.column) && growth_of_cube(context.column, d) > 1.0) return {Verdict::kError};
   return {Verdict::kStable, Verdict::kBounded};
 }
 
@@ -98,48 +98,48 @@ double energy_of_cube(loop::World& world) {
   return cube.term->energy(world.state.view()) + 0.5 * v.colwise().squaredNorm().dot(cube.masses);
 }
 
-StabilityCell run(const Lab& lab, const scene::Description& d) {
+StabilityCell run(const CaseContext& context, const scene::Description& d) {
   double path = 0.0, strayed = 0.0;
   const auto& frames = d.device->keyframes;
   for (std::size_t i = 1; i < frames.size(); ++i)
     path += (frames[i].position_m - frames[i - 1].position_m).norm();
-  const double put_in =
+  const double prepare_state =
       0.5 * path * path *
       std::min(d.tool->coupling.stiffness_n_m, d.bodies[0].youngs_modulus_pa * kToolCubeEdge);
   double held = 0.0;  // by the cube, the most [J]
-  const SceneCourse course = run_scene(lab, d, kRtol, put_in, [&](loop::World& world, double) {
+  const SceneCourse course = run_scene(context, d, kRtol, prepare_state, [&](loop::World& world, double) {
     held = std::max(held, energy_of_cube(world));
     for (const KeyframeSpec& frame : frames)
       strayed = std::max(strayed, (world.tool_pose().translation - frame.position_m).norm() / path - 1.0);
   });
-  const double over = overshoot(lab.column, d), most = 101.0 * over * over * put_in,
+  const double over = overshoot(context.column, d), most = 101.0 * over * over * prepare_state,
                farthest = 10.0 * over - 1.0;
   StabilityCell cell;
   cell.steps = course.steps;
-  cell.gain = held / put_in - 1.0;
+  cell.gain = held / prepare_state - 1.0;
   cell.figure =
-      fmt::format("cube held {:.1e} of {:.1e} J, tool strayed {:+.1e} paths", held, put_in, strayed);
-  if (ended_early(lab.column, course.result, course.finite && std::isfinite(strayed + held),
+      fmt::format("cube held {:.1e} of {:.1e} J, tool strayed {:+.1e} paths", held, prepare_state, strayed);
+  if (ended_early(context.column, course.result, course.finite && std::isfinite(strayed + held),
                   course.interrupted, held > most || strayed > farthest, cell)) {
     if (cell.verdict != Verdict::kError) return cell;
-    if (is_multirate(lab.column)) {
+    if (is_multirate(context.column)) {
       if (course.run.counters.fast_steps < kFewFastSteps)
         mark_wrong(fmt::format("gave up after {} fast steps", course.run.counters.fast_steps), cell);
-    } else if (!lab.column.fixed || !is_explicit(lab.column)) {
-      mark_wrong(gave_up_early(lab, course), cell);
-    } else if (held <= 1e3 * put_in && strayed <= farthest) {
+    } else if (!context.column.fixed || !is_explicit(context.column)) {
+      mark_wrong(gave_up_early(context, course), cell);
+    } else if (held <= 1e3 * prepare_state && strayed <= farthest) {
       mark_wrong(fmt::format("gave up at {:.1e} J", held), cell);
     }
     return cell;
   }
-  if (held < 1e-9 * put_in) {
+  if (held < 1e-9 * prepare_state) {
     cell.verdict = Verdict::kSilent;
     cell.reason = "the tool never touched the cube: nothing was tried";
     return cell;
   }
-  cell.verdict = held <= put_in && strayed <= 1.0      ? Verdict::kStable
-                 : held <= most && strayed <= farthest ? Verdict::kBounded
-                                                       : Verdict::kGrew;
+  cell.verdict = held <= prepare_state && strayed <= 1.0 ? Verdict::kStable
+                 : held <= most && strayed <= farthest   ? Verdict::kBounded
+                                                         : Verdict::kGrew;
   return cell;
 }
 
@@ -169,8 +169,8 @@ Row density_ratio_row() {
       "a ball a million times as dense as the soft cube that it presses, or a millionth.  Finds energy that "
       "an exchange makes, tools that fly off, contact that is missed"};
   const auto add = [&row](std::string name, const scene::Description& d) {
-    row.cases.push_back({std::move(name), [d](const Lab& lab) { return expect(lab, d); },
-                         [d](const Lab& lab) { return run(lab, d); }});
+    row.cases.push_back({std::move(name), [d](const CaseContext& context) { return expect(context, d); },
+                         [d](const CaseContext& context) { return run(context, d); }});
   };
   add("tool 1e6 times as dense, partitioned", with_heavy);
   add("tool 1e-6 times as dense, partitioned", with_light);
@@ -191,8 +191,8 @@ Row swallowed_tool_row() {
   for (const double duration : {1.0, 0.1, 0.01}) {
     const scene::Description d = out_in(duration);
     row.cases.push_back({fmt::format("pulled out in {:g} s", duration),
-                         [d](const Lab& lab) { return expect(lab, d); },
-                         [d](const Lab& lab) { return run(lab, d); }});
+                         [d](const CaseContext& context) { return expect(context, d); },
+                         [d](const CaseContext& context) { return run(context, d); }});
   }
   return row;
 }

@@ -50,9 +50,9 @@ std::pair<double, double> motion_of(const loop::World& world, const loop::Body& 
   return {p, p / body.masses.sum()};
 }
 
-StabilityCell run(const Lab& lab, const scene::Description& d) {
+StabilityCell run(const CaseContext& context, const scene::Description& d) {
   double off = 0.0, first = 0.0, second = 0.0;
-  const SceneCourse course = run_scene(lab, d, kThrowRtol, 0.0, [&](loop::World& world, double) {
+  const SceneCourse course = run_scene(context, d, kThrowRtol, 0.0, [&](loop::World& world, double) {
     const auto [p1, v1] = motion_of(world, world.bodies[0]);
     const auto [p2, v2] = motion_of(world, world.bodies[1]);
     const double thrown = -kSpeed * world.bodies[0].masses.sum();
@@ -60,12 +60,12 @@ StabilityCell run(const Lab& lab, const scene::Description& d) {
     first = v1, second = v2;
   });
   StabilityCell cell;
-  judge(lab, course, throw_bars(lab.column, d), cell);
+  judge(context, course, throw_bars(context.column, d), cell);
   cell.figure +=
       fmt::format(", momentum {:.0e} off, parts at {:+.2f} of its speed", off, (first - second) / kSpeed);
   std::string mistake;
-  if (cell.verdict == Verdict::kError) mistake = gave_up_early(lab, course);
-  if (cell.verdict <= Verdict::kBounded && !is_static(lab.column)) {
+  if (cell.verdict == Verdict::kError) mistake = gave_up_early(context, course);
+  if (cell.verdict <= Verdict::kBounded && !is_static(context.column)) {
     if (!(off <= kMomentum))
       mistake = fmt::format("momentum is {:.1e} of itself off", off);
     else if (!(first + kSpeed >= 0.45 * kSpeed))
@@ -87,8 +87,8 @@ Row two_bodies_row() {
   for (const double ratio : {1.0, 1e3, 1e6}) {
     const scene::Description d = light_on_heavy(ratio);
     row.cases.push_back({fmt::format("{:g} times as dense", ratio),
-                         [d](const Lab& lab) { return expect_thrown(lab, d); },
-                         [d](const Lab& lab) { return run(lab, d); }});
+                         [d](const CaseContext& context) { return expect_thrown(context, d); },
+                         [d](const CaseContext& context) { return run(context, d); }});
   }
   row.core = 2;
   return row;

@@ -12,8 +12,9 @@ constexpr double kGrownSpeed = 1e3, kFollow = 100.0;
 /// Follows the energy while the run goes on, and ends the run.
 class Watch : public loop::Observer {
  public:
-  Watch(const Lab& lab, SceneCourse& course, double duration, double put_in, const Probe& probe)
-      : lab_(lab), course_(course), duration_(duration), put_in_(put_in), probe_(probe) {}
+  Watch(const CaseContext& context, SceneCourse& course, double duration, double prepare_state,
+        const Probe& probe)
+      : lab_(context), course_(course), duration_(duration), put_in_(prepare_state), probe_(probe) {}
   void period(loop::World& world, double t) override {
     const double energy = world.mechanical_energy();
     if (t == 0.0) course_.available = energy + put_in_;
@@ -30,7 +31,7 @@ class Watch : public loop::Observer {
   const std::atomic<bool>* stop() const { return &stop_; }
 
  private:
-  const Lab& lab_;
+  const CaseContext& lab_;
   SceneCourse& course_;
   double duration_, put_in_;
   const Probe& probe_;
@@ -50,8 +51,8 @@ Settled settle(const scene::Description& description, double duration_s) {
   return {world->state.q(), world->state.u()};
 }
 
-SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in,
-                      const Probe& probe, const Settled* start) {
+SceneCourse run_scene(const CaseContext& context, const scene::Description& description, double rtol,
+                      double prepare_state, const Probe& probe, const Settled* start) {
   scene::Description d = description;
   d.integrator = {};
   // assembled with, and replaced: a column need not be in the registry
@@ -61,13 +62,13 @@ SceneCourse run_scene(const Lab& lab, const scene::Description& description, dou
     world->state.q() = start->q;
     world->state.u() = start->u;
   }
-  if (lab.column.entry && world->stepper) {
-    world->description.integrator = spec_of(lab.column, rtol, loop::period_of(d));
-    world->stepper = make_stepper(lab.column, world->system, world->state, world->description.integrator);
-    world->stepper->set_interrupt(lab.expired);
+  if (context.column.entry && world->stepper) {
+    world->description.integrator = spec_of(context.column, rtol, loop::period_of(d));
+    world->stepper = make_stepper(context.column, world->system, world->state, world->description.integrator);
+    world->stepper->set_interrupt(context.expired);
   }
   SceneCourse course;
-  Watch watch(lab, course, d.duration_s, put_in, probe);
+  Watch watch(context, course, d.duration_s, prepare_state, probe);
   loop::RunOptions options;
   options.duration_s = kFollow * d.duration_s;
   options.observers = {&watch};
@@ -79,21 +80,21 @@ SceneCourse run_scene(const Lab& lab, const scene::Description& description, dou
   return course;
 }
 
-std::string gave_up_early(const Lab& lab, const SceneCourse& course) {
-  if (is_static(lab.column)) return {};
-  if (lab.column.fixed && is_explicit(lab.column))
+std::string gave_up_early(const CaseContext& context, const SceneCourse& course) {
+  if (is_static(context.column)) return {};
+  if (context.column.fixed && is_explicit(context.column))
     return course.gain() > kGrownSpeed ? std::string()
                                        : fmt::format("gave up at {:.1e} of the energy", 1.0 + course.gain());
-  if (!lab.column.fixed)
+  if (!context.column.fixed)
     return course.steps >= kMaxSteps ? std::string() : fmt::format("gave up after {} steps", course.steps);
   return "gave up";
 }
 
-void judge(const Lab& lab, const SceneCourse& course, const GainBars& bars, StabilityCell& cell) {
+void judge(const CaseContext& context, const SceneCourse& course, const GainBars& bars, StabilityCell& cell) {
   cell.steps = course.steps;
   cell.gain = course.gain();
   cell.figure = fmt::format("energy {:+.1e}", cell.gain);
-  if (ended_early(lab.column, course.result, course.finite, course.interrupted, cell.gain > bars.bounded,
+  if (ended_early(context.column, course.result, course.finite, course.interrupted, cell.gain > bars.bounded,
                   cell))
     return;
   cell.verdict = cell.gain <= bars.stable    ? Verdict::kStable

@@ -30,10 +30,10 @@ using Probe = std::function<void(loop::World&, double t)>;
 /// period.  A run at an explicit fixed step whose energy has passed `grown` times the available energy is
 /// followed beyond its end, until it fails or has gone on a hundred times as long: a run that has begun to
 /// overflow must report it.
-/// @param put_in  work done from outside [J]
+/// @param prepare_state  work done from outside [J]
 /// @param start  where it starts from, at time 0; null: as described
-SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in,
-                      const Probe& probe = {}, const Settled* start = nullptr);
+SceneCourse run_scene(const CaseContext& context, const scene::Description& description, double rtol,
+                      double prepare_state, const Probe& probe = {}, const Settled* start = nullptr);
 
 /// Positions and velocities of a scene after `duration_s` of linearly implicit Euler.
 Settled settle(const scene::Description& description, double duration_s);
@@ -45,10 +45,10 @@ struct GainBars {
 
 /// An explicit fixed step must have grown, error control must have used up its steps, before they end with an
 /// error; what is missing of that, empty for nothing.
-std::string gave_up_early(const Lab& lab, const SceneCourse& course);
+std::string gave_up_early(const CaseContext& context, const SceneCourse& course);
 
 /// The verdict on a run by its energy alone; fills the cell's figures.
-void judge(const Lab& lab, const SceneCourse& course, const GainBars& bars, StabilityCell& cell);
+void judge(const CaseContext& context, const SceneCourse& course, const GainBars& bars, StabilityCell& cell);
 
 /// A cube of 50 mm, soft (E = 1e5 Pa), a little damped, free, its lower side at z = 0; 8 nodes.
 scene::Description soft_cube();

@@ -196,13 +196,13 @@ scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle,
   return d;
 }
 
-Verdicts expect_thrown(const Lab& lab, const scene::Description& d) {
-  if (is_static(lab.column)) return {Verdict::kStable};
-  if (is_multirate(lab.column) && growth_in_contact(lab.column, d) > 2.0)
+Verdicts expect_thrown(const CaseContext& context, const scene::Description& d) {
+  if (is_static(context.column)) return {Verdict::kStable};
+  if (is_multirate(context.column) && growth_in_contact(context.column, d) > 2.0)
     return {Verdict::kStable, Verdict::kBounded, Verdict::kGrew, Verdict::kError};
-  if (!lab.column.fixed) return {Verdict::kStable};
-  if (is_explicit(lab.column)) {
-    const ExplicitTheory theory = explicit_theory(lab.column, d);
+  if (!context.column.fixed) return {Verdict::kStable};
+  if (is_explicit(context.column)) {
+    const ExplicitTheory theory = explicit_theory(context.column, d);
     if (!theory.body_is_stable) return {Verdict::kError};
     if (theory.contact_is_stable) return {Verdict::kStable, Verdict::kBounded};
     if (theory.one_step > kThrownBack) return {Verdict::kBounded, Verdict::kGrew, Verdict::kError};
@@ -237,24 +237,24 @@ GainBars throw_bars(const Column& column, const scene::Description& d) {
   return {stable, std::max(stable, bounded)};
 }
 
-StabilityCell thrown_cell(const Lab& lab, const scene::Description& d, const Probe& probe,
-                          const std::function<bool()>& passes) {
+StabilityCell projectile_case(const CaseContext& context, const scene::Description& d, const Probe& probe,
+                              const std::function<bool()>& passes) {
   Flight flight(d);
-  const SceneCourse course = run_scene(lab, d, kThrowRtol, 0.0, [&](loop::World& world, double t) {
+  const SceneCourse course = run_scene(context, d, kThrowRtol, 0.0, [&](loop::World& world, double t) {
     flight.probe(world, t);
     if (probe) probe(world, t);
   });
   StabilityCell cell;
-  judge(lab, course, throw_bars(lab.column, d), cell);
+  judge(context, course, throw_bars(context.column, d), cell);
   cell.figure += fmt::format(", leaves at {:+.2f} of its speed", flight.last_speed());
   std::string mistake;
   if (cell.verdict == Verdict::kError) {
-    const bool by_newton = lab.column.fixed && !is_explicit(lab.column);
-    mistake = by_newton ? flight.in_flight(lab.column) : gave_up_early(lab, course);
+    const bool by_newton = context.column.fixed && !is_explicit(context.column);
+    mistake = by_newton ? flight.in_flight(context.column) : gave_up_early(context, course);
   } else if (cell.verdict <= Verdict::kBounded) {
-    mistake = flight.mistake(lab.column, passes && passes());
+    mistake = flight.mistake(context.column, passes && passes());
   } else if (cell.verdict == Verdict::kGrew) {
-    mistake = flight.in_flight(lab.column);
+    mistake = flight.in_flight(context.column);
   }
   mark_wrong(mistake, cell);
   return cell;

@@ -12,7 +12,7 @@ inline constexpr double kThrowPeriod = 2e-3, kThrowDuration = 0.1, kThrowRtol = 
 scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle, double speed,
                              double stiffness_pa_m);
 
-Verdicts expect_thrown(const Lab& lab, const scene::Description& thrown);
+Verdicts expect_thrown(const CaseContext& context, const scene::Description& thrown);
 
 /// Energy gains that theory allows a column.
 GainBars throw_bars(const Column& column, const scene::Description& d);
@@ -20,7 +20,7 @@ GainBars throw_bars(const Column& column, const scene::Description& d);
 /// Runs it, and judges energy, flight, turn and the reason of an early end.
 /// @param probe  called after every period  @param passes  says whether the body went through the
 ///   obstacle, and so need not turn round; null: it cannot
-StabilityCell thrown_cell(const Lab& lab, const scene::Description& thrown, const Probe& probe = {},
-                          const std::function<bool()>& passes = {});
+StabilityCell projectile_case(const CaseContext& context, const scene::Description& thrown,
+                              const Probe& probe = {}, const std::function<bool()>& passes = {});
 
 }  // namespace palpate::stability

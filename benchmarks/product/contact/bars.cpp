@@ -40,16 +40,16 @@ void add_rows(const ContactBenchReport::Scene& scene, std::vector<ContactBar>& o
   }
 }
 
-void add_price(const ContactPrice& price, std::vector<ContactBar>& out) {
+void add_price(const ContactCost& cost, std::vector<ContactBar>& out) {
   const auto add = [&](const char* what, double value, double bar) {
-    out.push_back({price.scene, what, value, bar});
+    out.push_back({cost.scene, what, value, bar});
   };
-  if (price.row.touches) add("samples / elements", ratio(price.row.assembly_ms, price.row.elements_ms), 1.0);
-  add("query / step", ratio(price.row.to_forces.median, price.one_body_ms),
-      is_one_of(price.scene, {"touch-head", "touch-human"}) ? 0.05 : 1.0);
-  if (price.scene != "two-pumpkins") return;
-  add("contact / apart", ratio(price.row.step.median, price.bodies_ms), 1.3);
-  add("friction / contact", ratio(price.friction.symmetric_ms, price.row.step.median), 1.5);
+  if (cost.row.touches) add("samples / elements", ratio(cost.row.assembly_ms, cost.row.elements_ms), 1.0);
+  add("query / step", ratio(cost.row.to_forces.median, cost.one_body_ms),
+      is_one_of(cost.scene, {"touch-head", "touch-human"}) ? 0.05 : 1.0);
+  if (cost.scene != "two-pumpkins") return;
+  add("contact / apart", ratio(cost.row.step.median, cost.bodies_ms), 1.3);
+  add("friction / contact", ratio(cost.friction.symmetric_ms, cost.row.step.median), 1.5);
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ const ContactBenchRow* ContactBenchReport::Scene::find(const std::string& method
 std::vector<ContactBar> contact_bars(const ContactBenchReport& report) {
   std::vector<ContactBar> out;
   for (const ContactBenchReport::Scene& scene : report.scenes) add_rows(scene, out);
-  for (const ContactPrice& price : report.prices) add_price(price, out);
+  for (const ContactCost& cost : report.prices) add_price(cost, out);
   for (const ContactGrowth& growth : report.growth)
     out.push_back({"", fmt::format("growth with {}: exponent", growth.with), growth.exponent(),
                    growth.with == "area" ? 1.1 : 0.2});

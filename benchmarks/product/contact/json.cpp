@@ -45,7 +45,7 @@ ordered_json json_of(const ContactBenchRow& r) {
           {"real_time_factor", r.real_time_factor()}};
 }
 
-ordered_json json_of(const ContactPrice& p) {
+ordered_json json_of(const ContactCost& p) {
   ordered_json contact = json_of(p.row);
   contact["friction_step_ms"] = p.friction.symmetric_ms;
   contact["friction_full_tangent_step_ms"] = p.friction.full_ms;

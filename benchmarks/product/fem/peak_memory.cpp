@@ -12,11 +12,11 @@ namespace palpate::bench {
 namespace {
 
 /// A line of /proc/self/status, in bytes.
-double status_bytes(const std::string& wanted) {
+double status_bytes(const std::string& requested) {
   std::ifstream status("/proc/self/status");
   std::string key;
   for (std::string rest; status >> key; std::getline(status, rest))
-    if (key == wanted) {
+    if (key == requested) {
       double kib = 0.0;
       status >> kib;
       return 1024.0 * kib;

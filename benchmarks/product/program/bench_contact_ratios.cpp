@@ -16,7 +16,7 @@ std::string over(double ms, double other_ms) {
 }
 std::string percent(double share) { return fmt::format("{:.3g}", 100.0 * share); }
 
-void add_rows(const bench::ContactPrice& p, Rows& rows, Rows& solves, Rows& tangents) {
+void add_rows(const bench::ContactCost& p, Rows& rows, Rows& solves, Rows& tangents) {
   const bench::ContactBenchRow& c = p.row;
   const bench::FrictionPrice& f = p.friction;
   const std::string samples = fmt::format("{}", c.samples);
@@ -32,9 +32,9 @@ void add_rows(const bench::ContactPrice& p, Rows& rows, Rows& solves, Rows& tang
 
 }  // namespace
 
-void print_contact_prices(const std::vector<bench::ContactPrice>& prices) {
+void print_contact_prices(const std::vector<bench::ContactCost>& prices) {
   Rows rows, solves, tangents;
-  for (const bench::ContactPrice& p : prices) add_rows(p, rows, solves, tangents);
+  for (const bench::ContactCost& p : prices) add_rows(p, rows, solves, tangents);
   fmt::print(
       "Contact beside the rest of a step: nearest points, one thread, medians [ms]\n"
       "  elements: forces and matrix over the first body's elements in one pass; samples: those of the "

@@ -6,7 +6,7 @@
 namespace palpate::cli {
 
 /// Contact beside the rest of a step, as ratios.
-void print_contact_prices(const std::vector<bench::ContactPrice>& prices);
+void print_contact_prices(const std::vector<bench::ContactCost>& prices);
 
 /// How a query grows with the skin and with the contact region, with fitted exponents.
 std::vector<bench::ContactGrowth> run_contact_growth();

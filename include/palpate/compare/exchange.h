@@ -32,7 +32,7 @@ struct ExchangeOptions {
   std::function<void(const std::string& what)> done;  ///< Called after each run.
   const std::atomic<bool>* stop = nullptr;            ///< Set from outside: no further run.
   /// Modifies each partitioned World after assembly: seeds a defect that the study must detect (tests).
-  std::function<void(loop::World& world)> spoil = {};
+  std::function<void(loop::World& world)> seed_defect = {};
 };
 
 /// Returns the number of runs of compare_exchange: 0 without a tool or without `compare.exchange_periods_s`.

@@ -87,7 +87,8 @@ struct Run {
 /// @param stop  set from outside; ends the run
 /// @param spoil  modifies the World after assembly: seeds a defect that a study must detect
 Run run_once(const scene::Description& description, double duration_s,
-             const std::atomic<bool>* stop = nullptr, const std::function<void(loop::World&)>& spoil = {});
+             const std::atomic<bool>* stop = nullptr,
+             const std::function<void(loop::World&)>& seed_defect = {});
 /// As run_once(), with ticks and wrenches only in the trajectory.
 Run run_for_wrenches(const scene::Description& description, double duration_s,
                      const std::atomic<bool>* stop = nullptr);

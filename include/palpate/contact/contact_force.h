@@ -155,8 +155,8 @@ struct Tie {
   double stiffness = 0.0, damping = 0.0;  ///< Spring and damper constants [N/m, N s/m].
 };
 
-struct TouchSample;  // touch_model.h
-struct TouchTangent;
+struct ReducedSample;  // reduced_contact_model.h
+struct ReducedTangent;
 
 /// Motion, within a step, of a frame that is not part of the State.
 struct FrameStep {
@@ -195,7 +195,7 @@ class ContactForce : public dynamics::ForceTerm,
                       VecX& f) override;
   /// The following three functions concern pairs with friction_tangent = "secant": within a step their
   /// friction is evaluated at the end of the step (friction.h).
-  bool bends_at(const dynamics::StateView& state) override;
+  bool has_onset_at(const dynamics::StateView& state) override;
   bool begin_step(const dynamics::StateView& state) override;
   bool improve_step(const dynamics::StateView& state, const VecX& moved, const VecX& change) override;
   /// Improves the friction guess for a pressing frame that moves and is not part of the State; all other
@@ -240,8 +240,8 @@ class ContactForce : public dynamics::ForceTerm,
   /// contact.
   /// @param state  state at which the gaps are evaluated  @param frame  index returned by add_frame()
   /// @param tangents  receives the tangent of each sample; null: not computed
-  std::vector<TouchSample> touch_samples(const dynamics::StateView& state, int frame,
-                                         std::vector<TouchTangent>* tangents = nullptr) const;
+  std::vector<ReducedSample> reduced_samples(const dynamics::StateView& state, int frame,
+                                             std::vector<ReducedTangent>* tangents = nullptr) const;
   /// Returns the change of a pair's resultant on its bodies caused by the last refresh, at the state of that
   /// refresh; the largest of all pairs. It measures the error due to infrequent queries. The same resultant
   /// distributed to other nodes is no change.

@@ -34,10 +34,10 @@ class Archive {
   /// @param values  entries of an archive that saved
   /// @param where  beginning of error messages: the file
   Archive(Values values, std::string where);
-  bool gives_back() const { return gives_back_; }   ///< Whether it restores; otherwise it saves.
-  const Values& values() const { return values_; }  ///< All entries, saved or to be restored.
+  bool is_restoring() const { return gives_back_; }  ///< Whether it restores; otherwise it saves.
+  const Values& values() const { return values_; }   ///< All entries, saved or to be restored.
   /// Checks that every entry was restored.  @throws Error for an entry that no object requested
-  void check_all_given_back() const;
+  void check_all_restored() const;
 
   /// Scope in which names get a prefix: "limiter.last_time".
   class Group {
@@ -164,7 +164,7 @@ class Archive {
       for (Eigen::Index i = 0; i < member.size(); ++i) f(member.data()[i]);
     }
   }
-  void check_count(std::string_view name, std::size_t kept, std::size_t wanted) const;
+  void check_count(std::string_view name, std::size_t kept, std::size_t requested) const;
   void check_length(std::string_view name, std::int64_t size) const;
   void check_size(std::string_view name, Eigen::Index rows, Eigen::Index columns, int fixed_rows,
                   int fixed_columns) const;

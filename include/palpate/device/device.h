@@ -122,7 +122,7 @@ class Device {
   virtual void bound(const PoseBounds&) {}
 
   /// Returns counters by name, such as the number of dropped packets. Read after the loop has ended.
-  virtual std::vector<std::pair<std::string, long long>> tallies() const { return {}; }
+  virtual std::vector<std::pair<std::string, long long>> counters() const { return {}; }
 
   /// Returns whether the device can be resumed from an archive, i.e. whether archive() covers its complete
   /// state. Devices with a hand beyond a network or a motor cannot.

@@ -45,7 +45,7 @@ class WrenchLimiter {
   /// Returns the limited wrench of one tick.
   /// @param wanted  requested force and moment on the hand
   /// @param t  time [s], increasing  @param valid  whether the handle's pose of this tick is valid
-  Wrench limit(double t, const Wrench& wanted, bool valid);
+  Wrench limit(double t, const Wrench& requested, bool valid);
   /// Restarts the ramp: the next valid wrench ramps in from zero. To be called if no wrench reached the hand
   /// since the last tick for longer than its times show. No effect without a ramp, as nobody holds the device
   /// then.
@@ -60,7 +60,7 @@ class WrenchLimiter {
 
  private:
   Wrench fall(double age);
-  Wrench follow(double t, double dt, const Wrench& wanted);
+  Wrench follow(double t, double dt, const Wrench& requested);
 
   double max_force_, max_torque_, ramp_, force_slew_, torque_slew_;
   double start_ = 0.0, last_valid_ = 0.0;   ///< First tick of this ramp, last valid tick [s].

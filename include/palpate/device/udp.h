@@ -93,7 +93,7 @@ class UdpDevice : public Device {
   DeviceSpecification specification() const override { return specification_; }
   /// Returns the counters since construction.
   const UdpCounts& counts() const { return counts_; }
-  std::vector<std::pair<std::string, long long>> tallies() const override;
+  std::vector<std::pair<std::string, long long>> counters() const override;
   int port() const { return port_; }  ///< Bound port, once the device is open.
   bool is_live() const override { return true; }
   std::string awaited() const override;

@@ -9,7 +9,7 @@ namespace palpate::dynamics {
 /// Contribution of the fused terms of a System (FusedStepTerm) to the matrix and right-hand side of a step,
 /// kept for reuse. A haptic loop linearises the bodies over the period that they then step over, from the
 /// same state, and the soft bodies dominate the cost of both.
-struct KeptStep {
+struct CachedStep {
   /// FusedStepTerm::step_version() of each term; empty: nothing is kept.
   std::vector<std::uint64_t> versions;
   std::uint64_t slot_map_key = 0;       ///< Key of the matrix (ZeroRowSumMatrix::slot_map_key).

@@ -12,7 +12,7 @@ class RepeatedStepTerm {
   virtual ~RepeatedStepTerm() = default;
   /// Returns whether that part acts at a state and the acceleration there does not predict the step that
   /// begins: at rest friction is zero by its law, and the full mu N as soon as there is motion.
-  virtual bool bends_at(const StateView& state) = 0;
+  virtual bool has_onset_at(const StateView& state) = 0;
   /// Starts the solves of one step from a state that is the same for all of them. Returns false where one
   /// solve is sufficient; end_step() is then not called.
   virtual bool begin_step(const StateView& state) = 0;

@@ -113,8 +113,8 @@ class System {
   double support_power(const StateView& state);
 
   /// Returns the contribution of the fused terms, as stored by StepAssembly::assemble() with `keep`.
-  KeptStep& kept_step() { return kept_step_; }
-  const KeptStep& kept_step() const { return kept_step_; }  ///< As above, read-only.
+  CachedStep& kept_step() { return kept_step_; }
+  const CachedStep& kept_step() const { return kept_step_; }  ///< As above, read-only.
 
   double kinetic_energy(const StateView& state) const;  ///< Returns 1/2 u M u [J].
   double potential_energy(const StateView& state);      ///< Returns the sum over all terms [J].
@@ -172,7 +172,7 @@ class System {
   std::vector<TermPairs> term_pairs_;  ///< Pairs of each term, at its version.
   NodePairs mass_pairs_;
   std::uint64_t pairs_layout_ = 0;  ///< Layout version that the pairs were computed for.
-  KeptStep kept_step_;
+  CachedStep kept_step_;
   mutable VecX scratch_, known_;
   VecX force_scratch_, held_scratch_, acceleration_scratch_;
 };

@@ -23,7 +23,7 @@ struct TickRecord {
   Twist handle_twist, tool_twist;  ///< Twists of handle and tool.
   /// Wrench on the tool: from the linearised contact, or, if monolithic, from the contact itself.
   Wrench contact;
-  Wrench wanted;  ///< Wrench on the hand before the limiter.
+  Wrench requested;  ///< Wrench on the hand before the limiter.
   /// Wrench on the hand as sent to the motors: after limiter and passivity controller.
   Wrench device;
   /// Wrench on the hand as held by the motors (device/motors.h): mean over the tick that ends here.

@@ -31,7 +31,7 @@ class ProxySet;
 
 namespace palpate::loop {
 
-struct ToolSide;
+struct ToolInstance;
 
 /// Detailed surface that is embedded in a body's tetrahedra.
 struct Skin {
@@ -151,8 +151,8 @@ struct World {
   double mechanical_energy();
 
  private:
-  friend struct ToolSide;
-  std::vector<std::unique_ptr<ToolSide>> tool_sides_;  ///< One per hand, at least one.
+  friend struct ToolInstance;
+  std::vector<std::unique_ptr<ToolInstance>> tool_sides_;  ///< One per hand, at least one.
 };
 
 /// Assembles a World from a scene: the only function that depends on concrete parts. It also sets the

@@ -19,7 +19,7 @@ std::vector<Hand> hands_of(const Description& description);
 
 /// Returns, for each hand, the index of the first hand whose tool is connected to its tool by a chain of
 /// [[contact]]s; its index where there is none.
-std::vector<std::size_t> meeting_tools(const Description& description);
+std::vector<std::size_t> connected_tools(const Description& description);
 
 /// Returns the tool of that name in [[contact]]; null where there is none.
 const ToolSpec* tool_named(const Description& description, const std::string& name);

@@ -30,7 +30,7 @@ struct KindTable {
   std::vector<Kind> kinds;              ///< Existing kinds.
   std::vector<AbsentKind> absent = {};  ///< Commonly tried names that do not exist.
   /// Returns the default kind where the selector is not given; empty function: none.
-  std::function<std::string(const Description&)> unsaid = {};
+  std::function<std::string(const Description&)> default_kind = {};
   std::string alternative = {};  ///< Key whose presence selects a kind: "file".
   /// Other keys of the scene whose texts are names of these kinds: "compare.contact_methods".
   std::vector<std::string> lists = {};

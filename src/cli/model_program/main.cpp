@@ -26,7 +26,7 @@ namespace palpate::cli {
 namespace {
 
 /// A bar a step, and what the guard says where the step does not end.
-class Bars : public model::Watcher {
+class Bars : public model::ProgressListener {
  public:
   explicit Bars(const ModelArguments& arguments) : arguments_(arguments) {
     refuse(fmt::format("{}: no model", arguments_.source), "");

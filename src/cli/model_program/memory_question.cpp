@@ -25,9 +25,9 @@ double volume_of(const TriMesh& surface) {
 double wanted_tetrahedra(const ModelArguments& arguments, const model::Input& input) {
   if (input.tets.tets.cols() > 0 && !arguments.options.remesh)
     return static_cast<double>(input.tets.tets.cols());
-  const model::TetrahedraOptions& wanted = arguments.options.tetrahedra;
-  if (wanted.element_size_m <= 0.0) return wanted.tetrahedra;
-  const double edge = wanted.element_size_m / arguments.options.scale;
+  const model::TetrahedraOptions& requested = arguments.options.tetrahedra;
+  if (requested.element_size_m <= 0.0) return requested.tetrahedra;
+  const double edge = requested.element_size_m / arguments.options.scale;
   return volume_of(input.surface) * 6.0 * std::sqrt(2.0) / std::pow(edge, 3);
 }
 

@@ -28,13 +28,13 @@ model::Input input_of_shape(ModelArguments& arguments) {
   out.creases = std::move(shape.creases);
   out.skeleton = std::move(shape.skeleton);
   out.sound = true;
-  if (model::TetrahedraOptions& wanted = arguments.options.tetrahedra;
-      !arguments.counted && wanted.element_size_m == 0) {
+  if (model::TetrahedraOptions& requested = arguments.options.tetrahedra;
+      !arguments.counted && requested.element_size_m == 0) {
     // the number is met within 3 %, and those of the paper's objects without a number of nodes are "at least"
     constexpr double kAtLeast = 1.03;
-    wanted.tetrahedra = static_cast<int>(shape.tetrahedra * (shape.nodes > 0 ? 1.0 : kAtLeast));
-    wanted.nodes = shape.nodes;
-    wanted.at_least = shape.nodes == 0;
+    requested.tetrahedra = static_cast<int>(shape.tetrahedra * (shape.nodes > 0 ? 1.0 : kAtLeast));
+    requested.nodes = shape.nodes;
+    requested.at_least = shape.nodes == 0;
   }
   return out;
 }

@@ -38,8 +38,8 @@ void pass_on(int signal) {
 
 /// Makes a folder, enters it and removes it: files cannot be made in it, by whatever name.
 void enter_no_folder() {
-  const char* const wanted = std::getenv("TMPDIR");
-  for (const char* parent : {wanted ? wanted : "/tmp", "/tmp", "/var/tmp", "/dev/shm"}) {
+  const char* const requested = std::getenv("TMPDIR");
+  for (const char* parent : {requested ? requested : "/tmp", "/tmp", "/var/tmp", "/dev/shm"}) {
     std::string folder = std::string(parent) + "/palpate-model-XXXXXX";
     if (!::mkdtemp(folder.data())) continue;
     const bool entered = ::chdir(folder.c_str()) == 0;

@@ -27,7 +27,7 @@ bool ImplicitStep::sticks() {
   const dynamics::StateView at = now();
   return std::any_of(terms.begin(), terms.end(), [&](const auto& term) {
     auto* const repeated = dynamic_cast<dynamics::RepeatedStepTerm*>(term.get());
-    return repeated && repeated->bends_at(at);
+    return repeated && repeated->has_onset_at(at);
   });
 }
 

@@ -18,7 +18,7 @@ struct LinearizedEquations {
 
 /// Solves these equations. Where terms evaluate a part of their force at the end of the step
 /// (RepeatedStepTerm) the solve is repeated until that part has converged. The contribution of the soft
-/// bodies is the same in all solves of a step, and is kept (dynamics::KeptStep). Methods of one solve, in
+/// bodies is the same in all solves of a step, and is kept (dynamics::CachedStep). Methods of one solve, in
 /// order of cost:
 ///
 ///     lagged matrix      residuals of the true equations, without their matrix, refined by the

@@ -299,7 +299,7 @@ void Adapter::count_iteration() {
   problem_->counters().kept_matrix_iterations += kept_matrix_;
 }
 
-void Adapter::count_solve(int kept, bool definite_retry, bool leap) {
+void Adapter::record_solve(int kept, bool definite_retry, bool leap) {
   dynamics::StepperCounters& c = problem_->counters();
   c.kept_matrix_iterations += kept;
   c.definite_retries += definite_retry;

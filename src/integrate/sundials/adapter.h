@@ -91,13 +91,13 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   void restore_state();
   /// Must be called at every evaluation of the right-hand side: separates attempted steps while they are
   /// traced.
-  void see_evaluation(double t, N_Vector y, bool finite);
+  void trace_evaluation(double t, N_Vector y, bool finite);
 
   int setup() override;
   int solve(N_Vector x, N_Vector b) override;
   N_Vector iterate() const override { return newton_state(); }
   void project_to_psd(bool on) override { problem_->project_to_psd(on); }
-  void count_solve(int kept, bool definite_retry, bool leap) override;
+  void record_solve(int kept, bool definite_retry, bool leap) override;
   /// Solves with Newton's matrix; by default in first-order form.
   virtual dynamics::SolveStatus solve_newton(const double* y, const double* r, double* d);
   /// Makes SUNDIALS' Newton iteration with the convergence test of this class. Made with the library's

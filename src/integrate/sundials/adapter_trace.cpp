@@ -16,7 +16,7 @@ using dynamics::StepAttempt;
 // Several attempts may fail inside one call of the library. Between two of them its failure counters
 // increase, which is seen at the next evaluation; the end of an attempt is the latest time at which it
 // evaluated.
-void Adapter::see_evaluation(double t, N_Vector y, bool finite) {
+void Adapter::trace_evaluation(double t, N_Vector y, bool finite) {
   finite_ = finite;
   if (!trace()) return;
   const Counts now = counts();

@@ -221,7 +221,7 @@ class Ark final : public Adapter {
   static int evaluate(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     Ark& me = self(data);
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), side);
-    me.see_evaluation(t, y, finite);
+    me.trace_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
   static int whole(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {

@@ -158,7 +158,7 @@ class Cvode final : public Adapter {
   static int right_hand_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     Cvode& me = self(data);
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kAll);
-    me.see_evaluation(t, y, finite);
+    me.trace_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
   static int linear_system(sunrealtype t, N_Vector y, N_Vector, SUNMatrix, sunbooleantype reuse,

@@ -124,7 +124,7 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
     iterations_ += result.iterations;
   }
   entries(correction) = x;
-  hook_.count_solve(kept, definite, leapt);
+  hook_.record_solve(kept, definite, leapt);
   failed_ = result.status != StepStatus::kOk;
   if (!failed_) return kSuccess;
   return flag_ < 0 ? flag_ : SUN_NLS_CONV_RECVR;

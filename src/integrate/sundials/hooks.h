@@ -18,7 +18,7 @@ class NewtonHook {
   virtual N_Vector iterate() const { return nullptr; }
   virtual void project_to_psd(bool) {}  ///< Switches positive semi-definite tangents, from the next setup on.
   /// Counts the work of one nonlinear solve: iterations with the factor of an earlier one, further tries.
-  virtual void count_solve(int /*kept*/, bool /*definite_retry*/, bool /*leap*/) {}
+  virtual void record_solve(int /*kept*/, bool /*definite_retry*/, bool /*leap*/) {}
 };
 
 /// Makes a direct linear solver, which calls the hook, and an empty matrix: SUNDIALS only passes them around.

@@ -145,7 +145,7 @@ class Ida final : public Adapter {
   static int residual(sunrealtype t, N_Vector y, N_Vector y_dot, N_Vector r, void* data) {
     Ida& me = self(data);
     const bool finite = me.problem().residual(t, NV_DATA_S(y), NV_DATA_S(y_dot), NV_DATA_S(r));
-    me.see_evaluation(t, y, finite);
+    me.trace_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
   static int jacobian(sunrealtype t, sunrealtype c_j, N_Vector y, N_Vector, N_Vector, SUNMatrix, void* data,

@@ -113,28 +113,28 @@ class KinsolStatic final : public Stepper, private NewtonHook {
  private:
   // --- load steps
   StepResult climb() {
-    double s = 0.0, rung = 1.0;
+    double s = 0.0, load_step = 1.0;
     int flag = KIN_SUCCESS;
     bool halved = false;
     long iterations = 0;
     while (s < 1.0) {
       if (interrupted()) return failure(StepStatus::kInterrupted, "interrupted");
-      s_ = std::min(1.0, s + rung);
+      s_ = std::min(1.0, s + load_step);
       sigma_ = 0.0;
       flag = solve(iterations);
-      if (flag < 0 && rung > tuning::kShortestRung) {
+      if (flag < 0 && load_step > tuning::kShortestLoadStep) {
         ++counters_.rejected;
         counters_.halved_steps += !halved;
         halved = true;
-        rung *= 0.5;
-        counters_.most_halvings = std::max<long>(counters_.most_halvings, std::lround(-std::log2(rung)));
+        load_step *= 0.5;
+        counters_.most_halvings = std::max<long>(counters_.most_halvings, std::lround(-std::log2(load_step)));
         continue;
       }
-      if (flag < 0 && !go_downhill(flag, iterations)) return failure(status_of(flag), describe(flag));
+      if (flag < 0 && !take_proximal_steps(flag, iterations)) return failure(status_of(flag), describe(flag));
       accept_rung();
       counters_.step_parts += halved;
       s = s_;
-      rung = std::min(2.0 * rung, 1.0);
+      load_step = std::min(2.0 * load_step, 1.0);
     }
     state_.set_time(t1_);
     system_.impose(state_.layout(), t1_, state_.q().data(), state_.u().data());
@@ -144,7 +144,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
 
   /// Takes proximal steps to the load s_.
   /// @param flag  KINSOL's last flag
-  bool go_downhill(int& flag, long& iterations) {
+  bool take_proximal_steps(int& flag, long& iterations) {
     sigma_ = stiffness_over_mass();
     if (!(sigma_ > 0.0)) return false;
     const double largest = 1e6 * sigma_;

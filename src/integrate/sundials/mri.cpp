@@ -181,14 +181,14 @@ class Mri final : public Adapter {
     Mri& me = self(data);
     if (std::exchange(me.at_start_, false) && t == me.now_) evaluate_start(me.slow_, t, me.scratch());
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kSlow);
-    me.see_evaluation(t, y, finite);
+    me.trace_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
   static int fast_side(sunrealtype t, N_Vector y, N_Vector y_dot, void* data) {
     Mri& me = self(data);
     if (me.interrupted()) return kUnrecoverable;  // A slow step may contain a hundred thousand fast ones.
     const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kFast);
-    me.see_evaluation(t, y, finite);
+    me.trace_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
   static int fast_weights(N_Vector y, N_Vector w, void* data) {

@@ -19,8 +19,8 @@ class StepInParts {
   /// as one step, so that no step is as short as that rounding.
   double next(double t, double t_end) {
     if (halvings_ > 0 && t >= whole_end_ - tuning::kRoundingOfStep * step_) halvings_ = 0;
-    const double end = halvings_ > 0 ? whole_end_ : t_end, wanted = halvings_ > 0 ? part_ : step_;
-    length_ = end - t <= wanted * (1.0 + tuning::kRoundingOfStep) ? end - t : wanted;
+    const double end = halvings_ > 0 ? whole_end_ : t_end, requested = halvings_ > 0 ? part_ : step_;
+    length_ = end - t <= requested * (1.0 + tuning::kRoundingOfStep) ? end - t : requested;
     return length_;
   }
   /// Shortens the step of next() from t after a failure; returns false where it was the shortest.

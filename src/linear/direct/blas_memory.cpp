@@ -43,7 +43,7 @@ void multiply(Dgemm dgemm) {
 }
 
 /// Whether a product by this BLAS returns, tried in a child process.
-bool comes_back(Dgemm dgemm) {
+bool dgemm_returns(Dgemm dgemm) {
   const pid_t child = ::fork();
   if (child == 0) try_product(dgemm);
   if (child < 0) return true;  // fork failed: assume that it does
@@ -56,7 +56,7 @@ bool comes_back(Dgemm dgemm) {
 void reserve() {
   const auto dgemm = reinterpret_cast<Dgemm>(::dlsym(RTLD_DEFAULT, "dgemm_"));
   if (!dgemm) return;  // a BLAS with other symbol names
-  if (addresses_are_limited() && !comes_back(dgemm)) {
+  if (addresses_are_limited() && !dgemm_returns(dgemm)) {
     const AvailableMemory left = available_memory();
     fail(
         "the BLAS cannot allocate its working memory: OpenBLAS needs about 128 MiB of address space, and {} "

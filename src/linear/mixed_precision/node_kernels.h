@@ -137,7 +137,7 @@ struct NodeKernels {
   void (*correct)(double by, const float* d, float a, const float* p, double* x, int first, int last);
   /// out[3 node[k] + axis] = x for nodes k in [first, last); returns the largest absolute value, ignoring
   /// NaN.
-  double (*put_nodes)(const int* node, const double* x, double* out, int first, int last);
+  double (*scatter_nodes)(const int* node, const double* x, double* out, int first, int last);
   /// x += in[3 node[k] + axis]
   void (*add_nodes)(const int* node, const double* in, double* x, int first, int last);
   /// Computes the inverses of the diagonal blocks at slot[node], times 1/scale; returns false if one is not

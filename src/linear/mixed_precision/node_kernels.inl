@@ -34,5 +34,5 @@ namespace PALPATE_SET {
    set::jacobi, set::gather_rigid, set::direction, set::first_direction, set::dense, set::invert,      \
    set::inner_products, set::add_columns,                                                              \
    set::convert, set::multiply_double, set::gram, set::combine, set::leave, set::difference,           \
-   set::residual, set::image, set::correct, set::put_nodes, set::add_nodes, set::invert_diagonal}
+   set::residual, set::image, set::correct, set::scatter_nodes, set::add_nodes, set::invert_diagonal}
 // clang-format on

@@ -28,7 +28,7 @@ struct NodeOrderSizes {
 /// Returns the sizes for a coarse space on rigid clusters (rigid_mode_coarse_space.h).
 NodeOrderSizes two_level_sizes(int nodes);
 /// Returns the sizes where only parts are needed. They equal two_level_sizes() for all but large bodies, so
-/// that one solver can take over what another was given (dynamics::KeptStep).
+/// that one solver can take over what another was given (dynamics::CachedStep).
 NodeOrderSizes one_level_sizes(int nodes);
 
 /// Orders the nodes by recursive bisection along breadth-first levels (George 1973): starting from a

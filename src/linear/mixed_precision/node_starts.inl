@@ -139,7 +139,7 @@ void correct(double by, const float* d, float a, const float* p, double* x, int 
 
 // Transfers between the order here and the caller's, in which vectors have three numbers per node.
 
-double put_nodes(const int* node, const double* x, double* out, int first, int last) {
+double scatter_nodes(const int* node, const double* x, double* out, int first, int last) {
   FourDouble largest{};
   const double* from = x;
   for (int k = first; k < last; ++k, from += 4) {

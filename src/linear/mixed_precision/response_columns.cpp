@@ -12,7 +12,7 @@ namespace {
 
 /// Smallest relative eigenvalue (squared column norms) of linearly independent columns: single precision
 /// cannot distinguish closer ones.
-constexpr double kAlike = 1e-5;
+constexpr double kDependenceTolerance = 1e-5;
 
 std::vector<float*> pointers(Columns& columns) {
   std::vector<float*> out;
@@ -66,12 +66,12 @@ void Columns::add(const Columns& V, const MatX& Y) {
 MatX pseudo_inverse(const MatX& G) {
   if (!G.allFinite()) return {};
   const double largest = G.diagonal().size() > 0 ? G.diagonal().maxCoeff() : 0.0;
-  if (G.diagonal().size() > 0 && G.diagonal().minCoeff() < -kAlike * largest) return {};
+  if (G.diagonal().size() > 0 && G.diagonal().minCoeff() < -kDependenceTolerance * largest) return {};
   const VecX scale = (G.diagonal().array() > 0.0).select(G.diagonal().array().max(1e-300).rsqrt(), 0.0);
   const Eigen::SelfAdjointEigenSolver<MatX> eigen(scale.asDiagonal() * (0.5 * (G + G.transpose())) *
                                                   scale.asDiagonal());
   const VecX inverse =
-      (eigen.eigenvalues().array() > kAlike).select(eigen.eigenvalues().array().inverse(), 0.0);
+      (eigen.eigenvalues().array() > kDependenceTolerance).select(eigen.eigenvalues().array().inverse(), 0.0);
   const MatX V = scale.asDiagonal() * eigen.eigenvectors();
   return V * inverse.asDiagonal() * V.transpose();
 }

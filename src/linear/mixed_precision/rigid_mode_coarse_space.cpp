@@ -92,7 +92,7 @@ Eigen::Vector3f RigidModeCoarseSpace::arm_in_cluster(std::size_t node) const {
 
 /// Excludes held nodes. The row of a held direction is the identity's: a node without coupling along some
 /// axis moves with no cluster.
-void RigidModeCoarseSpace::leave_out_held(const SingleMatrix& A) {
+void RigidModeCoarseSpace::skip_held(const SingleMatrix& A) {
   const auto leave_out = [&](std::size_t node) {
     std::fill_n(arm_.begin() + 4 * static_cast<std::ptrdiff_t>(node), 4, 0.0f);
   };
@@ -200,7 +200,7 @@ void RigidModeCoarseSpace::invert_pieces() {
 bool RigidModeCoarseSpace::refresh(const SingleMatrix& A, const double* positions,
                                    const NodeKernels& kernels) {
   place_arms(A.order(), positions);
-  leave_out_held(A);
+  skip_held(A);
   assemble(A);
   if (finer_) invert_pieces();
   for (std::size_t k = 0; k < static_cast<std::size_t>(size_); ++k) {

@@ -62,7 +62,7 @@ class RigidModeCoarseSpace {
     Eigen::Matrix<float, 6, 6> inverse = Eigen::Matrix<float, 6, 6>::Zero();  ///< D^-1
   };
   void place_arms(const NodeOrder& order, const double* positions);
-  void leave_out_held(const SingleMatrix& A);
+  void skip_held(const SingleMatrix& A);
   void assemble(const SingleMatrix& A);
   void add_points(const PointOperator& points);
   void invert_pieces();

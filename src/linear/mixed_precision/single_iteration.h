@@ -46,7 +46,7 @@ class SingleIteration {
   void allow_share(double share) { share_ = share; }
   /// Whether the error is below rtol of the solution or allowed by allow(); allow_share() is ignored.
   bool accurate(double rho, double rtol) const {
-    return bounds_[0].error(rho) <= wanted(bounds_[0], rtol) && rho <= floor_;
+    return bounds_[0].error(rho) <= requested(bounds_[0], rtol) && rho <= floor_;
   }
   /// Sets an upper limit of rho at the end, in addition to the error bound.
   void set_floor(double rho) { floor_ = rho; }
@@ -86,10 +86,10 @@ class SingleIteration {
 
  private:
   bool reached(const EnergyBound& bound, double rho, double rtol) const {
-    return bound.error(rho) <= std::max(wanted(bound, rtol), share_ * share_ * bound.gained()) &&
+    return bound.error(rho) <= std::max(requested(bound, rtol), share_ * share_ * bound.gained()) &&
            rho <= floor_;
   }
-  double wanted(const EnergyBound& bound, double rtol) const {
+  double requested(const EnergyBound& bound, double rtol) const {
     return std::max(rtol * rtol * bound.solution(), allowed_);
   }
   bool coarse_on() const { return clusters_.ready(); }

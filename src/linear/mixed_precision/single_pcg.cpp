@@ -238,7 +238,7 @@ class SinglePcg final : public dynamics::LinearSolver,
     refinement_.renew(rounded);
     refined_ = false;
     coarse_space_.serve(copy_.scale());
-    if (status_ == SolveStatus::kOk && two_level_ && lost_ >= price_of_clusters())
+    if (status_ == SolveStatus::kOk && two_level_ && extra_iterations_ >= refresh_cost())
       refresh_clusters(positions);
     return status_;
   }
@@ -264,7 +264,7 @@ class SinglePcg final : public dynamics::LinearSolver,
   }
 
   /// Returns the cost of a new E and D in iterations, by operation counts.
-  double price_of_clusters() const {
+  double refresh_cost() const {
     if (!coarse_space_.ready()) return 0.0;
     const double size = coarse_space_.size(), blocks = copy_.block_count();
     return (size * size * size + 60.0 * blocks) / (9.0 * blocks + 50.0 * nodes() + size * size);
@@ -273,8 +273,8 @@ class SinglePcg final : public dynamics::LinearSolver,
   void refresh_clusters(const double* positions) {
     coarse_space_.refresh(copy_, positions, kernels_);
     ++counters_.refreshes;
-    lost_ = 0.0;
-    fewest_ = HUGE_VAL;
+    extra_iterations_ = 0.0;
+    min_iterations_ = HUGE_VAL;
   }
 
   // --- per right-hand side
@@ -311,8 +311,8 @@ class SinglePcg final : public dynamics::LinearSolver,
   void account(long iterations_before) {
     const auto iterations = static_cast<double>(counters_.iterations - iterations_before);
     if (!two_level_ || iterations == 0.0) return;
-    fewest_ = std::min(fewest_, iterations);
-    lost_ += iterations - fewest_;
+    min_iterations_ = std::min(min_iterations_, iterations);
+    extra_iterations_ += iterations - min_iterations_;
   }
 
   std::string name_;
@@ -336,8 +336,9 @@ class SinglePcg final : public dynamics::LinearSolver,
   StepMatrixUse use_ = StepMatrixUse::kNone;     ///< use of the zero-row-sum matrix
   bool refined_ = false;                         ///< the equations of a coarse matrix were solved
   SingleMatrix copy_;
-  RigidModeCoarseSpace coarse_space_;      ///< ready only in `two-level`
-  double lost_ = 0.0, fewest_ = HUGE_VAL;  ///< since E's refresh: iterations above the fewest, the fewest
+  RigidModeCoarseSpace coarse_space_;  ///< ready only in `two-level`
+  double extra_iterations_ = 0.0,
+         min_iterations_ = HUGE_VAL;  ///< since E's refresh: iterations above the fewest, the fewest
   SolveState state_;
   SingleSolve solve_;
   Refinement refinement_;

@@ -138,7 +138,7 @@ SolveStatus SingleSolve::refine(double& rho) {
     if (status != SolveStatus::kOk) return status;
     const bool done = s_.iteration.reached(rho * s_.unit(), s_.rtol);
     const double size_before = s_.size;
-    if (done && replacement == 0 && rho * s_.unit() >= unchecked && reduction_wanted() >= kTrustsSingleStart)
+    if (done && replacement == 0 && rho * s_.unit() >= unchecked && target_error() >= kTrustsSingleStart)
       return SolveStatus::kOk;
     renew_residual();
     if (s_.size == 0.0) return SolveStatus::kOk;
@@ -153,7 +153,7 @@ SolveStatus SingleSolve::refine(double& rho) {
 }
 
 /// Returns the target relative error.
-double SingleSolve::reduction_wanted() const {
+double SingleSolve::target_error() const {
   return std::max(s_.rtol, std::sqrt(allowed_ / s_.iteration.solution()));
 }
 

@@ -39,7 +39,7 @@ class SingleSolve {
   /// Iterates in single precision and recomputes the residual in double until the error is small enough.
   dynamics::SolveStatus refine(double& rho);
   /// Returns the target relative error.
-  double reduction_wanted() const;
+  double target_error() const;
   /// Recomputes the residual in double.
   void renew_residual();
   /// Whether the residual is at the level of rounding.

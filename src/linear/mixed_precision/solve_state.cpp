@@ -70,7 +70,7 @@ double SolveState::put_solution(double* out, bool keep, bool follow) {
       const int last = std::min(end, first + kNodesOfBlock);
       Block value, image;
       const double* from = solution(first, last, value);
-      most = std::max(most, kernels.put_nodes(node, from, out, first, last));
+      most = std::max(most, kernels.scatter_nodes(node, from, out, first, last));
       if (!keep) continue;
       if (follow) kernels.image(size, b.data(), iteration.residual().data(), image.data(), first, last);
       guess.keep(from, image.data(), first, last);

@@ -66,7 +66,7 @@ struct StepResponse::Impl {
   VecX norm;          ///< norm of each column of B; the iteration works on B/norm
   Columns B, R, P, Q, Z;
   MatX S;
-  VecX rho, missing;
+  VecX rho, error_bound;
   Columns solutions;
   std::vector<EnergyBound> bounds;  ///< bound per column
   long products = 0;
@@ -89,7 +89,7 @@ StepResponse::~StepResponse() = default;
 double StepResponse::point_stiffness() const { return impl_->copy.point_stiffness(); }
 long StepResponse::products() const { return impl_->products; }
 const MatX& StepResponse::response() const { return impl_->S; }
-const VecX& StepResponse::missing() const { return impl_->missing; }
+const VecX& StepResponse::error_bound() const { return impl_->error_bound; }
 VecX StepResponse::residual_energies() const { return impl_->squares_in_units(impl_->rho); }
 
 void StepResponse::Impl::prepare() {
@@ -218,13 +218,13 @@ SolveStatus StepResponse::Impl::start(const MatX& right) {
     bound.begin(0.0, kRiseOfBound);
     least = std::min(least, bound.mu());
   }
-  missing.resize(count);
+  error_bound.resize(count);
   for (int k = 0; k < count; ++k) {
     EnergyBound& bound = bounds[static_cast<std::size_t>(k)];
     bound.limit(least);
-    missing[k] = bound.first() && rho[k] > 0.0 ? HUGE_VAL : kUnseen * bound.error(rho[k]);
+    error_bound[k] = bound.first() && rho[k] > 0.0 ? HUGE_VAL : kUnseen * bound.error(rho[k]);
   }
-  missing = squares_in_units(missing);
+  error_bound = squares_in_units(error_bound);
   P.swap(Z);
   return SolveStatus::kOk;
 }
@@ -246,9 +246,9 @@ SolveStatus StepResponse::advance() {
     EnergyBound& bound = m.bounds[static_cast<std::size_t>(k)];
     if (before[k] > 0.0) bound.step(gain(k, k) / before[k], before[k], m.rho[k]);
     bound.end();
-    m.missing[k] = kSafety * bound.error(m.rho[k]);
+    m.error_bound[k] = kSafety * bound.error(m.rho[k]);
   }
-  m.missing = m.squares_in_units(m.missing);
+  m.error_bound = m.squares_in_units(m.error_bound);
   m.Z.add(m.P, -inverse * m.Q.inner(m.Z));
   m.P.swap(m.Z);
   return SolveStatus::kOk;

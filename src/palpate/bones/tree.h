@@ -36,7 +36,7 @@ struct TreeBone {
 };
 
 /// Constant forces on a bone: their sum F, and S = sum r f^T about the bone's origin, world axes.
-struct HeldForce {
+struct ConstantForce {
   Vec3 force = Vec3::Zero();   ///< [N]
   Mat3 moment = Mat3::Zero();  ///< [N m]
 };
@@ -81,7 +81,7 @@ class BoneTree {
   /// The derivative of gyroscopic forces is omitted, and a ball's spring enters by its symmetric part.
   void tangent(const VecX& q, double k_scale, double d_scale, MatX& A) const;
   /// Adds -d(J^T f)/d(u-directions) of constant forces to K, one force per bone: see tree_geometry.cpp.
-  void add_geometric_stiffness(const VecX& q, const std::vector<HeldForce>& held, MatX& K) const;
+  void add_geometric_stiffness(const VecX& q, const std::vector<ConstantForce>& held, MatX& K) const;
   double potential_energy(const VecX& q) const;  ///< energy of weight and joint springs [J]
   double dissipated_power(const VecX& u) const;  ///< power of the joints' dampers [W]
 

@@ -8,7 +8,7 @@ namespace palpate::cli {
 
 /// Collects what a command's help promises and this call could not deliver, while all else was done.  The
 /// last line names it, and so does the exit status.
-class Undelivered {
+class MissingOutputs {
  public:
   void add(const std::string& what, const std::string& why);
   /// Adds the figures that a page lacks.

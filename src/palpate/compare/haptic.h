@@ -81,19 +81,19 @@ struct MonolithicScene {
 MonolithicScene monolithic_scene(const scene::Description& description, double coarser = 1.0);
 
 /// Error of the wrench on one hand.
-struct FeltError {
+struct HandError {
   TrajectoryError error = no_distance();
   double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< Peaks of the reference.
 };
 
 /// Result of comparing a completed run with its monolithic solution under the same hand motion; the inherited
 /// members refer to the first hand.
-struct AgainstMonolithic : FeltError {
+struct AgainstMonolithic : HandError {
   std::string made_by;  ///< Description of the reference.
   /// The reference was driven by the recorded hands instead of the scene's prescribed paths.
   bool recorded_hand = false;
   double cpu_s = 0.0;                 ///< CPU time of the reference [s].
-  std::vector<FeltError> more_hands;  ///< Errors of each [[hand]].
+  std::vector<HandError> more_hands;  ///< Errors of each [[hand]].
   bool stopped = false;
   std::string trouble{};  ///< Reason why there is no error.
 };

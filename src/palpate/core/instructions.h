@@ -17,7 +17,7 @@ bool find_instructions(std::string_view name, Instructions& set);
 /// @param wanted  name of a set, or empty for `widest`
 /// @param widest  widest set that the processor supports; it supports all narrower ones
 /// @throws Error for an unknown name, and for a set wider than `widest`
-Instructions choose_instructions(std::string_view wanted, Instructions widest);
+Instructions choose_instructions(std::string_view requested, Instructions widest);
 /// Returns the widest set that this processor supports, or the one that the environment variable
 /// PALPATE_INSTRUCTIONS specifies.  @throws Error when that one is unknown or unsupported
 Instructions best_instructions();

@@ -12,10 +12,10 @@ inline constexpr double kBuzzFrequency = 30.0;
 /// prewarping: a tone of frequency f passes with |H|^2 = 1/(1 + (tan(pi f_c T)/tan(pi f T))^8), -3 dB at f_c.
 /// A force that is constant from the first sample on gives exactly 0; a jump contributes, as it has a
 /// spectrum.
-class Buzz {
+class VibrationMeter {
  public:
   /// @param tick_s  T [s], with f_c T < 1/2  @param frequency_hz  f_c
-  explicit Buzz(double tick_s, double frequency_hz = kBuzzFrequency);
+  explicit VibrationMeter(double tick_s, double frequency_hz = kBuzzFrequency);
   /// Adds one sample of the force [N].
   void add(const Vec3& force);
   double rms() const;

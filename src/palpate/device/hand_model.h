@@ -11,7 +11,7 @@ struct HandModel {
   ArmAxis::Parameters translation, rotation;  ///< Hand and device together, per axis.
   double arm_damping = 0.0;                   ///< Damper of the arm, relative to the target motion [N s/m].
   double arm_rotational_damping = 0.0;        ///< Rotational damper of the arm [N m s/rad].
-  std::function<HandleSample(double t)> wanted;  ///< Target motion of the arm, and the switches.
+  std::function<HandleSample(double t)> requested;  ///< Target motion of the arm, and the switches.
 };
 /// Returns the parameters of a scene's hand.  @throws Error for invalid parameters, naming the key
 HandModel hand_model(const DeviceSpec& spec);

@@ -238,11 +238,11 @@ class SkinContact {
   std::vector<double> packets_clear_[2];
   /// Location of a cluster. kWhole: entirely inside or entirely outside, not yet known which; kNear: close to
   /// the other skin's surface.
-  enum class Whereabouts : char { kOutside, kInside, kWhole, kNear };
-  std::vector<Whereabouts> where_[2];  ///< Location per cluster.
-  std::vector<Part> whole_;            ///< Clusters that do not come near the other skin's surface.
-  std::vector<int> joined_;            ///< Queue of connected clusters in settle().
-  std::vector<std::size_t> missing_;   ///< Springs whose feet are to be updated, ascending.
+  enum class SideOfSurface : char { kOutside, kInside, kWhole, kNear };
+  std::vector<SideOfSurface> where_[2];  ///< Location per cluster.
+  std::vector<Part> whole_;              ///< Clusters that do not come near the other skin's surface.
+  std::vector<int> joined_;              ///< Queue of connected clusters in settle().
+  std::vector<std::size_t> missing_;     ///< Springs whose feet are to be updated, ascending.
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
 

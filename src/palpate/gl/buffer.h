@@ -51,7 +51,7 @@ class VertexArray {
                           std::size_t offset = 0);
   /// Sets an unsigned 32-bit attribute that advances per draw instead of per vertex: record
   /// `base_instance` of the draw.
-  void attribute_a_draw(unsigned location, const MappedBuffer& buffer, int stride, std::size_t offset);
+  void attribute_per_draw(unsigned location, const MappedBuffer& buffer, int stride, std::size_t offset);
   void indices(const Buffer& buffer);  ///< Sets the index buffer, unsigned 32-bit.
   void bind() const;
   unsigned id() const { return id_; }

@@ -36,7 +36,7 @@ struct ZWidthOptions {
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* stop = nullptr;
 };
-ZWidth z_width(const HapticLoop& loop, const ZWidthOptions& options);
+ZWidth z_width(const HapticLoopModel& loop, const ZWidthOptions& options);
 
 /// What a contact of the scene is worth at the tool: stiffness [N/m] and damping [N s/m].
 struct ToolContact {
@@ -48,7 +48,7 @@ struct ToolContactRange {
 
 /// The scene's tool, coupling and tick, and a device of default figures.  @throws Error for a scene without
 /// a tool of ticks
-HapticLoop loop_of(const scene::Description& description);
+HapticLoopModel loop_of(const scene::Description& description);
 /// An estimate from the scene's keys (the derivation stands in scene_loop.cpp).
 /// @throws Error for a scene whose tool touches nothing, or by springs at points
 ToolContactRange contact_range(const scene::Description& description);
@@ -59,14 +59,14 @@ ToolContactRange contact_range(const scene::Description& description);
 /// device has its mass and damping at a lever of 50 mm, the order of a stylus.  One that drives no torque is
 /// held.
 struct RotationalLoop {
-  HapticLoop loop;         ///< masses of I/a^2 [kg], and so on
+  HapticLoopModel loop;    ///< masses of I/a^2 [kg], and so on
   ToolContactRange range;  ///< at the lever
   double lever_m = 0.0;    ///< a
   double inertia_kg_m2 = 0.0;
   bool driven = true;  ///< the device has torque
 };
 /// @param loop, range  of the translation
-RotationalLoop rotational_loop_of(const scene::Description& description, const HapticLoop& loop,
+RotationalLoop rotational_loop_of(const scene::Description& description, const HapticLoopModel& loop,
                                   const ToolContactRange& range);
 
 /// The scene's own loop at one contact.
@@ -83,7 +83,7 @@ struct OperatingPoint {
   std::string words(double tick_s, double scale = 1.0, const std::string& unit = "N/m") const;
 };
 /// Tool in the air, in the softest and in the stiffest contact.
-std::vector<OperatingPoint> operating_points(HapticLoop loop, const ToolContactRange& range,
+std::vector<OperatingPoint> operating_points(HapticLoopModel loop, const ToolContactRange& range,
                                              double duration_s);
 
 }  // namespace palpate::haptic_stability

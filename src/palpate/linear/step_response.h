@@ -44,7 +44,7 @@ class StepResponse {
   /// Returns estimated upper bounds of the missing part of each S_ii (energy_bound.h); infinite while nothing
   /// is known of the spectrum. The error of S_ij is at most the geometric mean of the bounds of S_ii and
   /// S_jj.
-  const VecX& missing() const;
+  const VecX& error_bound() const;
   /// Returns an estimate of the missing part of each S_ii by the preconditioner, diag(R^T P^-1 R). It serves
   /// to detect right-hand sides that need no further iteration.
   VecX residual_energies() const;

@@ -1,7 +1,7 @@
 #pragma once
 #include <type_traits>
 
-#include "palpate/contact/touch_model.h"
+#include "palpate/contact/reduced_contact_model.h"
 #include "palpate/dynamics/exchange.h"
 
 namespace palpate::loop {
@@ -10,7 +10,8 @@ namespace palpate::loop {
 struct ContactRecord {
   /// Linear contact; with source = kPoints only its time, pose and twist are used.
   dynamics::LinearisedContact linear;
-  contact::TouchModel touch;  ///< For source = kPoints: reduced model from which ticks compute their contact.
+  contact::ReducedContactModel
+      touch;  ///< For source = kPoints: reduced model from which ticks compute their contact.
 };
 static_assert(std::is_trivially_copyable_v<ContactRecord>);
 

@@ -15,7 +15,7 @@ struct HapticRecord {
   std::vector<TickRecord> ticks;  ///< Ticks in order of time.
   std::vector<dynamics::LinearisedContact> exchanges;  ///< Contact records, versions 1, 2, ...
   /// Reduced model per exchange, if exchanges have points; else empty.
-  std::vector<contact::TouchModel> models;
+  std::vector<contact::ReducedContactModel> models;
   /// Mode of the run.
   device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
 };

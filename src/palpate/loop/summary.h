@@ -30,11 +30,11 @@ struct Overlap {
 /// Returns one entry per [[contact]] of the scene.
 std::vector<Overlap> overlaps_of(const World& world);
 
-/// Error of the reduced response of the bodies to a tool ("points"; loop/touch_reduction.h): relative upper
+/// Error of the reduced response of the bodies to a tool ("points"; loop/model_reduction.h): relative upper
 /// bounds over the exchanges.
 struct AnswerError {
   std::string tool;                  ///< Name in [[contact]].
-  double wanted = 0.0;               ///< exchange.linearisation_error
+  double requested = 0.0;            ///< exchange.linearisation_error
   double largest = 0.0, mean = 0.0;  ///< Largest and mean bound over the exchanges.
   long exchanges = 0;                ///< Exchanges with contact.
   long beyond = 0;                   ///< Exchanges whose iteration ended above the requested error.

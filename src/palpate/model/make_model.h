@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "palpate/mesh/skeleton.h"
-#include "palpate/model/angle_price.h"
+#include "palpate/model/angle_cost.h"
 #include "palpate/model/foreign_files.h"
 #include "palpate/model/quality_gate.h"
 #include "palpate/model/regions.h"
@@ -45,7 +45,7 @@ struct Options {
   double crease_deg = 0.0;  ///< for kAngle
   /// For tetrahedra of a file: fill their boundary anew.
   bool remesh = false;
-  /// For tetrahedra of a file: accept any angles, and report their cost in Made::angle_price.
+  /// For tetrahedra of a file: accept any angles, and report their cost in Made::angle_cost.
   bool accept_angles = false;
   std::vector<RegionSource> regions;                 ///< in addition to the regions of a file of tetrahedra
   int proxies = 60;                                  ///< target number of convex hulls; 0: none
@@ -61,9 +61,9 @@ struct Step {
 };
 
 /// Receives progress reports and the result of each step.
-class Watcher {
+class ProgressListener {
  public:
-  virtual ~Watcher() = default;
+  virtual ~ProgressListener() = default;
   virtual void begin(const std::string& /*step*/) {}
   virtual void progress(double /*fraction*/) {}        ///< fraction of the step
   virtual void stage(const std::string& /*stage*/) {}  ///< start of a stage within the step
@@ -78,7 +78,7 @@ struct Made {
   TetQuality quality;
   std::vector<RegionFigures> regions;
   bool creased = false;
-  std::optional<AnglePrice> angle_price;  ///< set if accept_angles accepted a mesh that the gate rejects
+  std::optional<AngleCost> angle_cost;  ///< set if accept_angles accepted a mesh that the gate rejects
   std::vector<Step> steps;
 };
 
@@ -88,6 +88,6 @@ struct Made {
 /// steps together; it is checked between steps and while the surface is filled.  Mending cannot be
 /// interrupted; `palpate model` ends the process when the time is over.
 /// @throws Error if a step fails, or the tetrahedra do not pass the gate
-Made make_model(Input input, const Options& options, Watcher& watcher);
+Made make_model(Input input, const Options& options, ProgressListener& watcher);
 
 }  // namespace palpate::model

@@ -9,7 +9,7 @@ namespace palpate::render {
 /// they cover in an image that frames them, the part not hidden by opaque surfaces, in [0, 1]; 1 without
 /// subjects. Translucent surfaces (Surface::opacity below 1) hide nothing.  Accurate to a few hundredths: the
 /// image has 64 pixels along its longer edge.
-double seen_share(const Scene& scene, const View& view);
+double visible_share(const Scene& scene, const View& view);
 
 /// Chooses the view with the largest visible share of the subjects, over one or more snapshots of a scene.
 /// The first candidate is the usual view, View{}; it is kept unless it shows a third or less, and another

@@ -20,12 +20,12 @@ void check_can_write(const std::string& path);
 void write_durably(const std::string& path, std::string_view content);
 
 /// Brings the data written to a file so far to the disk (fsync).  @throws Error where that fails
-void bring_to_disk(const std::string& path);
+void sync_file(const std::string& path);
 
 /// Checks a file that a run resumes.  @throws Error where it is missing, or shorter than at the checkpoint
 void check_reaches(const std::string& path, std::int64_t bytes);
 /// Truncates a file to that many bytes.  @throws Error where it is missing or shorter
-void cut_to(const std::string& path, std::int64_t bytes);
+void truncate_file(const std::string& path, std::int64_t bytes);
 
 /// Checks that a file to be resumed contains the data that its run had written by the checkpoint.
 /// @param path  for messages

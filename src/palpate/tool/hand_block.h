@@ -19,7 +19,7 @@ struct HandBlock {
     double friction = 0.0;     ///< f of the device [N; N m]
   };
   Axis translation, rotation;
-  HandlePath wanted;  ///< Target motion x_d; orientations within half a turn of the first.
+  HandlePath requested;  ///< Target motion x_d; orientations within half a turn of the first.
 };
 
 /// Returns the block of the hand: q = (theta, position), u = q', theta the rotation vector from the first
