@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/integrate/integrators.h"
 #include "product/fem/beam.h"
 

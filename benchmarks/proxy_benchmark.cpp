@@ -5,9 +5,9 @@
 
 #include <numeric>
 
-#include "palpate/proxy/decompose.h"
-#include "palpate/proxy/decompose_solid.h"
-#include "palpate/proxy/pruner.h"
+#include "proxy/decompose.h"
+#include "proxy/decompose_solid.h"
+#include "proxy/pruner.h"
 #include "proxy/shapes.h"
 #include "proxy/tools.h"
 

@@ -4,8 +4,8 @@
 
 #include "b_bodies.h"
 #include "cases.h"
+#include "core/clock.h"
 #include "images.h"
-#include "palpate/core/clock.h"
 #include "palpate/mesh/generators.h"
 
 // Overlap volume of two spheres, centres d apart, d^2 >= |R1^2 - R2^2| (the lens lies between the two

@@ -1,8 +1,8 @@
 #pragma once
 #include <memory>
 
+#include "contact/sources.h"
 #include "palpate/contact/contact_force.h"
-#include "palpate/contact/sources.h"
 #include "palpate/dynamics/inertia_term.h"
 #include "palpate/mesh/mesh.h"
 

@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "cases.h"
+#include "contact/sources.h"
 #include "images.h"
 #include "palpate/contact/contact_force.h"
-#include "palpate/contact/sources.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/attachments.h"

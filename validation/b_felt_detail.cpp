@@ -9,7 +9,7 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/store/model_file.h"
+#include "store/model_file.h"
 
 // A round tool of radius R is dragged at speed v over a block of a few tetrahedra whose skin is corrugated,
 // z = a sin(q x).  The tetrahedra and their own surface are flat: only the skin knows of the corrugation.

@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "contact/sources.h"
 #include "faults.h"
-#include "palpate/contact/sources.h"
 #include "palpate/loop/run.h"
 
 /// A rigid body on a rigid slab under gravity, through everything a scene goes through: the tool without its

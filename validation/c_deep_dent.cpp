@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "cases.h"
+#include "core/polar.h"
 #include "faults.h"
 #include "images.h"
 #include "palpate/core/error.h"
-#include "palpate/core/polar.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/embedding.h"
 #include "palpate/mesh/generators.h"

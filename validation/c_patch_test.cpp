@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "cases.h"
+#include "core/polar.h"
 #include "faults.h"
 #include "palpate/core/error.h"
-#include "palpate/core/polar.h"
 #include "palpate/core/pose.h"
 #include "palpate/mesh/generators.h"
 #include "statics.h"

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/validation/validation.h"
+#include "validation.h"
 
 /// One function a case, one file a function; registry.cpp puts them in order.
 namespace palpate::validation {

@@ -1,7 +1,7 @@
 #include "cases.h"
+#include "device/arm_axis.h"
 #include "e_faulty_tool.h"
 #include "e_oscillator.h"
-#include "palpate/device/arm_axis.h"
 
 // Semi-implicit Euler on m x'' = -k x - b x':
 //     z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0

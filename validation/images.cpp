@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "palpate/contact/gpu_device.h"
+#include "contact/gpu_device.h"
 #include "palpate/core/error.h"
 
 namespace palpate::validation {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "palpate/contact/sources.h"
-#include "palpate/validation/validation.h"
+#include "contact/sources.h"
+#include "validation.h"
 
 /// What the contact cases share: images as lists of pixels, and a source that is broken on purpose.
 namespace palpate::validation {

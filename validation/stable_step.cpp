@@ -4,10 +4,10 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "integrate/multirate.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
-#include "palpate/integrate/multirate.h"
 
 // With y = [q; u] and the accelerations K = M^-1 K, D = M^-1 D of a linearisation, y' = A y,
 //     A = [0 1; -K -D].

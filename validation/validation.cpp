@@ -1,4 +1,4 @@
-#include "palpate/validation/validation.h"
+#include "validation.h"
 
 #include <cmath>
 

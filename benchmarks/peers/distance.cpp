@@ -1,8 +1,8 @@
 // palpate's contact by nearest points: from positions of nodes to forces on nodes, by exact nearest
 // points.  It is not told how the skins move: it bounds that by what it keeps from query to query.
+#include "contact/sources.h"
 #include "contender.h"
-#include "palpate/contact/sources.h"
-#include "palpate/distance/skin_contact.h"
+#include "distance/skin_contact.h"
 
 namespace peers {
 namespace {

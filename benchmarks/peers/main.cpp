@@ -13,11 +13,11 @@
 #include <exception>
 #include <map>
 
+#include "contact/gpu_device.h"
 #include "contender.h"
-#include "palpate/contact/gpu_device.h"
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
-#include "palpate/report/table.h"
+#include "report/table.h"
 
 namespace peers {
 namespace {

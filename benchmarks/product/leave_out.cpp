@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <functional>
 
-#include "palpate/contact/gpu_device.h"
-#include "palpate/core/clock.h"
+#include "contact/gpu_device.h"
+#include "core/clock.h"
+#include "core/program.h"
 #include "palpate/core/error.h"
-#include "palpate/core/program.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
 #include "palpate/tool/tool.h"

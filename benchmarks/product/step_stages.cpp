@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #include "product/bench.h"

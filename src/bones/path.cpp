@@ -1,4 +1,4 @@
-#include "palpate/bones/path.h"
+#include "bones/path.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "palpate/bones/shape.h"
+#include "bones/shape.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "palpate/bones/skeleton.h"
+#include "bones/skeleton.h"
 
 #include <algorithm>
 
-#include "palpate/bones/path.h"
+#include "bones/path.h"
 #include "palpate/core/error.h"
 
 namespace palpate::bones {

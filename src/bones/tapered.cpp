@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "bones/revolved.h"
-#include "palpate/bones/shape.h"
+#include "bones/shape.h"
 #include "palpate/core/error.h"
 
 namespace palpate::bones {

@@ -1,12 +1,12 @@
-#include "palpate/bones/tree.h"
+#include "bones/tree.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "bones/tree_impl.h"
-#include "palpate/core/counters.h"
+#include "core/counters.h"
+#include "core/so3.h"
 #include "palpate/core/error.h"
-#include "palpate/core/so3.h"
 
 namespace palpate::bones {
 namespace {

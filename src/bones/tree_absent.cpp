@@ -1,4 +1,4 @@
-#include "palpate/bones/tree.h"
+#include "bones/tree.h"
 #include "palpate/core/error.h"
 
 // Stub of bones on joints for a build without Simbody: every function throws Error.

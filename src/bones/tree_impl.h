@@ -1,7 +1,7 @@
 #pragma once
 #include "simbody/headers.h"
 
-#include "palpate/bones/tree.h"
+#include "bones/tree.h"
 
 namespace palpate::bones {
 

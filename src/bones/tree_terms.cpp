@@ -1,6 +1,6 @@
-#include "palpate/bones/tree.h"
+#include "bones/tree.h"
+#include "dynamics/carried_motion.h"
 #include "palpate/core/error.h"
-#include "palpate/dynamics/carried_motion.h"
 
 namespace palpate::bones {
 namespace {

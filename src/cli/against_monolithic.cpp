@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "palpate/cli/progress.h"
-#include "palpate/cli/stop.h"
+#include "cli/progress.h"
+#include "cli/stop.h"
 
 namespace palpate::cli {
 namespace {

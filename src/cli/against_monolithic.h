@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "palpate/compare/haptic.h"
-#include "palpate/store/summary.h"
+#include "compare/haptic.h"
+#include "store/summary.h"
 
 namespace palpate::cli {
 

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/instructions.h"
+#include "loop/haptic_record.h"
 #include "palpate/core/error.h"
-#include "palpate/core/instructions.h"
-#include "palpate/loop/haptic_record.h"
-#include "palpate/store/provenance.h"
-#include "palpate/store/table_file.h"
+#include "store/provenance.h"
+#include "store/table_file.h"
 
 namespace palpate::cli {
 

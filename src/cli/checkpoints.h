@@ -3,9 +3,9 @@
 #include <string>
 
 #include "commands.h"
-#include "palpate/loop/checkpoints.h"
-#include "palpate/store/checkpoint_file.h"
-#include "palpate/store/summary.h"
+#include "loop/checkpoints.h"
+#include "store/checkpoint_file.h"
+#include "store/summary.h"
 
 namespace palpate::cli {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <filesystem>
 
-#include "palpate/store/csv.h"
+#include "store/csv.h"
 
 namespace palpate::cli {
 namespace {

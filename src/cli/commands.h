@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "palpate/cli/program.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/stability_options.h"
+#include "cli/program.h"
+#include "cli/scene_of.h"
+#include "cli/stability_options.h"
 
 /// The commands: one function each, one file each.  Each returns the exit status; Error means that the input
 /// is at fault.

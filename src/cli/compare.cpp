@@ -5,18 +5,18 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/paths.h"
+#include "cli/progress.h"
+#include "cli/scene_of.h"
+#include "cli/stop.h"
+#include "cli/undelivered.h"
 #include "commands.h"
 #include "compare_tables.h"
-#include "palpate/cli/paths.h"
-#include "palpate/cli/progress.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
-#include "palpate/report/run_report.h"
-#include "palpate/report/table.h"
-#include "palpate/report/work_precision.h"
-#include "palpate/store/result_folder.h"
+#include "report/run_report.h"
+#include "report/table.h"
+#include "report/work_precision.h"
+#include "store/result_folder.h"
 
 namespace palpate::cli {
 namespace {

@@ -1,22 +1,22 @@
-#include "palpate/compare/haptic.h"
+#include "compare/haptic.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
 
+#include "cli/paths.h"
+#include "cli/progress.h"
+#include "cli/scene_of.h"
+#include "cli/stop.h"
+#include "cli/undelivered.h"
 #include "commands.h"
 #include "compare_tables.h"
-#include "palpate/cli/paths.h"
-#include "palpate/cli/progress.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
-#include "palpate/report/run_report.h"
-#include "palpate/report/table.h"
-#include "palpate/store/result_folder.h"
-#include "palpate/store/summary.h"
+#include "report/run_report.h"
+#include "report/table.h"
+#include "store/result_folder.h"
+#include "store/summary.h"
 
 namespace palpate::cli {
 namespace {

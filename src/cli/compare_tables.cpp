@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "palpate/loop/describe_fallbacks.h"
-#include "palpate/report/work_precision.h"
+#include "loop/describe_fallbacks.h"
+#include "report/work_precision.h"
 
 namespace palpate::cli {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 #include "palpate/compare/compare.h"
-#include "palpate/report/table.h"
+#include "report/table.h"
 
 /// Output of `palpate compare` for one scene.
 namespace palpate::cli {

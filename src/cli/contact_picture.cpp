@@ -7,12 +7,12 @@
 #include <map>
 #include <numbers>
 
-#include "palpate/cli/undelivered.h"
+#include "cli/undelivered.h"
+#include "core/time_text.h"
 #include "palpate/core/error.h"
-#include "palpate/core/time_text.h"
-#include "palpate/render/field.h"
-#include "palpate/render/marks.h"
-#include "palpate/render/panels.h"
+#include "render/field.h"
+#include "render/marks.h"
+#include "render/panels.h"
 
 namespace palpate::cli {
 namespace {

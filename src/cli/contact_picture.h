@@ -2,7 +2,7 @@
 #include <string>
 
 #include "instant.h"
-#include "palpate/loop/contact_instant.h"
+#include "loop/contact_instant.h"
 
 namespace palpate::cli {
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include "cli/undelivered.h"
 #include "commands.h"
-#include "palpate/cli/undelivered.h"
 
 namespace palpate::cli {
 

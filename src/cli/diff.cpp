@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/paths.h"
 #include "commands.h"
-#include "palpate/cli/paths.h"
-#include "palpate/compare/perceptible_difference.h"
-#include "palpate/loop/haptic_record.h"
+#include "compare/perceptible_difference.h"
+#include "loop/haptic_record.h"
 #include "palpate/loop/load.h"
 #include "palpate/scene/hands.h"
 

@@ -6,16 +6,16 @@
 #include <filesystem>
 #include <functional>
 
+#include "cli/stop.h"
 #include "commands.h"
+#include "core/time_text.h"
 #include "export_animation.h"
 #include "export_draft.h"
 #include "export_tables.h"
-#include "palpate/cli/stop.h"
 #include "palpate/core/error.h"
-#include "palpate/core/time_text.h"
 #include "palpate/store/run_file.h"
-#include "palpate/store/vtu.h"
 #include "recorded_surfaces.h"
+#include "store/vtu.h"
 
 namespace palpate::cli {
 namespace fs = std::filesystem;

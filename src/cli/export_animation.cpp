@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "palpate/cli/stop.h"
+#include "cli/stop.h"
+#include "core/rigid_fit.h"
 #include "palpate/core/error.h"
-#include "palpate/core/rigid_fit.h"
-#include "palpate/store/glb.h"
-#include "palpate/store/provenance.h"
+#include "store/glb.h"
+#include "store/provenance.h"
 
 namespace palpate::cli {
 namespace {

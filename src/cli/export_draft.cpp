@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "palpate/cli/paths.h"
+#include "cli/paths.h"
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 
 namespace palpate::cli {
 namespace fs = std::filesystem;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/store/result_folder.h"
+#include "store/result_folder.h"
 
 namespace palpate::cli {
 

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "palpate/cli/stop.h"
+#include "cli/stop.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
-#include "palpate/store/csv.h"
+#include "store/csv.h"
 
 namespace palpate::cli {
 namespace fs = std::filesystem;

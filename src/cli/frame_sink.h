@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "palpate/render/picture.h"
+#include "render/picture.h"
 
 namespace palpate::cli {
 

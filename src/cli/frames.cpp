@@ -5,11 +5,11 @@
 #include <charconv>
 #include <cmath>
 
-#include "palpate/cli/progress.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/undelivered.h"
+#include "cli/progress.h"
+#include "cli/stop.h"
+#include "cli/undelivered.h"
 #include "palpate/core/error.h"
-#include "palpate/render/seen.h"
+#include "render/seen.h"
 
 namespace palpate::cli {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "frame_sink.h"
 #include "instant_spool.h"
-#include "palpate/render/panels.h"
+#include "render/panels.h"
 
 namespace palpate::cli {
 

@@ -1,4 +1,4 @@
-#include "palpate/cli/guarded.h"
+#include "cli/guarded.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "palpate/cli/stop.h"
-#include "palpate/cli/streams.h"
+#include "cli/stop.h"
+#include "cli/streams.h"
+#include "core/memory.h"
 #include "palpate/core/error.h"
-#include "palpate/core/memory.h"
 
 namespace palpate::cli {
 namespace {

@@ -9,8 +9,8 @@
 #include "commands.h"
 #include "help_pages.h"
 #include "palpate/core/error.h"
-#include "palpate/report/table.h"
 #include "plain_text.h"
+#include "report/table.h"
 
 namespace palpate::cli {
 namespace {

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
+#include "cli/scene_of.h"
 #include "commands.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/core/clock.h"
-#include "palpate/loop/memory.h"
+#include "core/clock.h"
+#include "loop/memory.h"
+#include "loop/summary.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
-#include "palpate/report/table.h"
+#include "report/table.h"
 
 namespace palpate::cli {
 namespace {

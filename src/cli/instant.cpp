@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "loop/contact_instant.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/contact_instant.h"
-#include "palpate/render/available.h"
-#include "palpate/render/marks.h"
 #include "palpate/scene/hands.h"
+#include "render/available.h"
+#include "render/marks.h"
 
 namespace palpate::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "palpate/loop/run.h"
-#include "palpate/render/scene.h"
+#include "render/scene.h"
 
 namespace palpate::cli {
 

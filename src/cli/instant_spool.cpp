@@ -8,7 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "palpate/core/bytes.h"
+#include "core/bytes.h"
 #include "palpate/core/error.h"
 
 namespace palpate::cli {

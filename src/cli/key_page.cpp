@@ -8,7 +8,7 @@
 
 #include "palpate/loop/load.h"
 #include "palpate/scene/kinds.h"
-#include "palpate/scene/study.h"
+#include "scene/study.h"
 
 namespace palpate::cli {
 namespace {

@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <sstream>
 
+#include "cli/other_program.h"
+#include "cli/paths.h"
 #include "commands.h"
 #include "key_page.h"
-#include "palpate/cli/other_program.h"
-#include "palpate/cli/paths.h"
+#include "loop/registries.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
-#include "palpate/loop/registries.h"
-#include "palpate/report/table.h"
-#include "palpate/scene/study.h"
+#include "report/table.h"
+#include "scene/study.h"
 
 namespace palpate::cli {
 namespace {

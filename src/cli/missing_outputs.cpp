@@ -1,4 +1,4 @@
-#include "palpate/cli/undelivered.h"
+#include "cli/undelivered.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <map>
 
-#include "palpate/cli/stop.h"
+#include "cli/stop.h"
 
 namespace palpate::cli {
 namespace {

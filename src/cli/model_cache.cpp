@@ -9,10 +9,10 @@
 #include <cstring>
 #include <filesystem>
 
-#include "palpate/cli/other_program.h"
+#include "cli/other_program.h"
 #include "palpate/core/error.h"
 #include "palpate/scene/hands.h"
-#include "palpate/store/model_cache.h"
+#include "store/model_cache.h"
 
 namespace palpate::cli {
 namespace fs = std::filesystem;

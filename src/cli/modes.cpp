@@ -1,19 +1,19 @@
-#include "palpate/loop/modes.h"
+#include "loop/modes.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
+#include "cli/paths.h"
+#include "cli/scene_of.h"
+#include "cli/undelivered.h"
 #include "commands.h"
-#include "palpate/cli/paths.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
-#include "palpate/render/available.h"
-#include "palpate/render/scene.h"
-#include "palpate/report/table.h"
-#include "palpate/store/csv.h"
-#include "palpate/store/result_folder.h"
+#include "render/available.h"
+#include "render/scene.h"
+#include "report/table.h"
+#include "store/csv.h"
+#include "store/result_folder.h"
 
 namespace palpate::cli {
 namespace {

@@ -3,13 +3,13 @@
 
 #include <filesystem>
 
+#include "cli/stop.h"
+#include "cli/undelivered.h"
 #include "commands.h"
+#include "core/rigid_fit.h"
 #include "frames.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/undelivered.h"
+#include "loop/haptic_record.h"
 #include "palpate/core/error.h"
-#include "palpate/core/rigid_fit.h"
-#include "palpate/loop/haptic_record.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/run_file.h"
 #include "recorded_scene.h"

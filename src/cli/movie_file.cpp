@@ -10,7 +10,7 @@
 #include "ffmpeg.h"
 #include "frame_sink.h"
 #include "palpate/core/error.h"
-#include "palpate/render/animation.h"
+#include "render/animation.h"
 
 namespace palpate::cli {
 namespace fs = std::filesystem;

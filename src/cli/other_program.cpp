@@ -1,4 +1,4 @@
-#include "palpate/cli/other_program.h"
+#include "cli/other_program.h"
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -11,8 +11,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "core/program.h"
 #include "palpate/core/error.h"
-#include "palpate/core/program.h"
 
 namespace palpate::cli {
 namespace fs = std::filesystem;

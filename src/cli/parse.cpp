@@ -7,11 +7,11 @@
 #include <cstdlib>
 #include <memory>
 
+#include "cli/option_checks.h"
+#include "cli/other_program.h"
+#include "cli/program.h"
+#include "cli/stability_options.h"
 #include "commands.h"
-#include "palpate/cli/option_checks.h"
-#include "palpate/cli/other_program.h"
-#include "palpate/cli/program.h"
-#include "palpate/cli/stability_options.h"
 
 namespace palpate::cli {
 namespace {

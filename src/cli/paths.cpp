@@ -1,12 +1,12 @@
-#include "palpate/cli/paths.h"
+#include "cli/paths.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "core/program.h"
 #include "palpate/core/error.h"
-#include "palpate/core/program.h"
 
 namespace palpate::cli {
 namespace fs = std::filesystem;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "core/time_text.h"
 #include "palpate/core/error.h"
-#include "palpate/core/time_text.h"
-#include "palpate/render/seen.h"
+#include "render/seen.h"
 
 namespace palpate::cli {
 

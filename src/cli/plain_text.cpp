@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include "palpate/report/table.h"
+#include "report/table.h"
 
 namespace palpate::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "palpate/cli/program.h"
+#include "cli/program.h"
 
 #include <fmt/format.h>
 
@@ -7,14 +7,14 @@
 #include <memory>
 #include <sstream>
 
-#include "palpate/cli/guarded.h"
-#include "palpate/cli/help_formatter.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/streams.h"
+#include "cli/guarded.h"
+#include "cli/help_formatter.h"
+#include "cli/stop.h"
+#include "cli/streams.h"
+#include "core/process_pool.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
-#include "palpate/core/process_pool.h"
-#include "palpate/store/provenance.h"
+#include "store/provenance.h"
 #include "tune.h"
 
 namespace palpate::cli {

@@ -1,4 +1,4 @@
-#include "palpate/cli/progress.h"
+#include "cli/progress.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "palpate/core/clock.h"
-#include "palpate/core/printable.h"
+#include "core/clock.h"
+#include "core/printable.h"
 
 namespace palpate::cli {
 namespace {

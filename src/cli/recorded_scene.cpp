@@ -3,7 +3,7 @@
 #include "model_cache.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
-#include "palpate/store/summary.h"
+#include "store/summary.h"
 
 namespace palpate::cli {
 namespace {

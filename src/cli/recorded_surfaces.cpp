@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
-#include "palpate/render/colour_map.h"
-#include "palpate/store/part_surface.h"
 #include "recorded_scene.h"
+#include "render/colour_map.h"
+#include "store/part_surface.h"
 
 namespace palpate::cli {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "palpate/loop/world.h"
 #include "palpate/store/run_file.h"
-#include "palpate/store/surface_files.h"
+#include "store/surface_files.h"
 
 namespace palpate::cli {
 

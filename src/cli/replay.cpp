@@ -1,25 +1,25 @@
-#include "palpate/loop/replay.h"
+#include "loop/replay.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
+#include "cli/paths.h"
+#include "cli/progress.h"
+#include "cli/scene_of.h"
+#include "cli/stop.h"
 #include "commands.h"
-#include "palpate/cli/paths.h"
-#include "palpate/cli/progress.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/stop.h"
-#include "palpate/compare/perceptible_difference.h"
-#include "palpate/core/clock.h"
+#include "compare/perceptible_difference.h"
+#include "core/clock.h"
+#include "core/time_text.h"
+#include "loop/summary.h"
 #include "palpate/core/error.h"
-#include "palpate/core/time_text.h"
 #include "palpate/loop/recorder.h"
-#include "palpate/loop/summary.h"
 #include "palpate/scene/hands.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/result_folder.h"
 #include "recorded_scene.h"
 #include "run_files.h"
+#include "store/atomic_file.h"
+#include "store/result_folder.h"
 
 namespace palpate::cli {
 namespace {

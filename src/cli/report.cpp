@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
+#include "cli/undelivered.h"
 #include "commands.h"
-#include "palpate/cli/undelivered.h"
-#include "palpate/report/run_report.h"
-#include "palpate/store/result_folder.h"
+#include "report/run_report.h"
+#include "store/result_folder.h"
 
 namespace palpate::cli {
 

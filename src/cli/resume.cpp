@@ -3,12 +3,12 @@
 #include <filesystem>
 
 #include "checkpoints.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/undelivered.h"
+#include "cli/scene_of.h"
+#include "cli/undelivered.h"
+#include "core/time_text.h"
 #include "palpate/core/error.h"
-#include "palpate/core/time_text.h"
-#include "palpate/store/provenance.h"
-#include "palpate/store/summary.h"
+#include "store/provenance.h"
+#include "store/summary.h"
 
 namespace palpate::cli {
 namespace {

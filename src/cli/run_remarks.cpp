@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "clock_figures.h"
+#include "loop/describe_fallbacks.h"
+#include "loop/summary.h"
 #include "palpate/core/log.h"
-#include "palpate/loop/describe_fallbacks.h"
-#include "palpate/loop/summary.h"
 #include "palpate/scene/hands.h"
 
 namespace palpate::cli {

@@ -1,11 +1,11 @@
-#include "palpate/cli/scene_of.h"
+#include "cli/scene_of.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
+#include "cli/paths.h"
 #include "model_cache.h"
-#include "palpate/cli/paths.h"
 #include "palpate/loop/load.h"
 
 namespace palpate::cli {

@@ -5,21 +5,21 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cli/paths.h"
+#include "cli/progress.h"
+#include "cli/scene_of.h"
+#include "cli/stop.h"
+#include "cli/undelivered.h"
 #include "commands.h"
-#include "palpate/cli/paths.h"
-#include "palpate/cli/progress.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/undelivered.h"
+#include "haptic_stability/z_width.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
-#include "palpate/haptic_stability/z_width.h"
-#include "palpate/report/plot.h"
-#include "palpate/report/table.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/csv.h"
-#include "palpate/store/result_folder.h"
-#include "palpate/store/summary.h"
+#include "report/plot.h"
+#include "report/table.h"
+#include "store/atomic_file.h"
+#include "store/csv.h"
+#include "store/result_folder.h"
+#include "store/summary.h"
 
 namespace palpate::cli {
 namespace {

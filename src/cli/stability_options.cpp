@@ -1,9 +1,9 @@
-#include "palpate/cli/stability_options.h"
+#include "cli/stability_options.h"
 
 #include <CLI/CLI.hpp>
 
-#include "palpate/cli/option_checks.h"
-#include "palpate/cli/other_program.h"
+#include "cli/option_checks.h"
+#include "cli/other_program.h"
 
 namespace palpate::cli {
 

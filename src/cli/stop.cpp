@@ -1,4 +1,4 @@
-#include "palpate/cli/stop.h"
+#include "cli/stop.h"
 
 #include <csignal>
 

@@ -1,4 +1,4 @@
-#include "palpate/cli/streams.h"
+#include "cli/streams.h"
 
 #include <fcntl.h>
 #include <sys/types.h>
@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "palpate/core/printable.h"
+#include "core/printable.h"
 
 namespace palpate::cli {
 namespace {

@@ -6,18 +6,18 @@
 #include <filesystem>
 #include <numeric>
 
+#include "cli/paths.h"
+#include "cli/progress.h"
+#include "cli/stop.h"
+#include "cli/undelivered.h"
+#include "core/clock.h"
 #include "model_cache.h"
-#include "palpate/cli/paths.h"
-#include "palpate/cli/progress.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/undelivered.h"
-#include "palpate/core/clock.h"
 #include "palpate/core/error.h"
-#include "palpate/report/run_report.h"
-#include "palpate/report/table.h"
-#include "palpate/store/result_folder.h"
-#include "palpate/store/summary.h"
-#include "palpate/study/results.h"
+#include "report/run_report.h"
+#include "report/table.h"
+#include "store/result_folder.h"
+#include "store/summary.h"
+#include "study/results.h"
 
 namespace palpate::cli {
 namespace {

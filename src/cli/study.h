@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "commands.h"
-#include "palpate/study/run.h"
+#include "study/run.h"
 
 namespace palpate::cli {
 

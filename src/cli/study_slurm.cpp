@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <sstream>
 
-#include "palpate/cli/paths.h"
-#include "palpate/cli/progress.h"
-#include "palpate/cli/stop.h"
+#include "cli/paths.h"
+#include "cli/progress.h"
+#include "cli/stop.h"
+#include "core/program.h"
 #include "palpate/core/error.h"
-#include "palpate/core/program.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/result_folder.h"
-#include "palpate/study/slurm.h"
+#include "store/atomic_file.h"
+#include "store/result_folder.h"
 #include "study.h"
+#include "study/slurm.h"
 
 namespace palpate::cli {
 namespace {

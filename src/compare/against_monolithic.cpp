@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "palpate/compare/haptic.h"
+#include "compare/haptic.h"
+#include "loop/replay.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/replay.h"
 #include "palpate/scene/hands.h"
 
 namespace palpate::compare {

@@ -2,7 +2,7 @@
 #include <limits>
 #include <string>
 
-#include "palpate/store/csv.h"
+#include "store/csv.h"
 
 /// Cells of compare.csv and haptic.csv.
 namespace palpate::compare {

@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "palpate/core/bytes.h"
+#include "core/bytes.h"
 
 namespace palpate::compare {
 namespace {

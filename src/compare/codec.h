@@ -1,6 +1,6 @@
 #pragma once
 #include "palpate/compare/compare.h"
-#include "palpate/store/study_db.h"
+#include "store/study_db.h"
 
 namespace palpate::compare {
 

@@ -4,9 +4,9 @@
 #include <map>
 #include <thread>
 
+#include "core/process_pool.h"
 #include "ledger.h"
 #include "palpate/core/error.h"
-#include "palpate/core/process_pool.h"
 #include "work.h"
 
 namespace palpate::compare {

@@ -10,9 +10,9 @@
 #include "cells.h"
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/csv.h"
-#include "palpate/store/study_columns.h"
+#include "store/atomic_file.h"
+#include "store/csv.h"
+#include "store/study_columns.h"
 
 namespace palpate::compare {
 namespace {

@@ -1,4 +1,4 @@
-#include "palpate/compare/haptic.h"
+#include "compare/haptic.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <thread>
 
 #include "codec.h"
+#include "core/process_pool.h"
 #include "haptic_plan.h"
+#include "loop/result_key.h"
 #include "palpate/core/error.h"
-#include "palpate/core/process_pool.h"
-#include "palpate/loop/result_key.h"
 #include "plan.h"
 #include "run.h"
 #include "work.h"

@@ -5,7 +5,7 @@
 #include "cells.h"
 #include "haptic_plan.h"
 #include "palpate/core/error.h"
-#include "palpate/store/csv.h"
+#include "store/csv.h"
 
 namespace palpate::compare {
 namespace {

@@ -6,11 +6,11 @@
 #include <string_view>
 
 #include "cells.h"
+#include "loop/registries.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
-#include "palpate/loop/registries.h"
-#include "palpate/scene/contact_sides.h"
 #include "plan.h"
+#include "scene/contact_sides.h"
 
 namespace palpate::compare {
 namespace {

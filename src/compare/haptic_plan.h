@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/compare/haptic.h"
+#include "compare/haptic.h"
 
 namespace palpate::compare {
 

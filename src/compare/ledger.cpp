@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "loop/result_key.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/result_key.h"
 
 namespace palpate::compare {
 

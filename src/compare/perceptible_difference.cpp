@@ -1,4 +1,4 @@
-#include "palpate/compare/perceptible_difference.h"
+#include "compare/perceptible_difference.h"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
+#include "loop/registries.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
-#include "palpate/loop/registries.h"
 
 namespace palpate::compare {
 namespace {

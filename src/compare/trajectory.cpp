@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
+#include "core/rigid_fit.h"
 #include "palpate/core/error.h"
-#include "palpate/core/rigid_fit.h"
 
 namespace palpate::compare {
 namespace {

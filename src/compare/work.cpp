@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "codec.h"
-#include "palpate/core/bytes.h"
+#include "core/bytes.h"
 #include "palpate/loop/load.h"
 #include "run.h"
 

@@ -8,10 +8,10 @@
 #include "contact/material_gaps.h"
 #include "contact/material_points.h"
 #include "contact/safe_time.h"
+#include "contact/sources.h"
 #include "contact/surface_state.h"
+#include "core/counters.h"
 #include "palpate/contact/obstacle.h"
-#include "palpate/contact/sources.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 

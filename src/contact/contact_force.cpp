@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "contact/contact_force_impl.h"
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/proxy/pruner.h"
+#include "proxy/pruner.h"
 
 namespace palpate::contact {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "contact/contact_force_impl.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/counters.h"
+#include "core/clock.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 
 namespace palpate::contact {

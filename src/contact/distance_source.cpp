@@ -21,13 +21,13 @@
 #include "contact/coupled_nodes.h"
 #include "contact/safe_time.h"
 #include "contact/self_contact_filter.h"
+#include "contact/sources.h"
 #include "contact/tunnelling_monitor.h"
-#include "palpate/contact/sources.h"
-#include "palpate/core/counters.h"
+#include "core/counters.h"
+#include "distance/skin_contact.h"
 #include "palpate/core/error.h"
-#include "palpate/distance/skin_contact.h"
-#include "palpate/proxy/reach.h"
-#include "palpate/proxy/region.h"
+#include "proxy/reach.h"
+#include "proxy/region.h"
 
 namespace palpate::contact {
 namespace {

@@ -1,5 +1,5 @@
 #include "contact/depth_image.h"
-#include "palpate/contact/gpu_device.h"
+#include "contact/gpu_device.h"
 #include "palpate/core/error.h"
 
 // Replaces the images in a build without OpenGL.

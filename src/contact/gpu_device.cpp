@@ -1,7 +1,7 @@
-#include "palpate/contact/gpu_device.h"
+#include "contact/gpu_device.h"
 
 #include "contact/depth_image.h"
-#include "palpate/gl/context.h"
+#include "gl/context.h"
 
 namespace palpate::contact {
 

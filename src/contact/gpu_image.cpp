@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstring>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
+#include "gl/commands.h"
+#include "gl/context.h"
 #include "palpate/core/error.h"
-#include "palpate/gl/commands.h"
-#include "palpate/gl/context.h"
 
 namespace palpate::contact {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "contact/gpu_atlas.h"
 #include "contact/gpu_surface.h"
-#include "palpate/gl/framebuffer.h"
-#include "palpate/gl/program.h"
-#include "palpate/gl/timestamps.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "gl/timestamps.h"
 
 namespace palpate::contact {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contact/image_side.h"
-#include "palpate/gl/buffer.h"
-#include "palpate/gl/mapped_buffer.h"
+#include "gl/buffer.h"
+#include "gl/mapped_buffer.h"
 
 namespace palpate::contact {
 

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "contact/pressure.h"
+#include "contact/reduced_contact_model.h"
 #include "contact/tangent.h"
-#include "palpate/contact/reduced_contact_model.h"
 #include "palpate/core/archive.h"
 #include "palpate/dynamics/point_stiffness.h"
 

@@ -1,7 +1,7 @@
 // Two quadratures of one contact, over the points of either surface, each with half of the weight.
 #include <algorithm>
 
-#include "palpate/contact/sources.h"
+#include "contact/sources.h"
 #include "palpate/core/error.h"
 
 namespace palpate::contact {

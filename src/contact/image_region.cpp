@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "contact/safe_time.h"
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 
 namespace palpate::contact {
 void RegionContext::take_speed(double apart, double approach, double thickness) {

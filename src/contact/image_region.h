@@ -6,9 +6,9 @@
 #include "contact/coupled_nodes.h"
 #include "contact/depth_image.h"
 #include "contact/region_mesh.h"
+#include "contact/sources.h"
 #include "contact/triangle_pair_gap.h"
 #include "contact/vertex_rule.h"
-#include "palpate/contact/sources.h"
 
 namespace palpate::contact {
 

@@ -6,7 +6,7 @@
 
 #include "contact/surface_state.h"
 #include "palpate/contact/frame.h"
-#include "palpate/proxy/proxy_set.h"
+#include "proxy/proxy_set.h"
 
 namespace palpate::contact {
 

@@ -1,7 +1,7 @@
 #include "contact/image_source.h"
 
-#include "palpate/core/clock.h"
-#include "palpate/core/counters.h"
+#include "core/clock.h"
+#include "core/counters.h"
 
 namespace palpate::contact {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "palpate/distance/linear_gap.h"
+#include "distance/linear_gap.h"
 
 namespace palpate::contact {
 

@@ -1,4 +1,4 @@
-#include "palpate/contact/methods.h"
+#include "contact/methods.h"
 
 #include <fmt/ranges.h>
 

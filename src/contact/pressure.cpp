@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/contact/methods.h"
+#include "contact/methods.h"
 #include "palpate/core/error.h"
 #include "palpate/core/registry.h"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "contact/image_source.h"
-#include "palpate/proxy/pruner.h"
+#include "proxy/pruner.h"
 
 namespace palpate::contact {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "contact/grasp.h"
+#include "contact/reduced_contact_model.h"
 #include "contact/sample_math.h"
-#include "palpate/contact/reduced_contact_model.h"
 
 namespace palpate::contact {
 

@@ -1,5 +1,5 @@
 #include "contact/contact_force_impl.h"
-#include "palpate/contact/reduced_contact_model.h"
+#include "contact/reduced_contact_model.h"
 #include "palpate/core/error.h"
 
 namespace palpate::contact {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <span>
 
-#include "palpate/contact/reduced_contact_model.h"
+#include "contact/reduced_contact_model.h"
 
 namespace palpate::contact {
 

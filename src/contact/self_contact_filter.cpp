@@ -28,7 +28,7 @@
 #include <array>
 #include <cmath>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 
 namespace palpate::contact {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/embedding.h"
 

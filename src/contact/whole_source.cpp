@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "contact/image_source.h"
-#include "palpate/proxy/reach.h"
-#include "palpate/proxy/region.h"
+#include "proxy/reach.h"
+#include "proxy/region.h"
 
 namespace palpate::contact {
 namespace {

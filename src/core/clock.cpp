@@ -1,4 +1,4 @@
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 
 #include <dirent.h>
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-#include "palpate/core/csv.h"
+#include "core/csv.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "palpate/core/huge_pages.h"
+#include "core/huge_pages.h"
 
 #include <cstdint>
 

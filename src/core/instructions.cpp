@@ -1,4 +1,4 @@
-#include "palpate/core/instructions.h"
+#include "core/instructions.h"
 
 #include <algorithm>
 #include <cstdlib>

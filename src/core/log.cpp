@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "palpate/core/printable.h"
+#include "core/printable.h"
 
 namespace palpate::log {
 namespace {

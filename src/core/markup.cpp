@@ -1,4 +1,4 @@
-#include "palpate/core/markup.h"
+#include "core/markup.h"
 
 #include <algorithm>
 

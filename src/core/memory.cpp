@@ -1,4 +1,4 @@
-#include "palpate/core/memory.h"
+#include "core/memory.h"
 
 #include <sys/resource.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "palpate/core/printable.h"
+#include "core/printable.h"
 
 #include <fmt/format.h>
 

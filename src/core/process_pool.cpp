@@ -1,4 +1,4 @@
-#include "palpate/core/process_pool.h"
+#include "core/process_pool.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "work_server.h"
 

@@ -1,4 +1,4 @@
-#include "palpate/core/program.h"
+#include "core/program.h"
 
 #include <sys/auxv.h>
 

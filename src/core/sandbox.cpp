@@ -1,4 +1,4 @@
-#include "palpate/core/sandbox.h"
+#include "core/sandbox.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>

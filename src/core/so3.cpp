@@ -1,4 +1,4 @@
-#include "palpate/core/so3.h"
+#include "core/so3.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "palpate/core/team.h"
+#include "core/team.h"
 
 #include "core/spin.h"
 #include "palpate/core/error.h"

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "work_server.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "palpate/core/process_pool.h"
+#include "core/process_pool.h"
 
 /// Helper that processes are forked from, seen from both sides of its sockets.
 ///

@@ -1,4 +1,4 @@
-#include "palpate/device/arm_axis.h"
+#include "device/arm_axis.h"
 
 #include <algorithm>
 #include <cmath>

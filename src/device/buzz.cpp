@@ -1,4 +1,4 @@
-#include "palpate/device/buzz.h"
+#include "device/buzz.h"
 
 #include <cmath>
 #include <numbers>

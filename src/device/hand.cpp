@@ -2,11 +2,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/so3.h"
+#include "device/hand_model.h"
 #include "device/make.h"
 #include "device/motions.h"
 #include "palpate/core/error.h"
-#include "palpate/core/so3.h"
-#include "palpate/device/hand_model.h"
 #include "palpate/device/motors.h"
 
 // A simulated device in the hand of a simulated arm. The scene's path is the target motion x_d(t) of the arm

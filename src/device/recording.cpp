@@ -5,11 +5,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "core/csv.h"
 #include "device/make.h"
+#include "device/monotone_slope.h"
 #include "device/recorded_path.h"
-#include "palpate/core/csv.h"
 #include "palpate/core/error.h"
-#include "palpate/device/monotone_slope.h"
 
 namespace palpate::device {
 namespace {

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "distance/lane_search.h"
-#include "palpate/distance/skin_contact.h"
+#include "distance/skin_contact.h"
 
 namespace palpate::distance {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "distance/lane_search.h"
-#include "palpate/distance/skin_contact.h"
+#include "distance/skin_contact.h"
 
 namespace palpate::distance {
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <vector>
 
+#include "distance/own_neighbourhood.h"
 #include "distance/search_kernels.h"
-#include "palpate/distance/own_neighbourhood.h"
-#include "palpate/distance/surface.h"
+#include "distance/surface.h"
 
 namespace palpate::distance {
 

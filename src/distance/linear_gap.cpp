@@ -1,4 +1,4 @@
-#include "palpate/distance/linear_gap.h"
+#include "distance/linear_gap.h"
 
 #include <algorithm>
 

@@ -1,12 +1,12 @@
-#include "palpate/distance/own_neighbourhood.h"
+#include "distance/own_neighbourhood.h"
 
 #include <functional>
 #include <limits>
 #include <queue>
 #include <utility>
 
+#include "distance/surface.h"
 #include "palpate/core/error.h"
-#include "palpate/distance/surface.h"
 
 namespace palpate::distance {
 namespace {

@@ -1,4 +1,4 @@
-#include "palpate/distance/points.h"
+#include "distance/points.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "distance/search_kernels.h"
 
-#include "palpate/core/instructions.h"
+#include "core/instructions.h"
 
 namespace palpate::distance {
 

@@ -1,12 +1,12 @@
-#include "palpate/distance/skin.h"
+#include "distance/skin.h"
 
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <utility>
 
+#include "mesh/spatial_order.h"
 #include "palpate/core/error.h"
-#include "palpate/mesh/spatial_order.h"
 
 namespace palpate::distance {
 namespace {

@@ -1,11 +1,11 @@
-#include "palpate/distance/skin_contact.h"
+#include "distance/skin_contact.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "distance/contact_scratch.h"
+#include "distance/linear_gap.h"
 #include "palpate/core/error.h"
-#include "palpate/distance/linear_gap.h"
 
 namespace palpate::distance {
 

@@ -1,4 +1,4 @@
-#include "palpate/distance/surface.h"
+#include "distance/surface.h"
 
 #include <cmath>
 #include <limits>

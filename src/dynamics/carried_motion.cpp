@@ -1,4 +1,4 @@
-#include "palpate/dynamics/carried_motion.h"
+#include "dynamics/carried_motion.h"
 
 namespace palpate::dynamics {
 

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <iterator>
 
+#include "core/huge_pages.h"
 #include "palpate/core/error.h"
-#include "palpate/core/huge_pages.h"
 
 namespace palpate::dynamics {
 namespace {

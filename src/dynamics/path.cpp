@@ -1,6 +1,6 @@
 #include "palpate/dynamics/path.h"
 
-#include "palpate/core/so3.h"
+#include "core/so3.h"
 
 namespace palpate::dynamics {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 
 namespace palpate::dynamics {
 

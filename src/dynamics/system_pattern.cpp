@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "core/huge_pages.h"
 #include "dynamics/border.h"
-#include "palpate/core/huge_pages.h"
 #include "palpate/dynamics/system.h"
 
 namespace palpate::dynamics {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "box.h"
+#include "dynamics/carried_motion.h"
 #include "palpate/core/error.h"
-#include "palpate/dynamics/carried_motion.h"
 
 namespace palpate::fem {
 namespace {

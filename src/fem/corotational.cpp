@@ -6,8 +6,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "core/polar.h"
 #include "law.h"
-#include "palpate/core/polar.h"
 
 namespace palpate::fem {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/counters.h"
 #include "nodal_reduction.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "shared_blocks.h"
 

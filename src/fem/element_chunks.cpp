@@ -9,9 +9,9 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
+#include "core/huge_pages.h"
+#include "mesh/spatial_order.h"
 #include "palpate/core/error.h"
-#include "palpate/core/huge_pages.h"
-#include "palpate/mesh/spatial_order.h"
 
 namespace palpate::fem {
 namespace {

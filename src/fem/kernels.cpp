@@ -1,6 +1,6 @@
+#include "core/instructions.h"
 #include "fem/lane_kernels.h"
 #include "fem/law_list.h"
-#include "palpate/core/instructions.h"
 
 namespace palpate::fem {
 

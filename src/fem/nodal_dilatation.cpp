@@ -6,13 +6,13 @@
 
 #include <Eigen/LU>
 
+#include "core/counters.h"
+#include "core/polar.h"
 #include "corotational.h"
 #include "law.h"
 #include "node_block.h"
 #include "node_rings.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/core/polar.h"
 #include "palpate/fem/laws.h"
 #include "stress.h"
 

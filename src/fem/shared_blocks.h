@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "core/huge_pages.h"
 #include "element_chunks.h"
-#include "palpate/core/huge_pages.h"
 
 // Contributions of chunks to the blocks of shared nodes and edges, nine numbers each, which are stored and
 // summed afterwards.

@@ -7,9 +7,9 @@
 
 #include <Eigen/LU>
 
+#include "core/counters.h"
 #include "element_evaluation.h"
 #include "node_block.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "stress.h"
 

@@ -4,8 +4,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "core/polar.h"
 #include "law.h"
-#include "palpate/core/polar.h"
 
 // Stable neo-Hookean (Smith, de Goes and Kim 2018, "Stable Neo-Hookean Flesh Simulation", ACM Trans. Graphics
 // 37(2), eq. 14), with I = |F|^2, J = det F and the constants m, l of this law:

@@ -1,13 +1,13 @@
-#include "palpate/gl/buffer.h"
+#include "gl/buffer.h"
 
 #include <epoxy/gl.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "gl/context.h"
+#include "gl/mapped_buffer.h"
 #include "palpate/core/error.h"
-#include "palpate/gl/context.h"
-#include "palpate/gl/mapped_buffer.h"
 
 namespace palpate::gl {
 namespace {

@@ -1,12 +1,12 @@
-#include "palpate/gl/commands.h"
+#include "gl/commands.h"
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include "palpate/gl/buffer.h"
-#include "palpate/gl/context.h"
-#include "palpate/gl/mapped_buffer.h"
-#include "palpate/gl/program.h"
+#include "gl/buffer.h"
+#include "gl/context.h"
+#include "gl/mapped_buffer.h"
+#include "gl/program.h"
 
 namespace palpate::gl {
 

@@ -1,4 +1,4 @@
-#include "palpate/gl/context.h"
+#include "gl/context.h"
 
 #include <dlfcn.h>
 #include <epoxy/egl.h>
@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/counters.h"
 #include "gl/display_order.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 
 namespace palpate::gl {

@@ -1,11 +1,11 @@
-#include "palpate/gl/framebuffer.h"
+#include "gl/framebuffer.h"
 
 #include <epoxy/gl.h>
 
 #include <utility>
 
+#include "gl/context.h"
 #include "palpate/core/error.h"
-#include "palpate/gl/context.h"
 
 namespace palpate::gl {
 namespace {

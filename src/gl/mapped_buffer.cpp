@@ -1,11 +1,11 @@
-#include "palpate/gl/mapped_buffer.h"
+#include "gl/mapped_buffer.h"
 
 #include <epoxy/gl.h>
 
 #include <algorithm>
 
+#include "gl/context.h"
 #include "palpate/core/error.h"
-#include "palpate/gl/context.h"
 
 namespace palpate::gl {
 

@@ -1,15 +1,15 @@
-#include "palpate/gl/program.h"
+#include "gl/program.h"
 
 #include <epoxy/gl.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "core/counters.h"
+#include "gl/context.h"
 #include "gl/embedded_shaders.h"
 #include "gl/program_cache.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/gl/context.h"
 
 namespace palpate::gl {
 namespace {

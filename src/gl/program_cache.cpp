@@ -11,8 +11,8 @@
 #include <fstream>
 #include <vector>
 
-#include "palpate/core/counters.h"
-#include "palpate/gl/context.h"
+#include "core/counters.h"
+#include "gl/context.h"
 
 namespace palpate::gl {
 namespace fs = std::filesystem;

@@ -1,9 +1,9 @@
-#include "palpate/gl/timestamps.h"
+#include "gl/timestamps.h"
 
 #include <epoxy/gl.h>
 
+#include "gl/context.h"
 #include "palpate/core/error.h"
-#include "palpate/gl/context.h"
 
 namespace palpate::gl {
 

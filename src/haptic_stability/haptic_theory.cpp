@@ -1,4 +1,4 @@
-#include "palpate/haptic_stability/haptic_theory.h"
+#include "haptic_stability/haptic_theory.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

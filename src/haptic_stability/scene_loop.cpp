@@ -5,9 +5,9 @@
 #include <limits>
 #include <numbers>
 
+#include "haptic_stability/z_width.h"
 #include "palpate/core/error.h"
 #include "palpate/device/profile.h"
-#include "palpate/haptic_stability/z_width.h"
 #include "palpate/loop/world.h"
 #include "palpate/tool/tool.h"
 #include "tool_section.h"

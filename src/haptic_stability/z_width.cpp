@@ -1,4 +1,4 @@
-#include "palpate/haptic_stability/z_width.h"
+#include "haptic_stability/z_width.h"
 
 #include <algorithm>
 #include <cmath>

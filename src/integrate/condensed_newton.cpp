@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 
 namespace palpate::integrate {
 

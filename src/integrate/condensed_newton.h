@@ -1,6 +1,6 @@
 #pragma once
+#include "dynamics/energy_tolerance.h"
 #include "integrate/step_solver.h"
-#include "palpate/dynamics/energy_tolerance.h"
 
 namespace palpate::integrate {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/linear/solvers.h"
 
 namespace palpate::integrate {

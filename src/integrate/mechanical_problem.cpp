@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "core/clock.h"
+#include "core/finite.h"
 #include "integrate/error_weights.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 

@@ -2,13 +2,13 @@
 #include <array>
 #include <cmath>
 
+#include "core/counters.h"
+#include "dynamics/energy_tolerance.h"
+#include "dynamics/mixed_precision_step.h"
 #include "linear/auto_choice.h"
 #include "linear/make.h"
 #include "linear/settings.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/dynamics/energy_tolerance.h"
-#include "palpate/dynamics/mixed_precision_step.h"
 #include "palpate/linear/solvers.h"
 
 namespace palpate::linear {

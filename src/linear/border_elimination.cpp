@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "core/finite.h"
 #include "palpate/core/error.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::linear {
 

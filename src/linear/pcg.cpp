@@ -1,11 +1,11 @@
 #include <cmath>
 
+#include "core/clock.h"
+#include "core/counters.h"
+#include "core/finite.h"
 #include "linear/make.h"
 #include "linear/settings.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::linear {
 namespace {

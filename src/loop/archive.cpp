@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "body_loop.h"
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "virtual_time.h"
 

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "assemble_parts.h"
-#include "palpate/bones/shape.h"
+#include "bones/shape.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "tool_instance.h"

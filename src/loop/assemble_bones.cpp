@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "assemble_parts.h"
-#include "palpate/bones/path.h"
-#include "palpate/bones/skeleton.h"
+#include "bones/path.h"
+#include "bones/skeleton.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 

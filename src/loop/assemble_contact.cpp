@@ -2,19 +2,19 @@
 #include <cmath>
 
 #include "assemble_parts.h"
+#include "contact/gpu_device.h"
+#include "contact/methods.h"
+#include "contact/sources.h"
 #include "contact_shapes.h"
-#include "palpate/contact/gpu_device.h"
-#include "palpate/contact/methods.h"
+#include "core/counters.h"
 #include "palpate/contact/obstacle.h"
-#include "palpate/contact/sources.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
-#include "palpate/proxy/decompose_solid.h"
-#include "palpate/proxy/region.h"
-#include "palpate/scene/contact_sides.h"
+#include "proxy/decompose_solid.h"
+#include "proxy/region.h"
 #include "rigid_contact.h"
+#include "scene/contact_sides.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "assemble_parts.h"
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "palpate/fem/attachments.h"

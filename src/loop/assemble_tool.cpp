@@ -3,15 +3,15 @@
 #include <filesystem>
 
 #include "assemble_parts.h"
+#include "loop/replay.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "palpate/integrate/integrators.h"
-#include "palpate/loop/replay.h"
-#include "palpate/store/model_file.h"
-#include "palpate/tool/simbody_block.h"
 #include "palpate/tool/tool.h"
 #include "pose_bounds.h"
 #include "recorded_times.h"
+#include "store/model_file.h"
+#include "tool/simbody_block.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

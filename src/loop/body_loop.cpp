@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "carried_bodies.h"
+#include "core/clock.h"
 #include "linearise.h"
-#include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 
 namespace palpate::loop {

@@ -1,10 +1,10 @@
 #pragma once
 #include <optional>
 
+#include "device/buzz.h"
+#include "loop/contact_record.h"
+#include "loop/energy.h"
 #include "monolithic_ticks.h"
-#include "palpate/device/buzz.h"
-#include "palpate/loop/contact_record.h"
-#include "palpate/loop/energy.h"
 #include "palpate/loop/run.h"
 #include "tool_instance.h"
 

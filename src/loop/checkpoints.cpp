@@ -1,17 +1,17 @@
-#include "palpate/loop/checkpoints.h"
+#include "loop/checkpoints.h"
 
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
 
-#include "palpate/core/clock.h"
-#include "palpate/core/counters.h"
+#include "core/clock.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
 #include "palpate/loop/stepped_run.h"
 #include "palpate/scene/hands.h"
-#include "palpate/store/content_hash.h"
+#include "store/content_hash.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

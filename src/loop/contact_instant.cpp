@@ -1,11 +1,11 @@
-#include "palpate/loop/contact_instant.h"
+#include "loop/contact_instant.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "palpate/proxy/hull_surface.h"
+#include "proxy/hull_surface.h"
 
 namespace palpate::loop {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/contact/reduced_contact_model.h"
+#include "contact/reduced_contact_model.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

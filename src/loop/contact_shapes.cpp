@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/scene/contact_sides.h"
+#include "scene/contact_sides.h"
 
 namespace palpate::loop {
 

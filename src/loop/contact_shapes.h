@@ -2,8 +2,8 @@
 #include <functional>
 #include <optional>
 
+#include "contact/sources.h"
 #include "palpate/contact/obstacle.h"
-#include "palpate/contact/sources.h"
 #include "palpate/core/error.h"
 
 namespace palpate::loop {

@@ -1,10 +1,10 @@
-#include "palpate/loop/energy.h"
+#include "loop/energy.h"
 
 #include <cmath>
 
-#include "palpate/core/counters.h"
-#include "palpate/tool/rigid_block.h"
+#include "core/counters.h"
 #include "palpate/tool/tool.h"
+#include "tool/rigid_block.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

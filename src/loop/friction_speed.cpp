@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "assemble_parts.h"
-#include "palpate/scene/contact_sides.h"
 #include "palpate/scene/hands.h"
+#include "scene/contact_sides.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

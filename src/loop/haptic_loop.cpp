@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "palpate/tool/rigid_block.h"
+#include "tool/rigid_block.h"
 
 namespace palpate::loop {
 

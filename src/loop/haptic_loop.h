@@ -2,7 +2,7 @@
 #include <array>
 #include <optional>
 
-#include "palpate/loop/contact_record.h"
+#include "loop/contact_record.h"
 #include "palpate/loop/run.h"
 #include "tool_instance.h"
 

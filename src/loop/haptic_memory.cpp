@@ -1,4 +1,4 @@
-#include "palpate/loop/haptic_memory.h"
+#include "loop/haptic_memory.h"
 
 #include "tool_instance.h"
 

@@ -1,10 +1,10 @@
-#include "palpate/loop/haptic_record.h"
+#include "loop/haptic_record.h"
 
 #include <filesystem>
 
 #include "palpate/core/error.h"
 #include "palpate/scene/hands.h"
-#include "palpate/store/table_file.h"
+#include "store/table_file.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

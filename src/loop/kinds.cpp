@@ -1,4 +1,5 @@
-#include "palpate/contact/methods.h"
+#include "contact/methods.h"
+#include "loop/registries.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/device/device.h"
 #include "palpate/device/motions.h"
@@ -6,10 +7,9 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/loop/load.h"
-#include "palpate/loop/registries.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"
+#include "store/model_cache.h"
 
 namespace palpate::loop {
 namespace {

@@ -1,10 +1,10 @@
 #include "linearise.h"
 
+#include "core/counters.h"
+#include "core/finite.h"
 #include "flat_pose.h"
 #include "palpate/contact/contact_force.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/core/finite.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/tool/tool.h"

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/loop/contact_record.h"
+#include "loop/contact_record.h"
 #include "palpate/loop/world.h"
 
 namespace palpate::loop {

@@ -1,4 +1,4 @@
-#include "palpate/loop/memory.h"
+#include "loop/memory.h"
 
 #include <sys/resource.h>
 
@@ -7,7 +7,7 @@
 
 #include "palpate/integrate/integrators.h"
 #include "palpate/loop/world.h"
-#include "palpate/scene/contact_sides.h"
+#include "scene/contact_sides.h"
 
 namespace palpate::loop {
 namespace {

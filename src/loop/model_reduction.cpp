@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "contact_loads.h"
+#include "core/counters.h"
+#include "core/finite.h"
 #include "palpate/contact/contact_force.h"
-#include "palpate/core/counters.h"
-#include "palpate/core/finite.h"
 #include "reduced_step.h"
 
 namespace palpate::loop {

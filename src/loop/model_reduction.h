@@ -1,8 +1,8 @@
 #pragma once
-#include "palpate/contact/reduced_contact_model.h"
+#include "contact/reduced_contact_model.h"
+#include "linear/step_response.h"
 #include "palpate/core/archive.h"
 #include "palpate/dynamics/step_assembly.h"
-#include "palpate/linear/step_response.h"
 #include "palpate/loop/world.h"
 
 namespace palpate::loop {

@@ -1,9 +1,9 @@
-#include "palpate/loop/modes.h"
+#include "loop/modes.h"
 
 #include "palpate/core/error.h"
-#include "palpate/store/provenance.h"
 #include "palpate/store/run_file.h"
 #include "palpate/tool/tool.h"
+#include "store/provenance.h"
 
 namespace palpate::loop {
 namespace {

@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "body_loop.h"
-#include "palpate/core/clock.h"
+#include "core/clock.h"
+#include "core/spsc_ring.h"
+#include "loop/contact_record.h"
 #include "palpate/core/error.h"
-#include "palpate/core/spsc_ring.h"
 #include "palpate/device/limiter.h"
 #include "palpate/dynamics/exchange.h"
-#include "palpate/loop/contact_record.h"
 #include "real_time_thread.h"
 #include "tick_group.h"
 

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <filesystem>
 
+#include "loop/contact_record.h"
+#include "loop/haptic_record.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/contact_record.h"
-#include "palpate/loop/haptic_record.h"
 #include "palpate/scene/hands.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/bone_file.h"
-#include "palpate/store/force_file.h"
-#include "palpate/store/provenance.h"
 #include "palpate/store/run_file.h"
+#include "store/atomic_file.h"
+#include "store/bone_file.h"
+#include "store/force_file.h"
+#include "store/provenance.h"
 
 namespace palpate::loop {
 namespace {

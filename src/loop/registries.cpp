@@ -1,10 +1,10 @@
-#include "palpate/loop/registries.h"
+#include "loop/registries.h"
 #include "palpate/linear/solvers.h"
 
 #include <fmt/format.h>
 
-#include "palpate/contact/gpu_device.h"
-#include "palpate/contact/methods.h"
+#include "contact/gpu_device.h"
+#include "contact/methods.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/device/device.h"
 #include "palpate/device/motions.h"

@@ -1,15 +1,15 @@
-#include "palpate/loop/replay.h"
+#include "loop/replay.h"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 
 #include "assemble_parts.h"
+#include "core/so3.h"
+#include "device/monotone_slope.h"
+#include "loop/contact_record.h"
 #include "palpate/core/error.h"
-#include "palpate/core/so3.h"
-#include "palpate/device/monotone_slope.h"
 #include "palpate/dynamics/path.h"
-#include "palpate/loop/contact_record.h"
 #include "palpate/scene/hands.h"
 #include "tick_group.h"
 

@@ -1,15 +1,15 @@
-#include "palpate/loop/result_key.h"
+#include "loop/result_key.h"
 
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
 
+#include "core/program.h"
 #include "palpate/core/error.h"
-#include "palpate/core/program.h"
 #include "palpate/scene/hands.h"
-#include "palpate/store/content_hash.h"
-#include "palpate/store/provenance.h"
+#include "store/content_hash.h"
+#include "store/provenance.h"
 
 namespace palpate::loop {
 namespace {

@@ -1,7 +1,7 @@
 #include "palpate/loop/run.h"
 
 #include "body_loop.h"
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/workers.h"
 

@@ -1,6 +1,6 @@
 #include "palpate/loop/stepped_run.h"
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/workers.h"
 #include "virtual_time.h"

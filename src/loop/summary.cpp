@@ -1,21 +1,21 @@
-#include "palpate/loop/summary.h"
+#include "loop/summary.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "contact/gpu_device.h"
+#include "contact/sources.h"
+#include "core/clock.h"
+#include "core/counters.h"
 #include "model_reduction.h"
-#include "palpate/contact/gpu_device.h"
-#include "palpate/contact/sources.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/counters.h"
 #include "palpate/device/profile.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
-#include "palpate/proxy/pruner.h"
 #include "palpate/scene/hands.h"
-#include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"
+#include "proxy/pruner.h"
+#include "store/model_cache.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

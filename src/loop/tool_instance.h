@@ -1,17 +1,17 @@
 #pragma once
 #include <optional>
 
+#include "device/hand_model.h"
 #include "model_reduction.h"
-#include "palpate/device/hand_model.h"
 #include "palpate/device/limiter.h"
 #include "palpate/device/motors.h"
 #include "palpate/device/passivity.h"
 #include "palpate/loop/world.h"
-#include "palpate/proxy/proxy_set.h"
 #include "palpate/scene/hands.h"
-#include "palpate/tool/hand_block.h"
 #include "palpate/tool/tool.h"
+#include "proxy/proxy_set.h"
 #include "rigid_contact_solver.h"
+#include "tool/hand_block.h"
 
 namespace palpate::loop {
 

@@ -1,4 +1,4 @@
-#include "palpate/loop/trace.h"
+#include "loop/trace.h"
 
 #include "palpate/core/error.h"
 

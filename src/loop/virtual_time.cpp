@@ -1,6 +1,6 @@
 #include "virtual_time.h"
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 
 namespace palpate::loop {
 

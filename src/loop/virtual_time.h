@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "body_loop.h"
-#include "palpate/loop/contact_record.h"
+#include "loop/contact_record.h"
 #include "tick_group.h"
 
 namespace palpate::loop {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "haptic_loop.h"
+#include "loop/haptic_loop_model.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/haptic_loop_model.h"
 
 // Performs the same operations per tick as a run, with one axis of a device. The device starts at half of its
 // equilibrium under the arm's force, with tool and coupling in the corresponding positions. A decaying motion

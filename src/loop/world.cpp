@@ -5,7 +5,7 @@
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 
-#include "palpate/bones/tree.h"
+#include "bones/tree.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

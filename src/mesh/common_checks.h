@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "mesh/checks.h"
 #include "palpate/core/error.h"
-#include "palpate/mesh/checks.h"
 
 /// Checks common to tetrahedra and triangles.  Elements: Corners x n, one per column.
 namespace palpate::mesh {

@@ -1,4 +1,4 @@
-#include "palpate/mesh/curvature.h"
+#include "mesh/curvature.h"
 
 #include <algorithm>
 #include <cmath>

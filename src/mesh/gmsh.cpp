@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <unordered_map>
 
-#include "palpate/mesh/readers.h"
+#include "mesh/readers.h"
 
 namespace palpate::mesh {
 namespace gmsh {

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "palpate/mesh/readers.h"
+#include "mesh/readers.h"
 #include "text_file.h"
 
 // Wavefront OBJ:

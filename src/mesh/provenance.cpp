@@ -1,4 +1,4 @@
-#include "palpate/mesh/checks.h"
+#include "mesh/checks.h"
 
 #include "palpate/core/error.h"
 

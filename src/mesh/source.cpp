@@ -3,11 +3,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "mesh/checks.h"
+#include "mesh/readers.h"
+#include "mesh/size_check.h"
 #include "palpate/core/log.h"
-#include "palpate/mesh/checks.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/mesh/readers.h"
-#include "palpate/mesh/size_check.h"
 
 namespace palpate::mesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "palpate/mesh/spatial_order.h"
+#include "mesh/spatial_order.h"
 
 #include <algorithm>
 #include <numeric>

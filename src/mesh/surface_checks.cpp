@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common_checks.h"
+#include "mesh/checks.h"
 #include "palpate/mesh/boundary.h"
-#include "palpate/mesh/checks.h"
 
 namespace palpate::mesh {
 namespace {

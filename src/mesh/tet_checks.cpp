@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "common_checks.h"
+#include "mesh/checks.h"
 #include "palpate/core/error.h"
-#include "palpate/mesh/checks.h"
 #include "palpate/mesh/quality.h"
 
 namespace palpate::mesh {

@@ -1,6 +1,6 @@
 #include <filesystem>
 
-#include "palpate/mesh/readers.h"
+#include "mesh/readers.h"
 #include "text_file.h"
 
 // TetGen (Si 2015, manual section 5.2), `#` starts a comment, numbering starts at 0 or 1:

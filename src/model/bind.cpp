@@ -1,4 +1,4 @@
-#include "palpate/model/bind.h"
+#include "model/bind.h"
 
 #include <algorithm>
 #include <cmath>

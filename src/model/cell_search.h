@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fit_volume.h"
-#include "palpate/model/tetrahedralise.h"
+#include "model/tetrahedralise.h"
 
 namespace palpate::model {
 

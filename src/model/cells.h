@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "palpate/model/foreign_files.h"
+#include "model/foreign_files.h"
 
 namespace palpate::model {
 

@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "cells.h"
+#include "core/sandbox.h"
 #include "palpate/core/error.h"
-#include "palpate/core/sandbox.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 
 namespace palpate::model {
 namespace {

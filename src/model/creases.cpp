@@ -1,4 +1,4 @@
-#include "palpate/model/creases.h"
+#include "model/creases.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "palpate/model/foreign_files.h"
+#include "model/foreign_files.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "cells.h"
+#include "mesh/readers.h"
 #include "palpate/core/error.h"
-#include "palpate/mesh/readers.h"
-#include "palpate/store/mesh_file.h"
-#include "palpate/store/model_file.h"
+#include "store/mesh_file.h"
+#include "store/model_file.h"
 
 namespace palpate::model {
 namespace {

@@ -8,9 +8,9 @@
 #include <numeric>
 
 #include "cells.h"
+#include "core/sandbox.h"
 #include "gmsh_start.h"
 #include "palpate/core/error.h"
-#include "palpate/core/sandbox.h"
 
 // libgmsh takes 0.12 s and 48 MB to load.  It is therefore opened by dlopen at the first file that needs it,
 // and only its C interface is used.

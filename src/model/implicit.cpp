@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "mesher.h"
+#include "model/tetrahedralise.h"
 #include "palpate/core/error.h"
-#include "palpate/model/tetrahedralise.h"
 #include "polylines.h"
 
 namespace palpate::model {

@@ -1,7 +1,7 @@
 #include <CGAL/Side_of_triangle_mesh.h>
 
 #include "cgal_surface.h"
-#include "palpate/model/regions.h"
+#include "model/regions.h"
 
 namespace palpate::model {
 

@@ -1,18 +1,18 @@
-#include "palpate/model/make_model.h"
+#include "model/make_model.h"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
+#include "model/bind.h"
+#include "model/creases.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/embedding.h"
 #include "palpate/mesh/quality.h"
-#include "palpate/model/bind.h"
-#include "palpate/model/creases.h"
-#include "palpate/proxy/decompose.h"
-#include "palpate/store/content_hash.h"
-#include "palpate/store/provenance.h"
+#include "proxy/decompose.h"
+#include "store/content_hash.h"
+#include "store/provenance.h"
 
 namespace palpate::model {
 namespace {

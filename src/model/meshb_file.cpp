@@ -7,7 +7,7 @@
 
 #include "cells.h"
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 
 // Medit's binary form (Marechal, "Handling unstructured meshes and solutions", libMeshb's manual):
 //   int32 1 in the writer's byte order; int32 version; then blocks:  int32 keyword, position of the next

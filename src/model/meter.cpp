@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 
 namespace palpate::model {

@@ -2,9 +2,9 @@
 #include <cstddef>
 #include <functional>
 
+#include "model/limits.h"
+#include "model/progress.h"
 #include "palpate/core/types.h"
-#include "palpate/model/limits.h"
-#include "palpate/model/progress.h"
 
 namespace palpate::model {
 

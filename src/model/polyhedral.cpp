@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "mesher.h"
+#include "model/tetrahedralise.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
-#include "palpate/model/tetrahedralise.h"
 #include "polylines.h"
 #include "shells.h"
 

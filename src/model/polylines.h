@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "palpate/model/tetrahedralise.h"
+#include "model/tetrahedralise.h"
 
 namespace palpate::model {
 

@@ -1,12 +1,12 @@
-#include "palpate/model/regions.h"
+#include "model/regions.h"
 
 #include <algorithm>
 
+#include "model/bind.h"
+#include "model/repair.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/embedding.h"
-#include "palpate/model/bind.h"
-#include "palpate/model/repair.h"
 
 namespace palpate::model {
 namespace {

@@ -1,4 +1,4 @@
-#include "palpate/model/repair.h"
+#include "model/repair.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/mesh/checks.h"
+#include "mesh/checks.h"
 #include "palpate/mesh/mesh.h"
 
 namespace palpate::model {

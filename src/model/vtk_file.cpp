@@ -8,7 +8,7 @@
 
 #include "cells.h"
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 
 // Legacy VTK files (VTK User's Guide 11, "VTK file formats"; vtkDataReader for version 5):
 //   # vtk DataFile Version x.x / title / ASCII | BINARY / DATASET UNSTRUCTURED_GRID | POLYDATA

@@ -11,7 +11,7 @@
 
 #include "cells.h"
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 
 // VTK's XML files (VTK User's Guide 11, "VTK file formats"): arrays as text, as base64 in place, or appended
 // (base64 or raw) at an offset; the bytes are

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 
 // Free vibration M x'' + K (x - x0) = 0 with x = x0 + phi cos(w t) yields K phi = l M phi, l = w^2, on the

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/proxy/proxy_set.h"
+#include "proxy/proxy_set.h"
 
 namespace palpate::proxy {
 

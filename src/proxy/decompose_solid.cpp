@@ -18,7 +18,7 @@
 // surface is about the hollow's volume.  The piece with the largest hollow is cut across one of the three
 // axes, in its middle or, where the two parts then have clearly less hollow volume, at the point of the
 // largest gap.
-#include "palpate/proxy/decompose_solid.h"
+#include "proxy/decompose_solid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
-#include "palpate/proxy/decompose.h"
 #include "proxy/convex_hull.h"
+#include "proxy/decompose.h"
 
 namespace palpate::proxy {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "palpate/proxy/region.h"
+#include "proxy/region.h"
 
 namespace palpate::proxy {
 namespace {

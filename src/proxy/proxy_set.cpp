@@ -40,15 +40,15 @@
 // centre G c + h and half edges |G| e, grown by that.  The maximum takes one pass over the nodes.  Nothing
 // else depends on the stored boxes: a proxy whose box may meet something is fitted to the present nodes. When
 // the boxes have grown by a fifth, all proxies are fitted and stored again.
-#include "palpate/proxy/proxy_set.h"
+#include "proxy/proxy_set.h"
 
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/polar.h"
 #include "palpate/core/error.h"
-#include "palpate/core/polar.h"
 #include "proxy/proxy_set_impl.h"
 
 namespace palpate::proxy {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 #include "proxy/hull.h"
 #include "proxy/owners.h"

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "palpate/proxy/proxy_set.h"
 #include "proxy/body_motion.h"
+#include "proxy/proxy_set.h"
 #include "proxy/skin_patches.h"
 
 /// Data shared by proxy_set_build.cpp (once), proxy_set.cpp (every update), proxy_motion.cpp (motion) and

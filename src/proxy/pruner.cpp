@@ -40,12 +40,12 @@
 // query, the side that the bodies came from; if they never met before, it is libccd's normal for the hull of
 // all the region's proxies together, in which the walls between a body's proxies are not surfaces.  A region
 // whose hulls are proven apart along its normal ends.
-#include "palpate/proxy/pruner.h"
+#include "proxy/pruner.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 #include "proxy/apart.h"
 #include "proxy/pruner_impl.h"

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "palpate/proxy/pruner.h"
+#include "proxy/pruner.h"
 
 /// Data shared by pruner.cpp (pairs and patches) and pruner_regions.cpp (planes and faces).  The method is
 /// derived in pruner.cpp.

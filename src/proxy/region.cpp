@@ -1,4 +1,4 @@
-#include "palpate/proxy/region.h"
+#include "proxy/region.h"
 
 #include <ccd/ccd.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 #include "proxy/hull.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "palpate/proxy/proxy_set.h"
+#include "proxy/proxy_set.h"
 
 namespace palpate::proxy {
 

@@ -4,7 +4,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/scene/hands.h"
-#include "palpate/store/model_cache.h"
+#include "store/model_cache.h"
 
 namespace palpate::python {
 namespace {

@@ -8,8 +8,8 @@
 #include "missing_models.h"
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
-#include "palpate/validation/validation.h"
 #include "scene.h"
+#include "validation.h"
 
 namespace py = pybind11;
 

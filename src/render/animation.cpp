@@ -1,4 +1,4 @@
-#include "palpate/render/animation.h"
+#include "render/animation.h"
 
 #include <zlib.h>
 

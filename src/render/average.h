@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/render/picture.h"
+#include "render/picture.h"
 
 namespace palpate::render {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/render/camera.h"
+#include "render/camera.h"
 
 namespace palpate::render {
 

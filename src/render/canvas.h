@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "palpate/render/picture.h"
+#include "render/picture.h"
 
 namespace palpate::render {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "palpate/render/scene.h"
+#include "render/scene.h"
 
 namespace palpate::render {
 

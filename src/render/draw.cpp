@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counters.h"
 #include "overlay.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/render/scene.h"
+#include "render/scene.h"
 #include "shade.h"
 #include "ticks.h"
 

@@ -1,10 +1,10 @@
-#include "palpate/render/field.h"
+#include "render/field.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/counters.h"
 #include "overlay.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "ticks.h"
 

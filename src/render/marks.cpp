@@ -1,4 +1,4 @@
-#include "palpate/render/marks.h"
+#include "render/marks.h"
 
 #include <cmath>
 #include <map>

@@ -1,6 +1,6 @@
 #pragma once
 #include "canvas.h"
-#include "palpate/render/scene.h"
+#include "render/scene.h"
 
 namespace palpate::render {
 

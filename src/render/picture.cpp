@@ -1,4 +1,4 @@
-#include "palpate/render/picture.h"
+#include "render/picture.h"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
 #include "palpate/core/error.h"
-#include "palpate/render/animation.h"
-#include "palpate/render/available.h"
-#include "palpate/render/field.h"
-#include "palpate/render/marks.h"
-#include "palpate/render/panels.h"
-#include "palpate/render/scene.h"
+#include "render/animation.h"
+#include "render/available.h"
+#include "render/field.h"
+#include "render/marks.h"
+#include "render/panels.h"
+#include "render/scene.h"
 
 // Replacements of the drawing functions in a build without OpenGL.
 

@@ -1,4 +1,4 @@
-#include "palpate/render/available.h"
+#include "render/available.h"
 
 namespace palpate::render {
 

@@ -8,11 +8,11 @@
 
 #include "average.h"
 #include "corners.h"
+#include "gl/buffer.h"
+#include "gl/context.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
 #include "lights.h"
-#include "palpate/gl/buffer.h"
-#include "palpate/gl/context.h"
-#include "palpate/gl/framebuffer.h"
-#include "palpate/gl/program.h"
 
 namespace palpate::render {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/render/scene.h"
+#include "render/scene.h"
 
 namespace palpate::render {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/time_text.h"
 #include "palpate/core/error.h"
-#include "palpate/core/time_text.h"
 
 namespace palpate::report {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "json.h"
-#include "palpate/report/page.h"
-#include "palpate/report/table.h"
-#include "palpate/report/work_precision.h"
+#include "report/page.h"
+#include "report/table.h"
+#include "report/work_precision.h"
 
 /// What each kind of result answers, in words: the first that a page says.
 namespace palpate::report {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
-#include "palpate/report/clock.h"
+#include "report/clock.h"
 #include "sections.h"
 
 namespace palpate::report {

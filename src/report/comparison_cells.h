@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "palpate/report/table.h"
-#include "palpate/report/work_precision.h"
+#include "report/table.h"
+#include "report/work_precision.h"
 
 namespace palpate::report {
 

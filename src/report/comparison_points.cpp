@@ -4,7 +4,7 @@
 #include "comparison_cells.h"
 #include "comparison_tables.h"
 #include "palpate/core/error.h"
-#include "palpate/store/study_columns.h"
+#include "store/study_columns.h"
 
 namespace palpate::report {
 namespace {

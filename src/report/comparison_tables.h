@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "comparison_cells.h"
-#include "palpate/report/page.h"
-#include "palpate/report/table.h"
+#include "report/page.h"
+#include "report/table.h"
 
 /// The tables of a comparison, each of one scene.
 namespace palpate::report {

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "palpate/core/error.h"
-#include "palpate/report/work_precision.h"
+#include "report/work_precision.h"
 
 namespace palpate::report {
 namespace {

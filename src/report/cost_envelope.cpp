@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
-#include "palpate/report/work_precision.h"
+#include "report/work_precision.h"
 
 // What an error costs on a ladder, and which ladder reaches it at the least cost.
 //

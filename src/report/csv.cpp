@@ -1,5 +1,5 @@
-#include "palpate/store/csv.h"
-#include "palpate/report/table.h"
+#include "store/csv.h"
+#include "report/table.h"
 
 namespace palpate::report {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "palpate/report/plot.h"
+#include "report/plot.h"
 
 namespace palpate::report {
 

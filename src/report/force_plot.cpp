@@ -1,4 +1,4 @@
-#include "palpate/report/force_plot.h"
+#include "report/force_plot.h"
 
 #include <cmath>
 

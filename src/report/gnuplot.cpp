@@ -11,8 +11,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "core/program.h"
 #include "palpate/core/error.h"
-#include "palpate/core/program.h"
 
 extern char** environ;
 

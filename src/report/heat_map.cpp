@@ -1,7 +1,7 @@
 #include "heat_map.h"
 
 #include "palpate/core/error.h"
-#include "palpate/report/page.h"
+#include "report/page.h"
 
 namespace palpate::report {
 

@@ -6,11 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "core/units.h"
 #include "palpate/core/error.h"
-#include "palpate/core/units.h"
-#include "palpate/report/table.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/json_text.h"
+#include "report/table.h"
+#include "store/atomic_file.h"
+#include "store/json_text.h"
 
 namespace palpate::report {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/report/table.h"
+#include "report/table.h"
 
 namespace palpate::report {
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
+#include "core/time_text.h"
 #include "palpate/core/error.h"
-#include "palpate/core/time_text.h"
 #include "palpate/store/run_file.h"
 #include "sections.h"
 #include "surface_json.h"

@@ -1,11 +1,11 @@
-#include "palpate/report/page.h"
+#include "report/page.h"
 
 #include <algorithm>
 
+#include "core/markup.h"
 #include "embedded_scripts.h"
 #include "palpate/core/error.h"
-#include "palpate/core/markup.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 #include "style.h"
 
 namespace palpate::report {

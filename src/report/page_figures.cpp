@@ -1,10 +1,10 @@
 #include <fstream>
 #include <iterator>
 
+#include "core/markup.h"
 #include "inline_svg.h"
 #include "palpate/core/error.h"
-#include "palpate/core/markup.h"
-#include "palpate/report/page.h"
+#include "report/page.h"
 
 namespace palpate::report {
 namespace {

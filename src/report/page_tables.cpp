@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
-#include "palpate/report/page.h"
-#include "palpate/report/table.h"
+#include "report/page.h"
+#include "report/table.h"
 
 namespace palpate::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "palpate/report/plot.h"
+#include "report/plot.h"
 
 #include <algorithm>
 #include <cmath>

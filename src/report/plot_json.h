@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "palpate/report/plot.h"
+#include "report/plot.h"
 
 namespace palpate::report {
 

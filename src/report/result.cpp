@@ -4,8 +4,8 @@
 
 #include "answers.h"
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
 #include "sections.h"
+#include "store/atomic_file.h"
 
 namespace palpate::report {
 namespace {

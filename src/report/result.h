@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "json.h"
-#include "palpate/report/page.h"
+#include "report/page.h"
 
 namespace palpate::report {
 

@@ -1,4 +1,4 @@
-#include "palpate/report/run_report.h"
+#include "report/run_report.h"
 
 #include "palpate/core/error.h"
 #include "result.h"

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "palpate/core/error.h"
-#include "palpate/report/force_plot.h"
-#include "palpate/store/atomic_file.h"
 #include "plot_json.h"
+#include "report/force_plot.h"
+#include "store/atomic_file.h"
 
 namespace palpate::report {
 namespace {

@@ -3,10 +3,10 @@
 #include <map>
 
 #include "json.h"
-#include "palpate/report/page.h"
-#include "palpate/report/plot.h"
-#include "palpate/report/table.h"
-#include "palpate/report/work_precision.h"
+#include "report/page.h"
+#include "report/plot.h"
+#include "report/table.h"
+#include "report/work_precision.h"
 
 /// The sections of a run's report, each from its own file or object.
 /// A section with nothing to say adds nothing.

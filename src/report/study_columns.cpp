@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "palpate/report/work_precision.h"
+#include "report/work_precision.h"
 
 namespace palpate::report {
 namespace {

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/report/table.h"
+#include "report/table.h"
 
 /// study.csv, taken apart: task, settings, status, reason, figures.
 namespace palpate::report {

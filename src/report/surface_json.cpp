@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/markup.h"
 #include "decimate.h"
 #include "json.h"
 #include "palpate/core/error.h"
-#include "palpate/core/markup.h"
 #include "palpate/mesh/boundary.h"
 
 namespace palpate::report {

@@ -1,10 +1,10 @@
-#include "palpate/report/table.h"
+#include "report/table.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "palpate/core/csv.h"
+#include "core/csv.h"
 #include "palpate/core/error.h"
 
 namespace palpate::report {

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "palpate/core/error.h"
-#include "palpate/report/trace.h"
+#include "report/trace.h"
 #include "sections.h"
 
 namespace palpate::report {

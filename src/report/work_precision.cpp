@@ -1,4 +1,4 @@
-#include "palpate/report/work_precision.h"
+#include "report/work_precision.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "log_line.h"
 #include "palpate/core/error.h"
-#include "palpate/report/work_precision.h"
+#include "report/work_precision.h"
 
 namespace palpate::report {
 namespace {

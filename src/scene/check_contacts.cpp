@@ -3,9 +3,9 @@
 #include <string_view>
 #include <utility>
 
-#include "palpate/scene/contact_sides.h"
 #include "palpate/scene/hands.h"
 #include "scene/check.h"
+#include "scene/contact_sides.h"
 #include "scene/reader.h"
 
 namespace palpate::scene {

@@ -1,4 +1,4 @@
-#include "palpate/scene/contact_sides.h"
+#include "scene/contact_sides.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,10 +1,10 @@
-#include "palpate/scene/needs.h"
+#include "scene/needs.h"
 
 #include <algorithm>
 
 #include "palpate/core/error.h"
-#include "palpate/scene/contact_sides.h"
 #include "palpate/scene/hands.h"
+#include "scene/contact_sides.h"
 
 namespace palpate::scene {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "palpate/core/units.h"
+#include "core/units.h"
 
 namespace palpate::scene {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
-#include "palpate/scene/study.h"
 #include "scene/reader.h"
+#include "scene/study.h"
 
 /// Every key of a study file, as data.
 namespace palpate::scene {

@@ -1,8 +1,8 @@
 #include "scene/toml_bounds.h"
 
+#include "core/printable.h"
+#include "core/whole_number.h"
 #include "palpate/core/error.h"
-#include "palpate/core/printable.h"
-#include "palpate/core/whole_number.h"
 #include "scene/document.h"
 #include "scene/reader.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/shapes/shapes.h"
+#include "shapes/shapes.h"
 
 namespace palpate::shapes {
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "palpate/mesh/mesh.h"
-#include "palpate/shapes/shapes.h"
+#include "shapes/shapes.h"
 
 namespace palpate::shapes {
 

@@ -3,8 +3,8 @@
 #include "head.h"
 #include "human.h"
 #include "palpate/core/error.h"
-#include "palpate/shapes/shapes.h"
 #include "pumpkin.h"
+#include "shapes/shapes.h"
 
 namespace palpate::shapes {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include "corner_table.h"
 #include "palpate/mesh/mesh.h"
-#include "palpate/shapes/shapes.h"
+#include "shapes/shapes.h"
 
 namespace palpate::shapes {
 

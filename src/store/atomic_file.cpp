@@ -1,4 +1,4 @@
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>

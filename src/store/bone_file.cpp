@@ -1,4 +1,4 @@
-#include "palpate/store/bone_file.h"
+#include "store/bone_file.h"
 
 #include <array>
 

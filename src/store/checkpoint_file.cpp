@@ -1,11 +1,11 @@
-#include "palpate/store/checkpoint_file.h"
+#include "store/checkpoint_file.h"
 
 #include <filesystem>
 
+#include "core/sandbox.h"
 #include "palpate/core/error.h"
-#include "palpate/core/sandbox.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/content_hash.h"
+#include "store/atomic_file.h"
+#include "store/content_hash.h"
 #include "store/h5.h"
 
 // Group "state" holds one data set per value: doubles, 64-bit integers, or bytes, in alphabetical order.  The

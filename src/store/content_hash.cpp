@@ -1,4 +1,4 @@
-#include "palpate/store/content_hash.h"
+#include "store/content_hash.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/store/csv.h"
+#include "store/csv.h"
 
 #include <cerrno>
 #include <cstring>
@@ -7,10 +7,10 @@
 #include <string_view>
 #include <utility>
 
-#include "palpate/core/csv.h"
+#include "core/csv.h"
+#include "core/whole_number.h"
 #include "palpate/core/error.h"
-#include "palpate/core/whole_number.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 
 namespace palpate::store {
 namespace {

@@ -1,4 +1,4 @@
-#include "palpate/store/force_file.h"
+#include "store/force_file.h"
 
 #include <array>
 

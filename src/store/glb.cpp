@@ -1,4 +1,4 @@
-#include "palpate/store/glb.h"
+#include "store/glb.h"
 
 #include <bit>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "palpate/store/json_text.h"
+#include "store/json_text.h"
 
+#include "core/whole_number.h"
 #include "palpate/core/error.h"
-#include "palpate/core/whole_number.h"
 
 namespace palpate::store {
 namespace {

@@ -1,9 +1,9 @@
-#include "palpate/store/mesh_file.h"
+#include "store/mesh_file.h"
 
 #include <limits>
 
+#include "core/sandbox.h"
 #include "palpate/core/error.h"
-#include "palpate/core/sandbox.h"
 #include "store/h5.h"
 #include "store/model_format.h"
 

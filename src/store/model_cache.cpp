@@ -1,11 +1,11 @@
-#include "palpate/store/model_cache.h"
+#include "store/model_cache.h"
 
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>
 
 #include "palpate/core/error.h"
-#include "palpate/store/provenance.h"
+#include "store/provenance.h"
 
 namespace palpate::store {
 namespace {

@@ -1,8 +1,8 @@
-#include "palpate/store/model_file.h"
+#include "store/model_file.h"
 
+#include "core/sandbox.h"
 #include "palpate/core/error.h"
-#include "palpate/core/sandbox.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 #include "store/h5.h"
 #include "store/model_format.h"
 

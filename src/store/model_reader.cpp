@@ -4,11 +4,11 @@
 #include <limits>
 #include <utility>
 
+#include "core/sandbox.h"
 #include "palpate/core/error.h"
-#include "palpate/core/sandbox.h"
-#include "palpate/store/mesh_file.h"
-#include "palpate/store/model_file.h"
 #include "store/h5.h"
+#include "store/mesh_file.h"
+#include "store/model_file.h"
 #include "store/model_format.h"
 
 namespace palpate::store {

@@ -1,4 +1,4 @@
-#include "palpate/store/part_surface.h"
+#include "store/part_surface.h"
 
 #include <numeric>
 

@@ -1,4 +1,4 @@
-#include "palpate/store/provenance.h"
+#include "store/provenance.h"
 
 #include <fmt/chrono.h>
 #include <hdf5.h>

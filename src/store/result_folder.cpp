@@ -1,4 +1,4 @@
-#include "palpate/store/result_folder.h"
+#include "store/result_folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <optional>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/store/content_hash.h"
-#include "palpate/store/xdmf.h"
+#include "store/content_hash.h"
 #include "store/series.h"
+#include "store/xdmf.h"
 
 // Layout of VTKHDF, UnstructuredGrid, temporal, as its reader interprets it (offsets in rows):
 //   points of step s   Points[PointOffsets[s] ... + NumberOfPoints[PartOffsets[s]]]

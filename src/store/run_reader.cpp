@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "core/sandbox.h"
 #include "palpate/core/error.h"
-#include "palpate/core/sandbox.h"
 #include "palpate/store/run_file.h"
 #include "store/h5.h"
 

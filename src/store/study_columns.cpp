@@ -1,4 +1,4 @@
-#include "palpate/store/study_columns.h"
+#include "store/study_columns.h"
 
 namespace palpate::store {
 

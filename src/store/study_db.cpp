@@ -1,4 +1,4 @@
-#include "palpate/store/study_db.h"
+#include "store/study_db.h"
 
 #include <sqlite3.h>
 

@@ -1,11 +1,11 @@
-#include "palpate/store/summary.h"
+#include "store/summary.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/json_text.h"
+#include "store/atomic_file.h"
+#include "store/json_text.h"
 
 namespace palpate::store {
 namespace {

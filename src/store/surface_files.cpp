@@ -1,4 +1,4 @@
-#include "palpate/store/surface_files.h"
+#include "store/surface_files.h"
 
 #include <bit>
 #include <iterator>

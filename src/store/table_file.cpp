@@ -1,4 +1,4 @@
-#include "palpate/store/table_file.h"
+#include "store/table_file.h"
 
 #include <bit>
 #include <cstring>
@@ -7,10 +7,10 @@
 #include <numeric>
 #include <optional>
 
+#include "core/sandbox.h"
 #include "palpate/core/error.h"
-#include "palpate/core/sandbox.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/content_hash.h"
+#include "store/atomic_file.h"
+#include "store/content_hash.h"
 #include "store/series.h"
 
 namespace palpate::store {

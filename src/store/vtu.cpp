@@ -1,12 +1,12 @@
-#include "palpate/store/vtu.h"
+#include "store/vtu.h"
 
 #include <bit>
 #include <cstdint>
 #include <iterator>
 #include <string_view>
 
+#include "core/markup.h"
 #include "palpate/core/error.h"
-#include "palpate/core/markup.h"
 
 namespace palpate::store {
 namespace {

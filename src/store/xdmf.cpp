@@ -1,11 +1,11 @@
-#include "palpate/store/xdmf.h"
+#include "store/xdmf.h"
 
 #include <filesystem>
 #include <iterator>
 
+#include "core/markup.h"
 #include "palpate/core/error.h"
-#include "palpate/core/markup.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 
 namespace palpate::store {
 namespace {

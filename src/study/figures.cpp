@@ -4,10 +4,10 @@
 #include <cmath>
 #include <map>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
-#include "palpate/store/content_hash.h"
+#include "store/content_hash.h"
 
 namespace palpate::study {
 namespace {

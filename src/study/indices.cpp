@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "palpate/core/error.h"
-#include "palpate/study/plan.h"
+#include "study/plan.h"
 
 namespace palpate::study {
 namespace {

@@ -1,14 +1,14 @@
-#include "palpate/study/plan.h"
+#include "study/plan.h"
 
 #include <algorithm>
 #include <filesystem>
 
+#include "loop/registries.h"
+#include "loop/result_key.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
-#include "palpate/loop/registries.h"
-#include "palpate/loop/result_key.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/content_hash.h"
+#include "store/atomic_file.h"
+#include "store/content_hash.h"
 
 namespace palpate::study {
 namespace {

@@ -1,11 +1,11 @@
-#include "palpate/study/results.h"
+#include "study/results.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <span>
 
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/csv.h"
+#include "store/atomic_file.h"
+#include "store/csv.h"
 #include "task_file.h"
 
 namespace palpate::study {

@@ -1,4 +1,4 @@
-#include "palpate/study/run.h"
+#include "study/run.h"
 
 #include <signal.h>
 
@@ -6,12 +6,12 @@
 #include <new>
 #include <thread>
 
+#include "core/bytes.h"
+#include "core/process_pool.h"
 #include "figures.h"
-#include "palpate/core/bytes.h"
 #include "palpate/core/error.h"
-#include "palpate/core/process_pool.h"
 #include "palpate/loop/load.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 #include "task_file.h"
 
 namespace palpate::study {

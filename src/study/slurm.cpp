@@ -1,4 +1,4 @@
-#include "palpate/study/slurm.h"
+#include "study/slurm.h"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/json_text.h"
-#include "palpate/store/provenance.h"
+#include "store/atomic_file.h"
+#include "store/json_text.h"
+#include "store/provenance.h"
 
 namespace palpate::study {
 namespace {

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "figures.h"
-#include "palpate/study/run.h"
+#include "study/run.h"
 
 namespace palpate::study {
 

@@ -1,6 +1,6 @@
 #include "coupling.h"
 
-#include "palpate/core/so3.h"
+#include "core/so3.h"
 
 namespace palpate::tool {
 namespace {

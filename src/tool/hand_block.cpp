@@ -1,10 +1,10 @@
-#include "palpate/tool/hand_block.h"
+#include "tool/hand_block.h"
 
 #include <cmath>
 
+#include "core/so3.h"
 #include "coupling.h"
 #include "palpate/core/error.h"
-#include "palpate/core/so3.h"
 
 namespace palpate::tool {
 

@@ -1,4 +1,4 @@
-#include "palpate/tool/simbody_block.h"
+#include "tool/simbody_block.h"
 
 #include <cmath>
 

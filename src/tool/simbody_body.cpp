@@ -3,7 +3,7 @@
 #include <exception>
 #include <limits>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 
 namespace palpate::tool {
 namespace {

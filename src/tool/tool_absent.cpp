@@ -1,6 +1,6 @@
 #include "palpate/core/error.h"
-#include "palpate/tool/simbody_block.h"
 #include "palpate/tool/tool.h"
+#include "tool/simbody_block.h"
 
 // Replaces the Simbody sources in a build without Simbody: every function that needs Simbody throws Error.
 

@@ -72,13 +72,12 @@ OUTSIDE = [
      ["src/integrate", "tests/integrate"]),
     ("Simbody", r"(Simbody|SimTK\w*|simbody|simmath)(\.h$|/)",
      ["src/simbody", "src/tool", "src/bones", "tests/isolation", "validation/peers"]),
-    ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/",
-     ["src/gl", "src/palpate/gl", "src/render", "tests/gl", "tests/render"]),
+    ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/", ["src/gl", "src/render", "tests/gl", "tests/render"]),
     ("libccd", r"ccd/", ["src/proxy", "tests/proxy"]),
     ("Qhull", r"libqhull", ["src/proxy"]),
     ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/linear"]),
     ("Spectra", r"Spectra/", ["src/modes"]),
-    ("CLI11", r"CLI/", ["src/cli", "src/palpate/cli", "benchmarks/product/program", "validation/program"]),
+    ("CLI11", r"CLI/", ["src/cli", "benchmarks/product/program", "validation/program"]),
     ("pybind11", r"pybind11/", ["src/python"]),
     ("toml++", r"toml\+\+/", ["src/scene"]),
     ("SQLite", r"sqlite3\.h", ["src/store"]),
@@ -92,10 +91,10 @@ OUTSIDE = [
 # them.
 WRAPPERS = ["simbody"]
 
-# Headers that users of the library may include, and headers shared between parts only: both are included as
-# "palpate/PART/NAME.h". Headers in src/PART are private to the part.
+# Headers that users of the library may include, as "palpate/PART/NAME.h". Headers in src/PART, included as
+# "PART/NAME.h", are private to the part, except those that src/PART/CMakeLists.txt lists for other parts.
 PROMISED = "include/palpate/"
-SHARED = "src/palpate/"
+SHARED_HEADERS = re.compile(r"^palpate_shared_headers\((\w+)\s+([^)]*)\)", re.M)
 
 LONG_FILE = 400
 SUFFIXES = {".h", ".hpp", ".cpp", ".cc"}
@@ -103,15 +102,15 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 
 
 def part_of(path):
-    """Returns the part that a file belongs to, by its folder under src/, src/palpate/ or include/palpate/, or
-    by ELSEWHERE."""
+    """Returns the part that a file belongs to, by its folder under src/ or include/palpate/, or by
+    ELSEWHERE."""
     pieces = path.split("/")
     for folder, part in ELSEWHERE.items():
         if path.startswith(folder):
             return part
-    if path.startswith((PROMISED, SHARED)) and len(pieces) > 3:
+    if path.startswith(PROMISED) and len(pieces) > 3:
         part = pieces[2]
-    elif pieces[0] == "src" and len(pieces) > 2 and not path.startswith(SHARED):
+    elif pieces[0] == "src" and len(pieces) > 2:
         part = pieces[1]
     else:
         return None
@@ -133,6 +132,14 @@ def resolve(path, quoted, name, files):
                 pieces.append(piece)
         candidates.insert(0, "/".join(pieces))
     return next((path for path in candidates if path in files), None)
+
+
+def shared_headers(tree):
+    """Returns the headers in src/ that their parts share with others."""
+    return {f"src/{part}/{header}"
+            for listing in (tree / "src").glob("*/CMakeLists.txt")
+            for part, headers in SHARED_HEADERS.findall(listing.read_text(encoding="utf-8"))
+            for header in headers.split()}
 
 
 def is_spec(path):
@@ -190,6 +197,7 @@ def check(tree):
     tree = Path(tree)
     files = source_files(tree, ["include", "src", "validation", "benchmarks/product"])
     known = set(files)
+    shared, used = shared_headers(tree), set()
     breaches, remarks, graph = [], [], {path: [] for path in files}
 
     for path in files:
@@ -206,9 +214,11 @@ def check(tree):
             graph[path].append(target)
             if part_of(target) is None or own is None:
                 continue
+            if own != part_of(target):
+                used.add(target)
             if not is_allowed(path, target):
                 breaches.append(f"{path}:{number}: {own} may not include {part_of(target)} ({name})")
-            elif (own != part_of(target) and target.startswith("src/") and not target.startswith(SHARED)
+            elif (own != part_of(target) and target.startswith("src/") and target not in shared
                   and part_of(target) not in WRAPPERS
                   and not path.startswith(Path(target).parent.as_posix() + "/")):
                 breaches.append(f"{path}:{number}: {name} is private to {part_of(target)}")
@@ -226,9 +236,8 @@ def check(tree):
         if lines > LONG_FILE:
             remarks.append(f"{path}: {lines} lines, more than {LONG_FILE}: wants a reason")
 
-    for path in files:
-        if path.startswith(SHARED) and path.replace(SHARED, PROMISED) in known:
-            breaches.append(f"{path}:1: {path.replace(SHARED, PROMISED)} has the same name")
+    breaches += [f"{header}:1: is listed as shared, but no other part includes it"
+                 for header in sorted(shared - used)]
     breaches += link_breaches(tree)
     cycle = find_cycle(graph)
     if cycle:

@@ -1,9 +1,9 @@
 // What one run says of contact: stages, devices, prices.
 #include <gtest/gtest.h>
+#include "contact/gpu_device.h"
+#include "core/instructions.h"
 #include "loop/small_scenes.h"
-#include "palpate/contact/gpu_device.h"
 #include "palpate/core/error.h"
-#include "palpate/core/instructions.h"
 #include "product/contact.h"
 
 namespace palpate::bench {

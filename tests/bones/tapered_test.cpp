@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "palpate/bones/shape.h"
+#include "bones/shape.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/quality.h"
 

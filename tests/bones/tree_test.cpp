@@ -1,4 +1,4 @@
-#include "palpate/bones/tree.h"
+#include "bones/tree.h"
 
 #include <gtest/gtest.h>
 

@@ -6,14 +6,14 @@
 #include "cli/contact_picture.h"
 #include "cli/frames.h"
 #include "cli/picture.h"
+#include "cli/undelivered.h"
 #include "contact/grid_proxies.h"
+#include "core/counters.h"
 #include "loop/over_block.h"
 #include "loop/small_scenes.h"
-#include "palpate/cli/undelivered.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/store/model_file.h"
+#include "store/model_file.h"
 #include "temporary_folder.h"
 
 // Pictures of a run: two soft blocks with skins, one pressed 1 mm into the other.

@@ -8,9 +8,9 @@
 #include <set>
 #include <type_traits>
 
-#include "palpate/loop/summary.h"
-#include "palpate/store/csv.h"
-#include "palpate/store/study_columns.h"
+#include "loop/summary.h"
+#include "store/csv.h"
+#include "store/study_columns.h"
 
 using namespace palpate;
 

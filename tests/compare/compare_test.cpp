@@ -8,11 +8,11 @@
 #include "compare/scenes.h"
 #include "loop/small_scenes.h"
 #include "palpate/core/error.h"
-#include "palpate/store/csv.h"
-#include "palpate/store/study_columns.h"
-#include "palpate/validation/validation.h"
 #include "product/bench.h"
+#include "store/csv.h"
+#include "store/study_columns.h"
 #include "temporary_folder.h"
+#include "validation.h"
 
 using namespace palpate;
 using compare::PointStatus;

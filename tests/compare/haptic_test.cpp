@@ -1,5 +1,5 @@
 // Force on the hand, compared with the monolithic solution of tool and bodies.
-#include "palpate/compare/haptic.h"
+#include "compare/haptic.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 
 #include "compare/haptic_plan.h"
 #include "compare/scenes.h"
+#include "loop/haptic_memory.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/haptic_memory.h"
-#include "palpate/store/csv.h"
+#include "store/csv.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

@@ -10,7 +10,7 @@
 #include "compare/scenes.h"
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
-#include "palpate/store/study_db.h"
+#include "store/study_db.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

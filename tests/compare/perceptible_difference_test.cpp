@@ -1,5 +1,5 @@
 // Perceptible difference of two force and torque histories, against differences known in closed form.
-#include "palpate/compare/perceptible_difference.h"
+#include "compare/perceptible_difference.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 // display.
 #include <gtest/gtest.h>
 
+#include "core/process_pool.h"
+#include "gl/context.h"
 #include "palpate/compare/compare.h"
-#include "palpate/core/process_pool.h"
-#include "palpate/gl/context.h"
 #include "palpate/loop/load.h"
 
 using namespace palpate;

@@ -1,4 +1,4 @@
-#include "palpate/loop/result_key.h"
+#include "loop/result_key.h"
 
 #include <gtest/gtest.h>
 

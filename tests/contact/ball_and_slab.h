@@ -1,7 +1,7 @@
 #pragma once
 #include "grid_proxies.h"
 #include "images.h"
-#include "palpate/proxy/decompose.h"
+#include "proxy/decompose.h"
 #include "surfaces.h"
 
 namespace contact_tests {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/layered_model.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/mesh/layered_model.h"
-#include "palpate/proxy/decompose.h"
+#include "proxy/decompose.h"
 
 /// A bar around a chain of three bones, bent in its middle until its arms collide.
 namespace bent_bar {

@@ -2,11 +2,11 @@
 #include <array>
 #include <string>
 
+#include "mesh/layered_model.h"
 #include "palpate/core/pose.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/mesh/layered_model.h"
-#include "palpate/proxy/decompose.h"
-#include "palpate/store/model_file.h"
+#include "proxy/decompose.h"
+#include "store/model_file.h"
 #include "temporary_folder.h"
 
 /// Layered blocks, and temporary model files for scenes that load a file.

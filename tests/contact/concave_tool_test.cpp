@@ -6,7 +6,7 @@
 //   U = k/4 (int d+^2 dA over the ball + int d+^2 dA over the ring),   F = -dU/dx along x.
 #include <gtest/gtest.h>
 
-#include "palpate/contact/sources.h"
+#include "contact/sources.h"
 #include "proxy/tools.h"
 #include "surfaces.h"
 

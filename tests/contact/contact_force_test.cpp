@@ -1,6 +1,6 @@
 #include "fixture.h"
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 
 using namespace contact_tests;
 

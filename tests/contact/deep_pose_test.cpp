@@ -1,6 +1,6 @@
 // Poses so deep that the shortest exit is on the far side: contact pushes back to the side of entry.
 #include "ball_and_slab.h"
-#include "palpate/proxy/region.h"
+#include "proxy/region.h"
 
 using namespace contact_tests;
 using namespace contact_tests::ball_and_slab;

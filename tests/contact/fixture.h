@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
+#include "contact/sources.h"
 #include "palpate/contact/contact_force.h"
-#include "palpate/contact/sources.h"
 #include "palpate/core/error.h"
 
 /// Shared by the contact tests: a State with nodes and a rigid body, a source of given samples, Taylor tests.

@@ -3,8 +3,8 @@
 #include <memory>
 #include <set>
 
-#include "palpate/mesh/layered_model.h"
-#include "palpate/proxy/decompose_solid.h"
+#include "mesh/layered_model.h"
+#include "proxy/decompose_solid.h"
 
 namespace contact_tests {
 

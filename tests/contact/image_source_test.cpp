@@ -1,8 +1,8 @@
 #include <algorithm>
 
+#include "contact/gpu_device.h"
+#include "core/counters.h"
 #include "images.h"
-#include "palpate/contact/gpu_device.h"
-#include "palpate/core/counters.h"
 #include "surfaces.h"
 
 using namespace contact_tests;

@@ -1,7 +1,7 @@
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
 
-#include "palpate/contact/gpu_device.h"
+#include "contact/gpu_device.h"
 
 // Mesa leaks a few hundred bytes, from libraries that are unloaded before exit, so that no suppression could
 // name them.

@@ -1,8 +1,8 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include "palpate/contact/gpu_device.h"
-#include "palpate/contact/sources.h"
+#include "contact/gpu_device.h"
+#include "contact/sources.h"
 
 namespace contact_tests {
 

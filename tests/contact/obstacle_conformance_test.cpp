@@ -1,8 +1,8 @@
 // Conformance suite of the obstacle registry. Shapes are generated at random from the entries' keys.
-#include "palpate/contact/methods.h"
+#include "contact/methods.h"
+#include "distance/points.h"
+#include "mesh/curvature.h"
 #include "palpate/contact/obstacle.h"
-#include "palpate/distance/points.h"
-#include "palpate/mesh/curvature.h"
 #include "surfaces.h"
 
 using namespace palpate;

@@ -1,7 +1,7 @@
 // The cost of a query of skins with proxies depends on the skin that may collide, not on the whole skin.
 #include "contact/image_side.h"
 #include "contact/image_source.h"
-#include "palpate/proxy/pruner.h"
+#include "proxy/pruner.h"
 #include "touching.h"
 
 using namespace contact_tests;

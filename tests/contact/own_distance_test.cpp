@@ -1,8 +1,8 @@
 // Self-contact by nearest points: two parts of a body interact as two bodies of the same shape would, the
 // thickness of the body is no contact, and the force is the gradient of the energy.
 #include "bent_bar.h"
+#include "contact/sources.h"
 #include "fixture.h"
-#include "palpate/contact/sources.h"
 #include "palpate/mesh/generators.h"
 #include "surfaces.h"
 #include "together.h"

@@ -1,7 +1,7 @@
 // Image space with convex proxies: only skin that may be near is rendered, in separate regions.
 #include "grid_proxies.h"
 #include "images.h"
-#include "palpate/proxy/pruner.h"
+#include "proxy/pruner.h"
 #include "surfaces.h"
 
 using namespace contact_tests;

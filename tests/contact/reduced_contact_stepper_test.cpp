@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <random>
 
-#include "palpate/contact/reduced_contact_model.h"
+#include "contact/reduced_contact_model.h"
 
 // Reduced contact model with one point and a few modes, and with many points: balances that each tick
 // preserves, and behaviour that must not occur.

@@ -1,6 +1,6 @@
 // Quadrature points of a shape's surface: they detect contact that the points of a body alone miss.
+#include "distance/points.h"
 #include "palpate/contact/obstacle.h"
-#include "palpate/distance/points.h"
 #include "two_balls.h"
 
 using namespace contact_tests;

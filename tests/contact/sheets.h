@@ -7,7 +7,7 @@
 
 #include "contact/depth_image.h"
 #include "contact/image_side.h"
-#include "palpate/contact/sources.h"
+#include "contact/sources.h"
 
 /// Patches in contact axes, for tests of src/contact internals.
 namespace contact_tests {

@@ -1,7 +1,7 @@
 #include "contact/surface_state.h"
 #include "contact/image_side.h"
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "surfaces.h"
 
 using namespace contact_tests;

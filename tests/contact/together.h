@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/mesh/layered_model.h"
+#include "mesh/layered_model.h"
 
 namespace contact_tests {
 

@@ -1,4 +1,4 @@
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 
 #include <gtest/gtest.h>
 #include <sys/time.h>

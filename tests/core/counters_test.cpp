@@ -1,4 +1,4 @@
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 
 #include <gtest/gtest.h>
 

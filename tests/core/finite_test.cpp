@@ -1,4 +1,4 @@
-#include "palpate/core/finite.h"
+#include "core/finite.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Instruction sets may be specified by a user, and a processor may lack them.
-#include "palpate/core/instructions.h"
+#include "core/instructions.h"
 
 #include <gtest/gtest.h>
 

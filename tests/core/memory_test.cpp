@@ -1,5 +1,5 @@
 // Available memory: the smaller of the kernel's figure and the control group's limit.
-#include "palpate/core/memory.h"
+#include "core/memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/core/polar.h"
+#include "core/polar.h"
 
 #include <gtest/gtest.h>
 

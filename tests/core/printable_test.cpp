@@ -1,9 +1,9 @@
 // Characters that may be printed to a terminal, and the range of whole numbers that a double represents.
-#include "palpate/core/printable.h"
+#include "core/printable.h"
 
 #include <gtest/gtest.h>
 
-#include "palpate/core/whole_number.h"
+#include "core/whole_number.h"
 
 namespace palpate {
 namespace {

@@ -1,5 +1,5 @@
 // Jobs in separate processes: effects of a crash, an endless loop, an exception and a dying parent.
-#include "palpate/core/process_pool.h"
+#include "core/process_pool.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "palpate/core/bytes.h"
-#include "palpate/core/clock.h"
+#include "core/bytes.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 
 using namespace palpate;

@@ -1,4 +1,4 @@
-#include "palpate/core/rigid_fit.h"
+#include "core/rigid_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // A reader that dies does so in a child process: here by signals, by endless work and by excessive memory
 // use.
-#include "palpate/core/sandbox.h"
+#include "core/sandbox.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

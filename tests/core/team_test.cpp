@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/team.h"
 #include "palpate/core/error.h"
-#include "palpate/core/team.h"
 
 namespace palpate {
 namespace {

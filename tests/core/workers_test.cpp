@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/team.h"
 #include "palpate/core/error.h"
-#include "palpate/core/team.h"
 
 using namespace palpate;
 

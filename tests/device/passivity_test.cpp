@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "device/buzz.h"
 #include "palpate/core/error.h"
-#include "palpate/device/buzz.h"
 
 using namespace palpate;
 using namespace palpate::device;

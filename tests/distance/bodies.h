@@ -4,11 +4,11 @@
 #include <cmath>
 #include <random>
 
+#include "distance/skin_contact.h"
 #include "messages.h"
-#include "palpate/distance/skin_contact.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/shapes/shapes.h"
+#include "shapes/shapes.h"
 
 namespace distance_tests {
 

@@ -1,5 +1,5 @@
 // Integrals of the positive part of a linear function over a triangle, against sums over many small ones.
-#include "palpate/distance/linear_gap.h"
+#include "distance/linear_gap.h"
 
 #include "bodies.h"
 

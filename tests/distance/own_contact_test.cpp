@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "palpate/distance/skin_contact.h"
+#include "distance/skin_contact.h"
 #include "palpate/mesh/generators.h"
 
 using namespace palpate;

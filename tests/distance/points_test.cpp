@@ -1,5 +1,5 @@
 // Triangles between contact points: they are the skin, subdivided, and connected.
-#include "palpate/distance/points.h"
+#include "distance/points.h"
 #include "bodies.h"
 
 using namespace distance_tests;

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "bodies.h"
-#include "palpate/mesh/readers.h"
+#include "mesh/readers.h"
 
 using namespace distance_tests;
 

@@ -9,7 +9,7 @@
 #include "integrate/fakes.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/device/device.h"
-#include "palpate/validation/validation.h"
+#include "validation.h"
 
 namespace palpate {
 namespace device {

@@ -3,8 +3,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "core/polar.h"
 #include "fem_fixture.h"
-#include "palpate/core/polar.h"
 
 using namespace palpate;
 using namespace palpate::fem;

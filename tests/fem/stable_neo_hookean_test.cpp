@@ -1,8 +1,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "core/polar.h"
 #include "law_reference.h"
-#include "palpate/core/polar.h"
 
 // Properties specific to the stable neo-Hookean law. Properties of every law are tested in laws_test.cpp.
 

@@ -1,5 +1,5 @@
+#include "core/counters.h"
 #include "fem_fixture.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/workers.h"
 #include "palpate/dynamics/zero_row_sum_matrix.h"
 

@@ -1,7 +1,7 @@
 // Foreign meshes that palpate model reads with its parsers and with CGAL. libgmsh's readers are not included.
 #include "fuzz/input.h"
 #include "fuzz/targets.h"
-#include "palpate/model/foreign_files.h"
+#include "model/foreign_files.h"
 
 namespace palpate::fuzz {
 namespace {

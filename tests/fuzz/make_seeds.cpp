@@ -3,7 +3,7 @@
 
 #include "fuzz/seeds.h"
 #include "palpate/device/udp.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 
 using namespace palpate;
 

@@ -2,11 +2,11 @@
 
 #include <cstdio>
 
-#include "palpate/store/checkpoint_file.h"
-#include "palpate/store/mesh_file.h"
-#include "palpate/store/model_file.h"
 #include "palpate/store/run_file.h"
-#include "palpate/store/xdmf.h"
+#include "store/checkpoint_file.h"
+#include "store/mesh_file.h"
+#include "store/model_file.h"
+#include "store/xdmf.h"
 
 namespace palpate::fuzz {
 namespace {

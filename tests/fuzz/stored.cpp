@@ -1,16 +1,16 @@
 // Files written by palpate: models, runs, their tables. They may have been damaged on disk or edited.
+#include "core/sandbox.h"
 #include "fuzz/h5_edits.h"
 #include "fuzz/input.h"
 #include "fuzz/seeds.h"
 #include "fuzz/targets.h"
-#include "palpate/core/sandbox.h"
-#include "palpate/store/bone_file.h"
-#include "palpate/store/checkpoint_file.h"
-#include "palpate/store/force_file.h"
-#include "palpate/store/mesh_file.h"
-#include "palpate/store/model_file.h"
 #include "palpate/store/run_file.h"
-#include "palpate/store/summary.h"
+#include "store/bone_file.h"
+#include "store/checkpoint_file.h"
+#include "store/force_file.h"
+#include "store/mesh_file.h"
+#include "store/model_file.h"
+#include "store/summary.h"
 
 namespace palpate::fuzz {
 

@@ -5,12 +5,12 @@
 #include <array>
 #include <cstring>
 
-#include "palpate/gl/buffer.h"
-#include "palpate/gl/commands.h"
-#include "palpate/gl/context.h"
-#include "palpate/gl/framebuffer.h"
-#include "palpate/gl/mapped_buffer.h"
-#include "palpate/gl/program.h"
+#include "gl/buffer.h"
+#include "gl/commands.h"
+#include "gl/context.h"
+#include "gl/framebuffer.h"
+#include "gl/mapped_buffer.h"
+#include "gl/program.h"
 
 using namespace palpate;
 

@@ -7,12 +7,12 @@
 #include <cstring>
 #include <thread>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
+#include "gl/buffer.h"
+#include "gl/context.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
 #include "palpate/core/error.h"
-#include "palpate/gl/buffer.h"
-#include "palpate/gl/context.h"
-#include "palpate/gl/framebuffer.h"
-#include "palpate/gl/program.h"
 
 using namespace palpate;
 

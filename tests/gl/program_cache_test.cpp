@@ -7,9 +7,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "palpate/core/counters.h"
-#include "palpate/gl/context.h"
-#include "palpate/gl/program.h"
+#include "core/counters.h"
+#include "gl/context.h"
+#include "gl/program.h"
 
 using namespace palpate;
 namespace fs = std::filesystem;

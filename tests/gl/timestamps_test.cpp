@@ -1,13 +1,13 @@
 // GPU clock, compared with the processor's clock.
-#include "palpate/gl/timestamps.h"
+#include "gl/timestamps.h"
 
 #include <gtest/gtest.h>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
+#include "gl/commands.h"
+#include "gl/context.h"
+#include "gl/framebuffer.h"
 #include "palpate/core/error.h"
-#include "palpate/gl/commands.h"
-#include "palpate/gl/context.h"
-#include "palpate/gl/framebuffer.h"
 
 using namespace palpate;
 

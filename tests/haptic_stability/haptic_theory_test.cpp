@@ -1,4 +1,4 @@
-#include "palpate/haptic_stability/haptic_theory.h"
+#include "haptic_stability/haptic_theory.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <random>
 
 #include "haptic_stability/tool_section.h"
+#include "haptic_stability/z_width.h"
 #include "palpate/core/error.h"
 #include "palpate/device/profile.h"
-#include "palpate/haptic_stability/z_width.h"
 #include "palpate/loop/run.h"
 #include "palpate/mesh/source.h"
 

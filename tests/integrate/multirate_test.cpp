@@ -1,6 +1,6 @@
 // Amplification matrix of one multi-rate step against theory: each side alone, the order of both together,
 // and the steps of the method.
-#include "palpate/integrate/multirate.h"
+#include "integrate/multirate.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/counters.h"
 #include "linear/unsymmetric_matrices.h"
-#include "palpate/core/counters.h"
 #include "palpate/linear/solvers.h"
 
 namespace palpate {

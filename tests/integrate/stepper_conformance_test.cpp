@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "core/counters.h"
 #include "integrate/fakes.h"
-#include "palpate/core/counters.h"
 
 namespace palpate {
 namespace {

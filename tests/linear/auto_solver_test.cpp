@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "core/counters.h"
 #include "linear/auto_choice.h"
 #include "linear/bent_beam.h"
-#include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "palpate/dynamics/mixed_precision_step.h"
+#include "dynamics/mixed_precision_step.h"
 #include "palpate/dynamics/step_assembly.h"
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"

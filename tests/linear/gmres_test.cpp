@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "core/counters.h"
 #include "linear/unsymmetric_matrices.h"
-#include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 

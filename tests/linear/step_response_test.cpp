@@ -1,5 +1,5 @@
 // Responses of a step matrix to a few right-hand sides.
-#include "palpate/linear/step_response.h"
+#include "linear/step_response.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "core/counters.h"
 #include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
 #include "loop/tool_instance.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 

@@ -3,15 +3,15 @@
 
 #include <filesystem>
 
+#include "core/counters.h"
 #include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
 #include "loop/tool_instance.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
-#include "palpate/store/bone_file.h"
 #include "palpate/store/run_file.h"
+#include "store/bone_file.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

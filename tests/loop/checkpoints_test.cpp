@@ -1,6 +1,6 @@
 // A run resumed from a checkpoint is bitwise equal to an uninterrupted one; a checkpoint contains everything
 // that the run needs, and nothing else.
-#include "palpate/loop/checkpoints.h"
+#include "loop/checkpoints.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include <set>
 
 #include "checkpoint_scenes.h"
+#include "loop/contact_record.h"
+#include "loop/summary.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
-#include "palpate/loop/contact_record.h"
-#include "palpate/loop/summary.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "palpate/loop/contact_instant.h"
+#include "loop/contact_instant.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/loop/describe_fallbacks.h"
+#include "loop/describe_fallbacks.h"
 
 #include <gtest/gtest.h>
 

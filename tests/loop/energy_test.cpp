@@ -1,4 +1,4 @@
-#include "palpate/loop/energy.h"
+#include "loop/energy.h"
 
 #include <gtest/gtest.h>
 

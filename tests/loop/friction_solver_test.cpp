@@ -5,11 +5,11 @@
 #include <string>
 #include <tuple>
 
+#include "core/counters.h"
 #include "loop/small_scenes.h"
-#include "palpate/core/counters.h"
+#include "loop/summary.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
 #include "palpate/loop/world.h"
 
 using namespace palpate;

@@ -4,13 +4,13 @@
 
 #include <filesystem>
 
+#include "loop/haptic_record.h"
 #include "loop/linearise.h"
+#include "loop/replay.h"
 #include "loop/small_scenes.h"
 #include "loop/ticks_of.h"
 #include "loop/tool_instance.h"
 #include "palpate/contact/contact_force.h"
-#include "palpate/loop/haptic_record.h"
-#include "palpate/loop/replay.h"
 #include "palpate/loop/run.h"
 #include "palpate/tool/tool.h"
 

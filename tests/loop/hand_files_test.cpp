@@ -3,16 +3,16 @@
 
 #include <filesystem>
 
+#include "loop/haptic_record.h"
 #include "loop/pose_bounds.h"
 #include "loop/tool_instance.h"
 #include "messages.h"
 #include "palpate/core/error.h"
 #include "palpate/device/profile.h"
-#include "palpate/loop/haptic_record.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
-#include "palpate/store/force_file.h"
 #include "small_scenes.h"
+#include "store/force_file.h"
 #include "temporary_folder.h"
 
 namespace {

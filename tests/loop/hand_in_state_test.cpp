@@ -1,9 +1,9 @@
 // Monolithic solution of a simulated hand, its tool and the bodies: the limit of the tick loop.
 #include <gtest/gtest.h>
 
+#include "loop/replay.h"
 #include "loop/ticks_of.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/replay.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "loop/small_scenes.h"
+#include "loop/summary.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
 
 using namespace palpate;
 

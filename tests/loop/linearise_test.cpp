@@ -4,9 +4,9 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "core/counters.h"
 #include "loop/small_scenes.h"
 #include "loop/tool_instance.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #ifdef PALPATE_HAS_TOOL

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/loop/run.h"
 
 // A tool rests for many ticks against a body that does not move: any motion is an error. A tick is one

@@ -1,9 +1,9 @@
 // Choice of the contact method: "auto" uses nearest points and does not open OpenGL; "image" does.
 #include <gtest/gtest.h>
 
+#include "contact/gpu_device.h"
+#include "core/counters.h"
 #include "loop/small_scenes.h"
-#include "palpate/contact/gpu_device.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 

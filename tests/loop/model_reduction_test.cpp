@@ -4,16 +4,16 @@
 
 #include <array>
 
+#include "core/counters.h"
 #include "loop/contact_loads.h"
 #include "loop/linearise.h"
 #include "loop/reduced_step.h"
 #include "loop/small_scenes.h"
+#include "loop/summary.h"
 #include "loop/tool_instance.h"
 #include "palpate/contact/contact_force.h"
-#include "palpate/core/counters.h"
 #include "palpate/loop/load.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
 

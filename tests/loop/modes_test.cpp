@@ -1,4 +1,4 @@
-#include "palpate/loop/modes.h"
+#include "loop/modes.h"
 
 #include <gtest/gtest.h>
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "core/counters.h"
 #include "loop/small_scenes.h"
-#include "palpate/core/counters.h"
+#include "loop/summary.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
 #ifdef PALPATE_HAS_TOOL
 
 using namespace palpate;

@@ -6,15 +6,15 @@
 #include <numeric>
 #include <random>
 
+#include "loop/modes.h"
 #include "loop/small_scenes.h"
-#include "palpate/loop/modes.h"
+#include "loop/trace.h"
+#include "mesh/spatial_order.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/trace.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/mesh/spatial_order.h"
-#include "palpate/store/mesh_file.h"
 #include "palpate/store/run_file.h"
+#include "store/mesh_file.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

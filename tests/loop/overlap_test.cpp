@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "loop/small_scenes.h"
+#include "loop/summary.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
 
 /// Deepest overlap that a run reports, for a round tool of 15 mm in a block 20 mm high.
 namespace {

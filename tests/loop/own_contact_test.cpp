@@ -4,17 +4,17 @@
 
 #include "contact/bent_bar.h"
 #include "contact/block_model.h"
+#include "contact/sources.h"
 #include "contact/together.h"
+#include "core/counters.h"
 #include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
-#include "palpate/contact/sources.h"
-#include "palpate/core/counters.h"
+#include "loop/summary.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
 #include "palpate/loop/world.h"
-#include "palpate/proxy/pruner.h"
+#include "proxy/pruner.h"
 
 using namespace palpate;
 using block_model::block;

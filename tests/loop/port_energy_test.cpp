@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "palpate/loop/haptic_record.h"
+#include "loop/haptic_record.h"
 #include "palpate/loop/run.h"
 #include "temporary_folder.h"
 

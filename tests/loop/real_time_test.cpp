@@ -9,12 +9,12 @@
 #include <deque>
 #include <thread>
 
+#include "core/spsc_ring.h"
+#include "loop/contact_record.h"
 #include "loop/tick_group.h"
 #include "malloc_count.h"
 #include "palpate/core/error.h"
-#include "palpate/core/spsc_ring.h"
 #include "palpate/dynamics/exchange.h"
-#include "palpate/loop/contact_record.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/counters.h"
 #include "loop/small_scenes.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/world.h"
 #include "palpate/mesh/quality.h"
-#include "palpate/store/mesh_file.h"
-#include "palpate/store/model_file.h"
+#include "store/mesh_file.h"
+#include "store/model_file.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

@@ -1,6 +1,6 @@
 // Replay of recordings: forces are bitwise equal from the recorded exchange, and equal to the integrator's
 // error when the bodies are simulated again.
-#include "palpate/loop/replay.h"
+#include "loop/replay.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <random>
 
+#include "loop/haptic_record.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/haptic_record.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "loop/small_scenes.h"
+#include "loop/summary.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/summary.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
 #endif

@@ -3,18 +3,18 @@
 
 #include <filesystem>
 
+#include "bones/path.h"
+#include "bones/shape.h"
+#include "core/counters.h"
 #include "loop/scene_checks.h"
-#include "palpate/bones/path.h"
-#include "palpate/bones/shape.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/world.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/store/bone_file.h"
-#include "palpate/store/model_file.h"
+#include "store/bone_file.h"
+#include "store/model_file.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

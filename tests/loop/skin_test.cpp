@@ -2,15 +2,15 @@
 
 #include <filesystem>
 
+#include "core/counters.h"
 #include "loop/small_scenes.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/world.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/store/mesh_file.h"
-#include "palpate/store/model_file.h"
+#include "store/mesh_file.h"
+#include "store/model_file.h"
 #include "temporary_folder.h"
 
 /// A body whose mesh file is a model: contact uses its skin if the scene specifies it, and only then.

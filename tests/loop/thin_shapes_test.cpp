@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "loop/small_scenes.h"
+#include "loop/summary.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
 
 /// Shapes that a body's points miss: thinner than its mesh, smaller than its elements, or inside of it.
 namespace {

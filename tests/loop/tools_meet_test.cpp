@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "hands_felt.h"
+#include "loop/haptic_record.h"
+#include "loop/replay.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/haptic_record.h"
 #include "palpate/loop/recorder.h"
-#include "palpate/loop/replay.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 

@@ -1,5 +1,5 @@
 // A scripted stepper: the trace contains its attempts; an interruption ends the run.
-#include "palpate/loop/trace.h"
+#include "loop/trace.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "loop/small_scenes.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
-#include "palpate/store/csv.h"
+#include "store/csv.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "loop/small_scenes.h"
+#include "loop/summary.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
 
 /// A free block thrown at a plate thinner than its path between two queries.
 namespace {

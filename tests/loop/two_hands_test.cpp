@@ -4,14 +4,14 @@
 #include <filesystem>
 
 #include "hands_felt.h"
+#include "loop/haptic_record.h"
+#include "loop/replay.h"
+#include "loop/summary.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/haptic_record.h"
 #include "palpate/loop/recorder.h"
-#include "palpate/loop/replay.h"
 #include "palpate/loop/run.h"
-#include "palpate/loop/summary.h"
-#include "palpate/store/force_file.h"
 #include "small_scenes.h"
+#include "store/force_file.h"
 
 #ifdef PALPATE_HAS_TOOL
 

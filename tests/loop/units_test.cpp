@@ -3,10 +3,10 @@
 #include <functional>
 #include <sstream>
 
+#include "loop/modes.h"
+#include "loop/registries.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/loop/load.h"
-#include "palpate/loop/modes.h"
-#include "palpate/loop/registries.h"
 #include "palpate/loop/run.h"
 
 // Results depend neither on units nor on the size of the simulated bodies. With the unit of time kept, let

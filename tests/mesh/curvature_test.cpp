@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "palpate/mesh/curvature.h"
+#include "mesh/curvature.h"
 #include "palpate/mesh/generators.h"
 
 using namespace palpate;

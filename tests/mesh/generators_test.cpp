@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "helpers.h"
+#include "mesh/checks.h"
 #include "palpate/mesh/boundary.h"
-#include "palpate/mesh/checks.h"
 #include "palpate/mesh/quality.h"
 
 using namespace palpate;

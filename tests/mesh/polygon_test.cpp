@@ -1,4 +1,4 @@
-#include "palpate/mesh/polygon.h"
+#include "mesh/polygon.h"
 
 #include <gtest/gtest.h>
 

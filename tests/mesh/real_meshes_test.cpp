@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "helpers.h"
+#include "mesh/checks.h"
 #include "palpate/mesh/boundary.h"
-#include "palpate/mesh/checks.h"
 
 using namespace palpate;
 using namespace palpate::mesh;

@@ -1,4 +1,4 @@
-#include "palpate/model/angle_cost.h"
+#include "model/angle_cost.h"
 
 #include <gtest/gtest.h>
 

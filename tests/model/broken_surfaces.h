@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/model/make_model.h"
+#include "model/make_model.h"
 
 /// Defective surfaces and tetrahedra, with the expected outcome of each.
 namespace broken {

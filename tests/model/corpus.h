@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "broken_surfaces.h"
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 

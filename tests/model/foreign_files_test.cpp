@@ -1,4 +1,4 @@
-#include "palpate/model/foreign_files.h"
+#include "model/foreign_files.h"
 
 extern "C" {
 #include <gmshc.h>
@@ -13,8 +13,8 @@ extern "C" {
 #include <filesystem>
 #include <fstream>
 
+#include "mesh/checks.h"
 #include "model/gmsh_start.h"
-#include "palpate/mesh/checks.h"
 #include "surfaces.h"
 #include "temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "palpate/model/make_model.h"
+#include "model/make_model.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include <functional>
 
+#include "mesh/checks.h"
 #include "palpate/mesh/boundary.h"
-#include "palpate/mesh/checks.h"
 #include "palpate/mesh/generators.h"
 #include "palpate/mesh/quality.h"
 

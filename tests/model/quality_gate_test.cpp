@@ -1,4 +1,4 @@
-#include "palpate/model/quality_gate.h"
+#include "model/quality_gate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "palpate/model/regions.h"
+#include "model/regions.h"
 
 #include <gtest/gtest.h>
 
+#include "model/make_model.h"
 #include "palpate/mesh/quality.h"
-#include "palpate/model/make_model.h"
 #include "surfaces.h"
 
 using namespace palpate;

@@ -1,4 +1,4 @@
-#include "palpate/model/repair.h"
+#include "model/repair.h"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 #include <functional>
 #include <string>
 
+#include "model/repair.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/model/repair.h"
 
 /// Surfaces with known results, and ways to damage them.
 namespace surfaces {

@@ -1,11 +1,11 @@
-#include "palpate/model/tetrahedralise.h"
+#include "model/tetrahedralise.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "palpate/mesh/checks.h"
-#include "palpate/model/quality_gate.h"
+#include "mesh/checks.h"
+#include "model/quality_gate.h"
 #include "surfaces.h"
 
 using namespace palpate;

@@ -3,8 +3,8 @@
 #include <cstdlib>
 
 #include "malloc_count.h"
-#include "palpate/proxy/decompose.h"
-#include "palpate/proxy/proxy_set.h"
+#include "proxy/decompose.h"
+#include "proxy/proxy_set.h"
 #include "shapes.h"
 
 using namespace palpate;

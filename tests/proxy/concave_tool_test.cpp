@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "palpate/mesh/generators.h"
-#include "palpate/proxy/decompose.h"
-#include "palpate/proxy/decompose_solid.h"
+#include "proxy/decompose.h"
+#include "proxy/decompose_solid.h"
 #include "pruning.h"
 #include "shapes.h"
 #include "tools.h"

@@ -1,4 +1,4 @@
-#include "palpate/proxy/decompose_solid.h"
+#include "proxy/decompose_solid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/proxy/decompose.h"
+#include "proxy/decompose.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/proxy/hull_surface.h"
+#include "proxy/hull_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/proxy/proxy_set.h"
+#include "proxy/proxy_set.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "palpate/core/error.h"
-#include "palpate/proxy/decompose.h"
+#include "proxy/decompose.h"
 #include "proxy/hull.h"
 #include "shapes.h"
 

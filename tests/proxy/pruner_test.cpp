@@ -1,4 +1,4 @@
-#include "palpate/proxy/pruner.h"
+#include "proxy/pruner.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "mesh/layered_model.h"
 #include "palpate/core/pose.h"
-#include "palpate/mesh/layered_model.h"
-#include "palpate/proxy/decompose.h"
-#include "palpate/proxy/pruner.h"
+#include "proxy/decompose.h"
+#include "proxy/pruner.h"
 
 /// Faces passed on by a pruner, compared with contact by brute force.
 namespace pruning {

@@ -6,7 +6,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/pose.h"
-#include "palpate/proxy/region.h"
+#include "proxy/region.h"
 
 using namespace palpate;
 

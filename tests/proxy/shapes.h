@@ -2,8 +2,8 @@
 #include <cmath>
 #include <random>
 
+#include "mesh/layered_model.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/mesh/layered_model.h"
 
 /// A ball of tetrahedra under a bumpy skin r = radius (1 + depth cos(n azimuth) sin(polar angle)), which
 /// extends slightly beyond the tetrahedra at the crests.

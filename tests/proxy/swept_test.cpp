@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
-#include "palpate/proxy/decompose_solid.h"
-#include "palpate/proxy/pruner.h"
+#include "proxy/decompose_solid.h"
+#include "proxy/pruner.h"
 #include "pruning.h"
 #include "shapes.h"
 

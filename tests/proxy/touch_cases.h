@@ -6,10 +6,10 @@
 #include "palpate/core/error.h"
 #include "palpate/core/pose.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/proxy/decompose_solid.h"
-#include "palpate/proxy/pruner.h"
-#include "palpate/store/model_file.h"
+#include "proxy/decompose_solid.h"
+#include "proxy/pruner.h"
 #include "proxy/pruning.h"
+#include "store/model_file.h"
 
 /// The paper's models in contact as in its figures: two pumpkins in contact, the head touched by a sphere at
 /// the bridge of the nose, the human at the leg. A touch moves in and out once in `kPhases` queries, and

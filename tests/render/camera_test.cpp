@@ -1,4 +1,4 @@
-#include "palpate/render/camera.h"
+#include "render/camera.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/render/colour_map.h"
+#include "render/colour_map.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "palpate/core/error.h"
-#include "palpate/render/scene.h"
+#include "render/scene.h"
 #include "render/shapes.h"
 
 using namespace palpate;

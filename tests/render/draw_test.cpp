@@ -5,8 +5,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "palpate/core/counters.h"
-#include "palpate/render/scene.h"
+#include "core/counters.h"
+#include "render/scene.h"
 #include "render/shapes.h"
 #include "temporary_folder.h"
 

@@ -1,10 +1,10 @@
-#include "palpate/render/field.h"
+#include "render/field.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 
 using namespace palpate;

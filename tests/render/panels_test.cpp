@@ -1,4 +1,4 @@
-#include "palpate/render/panels.h"
+#include "render/panels.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/render/seen.h"
+#include "render/seen.h"
 
 #include <gtest/gtest.h>
 

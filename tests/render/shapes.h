@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "palpate/render/scene.h"
+#include "render/scene.h"
 
 /// A ball of `n` bands from pole to pole: its silhouette is a polygon within r (1 - cos(pi / 2n)) of the
 /// circle.

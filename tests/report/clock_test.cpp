@@ -1,4 +1,4 @@
-#include "palpate/report/clock.h"
+#include "report/clock.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "palpate/core/error.h"
-#include "palpate/report/run_report.h"
+#include "report/run_report.h"
 #include "temporary_folder.h"
 #include "well_formed.h"
 

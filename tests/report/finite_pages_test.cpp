@@ -12,9 +12,9 @@
 #include <set>
 #include <sstream>
 
-#include "palpate/report/run_report.h"
-#include "palpate/report/table.h"
-#include "palpate/store/study_columns.h"
+#include "report/run_report.h"
+#include "report/table.h"
+#include "store/study_columns.h"
 #include "temporary_folder.h"
 #include "well_formed.h"
 

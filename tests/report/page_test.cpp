@@ -1,4 +1,4 @@
-#include "palpate/report/page.h"
+#include "report/page.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/report/plot.h"
+#include "report/plot.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "palpate/core/error.h"
-#include "palpate/report/force_plot.h"
-#include "palpate/report/page.h"
+#include "report/force_plot.h"
+#include "report/page.h"
 #include "report/thin.h"
 #include "temporary_folder.h"
 #include "well_formed.h"

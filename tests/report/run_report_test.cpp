@@ -1,4 +1,4 @@
-#include "palpate/report/run_report.h"
+#include "report/run_report.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "palpate/core/error.h"
-#include "palpate/report/work_precision.h"
-#include "palpate/store/study_columns.h"
+#include "report/work_precision.h"
+#include "store/study_columns.h"
 #include "temporary_folder.h"
 #include "well_formed.h"
 

@@ -4,8 +4,8 @@
 #include <iterator>
 
 #include "palpate/core/error.h"
-#include "palpate/report/run_report.h"
 #include "report/answers.h"
+#include "report/run_report.h"
 #include "report/study_columns.h"
 #include "temporary_folder.h"
 #include "well_formed.h"

@@ -1,4 +1,4 @@
-#include "palpate/report/trace.h"
+#include "report/trace.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "palpate/report/run_report.h"
+#include "report/run_report.h"
 #include "temporary_folder.h"
 #include "well_formed.h"
 

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "palpate/report/run_report.h"
+#include "report/run_report.h"
 #include "temporary_folder.h"
 #include "well_formed.h"
 

@@ -1,11 +1,11 @@
-#include "palpate/report/work_precision.h"
+#include "report/work_precision.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "palpate/core/error.h"
-#include "palpate/store/study_columns.h"
+#include "store/study_columns.h"
 
 using namespace palpate;
 

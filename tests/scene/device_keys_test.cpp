@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <map>
 
+#include "loop/registries.h"
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
 #include "palpate/device/motions.h"
 #include "palpate/device/profile.h"
 #include "palpate/loop/load.h"
-#include "palpate/loop/registries.h"
 
 namespace {
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "loop/registries.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
-#include "palpate/loop/registries.h"
 #include "scene/scene_texts.h"
 
 using palpate::loop::parse;

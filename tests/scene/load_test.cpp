@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
-#include "palpate/scene/contact_sides.h"
 #include "palpate/scene/hands.h"
-#include "palpate/scene/needs.h"
+#include "scene/contact_sides.h"
+#include "scene/needs.h"
 #include "scene/scene_texts.h"
 
 using palpate::Vec3;

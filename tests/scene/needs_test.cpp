@@ -1,4 +1,4 @@
-#include "palpate/scene/needs.h"
+#include "scene/needs.h"
 
 #include <gtest/gtest.h>
 

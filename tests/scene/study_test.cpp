@@ -1,4 +1,4 @@
-#include "palpate/scene/study.h"
+#include "scene/study.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include "messages.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
-#include "palpate/scene/study.h"
 #include "scene/scene_texts.h"
+#include "scene/study.h"
 
 using palpate::expectations::expect_contains;
 using palpate::expectations::message_of;

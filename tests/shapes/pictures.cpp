@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "palpate/mesh/boundary.h"
-#include "palpate/render/scene.h"
-#include "palpate/shapes/shapes.h"
+#include "render/scene.h"
+#include "shapes/shapes.h"
 
 // Draws the shapes of docs/models.md: shapes_pictures FOLDER [NAME...]
 using namespace palpate;

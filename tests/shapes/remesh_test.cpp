@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/checks.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
-#include "palpate/mesh/checks.h"
 #include "shapes/contour.h"
 #include "shapes/plane.h"
 #include "shapes/solids.h"

@@ -1,4 +1,4 @@
-#include "palpate/shapes/shapes.h"
+#include "shapes/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <numbers>
 #include <set>
 
+#include "mesh/checks.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
-#include "palpate/mesh/checks.h"
 #include "shapes/gear_profile.h"
 #include "shapes/human.h"
 #include "shapes/surface_facts.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "integrate/linear_step.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
-#include "palpate/integrate/linear_step.h"
 
 using namespace palpate;
 using namespace palpate::stability;

@@ -12,8 +12,8 @@
 
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
-#include "palpate/store/csv.h"
 #include "stability/faulty_stepper.h"
+#include "store/csv.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

@@ -1,5 +1,5 @@
 // Checkpoints on disk, and the files that a resumed run continues.
-#include "palpate/store/checkpoint_file.h"
+#include "store/checkpoint_file.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 
 #include "messages.h"
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/csv.h"
 #include "palpate/store/run_file.h"
-#include "palpate/store/table_file.h"
+#include "store/atomic_file.h"
+#include "store/csv.h"
 #include "store/sample_run.h"
+#include "store/table_file.h"
 
 namespace {
 

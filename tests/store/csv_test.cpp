@@ -1,4 +1,4 @@
-#include "palpate/store/csv.h"
+#include "store/csv.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/force_file.h"
+#include "store/atomic_file.h"
+#include "store/force_file.h"
 #include "store/sample_run.h"
 
 using namespace palpate;

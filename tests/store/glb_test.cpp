@@ -1,7 +1,7 @@
-#include "palpate/store/glb.h"
+#include "store/glb.h"
 
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 #include "store/python_check.h"
 #include "store/sample_run.h"
 

@@ -1,4 +1,4 @@
-#include "palpate/store/mesh_file.h"
+#include "store/mesh_file.h"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>

@@ -1,4 +1,4 @@
-#include "palpate/store/model_cache.h"
+#include "store/model_cache.h"
 
 #include <gtest/gtest.h>
 

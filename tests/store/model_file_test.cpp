@@ -1,4 +1,4 @@
-#include "palpate/store/model_file.h"
+#include "store/model_file.h"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/mesh_file.h"
+#include "store/atomic_file.h"
+#include "store/mesh_file.h"
 #include "store/sample_run.h"
 
 using namespace palpate;

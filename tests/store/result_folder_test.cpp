@@ -1,5 +1,5 @@
 // Only one process at a time may use a folder of results.
-#include "palpate/store/result_folder.h"
+#include "store/result_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

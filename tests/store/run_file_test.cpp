@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/core/error.h"
 #include "store/sample_run.h"
 

@@ -1,4 +1,4 @@
-#include "palpate/store/study_db.h"
+#include "store/study_db.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "palpate/core/error.h"
-#include "palpate/store/content_hash.h"
+#include "store/content_hash.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

@@ -1,4 +1,4 @@
-#include "palpate/store/summary.h"
+#include "store/summary.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "messages.h"
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 #include "store/sample_run.h"
 
 using namespace palpate;

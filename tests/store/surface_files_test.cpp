@@ -1,8 +1,8 @@
-#include "palpate/store/surface_files.h"
+#include "store/surface_files.h"
 
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/part_surface.h"
+#include "store/atomic_file.h"
+#include "store/part_surface.h"
 #include "store/python_check.h"
 #include "store/sample_run.h"
 

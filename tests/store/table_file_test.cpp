@@ -1,5 +1,5 @@
 // Growing tables: rows are read back as written, complete up to the last flush.
-#include "palpate/store/table_file.h"
+#include "store/table_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-#include "palpate/store/vtu.h"
+#include "store/vtu.h"
 
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
+#include "store/atomic_file.h"
 #include "store/python_check.h"
 #include "store/sample_run.h"
 

@@ -1,4 +1,4 @@
-#include "palpate/store/xdmf.h"
+#include "store/xdmf.h"
 
 #include "palpate/core/error.h"
 #include "store/python_check.h"

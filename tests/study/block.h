@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "palpate/study/plan.h"
+#include "study/plan.h"
 #include "temporary_folder.h"
 
 namespace palpate::study_scenes {

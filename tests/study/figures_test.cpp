@@ -6,7 +6,7 @@
 #include "block.h"
 #include "palpate/loop/load.h"
 #include "palpate/loop/run.h"
-#include "palpate/store/content_hash.h"
+#include "store/content_hash.h"
 
 using namespace palpate;
 using study::Json;

@@ -1,4 +1,4 @@
-#include "palpate/study/plan.h"
+#include "study/plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/study/run.h"
+#include "study/run.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "block.h"
 #include "palpate/core/error.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/csv.h"
-#include "palpate/study/results.h"
+#include "store/atomic_file.h"
+#include "store/csv.h"
+#include "study/results.h"
 
 using namespace palpate;
 using namespace palpate::study_scenes;

@@ -1,5 +1,5 @@
 // Texts passed to Slurm; cli.slurm runs a cluster.
-#include "palpate/study/slurm.h"
+#include "study/slurm.h"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>

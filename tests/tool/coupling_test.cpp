@@ -4,8 +4,8 @@
 
 #include <random>
 
+#include "core/so3.h"
 #include "handle_path.h"
-#include "palpate/core/so3.h"
 #include "tool_fixtures.h"
 
 using namespace palpate;

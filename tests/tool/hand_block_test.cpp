@@ -1,5 +1,5 @@
 // A hand as a block of the State: tangents, power balance, opposite forces, friction.
-#include "palpate/tool/hand_block.h"
+#include "tool/hand_block.h"
 
 #include <gtest/gtest.h>
 

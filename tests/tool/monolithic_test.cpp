@@ -2,7 +2,7 @@
 
 #include "palpate/dynamics/system.h"
 #include "palpate/integrate/integrators.h"
-#include "palpate/tool/rigid_block.h"
+#include "tool/rigid_block.h"
 #include "tool_fixtures.h"
 
 using namespace palpate;

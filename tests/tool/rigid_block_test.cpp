@@ -1,4 +1,4 @@
-#include "palpate/tool/rigid_block.h"
+#include "tool/rigid_block.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "palpate/tool/simbody_block.h"
+#include "tool/simbody_block.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "palpate/dynamics/system.h"
 #include "tool_fixtures.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "palpate/core/counters.h"
+#include "core/counters.h"
 #include "tool_fixtures.h"
 
 using namespace palpate;

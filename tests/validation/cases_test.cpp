@@ -6,7 +6,7 @@
 #include <set>
 
 #include "palpate/core/error.h"
-#include "palpate/validation/validation.h"
+#include "validation.h"
 
 using palpate::validation::Fault;
 using palpate::validation::Measurement;

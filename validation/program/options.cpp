@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "palpate/cli/other_program.h"
+#include "cli/other_program.h"
 #include "palpate/core/error.h"
 
 namespace palpate::cli {

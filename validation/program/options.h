@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "palpate/cli/program.h"
-#include "palpate/cli/stability_options.h"
+#include "cli/program.h"
+#include "cli/stability_options.h"
 
 namespace palpate::cli {
 

@@ -6,14 +6,14 @@
 #include <array>
 #include <map>
 
+#include "cli/paths.h"
+#include "cli/progress.h"
+#include "cli/stop.h"
+#include "cli/undelivered.h"
 #include "options.h"
-#include "palpate/cli/paths.h"
-#include "palpate/cli/progress.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/undelivered.h"
-#include "palpate/report/run_report.h"
-#include "palpate/report/table.h"
-#include "palpate/store/result_folder.h"
+#include "report/run_report.h"
+#include "report/table.h"
+#include "store/result_folder.h"
 
 namespace palpate::cli {
 namespace {

@@ -6,17 +6,17 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cli/paths.h"
+#include "cli/progress.h"
+#include "cli/stop.h"
+#include "cli/undelivered.h"
 #include "options.h"
-#include "palpate/cli/paths.h"
-#include "palpate/cli/progress.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/undelivered.h"
 #include "palpate/core/error.h"
-#include "palpate/report/run_report.h"
-#include "palpate/report/table.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/result_folder.h"
-#include "palpate/validation/validation.h"
+#include "report/run_report.h"
+#include "report/table.h"
+#include "store/atomic_file.h"
+#include "store/result_folder.h"
+#include "validation.h"
 #include "validation_pool.h"
 
 namespace palpate::cli {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "palpate/cli/stop.h"
-#include "palpate/core/bytes.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/process_pool.h"
+#include "cli/stop.h"
+#include "core/bytes.h"
+#include "core/clock.h"
+#include "core/process_pool.h"
 
 namespace palpate::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/validation/validation.h"
+#include "validation.h"
 
 namespace palpate::cli {
 

@@ -3,9 +3,9 @@
 
 #include "cell_json.h"
 #include "cell_runner.h"
-#include "palpate/core/bytes.h"
+#include "core/bytes.h"
+#include "core/process_pool.h"
 #include "palpate/core/error.h"
-#include "palpate/core/process_pool.h"
 #include "palpate/integrate/integrators.h"
 
 namespace palpate::stability {

@@ -1,6 +1,6 @@
 #include "cell_runner.h"
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 
 namespace palpate::stability {

@@ -3,10 +3,10 @@
 #include "cell_json.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
-#include "palpate/store/atomic_file.h"
-#include "palpate/store/csv.h"
-#include "palpate/store/summary.h"
 #include "palpate/tool/tool.h"
+#include "store/atomic_file.h"
+#include "store/csv.h"
+#include "store/summary.h"
 
 namespace palpate::stability {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "cell_runner.h"
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 

@@ -5,7 +5,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "palpate/integrate/linear_step.h"
+#include "integrate/linear_step.h"
 
 // x' = w G x, G = [0 1; -1 -2z], so that Z = H w G = y G.
 //

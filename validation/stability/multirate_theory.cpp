@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "palpate/integrate/multirate.h"
+#include "integrate/multirate.h"
 
 // Multi-rate methods are A-stable for each side alone.  For two sides that are stiff in each other no theorem
 // is known, so the matrix of their step is made from the coupling tables

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/tool/tool.h"
 #include "scene_run.h"
 

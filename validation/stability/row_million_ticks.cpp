@@ -2,8 +2,8 @@
 #include <limits>
 
 #include "alive.h"
+#include "core/clock.h"
 #include "multirate_theory.h"
-#include "palpate/core/clock.h"
 #include "scene_run.h"
 
 // A million haptic ticks are 1000 s, a hundred thousand exchange periods of 10 ms, each with its own query of

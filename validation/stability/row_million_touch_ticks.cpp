@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/tool/tool.h"
 #include "tool_scene.h"
 

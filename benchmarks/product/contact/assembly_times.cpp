@@ -1,6 +1,6 @@
 #include "product/contact/assembly_times.h"
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/linear/solvers.h"

@@ -1,8 +1,8 @@
 #pragma once
 #include <memory>
 
+#include "dynamics/mixed_precision_step.h"
 #include "palpate/dynamics/linear_solver.h"
-#include "palpate/dynamics/mixed_precision_step.h"
 #include "palpate/loop/world.h"
 
 namespace palpate::bench {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #include "product/contact.h"

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "palpate/contact/gpu_device.h"
-#include "palpate/core/instructions.h"
-#include "palpate/store/provenance.h"
+#include "contact/gpu_device.h"
+#include "core/instructions.h"
 #include "product/contact.h"
+#include "store/provenance.h"
 
 namespace palpate::bench {
 

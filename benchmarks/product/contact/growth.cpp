@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/contact/sources.h"
-#include "palpate/core/clock.h"
+#include "contact/sources.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/state.h"
 #include "palpate/mesh/generators.h"

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "palpate/store/provenance.h"
 #include "product/contact.h"
+#include "store/provenance.h"
 
 namespace palpate::bench {
 namespace {

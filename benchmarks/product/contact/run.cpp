@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/clock.h"
 #include "palpate/contact/contact_force.h"
-#include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
-#include "palpate/proxy/pruner.h"
 #include "product/contact.h"
 #include "product/contact/assembly_times.h"
 #include "product/contact/statistics.h"
+#include "proxy/pruner.h"
 
 namespace palpate::bench {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 #include "product/fem.h"

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "mesh/spatial_order.h"
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/mesh/spatial_order.h"
 
 namespace palpate::bench {
 namespace {

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
+#include "dynamics/mixed_precision_step.h"
 #include "palpate/core/error.h"
-#include "palpate/dynamics/mixed_precision_step.h"
 #include "palpate/dynamics/state.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/integrate/integrators.h"

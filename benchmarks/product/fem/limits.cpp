@@ -2,9 +2,9 @@
 #include <cmath>
 #include <vector>
 
-#include "palpate/core/clock.h"
-#include "palpate/core/huge_pages.h"
-#include "palpate/core/team.h"
+#include "core/clock.h"
+#include "core/huge_pages.h"
+#include "core/team.h"
 #include "product/fem.h"
 
 namespace palpate::bench {

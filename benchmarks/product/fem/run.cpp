@@ -6,10 +6,10 @@
 #include <numeric>
 #include <type_traits>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
+#include "dynamics/mixed_precision_step.h"
 #include "palpate/core/error.h"
 #include "palpate/core/workers.h"
-#include "palpate/dynamics/mixed_precision_step.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "product/fem.h"

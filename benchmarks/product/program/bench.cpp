@@ -5,11 +5,11 @@
 #include "bench_contact.h"
 #include "bench_continuity.h"
 #include "bench_fem.h"
+#include "cli/scene_of.h"
+#include "cli/stop.h"
 #include "options.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/stop.h"
 #include "palpate/core/error.h"
-#include "palpate/report/table.h"
+#include "report/table.h"
 
 namespace palpate::cli {
 namespace {

@@ -5,12 +5,12 @@
 #include <map>
 
 #include "bench_contact_ratios.h"
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/stop.h"
+#include "cli/scene_of.h"
+#include "cli/stop.h"
 #include "palpate/core/error.h"
-#include "palpate/report/table.h"
-#include "palpate/store/atomic_file.h"
 #include "product/contact.h"
+#include "report/table.h"
+#include "store/atomic_file.h"
 
 namespace palpate::cli {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "palpate/cli/stop.h"
-#include "palpate/report/table.h"
+#include "cli/stop.h"
+#include "report/table.h"
 
 namespace palpate::cli {
 namespace {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/cli/scene_of.h"
-#include "palpate/cli/stop.h"
-#include "palpate/report/table.h"
+#include "cli/scene_of.h"
+#include "cli/stop.h"
 #include "product/continuity.h"
+#include "report/table.h"
 
 namespace palpate::cli {
 namespace {

@@ -7,12 +7,12 @@
 #include <map>
 #include <set>
 
-#include "palpate/cli/stop.h"
+#include "cli/stop.h"
 #include "palpate/core/error.h"
-#include "palpate/report/plot.h"
-#include "palpate/report/table.h"
-#include "palpate/store/atomic_file.h"
 #include "product/fem.h"
+#include "report/plot.h"
+#include "report/table.h"
+#include "store/atomic_file.h"
 
 namespace palpate::cli {
 namespace {

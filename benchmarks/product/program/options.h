@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/cli/program.h"
+#include "cli/program.h"
 
 namespace palpate::cli {
 

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "palpate/cli/stop.h"
+#include "cli/stop.h"
 
 namespace palpate::cli {
 namespace {

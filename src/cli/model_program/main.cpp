@@ -5,21 +5,21 @@
 #include <iostream>
 #include <memory>
 
+#include "cli/guarded.h"
+#include "cli/progress.h"
+#include "cli/stop.h"
+#include "cli/streams.h"
+#include "core/clock.h"
 #include "guard.h"
 #include "memory_question.h"
 #include "options.h"
 #include "outcome.h"
-#include "palpate/cli/guarded.h"
-#include "palpate/cli/progress.h"
-#include "palpate/cli/stop.h"
-#include "palpate/cli/streams.h"
-#include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
-#include "palpate/store/atomic_file.h"
 #include "pictures.h"
 #include "size_question.h"
 #include "sources.h"
+#include "store/atomic_file.h"
 #include "worker.h"
 
 namespace palpate::cli {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "palpate/core/memory.h"
+#include "core/memory.h"
 
 namespace palpate::cli {
 namespace {

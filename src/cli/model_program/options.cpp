@@ -9,12 +9,12 @@
 #include <memory>
 #include <sstream>
 
-#include "palpate/cli/help_formatter.h"
-#include "palpate/cli/option_checks.h"
+#include "cli/help_formatter.h"
+#include "cli/option_checks.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
-#include "palpate/store/provenance.h"
 #include "sources.h"
+#include "store/provenance.h"
 
 namespace palpate::cli {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "palpate/model/make_model.h"
+#include "model/make_model.h"
 
 namespace palpate::cli {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "palpate/core/clock.h"
-#include "palpate/report/table.h"
+#include "core/clock.h"
+#include "report/table.h"
 
 namespace palpate::cli {
 namespace {

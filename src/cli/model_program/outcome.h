@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/model/make_model.h"
+#include "model/make_model.h"
 
 namespace palpate::cli {
 

@@ -9,8 +9,8 @@
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
 #include "palpate/mesh/quality.h"
-#include "palpate/render/available.h"
-#include "palpate/render/scene.h"
+#include "render/available.h"
+#include "render/scene.h"
 
 namespace palpate::cli {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "palpate/mesh/layered_model.h"
+#include "mesh/layered_model.h"
 
 namespace palpate::cli {
 

@@ -5,8 +5,8 @@
 
 #include <iostream>
 
+#include "mesh/size_check.h"
 #include "palpate/core/error.h"
-#include "palpate/mesh/size_check.h"
 
 namespace palpate::cli {
 

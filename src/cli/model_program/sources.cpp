@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
-#include "palpate/shapes/shapes.h"
-#include "palpate/store/content_hash.h"
+#include "shapes/shapes.h"
+#include "store/content_hash.h"
 
 namespace palpate::cli {
 

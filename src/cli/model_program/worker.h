@@ -2,7 +2,7 @@
 #include <functional>
 #include <string>
 
-#include "palpate/model/tetrahedralise.h"
+#include "model/tetrahedralise.h"
 
 // CGAL, Qhull and GMP work on numbers that nobody saw before: a division by zero inside of them ends the
 // process.  So a model is made in a child process, by a program that survives it, in a working folder that is

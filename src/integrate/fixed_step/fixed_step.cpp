@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/clock.h"
+#include "core/counters.h"
+#include "core/finite.h"
 #include "integrate/settings.h"
 #include "integrate/tuning.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 

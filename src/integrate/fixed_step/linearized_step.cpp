@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/clock.h"
+#include "core/finite.h"
 #include "integrate/tuning.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 

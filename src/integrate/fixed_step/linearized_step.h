@@ -1,6 +1,6 @@
 #pragma once
+#include "dynamics/mixed_precision_step.h"
 #include "integrate/step_solver.h"
-#include "palpate/dynamics/mixed_precision_step.h"
 #include "palpate/dynamics/repeated_step.h"
 #include "palpate/dynamics/step_assembly.h"
 

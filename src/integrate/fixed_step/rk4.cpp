@@ -1,6 +1,6 @@
+#include "core/finite.h"
 #include "integrate/fixed_step/fixed_step.h"
 #include "integrate/make.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "core/clock.h"
+#include "core/finite.h"
 #include "integrate/error_weights.h"
 #include "integrate/fixed_step/displace.h"
 #include "integrate/tuning.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 

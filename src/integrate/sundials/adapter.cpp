@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/counters.h"
 #include "integrate/sundials/check.h"
 #include "integrate/sundials/vector_ops.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 
 namespace palpate::integrate::sun {

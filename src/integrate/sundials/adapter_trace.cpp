@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/finite.h"
 #include "integrate/sundials/adapter.h"
 #include "integrate/sundials/vector_ops.h"
-#include "palpate/core/finite.h"
 
 // Trace records of the steps of an Adapter, accepted and rejected.
 

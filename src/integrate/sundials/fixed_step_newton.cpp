@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "core/finite.h"
 #include "integrate/sundials/check.h"
 #include "integrate/sundials/release.h"
 #include "integrate/tuning.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::integrate::sun {
 

@@ -7,6 +7,9 @@
 #include <limits>
 #include <memory>
 
+#include "core/clock.h"
+#include "core/counters.h"
+#include "core/finite.h"
 #include "integrate/make.h"
 #include "integrate/settings.h"
 #include "integrate/step_solver.h"
@@ -15,10 +18,7 @@
 #include "integrate/sundials/release.h"
 #include "integrate/sundials/vector_ops.h"
 #include "integrate/tuning.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 namespace sun {

@@ -1,4 +1,4 @@
-#include "palpate/integrate/linear_step.h"
+#include "integrate/linear_step.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -5,9 +5,9 @@
 #include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
+#include "integrate/multirate.h"
 #include "integrate/sundials/check.h"
 #include "palpate/core/error.h"
-#include "palpate/integrate/multirate.h"
 
 // One step H of a multi-rate infinitesimal method (Sandu 2019) starts from z_1 = y_n. With its abscissae c_i
 // and coupling coefficients g_ij(tau) = sum_k G^k_ij tau^k, each stage is

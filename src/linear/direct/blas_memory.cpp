@@ -10,8 +10,8 @@
 #include <csignal>
 #include <mutex>
 
+#include "core/memory.h"
 #include "palpate/core/error.h"
-#include "palpate/core/memory.h"
 
 namespace palpate::linear {
 namespace {

@@ -1,10 +1,10 @@
 #include "linear/direct/direct_solver.h"
 
+#include "core/clock.h"
+#include "core/counters.h"
+#include "core/finite.h"
 #include "linear/direct/blas_memory.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/core/finite.h"
 
 namespace palpate::linear {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "core/team.h"
 #include "linear/mixed_precision/node_order.h"
-#include "palpate/core/team.h"
 
 namespace palpate::linear {
 

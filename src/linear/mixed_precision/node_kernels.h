@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "palpate/core/instructions.h"
+#include "core/instructions.h"
 
 namespace palpate::linear {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "palpate/core/clock.h"
+#include "core/clock.h"
 
 namespace palpate::linear {
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
 
+#include "dynamics/mixed_precision_step.h"
 #include "linear/mixed_precision/lagged_matrix_policy.h"
 #include "linear/mixed_precision/solve_state.h"
-#include "palpate/dynamics/mixed_precision_step.h"
 
 namespace palpate::linear {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "palpate/core/huge_pages.h"
+#include "core/huge_pages.h"
 
 namespace palpate::linear {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <Eigen/LU>
 
+#include "core/huge_pages.h"
 #include "palpate/core/error.h"
-#include "palpate/core/huge_pages.h"
 
 namespace palpate::linear {
 

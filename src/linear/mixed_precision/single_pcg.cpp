@@ -2,15 +2,15 @@
 #include <cmath>
 #include <utility>
 
+#include "core/clock.h"
+#include "core/counters.h"
+#include "dynamics/energy_tolerance.h"
+#include "dynamics/mixed_precision_step.h"
 #include "linear/make.h"
 #include "linear/mixed_precision/refinement.h"
 #include "linear/mixed_precision/single_solve.h"
 #include "linear/settings.h"
-#include "palpate/core/clock.h"
-#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/dynamics/energy_tolerance.h"
-#include "palpate/dynamics/mixed_precision_step.h"
 
 namespace palpate::linear {
 namespace {

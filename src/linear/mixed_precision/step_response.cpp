@@ -1,4 +1,4 @@
-#include "palpate/linear/step_response.h"
+#include "linear/step_response.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "faults.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/validation/validation.h"
+#include "validation.h"
 
 // The internal forces of a body derive from an energy that is invariant under rigid motion.  Their sum and
 // their moment about any point are zero for any deformation (Newton's third law).

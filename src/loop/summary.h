@@ -1,0 +1,50 @@
+#pragma once
+#include "palpate/loop/run.h"
+#include "scene/needs.h"
+#include "store/summary.h"
+
+namespace palpate::loop {
+
+/// Returns scene::needs() with the linear solver that the scene's integrator will use.
+std::vector<scene::Need> needs(const scene::Description& description);
+
+/// Returns the counters of a hand's device (device::Device::tallies).
+std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand);
+
+/// Penetration depth of a [[contact]], and quadrature error of its sum over points.
+struct Overlap {
+  std::string pair;        ///< "head - tool"
+  double deepest_m = 0.0;  ///< Largest overlap of all queries; 0: no contact.
+  /// Half of the smallest extent of the two sides' bounding boxes: deeper overlaps may be pushed out at the
+  /// far side, or not at all. Infinite without contact. For a body against itself, kOwnShare of the depth up
+  /// to which self-overlaps are detected.
+  double half_width_m = 0.0;
+  bool of_itself = false;  ///< Contact of a body with itself.
+  /// Fraction of the detectable depth of self-overlaps at which a run reports them as too deep, before they
+  /// are missed.
+  static constexpr double kOwnShare = 0.75;
+  double quadrature_error = 0.0;  ///< Relative, as contact::SumError::largest(); 0: not estimated.
+  double largest_share = 0.0;     ///< Largest contribution of a single point.
+  bool too_deep() const { return deepest_m > half_width_m; }
+};
+/// Returns one entry per [[contact]] of the scene.
+std::vector<Overlap> overlaps_of(const World& world);
+
+/// Error of the reduced response of the bodies to a tool ("points"; loop/model_reduction.h): relative upper
+/// bounds over the exchanges.
+struct AnswerError {
+  std::string tool;                  ///< Name in [[contact]].
+  double requested = 0.0;            ///< exchange.linearisation_error
+  double largest = 0.0, mean = 0.0;  ///< Largest and mean bound over the exchanges.
+  long exchanges = 0;                ///< Exchanges with contact.
+  long beyond = 0;                   ///< Exchanges whose iteration ended above the requested error.
+  long factored = 0;                 ///< Exchanges with a factored step matrix, which are exact.
+};
+/// Returns one entry per tool that was in contact with a body in this way.
+std::vector<AnswerError> answer_errors_of(const World& world);
+
+/// Returns the summary of a run and its cost: options, sizes, counts, timings, constructions. The caller adds
+/// the command line and writes it.
+store::Summary summarise(const World& world, const RunResult& result, double assemble_s);
+
+}  // namespace palpate::loop
