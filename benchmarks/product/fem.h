@@ -172,9 +172,4 @@ std::string to_json(const std::vector<AccuracyPoint>& points);
 
 std::string to_json(const FemBenchReport& report);
 
-/// Rows of src/integrate/linear/auto_table.inc: for sizes, stiffnesses and tolerances the solver that took
-/// the least CPU time for factor and solve of a step, one thread, here and now; each row is handed over as
-/// soon as it is measured.
-void calibrate_auto(const std::function<void(const std::string&)>& row_measured, bool (*stop)() = nullptr);
-
 }  // namespace palpate::bench

@@ -338,43 +338,4 @@ double scaling_exponent(const std::vector<std::pair<double, double>>& points) {
   return n >= 2 && spread > 1e-12 ? (n * xy - x * y) / spread : std::numeric_limits<double>::quiet_NaN();
 }
 
-void calibrate_auto(const std::function<void(const std::string&)>& row_measured, bool (*stop)()) {
-  const std::vector<BeamSize> sizes = {{"", 8, 2}, {"", 16, 4}, {"S", 36, 9}, {"M", 56, 13}};
-  FemBenchOptions options;
-  options.checks = 0;
-  options.same_motion = false;
-  for (const BeamSize& size : sizes)
-    for (const auto& [E, h] :
-         {std::pair{1e5, 1e-3}, {1e5, 3e-3}, {1e5, 1e-2}, {1e6, 1e-2}, {1e7, 1e-2}, {1e8, 1e-2}}) {
-      Warm warm;
-      double direct = 0.0;  // knows no tolerance
-      for (const double rtol : {1e-3, 1e-6, 1e-9}) {
-        std::string fastest, times;
-        double least = std::numeric_limits<double>::infinity();
-        FemBenchRow row;
-        for (const char* solver : {"pcg-single", "pcg-two-level", "cholmod"}) {
-          if (stop && stop()) return;
-          const bool known = std::string(solver) == "cholmod" && direct > 0.0;
-          // a direct solve takes as long every time
-          options.steps = std::string(solver) == "cholmod" ? 3 : 7;
-          if (!known)
-            row = time_steps(size,
-                             {.name = "linearly-implicit-euler",
-                              .step_s = h,
-                              .linear_solver = solver,
-                              .linear_rtol = rtol},
-                             E, options, warm);
-          const double ms = known ? direct : row.solver_cpu_ms;
-          if (std::string(solver) == "cholmod") direct = ms;
-          times += fmt::format(" {} {:.3g}", solver, ms);
-          if (ms >= least) continue;
-          least = ms;
-          fastest = solver;
-        }
-        row_measured(fmt::format("{{{}, {:.3g}, {:g}, \"{}\"}},  // ms:{}\n", row.nodes,
-                                 row.squared_courant_number, rtol, fastest, times));
-      }
-    }
-}
-
 }  // namespace palpate::bench

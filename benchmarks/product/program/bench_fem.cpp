@@ -296,17 +296,6 @@ void write_files(const FemBenchReport& report, const std::filesystem::path& fold
 }  // namespace
 
 void bench_fem_sizes(const BenchArguments& arguments) {
-  if (!arguments.calibrate.empty()) {
-    std::string table;
-    bench::calibrate_auto(
-        [&](const std::string& row) {
-          table += row;
-          fmt::print("{}", row);
-        },
-        [] { return static_cast<bool>(stop_flag()); });
-    store::write_atomically(arguments.calibrate, table);
-    return;
-  }
   if (arguments.accuracy) return bench_accuracy(arguments);
   bench::FemBenchOptions options;
   if (!arguments.sizes.empty()) options.sizes = arguments.sizes;

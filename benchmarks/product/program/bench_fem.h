@@ -3,7 +3,7 @@
 
 namespace palpate::cli {
 
-/// palpate bench fem over sizes; or, with arguments.calibrate, the table of linear_solver = "auto".
+/// Runs `palpate bench fem` over sizes of the beam.
 void bench_fem_sizes(const BenchArguments& arguments);
 
 }  // namespace palpate::cli

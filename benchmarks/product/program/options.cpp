@@ -62,10 +62,6 @@ void add_bench(CLI::App& app, Invocation& invocation) {
       ->add_option("-o,--output", arguments->folder,
                    "fem: folder for bench-fem.json and bench-fem.svg; contact: for bench-contact.json")
       ->type_name("DIR");
-  command
-      ->add_option("--calibrate", arguments->calibrate,
-                   "fem: measure which solver is the fastest where, and write the table of \"auto\"")
-      ->type_name("FILE");
   command->add_option("--cells", arguments->cells, "fem: one beam of so many cells along, by way of a scene")
       ->check(CLI::Range(4, 1000));
   command->add_option("--step-s", arguments->step_s, "fem with --cells: the step [s]")

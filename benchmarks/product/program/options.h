@@ -25,7 +25,6 @@ struct BenchArguments {
   std::vector<double> youngs_moduli_pa;  ///< of fem; empty: 1e5 and 1e6
   std::string folder;                    ///< of fem and contact: where JSON and plot go; empty: nowhere
   bool accuracy = false;                 ///< of fem: error against run time of one motion instead
-  std::string calibrate;                 ///< of fem: file for the measured table of linear_solver = "auto"
   int repeats = 5;                       ///< of leave-out
   int paths = 1000;                      ///< of continuity
   int path_steps = 100;                  ///< of continuity
