@@ -103,6 +103,7 @@ void System::prepare(const StateView& state) {
     if (block->kind == BlockKind::kNodes && !inertia->diagonal()) nodal_mass_diagonal_ = false;
   }
   assemble_mass(state, mass_);
+  mean_nodal_mass_ = 0.0;
   nodal_mass_.resize(nodal_mass_diagonal_ ? layout.nodal_size : 0);
   inverse_nodal_mass_.resize(nodal_mass_.size());
   if (nodal_mass_diagonal_) {

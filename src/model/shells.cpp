@@ -136,18 +136,25 @@ Soup keep_one_body(const Soup& soup, bool largest, std::vector<std::string>& not
     }
   };
   keep(shells[bodies[0]]);
-  int solid = 0, cavities = 0;
+  const auto is_cavity = [&](const Shell& shell) {
+    return (shell.volume > 0) == inside_out && shell.holders == std::vector<int>{body};
+  };
+  int solid = 0, cavities = 0, islands = 0;
   for (const Shell& shell : shells) {
     if (std::find(shell.holders.begin(), shell.holders.end(), body) == shell.holders.end()) continue;
-    const bool opposite = (shell.volume > 0) == inside_out;
-    if (opposite && shell.holders.size() == 1) {
+    if (is_cavity(shell)) {
       keep(shell);
       ++cavities;
+    } else if (std::any_of(shell.holders.begin(), shell.holders.end(),
+                           [&](int holder) { return is_cavity(shells[static_cast<std::size_t>(holder)]); })) {
+      ++islands;
     } else {
       ++solid;
     }
   }
   if (solid > 0) notes.push_back(fmt::format("{} inner shells were removed: the body is solid there", solid));
+  if (islands > 0)
+    notes.push_back(fmt::format("{} shells in cavities were removed: they are separate bodies", islands));
   if (cavities > 0)
     notes.push_back(fmt::format("{} inner shells face inwards and were kept as cavities", cavities));
   drop_unused(out);

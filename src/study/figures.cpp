@@ -25,7 +25,8 @@ class FigureObserver : public loop::Observer {
     if (start_.size() != now.size()) start_ = now;
     for (Eigen::Index i = 0; i + 3 <= now.size(); i += 3) {
       const double moved = (now.segment<3>(i) - start_.segment<3>(i)).norm();
-      if (!(moved <= largest_displacement_m)) largest_displacement_m = moved;  // Also taken where it is NaN.
+      // NaN is taken, and stays: it compares as false with all later values.
+      if (moved > largest_displacement_m || std::isnan(moved)) largest_displacement_m = moved;
     }
   }
   void tick_of(std::size_t hand, const loop::TickRecord& tick) override {

@@ -121,6 +121,15 @@ TEST(Repair, KeepsACavity) {
   EXPECT_TRUE(noted(result, "cavities"));
 }
 
+// A shell in a cavity is a separate body, which the model cannot have.
+TEST(Repair, DropsAnIslandInACavity) {
+  const model::RepairedSurface result =
+      repaired(together(together(ball(), turned(ball(0.4, 5))), ball(0.2, 5)));
+  EXPECT_NEAR(volume(result.surface), volume(ball()) - volume(ball(0.4, 5)), 1e-12);
+  EXPECT_TRUE(noted(result, "1 shells in cavities were removed"));
+  EXPECT_FALSE(noted(result, "solid there"));
+}
+
 TEST(Repair, RefusesTwoBodiesUnlessTheLargestIsWanted) {
   const TriMesh two = together(ball(0.5, 5, Vec3(3, 0, 0)), ball());
   const std::string message = refusal([&] { repaired(two); });
