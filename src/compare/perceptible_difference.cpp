@@ -74,11 +74,12 @@ void add_bands(WrenchSeries& series, const MatX& difference, const MatX& referen
     d += power(difference.row(axis));
     r += power(reference.row(axis));
   }
-  for (std::size_t b = 0; b + 1 < kEdges.size() && kEdges[b] < 0.5 * rate; ++b) {
-    WrenchSeries::Band band{kEdges[b], std::min(kEdges[b + 1], 0.5 * rate), 0.0, 0.0};
+  const double nyquist = 0.5 * rate;
+  for (std::size_t b = 0; b < kEdges.size() && kEdges[b] < nyquist; ++b) {
+    const bool last = b + 1 == kEdges.size() || kEdges[b + 1] >= nyquist;
+    WrenchSeries::Band band{kEdges[b], last ? nyquist : kEdges[b + 1], 0.0, 0.0};
     for (Eigen::Index k = 0; k < d.size(); ++k) {
       const double f = rate * static_cast<double>(k) / static_cast<double>(n);
-      const bool last = b + 2 == kEdges.size() || kEdges[b + 1] >= 0.5 * rate;
       if (f < band.low_hz || (f >= band.high_hz && !last)) continue;
       band.difference += d[k];
       band.reference += r[k];

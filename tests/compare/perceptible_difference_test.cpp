@@ -59,6 +59,17 @@ TEST(PerceptibleDifference, AToneStandsInItsBand) {
   }
 }
 
+// At 4 kHz there is a fifth band, up to the Nyquist frequency.
+TEST(PerceptibleDifference, BandsReachTheNyquistFrequency) {
+  constexpr double kTick = 2.5e-4;
+  const auto a = ticks(none, none, kTick), b = ticks([](double t) { return tone(t, 900.0); }, none, kTick);
+  const compare::PerceptibleDifference d = compare::perceptible_difference(a, b);
+  ASSERT_EQ(d.force.bands.size(), 5u);
+  EXPECT_NEAR(d.force.bands[4].high_hz, 2000.0, 1e-6);
+  EXPECT_NEAR(d.force.bands[4].difference, 1.0 / std::numbers::sqrt2, 1e-3);
+  EXPECT_LT(d.force.bands[3].difference, 1e-3);
+}
+
 /// RMS over all bands: root of the sum of the bands' squares.
 double whole(const compare::WrenchSeries& s, double compare::WrenchSeries::Band::*part) {
   double out = 0.0;
