@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 TREE = Path(__file__).resolve().parents[2]
-FOLDERS = ("include", "src", "tests", "validation", "benchmarks", "packaging", "examples")
+FOLDERS = ("include", "src", "tests", "validation", "benchmarks", "packaging", "examples", "cmake")
 COLUMNS = 110
 NAMES = (".h", ".cpp", ".inl", ".py", ".toml", ".cmake", ".in", "CMakeLists.txt", ".md", "palpate", ".ci/run",
          ".vert", ".frag", ".comp", ".glsl", ".js", ".mjs", ".cff", ".yml")

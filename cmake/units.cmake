@@ -1,23 +1,22 @@
-# Sources that are compiled together.  Most of what a source costs to compile is what it includes: eight at
-# once take two fifths of the time.  In the preset `dev`, where one source is edited at a time, each is
-# compiled alone.  Names in unnamed namespaces are unique in a target therefore.  GCC takes the sources of a
-# unit for headers, and warns of classes with members of unnamed namespaces there.
+# Compiles sources in units. Most of the time of compiling a source is spent on its includes: units of eight
+# take two fifths of the time. The preset `dev` compiles each source alone. Names in unnamed namespaces must
+# therefore be unique in a target. GCC treats the sources of a unit as headers, and warns of classes with
+# members of types in unnamed namespaces there.
 #
-# CMake's own units (UNITY_BUILD) name their sources by absolute paths: a compiler cache would serve one
-# clone alone.
+# CMake's UNITY_BUILD includes sources by absolute paths, so that a compiler cache would serve one clone only.
 if(PALPATE_UNITY)
   target_compile_options(palpate_build_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 
-# palpate_alone(source...): each is compiled alone, because others have the same names in unnamed namespaces.
+# palpate_alone(source...): compiles each alone, because others have the same names in unnamed namespaces.
 function(palpate_alone)
   if(ARGN)
     set_source_files_properties(${ARGN} PROPERTIES PALPATE_ALONE ON)
   endif()
 endfunction()
 
-# palpate_make_units(TARGET): makes units of its sources by PALPATE_UNIT_SIZE, a property (default: 8), but
-# for those that are alone, are generated or have flags of their own.
+# palpate_make_units(TARGET): makes units of PALPATE_UNIT_SIZE sources (a property; default 8), except sources
+# that are alone, generated, or have flags per file.
 function(palpate_make_units target)
   get_target_property(size ${target} PALPATE_UNIT_SIZE)
   if(NOT size)
@@ -56,7 +55,7 @@ function(palpate_make_units target)
   endforeach()
 endfunction()
 
-# palpate_make_all_units(FOLDER): those of every target in it.
+# palpate_make_all_units(FOLDER): makes the units of every target in it.
 function(palpate_make_all_units folder)
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)

@@ -1,0 +1,42 @@
+# Precompiled headers: one per set of flags, reused by every target with that set.
+#   palpate_precompiled(TARGET library|cold_library|program|test)
+# Sources with flags per file (instruction sets) do not use them.
+function(palpate_precompiled target kind)
+  if(PALPATE_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM palpate_precompiled_${kind})
+    # DEFER expands its arguments at the end of the folder, when sources have their flags.
+    cmake_language(EVAL CODE "cmake_language(DEFER CALL palpate_skip_precompiled ${target})")
+  endif()
+endfunction()
+function(palpate_skip_precompiled target)
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "\\.cpp$")
+  foreach(source IN LISTS sources)
+    get_source_file_property(options ${source} COMPILE_OPTIONS)
+    if(options)
+      set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    endif()
+  endforeach()
+endfunction()
+function(palpate_add_precompiled kind)
+  if(PALPATE_PRECOMPILE)
+    set(name palpate_precompiled_${kind})
+    add_library(${name} OBJECT ${PROJECT_SOURCE_DIR}/src/precompiled.cpp)
+    target_link_libraries(${name} PRIVATE ${ARGN} Eigen3::Eigen fmt::fmt spdlog::spdlog palpate_build_flags)
+    # Named without its folder, so that the precompiled text is the same in every clone, and a compiler cache
+    # serves all of them.
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+    target_precompile_headers(${name} PRIVATE <precompiled.h>)
+    if(NOT kind MATCHES library)  # an executable's flags
+      set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+      target_compile_options(${name} PRIVATE -fPIE)
+    endif()
+  endif()
+endfunction()
+
+find_package(Eigen3 3.4 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+palpate_add_precompiled(library)
+palpate_add_precompiled(cold_library palpate_cold_flags)
+palpate_add_precompiled(program palpate_cold_flags)
