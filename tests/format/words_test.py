@@ -78,8 +78,8 @@ class Words(unittest.TestCase):
 
 class Planted(unittest.TestCase):
     def test_detects(self):
-        for text in ("Pose of the tool, one a tick.", "36 bytes a block", "The body hears of it.", "Own error",
-                     "A bunch of samples"):
+        for text in ("Pose of the tool, one a tick.", "36 bytes a block", "The body hears of it.",
+                     "Own error", "A bunch of samples"):
             with self.subTest(text):
                 self.assertEqual(len(wrong_words([("a.h:1", text)])), 1)
         for text in ("Of the tool, in world axes", "What a run came to"):
