@@ -8,30 +8,30 @@
 
 #include "palpate/core/error.h"
 
-// The loop at tick k: the device is sampled, x_k = x(kT); its velocity is the backward difference w_k = (x_k
-// - x_{k-1})/T; the tool goes on over the tick (y, u); the coupling makes F_k = -K (x_k - y_k) - B (w_k -
-// u_k); and the motors hold F_k over [kT + n T, (k+1)T + n T).
+// Loop at tick k. The device is sampled, x_k = x(kT); its velocity is the backward difference w_k = (x_k -
+// x_{k-1})/T; the tool advances over the tick (y, u); the coupling force is F_k = -K (x_k - y_k) - B (w_k -
+// u_k); the motors hold F_k over [kT + n T, (k+1)T + n T).
 //
-// Passivity of the wall (y = u = 0).  What the hand puts into device and wall up to tick N, in terms of the
-// samples: with D_k = x_k - x_{k-1}, the held force works F_{k-1-n} D_k exactly, and the device dissipates at
-// least b D_k^2/T over a tick (Cauchy and Schwarz), so
+// Passivity of the wall (y = u = 0). E is the work that the hand does on device and wall up to tick N, in
+// terms of the samples. With D_k = x_k - x_{k-1}, the work of the held force is F_{k-1-n} D_k exactly, and
+// the device dissipates at least b D_k^2/T over a tick (Cauchy-Schwarz inequality), so
 //     E >= sum -F_{k-1-n} D_k + b D_k^2/T.
 // For n = 0, K x_{k-1} D_k = K/2 (x_k^2 - x_{k-1}^2) - K/2 D_k^2 and B D_{k-1} D_k/T >= -|B| (D_k^2 +
-// D_{k-1}^2)/2T:  E >= K/2 (x_N^2 - x_0^2) + (b/T - K/2 - |B|/T) sum D^2.  A delay moves K's sample by n
-// differences, x_{k-1-n} = x_{k-1} - D_{k-1} - ... - D_{k-n}, each of which costs at most K D^2 once more:
+// D_{k-1}^2)/2T:  E >= K/2 (x_N^2 - x_0^2) + (b/T - K/2 - |B|/T) sum D^2. A delay moves the sample of K by n
+// differences, x_{k-1-n} = x_{k-1} - D_{k-1} - ... - D_{k-n}, each of which costs at most a further K D^2:
 //     b > (2n + 1) K T/2 + |B|.
-// Necessary, too, where B >= 0 and n = 0 (the triangle wave of period 2T) and where B = 0 (n = 0, or a slow
-// sine): Colgate and Schenkel (1997).  With both a delay and B it is sufficient.
+// The condition is also necessary for B >= 0 and n = 0 (triangle wave of period 2T) and for B = 0 (n = 0, or
+// a slow sine): Colgate and Schenkel (1997). With both a delay and B it is sufficient.
 //
-// Delay bound.  A zero-order hold delays by T/2 on the average; with t = T/2 + n T the loop is
+// Delay bound. A zero-order hold delays by T/2 on average; with t = T/2 + n T the loop is
 //     m s^2 + b s + (K + B s) exp(-s t) = 0,   exp(-s t) = 1 - s t + ...:
 //     (m + ...) s^2 + (b + B - K t) s + K = 0,
-// whose roots have negative real parts where K < (b + B)/t.  The terms left out are O((b + B) t/m).
+// whose roots have negative real parts for K < (b + B)/t. The neglected terms are O((b + B) t/m).
 //
-// Spectral radius.  State (x, v, w, y, u, q_0 .. q_n): device, its measured velocity, tool, and the forces on
-// their way, q_0 being held in the coming tick.  A step is linear in it, so its columns are the steps of the
-// unit vectors.  The device is exact (arm_transition); the tool is taken by its scheme
-// (tool/fixed_tick.cpp).
+// Spectral radius. The state (x, v, w, y, u, q_0 .. q_n) holds the device, its measured velocity, the tool,
+// and the forces in transit; q_0 is held in the coming tick. A step is linear in the state, so the columns of
+// its matrix are the steps of the unit vectors. The device is integrated exactly (arm_transition), the tool
+// by its scheme (tool/fixed_tick.cpp).
 
 namespace palpate::haptic_stability {
 namespace {
@@ -39,7 +39,7 @@ namespace {
 constexpr double kRounding = 1e-12;
 enum State { kX, kV, kW, kY, kU, kQ };
 
-/// One tick of the loop.
+/// Advances the state of the loop by one tick.
 class Step {
  public:
   explicit Step(const HapticLoopModel& loop)
@@ -74,7 +74,7 @@ class Step {
   void tool(const VecX& s, VecX& out) const {
     const double h = l_.tick_s, k = l_.coupling_stiffness_n_m, b = l_.coupling_damping_n_s_m,
                  K = l_.contact_stiffness_n_m, B = l_.contact_damping_n_s_m;
-    const VecX& handle = implicit_ ? out : s;  // at the tick's end, or its start
+    const VecX& handle = implicit_ ? out : s;  // at the end of the tick, or at its start
     const double f = k * (handle[kX] - s[kY]) + b * (handle[kW] - s[kU]) - K * s[kY] - B * s[kU];
     const double du = implicit_
                           ? h * (f - h * (k + K) * s[kU]) / (l_.tool_mass_kg + h * (b + B) + h * h * (k + K))
@@ -90,7 +90,8 @@ class Step {
 
 double loop_delay(const HapticLoopModel& loop) { return (0.5 + loop.delay_ticks) * loop.tick_s; }
 
-/// The largest K on a ladder of factors `ratio` before the first that is not stable, then bisected.
+/// Returns the largest K on a geometric sequence of ratio `ratio` before the first unstable one, refined by
+/// bisection.
 double largest_stiffness(HapticLoopModel& loop, const std::function<bool()>& stable, double ratio,
                          double width) {
   double& k = loop.coupling_stiffness_n_m;
@@ -131,7 +132,8 @@ MatX loop_matrix(const HapticLoopModel& loop) {
 }
 
 double spectral_radius(const HapticLoopModel& loop) {
-  // lengths in metres, times in ticks, forces over the coupling's: eigenvalues stay, rounding becomes small
+  // units: metres, ticks, and the coupling force; the similarity transform keeps the eigenvalues and reduces
+  // rounding errors
   MatX A = loop_matrix(loop);
   const double rate = 1.0 / loop.tick_s;
   VecX unit = VecX::Constant(
@@ -142,7 +144,7 @@ double spectral_radius(const HapticLoopModel& loop) {
 }
 
 bool is_stable(const HapticLoopModel& loop) {
-  // without arm and wall the whole drifts, which is an eigenvalue 1 that rounding may make larger
+  // without arm and wall the loop drifts: the eigenvalue 1 of the drift may be increased by rounding
   const bool drifts =
       !loop.tool_held && loop.contact_stiffness_n_m <= 0.0 && loop.device.arm_stiffness_n_m <= 0.0;
   return spectral_radius(loop) <= 1.0 + (drifts ? 1e3 * kRounding : kRounding);

@@ -12,25 +12,26 @@
 #include "palpate/tool/tool.h"
 #include "tool_section.h"
 
-// Stiffness of a contact at the tool.  A foundation of pressure k per depth [Pa/m] gives the force k V for an
-// overlap of volume V, so that the stiffness is k dV/dz = k A, A the cut of the tool with the wall's plane:
-//     penalty    k A                 the springs side by side
+// Stiffness of a contact at the tool. A foundation of pressure k per depth [Pa/m] gives the force k V for an
+// overlap volume V, so that the stiffness is k dV/dz = k A, where A is the cut of the tool with the plane of
+// the wall:
+//     penalty    k A                 springs in parallel
 //     body       2 E a/(1 - nu^2)    a flat punch of radius a on an elastic half-space (Sneddon 1965)
-// in series where the other side is a soft body, with pi a^2 = A: a square punch is 1.2 % stiffer than the
-// disc of its area.  At the most the tool lies on its largest side, or is pressed in up to its largest cut: A
-// is pi R^2 of a sphere, the largest section parallel to one of its faces of a mesh.  At the least it
-// touches with a disc of a tenth of its radius, of a mesh of half its largest extent.  Where E has regions,
-// the stiffest counts for the greatest value.  Damping: d A.  What yields by its mass (a free body) is taken
-// as held: stiffer.
+// The two are in series if the other side is a soft body, with pi a^2 = A: a square punch is 1.2 % stiffer
+// than the disc of its area. Greatest stiffness: the tool lies on its largest side, or is pressed in up to
+// its largest cut; A is pi R^2 for a sphere, the largest section parallel to a face for a mesh. Least
+// stiffness: the tool touches with a disc of a tenth of its radius; the radius of a mesh is half its largest
+// extent. If E has regions, the stiffest one determines the greatest value. Damping: d A. A free body, which
+// yields by its mass, is taken as held, which is stiffer.
 
 namespace palpate::haptic_stability {
 namespace {
 
-/// Of the tool: what its contacts depend on.
+/// Dimensions of the tool that determine its contacts.
 struct Shape {
-  double radius;        ///< half of its largest extent [m]
-  double reach;         ///< of its farthest point from its origin [m]
-  double largest_area;  ///< that it can lay on a wall [m^2]
+  double radius;        ///< Half of its largest extent [m]
+  double reach;         ///< Distance of its farthest point from its origin [m]
+  double largest_area;  ///< Largest contact area with a wall [m^2]
 };
 
 double disc(double radius) { return std::numbers::pi * radius * radius; }
@@ -44,7 +45,7 @@ Shape shape_of(const scene::Description& d) {
   return {0.5 * size.maxCoeff(), surface.vertices.colwise().norm().maxCoeff(), largest_section(surface)};
 }
 
-/// Plane-strain modulus of what the tool touches there; infinite for what is rigid.
+/// Returns the plane-strain modulus of the body that the tool touches; infinite for a rigid one.
 double modulus_of(const scene::Description& d, const std::string& other) {
   for (const SoftBodySpec& body : d.bodies)
     if (body.name == other) return body.youngs_modulus_pa / (1.0 - body.poissons_ratio * body.poissons_ratio);
@@ -56,8 +57,8 @@ ToolContact patch(const ContactSpec& contact, double modulus, double area) {
   return {1.0 / (1.0 / penalty + 1.0 / (2.0 * modulus * a)), contact.damping_pa_s_m * area};
 }
 
-/// A simulated hand is what its keys say, the arm that holds it included.  Of another device the scene knows
-/// the profile's mass at most.
+/// Copies the device figures to the loop. The scene specifies all figures of a simulated hand, including the
+/// arm that holds it; for another device it specifies at most the mass, by the profile.
 void add_device(const DeviceSpec& spec, HapticLoopModel& loop) {
   const device::DeviceFigures figures = device::figures_of(spec);
   loop.device.mass_kg = figures.mass;
@@ -89,13 +90,13 @@ HapticLoopModel loop_of(const scene::Description& d) {
   return loop;
 }
 
-// A contact turns the tool back by the lever of its force.  At the least a patch of radius a lies under the
-// middle, and its springs resist a tilt: integral of k x^2 over the disc = K a^2/4.  At the most the contact
-// lies at the tool's farthest point, R from its origin: K R^2.
+// A contact force turns the tool by its lever. Least stiffness: a patch of radius a lies under the centre of
+// the tool, and its springs resist a tilt: integral of k x^2 over the disc = K a^2/4. Greatest stiffness: the
+// contact lies at the farthest point of the tool, at R from its origin: K R^2.
 RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoopModel& loop,
                                   const ToolContactRange& range) {
-  constexpr double kStylus = 0.05;  // lever of a device's mass about its handle [m]
-  constexpr double kHeld = 1e6;     // times the tool
+  constexpr double kStylus = 0.05;  // lever of a device mass about its handle [m]
+  constexpr double kHeld = 1e6;     // mass of a held device over the mass of the tool
   const Mat3 inertia = tool::Tool(*d.tool, Vec3::Zero()).mass_matrix().topLeftCorner<3, 3>();
   RotationalLoop out{.loop = loop, .range = range};
   out.inertia_kg_m2 = Eigen::SelfAdjointEigenSolver<Mat3>(inertia).eigenvalues().minCoeff();
@@ -116,7 +117,8 @@ RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoopM
     device.damping_n_s_m *= kStylus * kStylus / a2;
   }
   out.driven = !d.device || device::figures_of(*d.device).max_torque > 0.0;
-  if (!out.driven) {  // a mass that stays where it is, and is not free to drift
+  if (!out.driven) {  // a device without torque output is held: its large mass stays in place and its damping
+                      // prevents drift
     device = {};
     device.mass_kg = kHeld * loop.tool_mass_kg;
     device.damping_n_s_m = 10.0 * device.mass_kg;

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <vector>
 
-// The part of a closed surface below a plane and its cut with the plane bound a volume, over which the area
-// vectors sum up to zero: so the cut has the area -sum n . a over the parts of the faces below it.  A face
-// with corners at the heights z0 <= z1 <= z2 is below z with the share
+// The part of a closed surface below a plane and its cut with the plane bound a volume, and the area vectors
+// of a closed boundary sum to zero: the cut has the area -sum n . a over the parts of the faces below the
+// plane. A face with corners at heights z0 <= z1 <= z2 has below z the share
 //     (z - z0)^2/((z1 - z0)(z2 - z0))            up to z1,
 //     1 - (z2 - z)^2/((z2 - z1)(z2 - z0))        beyond.
 namespace palpate::haptic_stability {
@@ -29,10 +29,11 @@ double share_below(Vec3 z, double height) {
 
 struct Direction {
   Vec3 normal;
-  double shadow;  ///< no cut across it is larger
+  double shadow;  ///< Projected area [m^2]: upper bound of the cuts normal to this direction
 };
 
-/// Normals of faces, the largest faces first; opposite ones cut alike.
+/// Returns the normals of the faces, in descending order of projected area; a normal within ten degrees of
+/// the normal or opposite normal of a larger face is left out.
 std::vector<Direction> face_directions(const TriMesh& surface) {
   std::vector<Vec3> areas;
   for (Eigen::Index i = 0; i < surface.faces.cols(); ++i) areas.push_back(area_vector(surface, i));
@@ -70,7 +71,7 @@ double section_area(const TriMesh& surface, const Vec3& normal, double height) {
 }
 
 double largest_section(const TriMesh& surface) {
-  constexpr int kCuts = 33;  // odd: one goes through the middle
+  constexpr int kCuts = 33;  // odd, so that one cut goes through the middle
   double largest = 0.0;
   for (const Direction& direction : face_directions(surface)) {
     if (direction.shadow <= largest) break;

@@ -22,7 +22,8 @@ ZWidthRow by_theory(const HapticLoopModel& free, const HapticLoopModel& held, do
   return row;
 }
 
-/// 0, and then in equal ratios up to shortly before the damping that is unstable by itself.
+/// Returns zero and a geometric sequence up to 0.97 times the damping at which the loop is unstable at the
+/// least stiffness.
 std::vector<double> dampings(const HapticLoopModel& held, int count) {
   const double b = held.device.damping_n_s_m, last = 0.97 * largest_damping(held);
   const double first = std::min(b > 0.0 ? 0.1 * b : 1e-3 * last, 0.1 * last);

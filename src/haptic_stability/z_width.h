@@ -9,80 +9,90 @@
 
 namespace palpate::haptic_stability {
 
-/// The stiffest virtual wall at one damping, by each verdict [N/m].  The coupling is the wall, the tool is
-/// held; `in_contact` is the stiffest coupling instead, with the tool free and pressed on the scene's
-/// stiffest contact (infinite: the scheme has no limit).
+/// Stiffest virtual wall at one damping, by each criterion [N/m]. The coupling is the wall and the tool is
+/// held, except in `in_contact`: there the limit is the stiffest coupling, with the tool free and pressed on
+/// the contact of the loop, the stiffest of the scene (infinite: the scheme has no limit).
 struct ZWidthRow {
   double damping = 0.0;  ///< [N s/m]
   double passive = 0.0, spectral = 0.0, delay_bound = 0.0, in_contact = 0.0;
   double simulated = 0.0;  ///< NaN: not simulated
 };
 
-/// Z-width of a loop (Colgate and Brown 1994): what it can render, over its damping.
+/// Z-width of a loop (Colgate and Brown 1994): the range of stiffnesses that the loop can render, over its
+/// damping.
 struct ZWidth {
-  std::vector<ZWidthRow> rows;  ///< simulated ones, ascending in damping
-  std::vector<ZWidthRow> fine;  ///< theory alone, for curves
-  bool stopped = false;
+  std::vector<ZWidthRow> rows;  ///< Rows with a simulation, in ascending order of damping
+  std::vector<ZWidthRow> fine;  ///< Rows by theory alone, for curves
+  bool stopped = false;         ///< Whether ZWidthOptions::stop ended the computation
 
-  /// Passive within stable, by theory and by simulation.
+  /// Returns whether the passive limit is at or below the stable limit in every row, by theory and by
+  /// simulation.
   bool passive_within_stable() const;
-  /// Largest relative difference of the simulated limit from the spectral one.
+  /// Returns the largest relative difference between the simulated and the spectral limit.
   double largest_difference() const;
 };
 
 struct ZWidthOptions {
   int rows = 12;
-  double duration_s = 4.0;  ///< of each simulation
+  double duration_s = 4.0;  ///< Simulated time per simulation [s]
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* stop = nullptr;
 };
+/// Computes the Z-width of a loop, from zero damping to 0.97 times largest_damping().
+/// @throws Error if options.rows < 3
 ZWidth z_width(const HapticLoopModel& loop, const ZWidthOptions& options);
 
-/// What a contact of the scene is worth at the tool: stiffness [N/m] and damping [N s/m].
+/// Stiffness [N/m] and damping [N s/m] of a contact of the scene at the tool.
 struct ToolContact {
   double stiffness = 0.0, damping = 0.0;
 };
+/// Softest and stiffest contact of the tool.
 struct ToolContactRange {
   ToolContact least, greatest;
 };
 
-/// The scene's tool, coupling and tick, and a device of default figures.  @throws Error for a scene without
-/// a tool of ticks
+/// Returns the loop model of a scene: its tool, coupling, tick and device; device figures that the scene does
+/// not specify keep their defaults.
+/// @throws Error for a scene without a tool, or with exchange.scheme = "monolithic", which has no ticks
 HapticLoopModel loop_of(const scene::Description& description);
-/// An estimate from the scene's keys (the derivation stands in scene_loop.cpp).
-/// @throws Error for a scene whose tool touches nothing, or by springs at points
+/// Estimates the range of contact stiffnesses at the tool from the keys of the scene (derivation:
+/// scene_loop.cpp).
+/// @throws Error for a scene without a contact of the tool, or with a contact of springs per point
 ToolContactRange contact_range(const scene::Description& description);
 
-/// The loop about one axis, as the translation of a point at the lever a: with I/a^2, k/a^2 and b/a^2 for
-/// inertia, stiffness and damping it is the same loop, and a is the tool's radius of gyration about that
-/// axis, the one of its least moment of inertia.  Of a simulated hand the scene knows all figures; another
-/// device has its mass and damping at a lever of 50 mm, the order of a stylus.  One that drives no torque is
-/// held.
+/// Loop about one rotation axis, as the translation of a point at the lever a: with I/a^2, k/a^2 and b/a^2 as
+/// inertia, stiffness and damping the equations are the same. a is the radius of gyration of the tool about
+/// the axis of its least moment of inertia. The scene specifies all figures of a simulated hand; any other
+/// device has its mass and damping at a lever of 50 mm, the order of a stylus. A device without torque output
+/// is held.
 struct RotationalLoop {
-  HapticLoopModel loop;    ///< masses of I/a^2 [kg], and so on
-  ToolContactRange range;  ///< at the lever
-  double lever_m = 0.0;    ///< a
-  double inertia_kg_m2 = 0.0;
-  bool driven = true;  ///< the device has torque
+  HapticLoopModel loop;    ///< Rotational loop: masses are I/a^2 [kg], stiffness and damping k/a^2 and b/a^2
+  ToolContactRange range;  ///< Contact at the lever
+  double lever_m = 0.0;    ///< Lever a [m]
+  double inertia_kg_m2 = 0.0;  ///< Least moment of inertia of the tool
+  bool driven = true;          ///< Whether the device can output torque
 };
-/// @param loop, range  of the translation
+/// Returns the loop about the axis of the least moment of inertia.
+/// @param loop, range  loop model and contact range of the translation
 RotationalLoop rotational_loop_of(const scene::Description& description, const HapticLoopModel& loop,
                                   const ToolContactRange& range);
 
-/// The scene's own loop at one contact.
+/// Loop of the scene at one contact.
 struct OperatingPoint {
   std::string name;
   ToolContact contact;
-  double series = 0.0;            ///< of coupling and contact [N/m]
-  double radius = 0.0;            ///< spectral
-  double largest_coupling = 0.0;  ///< at the scene's damping, by theory [N/m]
-  bool simulated_stable = false;
-  bool passive = false;  ///< the coupling as a wall is
-  bool held = false;     ///< the device is, by the loop's arm
-  /// @param scale  from [N/m] to `unit`
+  double series = 0.0;            ///< Stiffness of coupling and contact in series [N/m]
+  double radius = 0.0;            ///< Spectral radius of the loop
+  double largest_coupling = 0.0;  ///< Largest stable coupling at the damping of the scene, by theory [N/m]
+  bool simulated_stable = false;  ///< Whether the simulation stayed bounded
+  bool passive = false;           ///< Whether the coupling is passive as a wall
+  bool held = false;              ///< Whether the arm of the loop holds the device
+  /// Returns the verdict on this point as a sentence.
+  /// @param scale  conversion factor from [N/m] to `unit`
   std::string words(double tick_s, double scale = 1.0, const std::string& unit = "N/m") const;
 };
-/// Tool in the air, in the softest and in the stiffest contact.
+/// Returns three operating points: tool in free air, in the softest and in the stiffest contact; each is
+/// simulated for `duration_s`.
 std::vector<OperatingPoint> operating_points(HapticLoopModel loop, const ToolContactRange& range,
                                              double duration_s);
 
