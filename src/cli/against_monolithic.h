@@ -7,17 +7,18 @@
 
 namespace palpate::cli {
 
-/// Repeats a run with tool and bodies as one system, and prints against_monolithic_remarks().
-/// @param real_time  whether the run was
+/// Computes the monolithic solution of a run (tool and bodies integrated together), prints
+/// against_monolithic_remarks() and returns the errors of the run against it.
+/// @param real_time  whether the run was in real time
 compare::AgainstMonolithic against_monolithic(const loop::World& world,
                                               const std::vector<loop::HapticRecord>& records, bool real_time);
 
-/// The error of the wrench on each hand against the monolithic solution, a line each; none where there is no
-/// such solution.
+/// Returns the error of the wrench on each hand against the monolithic solution, one line per quantity; empty
+/// if there is no monolithic solution.
 std::vector<std::string> against_monolithic_remarks(const scene::Description& description,
                                                     const compare::AgainstMonolithic& against);
 
-/// Its figures into the run's summary.
+/// Adds the errors against the monolithic solution to the summary of the run.
 void add_against_monolithic(store::Summary& summary, const scene::Description& description,
                             const compare::AgainstMonolithic& against);
 

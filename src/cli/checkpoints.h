@@ -9,43 +9,50 @@
 
 namespace palpate::cli {
 
-/// The checkpoint in the folder of a run: the last whole one.
+/// Returns the path of the last complete checkpoint in the folder of a run.
 std::string checkpoint_path(const std::string& folder);
 
-/// What a run of an earlier day left there, which would pass for this one's.
+/// Removes the checkpoint and the journals of an earlier run, which would pass for those of this run.
 void remove_checkpoint(const std::string& folder);
 
-/// Refuses at the start what a run with checkpoints cannot keep.  @throws Error with the reason
+/// Rejects at the start the options of a run whose state checkpoints cannot keep.
+/// @throws Error with the reason
 void check_checkpoints(const RunArguments& arguments, const scene::Description& description);
 
-/// What a checkpoint knows of its run beside the loop's state.
+/// Identity of a run, kept in its checkpoints together with the state of the loop.
 struct RunIdentity {
-  RunArguments arguments;  ///< as they were typed
-  std::string scene_path;  ///< absolute
-  std::string bodies;      ///< loop::fingerprint() of the World as it was assembled
-  std::string cpu;         ///< of the machine: others round differently
-  /// of the kernels in use, ours and the linear algebra's, which the environment may choose: likewise
+  RunArguments arguments;  ///< Arguments as typed
+  std::string scene_path;  ///< Absolute path of the scene
+  std::string bodies;      ///< loop::fingerprint() of the World as assembled
+  std::string cpu;         ///< CPU of the machine: other CPUs round differently
+  /// Instruction sets of the kernels in use, those of palpate and of the linear algebra; the environment may
+  /// select them, and they too change rounding
   std::string instructions;
   void archive(Archive& a);
 };
 
-/// "avx512, OpenBLAS SKYLAKEX"
+/// Returns the instruction sets in use, as "avx512, OpenBLAS SKYLAKEX".
 std::string instructions_in_use();
 
-/// When to keep a run of that scene, and how: each checkpoint takes the place of the one before.
+/// Returns the plan of when and how to write checkpoints of a run of that scene; each checkpoint replaces the
+/// one before.
 loop::CheckpointPlan checkpoint_plan(RunIdentity identity, const scene::Description& description,
                                      const std::string& folder);
 
+/// Prints the number of checkpoints and the time that they took; `every_s` is their interval in simulated
+/// time [s].
 void print_checkpoints(const loop::CheckpointCost& cost, double every_s);
+/// Adds these figures to the summary of the run.
 void add_checkpoints(store::Summary& summary, const loop::CheckpointCost& cost, double every_s);
 
-/// A run that goes on.
+/// Run to resume from its checkpoint.
 struct Resumption {
   std::string folder;
   RunIdentity identity;
   store::Checkpoint checkpoint;
-  loop::Resumed from;  ///< what `checkpoint` holds
+  loop::Resumed from;  ///< State of the loop, decoded from `checkpoint`
 };
+/// Resumes the run to its end.  @return the exit status
 int resume_run(Resumption& resumption, const scene::Description& description, MissingOutputs& missing);
 
 }  // namespace palpate::cli

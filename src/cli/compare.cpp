@@ -23,7 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Scenes with the command line's changes in their text: results are kept under that text.
+/// Returns the scenes with the changes of the command line applied to their text: results are stored under
+/// that text.
 std::vector<scene::Description> scenes_of(const CompareArguments& arguments) {
   std::vector<scene::Description> out;
   for (const std::string& name : arguments.scenes) {
@@ -72,7 +73,7 @@ report::ReferenceError reference_of(const compare::Reference& r) {
           r.peak_torque_n_m};
 }
 
-/// Adds to `missing` what a finished comparison lacks.
+/// Adds the missing outputs of a finished comparison.
 void add_missing(const compare::Comparison& comparison, MissingOutputs& missing) {
   for (const compare::SceneComparison& scene : comparison.scenes) {
     if (!scene.reference.trouble.empty())

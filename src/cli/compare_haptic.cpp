@@ -67,7 +67,7 @@ std::string outcome_of(const HapticPoint& p) {
 void print_points(const HapticComparison& c) {
   std::vector<std::vector<std::string>> rows;
   for (const HapticPoint& p : c.points) {
-    if (p.status == compare::PointStatus::kMissing) continue;  // stopped before it
+    if (p.status == compare::PointStatus::kMissing) continue;  // not computed: the comparison was stopped
     const bool ran = p.status == compare::PointStatus::kOk;
     const auto time = [ran](double s) { return ran ? fmt::format("{:.3f}", s) : std::string("-"); };
     rows.push_back(
@@ -152,7 +152,7 @@ void keep_summary(const CompareArguments& a, const scene::Description& d, const 
   store::write_summary((fs::path(folder) / "summary.json").string(), summary);
 }
 
-/// Adds to `missing` what a finished comparison lacks.
+/// Adds the missing outputs of a finished comparison.
 void add_missing(const HapticComparison& c, MissingOutputs& missing) {
   if (!c.reference.trouble.empty()) missing.add("checked reference of " + c.scene, c.reference.trouble);
 }

@@ -12,7 +12,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// More points than this are left to compare.csv and the report: a screen holds no more.
+/// Most points printed on the terminal; more are left to compare.csv and the report.
 constexpr std::size_t kPointsOnScreen = 80;
 
 std::string outcome_text(const compare::ComparePoint& p) {
@@ -25,7 +25,7 @@ std::string outcome_text(const compare::ComparePoint& p) {
   return line.size() <= kReasonLength ? line : line.substr(0, line.find_last_of(' ', kReasonLength)) + " ...";
 }
 
-/// The end of a sequence of neighbouring rungs that failed alike: one line stands for all of them.
+/// Returns the end of a sequence of neighbouring levels with the same failure, which one line represents.
 std::size_t end_of_failures(const std::vector<compare::ComparePoint>& points, std::size_t first) {
   std::size_t end = first + 1;
   while (points[first].status != compare::PointStatus::kOk && end < points.size() &&
@@ -43,7 +43,7 @@ void print_points(const compare::SceneComparison& scene) {
   Rows rows;
   for (std::size_t i = 0; i < scene.points.size(); i = end_of_failures(scene.points, i)) {
     const compare::ComparePoint& p = scene.points[i];
-    if (p.status == compare::PointStatus::kMissing) continue;  // stopped before it
+    if (p.status == compare::PointStatus::kMissing) continue;  // not computed: the comparison was stopped
     const dynamics::StepperCounters& c = p.result.counters;
     const bool ran = p.status == compare::PointStatus::kOk;
     const auto count = [&](long n) { return ran ? std::to_string(n) : std::string("-"); };

@@ -20,20 +20,20 @@ namespace {
 constexpr render::Rgb kHullA = {0.16f, 0.44f, 0.70f}, kHullB = {0.85f, 0.45f, 0.13f},
                       kEdge = {0.18f, 0.20f, 0.24f}, kVertex = {0.93f, 0.16f, 0.22f},
                       kPlain = {0.74f, 0.76f, 0.79f};
-constexpr int kPanel = 800;  ///< pixels along an edge
-constexpr double kSharp =
-    25.0;  ///< edges of a hull that are drawn, or its many facets hide one another [deg]
+constexpr int kPanel = 800;      ///< Edge of a panel [pixels]
+constexpr double kSharp = 25.0;  ///< Smallest dihedral angle of the hull edges that are drawn: the edges of
+                                 ///< all facets would hide one another [deg]
 
-/// A body's surface where it is pressed: which vertices, and which way it faces there.
+/// Patch of a surface in contact: its colliding vertices and its direction.
 struct Patch {
-  std::size_t body = 0;
-  Points vertices;  ///< that collide [m]
-  Vec3 outward = Vec3::UnitZ();
-  double edge = 0.0;  ///< mean edge of the triangles there [m]
+  std::size_t body = 0;          ///< Index of the body
+  Points vertices;               ///< Colliding vertices that face outward [m]
+  Vec3 outward = Vec3::UnitZ();  ///< Mean outward normal, a unit vector
+  double edge = 0.0;             ///< Mean edge of the triangles of all colliding vertices of the body [m]
 };
 
-/// Which patch each colliding vertex is in, -1 elsewhere: those hang together by triangles of which all
-/// corners collide.  Named by their lowest vertex.
+/// Returns the patch of each colliding vertex, -1 for others. A patch is a set of vertices connected by
+/// triangles whose corners all collide, numbered by its lowest vertex.
 std::vector<int> patches(const Faces& faces, const VecX& depths) {
   std::vector<int> patch(static_cast<std::size_t>(depths.size()), -1);
   for (int v = 0; v < depths.size(); ++v)
@@ -52,8 +52,8 @@ std::vector<int> patches(const Faces& faces, const VecX& depths) {
   return patch;
 }
 
-/// Of all bodies the patch with the largest overlap, seen from where it faces, and what else of its body
-/// faces there.
+/// Returns the patch with the largest overlap of all bodies, with all colliding vertices of its body that
+/// face in its direction.
 Patch largest_patch(const render::Scene& scene, const loop::ContactInstant& contact) {
   Patch out;
   double largest = 0.0;
@@ -62,7 +62,7 @@ Patch largest_patch(const render::Scene& scene, const loop::ContactInstant& cont
     const VecX& depths = contact.depths[i];
     const std::vector<int> patch = patches(surface.faces, depths);
     Points normals = Points::Zero(3, depths.size());  // times area
-    std::map<int, std::pair<double, Vec3>> sums;      // of each patch: depth times area, normal times area
+    std::map<int, std::pair<double, Vec3>> sums;      // per patch: depth times area, normal times area
     double edges = 0.0;
     int count = 0;
     for (const auto f : surface.faces.colwise()) {
@@ -96,7 +96,7 @@ Patch largest_patch(const render::Scene& scene, const loop::ContactInstant& cont
 
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
-/// A view from the side that a direction points to, a little from above and from beside it.
+/// Returns a view from the side that `outward` points to, turned by `aside_deg` and slightly from above.
 render::View from_side(const Vec3& outward, double aside_deg) {
   render::View view;
   view.azimuth_deg = degrees(std::atan2(outward.y(), outward.x())) + aside_deg;
@@ -104,7 +104,7 @@ render::View from_side(const Vec3& outward, double aside_deg) {
   return view;
 }
 
-/// A view across the direction in which two bodies meet, of the two the one that is nearer to the usual.
+/// Returns a view across the contact normal; of the two candidates, the one closer to the default view.
 render::View across(const Vec3& normal) {
   render::View view;
   view.elevation_deg = 16.0;
@@ -118,8 +118,8 @@ render::View across(const Vec3& normal) {
   return view;
 }
 
-/// What a camera frames to show points with room around them: these, spread `times` as far from their middle,
-/// and at least a cube of edge `least` there.
+/// Returns points that make a camera frame the given points with a margin: the points scaled by `times` about
+/// their centre, and the corners of a cube of edge `least` there.
 Points around(const Points& points, double times, double least) {
   const Vec3 middle = 0.5 * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
   Points out(3, points.cols() + 8);
@@ -145,7 +145,7 @@ Points corners_of(const std::vector<loop::ProxyShape>& proxies) {
   return out;
 }
 
-/// Hulls as tinted glass with dark edges; each side has one entry in the legend.
+/// Adds the hulls as translucent surfaces with dark edges; each side has one entry in the legend.
 void add_proxies(render::Scene& scene, const std::vector<loop::ProxyShape>& proxies, double size) {
   bool named_a = false, named_b = false;
   for (const loop::ProxyShape& proxy : proxies) {
@@ -203,7 +203,7 @@ render::Picture close_up(render::Scene scene, const Patch& patch) {
   options.view = from_side(patch.outward, 18.0);
   options.frame = around(patch.vertices, 1.35, 12.0 * patch.edge);
   const double size = extent(options.frame);
-  // What touches it stands before it: as glass, or the contact could not be seen.
+  // The touching bodies lie in front of the patch; they are translucent to keep the contact visible.
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
     render::Surface& surface = scene.surfaces[i];
     if (i == patch.body) {
@@ -223,7 +223,7 @@ render::Picture close_up(render::Scene scene, const Patch& patch) {
   return render::draw(scene, options);
 }
 
-/// Only the part of the grid where something presses, and a pixel around it.
+/// Returns the part of the grid with penetration, and a margin of one pixel.
 render::Field pressed_part(const contact::RegionView& region) {
   int low_c = region.width, high_c = -1, low_r = region.height, high_r = -1;
   const auto gap = [&](int c, int r) {
@@ -247,7 +247,7 @@ render::Field pressed_part(const contact::RegionView& region) {
   return field;
 }
 
-/// Volume in which the bodies overlap [m^3].
+/// Returns the overlap volume of the bodies [m^3].
 double overlap(const contact::RegionView& region) {
   double sum = 0.0;
   for (const double gap : region.gap)

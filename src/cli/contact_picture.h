@@ -8,15 +8,16 @@ namespace palpate::cli {
 
 class MissingOutputs;
 
-/// Keeps the query of a run with the largest contact force, for two pictures: what Figures 4 and 5 of Galoppo
-/// et al. (2007) show.
+/// Observer that keeps the contact query with the largest contact force of a run, for two pictures like
+/// Figures 4 and 5 of Galoppo et al. (2007).
 class ContactSnapshot : public loop::Observer {
  public:
   void queried(loop::World& world, double t) override;
 
-  /// contact.png: the proxies in contact, outlined, beside the patch of skin with the largest overlap, seen
-  /// from what touches it, with its penetration and its colliding vertices.  depth.png: the penetration over
-  /// the pixels of the region with the largest overlap, in an image.
+  /// Writes contact.png and depth.png into the folder. contact.png shows the proxies in contact, outlined,
+  /// next to the patch of skin with the largest overlap, seen from the side of the touching body, with its
+  /// penetration and its colliding vertices. depth.png shows the penetration over the pixels of the region
+  /// with the largest overlap, for contact in image space.
   void save(const loop::World& world, const std::string& folder, MissingOutputs& missing) const;
 
  private:

@@ -13,8 +13,8 @@
 namespace palpate::cli {
 namespace {
 
-/// Of the further hands of a run's scene.  Not of what lies in the folder: an earlier run may have had
-/// others.
+/// Returns the further hands of the scene of a run. The files in the folder are no substitute: an earlier run
+/// may have left files of other hands.
 std::vector<std::string> more_hands(const std::filesystem::path& folder) {
   const std::filesystem::path scene = folder / "scene.toml";
   std::vector<std::string> out;

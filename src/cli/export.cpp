@@ -1,4 +1,4 @@
-// A run that is over, as files that other programs open.
+// Export of a finished run to files that other programs open.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace palpate::cli {
 namespace fs = std::filesystem;
 namespace {
 
-/// What is exported: the run, and which of its states and parts.
+/// Selection to export: the run, and its selected states and parts.
 struct Chosen {
   const store::RunReader& run;
   std::string run_file, stem;
@@ -37,7 +37,7 @@ struct Chosen {
   }
 };
 
-/// The run file: of a folder the one that `palpate run` writes.
+/// Returns the run file; for a folder, the file that `palpate run` writes into it.
 std::string run_file_of(const std::string& argument) {
   if (fs::is_regular_file(argument)) return argument;
   if (!fs::is_directory(argument))
@@ -49,7 +49,7 @@ std::string run_file_of(const std::string& argument) {
   return file.string();
 }
 
-/// The recorded state that is nearest to a time.
+/// Returns the recorded state nearest to a time.
 int step_at(const store::RunReader& run, double time) {
   const std::vector<double>& times = run.times_s();
   const double slack = 1e-9 * std::max(std::abs(times.front()), std::abs(times.back()));
@@ -86,7 +86,7 @@ std::vector<int> chosen_parts(const store::RunReader& run, const std::string& na
   return out;
 }
 
-/// Calls for each step until Ctrl-C.
+/// Calls `write` for each step, until Ctrl-C.
 void for_each_step(const Chosen& chosen, const std::function<void(int)>& write) {
   for (const int step : chosen.steps) {
     if (stop_flag().load()) return;

@@ -11,7 +11,7 @@
 namespace palpate::cli {
 namespace {
 
-/// At most `most` of them, evenly spaced.
+/// Returns at most `most` of the steps, evenly spaced.
 std::vector<int> thinned(const std::vector<int>& steps, std::size_t most) {
   if (steps.size() <= most) return steps;
   std::vector<int> out;
@@ -20,14 +20,14 @@ std::vector<int> thinned(const std::vector<int>& steps, std::size_t most) {
 }
 
 std::size_t most_states(const std::vector<store::SurfaceState>& first, const RecordedSurfaces& surfaces) {
-  std::size_t bytes = 0;  // of a state
+  std::size_t bytes = 0;  // per state
   for (std::size_t i = 0; i < first.size(); ++i)
     if (!surfaces.rigid(i)) bytes += static_cast<std::size_t>(first[i].points.size()) * sizeof(float);
   const std::size_t fit = bytes > 0 ? kMostPositionBytes / bytes : kMostKeyframes;
   return std::clamp<std::size_t>(fit, 2, kMostKeyframes);
 }
 
-/// The surface's own axes stand in its middle.
+/// Returns the points relative to their mean, the origin of the local axes of the surface.
 Points centred(const Points& points) { return points.colwise() - points.rowwise().mean(); }
 
 }  // namespace
@@ -43,7 +43,7 @@ Animation animated(const store::RunReader& run, const RecordedSurfaces& surfaces
     moving[i].faces = first[i].faces;
     moving[i].colour = surfaces.colour(i);
     if (!surfaces.rigid(i)) continue;
-    moving[i].opacity = 0.6;  // the dent lies under it
+    moving[i].opacity = 0.6;  // the dent lies under the tool
     moving[i].points = {centred(first[i].points)};
   }
   std::vector<double> times;

@@ -14,7 +14,7 @@ namespace palpate::cli {
 namespace fs = std::filesystem;
 namespace {
 
-/// Stem and ending of "STEM_NNNN.ENDING"; empty for another name.
+/// Returns stem and ending of "STEM_NNNN.ENDING"; empty for another name.
 std::pair<std::string, std::string> numbered(const fs::path& name) {
   const std::string stem = name.stem().string();
   const std::size_t at = stem.find_last_of('_');
@@ -24,7 +24,7 @@ std::pair<std::string, std::string> numbered(const fs::path& name) {
   return {stem.substr(0, at), name.extension().string()};
 }
 
-/// The uppermost folder of a path that is not there yet; empty: all are.
+/// Returns the uppermost folder of a path that does not exist; empty if all exist.
 fs::path first_missing(const fs::path& folder) {
   fs::path missing;
   for (fs::path at = fs::absolute(folder).lexically_normal(); !fs::exists(at) && at.has_relative_path();

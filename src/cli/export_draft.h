@@ -7,27 +7,30 @@
 
 namespace palpate::cli {
 
-/// Files of an export while they are written: in a folder of their own inside the one that they are for.
-/// They get their places all together; where that never happens, nothing of them is left.
+/// Files of an export while they are written, in a temporary folder inside the output folder. commit() moves
+/// them to their places together; without commit() the destructor removes all of them.
 class ExportDraft {
  public:
-  /// Makes the folder with its parents.  @throws Error when it cannot be written
+  /// Creates the folder with its parents.
+  /// @throws Error if the folder cannot be written
   explicit ExportDraft(const std::string& folder);
   ~ExportDraft();
   ExportDraft(const ExportDraft&) = delete;
   ExportDraft& operator=(const ExportDraft&) = delete;
 
-  /// Where the file of this name is to be written now.
+  /// Adds a file and returns the path at which to write it.
   std::string path(const std::string& name);
+  /// Writes a file with this content.
   void write(const std::string& name, const std::string& content);
-  /// Moves all files to their places.  Files STEM_NNNN.ENDING of an earlier export, for a stem and an ending
-  /// of these, are removed first: they would pass for this one's.
+  /// Moves all files to their places. Removes files STEM_NNNN.ENDING of an earlier export first, for each
+  /// stem and ending among these files: they would pass for files of this export.
+  /// @throws Error if a file cannot be replaced
   void commit();
   const std::vector<std::string>& names() const { return names_; }
 
  private:
   std::filesystem::path folder_, draft_;
-  std::filesystem::path made_;  ///< the uppermost folder that was not there before; empty: all were
+  std::filesystem::path made_;  ///< Uppermost folder that the constructor created; empty if all existed
   std::vector<std::string> names_;
   store::ResultFolder lock_;
 };

@@ -29,7 +29,7 @@ constexpr const char* kProgram = "ffmpeg";
       ".png, which needs no program");
 }
 
-/// ffmpeg's last words, on one line: behind them nothing helps.
+/// Returns the last line of the log of ffmpeg, which states the error.
 std::string last_line(int log) {
   std::string text(1 << 16, '\0');
   const off_t size = lseek(log, 0, SEEK_END);
@@ -56,7 +56,7 @@ void check_ffmpeg() {
   fail_not_found();
 }
 
-// A socket, not a pipe: where ffmpeg has ended, MSG_NOSIGNAL makes writing an error and no signal.
+// A socket, not a pipe: with MSG_NOSIGNAL, writing to an ffmpeg that has ended is an error, not a signal.
 Ffmpeg::Ffmpeg(const std::vector<std::string>& arguments) {
   int ends[2] = {-1, -1};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
@@ -70,7 +70,8 @@ Ffmpeg::Ffmpeg(const std::vector<std::string>& arguments) {
   posix_spawn_file_actions_adddup2(&actions, log_, 2);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // the terminal's Ctrl-C goes to our group
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETPGROUP);  // shields it from Ctrl-C
   std::vector<std::string> words = {kProgram};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;

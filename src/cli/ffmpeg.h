@@ -7,23 +7,27 @@
 
 namespace palpate::cli {
 
-/// @throws Error with the Debian package where the program is not on the PATH
+/// Checks that ffmpeg is on the PATH.
+/// @throws Error with the name of the Debian package if it is not
 void check_ffmpeg();
 
-/// The program ffmpeg, reading what is written to it here.  Ctrl-C does not reach it: it ends its file when
-/// it has read everything.
+/// Child process ffmpeg that reads the bytes written here. Ctrl-C does not reach it: it completes its file
+/// when its input ends.
 class Ffmpeg {
  public:
-  /// @param arguments  behind "ffmpeg"; the input is "pipe:0"
-  /// @throws Error where it cannot be started
+  /// Starts ffmpeg.
+  /// @param arguments  arguments after "ffmpeg"; the input is "pipe:0"
+  /// @throws Error if it cannot be started
   explicit Ffmpeg(const std::vector<std::string>& arguments);
-  ~Ffmpeg();  ///< ends it, whatever it has written
+  ~Ffmpeg();  ///< Ends the process, even if its file is incomplete
   Ffmpeg(const Ffmpeg&) = delete;
   Ffmpeg& operator=(const Ffmpeg&) = delete;
 
-  /// @throws Error with ffmpeg's own words where it has ended
+  /// Sends bytes to ffmpeg.
+  /// @throws Error with the message of ffmpeg if it has ended
   void write(const void* bytes, std::size_t count);
-  /// Waits until it has made its file.  @throws Error with ffmpeg's own words where it has failed
+  /// Closes the input and waits until ffmpeg has completed its file.
+  /// @throws Error with the message of ffmpeg if it failed
   void finish();
 
  private:

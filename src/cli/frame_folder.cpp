@@ -7,7 +7,7 @@ namespace palpate::cli {
 namespace fs = std::filesystem;
 namespace {
 
-/// Numbered pictures, which would pass for this run's.
+/// Removes numbered pictures of an earlier run, which would pass for pictures of this run.
 void remove_old(const std::string& folder) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {

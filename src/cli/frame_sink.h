@@ -6,19 +6,20 @@
 
 namespace palpate::cli {
 
-/// Where pictures of a run go, one behind the other and of one size; none is kept.
+/// Receiver of the pictures of a run in order, all of one size. It keeps no picture in memory.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  /// @throws Error where it cannot be written
+  /// Adds a picture.  @throws Error if it cannot be written
   void add(const render::Picture& picture) {
     put(picture);
     ++written_;
   }
-  /// Behind the last.  @throws Error where it cannot be written
+  /// Completes the output after the last picture.  @throws Error if it cannot be written
   virtual void close() = 0;
-  /// What there is not where one of these has failed.
+  /// Returns the name of the output that is missing if add() or close() failed.
   virtual std::string missing() const = 0;
+  /// Returns the number of pictures added so far.
   int written() const { return written_; }
 
  private:
@@ -26,18 +27,21 @@ class FrameSink {
   int written_ = 0;
 };
 
-/// 0000.png, 0001.png, ... in a folder, each whole or not at all; what lay there of an earlier run is
-/// removed.
+/// Returns a sink that writes 0000.png, 0001.png, ... into a folder, each atomically; pictures of an earlier
+/// run are removed.
 std::unique_ptr<FrameSink> make_frame_folder(const std::string& folder);
 
-/// Refuses at the start of a run what could not be written at its end, and makes the file's folder.
-/// @param path  ending in .webm (VP9, by the program ffmpeg), .png or .apng (an animated PNG, by palpate)
-/// @throws Error for another ending, for a folder that cannot be written, where ffmpeg is not installed
+/// Rejects at the start of a run a movie that could not be written at its end, and creates the folder of the
+/// file.
+/// @param path  file name ending in .webm (VP9, by the program ffmpeg), .png or .apng (an animated PNG, by
+/// palpate)
+/// @throws Error for another ending, for a folder that cannot be written, or if ffmpeg is required and not
+/// installed
 void check_movie(const std::string& path);
 
-/// A movie: written under its name with ".part" behind it; it gets its name when it is whole, and is removed
-/// where it never is.
-/// @param frame_s  how long a picture is shown [s]
+/// Returns a sink that writes a movie. The file is written with ".part" appended to its name, renamed when it
+/// is complete, and removed if it never is.
+/// @param frame_s  display time of a picture [s]
 /// @pre check_movie(path)
 std::unique_ptr<FrameSink> make_movie(const std::string& path, double frame_s);
 

@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kWidth = 960, kHeight = 720, kStrip = 150;  ///< pixels
 
-/// The point that lies farthest in each of 98 directions, at most 18 degrees from any: what a camera needs to
-/// frame all points nearly as closely as if it had them.
+/// Extreme points of a set in each of 98 directions, at most 18 degrees from any direction: enough for a
+/// camera to frame all points nearly as closely as from the full set.
 class Extremes {
  public:
   void add(const Points& points) {
@@ -26,7 +26,7 @@ class Extremes {
     for (int x = -2; x <= 2; ++x)
       for (int y = -2; y <= 2; ++y)
         for (int z = -2; z <= 2; ++z) {
-          if (x % 2 == 0 && y % 2 == 0 && z % 2 == 0) continue;  // none, or that of a half
+          if (x % 2 == 0 && y % 2 == 0 && z % 2 == 0) continue;  // zero or a duplicate direction
           Eigen::Index farthest = 0;
           const double reach = (Vec3(x, y, z).transpose() * points).maxCoeff(&farthest);
           Extreme& extreme = extremes_.at(i++);
@@ -48,7 +48,7 @@ class Extremes {
   std::array<Extreme, 98> extremes_;
 };
 
-/// What all frames share.
+/// Properties that all frames share.
 struct Common {
   render::ColourScale scale;
   Points frame;
@@ -61,7 +61,7 @@ Common common_of(const loop::World& world, InstantSpool& instants, Shade shade) 
   double least = INFINITY, greatest = -INFINITY;
   Extremes extremes;
   render::ViewChoice choice;
-  constexpr int kLooked = 8;  // instants, evenly spread
+  constexpr int kLooked = 8;  // snapshots examined, evenly spaced
   const int between = std::max(1, instants.count() / kLooked);
   instants.rewind();
   int number = 0;
@@ -91,7 +91,9 @@ double whole_periods(const scene::Description& d, double wanted_s) {
   return static_cast<double>(std::max(1L, std::lround(wanted_s / period))) * period;
 }
 
-/// @param asked  the option with its value
+/// Checks that the loop has enough periods for a frame rate.
+/// @param per_s  frames per second of simulated time
+/// @param asked  the option with its value, for the message
 void check_rate(const scene::Description& d, double per_s, const std::string& asked) {
   const double period = loop::period_of(d);
   if (per_s * period <= 1.001) return;
@@ -104,7 +106,7 @@ void check_rate(const scene::Description& d, double per_s, const std::string& as
                                                   : "record.state_period_s, else all of duration_s");
 }
 
-/// Writes a picture to every sink that still works, and names those that stop working.
+/// Writes pictures to every working sink, and reports sinks that fail.
 class Writer {
  public:
   Writer(const std::vector<FrameSink*>& sinks, MissingOutputs& missing) : sinks_(sinks), missing_(missing) {}
@@ -250,7 +252,7 @@ void Frames::save(const loop::World& world, const std::vector<FrameSink*>& sinks
     for (Instant instant; !writer.idle() && instants_.next(instant);) {
       while (!picture.rgba.empty() && frame < frame_at(instant.time)) show();
       if (stoppable && stop_flag().load()) break;
-      if (!instant.handle) instant.handle = first_handle_;  // before the first tick
+      if (!instant.handle) instant.handle = first_handle_;  // no tick yet
       render::Scene scene = scene_of(world, instant, shade_);
       add_obstacles(scene, world, common.view);
       scene.scale = common.scale;

@@ -12,49 +12,55 @@ namespace palpate::cli {
 
 class MissingOutputs;
 
-/// Simulated time from frame to frame [s], in whole periods of the loop: what it can be seen in.
-/// @param per_s  frames a second of simulated time; 0: at the scene's state_period_s, else every period
-/// @throws Error where the loop has no period that short
+/// Returns the simulated time between frames [s], a multiple of the period of the loop, in which snapshots
+/// can be taken.
+/// @param per_s  frames per second of simulated time; 0: the state_period_s of the scene, or else every
+/// period
+/// @throws Error if the period of the loop is longer than requested
 double between_frames(const scene::Description& description, double per_s);
 
-inline constexpr double kMovieRate = 25.0;  ///< frames a second, as it is played
+inline constexpr double kMovieRate = 25.0;  ///< Frames per second of playback
 
-/// As between_frames, for a movie.
-/// @param fps   frames a second as it is played; 0: kMovieRate, or as many as the loop has periods
-/// @param slow  how many times longer than the simulated time it takes
+/// Returns the simulated time between the frames of a movie [s], as between_frames().
+/// @param fps   frames per second of playback; 0: kMovieRate, or the rate of the periods of the loop if it is
+/// lower
+/// @param slow  factor by which playback is slower than simulated time
 double between_movie_frames(const scene::Description& description, double fps, double slow);
 
-/// Of a frame with its curve [pixels]; even, as video encoders want them.
+/// Size of a frame including its curve [pixels]; even numbers, as video encoders require.
 struct FrameSize {
-  int width = 0, height = 0;  ///< 0: the default
+  int width = 0, height = 0;  ///< 0: default size
 };
-/// "640x480".  @throws Error for what is no such size, is odd, or too small or large to draw
+/// Parses a size as "640x480".
+/// @throws Error for another format, and for sides that are odd or outside [160, 4096]
 FrameSize frame_size(const std::string& text);
 
-/// Pictures of a whole run: keeps an instant a frame on disk while it runs and draws them behind it, so that
-/// camera and colours are the same in all and fit every one.  Memory holds one frame, and the curve.
+/// Observer that makes pictures of a whole run. It keeps one snapshot per frame on disk during the run and
+/// draws them afterwards, so that camera and colour scale are the same in all frames and fit each of them.
+/// Memory holds one frame and the curve.
 class Frames : public loop::Observer {
  public:
-  /// @param folder      for the instants
-  /// @param between_s   simulated time from frame to frame
-  /// @param duration_s  of the run: frames stand in [0, duration)
+  /// @param folder      folder for the file of snapshots
+  /// @param between_s   simulated time between frames [s]
+  /// @param duration_s  duration of the run [s]: frames lie in [0, duration)
   Frames(const loop::World& world, const std::string& folder, Shade shade, double between_s,
          double duration_s, FrameSize size = {});
   void period(loop::World& world, double t) override;
   void queried(loop::World& world, double t) override;
   void tick(const loop::TickRecord& tick) override;
-  /// Of a run that is over: what it was at a time, after the ticks until then.
+  /// Adds a recorded snapshot of a finished run; the ticks up to its time must have been added by tick().
   void show(Instant instant);
 
   double between_s() const { return between_s_; }
 
-  /// Draws each frame once for all sinks; where bodies stood still (in real time, when they fell behind)
-  /// frames show them so.  Ctrl-C ends it behind the frame under way: sinks are closed with what they have.
-  /// @param stoppable  false where Ctrl-C has ended the run: what it recorded is then drawn
-  /// @param missing    gets what a sink could not write, or what cannot be drawn; the other sinks go on
+  /// Draws each frame once for all sinks; frames without a snapshot (in real time, if the bodies fell behind)
+  /// repeat the last one. Ctrl-C ends drawing after the current frame: sinks are then closed with the frames
+  /// that they have.
+  /// @param stoppable  false if Ctrl-C ended the run: the frames recorded so far are then drawn
+  /// @param missing    receives failures of drawing and of sinks; the other sinks continue
   void save(const loop::World& world, const std::vector<FrameSink*>& sinks, bool stoppable,
             MissingOutputs& missing);
-  int count() const;  ///< frames of what was run
+  int count() const;  ///< Number of frames for the simulated time so far
 
  private:
   int frame_at(double t) const;
@@ -63,10 +69,10 @@ class Frames : public loop::Observer {
 
   Shade shade_;
   double between_s_, end_s_;
-  int width_, height_, strip_ = 0;  ///< of the picture above the curve, and of the curve [pixels]
-  int next_ = 0;                    ///< frame to come
-  double reached_ = 0.0;            ///< by the run [s]
-  bool due_ = false;                ///< the next query is that of a frame
+  int width_, height_, strip_ = 0;  ///< Size of the picture above the curve, and height of the curve [pixels]
+  int next_ = 0;                    ///< Next frame
+  double reached_ = 0.0;            ///< Simulated time reached by the run [s]
+  bool due_ = false;                ///< Whether a frame is due at the next snapshot
   InstantSpool instants_;
   render::Curve curve_;
   std::optional<Pose> first_handle_, handle_;

@@ -35,7 +35,7 @@ int run(const std::function<int()>& action, const char* input) {
     return action();
   } catch (const Error& e) { return refuse(e.what()); } catch (const std::bad_alloc&) {
     return refuse_memory();
-  } catch (const std::length_error&) {  // more than can be addressed
+  } catch (const std::length_error&) {  // a size beyond the address space
     return refuse_memory();
   } catch (const std::filesystem::filesystem_error& e) {
     return refuse(fmt::format("{}: {}", e.path1().string(), e.code().message()));

@@ -3,10 +3,11 @@
 
 namespace palpate::cli {
 
-/// Runs a command of a program.  Every way out has one sentence on standard error and one exit status: those
-/// of stop.h.  An error of the system (a folder that is not there, a loop of links, no more threads) is said
-/// as the system says it; what else ends a command without a sentence of its own is a defect of palpate.
-/// @param input  what a report of such a defect should bring: "scene"
+/// Runs a command of a program and maps each way to end to one message on standard error and one exit status
+/// (stop.h). An operating-system error (missing folder, loop of links, thread limit) is reported with the
+/// message of the system; any other exception is reported as a defect of palpate.
+/// @param input  the input that a report of a defect should include: "scene"
+/// @return the exit status
 int guarded(const std::function<int()>& action, const char* input);
 
 }  // namespace palpate::cli

@@ -1,4 +1,4 @@
-// `palpate help`: the pages of docs/, carried in the program.
+// `palpate help`: prints the pages of docs/ embedded in the program.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/ioctl.h>
@@ -15,7 +15,8 @@
 namespace palpate::cli {
 namespace {
 
-/// Of the terminal, at most 100: longer lines are hard to read.
+/// Returns the text width: the width of the terminal, at most 100 columns, since longer lines are hard to
+/// read.
 std::size_t text_width() {
   constexpr std::size_t kMost = 100, kLeast = 40;
   ::winsize size{};

@@ -7,8 +7,8 @@
 
 namespace palpate::cli {
 
-/// Prints help alike with every release of CLI11: the default of an option as "N=10", as up to release 2.3,
-/// where 2.4.1 has "N [10] ".
+/// Formatter that prints help identically with every release of CLI11: the default of an option as "N=10",
+/// the form up to release 2.3, where 2.4.1 prints "N [10] ".
 class HelpFormatter final : public CLI::Formatter {
  public:
   HelpFormatter() { column_width(34); }

@@ -35,7 +35,7 @@ void print_bodies(const loop::World& world) {
                                             rows));
 }
 
-/// The regions of each body with their materials, and the elements in no region.
+/// Prints the regions of each body with their materials, and the elements in no region.
 void print_regions(const loop::World& world) {
   Rows rows;
   for (const loop::Body& body : world.bodies) {

@@ -30,8 +30,8 @@ VecX values_of(const loop::Body& body, std::size_t index, const Instant& instant
   return body.surface_values(moved);
 }
 
-/// Differences below it are rounding: of positions a billionth of the scene, of stress that of the stiffest
-/// body.
+/// Returns the colour scale of a shade. Differences below its resolution are rounding: a billionth of the
+/// size of the scene for positions, a billionth of the largest Young's modulus for stress.
 render::ColourScale scale_of(const loop::World& world, const render::Scene& scene, Shade shade) {
   render::ColourScale scale;
   const double size = view_of(scene).extent;
@@ -67,9 +67,10 @@ void add_bones(render::Scene& scene, const loop::World& world, const Instant& in
   }
 }
 
-/// Three spindles along the handle's axes, longer than the tool, which surrounds it where it is free.
+/// Adds three spindles along the axes of the handle; they extend beyond the tool, which encloses the handle
+/// in free motion.
 void add_handle(render::Scene& scene, const Pose& handle, const TriMesh& tool) {
-  constexpr double kHandleLength = 1.5, kHandleWidth = 0.14;  // of the tool's diameter
+  constexpr double kHandleLength = 1.5, kHandleWidth = 0.14;  // in diameters of the tool
   const double diameter = 2.0 * tool.vertices.colwise().norm().maxCoeff();
   const render::Surface spindle = render::dots(Points::Zero(3, 1), diameter);
   render::Surface jack{"handle", Points(3, 3 * spindle.points.cols()), Faces(3, 3 * spindle.faces.cols())};
@@ -135,7 +136,7 @@ render::Scene scene_of(const loop::World& world, const Instant& instant, Shade s
       tool.vertices.col(i) = instant.tools[hand] * Vec3(tool.vertices.col(i));
     render::Surface surface{hands[hand].name, tool.vertices, tool.faces};
     surface.colour = hand == 0 ? render::Rgb{0.80f, 0.42f, 0.20f} : render::Rgb{0.25f, 0.50f, 0.72f};
-    surface.opacity = 0.45;  // the dent lies under it
+    surface.opacity = 0.45;  // the dent lies under the tool
     surface.subject = true;
     scene.surfaces.push_back(surface);
   }
@@ -160,7 +161,7 @@ void add_obstacles(render::Scene& scene, const loop::World& world, const contact
     render::Surface surface{obstacle.name, std::move(picture.surface.vertices),
                             std::move(picture.surface.faces)};
     surface.colour = {0.55f, 0.60f, 0.66f};
-    surface.opacity = 0.45;  // what touches it may lie behind
+    surface.opacity = 0.45;  // objects in contact may lie behind
     scene.surfaces.push_back(std::move(surface));
   }
 }

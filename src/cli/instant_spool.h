@@ -6,23 +6,24 @@
 
 namespace palpate::cli {
 
-/// Instants in the order of time, on disk: a run is looked at behind it without being kept in memory.
+/// Snapshots in the order of time, on disk, so that they can be read after a run without being kept in
+/// memory.
 class InstantSpool {
  public:
-  /// @param folder  for a file that has no name, and is gone when the spool is
-  /// @throws Error where no file can be made there
+  /// @param folder  folder of an unnamed file that is removed with the spool
+  /// @throws Error if no file can be created there
   explicit InstantSpool(const std::string& folder);
   ~InstantSpool();
   InstantSpool(const InstantSpool&) = delete;
   InstantSpool& operator=(const InstantSpool&) = delete;
 
-  /// @throws Error where the disk refuses it
+  /// Appends a snapshot.  @throws Error if writing fails
   void append(const Instant& instant);
   int count() const { return count_; }
 
-  /// The next one read is the first.
+  /// Moves back to the first snapshot.
   void rewind();
-  /// False behind the last.  @throws Error where the disk refuses it
+  /// Reads the next snapshot; returns false after the last one.  @throws Error if reading fails
   bool next(Instant& out);
 
  private:

@@ -56,7 +56,7 @@ std::string bracketed(const scene::KeyRow& table) {
   return fmt::format(fmt::runtime(table.type == "tables" ? "[[{}]]" : "[{}]"), path_of(table));
 }
 
-/// A link to the heading: GitHub and MkDocs keep letters, digits and `_` of it alone.
+/// Returns the anchor of a heading: GitHub and MkDocs keep only letters, digits and `_`.
 std::string anchor(const scene::KeyRow& table) {
   std::string out = path_of(table);
   std::erase(out, '.');
@@ -91,7 +91,7 @@ std::string users_of(const scene::KeyRow& row) {
   return fmt::format("{}", fmt::join(shown, ", "));
 }
 
-/// Without kinds no row has a user: the column is left out.
+/// Prints one table of keys. Without kinds no row has users, and that column is left out.
 void print_table(const scene::KeyRow& table, const KeyRows& rows, const scene::Kinds& kinds) {
   const bool users = !kinds.empty();
   fmt::print("\n## {}\n\n`{}`:\n{}.\n\n", path_of(table), bracketed(table), table.meaning);
@@ -111,8 +111,8 @@ void print_page(const char* introduction, const KeyRows& rows, const scene::Kind
     if (is_table(row) && std::any_of(rows.begin(), rows.end(),
                                      [&](const scene::KeyRow& one) { return one.table == path_of(row); }))
       tables.push_back(row);
-  // key_rows lists a table's rows before those of the tables in it; the page follows the scene: in order of
-  // path
+  // key_rows lists the rows of a table before the rows of its nested tables; the page orders tables as the
+  // scene does, by path
   std::vector<std::string> order;
   for (const scene::KeyRow& row : rows)
     if (!row.table.empty() && std::find(order.begin(), order.end(), row.table) == order.end())

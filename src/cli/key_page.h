@@ -3,12 +3,12 @@
 
 namespace palpate::cli {
 
-/// Prints docs/keys.md: every key of a scene, table by table, from the loader's own tables.
+/// Prints docs/keys.md: all keys of a scene, table by table, from the tables of the loader.
 void print_key_page();
-/// Likewise of a study, docs/study-keys.md.
+/// Prints docs/study-keys.md: all keys of a study.
 void print_study_key_page();
 
-/// Text as a cell of a Markdown table.
+/// Returns the text escaped for a cell of a Markdown table.
 std::string markdown_cell(const std::string& text);
 
 }  // namespace palpate::cli

@@ -21,8 +21,8 @@ namespace {
 const char* const kKeys = "keys";
 const char* const kStudyKeys = "study-keys";
 
-/// Cases with a known answer, as palpate-validation prints them; none if it is not built, or for another
-/// list.
+/// Returns the cases with a known answer, as palpate-validation prints them; empty if it is not built, or if
+/// another list is requested.
 loop::ChoiceList case_choices(const std::string& requested) {
   loop::ChoiceList out{"cases", "with a known answer: palpate validate", {}};
   if (!(requested.empty() || requested == out.what) || !is_there(kCases)) return out;
@@ -32,7 +32,7 @@ loop::ChoiceList case_choices(const std::string& requested) {
   return out;
 }
 
-/// The first comment line of a scene file says what it is.
+/// Returns the first comment line of a scene file, its description.
 std::string first_comment(const std::string& path) {
   const std::string text = read_text(path);
   const std::size_t begin = text.find_first_not_of("# \t\r\n");
@@ -82,7 +82,7 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// The lists as a page, docs/names.md.
+/// Prints the lists as a page, docs/names.md.
 void print_names_page(const std::vector<loop::ChoiceList>& lists) {
   fmt::print(
       "# Every name that scenes and options know\n\n"
@@ -100,7 +100,7 @@ void print_names_page(const std::vector<loop::ChoiceList>& lists) {
   }
 }
 
-/// The table that a person reads: what may stand in a scene or a study, key by key.
+/// Prints the keys of a scene or a study as tables for the terminal.
 void print_keys(const std::vector<scene::KeyRow>& all) {
   std::string table = "\n";
   std::vector<std::vector<std::string>> rows;
@@ -111,7 +111,7 @@ void print_keys(const std::vector<scene::KeyRow>& all) {
     rows.clear();
   };
   for (const scene::KeyRow& row : all) {
-    if (row.table.empty()) continue;  // the tables themselves
+    if (row.table.empty()) continue;  // a row that describes a table
     if (row.table != table) flush();
     table = row.table;
     rows.push_back({row.name, row.type, row.unit, row.range, row.required ? "required" : row.fallback,

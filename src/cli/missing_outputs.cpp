@@ -20,7 +20,7 @@ void MissingOutputs::add(const std::string& what, const std::string& why) {
 }
 
 void MissingOutputs::add(const report::RunReport& report) {
-  std::map<std::string, std::vector<std::string>> captions;  // by reason: often one for all
+  std::map<std::string, std::vector<std::string>> captions;  // by reason, which captions often share
   for (const auto& figure : report.missing_figures)
     captions[first_line(figure.why)].push_back(first_line(figure.caption));
   for (const auto& [why, figures] : captions)
@@ -31,7 +31,7 @@ void MissingOutputs::add(const report::RunReport& report) {
 
 int MissingOutputs::close(int status) const {
   if (things_.empty() || status == kExitStopped) return status;
-  std::fflush(stdout);  // the last line of both
+  std::fflush(stdout);  // keeps the message the last line of both streams
   fmt::print(stderr, "palpate: incomplete: missing {}\n", fmt::join(things_, "; "));
   return status == 0 ? kExitIncomplete : status;
 }

@@ -18,7 +18,7 @@ namespace palpate::cli {
 namespace fs = std::filesystem;
 namespace {
 
-/// Runs it to its end; what it prints beside errors is dropped.
+/// Runs a program to its end and discards its output except errors.  @return the exit status
 int run_to_end(const std::vector<std::string>& words) {
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
@@ -42,7 +42,7 @@ void make_model(const std::string& name, const fs::path& path) {
   if (error)
     fail("the model \"{}\" cannot be kept in {}: {}", name, path.parent_path().string(), error.message());
   fmt::print(stderr, "palpate: making the model \"{}\", once; kept in {}\n", name, path.string());
-  // under another name until it is whole: two runs may make it at the same time
+  // under a temporary name until it is complete: two runs may build the model at the same time
   const fs::path draft = path.parent_path() / fmt::format("{}-{}.h5", name, ::getpid());
   const int status = run_to_end({path_of(kModel), name, "-o", draft.string()});
   if (status != 0) {
@@ -56,7 +56,7 @@ void make_model(const std::string& name, const fs::path& path) {
 }  // namespace
 
 void make_missing_models(const scene::Description& description) {
-  // for "model:NAME" the loader put a place in the cache; any other file is the user's
+  // for "model:NAME" the loader has set a path in the cache; any other file belongs to the user
   const auto make = [](const std::string& file) {
     const fs::path path = file;
     if (const std::string name = store::name_of_cached(file); !name.empty() && !fs::exists(path))

@@ -3,10 +3,10 @@
 
 namespace palpate::cli {
 
-/// Makes the models that a scene names by "model:NAME" and that are not kept yet, by the program behind
-/// `palpate model`; says which, and where they are kept.
-/// @throws Error where it was not made (that program has said why: no such model, for one), or this build
-///   makes none
+/// Builds the models that a scene specifies by "model:NAME" and that are not in the cache yet; prints their
+/// names and paths. The program of `palpate model` does the work.
+/// @throws Error if a model was not built (that program has printed the reason, for example an unknown
+/// model), or if this build has no such program
 void make_missing_models(const scene::Description& description);
 
 }  // namespace palpate::cli

@@ -40,7 +40,7 @@ void write_table(const modes::Modes& modes, const std::string& path) {
 
 constexpr int kColumns = 3, kPictured = 6;
 
-/// The first elastic modes side by side, each coloured by its displacement.
+/// Draws the first elastic modes side by side, each coloured by its displacement.
 void draw_modes(const loop::World& world, const modes::Modes& modes, const std::string& path) {
   std::vector<int> pictured;
   for (int j = 0; j < modes.count() && pictured.size() < kPictured; ++j)

@@ -1,4 +1,4 @@
-// Pictures of a run that is over, from what it recorded.
+// Pictures of a finished run, from its recorded states.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@
 namespace palpate::cli {
 namespace {
 
-/// What a run kept of its states: the parts as the recorder writes them, bodies, bones with a shape, tools.
+/// Recorded states of a run, with its parts in the order of the recorder: bodies, bones with a shape, tools.
 class States {
  public:
   States(const std::string& path, const loop::World& world, const store::RunReader& reader)
@@ -44,7 +44,7 @@ class States {
     for (const loop::Body& body : world_.bodies) {
       const int first = reader_.first_point(part++);
       const Eigen::Index n = body.placed.cols();
-      // the file has the nodes in the order of the mesh's own file
+      // the file stores the nodes in the order of the mesh file
       out.nodes.emplace_back(points.middleCols(first, n)(Eigen::all, body.file_node));
       if (stress.size() > 0) out.stress.emplace_back(stress.segment(first, n)(body.file_node));
     }
@@ -64,7 +64,7 @@ class States {
   std::vector<TriMesh> tools_;
 };
 
-/// Between two frames, in whole recorded states.
+/// Returns the time between two frames [s], a multiple of the interval of recorded states.
 double between(const std::vector<double>& times, double fps, double slow, const std::string& run) {
   if (times.size() < 2)
     fail("{}: its run recorded {} state{}; a movie needs two at least", run, times.size(),
@@ -80,7 +80,7 @@ double between(const std::vector<double>& times, double fps, double slow, const 
   return static_cast<double>(std::max(1L, std::lround(requested / state))) * state;
 }
 
-/// Shows a state when the ticks up to it are known, so that the handle stands where the hand was then.
+/// Adds each state after the ticks up to its time, so that the handle has the pose of the hand at that time.
 void show(Frames& frames, const States& states, int steps, Shade shade,
           const std::vector<loop::TickRecord>& ticks) {
   auto tick = ticks.begin();
@@ -111,7 +111,7 @@ int movie(const MovieArguments& arguments, MissingOutputs& missing) {
   const auto world = loop::assemble(description);
   const States states(states_file, *world, reader);
   std::vector<loop::TickRecord> ticks;
-  // in a folder that another scene's run had before, an older haptic.h5 may lie
+  // the folder may hold an older haptic.h5 of another scene
   if (description.tool && description.record && description.record->forces &&
       std::filesystem::exists(folder / "haptic.h5"))
     ticks = loop::read_haptic_record((folder / "haptic.h5").string()).ticks;

@@ -36,7 +36,7 @@ void give_name(const std::string& path) {
   if (error) fail("{}: cannot be written: {}", path, error.message());
 }
 
-/// The file is made with its first picture: nothing is there of a run that has none.
+/// Movie file, created with its first picture: a run without pictures leaves no file.
 class Movie : public FrameSink {
  public:
   explicit Movie(const std::string& path) : path_(path) {}
@@ -70,11 +70,12 @@ class AnimatedPng final : public Movie {
   std::optional<render::AnimationWriter> writer_;
 };
 
-/// VP9 of constant quality: with -b:v 0 the file is as large as -crf asks (0 to 63, the best first).
+/// VP9 at constant quality: with -b:v 0 the size of the file follows from -crf (0 to 63, 0 is the best
+/// quality).
 class WebM final : public Movie {
  public:
   WebM(const std::string& path, double frame_s) : Movie(path), frame_(render::fraction_of(frame_s)) {}
-  ~WebM() override { ffmpeg_.reset(); }  // before its draft is removed
+  ~WebM() override { ffmpeg_.reset(); }  // ends ffmpeg before its draft is removed
 
  private:
   void put(const render::Picture& picture) override {

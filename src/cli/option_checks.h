@@ -5,13 +5,13 @@
 #include <cmath>
 #include <string>
 
-/// Checks and texts of options that several commands share.
+/// Validators and texts of options that several commands share.
 namespace palpate::cli {
 
 inline constexpr const char* kSceneHelp =
     "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";
 
-/// CLI::PositiveNumber lets NaN pass, and its message spells out the largest double.
+/// Validator of a duration [s]. CLI::PositiveNumber accepts NaN, and its message prints the largest double.
 inline const CLI::Validator duration(
     [](const std::string& text) {
       double seconds = 0.0;
@@ -20,6 +20,7 @@ inline const CLI::Validator duration(
     },
     "");
 
+/// Validator of a positive, finite number.
 inline const CLI::Validator positive(
     [](const std::string& text) {
       double number = 0.0;

@@ -5,13 +5,13 @@
 
 namespace palpate::cli {
 
-/// A command that another program runs, installed in the same folder.
+/// Command that another program runs, installed in the same folder.
 struct OtherProgram {
-  std::string_view command;  ///< "bench"
-  const char* summary;       ///< line of `palpate --help`
-  const char* program;       ///< "palpate-bench"
-  const char* absent;        ///< why the file may not exist, and how to get it
-  bool has_commands = true;  ///< its command line begins with the command
+  std::string_view command;  ///< Name of the command: "bench"
+  const char* summary;       ///< Line of `palpate --help`
+  const char* program;       ///< File name of the program: "palpate-bench"
+  const char* absent;        ///< Why the file may not exist, and how to get it
+  bool has_commands = true;  ///< Whether the command line of the program begins with the command
 };
 
 /// Meshing, in a separate program: palpate neither links nor loads CGAL and Gmsh.
@@ -27,11 +27,12 @@ inline constexpr OtherProgram kValidate = {"validate", "run the cases with a kno
                                            "palpate-validation", "build the target palpate-validation"};
 inline constexpr OtherProgram kStability = {
     "stability", "stiff and extreme cases against every integrator, each compared with theory",
-    kValidate.program, kValidate.absent};  ///< without --haptic
+    kValidate.program, kValidate.absent};  ///< Stability matrix; `--haptic` runs in palpate
 inline constexpr OtherProgram kCases = {"cases", "the cases with a known answer, for `palpate list`",
                                         kValidate.program, kValidate.absent};
 
-/// Returns the program that runs a command; null if palpate runs it, or decides by its options.
+/// Returns the program that runs a command; null if palpate runs the command, or selects the program by its
+/// options.
 const OtherProgram* find_other_program(std::string_view command);
 
 /// Returns the path of the program.  @throws Error if the file does not exist
@@ -41,7 +42,7 @@ std::string path_of(const OtherProgram& other);
 bool is_there(const OtherProgram& other);
 
 /// Replaces this process by the program; returns only by throwing.
-/// @param words  of the line, the command among them
+/// @param words  words of the command line, including the command
 /// @throws Error if the program's file does not exist
 int start(const OtherProgram& other, std::vector<std::string> words);
 

@@ -17,7 +17,7 @@ std::size_t columns(std::string_view text) {
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// What a link shows: its words, and where it leads where a terminal can follow.
+/// Returns the text of a link, with its target if a terminal can follow it.
 std::string shown_link(const std::string& words, const std::string& target) {
   static const std::regex page(R"(([a-z0-9-]+)\.md(#.*)?)");
   std::smatch match;
@@ -28,7 +28,7 @@ std::string shown_link(const std::string& words, const std::string& target) {
   return words.ends_with(".md") ? command : fmt::format("{} ({})", words, command);
 }
 
-/// Links, images and bold of one line of text; what stands in backticks stays as it is.
+/// Replaces links, images and bold in one line of text; text in backticks is unchanged.
 std::string inline_text(const std::string& text) {
   static const std::regex token(R"((!?)\[((?:`[^`]*`|[^\[\]`])*)\]\(([^()\s]+)\)|`[^`]*`|\*\*)");
   std::string out;
@@ -46,7 +46,8 @@ std::string inline_text(const std::string& text) {
   return out.append(rest, text.cend());
 }
 
-/// Words filled to the width, the first line behind `first`, all others behind as many blanks as `hanging`.
+/// Returns the words filled to the width: the first line begins with `first`, all others with `hanging`
+/// blanks.
 std::string filled(const std::string& text, std::size_t width, const std::string& first,
                    std::size_t hanging) {
   std::istringstream words(text);
@@ -65,7 +66,7 @@ std::string filled(const std::string& text, std::size_t width, const std::string
   return out + line + "\n";
 }
 
-/// The cells of `| a | b |`; `\|` is a stroke.
+/// Returns the cells of `| a | b |`; `\|` is a literal stroke.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   std::string cell;
@@ -105,7 +106,7 @@ std::string shown_table(const std::vector<std::string>& lines, std::size_t width
   return out;
 }
 
-/// The page, block by block.
+/// Formats a page, block by block.
 class Renderer {
  public:
   explicit Renderer(std::size_t width) : width_(width) {}

@@ -20,7 +20,8 @@
 namespace palpate::cli {
 namespace {
 
-/// Error of the line with the command whose help to read: CLI11's own messages name the option.
+/// Throws an error for an invalid command line and refers to the help of the command: the messages of CLI11
+/// name the option.
 void refuse(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::string command = "palpate", message = error.what();
   for (const CLI::App* used : app.get_subcommands()) command += " " + used->get_name();
@@ -77,7 +78,7 @@ Invocation parse_line(int argc, char** argv, const CommandLine& line) {
 
 int run_program(int argc, char** argv, Invocation (*parse)(int argc, char** argv)) {
   end_where_loading_is_tried();
-  log::configure(false, false);  // takes standard error as it is, for its colours
+  log::configure(false, false);  // uses standard error unguarded, for its colours
   guard_streams();
   Invocation invocation;
   const int parsed = run_guarded([&] {

@@ -7,22 +7,22 @@ namespace CLI {
 class App;
 }
 
-/// Code that palpate and the programs that it starts (other_program.h) share.
+/// Code that palpate and the programs started by it (other_program.h) share.
 namespace palpate::cli {
 
-/// The parsed command line.
+/// Parsed command line.
 struct Invocation {
-  std::function<int()> action;    ///< empty: help was asked for and given
-  bool factorises = false;        ///< worth restarting with tuned linear algebra
-  bool starts_processes = false;  ///< core's ProcessPool is made ready before anything is opened
+  std::function<int()> action;    ///< Empty if help was requested and printed
+  bool factorises = false;        ///< Restarts with tuned linear algebra, since it factorises
+  bool starts_processes = false;  ///< Prepares core's ProcessPool before any file is opened
   bool quiet = false, verbose = false;
-  std::vector<std::string> words{};  ///< of the line, without the program's name
+  std::vector<std::string> words{};  ///< Words of the command line, without the program's name
 };
 
 /// Description of a program's command line.
 struct CommandLine {
   const char* description;
-  const char* examples;  ///< printed at the end of its help
+  const char* examples;  ///< Printed at the end of the help
   void (*add_commands)(CLI::App& app, Invocation& invocation);
 };
 
@@ -30,7 +30,7 @@ struct CommandLine {
 /// @throws Error for an invalid line
 Invocation parse_line(int argc, char** argv, const CommandLine& line);
 
-/// The body of a program's main(): parses the line, prepares what the action needs, and runs it.
+/// Body of main() of a program: parses the line, prepares the process for the action, and runs it.
 /// @return the exit status
 int run_program(int argc, char** argv, Invocation (*parse)(int argc, char** argv));
 

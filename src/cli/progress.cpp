@@ -24,7 +24,8 @@ int terminal_width() {
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-/// Past the guard of streams (streams.h): a bar is drawn by control characters of its own.
+/// Writes to standard error past the stream guard (streams.h), since a progress bar consists of control
+/// characters.
 void draw(const std::string& text) {
   std::fflush(stderr);
   std::size_t at = 0;

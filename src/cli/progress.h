@@ -3,9 +3,9 @@
 
 namespace palpate::cli {
 
-/// One line on standard error that shows how far something is and how long it still takes: `assembling
-/// [#####-----]  50 %  12 s left`. It appears after the first second, is rewritten at most ten times a
-/// second, is wiped at the end, and stays silent where standard error is no terminal.
+/// Progress line on standard error with the completed share and the remaining time: `assembling [#####-----]
+/// 50 %  12 s left`. It appears after the first second, is rewritten at most ten times per second and is
+/// erased at the end; it is not printed if standard error is no terminal.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -13,10 +13,11 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// @param fraction  done, in [0, 1]  @param text  what is being done now; empty: the name given at the
-  ///   start
+  /// Updates the line.
+  /// @param fraction  completed share, in [0, 1]
+  /// @param text      current activity; empty: the name given to the constructor
   void operator()(double fraction, const std::string& text = {});
-  void wipe();
+  void wipe();  ///< Erases the line
 
  private:
   std::string what_;
@@ -25,7 +26,7 @@ class Progress {
   double start_, last_ = 0.0;
 };
 
-/// "3 s", "2 min 10 s", "1 h 5 min".
+/// Returns a duration as text: "3 s", "2 min 10 s", "1 h 5 min".
 std::string duration_text(double seconds);
 
 }  // namespace palpate::cli

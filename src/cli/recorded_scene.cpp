@@ -8,7 +8,8 @@
 namespace palpate::cli {
 namespace {
 
-/// Where the run's scene came from; a run that was cut off says it nowhere.
+/// Returns the original path of the scene of a run; for an interrupted run, which has no summary, the path of
+/// its scene.toml.
 std::string path_of_scene(const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder / "summary.json")) {
     store::Summary summary = store::read_summary((folder / "summary.json").string());
@@ -27,7 +28,7 @@ scene::Description recorded_scene(const std::string& text, const std::filesystem
   try {
     d = loop::parse(text, path, overrides);
   } catch (const Error& e) {
-    // lines are those of the text that the run kept; the scene's own file may have changed since
+    // line numbers refer to the text that the run kept; the original scene file may have changed since
     if (std::string_view(e.what()).starts_with(path))
       fail("{}{}", (folder / "scene.toml").string(), e.what() + path.size());
     throw;

@@ -7,9 +7,11 @@
 
 namespace palpate::cli {
 
-/// The scene of a run, from its text as the run kept it; models that it names are made where they are not
-/// kept any more.
-/// @param folder     of the run: relative paths start where the scene's file was, else there
+/// Returns the scene of a run, parsed from the text that the run kept; models of the scene that are missing
+/// from the cache are built.
+/// @param text       text of the scene
+/// @param folder     folder of the run: relative paths start at the folder of the original scene file, or
+/// else here
 /// @param overrides  KEY=VALUE
 scene::Description recorded_scene(const std::string& text, const std::filesystem::path& folder,
                                   const std::vector<std::string>& overrides = {});

@@ -53,7 +53,7 @@ void RecordedSurfaces::add(int part, const loop::Body* body) {
   s.rigid = p.tets.cols() == 0;
   if (body && body->skin) {
     s.faces = body->surface_faces();
-    // the file has the nodes in the order of the mesh's own file
+    // the file stores the nodes in the order of the mesh file
     s.points = [body](const Points& nodes) {
       return body->surface_points(nodes(Eigen::all, body->file_node));
     };
@@ -65,7 +65,7 @@ void RecordedSurfaces::add(int part, const loop::Body* body) {
     s.points = [node](const Points& nodes) -> Points { return nodes(Eigen::all, *node); };
     s.values = [node](const VecX& nodes) -> VecX { return nodes(*node); };
   }
-  if (s.faces.cols() == 0) return;  // nothing to see
+  if (s.faces.cols() == 0) return;  // no visible surface
   s.rest = s.points(p.reference);
   surfaces_.push_back(std::move(s));
 }
@@ -75,7 +75,7 @@ store::Rgb8 RecordedSurfaces::colour(std::size_t i) const {
 }
 
 double RecordedSurfaces::largest_displacement(const std::vector<int>& steps) const {
-  constexpr double kRounding = 1e-9;  // of the surfaces' size: what moved less has not moved
+  constexpr double kRounding = 1e-9;  // of the surfaces' size: less is rounding
   double largest = 0.0, size = 0.0;
   for (const Surface& s : surfaces_)
     size = std::max(size, (s.rest.rowwise().maxCoeff() - s.rest.rowwise().minCoeff()).norm());

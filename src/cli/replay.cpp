@@ -35,7 +35,7 @@ scene::Description scene_of(const std::string& run, const std::vector<std::strin
   return recorded_scene(text_of_file(folder / "scene.toml"), folder, overrides);
 }
 
-/// Keeps the ticks of a run's hands.
+/// Observer that keeps the ticks of the hands of a run.
 class Ticks : public loop::Observer {
  public:
   explicit Ticks(std::size_t hands) : of(hands) {}
@@ -43,7 +43,7 @@ class Ticks : public loop::Observer {
   std::vector<std::vector<loop::TickRecord>> of;
 };
 
-/// Prints how a hand's ticks differ from others; with several hands, whose they are.
+/// Prints the differences between two tick records of a hand; with several hands, its name first.
 compare::PerceptibleDifference print_difference(const scene::Description& description, std::size_t hand,
                                                 const std::vector<loop::TickRecord>& reference,
                                                 const std::vector<loop::TickRecord>& other) {

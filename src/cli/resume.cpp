@@ -13,7 +13,7 @@
 namespace palpate::cli {
 namespace {
 
-/// Whether the run in the folder has come to its end.
+/// Returns whether the run in the folder is finished.
 bool is_complete(const std::filesystem::path& folder) {
   const std::filesystem::path summary = folder / "summary.json";
   return std::filesystem::exists(summary) && store::read_summary(summary.string()).outcome == "finished";
@@ -27,7 +27,7 @@ void check_version(const Resumption& r) {
         checkpoint_path(r.folder), r.checkpoint.version, ours);
 }
 
-/// Reports what makes the rest of the run round differently.
+/// Reports differences of processor and instruction set, which change the rounding of the rest of the run.
 void compare_processors(const Resumption& r) {
   const auto compare = [](const char* what, const std::string& then, const std::string& now) {
     if (then != now)

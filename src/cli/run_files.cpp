@@ -19,7 +19,7 @@ constexpr std::string_view kNames[] = {"run.vtkhdf", "run.xdmf",    "force.csv",
                                        "depth.png",  "contact.png", "checkpoint.h5", "picture.png",
                                        kScene,       kSummary,      "report.html"};
 
-/// @param hands  of the scene
+/// Returns whether a run with these hands writes a file of that name.
 bool is_of_a_run(const std::string& name, const std::vector<scene::Hand>& hands) {
   return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames) ||
          std::any_of(hands.begin(), hands.end(), [&](const scene::Hand& hand) {

@@ -19,7 +19,7 @@ std::string hand_label(const loop::World& world, std::size_t hand) {
   return hand == 0 ? "the hand" : fmt::format("hand \"{}\"", world.description.hands[hand - 1].name);
 }
 
-/// Counts of a device, "packets_stale" as "3 packets stale".
+/// Adds the event counts of a device, with "packets_stale" printed as "3 packets stale".
 void add_device_counts(const loop::World& world, std::size_t hand, Remarks& out) {
   std::string text;
   for (const auto& [name, count] : loop::tallies_of(world, hand)) {
@@ -62,7 +62,7 @@ void add_quadrature(const loop::World& world, Remarks& out) {
   if (!text.empty()) out.push_back(fmt::format("contact quadrature: {}", text));
 }
 
-/// The error that exchange.linearisation_error bounds.
+/// Adds the error that exchange.linearisation_error bounds.
 void add_reduction_errors(const loop::World& world, Remarks& out) {
   for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
     if (e.factored == e.exchanges) {
@@ -73,7 +73,7 @@ void add_reduction_errors(const loop::World& world, Remarks& out) {
     std::string text = fmt::format(
         "{}: reduced response of the bodies: error at most {:.2g} % (bound) in {} of {} exchanges", e.tool,
         100.0 * (e.beyond > 0 ? e.requested : e.largest), e.exchanges - e.beyond, e.exchanges);
-    if (e.beyond > 0)  // a bound beyond 100 % says nothing
+    if (e.beyond > 0)  // a bound above 100 % carries no information
       text += fmt::format("; in {} the iteration stopped at its limit with bounds up to {:.2g} %{}", e.beyond,
                           100.0 * e.largest, e.largest > 1.0 ? ", which are not informative" : "");
     if (e.factored > 0) text += fmt::format("; exact (factored) in {}", e.factored);
@@ -91,7 +91,7 @@ void add_port(const loop::PortEnergy& port, Remarks& out) {
 
 }  // namespace
 
-// How thick things are is asked when something overlaps.
+// The thickness of objects is computed only when an overlap grows.
 void OverlapWatch::look(const loop::World& world, double t) {
   if (!world.contact) return;
   const std::vector<double> deepest = world.contact->deepest();

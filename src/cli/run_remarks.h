@@ -6,7 +6,8 @@
 
 namespace palpate::cli {
 
-/// Logs a warning for each [[contact]] whose overlap is too deep for a penalty, once, when it becomes so.
+/// Observer that logs a warning for each [[contact]] whose penetration becomes too deep for a penalty method,
+/// once per contact.
 class OverlapWatch : public loop::Observer {
  public:
   void period(loop::World& world, double t) override { look(world, t); }
@@ -14,11 +15,11 @@ class OverlapWatch : public loop::Observer {
 
  private:
   void look(const loop::World& world, double t);
-  std::vector<double> most_;  ///< of each contact's overlap, infinite where it was said [m]
+  std::vector<double> most_;  ///< Largest penetration per contact [m]; infinite: warned
 };
 
-/// Lists remarks on a run, a line each: limits of its result, and events on the way.  Standard output prints
-/// them, summary.json holds them, and the head of the page shows them from there.
+/// Returns remarks on a run, one line per remark: limits of its result, and events during the run. They are
+/// printed to standard output and kept in summary.json, from which the head of the page shows them.
 std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result);
 
 }  // namespace palpate::cli

@@ -6,17 +6,17 @@
 
 namespace palpate::cli {
 
-/// Which scene, and what is changed in it.
+/// Scene argument of a command and the changes to the scene.
 struct SceneArguments {
-  std::string scene;                   ///< path or name
-  std::vector<std::string> overrides;  ///< "body.0.youngs_modulus_pa=1e5"
-  std::string integrator;              ///< instead of the scene's own; empty: the scene's
+  std::string scene;                   ///< Path or name
+  std::vector<std::string> overrides;  ///< Changes of keys: "body.0.youngs_modulus_pa=1e5"
+  std::string integrator;              ///< Integrator that replaces the one of the scene; empty: unchanged
 };
 
-/// Finds, changes and checks the scene that the command line names.
+/// Finds, modifies and checks the scene of the command line.
 scene::Description scene_of(const SceneArguments& arguments);
 
-/// "press-ball": the file's name without its ending, which names its results.
+/// Returns the file name of the scene without its ending, which names its results: "press-ball".
 std::string short_name(const scene::Description& description);
 
 }  // namespace palpate::cli

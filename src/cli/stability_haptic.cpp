@@ -27,7 +27,7 @@ namespace {
 using namespace palpate::haptic_stability;
 namespace fs = std::filesystem;
 
-/// Where simulation and exact theory must agree.
+/// Acceptance limit of the relative difference between simulation and exact theory.
 constexpr double kAgreement = 0.05;
 
 std::string stiffness_text(double value) {
@@ -51,7 +51,8 @@ void print_rows(const ZWidth& z) {
                                         rows));
 }
 
-/// @param scale  from [N/m] to `unit`
+/// Prints the operating points as a table.
+/// @param scale  conversion factor from [N/m] to `unit`
 void print_points(const std::vector<OperatingPoint>& points, double scale, const std::string& unit) {
   std::vector<std::vector<std::string>> rows;
   for (const OperatingPoint& p : points)
@@ -76,7 +77,8 @@ void print_rotation(const RotationalLoop& r, const std::vector<OperatingPoint>& 
   print_points(points, a2, "N m/rad");
 }
 
-/// The operating points, of translation and rotation, that are unstable by theory or by simulation.
+/// Returns the operating points that are unstable by theory or by simulation; `how` is "translation" or
+/// "rotation".
 std::vector<std::string> unstable_points(const std::vector<OperatingPoint>& points, const std::string& how) {
   std::vector<std::string> out;
   for (const OperatingPoint& p : points)
@@ -139,8 +141,8 @@ ToolContactRange range_of(const StabilityArguments& a, const scene::Description&
   return out;
 }
 
-/// The verdicts on the loop, a line each: standard output, summary.json and the page have them from here.
-/// @param scale  of the rotation, from [N/m] to [N m/rad]
+/// Returns the verdicts on the loop, one line per verdict, for standard output, summary.json and the page.
+/// @param scale  conversion factor of the rotation, from [N/m] to [N m/rad]
 std::vector<std::string> verdicts_of(const ZWidth& z, double tick_s,
                                      const std::vector<OperatingPoint>& points,
                                      const std::vector<OperatingPoint>& turning, double scale) {
@@ -241,7 +243,7 @@ int stability_haptic(const StabilityArguments& a) {
   keep_summary(a, description, z, points, rotation, turning, verdicts, folder);
   const std::string svg = (fs::path(folder) / "z_width.svg").string();
   std::error_code none;
-  fs::remove(svg, none);  // a plot of an earlier run would pass for this one's
+  fs::remove(svg, none);  // a plot of an earlier run would pass for the plot of this run
   try {
     store::write_atomically(svg, report::plot_svg(plot_of(z, loop, points)));
   } catch (const Error& e) { missing.add("plot " + svg, e.what()); }

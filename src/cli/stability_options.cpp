@@ -74,7 +74,7 @@ Writes stability.csv, stability.json and report.html with the heat map; haptic: 
 Exit status 0 when every cell is as theory expects; haptic: when passive lies within stable; else 1.)");
   command->callback([arguments, then = std::move(then)] {
     if (arguments->haptic && arguments->scene.scene.empty()) throw CLI::RequiredError("--haptic: SCENE");
-    // here, after options with a typing error were named: what follows such an option is no scene
+    // checked after options with typing errors are reported: the word after such an option is no scene
     if (!arguments->haptic && !arguments->scene.scene.empty()) throw CLI::RequiresError("SCENE", "--haptic");
     if (arguments->haptic && !(arguments->rows.empty() && arguments->integrators.empty()))
       throw CLI::ExcludesError("--haptic", "--row and --integrator");

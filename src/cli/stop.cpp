@@ -18,12 +18,12 @@ void catch_stop_signals() {
   struct sigaction action = {};
   action.sa_handler = on_signal;
   action.sa_flags =
-      SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second signal finds the default action again
+      SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second signal triggers the default action
   sigemptyset(&action.sa_mask);
   for (int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
   struct sigaction hang_up = {};
   sigaction(SIGHUP, nullptr, &hang_up);
-  if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // else nohup wants it ignored
+  if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup: stays ignored
 }
 
 }  // namespace palpate::cli

@@ -14,7 +14,7 @@
 namespace palpate::cli {
 namespace {
 
-int failure = 0;  ///< errno of standard output's first refusal
+int failure = 0;  ///< errno of the first failed write to standard output; 0: none
 
 void write_all(int to, const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
@@ -26,7 +26,7 @@ void write_all(int to, const std::string& text) {
   }
 }
 
-/// A stream's write function; it never refuses.
+/// Write function of a stream; reports success even if writing fails.
 ssize_t write_printable(void* cookie, const char* bytes, std::size_t size) {
   write_all(static_cast<int>(reinterpret_cast<std::intptr_t>(cookie)), printable({bytes, size}));
   return static_cast<ssize_t>(size);

@@ -4,13 +4,13 @@
 /// Standard output and standard error, for all code of a program that prints.
 namespace palpate::cli {
 
-/// From here on, what is printed to `stdout` and `stderr` passes printable(), so that no name in a file or on
-/// the command line reaches the terminal with control characters; and a stream that refuses (a full disk, a
-/// closed descriptor) ends no command in the middle: output_failure() says so when it is over.  Standard
-/// descriptors that are closed are opened on /dev/null, so that no file of results takes their number.
+/// Replaces `stdout` and `stderr` by streams that pass all output through printable(), so that no name in a
+/// file or on the command line reaches the terminal with control characters. A stream that fails (a full
+/// disk, a closed descriptor) does not abort the command; output_failure() reports the failure at its end.
+/// Closed standard descriptors are opened on /dev/null, so that no file of results gets their number.
 void guard_streams();
 
-/// Flushes both.  Why standard output has not taken everything; empty: it has.
+/// Flushes both streams. Returns why standard output is incomplete; empty if it is complete.
 std::string output_failure();
 
 }  // namespace palpate::cli

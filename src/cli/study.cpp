@@ -28,8 +28,8 @@ using study::Results;
 using study::Row;
 using study::Task;
 
-constexpr std::size_t kMostRows = 60;  ///< of a table on the terminal
-/// Figures on the terminal; study.csv has all.
+constexpr std::size_t kMostRows = 60;  ///< Most rows of a table on the terminal
+/// Figures shown on the terminal; study.csv has all.
 const std::vector<std::string> kShown = {"steps", "peak_force_n", "largest_displacement_m"};
 
 std::string command_of(const StudyArguments& a) {
@@ -38,7 +38,8 @@ std::string command_of(const StudyArguments& a) {
   return out;
 }
 
-/// Columns whose cells are not all the same: those of a study of one scene need not name it in every row.
+/// Returns the columns whose cells are not all the same: the table of a study of one scene does not repeat
+/// its name in every row.
 std::vector<std::size_t> varying(const Results& results) {
   std::vector<std::size_t> out;
   for (std::size_t c = 0; c < results.settings.size(); ++c)
@@ -48,7 +49,7 @@ std::vector<std::size_t> varying(const Results& results) {
   return out;
 }
 
-/// Whole numbers as they are, all others short.
+/// Formats a cell: integers unchanged, other numbers shortened.
 std::string short_cell(const std::string& cell) {
   if (cell.find_first_not_of("0123456789") == std::string::npos && !cell.empty()) return cell;
   const double number = report::to_number(cell);
@@ -96,7 +97,7 @@ std::string counts_of(const Results& results) {
   return out;
 }
 
-/// The first reason of each kind of end that is not "ok".
+/// Prints the first reason for each status other than "ok".
 void print_reasons(const Results& results) {
   for (const char* status : {"failed", "out of time", "crashed", "refused"}) {
     const auto at = std::find_if(results.rows.begin(), results.rows.end(),
@@ -146,13 +147,13 @@ std::string why_lost(const study::RunOutcome& outcome) {
                      outcome.lost.size() == 1 ? "it" : "them");
 }
 
-/// Results of tasks, a file each.  Elements of an array job share the folder; a command that runs all tasks
-/// here has it alone, and so has one that forgets them.
+/// Opens the folder with the results of tasks, one file per task. Elements of an array job share it; a
+/// command that runs all tasks locally, or removes results, locks it exclusively.
 store::ResultFolder tasks_folder(const std::string& folder, store::ResultFolder::Access access) {
   return store::ResultFolder((fs::path(folder) / "tasks").string(), access);
 }
 
-/// `--tasks`: these tasks alone, as an element of an array job does; no table.
+/// Runs the tasks given by `--tasks`, as an element of an array job does, without writing a table.
 int run_some(Plan& plan, const StudyArguments& arguments, const std::string& folder) {
   const store::ResultFolder ours = tasks_folder(folder, store::ResultFolder::Access::kShared);
   const auto tasks = study::indices_of(arguments.tasks, plan.tasks.size());
@@ -216,12 +217,12 @@ int study(const StudyArguments& arguments) {
     print_plan(plan);
     return 0;
   }
-  const store::ResultFolder mine(folder);  // its tables
+  const store::ResultFolder mine(folder);  // locks the folder of the tables
   store::ResultFolder tasks;
   const bool writes_tasks = arguments.fresh || !(arguments.merge || arguments.slurm);
   if (writes_tasks) tasks = tasks_folder(folder, store::ResultFolder::Access::kAlone);
   if (arguments.fresh) study::forget_results(folder);
-  if (arguments.slurm) tasks = {};  // for the elements of the job
+  if (arguments.slurm) tasks = {};  // releases the folder for the elements of the job
   const StudyEnd end = run_all(plan, arguments, folder);
   if (end.submitted) return 0;
 

@@ -7,15 +7,15 @@
 
 namespace palpate::cli {
 
-/// What became of the tasks that were to be run.
+/// Outcome of the tasks of a study.
 struct StudyEnd {
-  bool stopped = false;    ///< by Ctrl-C
-  bool submitted = false;  ///< and not waited for: there is no table yet
-  std::string lost;        ///< why results are missing, for a message
+  bool stopped = false;    ///< Stopped by Ctrl-C
+  bool submitted = false;  ///< Submitted without waiting: there is no table yet
+  std::string lost;        ///< Why results are missing, for a message; empty: none are missing
 };
 
-/// Runs the tasks that have no result yet as an array job: submits it, or finds the one that an earlier call
-/// has submitted, and waits for it.
+/// Runs the tasks without a result as a Slurm array job: submits the job, or finds the job that an earlier
+/// call submitted, and waits for it.
 /// @pre every task is settled
 StudyEnd study_by_slurm(study::Plan& plan, const StudyArguments& arguments, const std::string& folder);
 

@@ -24,7 +24,7 @@ using study::Plan;
 
 constexpr double kFirstWaitSeconds = 0.5, kLongestWaitSeconds = 10.0;
 
-/// The job that the folder's study was last submitted as, and the key of its plan.
+/// Last submitted job of the study in this folder, and the key of its plan.
 struct Submitted {
   std::string job, plan;
 };
@@ -46,7 +46,7 @@ std::vector<std::size_t> open_tasks(const Plan& plan, const std::string& folder)
   return out;
 }
 
-/// The job that is to be waited for: submitted now, or by an earlier call.
+/// Returns the job to wait for: submitted now, or by an earlier call.
 std::string job_of(const Plan& plan, const std::vector<std::size_t>& open, const StudyArguments& arguments,
                    const std::string& folder) {
   const Submitted last = last_submitted(folder);
@@ -76,15 +76,15 @@ std::string job_of(const Plan& plan, const std::vector<std::size_t>& open, const
   return job;
 }
 
-/// Leaves the tasks that have no result yet.  Reading the folder's list first makes a network file system
-/// look anew for files that it has not known.
+/// Removes tasks that have a result from `open`. Reading the list of the folder first makes a network file
+/// system refresh its cache of missing files.
 void drop_done(const Plan& plan, const std::string& folder, std::vector<std::size_t>& open) {
   std::error_code none;
   for (fs::directory_iterator at(fs::path(folder) / "tasks", none), end; at != end; at.increment(none)) {}
   std::erase_if(open, [&](std::size_t i) { return study::is_done(plan, folder, plan.tasks[i]); });
 }
 
-/// Waits until every task has its result, or the job is over.
+/// Waits until every task has its result, or the job has ended.
 void wait_for(const Plan& plan, const std::string& job, const std::string& folder,
               std::vector<std::size_t> open) {
   const auto most = static_cast<double>(open.size());
@@ -92,7 +92,7 @@ void wait_for(const Plan& plan, const std::string& job, const std::string& folde
   double pause_s = kFirstWaitSeconds;
   bool said = false;
   while (!stop_flag()) {
-    const JobState state = study::job_state(job);  // before the look at the files: what is over has written
+    const JobState state = study::job_state(job);  // before the files: a finished job has written them
     drop_done(plan, folder, open);
     if (open.empty() || state == JobState::kOver) return;
     if (state == JobState::kUnknown && !said) {

@@ -12,26 +12,27 @@
 #include <cstdlib>
 #include <cstring>
 
-// OpenBLAS 0.3.21 knows CPUs by family and model, and falls back to old kernels on those that came after it.
-// CPU features do not lie. CHOLMOD's supernodal code starts four OpenMP threads for copies of a few
-// kilobytes, whatever OMP_NUM_THREADS says; only the thread limit stops it.  More BLAS threads do not help
-// our matrices (some ten thousand rows).  All of this is read while the libraries load.
+// OpenBLAS 0.3.21 selects kernels by CPU family and model, and falls back to old kernels on later CPUs; CPU
+// feature flags are reliable. The supernodal code of CHOLMOD starts four OpenMP threads for copies of a few
+// kilobytes, whatever the value of OMP_NUM_THREADS; only the thread limit prevents it. More BLAS threads do
+// not speed up the matrices here (some ten thousand rows). All of these settings are read while the libraries
+// load.
 //
 // One numeric factorisation of 11,100 rows (palpate bench fem; two cores with AVX-512): 30 ms as set here; 46
-// ms with the kernels that an unknown CPU gets; 62 ms without the thread limit; 33 ms with two BLAS threads;
-// 64 ms with nothing set.  The restart costs 20 ms.
+// ms with the kernels for an unknown CPU; 62 ms without the thread limit; 33 ms with two BLAS threads; 64 ms
+// with nothing set. The restart costs 20 ms.
 //
-// Where addresses are limited (ulimit -v, ulimit -d) the restart comes before any library begins.  OpenBLAS
-// starts its threads while it is loaded; each wants 128 MiB of addresses and asks for ever where it gets
-// none, and the program waits for it at its end: below 220 MiB `palpate list integrators` did not come back.
-// Without further threads 0.3.21 asks when a matrix is factorised, and is then refused (blas_memory.cpp);
-// 0.3.29 asks while it is loaded, for ever as well.  So a child loads the libraries first, under a limit on
-// its time.
+// If the address space is limited (ulimit -v, ulimit -d), the restart precedes the initialisation of all
+// libraries. OpenBLAS starts its threads while it is loaded; each reserves 128 MiB of addresses and retries
+// forever if the reservation fails, and the program waits for the threads at its end: below 220 MiB `palpate
+// list integrators` did not return. Without further threads, version 0.3.21 reserves memory when a matrix is
+// factorised, and is then refused (blas_memory.cpp); version 0.3.29 reserves it while it is loaded, also
+// retrying forever. A child process therefore loads the libraries first, under a time limit.
 
 namespace palpate::cli {
 namespace {
 
-/// True when the variable was unset and is now set.
+/// Sets a variable unless it is set; returns whether it was set here.
 bool provide(const char* name, const char* value) {
   return value && !std::getenv(name) && ::setenv(name, value, 0) == 0;
 }
@@ -43,11 +44,11 @@ bool is_limited(__rlimit_resource_t resource) {
 
 constexpr char kLoad[] = "PALPATE_LIBRARIES_LOAD";
 
-/// A child with that environment loads the libraries, and ends (end_where_loading_is_tried).  Loading takes
-/// some 30 ms.
+/// Returns whether the libraries load with that environment, tested in a child process that ends after
+/// loading (end_where_loading_is_tried). Loading takes about 30 ms.
 bool libraries_load(char** argv, char** envp) {
   const pid_t child = ::fork();
-  if (child < 0) return true;  // no process can be had: they may load all the same
+  if (child < 0) return true;  // no process available: the libraries may load all the same
   if (child == 0) {
     const rlimit no_core{0, 0}, two_seconds{2, 2};
     ::setrlimit(RLIMIT_CORE, &no_core);
@@ -79,7 +80,8 @@ bool libraries_load(char** argv, char** envp) {
   ::_exit(written < 0 ? 3 : 1);
 }
 
-/// Runs before the constructors of all libraries, the C library's too: the environment is its argument.
+/// Restarts the program with one BLAS thread if the address space is limited. Runs before the constructors of
+/// all libraries, including the C library, so that the environment is passed as an argument.
 void restart_where_limited(int /*argc*/, char** argv, char** envp) {
   constexpr char kThreads[] = "OPENBLAS_NUM_THREADS=";
   if (!is_limited(RLIMIT_AS) && !is_limited(RLIMIT_DATA)) return;
@@ -105,7 +107,7 @@ void restart_where_limited(int /*argc*/, char** argv, char** envp) {
   std::free(changed);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // whose own functions are not ready by then
+#ifndef __SANITIZE_ADDRESS__  // the functions of the sanitizer are not ready at that time
 [[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)(int, char**,
                                                                              char**) = restart_where_limited;
 #endif

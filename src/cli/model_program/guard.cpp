@@ -16,7 +16,7 @@ namespace palpate::cli {
 namespace {
 
 constexpr std::size_t kLongest = 2048;
-/// Two, so that the handler never sees one that is being changed.
+/// Two buffers, so that the handler never reads one that is being changed.
 std::array<std::array<char, kLongest>, 2> refusals{};
 std::atomic<unsigned> current{0};
 std::atomic<const char*> stopped{"palpate: stopped, no model was written\n"};
@@ -24,12 +24,12 @@ std::atomic<bool> on_terminal{false};
 static_assert(std::atomic<unsigned>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free,
               "a signal handler may touch only lock-free atomics");
 
-/// Handlers may call write and _exit, and not much else.
+/// Writes a message from a signal handler, in which only write and _exit and few other calls are allowed.
 void say(const char* text) {
   const auto put = [](const char* words) {
     [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, words, std::strlen(words));
   };
-  if (on_terminal) put("\r\033[K");  // the bar
+  if (on_terminal) put("\r\033[K");  // erases the progress line
   put(text);
 }
 
@@ -69,7 +69,7 @@ void catch_time(double seconds) {
   const double bounded = std::min(seconds, kLongest), whole = std::floor(bounded);
   itimerval timer = {};
   timer.it_value.tv_sec = static_cast<time_t>(whole);
-  // a timer of zero would be none
+  // a value of zero would disarm the timer
   timer.it_value.tv_usec = std::max<suseconds_t>(static_cast<suseconds_t>(1e6 * (bounded - whole)), 1);
   setitimer(ITIMER_REAL, &timer, nullptr);
 }

@@ -3,22 +3,22 @@
 
 namespace palpate::cli {
 
-/// Ends the program at once, whatever it is doing, also in steps that cannot be interrupted: on Ctrl-C and
-/// SIGTERM (status 130, one line).  What is written meanwhile must be whole or absent: see SignalsHeld.
+/// Installs handlers that end the program at once on Ctrl-C and SIGTERM (status 130, one line), also in steps
+/// that cannot be interrupted. Files written meanwhile must be complete or absent: see SignalsHeld.
 void catch_stop();
 
-/// Ends it in the same way, with a refusal (status 1), when `seconds` from now are over.
+/// Installs a timer that ends the program with an error message (status 1) after `seconds`.
 void catch_time(double seconds);
 
-/// What the refusal says when the time is over.
+/// Sets the error message of the timer.
 void set_refusal(const std::string& text);
 
-/// Signals wait while this lives: around the writing of the model's file.  Its making is over: the time that
-/// catch_time() watches no longer counts.
+/// Guard that blocks these signals during the writing of the model file. The computation is then over: the
+/// timer of catch_time() is disarmed.
 class SignalsHeld {
  public:
   SignalsHeld();
-  void written();  ///< a signal from now on ends the program with other words: the file is there
+  void written();  ///< Changes the message of a later signal: the file exists
   ~SignalsHeld();
   SignalsHeld(const SignalsHeld&) = delete;
   SignalsHeld& operator=(const SignalsHeld&) = delete;

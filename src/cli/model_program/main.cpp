@@ -25,7 +25,8 @@
 namespace palpate::cli {
 namespace {
 
-/// A bar a step, and what the guard says where the step does not end.
+/// Progress listener with one bar per step; it also sets the message of the guard for a step that exceeds the
+/// time limit.
 class Bars : public model::ProgressListener {
  public:
   explicit Bars(const ModelArguments& arguments) : arguments_(arguments) {
@@ -64,13 +65,13 @@ class Bars : public model::ProgressListener {
   std::unique_ptr<Progress> bar_;
 };
 
-/// Makes the model, writes and draws it; returns the exit status.
+/// Builds the model, writes and draws it; returns the exit status.
 int make(ModelArguments& arguments, model::Input input, double seconds) {
   catch_stop();
   for (std::ostream* const stream : {&std::cout, &std::cerr, &std::clog})
-    stream->rdbuf(nullptr);  // CGAL's words
+    stream->rdbuf(nullptr);  // silences the output of CGAL
   Bars bars(arguments);
-  constexpr double kGrace = 1.0;  // a step that finds its limit itself gives a more precise message
+  constexpr double kGrace = 1.0;  // a step that detects the time limit itself gives a more precise message
   catch_time(seconds + kGrace);
   model::Made made = model::make_model(std::move(input), arguments.options, bars);
   made.file.record.options = arguments.as_given;
@@ -133,7 +134,7 @@ int model_command(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace palpate::cli;
-  palpate::log::configure(false, false);  // takes standard error as it is, for its colours
+  palpate::log::configure(false, false);  // uses standard error unguarded, for its colours
   guard_streams();
   return guarded([&] { return model_command(argc, argv); }, "surface");
 }

@@ -62,13 +62,13 @@ std::string source_help() {
                      shapes.empty() ? "" : ", or a shape of the paper: " + shapes);
 }
 
-/// NAME=FILE without the folder of the file: no machine stands in a record.
+/// Returns NAME=FILE without the folder of the file: a record contains no path of a machine.
 std::string without_folder(const std::string& region) {
   const std::size_t at = region.find('=') + 1;
   return region.substr(0, at) + std::filesystem::path(region.substr(at)).filename().string();
 }
 
-/// NAME=FILE or NAME=skeleton.
+/// Parses NAME=FILE or NAME=skeleton.
 model::RegionSource region_of(const std::string& text) {
   const std::size_t at = text.find('=');
   if (at == std::string::npos || at == 0 || at + 1 == text.size())
@@ -87,7 +87,7 @@ model::RegionSource region_of(const std::string& text) {
   return out;
 }
 
-/// The options that shape the model, in one order and one spelling.
+/// Returns the options that affect the model, in canonical order and spelling.
 std::string canonical(const CLI::App& app) {
   std::string out;
   for (const char* name :

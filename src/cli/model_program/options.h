@@ -5,23 +5,23 @@
 
 namespace palpate::cli {
 
-/// What `palpate model` was asked for.
+/// Arguments of `palpate model`.
 struct ModelArguments {
-  bool given = false;   ///< false: help was asked for and given
-  std::string source;   ///< a file, or the name of a shape
-  std::string output;   ///< empty: NAME.h5
-  std::string picture;  ///< PNG file; empty: none
-  /// both from the root on, as the model is made in another folder
+  bool given = false;   ///< False if help was requested and printed
+  std::string source;   ///< File, or name of a shape
+  std::string output;   ///< Output file; empty: NAME.h5
+  std::string picture;  ///< PNG file; empty: no picture
+  /// Absolute paths, since the model is built in another working folder
   std::string output_path, picture_path;
   bool quiet = false, verbose = false;
-  bool counted = false;   ///< --tetrahedra was given
-  bool scaled = false;    ///< --scale was given
-  int skin_vertices = 0;  ///< of a shape; 0: its own number
+  bool counted = false;   ///< Whether --tetrahedra was given
+  bool scaled = false;    ///< Whether --scale was given
+  int skin_vertices = 0;  ///< Skin vertices of a shape; 0: its default
   model::Options options;
-  std::string as_given;  ///< the options that shape the model, for its record
+  std::string as_given;  ///< Options that affect the model, kept in its record
 };
 
-/// @throws Error for a line that makes no sense
+/// Parses the command line.  @throws Error for an invalid line
 ModelArguments parse_model(int argc, char** argv);
 
 }  // namespace palpate::cli

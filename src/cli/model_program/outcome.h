@@ -3,7 +3,7 @@
 
 namespace palpate::cli {
 
-/// Prints what was mended, the counts and figures, and how long each step took.
+/// Prints the repairs of the surface, counts and quality figures, and the time of each step.
 void print_outcome(const model::Made& made, const std::string& path);
 
 }  // namespace palpate::cli

@@ -18,8 +18,9 @@ namespace {
 
 constexpr int kWidth = 900, kHeight = 720;
 
-/// The half of the tetrahedra behind the upright plane through the middle of the box that faces the eye:
-/// those that `keep` holds for; each face alone, so that it can be shaded by its element.
+/// Returns the half of the tetrahedra behind the vertical plane through the centre of the bounding box that
+/// faces the eye, limited to tetrahedra for which `keep` is true. Faces share no vertices, so that each can
+/// be shaded by its element.
 template <class Keep>
 render::Surface cut_open(const TetMesh& tets, const Keep& keep) {
   const Vec3 middle = (tets.nodes.rowwise().minCoeff() + tets.nodes.rowwise().maxCoeff()) / 2;
@@ -50,7 +51,7 @@ render::Surface cut_open(const TetMesh& tets, const Keep& keep) {
   return out;
 }
 
-/// The faces of the hull of a few points: the triples with all others on one side.
+/// Returns the faces of the convex hull of a few points: the triples with all other points on one side.
 Faces hull_faces(const Points& corners) {
   std::vector<std::array<int, 3>> found;
   const int n = static_cast<int>(corners.cols());
@@ -85,7 +86,7 @@ render::Rgb hue(std::size_t i) {
   return {channel(0), channel(1.0 / 3), channel(2.0 / 3)};
 }
 
-/// A surface for each region, and one for what is in none.
+/// Adds one surface per region, and one for the tetrahedra in no region.
 void add_regions(const LayeredModel& model, render::Scene& scene) {
   const std::vector<int> owner =
       mesh::region_of_element(model.regions, static_cast<int>(model.tets.tets.cols()));

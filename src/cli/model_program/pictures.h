@@ -5,11 +5,11 @@
 
 namespace palpate::cli {
 
-/// Refuses at the start what could not be drawn at the end.
+/// Rejects at the start a picture that could not be drawn at the end.  @throws Error with the reason
 void check_pictures(const std::string& path);
 
-/// One PNG of four views: the skin, the tetrahedra cut open and shaded by their smallest dihedral angle, the
-/// skin over its tetrahedra, and the convex proxies with the bones where there are any.
+/// Draws four views into one PNG: the skin; the tetrahedra cut open, shaded by their smallest dihedral angle;
+/// the skin over its tetrahedra; the convex proxies with the bones, if any.
 void draw_model(const LayeredModel& model, const std::string& path);
 
 }  // namespace palpate::cli

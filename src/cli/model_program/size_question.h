@@ -3,9 +3,10 @@
 
 namespace palpate::cli {
 
-/// A body beyond 10 m, or below 1 mm, is mostly one in other units: without --scale this asks whether it is
-/// meant, on a terminal; elsewhere it refuses, and says how to say so.
-/// @throws Error where it is not meant, or no one can be asked
+/// Checks the size of a body. A body above 10 m or below 1 mm is usually in other units: without --scale, a
+/// question on the terminal asks for confirmation; without a terminal the body is rejected with the option to
+/// give.
+/// @throws Error if the size is not confirmed, or there is no terminal
 void ask_about_size(const ModelArguments& arguments, const model::Input& input);
 
 }  // namespace palpate::cli

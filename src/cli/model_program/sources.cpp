@@ -30,7 +30,8 @@ model::Input input_of_shape(ModelArguments& arguments) {
   out.sound = true;
   if (model::TetrahedraOptions& requested = arguments.options.tetrahedra;
       !arguments.counted && requested.element_size_m == 0) {
-    // the number is met within 3 %, and those of the paper's objects without a number of nodes are "at least"
+    // the number is met within 3 %; for the objects of the paper without a number of nodes it is a lower
+    // limit
     constexpr double kAtLeast = 1.03;
     requested.tetrahedra = static_cast<int>(shape.tetrahedra * (shape.nodes > 0 ? 1.0 : kAtLeast));
     requested.nodes = shape.nodes;

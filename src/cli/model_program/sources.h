@@ -3,11 +3,12 @@
 
 namespace palpate::cli {
 
-/// The file, or the shape of that name with its own numbers of elements where none were asked for.
-/// @throws Error for neither, with the nearest name
+/// Reads the file, or builds the shape of that name with its default numbers of elements if none were
+/// requested.
+/// @throws Error if it is neither, with the nearest name
 model::Input input_of(ModelArguments& arguments);
 
-/// "head, human, gear, pumpkin"; empty where this build has no shapes.
+/// Returns the names of the shapes: "head, human, gear, pumpkin"; empty if this build has no shapes.
 std::string shape_names();
 
 }  // namespace palpate::cli

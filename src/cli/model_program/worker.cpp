@@ -19,7 +19,7 @@
 namespace palpate::cli {
 namespace {
 
-/// Memory that the child shares with its parent.
+/// Memory shared between the child and its parent.
 struct Notes {
   char stage[128], place[256];
 };
@@ -36,7 +36,7 @@ void pass_on(int signal) {
   if (child > 0) ::kill(child, signal);
 }
 
-/// Makes a folder, enters it and removes it: files cannot be made in it, by whatever name.
+/// Creates a folder, enters it and removes it: no file can then be created by a relative name.
 void enter_no_folder() {
   const char* const requested = std::getenv("TMPDIR");
   for (const char* parent : {requested ? requested : "/tmp", "/tmp", "/var/tmp", "/dev/shm"}) {
@@ -48,7 +48,7 @@ void enter_no_folder() {
   }
 }
 
-/// Leaves out the stage in which a child ended; false where it was none of those that can be.
+/// Disables the stage in which a child ended; returns false if that stage cannot be disabled.
 bool leave_out(const WorkerEnd& end, model::Optimisation& optimisation) {
   const bool moving = end.stage == model::kMovingVertices, exuding = end.stage == model::kExudingSlivers;
   if (!moving && !exuding) return false;
@@ -58,7 +58,7 @@ bool leave_out(const WorkerEnd& end, model::Optimisation& optimisation) {
 
 [[noreturn]] void live(const std::function<int()>& work, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);  // it died before that
+  if (::getppid() != parent) ::_exit(1);  // the parent ended before prctl()
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   enter_no_folder();
@@ -88,7 +88,7 @@ WorkerEnd run_worker(const std::function<int()>& work) {
     notes = static_cast<Notes*>(shared);
   }
   *notes = {};
-  std::fflush(nullptr);  // what is not written yet would be written twice
+  std::fflush(nullptr);  // buffered output would be written twice
   struct sigaction action = {};
   action.sa_handler = pass_on;
   for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
