@@ -4,11 +4,11 @@
 
 namespace palpate::report {
 
-/// What a result answers, in words: a leading sentence and its particulars.
+/// Answer of a result in words: a leading sentence and details.
 struct Answer {
-  std::string lead;
-  std::vector<std::string> points = {};
-  bool asks = false;  ///< the lead is the question, or what it is about: the points answer it
+  std::string lead;                      ///< Leading sentence
+  std::vector<std::string> points = {};  ///< Details
+  bool asks = false;  ///< Whether the lead is the question or its subject, which the points answer
   bool empty() const { return lead.empty() && points.empty(); }
 };
 

@@ -16,9 +16,9 @@ Json group_of(const Json& summary, const char* name) {
   return summary["figures"][name];
 }
 
-constexpr double kNothing = 1e-12;  ///< a peak below it is rounding [N], [N m]
+constexpr double kNothing = 1e-12;  ///< Peaks below it are rounding [N], [N m]
 
-/// The largest magnitude of a vector in force.csv, and when.
+/// Largest magnitude of a vector in force.csv, and its time.
 struct Peak {
   double value = 0.0, time_s = 0.0;
 };
@@ -42,7 +42,8 @@ std::string at_time(double time_s) {
   return std::isfinite(time_s) ? fmt::format(", at {} s", time_text(time_s)) : "";
 }
 
-/// The one ladder that is the cheapest at every target that some ladder reaches; empty where there is none.
+/// Returns the label of the method that is cheapest at every target that any method reaches; empty if there
+/// is none.
 std::string always_cheapest(const Table& compare, const std::string& column, double scale, double own_error) {
   std::vector<double> targets = kTargets;
   for (double& target : targets) target *= scale;
@@ -55,7 +56,8 @@ std::string always_cheapest(const Table& compare, const std::string& column, dou
   return label;
 }
 
-/// What is asked, or in one sentence its answer where there is one for all errors.
+/// Returns the question of a comparison, or its answer in one sentence if one method is cheapest at all
+/// errors.
 Answer headline(const Table& compare, const ReferenceError& reference) {
   const std::string positions =
       always_cheapest(compare, "position_error_rel_l2", 1.0, reference.position_error_rel_l2);

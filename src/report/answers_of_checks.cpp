@@ -7,12 +7,12 @@
 namespace palpate::report {
 namespace {
 
-/// "1 thread", "2 threads".
+/// Returns a count with its noun: "1 thread", "2 threads".
 std::string counted(double n, const char* noun) {
   return fmt::format("{} {}{}", short_number(n, 15), noun, n == 1.0 ? "" : "s");
 }
 
-constexpr std::size_t kMostNamed = 5;  ///< failures named one by one
+constexpr std::size_t kMostNamed = 5;  ///< Most failures that are listed by name
 
 std::string named(const std::vector<std::string>& names) {
   const std::size_t shown = std::min(kMostNamed, names.size());

@@ -8,7 +8,8 @@
 namespace palpate::report {
 namespace {
 
-/// 0.01, 5, 200 within four decades of one; else 2x10^-7 in gnuplot's enhanced text.
+/// Returns the label of a tick: 0.01, 5, 200 within four decades of one; otherwise 2x10^-7 in the enhanced
+/// text of gnuplot.
 std::string tick_label(double value, int exponent, int digit, bool plain) {
   if (plain) return fmt::format("{:g}", value);
   return digit == 1 ? fmt::format("10^{{{}}}", exponent) : fmt::format("{}·10^{{{}}}", digit, exponent);
@@ -39,14 +40,15 @@ Axis make_axis(const std::vector<double>& values, bool logarithmic, double margi
   const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
   Axis axis{*least, *greatest, logarithmic};
   if (logarithmic) {
-    // One value alone, or values close together, get a factor of two about them: a tick falls inside then.
+    // The margins are fractions of at least 0.6 decades, so that a single value, or close values, get a range
+    // too.
     const double decades = std::max(std::log10(axis.high / axis.low), 0.6);
     axis.low /= std::pow(10.0, margin_low * decades);
     axis.high *= std::pow(10.0, margin_high * decades);
     axis.ticks = logarithmic_ticks(axis.low, axis.high);
     return axis;
   }
-  // A constant curve stands in the middle of a range of its own size.
+  // A constant curve is centred in a range of twice its magnitude.
   const double span = axis.high > axis.low ? axis.high - axis.low : std::max(1e-9, 2.0 * std::abs(axis.high));
   const double widen = axis.high > axis.low ? 0.0 : 0.5 * span;
   axis.low -= widen + margin_low * span;

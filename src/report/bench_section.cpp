@@ -5,11 +5,12 @@
 #include "palpate/core/error.h"
 #include "sections.h"
 
-/// What `palpate bench -o` writes: JSON whose lists of objects become tables, whatever their columns.
+/// Section for the output of `palpate bench -o`: JSON whose lists of objects become tables, whatever their
+/// columns.
 namespace palpate::report {
 namespace {
 
-/// What the lists of the benchmarks hold.
+/// Returns the heading of a list of the benchmarks.
 std::string name_of(const std::string& key) {
   static const std::map<std::string, std::string> names = {{"rows", "Steps, by stages"},
                                                            {"elements", "Loops over elements"},
@@ -21,7 +22,7 @@ std::string name_of(const std::string& key) {
   return known == names.end() ? key_text(key) : known->second;
 }
 
-/// An object's cells in the order of its keys; an object inside it as "outer, inner".
+/// Appends the cells of an object in the order of its keys; a nested object has names as "outer, inner".
 void flatten(const Json& object, const std::string& prefix,
              std::vector<std::pair<std::string, std::string>>& out) {
   for (const auto& [key, value] : object.items()) {
@@ -60,7 +61,7 @@ void add_list(Page& page, const std::string& name, const Json& list) {
   page.add_table(headers, rows);
 }
 
-/// The lists inside an object, each under the names of what holds it.
+/// Adds the lists inside an object, each under the names of the enclosing keys.
 void add_lists(Page& page, const std::string& path, const Json& value) {
   if (value.is_object())
     for (const auto& [key, inner] : value.items())
@@ -73,7 +74,7 @@ void add_lists(Page& page, const std::string& path, const Json& value) {
   std::vector<std::pair<std::string, std::string>> cells;
   for (const Json& one : value)
     if (one.is_object()) flatten(one, "", cells);
-  if (cells.size() > value.size()) add_list(page, path, value);  // more than a name each
+  if (cells.size() > value.size()) add_list(page, path, value);  // objects with more than a name
   for (const Json& one : value)
     if (one.is_object())
       for (const auto& [key, inner] : one.items())
@@ -87,7 +88,7 @@ void add_bench(Page& page, const std::string& file, const Json& bench) {
   page.add_facts(facts_of(bench));
   std::vector<std::string> keys;
   for (const auto& [key, value] : bench.items()) keys.push_back(key);
-  // what bears the figures stands after them
+  // the limits of the machine, which support the figures, come after them
   std::stable_partition(keys.begin(), keys.end(), [](const std::string& key) { return key != "limits"; });
   for (const std::string& key : keys) add_lists(page, name_of(key), bench[key]);
 }

@@ -6,20 +6,21 @@
 
 namespace palpate::report {
 
-/// How many values lie in each of the bins between `edges`, which are one more: ten bins a decade.
+/// Histogram with ten bins per decade; `edges` has one more entry than `counts`.
 struct LogHistogram {
   std::vector<double> edges;
   std::vector<long> counts;
 };
 
-inline constexpr double kLeastBin = 0.1;  ///< lower edge of the first bin: what is less is counted there
+inline constexpr double kLeastBin = 0.1;  ///< Lower edge of the first bin; smaller values are counted in it
 
-/// @pre values not empty
+/// Returns the histogram of the values.  @pre values not empty
 LogHistogram log_histogram(const std::vector<double>& values);
 
-/// Histogram of durations of ticks [us], both axes logarithmic, with lines at their p50, p99, p99.9 (nearest
-/// rank) and maximum, whose values stand in the key.  A bin that is empty reaches half a tick.
-/// @pre values_us not empty, finite  @param x_label  without unit
+/// Plots a histogram of durations of ticks [us], both axes logarithmic, with lines at p50, p99, p99.9
+/// (nearest rank) and the maximum, whose values are in the key. An empty bin has the height of half a tick.
+/// @pre values_us not empty, finite
+/// @param x_label  label of the x axis, without unit
 Plot tick_histogram(const std::vector<double>& values_us, const std::string& x_label);
 
 }  // namespace palpate::report

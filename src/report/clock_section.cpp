@@ -17,7 +17,7 @@ int bin_of(double value) {
 
 double edge(int bin) { return std::pow(10.0, static_cast<double>(bin) / kPerDecade); }
 
-/// Value below which a share q of them lies.
+/// Returns the quantile q by the nearest-rank method.
 double nearest_rank(const std::vector<double>& sorted, double q) {
   const auto rank = static_cast<std::ptrdiff_t>(std::ceil(q * static_cast<double>(sorted.size()))) - 1;
   return sorted[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(rank, 0, std::ssize(sorted) - 1))];

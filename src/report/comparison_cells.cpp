@@ -8,7 +8,7 @@
 namespace palpate::report {
 
 std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& reference) {
-  constexpr double kLeastPeak = 1e-12;  // below it a peak is rounding [N], [N m]
+  constexpr double kLeastPeak = 1e-12;  // peaks below it are rounding [N], [N m]
   const auto size_of = [](double peak) { return peak > kLeastPeak ? peak : kUnknown; };
   const std::vector<Quantity> all = {
       {"position_error_rel_l2", "position error, relative L2 [-]", reference.position_error_rel_l2, 1.0, ""},

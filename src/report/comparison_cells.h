@@ -7,26 +7,27 @@
 
 namespace palpate::report {
 
-/// An error that a comparison can show: its column, what it is called, and the reference's own.
+/// Error that a comparison can show: its column and name, and the error of the reference.
 struct Quantity {
   std::string column, label;
-  double reference;
-  double
-      scale;  ///< size of what errs, in the error's unit: 1 of a relative error, else the peak; NaN: unknown
-  std::string unit;  ///< "N"; empty for a relative error
+  double reference;  ///< Error of the reference
+  double scale;  ///< Size of the erring quantity, in the unit of the error: 1 for a relative error, else the
+                 ///< peak; NaN: unknown
+  std::string unit;  ///< Unit of the error, as "N"; empty for a relative error
 };
 
-/// Errors that are nowhere larger than this are rounding, and get no plot: a scene without torque has no
-/// error of it.
+/// Threshold below which errors are rounding. A quantity whose errors are all below it has no plot: a scene
+/// without torque has no torque error.
 constexpr double kRounding = 1e-15;
 
-/// The comparison errors that the table holds.
+/// Returns the comparison errors that the table contains.
 std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& reference);
 
+/// Returns the text with its first letter in upper case.
 std::string capitalised(std::string text);
 
-/// The cell of a column as a short number; integers and words stay as they are; "-" where the column is
-/// missing or empty.
+/// Returns the cell of a column as a short number; integers and words are unchanged; "-" if the column is
+/// missing or the cell is empty.
 std::string cell_text(const Table& table, std::size_t row, const std::string& column);
 
 }  // namespace palpate::report

@@ -5,12 +5,12 @@
 #include "palpate/core/error.h"
 #include "sections.h"
 
-/// Charts of a comparison beside its ladders: restarts, exchange periods, methods to find the contact.
+/// Further charts of a comparison: restarts, exchange periods, methods of contact search.
 namespace palpate::report {
 
 namespace {
 
-/// The least that any method can do: steps end at queries.
+/// Returns the lower bound of any method, one step per query: steps end at queries.
 Series one_step_per_query(const Table& restarts) {
   const std::vector<double> refresh = restarts.numbers("contact_refresh_s");
   Series out{.name = "one step per query", .x = {}, .y = {}, .mark = Mark::kDashed, .colour = "ink"};

@@ -12,9 +12,9 @@ std::string order_text(const FittedOrder& fitted) {
   return fmt::format("{:.2f} ({} points)", fitted.order, fitted.points);
 }
 
-constexpr std::size_t kMostRivals = 3;  ///< named one by one
+constexpr std::size_t kMostRivals = 3;  ///< Most rivals that are listed by name
 
-/// The winner's name, or those that nothing can be declared between.
+/// Returns the label of the winner, or the labels that cannot be ranked.
 std::string winner_text(const Winner& win) {
   if (win.declared()) return win.label;
   if (std::isnan(win.cost.high)) return fmt::format("{}, but no run was repeated", win.label);

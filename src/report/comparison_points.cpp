@@ -14,7 +14,7 @@ std::string point_text(const Table& compare, std::size_t row) {
                       to_number(compare.rows[row][compare.column("setting")]));
 }
 
-/// Achieved over wanted error of a point that is steered by a tolerance.
+/// Returns the ratio of achieved to requested error of a point controlled by a tolerance.
 std::string achieved_text(const Table& compare, std::size_t row) {
   if (compare.rows[row][compare.column("setting_name")] != "rtol") return "-";
   const double error = to_number(compare.rows[row][compare.column("position_error_rel_l2")]),
@@ -22,7 +22,7 @@ std::string achieved_text(const Table& compare, std::size_t row) {
   return std::isfinite(error) ? short_number(error / requested) : "-";
 }
 
-/// One line a point, under the columns of compare.csv that are named.
+/// Adds a table with one line per point and the given columns of compare.csv.
 void add_columns_table(Page& page, const Table& compare,
                        const std::vector<std::pair<std::string, std::string>>& columns,
                        const std::string& caption) {
@@ -36,7 +36,7 @@ void add_columns_table(Page& page, const Table& compare,
   page.add_table(headers, rows, caption);
 }
 
-/// The counts that follow the known columns of compare.csv, where any point has one that is not zero.
+/// Returns the counts after the known columns of compare.csv that are nonzero at any point.
 std::vector<std::pair<std::string, std::string>> further_counts(const Table& compare) {
   const std::vector<std::string>& known = store::compare_columns();
   std::vector<std::pair<std::string, std::string>> out;

@@ -28,7 +28,7 @@ void add_work_precision(Page& page, const Table& compare, const Quantity& q) {
                left_out);
 }
 
-/// Charts that answer a second question, each quantity behind a switch of its own.
+/// Adds the charts of error against counts of work, each quantity folded away separately.
 void add_counts_of_work(Page& page, const Table& compare, const Quantity& q) {
   std::vector<std::pair<std::string, std::string>> counted;
   for (const auto& [column, label] : kCosts) {
@@ -84,7 +84,7 @@ void add_points(Page& page, const Table& compare) {
   page.end_details();
 }
 
-/// Everything about one scene: the cheapest first, then the charts of it, then what bears them.
+/// Adds all results of one scene: the cheapest methods, their charts, then the supporting tables.
 void add_scene_comparison(Page& page, const Table& compare, const ReferenceError& reference) {
   const std::vector<Quantity> quantities = quantities_of(compare, reference);
   const bool judged = std::isfinite(reference.position_error_rel_l2);

@@ -9,7 +9,7 @@ namespace palpate::report {
 namespace {
 
 constexpr const char* kError = "position_error_rel_l2";
-/// A peak below this is rounding [N].
+/// Peaks below it are rounding [N].
 constexpr double kLeastPeak = 1e-12;
 
 std::string list_of(const std::vector<std::string>& names) {
@@ -24,7 +24,7 @@ std::string factor(double ratio) {
                                : fmt::format("{:.0f}", ratio);
 }
 
-/// "12 (11 to 14) times".
+/// Returns a ratio in words, as "12 (11 to 14) times".
 std::string times(const CostRatio& ratio) {
   if (ratio.low == ratio.high || !std::isfinite(ratio.low)) return factor(ratio.value) + " times";
   return fmt::format("{} ({} to {}) times", factor(ratio.value), factor(ratio.low),
@@ -55,7 +55,9 @@ std::string winner_in_words(const Winner& win, const std::string& target) {
   return out + ".";
 }
 
-/// @param scale  what the targets are shares of
+/// Returns sentences on the cheapest method at each target.
+/// @param what   name of the quantity
+/// @param scale  size that the relative targets refer to
 std::vector<std::string> winners_in_words(const Table& compare, const std::string& column,
                                           const std::string& what, double scale, double reference_error) {
   std::vector<std::string> out;
@@ -110,8 +112,8 @@ std::string families_in_words(const std::vector<Ladder>& all, double target, dou
                      families.size() == 1 ? "family" : "families", list_of(families));
 }
 
-/// The kind of failure, which many ladders may share: "Newton did not converge" of the reason "Newton did not
-/// converge: ark-mri-2: ...".
+/// Returns the kind of failure, which many methods may share: "Newton did not converge" for the reason
+/// "Newton did not converge: ark-mri-2: ...".
 std::string kind_of(const std::pair<std::string, std::string>& failure) {
   if (failure.first == "out of time" || failure.first == "not tried") return "out of time";
   if (failure.second.empty()) return failure.first;
@@ -134,8 +136,8 @@ std::string failures_in_words(const std::vector<Ladder>& all) {
   return out;
 }
 
-/// Whether stability, not accuracy, limits an explicit method: a tolerance ten times tighter hardly costs
-/// more force evaluations, or a longer fixed step fails or blows up.
+/// Returns sentences on explicit methods that stability, not accuracy, limits: a tolerance ten times tighter
+/// costs hardly more force evaluations, or a longer fixed step fails or diverges.
 std::string explicit_in_words(const Table& compare) {
   std::vector<std::string> by_tolerance, by_step;
   for (const Ladder& ladder : ladders(compare, kError, "force_evaluations")) {

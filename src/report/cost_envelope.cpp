@@ -4,41 +4,45 @@
 #include "palpate/core/error.h"
 #include "report/work_precision.h"
 
-// What an error costs on a ladder, and which ladder reaches it at the least cost.
+// Cost of an error on a refinement sequence, and the sequence that reaches an error at the least cost.
 //
-// A method's error falls as its setting is refined, and its cost rises: cost is a falling function of error.
-// What was measured scatters about it.  A rung whose error passes through zero by chance shows less than the
-// method can do; its finer neighbours tell.  Of the rungs i = 0, 1, ... from coarse to fine, with errors e_i,
-//     best_i = min(e_0 ... e_i)     no monotone course of errors that some rung bears out is lower,
-//     worst_i = max(e_i ... e_n)    none is higher: each finer rung must be as good,
+// The error of a method falls as its setting is refined, and its cost rises: cost is a decreasing function of
+// error, about which the measurements scatter. A level whose error passes through zero by chance shows a
+// smaller error than the method achieves; the finer levels reveal this. For the levels i = 0, 1, ... from
+// coarse to fine, with errors e_i:
+//     best_i = min(e_0 ... e_i)     lower bound of any monotone course that some level supports,
+//     worst_i = max(e_i ... e_n)    upper bound: each finer level must be as accurate,
 //     fit_i = the non-increasing sequence nearest to log e_i in the sum of squares (isotonic regression:
-//             neighbours that go up are pooled; Barlow and Brunk 1972), between the two by construction.
-// Costs need no fit.  Whoever wants the error of rung i may take any finer one instead: its cost is the
-// least of c_i ... c_n, of medians, of the fastest repeats, and of the slowest ones.
-// The cost at a target error is where log cost, linear in log error between neighbouring rungs, crosses it:
+//             neighbours that increase are pooled; Barlow and Brunk 1972), between the two by construction.
+// Costs need no fit. The error of level i is also reached by any finer level: the cost of level i is the
+// least of c_i ... c_n, for medians, for the fastest repeats, and for the slowest repeats. The cost at a
+// target error is the point at which log cost, linear in log error between neighbouring levels, crosses the
+// target:
 //     value on (fit, medians), low on (best, fastest), high on (worst, slowest).
-// So [low, high] holds the machine's noise and the rungs' luck alike.  A rung that ran once takes
-// the spread that the scene's other points show; where none ran again it is unknown, and nothing is declared.
+// Therefore [low, high] contains both the noise of the machine and the chance of single levels. A level that
+// ran once takes the spread of the other points of the scene; if no point was repeated the spread is unknown,
+// and no winner is declared.
 //
-// What is not resolved decides nothing.  A rung within kResolved times the reference's own error counts as
-// that much, an upper bound; a target below it has no cost.  Where the reference's error is unknown, neither
-// has any.  Nothing is interpolated across rungs that failed, nor beyond the ends: the first usable rung's
-// cost is an upper bound, and so is the first one's behind a gap.
+// Unresolved errors do not affect a decision. A level within kResolved times the error of the reference has
+// that product as its error, an upper bound; a target below it has no cost. If the error of the reference is
+// unknown, no target has a cost. Costs are not interpolated across failed levels or beyond the ends: the cost
+// of the first usable level is an upper bound, as is the cost of the first level after a gap.
 
 namespace palpate::report {
 namespace {
 
-/// Error and cost of each rung, both monotone.
+/// Error and cost of each level, both monotone.
 struct Course {
   std::vector<double> error, cost;
 };
 
-/// Non-increasing sequence nearest to the logarithms of `values`: pooled neighbours take their mean.
+/// Returns the non-increasing sequence nearest to the logarithms of `values`; pooled neighbours take their
+/// mean.
 std::vector<double> isotonic(const std::vector<double>& values) {
   struct Pool {
     double sum;
     std::size_t count;
-    double value;  ///< of one alone, exactly
+    double value;  ///< Exact value of a pool with a single entry
     double mean() const { return sum / static_cast<double>(count); }
   };
   std::vector<Pool> pools;
@@ -107,8 +111,8 @@ Cost cost_at(const Ladder& ladder, double target, double reference_error) {
   const Crossing high =
       crossing_of({from_the_end(error, largest), from_the_end(slowest, least)}, points, target);
   Cost out{value.cost, low.cost, high.cost, value.at_most};
-  // A coarser rung that was not tried, or one between the last that failed and the first that did not, might
-  // be cheaper still.
+  // A coarser level that was not tried, or a level between the last failed and the first successful one,
+  // might be cheaper.
   if (low.at_most && low.level == 0 && !points[0].behind_failure && !ladder.coarsest_tried) out.low = 0.0;
   if (low.at_most && points[low.level].behind_failure && ladder.setting_name != "rtol")
     out.low *= points[low.level].setting / points[low.level].failed_before;

@@ -14,7 +14,7 @@ namespace {
 
 using Cell = std::array<long, 3>;
 
-/// The vertices of each cell of a grid.
+/// Returns the vertices of each cell of a grid.
 std::map<Cell, std::vector<int>> cells_of(const Points& vertices, double edge) {
   std::map<Cell, std::vector<int>> cells;
   for (int v = 0; v < static_cast<int>(vertices.cols()); ++v) {
@@ -35,7 +35,7 @@ int nearest_to_mean(const Points& vertices, const std::vector<int>& members) {
   });
 }
 
-/// Faces that keep three different corners, each once.
+/// Returns the faces that keep three different corners, without duplicates.
 Faces faces_between(const Faces& faces, const std::vector<int>& cluster_of) {
   std::vector<std::array<int, 3>> kept;
   std::set<std::array<int, 3>> known;
@@ -66,7 +66,7 @@ CoarseSurface decimate(const Points& vertices, const Faces& faces, int most) {
     return out;
   }
   const Vec3 extent = vertices.rowwise().maxCoeff() - vertices.rowwise().minCoeff();
-  // a cube's faces in squares of that edge would be as many cells as there may be vertices
+  // with this edge, the faces of a cube divide into `most` cells
   double edge = extent.maxCoeff() * std::sqrt(6.0 / most) / 2.0;
   std::map<Cell, std::vector<int>> cells = cells_of(vertices, edge);
   while (cells.size() > static_cast<std::size_t>(most)) cells = cells_of(vertices, edge *= 1.1);

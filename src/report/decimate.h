@@ -5,15 +5,15 @@
 
 namespace palpate::report {
 
-/// Some of a surface's vertices, and faces between them.
+/// Subset of the vertices of a surface, and faces between them.
 struct CoarseSurface {
-  std::vector<int> kept;  ///< indices of the surface's vertices
-  Faces faces;            ///< into `kept`
+  std::vector<int> kept;  ///< Indices of vertices of the surface
+  Faces faces;            ///< Indices into `kept`
 };
 
-/// A surface with at most `most` vertices, for a picture: all vertices in one cell of a grid become the one
-/// that is nearest to their mean (vertex clustering; Rossignac and Borrel 1993).  A surface that is small
-/// enough stays as it is.
+/// Returns a surface with at most `most` vertices, for a picture. All vertices in one cell of a grid are
+/// merged to the vertex nearest to their mean (vertex clustering; Rossignac and Borrel 1993). A surface that
+/// is small enough is unchanged.
 /// @pre most >= 8
 CoarseSurface decimate(const Points& vertices, const Faces& faces, int most);
 

@@ -13,7 +13,7 @@ bool is_drawable(const Plot& plot, double x, double y) {
   return std::isfinite(x) && std::isfinite(y) && (!plot.log_x || x > 0.0) && (!plot.log_y || y > 0.0);
 }
 
-/// Keeps the points whose index is in `kept` of what is given for each point.
+/// Keeps the entries of per-point data whose index is in `kept`.
 template <class T>
 void keep(std::vector<T>& values, const std::vector<std::size_t>& kept, const char* what, std::size_t points,
           const std::string& name) {

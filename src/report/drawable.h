@@ -5,10 +5,10 @@
 
 namespace palpate::report {
 
-/// The series of a plot as they are drawn, each with its colour: without points that are not finite (or not
-/// positive on a logarithmic axis), without series that have none left; curves without names of points are
-/// thinned to `pixels` columns.
-/// @throws Error when there is nothing to draw
+/// Returns the series of a plot as drawn, each with its colour. Points that are not finite (or not positive
+/// on a logarithmic axis) and series without remaining points are removed; curves whose points have no labels
+/// are thinned to `pixels` columns.
+/// @throws Error if there is nothing to draw
 std::vector<Series> drawable_series(const Plot& plot, std::size_t pixels);
 
 }  // namespace palpate::report

@@ -3,8 +3,8 @@
 
 namespace palpate::report {
 
-/// Scripts of the page, defined in a file made at build time (embed.cmake) from page/dist: what sorts tables
-/// and draws charts, and what turns and plays a result.
+/// Scripts of the page, defined in a file generated from page/dist at build time (embed.cmake): page_script()
+/// sorts tables and draws charts, view_script() rotates and plays a result.
 std::string_view page_script();
 std::string_view view_script();
 

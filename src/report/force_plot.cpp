@@ -7,7 +7,7 @@
 namespace palpate::report {
 namespace {
 
-/// Three components named PREFIX_x_UNIT ... and their magnitude, over time_s.
+/// Plots three components with columns PREFIX_x_UNIT ... and their magnitude, over time_s.
 Plot vector_plot(const Table& table, const std::string& prefix, const std::string& unit,
                  const std::string& y_label, double limit, const std::string& unit_text) {
   const std::vector<double> time = table.numbers("time_s");

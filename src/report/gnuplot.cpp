@@ -47,7 +47,7 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Runs `gnuplot -d plot.gp` (-d: a person's ~/.gnuplot must not change our figures) with its output in
+/// Runs `gnuplot -d plot.gp` (-d: the ~/.gnuplot of the user must not change the figures) with its output in
 /// `log`; returns the exit status.
 int spawn_gnuplot(const fs::path& dir, const fs::path& log) {
   posix_spawn_file_actions_t actions;
@@ -75,7 +75,7 @@ std::string run_gnuplot(const std::string& script) {
   std::ofstream(dir.path() / "plot.gp", std::ios::binary) << script;
   const int status = spawn_gnuplot(dir.path(), dir.path() / "log");
   const std::string svg = text_of(dir.path() / "plot.svg");
-  // gnuplot ends with 0 after some failures (a full disk), so the document's end is checked too.
+  // gnuplot exits with 0 after some failures (a full disk), so the end of the document is checked too.
   if (status != 0 || svg.find("</svg>") == std::string::npos)
     fail("gnuplot drew no plot (exit status {}): {}", status, text_of(dir.path() / "log"));
   return svg;

@@ -3,9 +3,9 @@
 
 namespace palpate::report {
 
-/// Runs gnuplot on a script whose output goes to `plot.svg` (a relative path: it runs in a temporary
-/// directory of its own), and returns that file's text.  Throws Error with gnuplot's own message, or with the
-/// package's name when there is no gnuplot.
+/// Runs gnuplot in a temporary directory on a script whose output goes to `plot.svg` (a relative path), and
+/// returns the text of that file.
+/// @throws Error with the message of gnuplot, or with the name of the package if gnuplot is not installed
 std::string run_gnuplot(const std::string& script);
 
 }  // namespace palpate::report

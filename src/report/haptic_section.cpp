@@ -6,15 +6,16 @@
 #include "palpate/core/error.h"
 #include "sections.h"
 
-/// The force on the hand against tool and bodies as one system: haptic.csv of `palpate compare --haptic`.
+/// Section for the force on the hand against the monolithic solution of tool and bodies: haptic.csv of
+/// `palpate compare --haptic`.
 namespace palpate::report {
 namespace {
 
-/// One quantity on the hand, as haptic.csv and summary.json call it.
+/// Quantity on the hand, with its names in haptic.csv and summary.json.
 struct Felt {
   std::string name;                        ///< "force"
-  std::string error, of_peak, unresolved;  ///< columns
-  double peak, own_error;                  ///< of the reference
+  std::string error, of_peak, unresolved;  ///< Columns
+  double peak, own_error;                  ///< Peak and error of the reference
 };
 
 Felt felt(const std::string& name, const std::string& unit, const Json& reference) {
@@ -26,7 +27,7 @@ Felt felt(const std::string& name, const std::string& unit, const Json& referenc
           number_at(reference, fmt::format("own_{}_error_rms_{}", name, unit).c_str())};
 }
 
-/// Points of one variable, in percent of the reference's peak.
+/// Returns the points of one variable, in percent of the peak of the reference.
 Series series_of(const Table& table, const Felt& q, const std::string& variable, const std::string& x_column,
                  bool labelled) {
   const Table own = rows_where(table, "variable", variable);
@@ -41,7 +42,7 @@ Series series_of(const Table& table, const Felt& q, const std::string& variable,
   return out;
 }
 
-/// The dashed line of a fitted order, through the points that it was fitted to.
+/// Adds a dashed line with the slope of a fitted order through the points of the fit.
 void add_fit(Plot& plot, const Series& points, double order) {
   if (!std::isfinite(order)) return;
   double sum = 0.0, n = 0.0, least = HUGE_VAL, greatest = 0.0;
@@ -70,7 +71,7 @@ Plot frame_of(const Felt& q, const std::string& x_label) {
   return plot;
 }
 
-/// Whether there is anything to draw of a variable.
+/// Returns whether a variable has a nonzero error to draw.
 bool holds(const Table& table, const Felt& q, const std::string& variable) {
   const std::vector<double> errors = rows_where(table, "variable", variable).numbers(q.of_peak);
   return std::any_of(errors.begin(), errors.end(), [](double e) { return e > 0.0; });

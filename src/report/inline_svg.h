@@ -3,9 +3,9 @@
 
 namespace palpate::report {
 
-/// Makes a gnuplot SVG document fit to stand inside HTML: prolog, namespaces and tooltips dropped, ids
-/// prefixed (they must be unique in the page), black replaced by the text's colour, grid and floor left to
-/// the page's style sheet.
+/// Converts an SVG document of gnuplot for embedding in HTML: removes prolog, namespaces and tooltips,
+/// prefixes ids (they must be unique in the page), replaces black by the text colour, and leaves grid and
+/// floor to the style sheet of the page.
 std::string inline_svg(const std::string& document, const std::string& id_prefix);
 
 }  // namespace palpate::report

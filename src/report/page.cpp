@@ -102,7 +102,7 @@ Page& Page::add_contents(const std::vector<Link>& links) {
 std::string Page::html() const {
   const std::string title = escape_html(title_);
   std::string scripts;
-  // CDATA: the page is well-formed XML with its scripts in it
+  // CDATA keeps the page well-formed XML with its scripts
   const auto add = [&](std::string_view script) {
     scripts += fmt::format("<script>/*<![CDATA[*/\n{}/*]]>*/</script>\n", script);
   };

@@ -16,7 +16,7 @@ std::string figure(const std::string& content, const std::string& caption, const
          (caption.empty() ? "" : "\n<figcaption>" + escape_html(caption) + "</figcaption>") + "\n</figure>\n";
 }
 
-/// JSON inside HTML: nothing in it may end the element that holds it.
+/// Returns JSON as an HTML element, escaped so that no text in it ends the element.
 std::string json_element(const std::string& css, const std::string& json) {
   std::string text;
   text.reserve(json.size());

@@ -8,7 +8,7 @@
 namespace palpate::report {
 namespace {
 
-/// A cell longer than this may break over lines; shorter ones never do.
+/// Longest cell that is never broken over lines.
 constexpr std::size_t kLongCell = 48;
 
 const char* class_of(RowMark mark) {
@@ -21,7 +21,7 @@ const char* class_of(RowMark mark) {
   return "";
 }
 
-/// True when a column can be sorted by the number that each cell begins with.
+/// Returns whether a column can be sorted by the number at the beginning of each cell.
 bool sorts_as_numbers(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
   bool any = false;
   for (const auto& row : rows) {
@@ -34,7 +34,8 @@ bool sorts_as_numbers(const std::vector<std::vector<std::string>>& rows, std::si
   return any;
 }
 
-/// Beside other tables, short values stand to the right, so that numbers line up.
+/// Returns a table of facts. Next to other tables, short values are aligned to the right, so that numbers
+/// line up.
 std::string facts_table(const Page::Facts& facts, bool short_to_the_right) {
   std::string table = "<table class=\"facts\"><tbody>\n";
   for (const auto& [name, value] : facts)
@@ -60,7 +61,7 @@ Page& Page::add_table(const std::vector<std::string>& headers,
   for (std::size_t c = 0; c < headers.size(); ++c)
     classes.push_back(is_numeric_column(rows, c) ? " class=\"n\"" : "");
   interacts_ |= rows.size() > 1;
-  // a region that scrolls by itself must be reached by the keyboard
+  // a scrollable region must be reachable by keyboard
   body_ += fmt::format(
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"table: {}\">"
       "<table class=\"sortable\">\n",

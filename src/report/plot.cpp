@@ -12,8 +12,8 @@
 namespace palpate::report {
 namespace {
 
-/// gnuplot reads single-quoted text literally (no back-quoted commands, no escapes): only the quote itself is
-/// doubled.
+/// Quotes text for gnuplot, which reads single-quoted text literally (no back-quoted commands, no escapes):
+/// only the quote is doubled.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) {
@@ -25,14 +25,14 @@ std::string quoted(const std::string& text) {
   return out + "'";
 }
 
-/// A cell of a data block: double-quoted, where gnuplot knows no escape for the quote.
+/// Returns a cell of a data block in double quotes; gnuplot has no escape for the quote itself.
 std::string data_cell(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? '\'' : static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   return out + "\"";
 }
 
-/// The data block $dI: x, y, label, ring (0 or 1).
+/// Returns the data block $dI: x, y, label, ring (0 or 1).
 std::string data_block(std::size_t index, const Series& series) {
   std::string block = fmt::format("$d{} << EOD\n", index);
   for (std::size_t i = 0; i < series.x.size(); ++i)
@@ -42,7 +42,7 @@ std::string data_block(std::size_t index, const Series& series) {
   return block + "EOD\n";
 }
 
-/// The clauses of `plot` for one series: the line, rings over its points, labels.
+/// Returns the clauses of `plot` for one series: the line, rings over its points, labels.
 std::string plot_items(std::size_t index, const Series& series) {
   const std::string colour = series.colour == "ink" ? "black" : series.colour;
   const std::string data = fmt::format("$d{}", index);
@@ -68,7 +68,7 @@ std::string plot_items(std::size_t index, const Series& series) {
   return items;
 }
 
-/// Ranges over all that is drawn, the levels and the floor.
+/// Returns the x axis over all series.
 Axis x_axis(const Plot& plot, const std::vector<Series>& series) {
   std::vector<double> values;
   for (const Series& s : series) values.insert(values.end(), s.x.begin(), s.x.end());
@@ -80,8 +80,8 @@ Axis x_axis(const Plot& plot, const std::vector<Series>& series) {
   return make_axis(values, true, below ? 0.3 : 0.06, labelled ? 0.16 : 0.06);
 }
 
-/// Levels and floors far from the data would compress the data: a level is drawn up to three times the
-/// largest value, a floor down to a thirtieth of the least.
+/// Returns the y axis over all series, levels and the floor. Distant levels and floors would compress the
+/// data: a level is drawn up to three times the largest value, a floor down to a thirtieth of the least.
 Axis y_axis(const Plot& plot, const std::vector<Series>& series) {
   std::vector<double> values;
   for (const Series& s : series) values.insert(values.end(), s.y.begin(), s.y.end());

@@ -8,7 +8,7 @@
 namespace palpate::report {
 namespace {
 
-/// A reader may zoom: more columns than the SVG shows.
+/// Columns per curve; more than in the SVG, since the reader can zoom.
 constexpr std::size_t kColumns = 1500;
 
 const char* name_of(Mark mark) {

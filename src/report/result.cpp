@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Each kind of result, and the files that hold it.
+/// Kind of result, and the files that contain it.
 struct Kind {
   const char* name;
   std::vector<const char*> files;
@@ -36,12 +36,12 @@ std::vector<std::string> kinds_in(const fs::path& dir) {
     if (std::any_of(kind.files.begin(), kind.files.end(),
                     [&](const char* file) { return fs::exists(dir / file); }))
       out.emplace_back(kind.name);
-  // a run that recorded nothing
+  // a run without recorded data
   if (out.empty() && fs::exists(dir / "summary.json")) out.emplace_back("Run");
   return out;
 }
 
-/// References by scene.
+/// Returns the references by scene.
 std::map<std::string, ReferenceError> read_references(const Json& json) {
   std::map<std::string, ReferenceError> out;
   if (!json.contains("scenes")) return out;
@@ -64,14 +64,14 @@ Json json_in(const fs::path& dir, const char* file) {
   return fs::exists(dir / file) ? read_json(dir / file) : Json::object();
 }
 
-/// A study's table, with times where they are there.
+/// Returns the table of a study, with CPU times if there are any.
 Table study_in(const fs::path& dir) {
   Table study = read_csv(dir / "study.csv");
   return fs::exists(dir / "study-times.csv") ? with_times(std::move(study), read_csv(dir / "study-times.csv"))
                                              : study;
 }
 
-/// The scene as it was run: kept in summary.json, else the file beside the results.
+/// Returns the source of the scene that was run, from summary.json, or else from scene.toml in the folder.
 std::string scene_source(const Result& result) {
   if (std::string source = text_at(result.summary, "scene_source"); !source.empty()) return source;
   const fs::path file = result.dir / "scene.toml";
@@ -134,7 +134,7 @@ Result open_result(const fs::path& dir) {
         "run, a comparison, a study, a validation, a stability matrix or a benchmark wrote",
         dir.string());
   out.of = text_at(out.summary, "scene");
-  if (out.of == "stability") out.of.clear();  // the matrix has cases of its own
+  if (out.of == "stability") out.of.clear();  // the cases of the matrix belong to no scene
   if (out.of.empty() && fs::exists(dir / "compare.csv"))
     for (const std::string& scene : distinct(read_csv(dir / "compare.csv"), "scene"))
       out.of += (out.of.empty() ? "" : ", ") + scene;

@@ -8,22 +8,23 @@
 
 namespace palpate::report {
 
-/// A folder that a command wrote: what kinds of results are in it, of what, and what they answer.
+/// Folder that a command wrote: the kinds of results in it, their scene, and their answers.
 struct Result {
-  std::filesystem::path dir;
-  std::vector<std::string> kinds;  ///< "Run", "Comparison", ... as they follow one another on the page
-  std::string of;                  ///< the scene; empty where there is none
-  Json summary = Json::object();   ///< summary.json
+  std::filesystem::path dir;       ///< The folder
+  std::vector<std::string> kinds;  ///< Kinds in the order of the page: "Run", "Comparison", ...
+  std::string of;                  ///< Name of the scene; empty if there is none
+  Json summary = Json::object();   ///< Content of summary.json
   std::vector<Answer> answers;
 
-  std::string title() const;         ///< "Run and comparison: press-ball"
-  std::string first_answer() const;  ///< a sentence; empty where there is none
+  std::string title() const;         ///< Title, as "Run and comparison: press-ball"
+  std::string first_answer() const;  ///< First answer as a sentence; empty if there is none
 };
 
-/// @throws Error when the folder is none, or holds no results, or one of its files is broken
+/// Reads the results in a folder.
+/// @throws Error if it is no folder, contains no results, or one of its files is invalid
 Result open_result(const std::filesystem::path& dir);
 
-/// All that the result holds, its answers first.
+/// Adds all of the result to the page, its answers first.
 void add_result(Page& page, const Result& result);
 
 }  // namespace palpate::report

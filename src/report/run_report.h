@@ -6,26 +6,26 @@
 
 namespace palpate::report {
 
-/// A page that was written, and the figures that it should hold and lacks.
+/// Written page, and the figures that are missing from it.
 struct RunReport {
   std::filesystem::path page;
   std::vector<Page::MissingFigure> missing_figures;
 };
 
-/// Writes one page of what stands in result directories, any mix: runs, comparisons, validations, stability
-/// matrices, benchmarks.  What each answers comes first; several directories are sections behind a list of
-/// contents.  Read are summary.json, force.csv, clock.csv, trace.csv, run.vtkhdf, compare.csv,
-/// reference.json, restarts.csv, exchange.csv, methods.csv, haptic.csv, validation.json, stability.json,
-/// bench-fem.json, bench-fem-accuracy.json, bench-contact.json and *.png; the scene's source is that in
-/// summary.json, else scene.toml.  In summary.json, the figures' groups `in_use` and `left_out` (part: why)
-/// become one table, and `pictures` (file name: caption) names the pictures.  A file that is not there has no
-/// section.  A plot that gnuplot cannot draw is replaced by a paragraph with the reason (the page is still
-/// written).
-/// @throws Error when a directory holds none of these files, or one of them is broken
+/// Writes one page of the results in directories of any mix: runs, comparisons, validations, stability
+/// matrices, benchmarks. The answers of each result come first; several directories become sections after a
+/// list of contents. The files read are summary.json, force.csv, clock.csv, trace.csv, run.vtkhdf,
+/// compare.csv, reference.json, restarts.csv, exchange.csv, methods.csv, haptic.csv, validation.json,
+/// stability.json, bench-fem.json, bench-fem-accuracy.json, bench-contact.json and *.png; the source of the
+/// scene comes from summary.json, or else from scene.toml. In summary.json, the groups `in_use` and
+/// `left_out` (part: reason) of the figures become one table, and `pictures` (file name: caption) contains
+/// the captions of pictures. A missing file has no section. A plot that gnuplot cannot draw is replaced by a
+/// paragraph with the reason, and the page is still written.
+/// @throws Error if a directory contains none of these files, or one of them is invalid
 /// @pre dirs not empty
 RunReport write_report(const std::vector<std::filesystem::path>& dirs, const std::filesystem::path& path);
 
-/// The page of one directory, DIR/report.html.
+/// Writes the page of one directory, DIR/report.html.
 RunReport write_run_report(const std::filesystem::path& dir);
 
 }  // namespace palpate::report

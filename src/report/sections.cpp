@@ -14,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Groups of figures that have headings of their own.
+/// Groups of figures that other sections show.
 const std::set<std::string> kElsewhere = {"in_use", "left_out", "pictures", "logarithmic"};
 
-/// A group of figures that summary.json holds, else an empty object.
+/// Returns a group of figures from summary.json, or an empty object.
 Json figures_of(const Json& summary, const char* group) {
   if (!summary.is_object() || !summary.contains("figures") || !summary["figures"].is_object() ||
       !summary["figures"].contains(group))
@@ -25,7 +25,7 @@ Json figures_of(const Json& summary, const char* group) {
   return summary["figures"][group];
 }
 
-/// An object's own facts first, then each object inside it as a group.
+/// Adds the facts of an object, then each object inside it as a group.
 void add_object(Page& page, const Json& object, const std::set<std::string>& without) {
   page.add_facts(facts_of(object));
   std::vector<std::pair<std::string, Page::Facts>> groups;
@@ -43,7 +43,7 @@ std::string sentence_case(std::string text) {
   return text;
 }
 
-/// The end of a caption: a limit is stated here too, since one far above the curve is not drawn.
+/// Returns the end of a caption with the limit of the device, since a limit far above the curve is not drawn.
 std::string limit_text(double limit, const char* unit) {
   return limit > 0.0 ? fmt::format("; the device can do at most {:g} {}.", limit, unit) : ".";
 }
@@ -90,7 +90,7 @@ void add_pictures(Page& page, const Json& summary, const fs::path& dir) {
   std::sort(files.begin(), files.end());
   const Json captions = figures_of(summary, "pictures");
   for (const fs::path& file : files) {
-    // "picture" alone says nothing; the picture has its own title
+    // "picture" is no useful caption; that picture contains a title
     const std::string stem = file.stem().string();
     const std::string caption =
         text_at(captions, file.filename().c_str(), stem == "picture" ? "" : sentence_case(stem));

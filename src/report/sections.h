@@ -8,39 +8,44 @@
 #include "report/table.h"
 #include "report/work_precision.h"
 
-/// The sections of a run's report, each from its own file or object.
-/// A section with nothing to say adds nothing.
+/// Sections of the report of a run, each from one file or object. A section without content adds nothing.
 namespace palpate::report {
 
-/// The plot as a figure, or, when it cannot be drawn, a paragraph with the reason: a page without one figure
-/// is better than no page.
+/// Adds the plot as a figure or, if it cannot be drawn, a paragraph with the reason: a page without one
+/// figure is better than no page.
 void add_plot(Page& page, const Plot& plot, const std::string& caption);
 
-void add_head(Page& page, const Json& summary);     ///< what was run, in a few lines
-void add_figures(Page& page, const Json& summary);  ///< all that was counted and timed
+void add_head(Page& page, const Json& summary);     ///< Adds the description of the run, a few lines
+void add_figures(Page& page, const Json& summary);  ///< Adds all counts and times
 void add_pictures(Page& page, const Json& summary, const std::filesystem::path& dir);
 void add_forces(Page& page, const Json& summary, const Table& force);
-/// @param references  by scene  @param rules  how runs were repeated and limited
+/// Adds a comparison.
+/// @param references  references by scene
+/// @param rules       how runs were repeated and limited
 void add_comparison(Page& page, const Table& compare, const std::map<std::string, ReferenceError>& references,
                     const std::string& rules);
-/// Histograms of clock.csv: how late ticks were, and what they took.
+/// Adds histograms of clock.csv: lateness and work of ticks.
 void add_clock(Page& page, const Table& clock);
 void add_trace(Page& page, const Table& trace);
 void add_restarts(Page& page, const Table& restarts);
 void add_exchange(Page& page, const Table& exchange);
 void add_methods(Page& page, const Table& methods);
-/// @param summary  of the comparison: the reference's peaks and own errors, and fitted orders
+/// Adds the errors of a haptic comparison.
+/// @param summary  summary of the comparison: peaks and errors of the reference, and fitted orders
 void add_haptic(Page& page, const Table& haptic, const Json& summary);
-/// study.csv with the times of its tasks in a column "cpu_s".
+/// Returns study.csv with the CPU times of its tasks in a column "cpu_s".
 Table with_times(Table study, const Table& times);
-/// @param text  of the study file  @param summary  which parameters are spaced by equal ratios
+/// Adds a study.
+/// @param text     text of the study file
+/// @param summary  specifies which parameters are spaced by equal ratios
 void add_study(Page& page, const Table& study, const std::string& text, const Json& summary);
 void add_validation(Page& page, const Json& validation);
 void add_stability(Page& page, const Json& stability);
-/// @param file  its name
+/// Adds a benchmark.
+/// @param file  name of its file
 void add_bench(Page& page, const std::string& file, const Json& bench);
-/// The view of the run's bodies over time; nothing where it recorded no step.
-/// @param shown_at_s  when it is shown first; NaN: when the displacement is largest
+/// Adds the view of the bodies over time; nothing if no step was recorded.
+/// @param shown_at_s  time shown first [s]; NaN: time of the largest displacement
 void add_motion(Page& page, const std::filesystem::path& vtkhdf, double shown_at_s);
 void add_parts(Page& page, const Json& summary);
 void add_provenance(Page& page, const Json& summary);

@@ -52,7 +52,7 @@ HeatCell heat_cell(const Json& cell) {
   return out;
 }
 
-/// The integrators of some rows in the order of their first appearance, and the rows as groups.
+/// Heat map: the integrators in the order of their first appearance as columns, and the rows as groups.
 struct HeatMap {
   std::vector<std::string> columns;
   std::vector<HeatGroup> groups;
@@ -77,7 +77,8 @@ struct HeatMap {
   }
 };
 
-/// Rows over the same integrators share a map: those of soft bodies, and those of the tool's own ticks.
+/// Groups cells by rows with the same integrators, which share a map: rows of soft bodies, and rows of the
+/// ticks of the tool.
 std::vector<std::vector<const Json*>> parted(const Json& cells) {
   std::vector<std::vector<const Json*>> parts;
   std::map<std::string, std::size_t> part_of_integrator;

@@ -11,7 +11,7 @@ bool contains(const std::vector<std::string>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-/// Columns that a study has whether or not they are varied.
+/// Columns of every study, varied or not.
 const std::vector<std::string> kAlways = {"scene", "integrator", "rtol", "step_s", "seed"};
 
 }  // namespace

@@ -4,30 +4,33 @@
 
 #include "report/table.h"
 
-/// study.csv, taken apart: task, settings, status, reason, figures.
+/// Columns of study.csv: task, settings, status, reason, figures.
 namespace palpate::report {
 
+/// Setting columns of a study by their role.
 struct StudyColumns {
-  std::vector<std::string> settings;  ///< all of them
-  std::vector<std::string> swept;     ///< of these, the parameters of [[sweep]]
-  std::vector<std::string> drawn;     ///< and those of [[random]], which follow from the seed
-  bool seeds = false;
+  std::vector<std::string> settings;  ///< All setting columns
+  std::vector<std::string> swept;     ///< Parameters of [[sweep]] among them
+  std::vector<std::string> drawn;     ///< Parameters of [[random]] among them, which follow from the seed
+  bool seeds = false;                 ///< Whether there is a seed column
 };
-/// @throws Error where the table is no study's
+/// Returns the setting columns of a study.
+/// @throws Error if the table is not the table of a study
 StudyColumns columns_of_study(const Table& study);
 
-/// A figure that a study's page shows first.
+/// Figure that the page of a study shows first.
 struct StudyFigure {
   std::string column, label;
 };
-/// Those that the table holds, with more than one value.
+/// Returns the figures that the table contains with more than one value.
 std::vector<StudyFigure> shown_figures(const Table& study);
 
-/// Rows that share every setting but those in `without`, in the order of the table.
+/// Rows that share all settings except the excluded ones, in the order of the table.
 struct StudyGroup {
-  std::string name;  ///< what tells it from the other groups; empty: there is only one
+  std::string name;  ///< Settings that distinguish the group from others; empty if there is only one group
   std::vector<std::size_t> rows;
 };
+/// Returns the groups of rows that share all settings except `without`.
 std::vector<StudyGroup> groups_of(const Table& study, const StudyColumns& columns,
                                   const std::vector<std::string>& without);
 

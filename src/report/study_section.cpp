@@ -10,14 +10,14 @@
 #include "study_columns.h"
 #include "style.h"
 
-/// A study: study.csv of `palpate study`.
+/// Section for study.csv of `palpate study`.
 namespace palpate::report {
 namespace {
 
-constexpr std::size_t kMostRows = 2000;              ///< of a table on the page
-constexpr const char* kLogarithmic = "logarithmic";  ///< group of summary.json, by parameter
-constexpr std::size_t kMostSeries = 12;              ///< of a chart that can still be read
-constexpr double kLogRatio = 30.0;                   ///< of two values: a logarithmic axis
+constexpr std::size_t kMostRows = 2000;              ///< Most rows of a table on the page
+constexpr const char* kLogarithmic = "logarithmic";  ///< Group of summary.json, by parameter
+constexpr std::size_t kMostSeries = 12;              ///< Most series of a readable chart
+constexpr double kLogRatio = 30.0;                   ///< Least ratio of two values for a logarithmic axis
 
 struct SeedSpread {
   double n = 0.0, sum = 0.0, square = 0.0, least = HUGE_VAL, greatest = -HUGE_VAL;
@@ -27,7 +27,7 @@ struct SeedSpread {
     least = std::min(least, value), greatest = std::max(greatest, value);
   }
   double mean() const { return sum / n; }
-  /// of the sample; 0 for one value
+  /// Standard deviation of the sample; 0 for one value
   double deviation() const {
     return n > 1.0 ? std::sqrt(std::max(0.0, (square - sum * sum / n) / (n - 1.0))) : 0.0;
   }
@@ -35,10 +35,10 @@ struct SeedSpread {
 
 bool is_ok(const Table& study, std::size_t row) { return study.rows[row][study.column("status")] == "ok"; }
 
-/// A parameter of numbers over which a chart can be drawn, and the settings that it leaves to the series.
+/// Numeric parameter for the x axis of a chart, and the settings that do not define its series.
 struct Abscissa {
   std::string column;
-  std::vector<std::string> without;  ///< settings that make no series
+  std::vector<std::string> without;  ///< Settings that do not distinguish series
 };
 std::optional<Abscissa> abscissa_of(const Table& study, const StudyColumns& columns) {
   const auto usable = [&](const std::string& name) {
@@ -56,7 +56,7 @@ std::optional<Abscissa> abscissa_of(const Table& study, const StudyColumns& colu
   return {};
 }
 
-/// The mean over seeds at each value, and where there are seeds each of them as a point.
+/// Adds the mean over seeds at each value and, if there are seeds, a point for each of them.
 void add_series(Plot& plot, const Table& study, const StudyGroup& group, const std::vector<double>& x,
                 const std::vector<double>& y, bool drawn, const std::string& colour) {
   std::map<double, SeedSpread> at;
@@ -85,8 +85,8 @@ void add_series(Plot& plot, const Table& study, const StudyGroup& group, const s
   if (several) plot.series.push_back(std::move(points));
 }
 
-/// Sum of the squares of the gaps between ascending values, in units of their range: least, 1 / (n - 1),
-/// where the gaps are equal.
+/// Returns the sum of the squares of the gaps between ascending values, in units of their range; the minimum
+/// 1 / (n - 1) is reached with equal gaps.
 double unevenness(const std::vector<double>& values) {
   const double range = values.back() - values.front();
   double sum = 0.0;
@@ -94,8 +94,9 @@ double unevenness(const std::vector<double>& values) {
   return sum;
 }
 
-/// Whether a parameter is drawn over a logarithmic axis: where the study says so (`declared`), or where its
-/// values stand more evenly there.  Two values are equally even on both.
+/// Returns whether a parameter has a logarithmic axis: if the study specifies it (`declared`), or if its
+/// values are more evenly spaced on it. Two values are equally even on both axes; then their ratio decides
+/// (kLogRatio).
 bool is_logarithmic(std::vector<double> values, bool declared) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   std::sort(values.begin(), values.end());
@@ -137,7 +138,7 @@ void add_charts(Page& page, const Table& study, const StudyColumns& columns, con
   page.end_multiples();
 }
 
-/// "0.417 ± 0.0038"; "-" where no task of the group reached its end.
+/// Returns mean and deviation of a group, as "0.417 ± 0.0038"; "-" if no task of the group reached its end.
 std::string spread_text(const Table& study, const StudyGroup& group, const std::vector<double>& values) {
   SeedSpread spread;
   for (const std::size_t r : group.rows)
@@ -147,7 +148,7 @@ std::string spread_text(const Table& study, const StudyGroup& group, const std::
   return fmt::format("{} ± {}", short_number(spread.mean()), short_number(spread.deviation()));
 }
 
-/// What seeds do, for each group of tasks that differ by their seed alone.
+/// Adds the spread over seeds, for each group of tasks that differ only by their seed.
 void add_spreads(Page& page, const Table& study, const StudyColumns& columns) {
   if (!columns.seeds) return;
   std::vector<std::string> without = columns.drawn, headers = {"tasks"};
@@ -239,7 +240,7 @@ Answer study_answer(const Table& study) {
       if (status != "ok") others += fmt::format("{}{} {}", others.empty() ? "" : ", ", n, status);
     out.lead = fmt::format("{} of {} tasks reached their end; {}.", ok, study.rows.size(), others);
   }
-  std::map<std::string, bool> explained;  // the first reason of each kind of end
+  std::map<std::string, bool> explained;  // the first reason of each status
   for (std::size_t r = 0; r < study.rows.size(); ++r) {
     const std::string status = study.rows[r][study.column("status")],
                       reason = study.has("reason") ? study.rows[r][study.column("reason")] : "";

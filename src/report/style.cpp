@@ -2,7 +2,7 @@
 
 namespace palpate::report {
 
-// The floor's fill and the rings' fill are distinguished by the colours that the plots give them (see
+// The style sheet selects the fill of the floor and of rings by the colours that the plots give them (see
 // kFloorColour): a figure then follows the page into dark mode without being drawn twice.
 const char* const kStyleSheet = R"css(
 :root { color-scheme: light dark; --page: #ffffff; --ink: #1c2126; --quiet: #5c6670; --line: #d9dee3;

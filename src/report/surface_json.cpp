@@ -13,16 +13,16 @@
 namespace palpate::report {
 namespace {
 
-constexpr int kLeastVertices = 64;  // of a part
+constexpr int kLeastVertices = 64;  // per part
 constexpr double kLevels = 65535.0;
 
-/// One part as it is shown: which points of the run, and the faces between them.
+/// Part as shown: its points of the run, and the faces between them.
 struct Shown {
   std::string name;
   bool body = false;
   std::vector<int> points;
   Faces faces;
-  int first = 0;  ///< among the points of all that is shown
+  int first = 0;  ///< Index of its first point among all points shown
   int count() const { return static_cast<int>(points.size()); }
 };
 
@@ -51,7 +51,7 @@ std::vector<Shown> shown_parts(const store::RunReader& run, int most) {
   for (std::size_t i = 0; i < run.parts().size(); ++i) {
     const store::RunPart& part = run.parts()[i];
     if (part.tets.cols() == 0 && part.faces.cols() == 0) continue;
-    // points inside a body are not shown, so that a part's share of all points is more than it needs
+    // points inside a body are not shown: the share of a part exceeds its need
     const int own = std::max(kLeastVertices, static_cast<int>(share * part_points(part)));
     const int first = out.empty() ? 0 : out.back().first + out.back().count();
     out.push_back(shown_of(part, run.first_point(static_cast<int>(i)), own));
@@ -60,7 +60,7 @@ std::vector<Shown> shown_parts(const store::RunReader& run, int most) {
   return out;
 }
 
-/// The points that are shown, of all points of the run.
+/// Returns the points shown, from all points of the run.
 Points gathered(const Points& all, const std::vector<Shown>& parts) {
   Points out(3, parts.empty() ? 0 : parts.back().first + parts.back().count());
   for (const Shown& part : parts)
@@ -69,7 +69,7 @@ Points gathered(const Points& all, const std::vector<Shown>& parts) {
   return out;
 }
 
-/// Evenly spread, the last included.
+/// Returns the steps shown: evenly spaced, the last one included.
 std::vector<int> shown_steps(int steps, long most) {
   const long count = std::clamp<long>(most, 1, steps);
   std::vector<int> out;
@@ -91,7 +91,7 @@ void append_16(std::string& bytes, int value) {
   bytes += static_cast<char>(value >> 8 & 0xFF);
 }
 
-/// The box around all that is shown.
+/// Bounding box of all points shown.
 struct Box {
   Vec3 low = Vec3::Constant(HUGE_VAL), high = Vec3::Constant(-HUGE_VAL);
   void add(const Points& points) {
@@ -137,7 +137,7 @@ Json parts_json(const std::vector<Shown>& parts, const Box& box, const Points& r
   return out;
 }
 
-/// The first step that is not before a time, but for rounding; the last one where all are before it.
+/// Returns the first step at or after a time, up to rounding; the last step if all are earlier.
 std::size_t first_from(const std::vector<double>& times, double time) {
   const double rounding = 1e-9 * std::abs(time);
   const auto at = std::find_if(times.begin(), times.end(), [&](double t) { return t >= time - rounding; });

@@ -6,20 +6,20 @@
 
 namespace palpate::report {
 
-/// How much of a run a page may hold.
+/// Limits on the data of a run in a page.
 struct ViewBudget {
-  int vertices = 6000;              ///< of all parts together
-  long position_bytes = 3'000'000;  ///< as numbers; a third more as text
-  int steps = 240;
+  int vertices = 6000;              ///< Vertices of all parts together
+  long position_bytes = 3'000'000;  ///< Bytes of positions as numbers; base64 text takes a third more
+  int steps = 240;                  ///< Number of steps
 };
 
-/// Surfaces of a run over time as JSON, from which the page's script draws them
+/// Returns the surfaces of a run over time as JSON, from which the script of the page draws them
 /// (src/report/page/src/view.js): `times_s`; the box `low_m`, `high_m`, within which a coordinate is a 16-bit
-/// number; `first_shown`, the step to begin with; `most_displacement_m`; and `parts`
-/// with name, kind (body or tool), the number of vertices, and little-endian 16-bit numbers in base64: faces,
-/// rest, positions step by step. Empty where the run has no step, or a step whose positions are not finite
-/// and nothing before it.
-/// @param shown_at_s  the first step from then on is shown first; NaN: when the displacement is largest
+/// number; `first_shown`, the step to begin with; `most_displacement_m`; and `parts` with name, kind (body or
+/// tool), the number of vertices, and little-endian 16-bit numbers in base64: faces, rest, positions step by
+/// step. Empty if the run has no step, or no finite positions before the first step that is not finite.
+/// @param shown_at_s  the first step from this time on is shown first [s]; NaN: the step of the largest
+/// displacement
 std::string surface_json(const store::RunReader& run, const ViewBudget& budget = {},
                          double shown_at_s = std::numeric_limits<double>::quiet_NaN());
 

@@ -31,7 +31,7 @@ std::vector<double> Table::numbers(std::string_view header) const {
 
 double to_number(std::string_view cell) {
   double value = std::numeric_limits<double>::quiet_NaN();
-  if (cell.find(',') == std::string_view::npos) read_csv_number(cell, value);  // our tables have points
+  if (cell.find(',') == std::string_view::npos) read_csv_number(cell, value);  // decimal points only
   return value;
 }
 
@@ -73,7 +73,7 @@ bool is_numeric_column(const std::vector<std::vector<std::string>>& rows, std::s
 
 namespace {
 
-/// Code points of a UTF-8 text: every byte but continuation bytes (10xxxxxx).
+/// Returns the number of code points of a UTF-8 text: all bytes except continuation bytes (10xxxxxx).
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));

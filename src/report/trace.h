@@ -4,8 +4,7 @@
 
 namespace palpate::report {
 
-/// Plot of trace.csv: step size over time, logarithmic; rejected attempts as points, coloured by their
-/// reason.
+/// Plots trace.csv: step size over time, logarithmic; rejected attempts as points, coloured by reason.
 Plot step_plot(const Table& trace);
 
 }  // namespace palpate::report

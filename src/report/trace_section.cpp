@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kAccepted = "accepted";
 
-/// Directions named most often, with how often: the table's lines.
+/// Returns the most frequent directions with their counts, as table rows.
 std::vector<std::vector<std::string>> most_frequent(const std::map<std::string, long>& counts,
                                                     std::size_t most) {
   std::vector<std::pair<std::string, long>> sorted(counts.begin(), counts.end());

@@ -17,7 +17,7 @@ std::vector<double> numbers_at(const Json& object, const char* key) {
   return out;
 }
 
-/// A measurement over a refinement.
+/// Measurement over a refinement sequence.
 struct Ladder {
   std::string quantity, size_label;
   std::vector<double> size, error, seconds;
@@ -44,7 +44,7 @@ Plot log_plot(const std::string& x_label) {
   return plot;
 }
 
-/// Errors over sizes of one kind, each with the order that is fitted to it.
+/// Plots errors over sizes of one kind, each with its fitted order.
 Plot convergence_plot(const std::vector<Ladder>& ladders, const std::string& size_label) {
   Plot plot = log_plot(size_label);
   for (const Ladder& ladder : ladders) {
@@ -95,7 +95,7 @@ void add_convergence(Page& page, const Json& cases) {
   if (any) page.end_details();
 }
 
-/// A table with a mark a row.
+/// Table with one mark per row.
 struct Marked {
   std::vector<std::vector<std::string>> rows;
   std::vector<RowMark> marks;
@@ -107,7 +107,7 @@ struct Marked {
 
 const char* verdict(bool passed) { return passed ? "pass" : "FAIL"; }
 
-/// The largest share of its bar that an error of the case takes; NaN: no error has a bar of its own.
+/// Returns the largest ratio of an error of the case to its acceptance limit; NaN if no error has a limit.
 double closest(const Json& measurements) {
   double out = std::numeric_limits<double>::quiet_NaN();
   for (const Json& m : measurements)

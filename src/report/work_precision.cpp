@@ -9,8 +9,8 @@
 namespace palpate::report {
 namespace {
 
-/// The least and the largest cost of a point's repeats.  A point that ran once takes the median spread of the
-/// others, unknown (NaN) where none ran again; counts have none.
+/// Least and largest cost over the repeats of a point. A point that ran once takes the median spread of the
+/// other points, NaN if no point was repeated; counts have no spread.
 class Spread {
  public:
   Spread(const Table& compare, const std::string& cost_column) {
@@ -71,7 +71,7 @@ std::string setting_text(const std::string& setting_name, double setting) {
   if (!std::isfinite(setting)) return short_number(setting);
   if (setting_name == "step_s" || setting_name == "tick_s")
     return setting < 1e-3 ? fmt::format("{:.3g} us", setting * 1e6) : fmt::format("{:.3g} ms", setting * 1e3);
-  // 1e-04 as people write it: 1e-4.
+  // 1e-4 instead of 1e-04
   std::string text = fmt::format("{:.0e}", setting);
   if (to_number(text) != setting) text = fmt::format("{:.3g}", setting);
   if (const auto e = text.find("e-0"); e != std::string::npos) text.erase(e + 2, 1);

@@ -11,16 +11,16 @@
 namespace palpate::report {
 namespace {
 
-/// Whether an error is drawn; of an unknown scale all are.
+/// Returns whether an error is drawn; always true for an unknown (NaN) scale.
 bool is_drawn(double error, double scale) { return !(error > kLargestDrawn * scale); }
 
-/// Up to this many ladders each point carries its setting.
+/// Most refinement sequences of a plot whose points have their setting as a label.
 constexpr std::size_t kFewLadders = 3;
-/// A family of more ladders than this is drawn order by order.
+/// Most sequences of a family in one plot; larger families are plotted by order.
 constexpr std::size_t kManyInFamily = 6;
 constexpr const char* kFaintColour = "#c3c9d0";
 
-/// Twelve hues of middle lightness for families, in the order of their first line.
+/// Twelve hues of medium lightness for families, in the order of their first line.
 constexpr std::array<const char*, 12> kFamilyColours = {"#2b7bba", "#d9720a", "#2a9461", "#b0529e",
                                                         "#d1495b", "#0f9aa8", "#8a6d3b", "#6a5acd",
                                                         "#8fae1b", "#c2185b", "#4c6a7d", "#e0a100"};
@@ -47,8 +47,8 @@ Series line_of(const Ladder& ladder, double scale, bool labelled) {
   return series;
 }
 
-/// The points that no other point beats in both cost and error, from cheap to accurate; each ladder is named
-/// where it first takes over.
+/// Returns the Pareto front in cost and error, from cheap to accurate; each sequence is labelled at its first
+/// point on the front.
 Series best_envelope(const std::vector<Ladder>& all, double scale) {
   struct Entry {
     double cost, error;
@@ -175,7 +175,7 @@ Plot exchange_plot(const Table& exchange, const std::string& error_column, const
   plot.log_x = plot.log_y = true;
   plot.height = 340;
   plot.series.push_back({.name = "measured", .x = period, .y = error, .mark = Mark::kLinePoints});
-  std::vector<double> resolved = error;  // the fit leaves NaN out
+  std::vector<double> resolved = error;  // the fit ignores NaN
   if (const std::string below = below_column(exchange, error_column); exchange.has(below))
     for (std::size_t i = 0; i < resolved.size(); ++i)
       if (exchange.rows[i][exchange.column(below)] == "yes") resolved[i] = kUnknown;
