@@ -12,7 +12,7 @@ namespace palpate::cli {
 /// Returns the path of the last complete checkpoint in the folder of a run.
 std::string checkpoint_path(const std::string& folder);
 
-/// Removes the checkpoint and the journals of an earlier run, which would pass for those of this run.
+/// Removes the checkpoint and the journals of an earlier run, which would pass for files of this run.
 void remove_checkpoint(const std::string& folder);
 
 /// Rejects at the start the options of a run whose state checkpoints cannot keep.
@@ -25,8 +25,8 @@ struct RunIdentity {
   std::string scene_path;  ///< Absolute path of the scene
   std::string bodies;      ///< loop::fingerprint() of the World as assembled
   std::string cpu;         ///< CPU of the machine: other CPUs round differently
-  /// Instruction sets of the kernels in use, those of palpate and of the linear algebra; the environment may
-  /// select them, and they too change rounding
+  /// Instruction sets of the kernels of palpate and of the linear algebra; the environment may select them,
+  /// and they too change rounding
   std::string instructions;
   void archive(Archive& a);
 };
