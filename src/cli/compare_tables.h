@@ -11,8 +11,8 @@ constexpr std::size_t kReasonLength = 90;  ///< Length of the reason of a failed
 void print_reference(const compare::SceneComparison& scene);
 /// Prints which linear solvers were tried for each method, if trials were requested.
 void print_trials(const compare::SceneComparison& scene);
-/// Prints one line per point; neighbouring levels with the same failure share a line. Prints only the number
-/// of points if they exceed the number of lines that a screen can hold.
+/// Prints one line per point; neighbouring levels with the same failure share a line. If the points exceed
+/// the number of lines that a screen can hold, prints only their number.
 void print_points(const compare::SceneComparison& scene);
 /// Prints one line per refinement sequence: fitted order, best error, the cost of each of report::kTargets;
 /// then the cheapest method at each target.

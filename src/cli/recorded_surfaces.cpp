@@ -75,7 +75,7 @@ store::Rgb8 RecordedSurfaces::colour(std::size_t i) const {
 }
 
 double RecordedSurfaces::largest_displacement(const std::vector<int>& steps) const {
-  constexpr double kRounding = 1e-9;  // of the surfaces' size: less is rounding
+  constexpr double kRounding = 1e-9;  // less than this share is rounding
   double largest = 0.0, size = 0.0;
   for (const Surface& s : surfaces_)
     size = std::max(size, (s.rest.rowwise().maxCoeff() - s.rest.rowwise().minCoeff()).norm());
