@@ -25,8 +25,8 @@
 //
 // Unresolved errors do not affect a decision. A level within kResolved times the error of the reference has
 // that product as its error, an upper bound; a target below it has no cost. If the error of the reference is
-// unknown, no target has a cost. Costs are not interpolated across failed levels or beyond the ends: the cost
-// of the first usable level is an upper bound, as is the cost of the first level after a gap.
+// unknown, no target has a cost. Costs are not interpolated across failed levels or beyond the ends: the
+// first usable level gives an upper bound of the cost, and so does the first level after a gap.
 
 namespace palpate::report {
 namespace {
