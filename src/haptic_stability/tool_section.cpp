@@ -5,9 +5,9 @@
 #include <numbers>
 #include <vector>
 
-// The part of a closed surface below a plane and its cut with the plane bound a volume, and the area vectors
-// of a closed boundary sum to zero: the cut has the area -sum n . a over the parts of the faces below the
-// plane. A face with corners at heights z0 <= z1 <= z2 has below z the share
+// The part of a closed surface below a plane and its cut with the plane bound a volume, whose area vectors
+// sum to zero: the cut has the area -sum n . a over the parts of the faces below the plane. A face with
+// corners at heights z0 <= z1 <= z2 has below z the share
 //     (z - z0)^2/((z1 - z0)(z2 - z0))            up to z1,
 //     1 - (z2 - z)^2/((z2 - z1)(z2 - z0))        beyond.
 namespace palpate::haptic_stability {
