@@ -124,7 +124,8 @@ class Plan {
  public:
   explicit Plan(const Description& d) : scene_(d) {}
 
-  /// Adds one point.  @param own  whether the value is the scene's: then nothing is changed
+  /// Adds one point.
+  /// @param own  whether the value is the value of the scene, so that no key is changed
   void add(const char* variable, const std::string& value, double setting, bool own,
            const std::vector<std::string>& overrides) {
     HapticPoint point;

@@ -52,7 +52,7 @@ double point_spacing(const CharacteristicLengths& own, const CharacteristicLengt
   return std::isinf(other.radius) ? HUGE_VAL : e;
 }
 
-// Points on a shape's own surface lie on a surface that bulges over their triangles. The bulge is known, like
+// Material points of a shape lie on a surface that bulges over their triangles. The bulge is known, like
 // a sphere's curvature above, and so is the remaining error: the change of the normals between the points.
 double shape_spacing(const CharacteristicLengths& shape, const CharacteristicLengths& body,
                      double wanted_error) {

@@ -146,7 +146,7 @@ std::unique_ptr<SampleSource> make_own_distance_source(NodeSurface surface, cons
                                                        const Points& rest_nodes,
                                                        const DistanceOptions& options);
 
-/// Returns the spacing of contact points on a shape's own surface against a body, as point_spacing() [m].
+/// Returns the spacing of contact points on the surface of a shape against a body, as point_spacing() [m].
 double shape_spacing(const CharacteristicLengths& shape, const CharacteristicLengths& body,
                      double wanted_error);
 /// Returns a triangulated sphere about the origin: see ObstacleEntry::surface.

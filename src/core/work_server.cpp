@@ -176,7 +176,8 @@ class Server {
 
 // --- caller's side
 
-/// Helper of this process.  After a fork, `owner` differs from getpid() until the process has made its own.
+/// Helper of this process.  After a fork, `owner` differs from getpid() until the process has created a
+/// helper.
 struct Helper {
   std::mutex mutex;
   pid_t owner = 0;

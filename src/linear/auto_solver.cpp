@@ -55,8 +55,8 @@ double squared_courant_number(const dynamics::BlockSparse& A) {
   return all > 0.0 ? own / all : 1.0;
 }
 
-// Conjugate gradients with block Jacobi take a number of iterations that grows as sqrt(s) until the diameter
-// of the mesh bounds it. With a coarse space the nodes per cluster bound it, and an iteration costs about a
+// Conjugate gradients with block Jacobi take a number of iterations that grows as sqrt(s) until the mesh
+// diameter bounds it. With a coarse space the nodes per cluster bound it, and an iteration costs about a
 // third more. Hence one threshold in s, independent of the number of nodes and of the tolerance. Measured for
 // one step with each solver (beams of 81 to 11,172 nodes, linear_rtol of 1e-3 to 1e-9, one thread): for
 // s >= 62 the coarse space is faster in all cases, by up to a factor of 11; for s <= 13 it costs up to 47 %

@@ -84,7 +84,7 @@ void add_body_needs(const Description& d, const std::string& linear_solver, std:
   out.push_back({"linear solver", implicit, implicit ? fmt::format("{}; \"{}\"", why, linear_solver) : why});
 }
 
-/// Whether a tool with its own ticks carries nodes.
+/// Returns whether a tool that is advanced by ticks carries nodes.
 bool tools_carry(const Description& d) {
   const auto by_tool = [&](const AttachmentSpec& a) { return tool_named(d, a.to) != nullptr; };
   return d.exchange.scheme != "monolithic" &&

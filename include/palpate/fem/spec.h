@@ -69,7 +69,7 @@ struct SoftBodySpec {
   /// tetrahedra.
   bool skin = false;
   /// Whether contact in image space is limited to the neighbourhoods of the skin's convex proxies, each
-  /// rendered in a region with its own projection plane.
+  /// rendered in a region with a separate projection plane.
   bool proxies = false;
   Vec3 position_m = Vec3::Zero();              ///< initial position
   Vec3 rotation_vector_rad = Vec3::Zero();     ///< initial rotation about the mesh origin, before placement

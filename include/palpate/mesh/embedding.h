@@ -5,8 +5,8 @@
 
 namespace palpate::mesh {
 
-/// Points embedded in tetrahedra by barycentric weights (docs/theory/proxies.md): x_i = sum over the 4 nodes
-/// of tet[i] of weights(k, i) * x_node.
+/// Points embedded in tetrahedra by barycentric weights (docs/theory/proxies.md):
+///     x_i = sum_k weights(k, i) x_node(k),  k = 0 ... 3 over the nodes of tet[i].
 ///
 /// A point outside all tetrahedra belongs to the nearest one, whose weights are extrapolated (some are
 /// negative; they still sum to one).  The offset to the tetrahedron is therefore kept, the map from nodes to

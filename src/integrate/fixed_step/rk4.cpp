@@ -8,11 +8,11 @@ namespace {
 using namespace dynamics;
 
 /// The classical Runge-Kutta method (Kutta 1901) on y = [q; u], y' = F(t, y) = [N(q) u; M^-1 f]:
-///     k1 = F(t0, y0),  k2 = F(t0 + h/2, y0 + h/2 k1),  k3 = F(t0 + h/2, y0 + h/2 k2),  k4 = F(t1, y0 + h
-///     k3),
+///     k1 = F(t0, y0),               k2 = F(t0 + h/2, y0 + h/2 k1),
+///     k3 = F(t0 + h/2, y0 + h/2 k2),  k4 = F(t1, y0 + h k3),
 ///     y1 = y0 + h/6 (k1 + 2 k2 + 2 k3 + k4).
-/// Driven directions have their exact values in every stage.  Four forces a step and no tangent: k1 is taken
-/// at the end of the step before, so that no state is accepted that has no finite force.
+/// Driven directions have their exact values in every stage.  Four force evaluations per step and no tangent:
+/// k1 is taken at the end of the step before, so that no state is accepted that has no finite force.
 ///
 /// Order 4.  Stability: R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24, |R| <= 1 up to 2.828 on the imaginary axis
 /// (undamped modes: h < 2.828/w) and 2.785 on the negative real one.  Stiff order 0: a mode outside grows
