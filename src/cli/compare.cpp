@@ -9,7 +9,7 @@
 #include "cli/progress.h"
 #include "cli/scene_of.h"
 #include "cli/stop.h"
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "commands.h"
 #include "compare_tables.h"
 #include "palpate/core/error.h"

@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "core/time_text.h"
 #include "palpate/core/error.h"
 #include "render/field.h"

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "commands.h"
 
 namespace palpate::cli {

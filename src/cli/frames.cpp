@@ -7,7 +7,7 @@
 
 #include "cli/progress.h"
 #include "cli/stop.h"
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "palpate/core/error.h"
 #include "render/seen.h"
 

@@ -1,4 +1,4 @@
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 
 #include "cli/paths.h"
 #include "cli/scene_of.h"
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "commands.h"
 #include "palpate/core/error.h"
 #include "render/available.h"

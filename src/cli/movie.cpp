@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "cli/stop.h"
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "commands.h"
 #include "core/rigid_fit.h"
 #include "frames.h"

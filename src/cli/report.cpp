@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "commands.h"
 #include "report/run_report.h"
 #include "store/result_folder.h"

@@ -4,7 +4,7 @@
 
 #include "checkpoints.h"
 #include "cli/scene_of.h"
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "core/time_text.h"
 #include "palpate/core/error.h"
 #include "store/provenance.h"

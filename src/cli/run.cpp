@@ -12,7 +12,7 @@
 #include "cli/progress.h"
 #include "cli/scene_of.h"
 #include "cli/stop.h"
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "clock_figures.h"
 #include "commands.h"
 #include "contact_picture.h"

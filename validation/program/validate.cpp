@@ -9,7 +9,7 @@
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "cli/stop.h"
-#include "cli/undelivered.h"
+#include "cli/missing_outputs.h"
 #include "options.h"
 #include "palpate/core/error.h"
 #include "report/run_report.h"
