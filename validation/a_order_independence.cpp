@@ -9,17 +9,18 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
 
-// The field of depths is a property of two surfaces, not of how their triangles are listed.  The pixels of
-// the same pair are compared bit by bit: once as the generators list the triangles, then shuffled in both
-// bodies. Where two triangles meet at a pixel's middle the image may take either; what is compared is what
-// they say.
+// Problem: the depth field is a property of two surfaces and must not depend on the order in which their
+// triangles are listed, nor on which body is named first.
 //
-// Which of two soft bodies is named first changes nothing either: sides have an order of their own, by the
-// bodies' places in the State.  Samples are compared bit by bit again.
+// Exact answer: identical fields. (a) The pixels of one pair are compared bitwise, as listed by the
+// generators and with the triangles of both bodies shuffled. Where two triangles meet at a pixel centre the
+// image may select either; the resulting depths are compared, not the selected triangles. (b) Swapping the
+// names of two soft bodies changes nothing, as the order of the sides follows the positions of the bodies in
+// the State. Samples are compared bitwise.
 //
-// With the bodies' places in the State swapped the normal is opposite, the image its mirror image, and its
-// grid of pixels starts at another corner of the window: a vertex at the overlap's border may lie in a pixel
-// that shows the other body there, or in one that does not.
+// (c) Swapping the positions of the bodies in the State reverses the normal, mirrors the image and starts the
+// pixel grid at another corner of the window. A vertex at the border of the overlap may then lie in a pixel
+// that shows the other body, or in one that does not, so the overlap volumes agree only to the limit 1e-4.
 
 namespace palpate::validation {
 namespace {
@@ -59,7 +60,8 @@ struct Pixel {
   double gap;
 };
 
-/// Fault "first-come": each depth carries a trace, 1e-9, of which triangle is listed first.
+/// Depth field of a pair. Fault "first-come": each depth is changed by 1e-9 depending on the triangle listed
+/// first.
 std::vector<Pixel> field(const Mesh& mesh, const std::string& fault) {
   SurfaceBody body(mesh.a);
   const auto source =
@@ -95,7 +97,7 @@ TwoSoft two_soft(const TriMesh& first, const TriMesh& second) {
   return out;
 }
 
-/// Fault "as-named": samples come in the order of the sides as they are named.
+/// Samples of two soft bodies. Fault "as-named": the samples are ordered as the sides are named.
 std::vector<contact::ContactSample> samples_of_two_soft(const TwoSoft& bodies, bool b_first,
                                                         const std::string& fault) {
   const contact::ImageOptions options = image_options();

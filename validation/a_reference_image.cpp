@@ -11,7 +11,7 @@ namespace palpate::validation {
 SampleAt sample_at(const contact::ContactSample& sample, const Points& nodes) {
   PALPATE_CHECK(sample.b.frame >= 0, "the second side of a sample is rigid here, got frame {}",
                 sample.b.frame);
-  SampleAt out{sample.a.offset, sample.b.offset};  // the frame is the world's
+  SampleAt out{sample.a.offset, sample.b.offset};  // The frame coincides with the world frame.
   for (int k = 0; k < sample.a.count; ++k)
     out.a +=
         sample.a.weight[static_cast<std::size_t>(k)] * nodes.col(sample.a.node[static_cast<std::size_t>(k)]);
@@ -23,7 +23,7 @@ PixelGrid grid_of(const std::vector<contact::ContactSample>& samples, const Poin
   PixelGrid grid;
   const Vec3 n = samples.front().normal;
   grid.axes.col(2) = n;
-  // as the library lays its axes
+  // Same choice of axes as in the library.
   grid.axes.col(0) = Vec3(std::abs(n.x()) < 0.8 ? Vec3::UnitX() : Vec3::UnitY()).cross(n).normalized();
   grid.axes.col(1) = n.cross(grid.axes.col(0));
   grid.pixel = std::sqrt(samples.front().area);
@@ -47,8 +47,8 @@ Cell cell_of(const PixelGrid& grid, const Vec3& point) {
 
 namespace {
 
-/// Heights along n of the triangles that face `side` along it: the least of them for side -1, the greatest
-/// for 1; NaN where there is none.
+/// Returns the height along n of the triangles that face `side`, per pixel: the lowest for side -1, the
+/// highest for side 1; NaN where there is none.
 std::vector<double> heights(const PixelGrid& grid, const TriMesh& mesh, double side) {
   std::vector<double> out(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height),
                           std::nan(""));
@@ -101,7 +101,8 @@ FieldError compare_fields(const std::vector<contact::ContactSample>& samples, co
     const DepthPixel& pixel = truth[index(column, row)];
     return pixel.covered && pixel.gap < 0.0;
   };
-  // whether all pixels around one overlap, or none does: it is more than a pixel from the silhouette then
+  // Returns whether all neighbours of a pixel have the given overlap state, so that the pixel is more than a
+  // pixel away from the silhouette.
   const auto around = [&](int column, int row, bool requested) {
     for (int v = std::max(0, row - 1); v <= std::min(grid.height - 1, row + 1); ++v)
       for (int u = std::max(0, column - 1); u <= std::min(grid.width - 1, column + 1); ++u)
@@ -115,7 +116,7 @@ FieldError compare_fields(const std::vector<contact::ContactSample>& samples, co
     seen[index(cell.column, cell.row)] = 1;
     if (overlaps(cell.column, cell.row)) {
       ++out.compared;
-      // a triangle at the silhouette may be the image's choice there, and not the exact one's
+      // At the silhouette the image may select another triangle than the exact method.
       if (around(cell.column, cell.row, true))
         out.inside = std::max(out.inside, std::abs(s.gap - truth[index(cell.column, cell.row)].gap));
     } else if (around(cell.column, cell.row, false)) {

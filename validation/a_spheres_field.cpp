@@ -8,28 +8,32 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
 
-// Depth along the contact's normal n, at the line p + t n.  A sphere (centre c, radius R) is cut where
+// Problem: depth field along the contact normal n on the line p + t n, for a sphere on a plane and for two
+// spheres.
+//
+// Exact answer (line and sphere, closed form): the line crosses a sphere (centre c, radius R) at
 //     t = (c - p).n -/+ sqrt(R^2 - |c - p|^2 + ((c - p).n)^2),
-// entered at the lower sign, left at the upper.  Of a above and b below, depth = t_b - t_a:
+// where it enters with the lower sign and leaves with the upper. With a above and b below, depth = t_b - t_a:
 //     sphere on a plane, depth delta0:   sqrt(R^2 - r^2) - (R - delta0),
 //     two spheres, centres d apart:      sqrt(R1^2 - r^2) + sqrt(R2^2 - r^2) - d,
-// r from the line of centres, where n lies along it; n is the region's, so the form for any n is used.
+// r measured from the line of centres, if n is along it. The contact region determines n, so the form for
+// arbitrary n is used.
 //
-// Against the facets the field has no error but rounding: the image decides which triangles face each other,
-// the depth is theirs in double.  Where an image in single precision takes the neighbour of the right
-// triangle, it does so within rounding of their common edge: nothing is lost by it, as the surface is
-// continuous there.
-// Against the spheres the facets err: vertices lie on the sphere, the facets inside it by up to h^2/(8 R) for
-// each surface, order 2.  Measured as RMS over the patch, without its rim, where a line along n is not far
-// from tangent to the border of the overlap.
+// Measured against the facets: the largest difference, at most 1e-6 R. The field has only rounding error, as
+// the image decides which triangles face each other and their depth is computed in double precision. Where a
+// single-precision image selects the neighbour of the right triangle, it does so within rounding of their
+// common edge, where the surface is continuous, so that no accuracy is lost. Measured against the spheres:
+// facet error. Vertices lie on the sphere, facets inside it by up to h^2/(8 R) per surface, hence order 2.
+// The RMS over the patch excludes its rim, where a line along n is nearly tangent to the border of the
+// overlap.
 
 namespace palpate::validation {
 namespace {
 
-constexpr double kR1 = 1.0, kR2 = 0.8, kDistance = 1.5;  // the first, above, is soft
-constexpr double kDepth = 0.2;                           // of the first in a plane
+constexpr double kR1 = 1.0, kR2 = 0.8, kDistance = 1.5;  // The first sphere, above, is soft.
+constexpr double kDepth = 0.2;                           // Depth of the first sphere in the plane.
 
-/// Both surfaces of a pair; the truth of the second is a sphere, or the plane z = 0.
+/// Both surfaces of a pair. The true shape of the second is a sphere, or the plane z = 0.
 struct Pair {
   std::string name;
   bool plane = false;
@@ -57,7 +61,8 @@ Pair make_pair(bool plane, int subdivisions, int orientation) {
   return pair;
 }
 
-/// Depth of the true surfaces along n at the line through p; NaN where the line misses one.
+/// Returns the depth of the true surfaces along n at the line through p; NaN where the line misses one of
+/// them.
 double true_depth(const Pair& pair, const Vec3& p, const Vec3& n) {
   const auto cut = [&](const Vec3& centre, double radius, double sign) {
     const Vec3 d = centre - p;
@@ -68,8 +73,8 @@ double true_depth(const Pair& pair, const Vec3& p, const Vec3& n) {
   return top - cut(pair.centre_a, kR1, -1.0);
 }
 
-/// Defects of an image: a depth kept in 16 bits of the slab, a row of pixels lost, each pixel with its
-/// neighbour's depth.
+/// Applies a defect to an image: depths quantised to 16 bits of the slab, a row of pixels lost, or each pixel
+/// with the depth of its neighbour.
 void seed_defect(std::vector<contact::ContactSample>& samples, const std::string& fault) {
   if (fault == "sixteen-bits")
     for (auto& s : samples) s.gap = std::round(s.gap * 65536.0 / kDepth) * kDepth / 65536.0;
@@ -92,9 +97,9 @@ std::vector<contact::ContactSample> samples_of(const Pair& pair, int pixels, con
   return samples;
 }
 
-/// RMS difference to the true field over the inner part of the patch, over R1.
+/// Returns the RMS difference to the true field over the inner part of the patch, divided by R1.
 double true_error(const Pair& pair, const std::vector<contact::ContactSample>& samples) {
-  constexpr double kRim = 0.2;  // of the greatest depth
+  constexpr double kRim = 0.2;  // Fraction of the greatest depth.
   double deepest = 0.0, squares = 0.0;
   for (const auto& s : samples) deepest = std::max(deepest, -s.gap);
   int count = 0;

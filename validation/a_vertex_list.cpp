@@ -7,18 +7,20 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
 
-// The list of colliding vertices (Galoppo et al. 2007): every vertex of a soft sphere that lies inside a
-// rigid one, with its depth along the contact's normal n.  The truth is a line along n through each vertex,
-// cut with every triangle of the other sphere in double: depth = height of the highest cut - height of the
-// vertex.
+// Problem: the list of colliding vertices (Galoppo et al. 2007), which contains every vertex of a soft sphere
+// inside a rigid one, with its depth along the contact normal n.
 //
-// A vertex whose depth is less than what the overlap's border rises over one pixel may be in either list.
+// Exact answer: the line along n through each vertex is intersected with every triangle of the other sphere
+// in double precision; depth = height of the highest crossing - height of the vertex.
+//
+// Measured: depths, to 1e-5 R, and vertices missed or extra (none accepted). A vertex less deep than the
+// height that the border of the overlap gains over one pixel may be in either list.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kR1 = 1.0, kR2 = 0.8, kDistance = 1.5;
-constexpr double kLensBottom = 0.4;  // z of the lower sphere's facets: the lens ends at 0.63, a facet is 0.03
+constexpr double kLensBottom = 0.4;  // z on the lower sphere [m]: the lens ends at 0.63, a facet is 0.03
 
 struct Pair {
   TriMesh a = mesh::sphere(kR1, 40), b = mesh::sphere(kR2, 33);
@@ -29,7 +31,8 @@ struct Pair {
   }
 };
 
-/// Height along n, above `p`, of the highest triangle of `mesh` that faces n; NaN where there is none.
+/// Returns the height along n, above `p`, of the highest triangle of `mesh` that faces n; NaN where there is
+/// none.
 double highest_above(const TriMesh& mesh, const Vec3& p, const Vec3& n) {
   double best = std::nan("");
   const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
@@ -56,7 +59,7 @@ double highest_above(const TriMesh& mesh, const Vec3& p, const Vec3& n) {
 }
 
 struct ListError {
-  double largest = 0.0;  ///< of a depth, over R
+  double largest = 0.0;  ///< Largest depth error, divided by R.
   int missed = 0, extra = 0, compared = 0;
 };
 
@@ -85,12 +88,12 @@ ListError compare(const Pair& pair, int pixels, const std::string& fault) {
     for (int k = 0; k < s.a.count; ++k)
       if (s.a.weight[static_cast<std::size_t>(k)] > 1.0 - 1e-9)
         found[static_cast<std::size_t>(s.a.node[static_cast<std::size_t>(k)])] = -s.gap;
-  // the border of the lens is where both spheres have the angles atan(r/h): their slopes add up
+  // At the border of the lens the spheres have the slopes r/h; their slopes add up.
   const double along = (kDistance * kDistance + kR1 * kR1 - kR2 * kR2) / (2.0 * kDistance),
                rim = std::sqrt(kR1 * kR1 - along * along), slope = rim / along + rim / (kDistance - along),
                doubtful = slope * 2.0 * rim / pixels;
   for (Eigen::Index i = 0; i < pair.a.vertices.cols(); ++i) {
-    const bool inside = pair.a.vertices.col(i).norm() < kR2;  // else no facet of b is above it
+    const bool inside = pair.a.vertices.col(i).norm() < kR2;  // Otherwise no facet of b is above it.
     const double exact = inside ? highest_above(pair.b, pair.a.vertices.col(i), n) : std::nan(""),
                  seen = found[static_cast<std::size_t>(i)];
     if (exact > 0.0 && seen > 0.0) {

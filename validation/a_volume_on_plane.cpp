@@ -6,11 +6,16 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
 
-// Overlap volume of a sphere and a plane, delta0 deep: a spherical cap,
+// Problem: overlap volume of a sphere and a plane at the depth delta0.
+//
+// Exact answer for the sphere (spherical cap):
 //     V = pi delta0^2 (3 R - delta0)/3.
-// Against the facets only the pixels err.  The facets' own volume is exact: each triangle is clipped at the
-// plane, and the depth, linear on it, is integrated over what is left.  Against the sphere the facets err by
-// order 2.
+// Exact answer for the facets: each triangle is clipped at the plane, and the depth, linear on the triangle,
+// is integrated over the rest.
+//
+// Measured: the sum of depth x dA. Against the facets only the pixels contribute an error (limit 1e-4 at 256
+// pixels, order at least 1.9); against the sphere the facets contribute it with order 2 (accepted: 1.9 to
+// 2.1).
 
 namespace palpate::validation {
 namespace {
@@ -37,8 +42,8 @@ double sampled(const TriMesh& mesh, int pixels, const GridShift& shift, const st
   options.shift_v = shift.v;
   const auto source = contact::make_image_source(body.surface, slab, 0, contact::fixed_frame(), options);
   std::vector<contact::ContactSample> samples = pixels_of(*source, body.state.view());
-  // "pixels-lost": one in a hundred; "radial-depth": from the plane's point to the nearest one of the
-  // sphere, as a distance query has it
+  // "pixels-lost": one pixel in a hundred is dropped; "radial-depth": depth from the plane's point to the
+  // nearest point on the sphere, as a distance query returns it.
   std::size_t i = 0;
   if (fault == "pixels-lost") std::erase_if(samples, [&](const auto&) { return ++i % 100 == 0; });
   if (fault == "radial-depth")

@@ -9,16 +9,19 @@
 #include "palpate/mesh/embedding.h"
 #include "palpate/mesh/generators.h"
 
-// Action is reaction.  A sample pushes its two points, which lie on one line along the normal, with equal and
-// opposite forces, so the sum of all forces is zero and so is the sum of their moments about any origin.  It
-// stays so on the nodes only if a point's force is distributed by the weights that place the point, also
-// where the skin lies outside its tetrahedron (weights below zero): a force moved there to the tetrahedron's
-// surface would leave the moment offset x force. Friction lies across the line: its forces sum to zero, its
-// moment about any origin is at most depth x friction a sample, the price of two points that are the depth
-// apart.
+// Problem: forces and moments of contact between two bodies must balance. Bodies are coarse balls and
+// boxes of tetrahedra, bent, under fine skins, in random poses; the other body is one of these too, or rigid.
 //
-// Bodies are coarse balls and boxes of tetrahedra, bent, under fine skins, in random poses; the other body is
-// another one of them, or rigid.
+// Exact answer (action equals reaction): a sample applies equal and opposite forces to its two points, which
+// lie on one line along the normal, so that the sum of all forces is zero, and so is the sum of their moments
+// about any origin. This carries over to the nodes only if a point's force is distributed by the weights that
+// place the point, also where the skin lies outside its tetrahedron (negative weights): moving the force to
+// the surface of the tetrahedron would leave the moment offset x force. Friction acts across the line: its
+// forces sum to zero, and its moment about any origin is at most depth x friction per sample, because the two
+// points are the depth apart.
+//
+// Measured: the sums over both bodies, relative to the force on one body (and its size). Limit 1e-12,
+// rounding; for the moment of friction 1, its bound depth x friction.
 
 namespace palpate::validation {
 namespace {
@@ -37,11 +40,11 @@ struct Random {
 
 struct Body {
   TriMesh skin;
-  Points rest;  ///< the skin's vertices at rest [m]
+  Points rest;  ///< Vertices of the skin at rest [m].
   contact::NodeSurface surface;
 };
 
-/// A ball (even) or a box under its skin, at a random pose about `centre`, bent, with velocities.
+/// Adds a ball (even `kind`) or a box under its skin, at a random pose about `centre`, bent, with velocities.
 Body add_body(dynamics::State& state, int kind, const Vec3& centre, Random& random) {
   Body out;
   TetMesh tets = kind % 2 == 0 ? mesh::ball(kSize, 0.5) : mesh::box(Vec3(1.5, 1.6, 1.7), {2, 2, 2});
@@ -64,16 +67,17 @@ Body add_body(dynamics::State& state, int kind, const Vec3& centre, Random& rand
   return out;
 }
 
-/// Sums over both bodies, relative to the force (and the size) of one.
+/// Sums over both bodies, relative to the force on one body (and to its size).
 struct Balance {
-  double force = 0.0, moment = 0.0;  ///< without friction
-  double friction_force = 0.0;       ///< with it
-  double friction_moment = 0.0;      ///< over the bound, depth x friction
+  double force = 0.0, moment = 0.0;  ///< Without friction.
+  double friction_force = 0.0;       ///< With friction.
+  double friction_moment = 0.0;      ///< Relative to the bound, depth x friction.
   int samples = 0;
 };
 
-/// Faults: "no-rest-offset": weights below zero are cut off; "force-on-one-side": a tenth of it is lost
-/// there; "points-apart": the other side's point is not on the sample's line.
+/// Applies a fault to a source. "no-rest-offset": negative weights are cut off; "force-on-one-side": a
+/// tenth of the force is lost on one side; "points-apart": the point of the other side is off the sample's
+/// line.
 std::unique_ptr<contact::SampleSource> with_fault(std::unique_ptr<contact::SampleSource> source,
                                                   const std::string& fault) {
   if (fault == "force-on-one-side")

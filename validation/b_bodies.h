@@ -6,21 +6,21 @@
 #include "palpate/dynamics/inertia_term.h"
 #include "palpate/mesh/mesh.h"
 
-/// Small models that the contact cases share.
+/// Small models shared by the contact cases.
 namespace palpate::validation {
 
-/// A State of one node block: a surface whose vertices are its nodes, at rest.
+/// State with one node block: a surface whose vertices are its nodes, at rest.
 struct SurfaceBody {
   dynamics::State state;
   contact::NodeSurface surface;
   explicit SurfaceBody(const TriMesh& mesh);
 };
 
-/// Volume between the plane z = 0 and the facets that face down below it [m^3], exact: each triangle is
-/// clipped at the plane, and the depth, linear on it, is integrated over what is left.
+/// Returns the exact volume [m^3] between the plane z = 0 and the facets that face down below it: each
+/// triangle is clipped at the plane, and the depth, linear on the triangle, is integrated over the rest.
 double volume_below_plane(const TriMesh& mesh);
 
-/// A point mass in every direction of one node block.
+/// Point mass in each direction of one node block.
 class PointMass final : public dynamics::InertiaTerm {
  public:
   PointMass(int block_id, double mass) : block_id_(block_id), mass_(mass) {}
@@ -34,9 +34,9 @@ class PointMass final : public dynamics::InertiaTerm {
   double mass_;
 };
 
-/// A flat punch under one node: a square of `area` in the plane through the node, `across` x `across` equal
-/// samples, over the plane z = 0 of a frame.  Their gaps are the node's height; their arms lie in world axes,
-/// so the punch never rotates.
+/// Builds a flat punch under one node: a square with the given `area` [m^2] in the plane through the node,
+/// divided into `across` x `across` equal samples, over the plane z = 0 of a frame. The gaps of the samples
+/// equal the height of the node. Their arms are fixed in world axes, so the punch never rotates.
 std::unique_ptr<contact::SampleSource> make_punch_source(int node, double area, int across, int frame);
 
 }  // namespace palpate::validation

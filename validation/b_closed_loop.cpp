@@ -8,27 +8,30 @@
 #include "palpate/core/error.h"
 #include "plates.h"
 
-// Contact by nearest points is the gradient of an energy (docs/theory/contact.md): around a closed loop it
-// does no work, whatever the two skins are.  The upper of two corrugated plates goes around
-//     (x1, h1) -> (x1, h2) -> (x2, h2) -> (x2, h1) -> (x1, h1);
-// the net work is measured over the largest force times the loop's length, and what is left is the quadrature
-// along the loop.  An image has one normal n and k V of force along it, V the overlap: no part of it along
-// the plates, though V changes as they slide.  It has no potential, and does the work
-//     W = k int_{h1}^{h2} (V(x1, h) - V(x2, h)) dh,     V of plates.h,
-// up to what its vertices resolve: reported beside it, not barred.  Against a plane with a fixed normal V
-// depends on h alone, and W is zero for it as well.
+// Problem: contact by nearest points is the gradient of an energy (docs/theory/contact.md), so it does no
+// work around a closed loop, for any two skins. The upper of two corrugated plates follows
+//     (x1, h1) -> (x1, h2) -> (x2, h2) -> (x2, h1) -> (x1, h1).
+//
+// Exact answer: zero net work. Measured: net work over the largest force times the length of the loop, limit
+// 1e-4, the quadrature error along the loop. Against a plane with a fixed normal the overlap V depends on h
+// alone, and the work is zero up to rounding (limit 1e-10).
+//
+// Reported without a limit: an image has one normal n and the force k V along it. The force has no component
+// along the plates although V changes as they slide, so it has no potential and does the work
+//     W = k int_{h1}^{h2} (V(x1, h) - V(x2, h)) dh,     V from plates.h,
+// up to the resolution of its vertices.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kStiffness = 1e6;
-constexpr double kSlideFrom = 0.1, kSlideTo = 0.45;  // x1, x2 in wavelengths
-constexpr int kParts = 24;                           // of an edge, by Gauss' rule of two points each
+constexpr double kSlideFrom = 0.1, kSlideTo = 0.45;  // x1, x2 [wavelengths].
+constexpr int kParts = 24;                           // Parts per edge, each with two Gauss points.
 
 enum class Way { kPoints, kImage, kPlane };
 
-/// Force on the upper plate at (x0, h).  Fault "skin-normals": along the lower skin's own normals instead of
-/// the lines through the points.
+/// Returns the force on the upper plate at (x0, h) [N]. Fault "skin-normals": along the normals of the lower
+/// skin instead of the lines through the points.
 Vec3 force_at(const Plates& plates, Way way, double x0, double h, const std::string& fault) {
   const TriMesh upper = plates.upper(x0, h);
   SurfaceBody body(upper);
@@ -59,7 +62,7 @@ Vec3 force_at(const Plates& plates, Way way, double x0, double h, const std::str
 }
 
 struct Loop {
-  double work = 0.0, scale = 0.0;  ///< [J]; of the largest force times the loop's length
+  double work = 0.0, scale = 0.0;  ///< [J]; scale is the largest force times the length of the loop.
 };
 
 Loop around(const Plates& plates, Way way, const std::string& fault) {

@@ -12,22 +12,24 @@
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
 
-// A rigid sphere on a given path is pressed into a soft block and dragged over it.  Between two queries, H
-// apart, the gap of a sample that does not follow the state, as those of images do not, is linear in the
-// positions: normal, area and foot point are those of the query.
+// Problem: a rigid sphere on a prescribed path is pressed into a soft block and dragged over it. Between two
+// queries, an interval H apart, the gap of a sample that does not follow the state (as with images) is linear
+// in the positions: normal, area and foot point remain those found by the query.
 //
-// How the error follows H.  At the time s after a query the point has moved along the sphere by v s, the
-// normal has turned by v s/R, and the gap along the old one is off by (v s)^2/(2 R).  The force, p A n, is
-// off by a first-order term F' s (by n and A), and by a second-order one.  Over an interval the first leaves
-// an impulse F' H^2/2, and over all of them F' H T/2, always of the same sense: positions converge with order
-// 1 in H, in any integrator.
+// Expected order in H (one-step error analysis). At the time s after a query the point has moved along the
+// sphere by v s, the normal has turned by v s/R, and the gap along the old normal has the error (v s)^2/(2
+// R). The force, p A n, has a first-order error F' s (through n and A) and a second-order one. Over an
+// interval the first leaves an impulse F' H^2/2, and over all intervals F' H T/2 with constant sign:
+// positions converge with order 1 in H for any integrator. Measured: this order, accepted from 0.8 to 1.2.
 //
-// (A method of order 1 with steps h sees the force at its steps' beginnings or ends alone: its samples are
-// older by (H - h)/2 or (H + h)/2 in the mean, so h must be a small part of H for the order to show.)
+// (A method with order 1 and steps h evaluates the force only at the beginnings or ends of its steps: its
+// samples are older by (H - h)/2 or (H + h)/2 on average, so h must be a small part of H for the order to
+// show.)
 //
-// Where samples follow, the force is a function of the state: no refresh is left in it, and what is left of
-// the error is the integrator's own, with the order of its steps.  No new candidates come in (the candidate
-// gap is as large as the path), and the pressure sets in smoothly, so that nothing else is measured.
+// Where samples follow the state, the force is a function of the state and the refresh contributes no error.
+// The remaining error is the integrator's, with the order of its steps (accepted: +/- 0.2). No new candidates
+// appear (the candidate gap is as large as the path), and the pressure sets in smoothly, so that no other
+// error is measured.
 
 namespace palpate::validation {
 namespace {
@@ -36,7 +38,7 @@ constexpr double kRadius = 0.015, kHeight = 0.005, kEnd = 0.02, kDepth = 1.5e-3,
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kOutput = 2e-3;
 
-/// Down, and along x: both by s(t) = sin^2(pi t/(2 T)).
+/// Path down and along x, both by s(t) = sin^2(pi t/(2 T)).
 class PathFrame final : public contact::MovingFrame {
  public:
   Pose pose(const dynamics::StateView& state) const override {
@@ -49,7 +51,8 @@ class PathFrame final : public contact::MovingFrame {
   }
 };
 
-/// A source that says that it follows, and stays where its last query left it: the library without following.
+/// Source that claims to follow the state but keeps the samples from its last query: the library without
+/// following.
 class StaleSource final : public contact::SampleSource {
  public:
   explicit StaleSource(std::unique_ptr<contact::SampleSource> source) : source_(std::move(source)) {}
@@ -64,7 +67,7 @@ class StaleSource final : public contact::SampleSource {
   std::unique_ptr<contact::SampleSource> source_;
 };
 
-/// A source that gives the samples of its first query for ever.
+/// Source that returns the samples of its first query at every later query.
 class OnceSource final : public contact::SampleSource {
  public:
   explicit OnceSource(std::unique_ptr<contact::SampleSource> source) : source_(std::move(source)) {}
@@ -84,7 +87,7 @@ class OnceSource final : public contact::SampleSource {
   std::vector<contact::ContactSample> first_;
 };
 
-/// Displacements [m] of all nodes at the outputs, one after the other.
+/// Displacements [m] of all nodes at all output times, concatenated.
 using Track = std::vector<double>;
 
 double distance(const Track& a, const Track& b) {
@@ -147,8 +150,8 @@ Track drag(const IntegratorSpec& spec, double refresh, bool follows, const std::
 
 struct Method {
   const char* name;
-  bool fixed;    ///< steps of kStep and less, else by error control
-  double order;  ///< of fixed steps
+  bool fixed;    ///< Steps of at most kStep; otherwise error control.
+  double order;  ///< Order for fixed steps.
 };
 constexpr double kStep = 1e-4, kFineStep = 2.5e-5, kTolerance = 1e-7;
 constexpr Method kMethods[] = {{"cvode-bdf", false, 0},
@@ -176,7 +179,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const double moved = distance(reference, Track(reference.size(), 0.0));
   std::vector<Measurement> out;
   for (const Method& method : kMethods) {
-    if (!fault.empty() && &method != kMethods) break;  // one is enough
+    if (!fault.empty() && &method != kMethods) break;  // One method suffices for a fault.
     Measurement own{.quantity = fmt::format("{}, exact gaps: error / displacement", method.name),
                     .bar = 1e2 * kTolerance};
     std::vector<double> step, errors;

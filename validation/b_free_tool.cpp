@@ -45,7 +45,7 @@ std::vector<loop::TickRecord> run_free_tool(const scene::Description& descriptio
     void tick(const loop::TickRecord& tick) override { ticks.push_back(tick); }
   } keep;
   scene::Description d = description;
-  KeyframeSpec start;  // the hand is nowhere near: nothing couples it
+  KeyframeSpec start;  // The handle has no influence: the coupling is zero.
   start.position_m = d.tool->position_m;
   KeyframeSpec end = start;
   end.time_s = d.duration_s;

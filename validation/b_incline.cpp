@@ -4,25 +4,28 @@
 #include "cases.h"
 #include "palpate/core/error.h"
 
-// A plane inclined by the angle a, in its own axes: gravity is g (sin a, 0, -cos a).  Coulomb's friction mu,
-// regularised below the speed v_r: mu p v/max(|v|, v_r).
-// - A block that does not rotate, tan a < mu: friction mu N v/v_r balances the weight's part along the plane,
-//       m g sin a = mu m g cos a v/v_r:      it creeps at v = v_r tan(a)/mu.
-//   tan a > mu: it slides with  a_x = g (sin a - mu cos a).
-//   It lies on an obstacle: in a soft block it would sink by its depth, and plough with its walls.
-//   Its orientation is held by the coupling's rotational spring; nothing else couples it to the hand.
-// - A sphere: friction f turns it, I w' = f R, m v' = m g sin a - f.  Rolling, v = w R up to the creep, and
-// with
-//   I = 2/5 m R^2:   f = (2/7) m g sin a,   v' = (5/7) g sin a;  it can as f < mu N, tan a < 3.5 mu.
-//   The dent is delta0 <= 0.01 R deep: the sphere rolls on a radius between R - delta0 and R, which is where
-//   the bar of 1e-2 comes from.
+// Problem: bodies on a plane inclined by the angle a, in the axes of the plane: gravity is g (sin a, 0, -cos
+// a). Coulomb friction mu, regularised below the speed v_r: mu p v/max(|v|, v_r).
+//
+// Exact answer, a block that does not rotate (balance along the plane).
+// - tan a < mu: friction mu N v/v_r balances the component of the weight along the plane,
+//       m g sin a = mu m g cos a v/v_r:      the block creeps at v = v_r tan(a)/mu.
+// - tan a > mu: it slides with  a_x = g (sin a - mu cos a). Creep and acceleration are measured, limit
+//   1e-3. The block is on a rigid obstacle: a soft block would be dented and ploughed by its walls. Only the
+//   rotational spring of the coupling, which fixes the orientation, couples it to the handle.
+//
+// Exact answer, a sphere (linear and angular momentum): friction f rotates it, I w' = f R, m v' = m g sin a -
+// f. It rolls, v = w R up to the creep, and with I = 2/5 m R^2:
+//     f = (2/7) m g sin a,   v' = (5/7) g sin a;  possible while f < mu N, tan a < 3.5 mu.
+// The acceleration is measured. The limit 1e-2 is due to the dent, delta0 <= 0.01 R deep: the effective
+// rolling radius is between R - delta0 and R.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kGravity = 9.81, kPi = 3.14159265358979323846;
 
-/// The library's friction with a defect.
+/// Returns a spoiler that adds a defect to the library's friction.
 Spoiler friction_of(const std::string& fault) {
   return [fault](loop::World& world) {
     if (fault == "half-friction") add_to(world, friction_defect(world.contact, 0.5));
@@ -36,7 +39,7 @@ scene::Description inclined(double angle, double friction) {
   d.gravity_m_s2 = kGravity * Vec3(std::sin(angle), 0.0, -std::cos(angle));
   d.contacts[0].friction = friction;
   d.contacts[0].friction_regularisation_m_s = 1e-3;
-  d.contacts[0].friction_anchors = false;  // the regularised law itself, as the faults are of it
+  d.contacts[0].friction_anchors = false;  // The regularised law, to which the faults apply.
   d.tool->position_m.x() = -0.06;
   return d;
 }
@@ -58,7 +61,7 @@ scene::Description block_on(double angle, double friction) {
   d.tool->coupling.rotational_damping_n_m_s_rad = 0.01;
   const double area = size.x() * size.y(), normal = kMass * kGravity * std::cos(angle);
   d.contacts[0].stiffness_pa_m = normal / (area * kDepth);
-  d.contacts[0].damping_pa_s_m = 2.0 * std::sqrt(normal / kDepth * kMass) / area;  // critical
+  d.contacts[0].damping_pa_s_m = 2.0 * std::sqrt(normal / kDepth * kMass) / area;  // Critical damping.
   d.contacts[0].candidate_gap_m = 1e-4;
   d.integrator.step_s = 5e-4;
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 2e-3;

@@ -9,9 +9,11 @@
 #include "palpate/dynamics/system.h"
 #include "palpate/integrate/integrators.h"
 
-// A flat punch of area A and mass m meets a plane at speed v0, without gravity.  The contact is one spring K
-// = k A with damper c = d A:
+// Problem: a flat punch with area A and mass m meets a plane at speed v0, without gravity. The contact is one
+// spring K = k A with a damper c = d A:
 //     m x'' + c x' + K x = 0,   x(0) = 0, x'(0) = v0 (depth),   w = sqrt(K/m), zeta = c/(2 sqrt(K m)).
+//
+// Exact answer:
 // - No damping: x = v0/w sin(w t); contact lasts pi/w, and the speed is restored fully.
 // - Kelvin-Voigt without adhesion, zeta < 1, s = sqrt(1 - zeta^2), b = zeta/s:
 //       x = v0/(w s) exp(-zeta w t) sin(w s t).
@@ -26,12 +28,14 @@
 //   and x vanishes at both ends, so the integral of v/(1 + a v) from -e v0 to v0 is zero:
 //       G(a v0) = G(-e a v0),   G(u) = u - ln(1 + u).
 //   It holds for any shape, as only p(x) (1 + a v) was used.
-
 //
-// The integrator is left alone with the kink at touch, the jump at touch of a damper, and the kink where the
-// force ends: it runs from free flight to free flight.  Touch and release are read from its dense output,
-// step by step, and the rows stand for both ways that the library has to meet them: by error control alone,
-// and with the kinks found as roots.
+// Measured: duration of contact, restitution and depth at the release, by cvode-bdf with rtol 1e-8. Limit
+// 1e-6 where the motion is smooth but for kinks, 1e-5 with damping. The integrator is not restarted at the
+// kink at touch, the jump of a damper at touch, or the kink at the end of the force: it runs from free flight
+// to free flight. Touch and release are evaluated from its dense output, step by step. Each quantity is
+// measured with both ways in which the library handles these points: error control alone, and location of the
+// kinks as roots. Fixed-step methods must show their order in contact (+/- 0.1), and order 1 through a damped
+// touch, where the force jumps within a step.
 
 namespace palpate::validation {
 namespace {
@@ -41,7 +45,7 @@ constexpr double kMass = 0.2, kArea = 1e-4, kStiffness = 2e7;  // K = 2000 N/m, 
 constexpr double kSpeed = 0.5, kHeight = 2e-3;
 const double kOmega = std::sqrt(kStiffness * kArea / kMass);
 
-/// Fault "adhesive": Kelvin and Voigt's pressure, not cut off where it pulls.
+/// Fault "adhesive": Kelvin-Voigt pressure without the cut-off of its tensile part.
 class Adhesive final : public DecoratedTerm {
  public:
   Adhesive(std::shared_ptr<dynamics::ForceTerm> term, double damping)
@@ -55,7 +59,7 @@ class Adhesive final : public DecoratedTerm {
   double damping_;
 };
 
-/// Fault "drag": a little damping where there is no contact.
+/// Fault "drag": slight damping out of contact.
 class Drag final : public DecoratedTerm {
  public:
   using DecoratedTerm::DecoratedTerm;
@@ -65,7 +69,7 @@ class Drag final : public DecoratedTerm {
   }
 };
 
-/// The punch above (or in) the plane, through the real contact term, system and stepper.
+/// Punch above (or in) the plane, simulated with the library's contact term, system and stepper.
 struct Bounce {
   dynamics::State state;
   dynamics::System system;
@@ -75,7 +79,7 @@ struct Bounce {
   struct Law {
     double zeta = 0.0;
     bool hunt_crossley = false;  ///< a v0 = 3 zeta
-    bool stepped = false;        ///< the end of the punch is 16 steps from 0 to 3 mm, not flat
+    bool stepped = false;        ///< The end of the punch has 16 steps from 0 to 3 mm instead of a flat face.
   };
 
   Bounce(double height, const Law& asked, IntegratorSpec integrator, const std::string& fault) {
@@ -139,7 +143,7 @@ struct Bounce {
   }
 };
 
-/// When the punch touched, and when the force on it ended, from each step's dense output.
+/// Times at which the punch touched and at which the force on it ended, from the dense output of each step.
 struct Contact final : dynamics::StepFollower {
   explicit Contact(Bounce& b) : bounce(b) { PALPATE_CHECK(b.stepper->follow(this), "not followed"); }
   ~Contact() override { bounce.stepper->follow(nullptr); }
@@ -150,7 +154,7 @@ struct Contact final : dynamics::StepFollower {
       if (!std::isnan(touch)) t0 = touch;
     }
     if (std::isnan(touch) || !std::isnan(release)) return;
-    // just inside: at the touch itself the force is the zero of its start
+    // Starts slightly inside the step: at touch the force is zero, which is not its end.
     t0 += 1e-3 * (t1 - t0);
     release = root(stepper, t0, t1, [&] { return bounce.force_at(q_, u_); });
     if (!std::isnan(release)) depth_left = -q_[2];
@@ -160,7 +164,7 @@ struct Contact final : dynamics::StepFollower {
   double touch = std::nan(""), release = std::nan(""), depth_left = std::nan("");
 
  private:
-  /// Where a function falls to zero in the step; NaN where it does not.
+  /// Returns the time at which a function falls to zero within the step; NaN if it does not.
   template <class Value>
   double root(const dynamics::Stepper& stepper, double t0, double t1, const Value& value) {
     const auto positive = [&](double t) {
@@ -207,15 +211,15 @@ Measurement against(const std::string& quantity, double computed, double exact, 
 }
 
 struct Outcome {
-  double duration;     ///< from touch to the end of the force [s]
-  double restitution;  ///< speed after over speed before
-  double depth_left;   ///< when the force ended [m]
+  double duration;     ///< From touch to the end of the force [s].
+  double restitution;  ///< Speed after over speed before.
+  double depth_left;   ///< Depth when the force ended [m].
 };
 
 Outcome bounce(const Bounce::Law& law, const std::string& events, const std::string& fault) {
   Bounce b(kHeight, law, cvode(events), fault);
   const Contact contact(b);
-  b.advance(kHeight / kSpeed + 2.0 * kPi / kOmega);  // away
+  b.advance(kHeight / kSpeed + 2.0 * kPi / kOmega);  // Well after separation.
   return {contact.release - contact.touch, b.velocity() / kSpeed, contact.depth_left};
 }
 
@@ -235,18 +239,18 @@ constexpr Method kMethods[] = {{"linearly-implicit-euler", 1},
                                {"ark-dirk-esdirk324", 3},
                                {"rk4", 4}};
 
-/// Order of a fixed-step method in smooth contact: depth and speed after a quarter period against the
-/// harmonic motion.
+/// Measures the order of a fixed-step method in smooth contact: depth and speed after a quarter period
+/// against the harmonic motion.
 Measurement order_in_contact(const Method& method, const std::string& fault) {
   std::vector<double> h, error;
   const double end = 0.5 * kPi / kOmega;
   for (const int part : {1, 2, 4, 8}) {
     const int steps = (method.order > 2 ? 10 : 100) * part;
     Bounce b(0.0, {}, fixed_step(method.name, end / steps), fault);
-    b.state.q()[2] = -1e-12;  // in contact from the start
+    b.state.q()[2] = -1e-12;  // In contact from the start.
     b.advance(end);
     h.push_back(end / steps);
-    // exact: x = v0/w, x' = 0
+    // Exact: x = v0/w, x' = 0.
     error.push_back(std::hypot(kOmega * b.height() + kSpeed, b.velocity()) / kSpeed);
   }
   Measurement m = against(fmt::format("{} in contact, {} steps a quarter period: depth w/v0 and speed/v0",
@@ -259,7 +263,7 @@ Measurement order_in_contact(const Method& method, const std::string& fault) {
   return m;
 }
 
-/// In free flight x' is constant: every consistent method is exact, whatever its step.
+/// Measures free flight, where x' is constant: every consistent method is exact, for any step.
 Measurement free_flight(const Method& method, const std::string& fault) {
   Bounce b(1.0, {}, fixed_step(method.name, 1e-3), fault);
   b.advance(0.1);
@@ -267,8 +271,8 @@ Measurement free_flight(const Method& method, const std::string& fault) {
                  1.0 - 0.1 * kSpeed, 1e-12);
 }
 
-/// Order of a fixed-step method through a damped bounce: the force jumps at touch, somewhere inside a step,
-/// so order 1 whatever the method.  The position of the jump within the step is random: RMS over starting
+/// Measures the order of a fixed-step method through a damped bounce: the force jumps at touch, within a
+/// step, so every method has order 1. The position of the jump within the step varies: RMS over starting
 /// heights.
 Measurement order_through_touch(double zeta, double e, const std::string& fault) {
   constexpr int kHeights = 32;
@@ -280,7 +284,7 @@ Measurement order_through_touch(double zeta, double e, const std::string& fault)
     for (int i = 0; i < kHeights; ++i) {
       Bounce b(step * kSpeed * (10.0 + (i + 0.5) / kHeights), {.zeta = zeta},
                fixed_step("linearly-implicit-euler", step), fault);
-      b.advance(step * (steps + 20));  // touches after 10 to 11 steps, and has left by then
+      b.advance(step * (steps + 20));  // Touches after 10 to 11 steps, and has separated by the end.
       last = b.velocity() / kSpeed;
       squares += std::pow(last / e - 1.0, 2) / kHeights;
     }
@@ -340,7 +344,7 @@ std::vector<Measurement> run_damped(const std::string& fault) {
   return out;
 }
 
-/// The root e in (0, 1) of G(u) = G(-e u), by bisection: G(-e u) grows with e from 0.
+/// Returns the root e in (0, 1) of G(u) = G(-e u) by bisection: G(-e u) grows with e from 0.
 double hunt_crossley_restitution(double u) {
   const auto G = [](double x) { return x - std::log1p(x); };
   double low = 0.0, high = std::min(1.0, 1.0 / u);

@@ -4,16 +4,17 @@
 #include "cases.h"
 #include "palpate/core/error.h"
 
-// A rigid sphere of mass m lies on a flat skin.  With k V(delta) the contact's force (SphereOnSkin),
+// Problem: a rigid sphere with mass m on a flat skin, at rest and in a small bounce.
+//
+// Exact answer, with the contact force k V(delta) (SphereOnSkin):
 //     m g = k V(delta0)                              gives the depth at rest,
 //     w^2 = k V'(delta0)/m                           the frequency of a small bounce about it.
-// For an amplitude A the frequency changes by about (1/24) (A/delta0)^2 of it: 2e-5 at A = 0.02 delta0.
 //
-// The frequency is read from positions x_i, T apart: x_{i+1} + x_{i-1} = 2 cos(w T) x_i + constant holds for
-// any phase, amplitude and mean, so a line fitted to the pairs gives it.
-//
-// The facets lie inside the sphere, by h^2/(12 R) in the mean: that is what the depth at rest differs by; in
-// the frequency it cancels to first order, as the wetted area belongs to the force.
+// Measured: force and depth at rest, frequency; limit 1e-3. With the amplitude A the frequency changes by
+// about (1/24) (A/delta0)^2 relative: 2e-5 at A = 0.02 delta0. The frequency is computed from positions x_i,
+// T apart: x_{i+1} + x_{i-1} = 2 cos(w T) x_i + constant holds for any phase, amplitude and mean, so a line
+// fitted to the pairs yields it. Facets lie inside the sphere, by h^2/(12 R) on average, and the depth at
+// rest changes by this; in the frequency it cancels to first order, as the wetted area belongs to the force.
 
 namespace palpate::validation {
 namespace {
@@ -24,7 +25,8 @@ const double kStiffness = kMass * kGravity / kSphere.force(kDepth);
 const double kWetted = kSphere.stiffness(kDepth);
 const double kOmega = std::sqrt(kStiffness * kWetted / kMass);
 
-/// Half of the contact's force, or a tool heavier than its weight by a hundredth.
+/// Returns a spoiler: half of the contact force is removed, or the tool's inertia grows by a hundredth while
+/// its weight does not.
 Spoiler spoiler(const std::string& fault) {
   return [fault](loop::World& world) {
     if (fault == "half-force") add_to(world, scaled(world.contact, {.force = -0.5}));
@@ -47,7 +49,7 @@ scene::Description on_plane() {
   return d;
 }
 
-/// From x_{i+1} + x_{i-1} = 2 cos(w T) x_i + constant, T apart.
+/// Returns the angular frequency [rad/s] from x_{i+1} + x_{i-1} = 2 cos(w T) x_i + constant, T apart.
 double angular_frequency(const std::vector<loop::TickRecord>& ticks, int stride) {
   const double mean = [&] {
     double sum = 0.0;
@@ -74,7 +76,7 @@ std::vector<Measurement> run(const std::string& fault) {
   {
     scene::Description rest = on_plane();
     rest.duration_s = 0.12;
-    rest.contacts[0].damping_pa_s_m = 2.0 * std::sqrt(kStiffness * kWetted * kMass) / kWetted;  // critical
+    rest.contacts[0].damping_pa_s_m = 2.0 * std::sqrt(kStiffness * kWetted * kMass) / kWetted;  // Critical.
     rest.tool->position_m = Vec3(2e-4, 1e-4, kRadius - 0.9 * kDepth);
     const loop::TickRecord last = run_free_tool(rest, spoiler(fault)).back();
     const double force = last.contact.force.z(), weight = kMass * kGravity;

@@ -6,36 +6,39 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
 
-// A box stands on a plane, delta deep, and rocks by a small angle th about its centre of mass, h above its
-// base; b is the base's edge across the axis of rotation, l that along it.  Each point of its surface pushes
-// with k times its depth per area at rest, along the plane's normal: the energy is k/2 int depth^2 dA.
+// Problem: a box on a plane, delta deep, rocks by a small angle th about its centre of mass, h above its
+// base; b is the edge of the base across the axis of rotation, l the edge along it. Each point of its surface
+// has the pressure k times its depth, per area at rest, along the plane's normal: the energy is k/2 int
+// depth^2 dA.
 //
-// Rotated about the centre of mass, H = h - delta above the plane, the point s of the base lies at the depth
-// d + s sin th, d = delta - h (1 - cos th), a point z above the base's edge at z cos th less:
+// Exact answer (balance of moments): after a rotation about the centre of mass, at the height H = h - delta
+// above the plane, the point s of the base has the depth d + s sin th, d = delta - h (1 - cos th); a point z
+// above the edge of the base is less deep by z cos th:
 //     base                      E(th) = int_{-b/2}^{b/2} (d + s sin th)^2 ds = b d^2 + b^3 sin^2 th/12
-//     two walls along the axis  of depths d+- = d +- (b/2) sin th at their feet: (d+^3 + d-^3)/(3 cos th)
+//     two walls along the axis  with depths d+- = d +- (b/2) sin th at their feet: (d+^3 + d-^3)/(3 cos th)
 //     two walls across it       2/l int (d + s sin th)^3 ds/(3 cos th)
-// each times k l/2.  The moment is -dU/dth, exactly what points of any number give, as the plane's distance
-// is linear: no quadrature is between the formula and the samples but along the waterline of the walls, whose
-// triangles are cut there.
+// each times k l/2. The moment is -dU/dth. Any number of points yields it exactly, as the distance from the
+// plane is linear: the only quadrature error is along the waterline of the walls, whose triangles are cut
+// there.
 //
-// The tangent leaves out what a flat contact's triangles have in common and is too stiff against tilting, by
-// 2/n^2 of the restoring part where the base is n triangles wide (docs/theory/contact.md).
+// Measured: the moment of the tilted box, limit 2e-3 for this quadrature error, and the rocking stiffness of
+// the tangent, limit 1e-2. The tangent omits terms common to the triangles of a flat contact, and its tilting
+// stiffness is too large by 2/n^2 of the restoring part for a base n triangles wide (docs/theory/contact.md).
 //
-// The restoring part is 0.2 N m/rad and the toppling part a third of it: a wrong sign, or a moment that lacks
-// the arm, shows.
+// The restoring part is 0.2 N m/rad and the toppling part a third of it: a wrong sign, or a moment without
+// the arm, is detected.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kStiffness = 1e7, kDepth = 1e-3, kAngle = 0.06;
-constexpr int kTriangles = 20;       // across the base
-const Vec3 kSize(0.02, 0.03, 0.02);  // it rocks about y
+constexpr int kTriangles = 20;       // Across the base.
+const Vec3 kSize(0.02, 0.03, 0.02);  // [m]; the box rocks about y.
 
 double moment_at(double angle, const std::string& fault, double* tangent) {
-  const double height = 0.5 * kSize.z() - kDepth;  // of the box's centre
+  const double height = 0.5 * kSize.z() - kDepth;  // Height of the box's centre.
   SurfaceBody none(mesh::box_surface(Vec3(1, 1, 1), {1, 1, 1}));
-  // origin of the frame: the centre of mass
+  // Origin of the frame: the centre of mass.
   const auto box = contact::fixed_frame({quaternion_of(Vec3(0, angle, 0)), Vec3(0.011, 0.007, height)});
   contact::ContactForce term;
   term.add_frame(box);
@@ -45,7 +48,7 @@ double moment_at(double angle, const std::string& fault, double* tangent) {
       contact::FrameSurface{mesh::box_surface(kSize, cells), 0, box}, kSize.maxCoeff());
   auto source =
       contact::make_plane_source(points, 1, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 1e-4);
-  if (fault == "arm-does-not-rotate")  // the arm's part along the normal, as on a round surface
+  if (fault == "arm-does-not-rotate")  // The arm's normal component stays, as on a round surface.
     source = spoiled(std::move(source), [](auto& samples) {
       for (auto& s : samples) {
         s.a.slide.z() = s.a.offset.z();
@@ -68,7 +71,7 @@ double moment_at(double angle, const std::string& fault, double* tangent) {
   return term.frame_wrench(none.state.view(), 0).moment.y();
 }
 
-/// Energy over k l/2, as above [m^3].
+/// Returns the energy divided by k l/2, as above [m^3].
 double energy_at(double angle) {
   const double b = kSize.x(), l = kSize.y(), h = 0.5 * kSize.z(), c = std::cos(angle), s = std::sin(angle),
                d = kDepth - h * (1.0 - c), up = d + 0.5 * b * s, down = d - 0.5 * b * s;
@@ -76,7 +79,7 @@ double energy_at(double angle) {
          2.0 / l * (b * d * d * d + b * b * b * d * s * s / 4.0) / (3.0 * c);
 }
 
-/// -dU/dth, by a central difference of the closed form [N m].
+/// Returns -dU/dth by a central difference of the closed form [N m].
 double tilted_moment(double angle) {
   constexpr double kStep = 1e-5;
   return -0.5 * kStiffness * kSize.y() * (energy_at(angle + kStep) - energy_at(angle - kStep)) /

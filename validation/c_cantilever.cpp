@@ -5,17 +5,21 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Slender cantilever, square section h x h, L/h = 10, nu = 0, small load P on its end: Timoshenko's tip
-// deflection
+// Problem: slender cantilever with a square section h x h, L/h = 10, nu = 0, under a small end load P.
+//
+// Exact answer (Timoshenko 1921, shear factor of Cowper 1966): tip deflection
 //   P L^3/(3 E I) + P L/(kappa G A),   I = h^4/12, A = h^2, G = E/2, kappa = 5/6.
 // With the parabolic end traction tau(y) = 3P/(2A) (1 - (2y/h)^2) of beam theory, the work-conjugate
-// deflection integral(tau u)/P equals twice the strain energy over P, and the energy of bending and of that
-// shear stress is exactly the two terms (Castigliano).  What is left out is the clamp's hindered warping, a
+// deflection integral(tau u)/P equals twice the strain energy over P, and the energy of bending and of this
+// shear stress gives exactly the two terms (Castigliano). Neglected is the hindered warping at the clamp, a
 // few 1e-4.
 //
-// nu = 0 and a load along y: u is symmetric in z (u_z = 0 on z = 0), and antisymmetric in y (u_x = u_z = 0 on
-// y = 0).  A quarter of the section, with these supports and a quarter of P, is the whole beam: 16 elements
-// across the section are 8 x 8 here.
+// Measured: order of the deflection (1.8 to 2.2 accepted), 5 % with 16 elements across, and 5e-3 after
+// Richardson extrapolation.
+//
+// With nu = 0 and a load along y, u is symmetric in z (u_z = 0 on z = 0) and antisymmetric in y (u_x = u_z =
+// 0 on y = 0). A quarter of the section, with these supports and a quarter of P, represents the whole beam:
+// 16 elements across the section are 8 x 8 here.
 
 namespace palpate::validation {
 namespace {
@@ -26,7 +30,7 @@ double traction(double y) {
   return 1.5 * kLoad / (kHeight * kHeight) * (1.0 - std::pow(2.0 * y / kHeight, 2));
 }
 
-/// Deflection [m] conjugate to the load, with `across` elements over the whole height.
+/// Returns the deflection [m] conjugate to the load, with `across` elements over the whole height.
 double deflection(int across, const std::string& fault) {
   fem::Material m;
   m.youngs_modulus = kYoung;
@@ -65,7 +69,7 @@ std::vector<Measurement> run(const std::string& fault) {
     error.push_back(std::abs(tip.back() / exact - 1.0));
   }
   const double ratio = std::pow(h[1] / h[2], 2);
-  const double extrapolated = tip[2] + (tip[2] - tip[1]) / (ratio - 1.0);  // order 2 removed
+  const double extrapolated = tip[2] + (tip[2] - tip[1]) / (ratio - 1.0);  // Error of order 2 removed.
   return {{.quantity = "tip deflection [m], 16 elements across",
            .computed = tip[2],
            .exact = exact,

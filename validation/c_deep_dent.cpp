@@ -12,25 +12,29 @@
 #include "pressed_block.h"
 #include "statics.h"
 
-// A soft round block of radius and depth L, its bottom held, is dented by 0.35 L under a smooth rigid sphere
-// of radius 0.6 L, step by step, and let go in the same steps.  No formula holds there: strains are of the
-// order of one, the surface wraps around the tool, and the dent feels the bottom.  What must hold:
-// - Statics without friction is elastic.  With F(s) the force at the depth s, the tool's work is what is
-//   stored, in the block and in the contact's springs,
-//       int_0^d F ds = U(d)        (Gauss and Legendre: F is smooth but for s^(3/2) at the touch);
-//   the force at each depth is the same on the way out, and in the end the block is at rest.  U is summed
-//   here from its definition,
+// Problem: a soft round block with radius and depth L and a fixed bottom is dented by 0.35 L under a smooth
+// rigid sphere with radius 0.6 L, in steps, and released in the same steps. No closed form exists: strains
+// are of order one, the surface wraps around the tool, and the bottom affects the dent. Two properties are
+// measured.
+// - Energy: statics without friction is elastic. With F(s) the force at the depth s, the work of the tool
+//   equals the energy stored in the block and in the contact springs,
+//       int_0^d F ds = U(d)        (Gauss-Legendre: F is smooth except for s^(3/2) at the touch);
+//   the force at each depth is the same on release, and at the end the block is at rest. U is summed here
+//   from its definition,
 //       sum of V (mu |F - R|^2 + lambda/2 tr(R^T F - 1)^2),
-//   so that a force of another law, however consistent, does another work.
-// - The force converges with the cells, with order 2, as the elements' energy does.  The truth is that of 9
-//   and 14 cells along L, extrapolated with this order; the ladder is of other meshes.  Meshes too coarse
-//   for the dent are stiff by several per cent: this is what a dent like that asks of a mesh.
-// Samples' areas and normals are those of a query; the block is queried until the force is settled, so that
-// the springs' force is their energy's derivative but for the areas' change, a part of the springs' own
-// energy: k L/E* = 200 makes that some thousandths of the whole.
+//   so that a force by another law, even a consistent one, does different work.
+// - Convergence: the force converges with the cells with order 2, as the elements' energy does. The
+//   reference is extrapolated with this order from 9 and 14 cells along L; the refinement sequence uses other
+//   meshes. Meshes too coarse for the dent are too stiff by several per cent: this shows the mesh that such a
+//   dent requires.
 //
-// On one mesh the force by material points, each along its own line to the tool, is held against that at the
-// vertices.
+// Areas and normals of samples come from a query, and the block is queried until the force has converged, so
+// that the force of the springs is the derivative of their energy except for the change of the areas, a
+// part of the springs' energy. k L/E* = 200 makes this a few thousandths of the whole (limit on the
+// work: 1e-2).
+//
+// On one mesh the force by material points, each along its line to the tool, is compared with the force at
+// the vertices.
 
 namespace palpate::validation {
 namespace {
@@ -39,7 +43,7 @@ constexpr double kSize = 0.02, kTool = 0.6 * kSize, kDent = 0.35 * kSize;  // L,
 constexpr double kYoung = 1e4, kPoisson = 0.3;
 constexpr double kStiffness = 200.0 * kYoung / ((1.0 - kPoisson * kPoisson) * kSize);  // [Pa/m]
 
-/// A frame that is moved by hand.
+/// Frame whose height is set by the caller.
 class Stand final : public contact::MovingFrame {
  public:
   Pose pose(const dynamics::StateView&) const override { return {Quat::Identity(), Vec3(0, 0, height)}; }
@@ -47,8 +51,8 @@ class Stand final : public contact::MovingFrame {
   double height = 0.0;
 };
 
-/// The top of the block as a skin: each of its faces cut into kParts^2.  With the nodes alone as samples the
-/// force would jump as one ring of them after the other comes into contact.
+/// Returns the top of the block as a skin, with each face divided into kParts^2. With the nodes alone as
+/// samples the force would jump as successive rings of nodes come into contact.
 TriMesh fine_top(const mesh::Boundary& boundary, double small) {
   constexpr int kParts = 5;
   TriMesh out;
@@ -74,10 +78,11 @@ TriMesh fine_top(const mesh::Boundary& boundary, double small) {
   return out;
 }
 
-/// The block and the tool over it.
+/// Block and tool.
 class Dent {
  public:
-  /// @param cells  along L  @param points  by material points, else exact gaps at the vertices of a fine skin
+  /// @param cells number of cells along L
+  /// @param points contact by material points; otherwise exact gaps at the vertices of a fine skin
   Dent(int cells, bool points, const std::string& fault)
       : mesh_{kSize / std::sinh(std::log(2.0)), cells, 1, BlockShape::kRoundQuarter},
         rest_(mesh_.tets()),
@@ -113,7 +118,7 @@ class Dent {
             block_id, {}, top.faces, mesh::embed(rest_, top.vertices), rest_.tets};
         source = contact::make_sphere_source(skin, 0, tool_, Vec3::Zero(), kTool, kCandidates);
       }
-      if (fault == "areas-forgotten")  // springs a sample, not an area
+      if (fault == "areas-forgotten")  // Springs per sample instead of per area.
         source = spoiled(std::move(source), [](auto& samples) {
           for (auto& s : samples) s.area = 1e-8 * kSize * kSize;
         });
@@ -122,7 +127,7 @@ class Dent {
     });
   }
 
-  /// Force of the whole block on the tool at a depth [N]; NaN where no equilibrium was found.
+  /// Returns the force of the whole block on the tool at a depth [N]; NaN if no equilibrium is found.
   double press(double depth) {
     constexpr int kQueries = 40;
     tool_->height = kTool - depth;
@@ -136,15 +141,15 @@ class Dent {
     }
     return std::nan("");
   }
-  /// In few steps [N].
+  /// Returns the force of the whole dent, reached in few steps [N].
   double press_straight() {
     double force = 0.0;
     for (const double part : {0.4, 0.7, 1.0}) force = press(part * kDent);
     return force;
   }
-  /// What the library says that block and springs store [J].
+  /// Returns the energy of block and springs as computed by the library [J].
   double stored() { return 4.0 * body_.elastic_energy(); }
-  /// Of the springs alone, and of the block by the definition of its energy [J].
+  /// Returns the energy of the springs alone, and of the block by the definition of its energy [J].
   double in_springs() { return 4.0 * contact_->energy(body_.view()); }
   double by_definition() const {
     const fem::Material m = material();
@@ -161,7 +166,7 @@ class Dent {
     }
     return 4.0 * sum;
   }
-  /// Farthest node from its place at rest, over L.
+  /// Returns the largest displacement of a node from rest, divided by L.
   double distance_from_rest() const {
     double largest = 0.0;
     for (int i = 0; i < rest_.nodes.cols(); ++i) largest = std::max(largest, body_.displacement(i).norm());
@@ -178,12 +183,12 @@ class Dent {
   BlockMesh mesh_;
   TetMesh rest_;
   StaticBody body_;
-  static constexpr double kSettled = 1e-8;  ///< change of the force from one query to the next, over it
+  static constexpr double kSettled = 1e-8;  ///< Relative change of the force from one query to the next.
   std::shared_ptr<Stand> tool_ = std::make_shared<Stand>();
   std::shared_ptr<contact::ContactForce> contact_ = std::make_shared<contact::ContactForce>();
 };
 
-// Gauss-Legendre, eight points on [0, 1], and the whole dent after them.
+// Gauss-Legendre rule with eight points on [0, 1]; the full dent follows them.
 constexpr int kSteps = 8;
 constexpr double kPoint[kSteps] = {0.019855071751232, 0.101666761293187, 0.237233795041836,
                                    0.408282678752175, 0.591717321247825, 0.762766204958164,
@@ -194,7 +199,7 @@ constexpr double kWeight[kSteps] = {0.050614268145188, 0.111190517226687, 0.1568
 
 double relative(double found, double exact) { return std::abs(found / exact - 1.0); }
 
-/// Down to the whole dent by the points of the quadrature, and back.
+/// Dents the block to the full depth through the points of the quadrature, and back.
 void measure_work(const std::string& fault, std::vector<Measurement>& out) {
   Dent dent(6, false, fault);
   double work = 0.0, returned = 0.0, apart = 0.0;
@@ -209,7 +214,7 @@ void measure_work(const std::string& fault, std::vector<Measurement>& out) {
     const double back = dent.press(kPoint[i] * kDent);
     returned += kWeight[i] * kDent * back;
     const double off = std::abs(back - forces[static_cast<std::size_t>(i)]) / whole;
-    if (!(off <= apart)) apart = off;  // NaN stays
+    if (!(off <= apart)) apart = off;  // Keeps a NaN.
   }
   dent.press(-0.1 * kSize);
   out.push_back({.quantity = "work of the tool against the energy of the dent by its definition [J]",

@@ -7,31 +7,34 @@
 #include "palpate/mesh/boundary.h"
 #include "pressed_block.h"
 
-// A rigid, frictionless punch with a flat round end of radius a, pressed by d into an elastic half-space,
-// E* = E/(1 - nu^2) (Sneddon 1965; Johnson 1985, 3.8):
+// Problem: a rigid, frictionless punch with a flat round end (radius a) is pressed by d into an elastic
+// half-space, E* = E/(1 - nu^2).
+//
+// Exact answer without springs (Sneddon 1965; Johnson 1985, 3.8):
 //     F = 2 a E* d,     p(r) = F/(2 pi a^2 sqrt(1 - r^2/a^2)).
 //
-// Contact here is a layer of springs, k per area, under the punch: with p/k in series the depth is
+// Exact answer with springs. Contact here is a layer of springs, k per area, under the punch: with p/k in
+// series the depth is
 //     u(r) + p(r)/k = d,  r < a,        u = half-space under p,
-// of one number, kappa = k a/E*.  In the radial polynomials of Zernike, p = (E* d/a) sum c_n R_2n(r/a), whose
-// Hankel transforms are (-1)^n J_(2n+1)(s)/s, and with u^(s) = 2 p^(s)/(E* s),
+// governed by one number, kappa = k a/E*. In the radial polynomials of Zernike, p = (E* d/a) sum c_n
+// R_2n(r/a), whose Hankel transforms are (-1)^n J_(2n+1)(s)/s, and with u^(s) = 2 p^(s)/(E* s),
 //     sum_n [ 8/(pi (1 - 4 (m-n)^2) (2(m+n) + 1) (2(m+n) + 3)) + delta_mn/(2 kappa (2m + 1)) ] c_n
 //         = delta_m0/2,          F = pi a E* d c_0
-// (the integral of J_(2m+1) J_(2n+1)/s^2 is Weber's and Schafheitlin's).  kappa -> infinity is the punch,
-// kappa -> 0 rigid bodies, F = k pi a^2 d.  At kappa = 1000 the springs take 0.2 %, and neither k nor the
-// area under each sample is felt; at kappa = 1 they take half, and both are.
+// (the integral of J_(2m+1) J_(2n+1)/s^2 is due to Weber and Schafheitlin). kappa -> infinity is the punch,
+// kappa -> 0 rigid bodies, F = k pi a^2 d. At kappa = 1000 the springs take 0.2 % of the depth, and neither k
+// nor the area of each sample affects the force; at kappa = 1 they take half, and both do.
 //
-// Blocks.  Rim and sides both lie on lines of one graded mesh: L/a = sinh(N ln 2)/sinh(ln 2) = 10.6, 21.3 and
-// 42.7 for N = 4, 5, 6, each twice the one before, as nearly as 10, 20 and 40 can be had.  What is
-// extrapolated is a/L as it is.
+// Blocks. Rim and sides are both lines of one graded mesh: L/a = sinh(N ln 2)/sinh(ln 2) = 10.6, 21.3 and
+// 42.7 for N = 4, 5, 6, each twice the previous one, as close to 10, 20 and 40 as possible. Extrapolation
+// uses the actual a/L.
 //
-// Orders.  The rim is a line of the mesh, so that the elements' error is that of the best approximation, and
-// the force's is the energy's: F_h - F ~ |u - u_h|^2.
-//     kappa = 1000, springs shorter (a/kappa) than a cell: u ~ sqrt(r - a) beyond the rim, the energy of the
-//         cells around it is a part h of all: order 1, whatever the elements' own order.
+// Measured: the extrapolated force, limit 3 %, and the order of the error in the cell size. The rim is a
+// line of the mesh, so that the elements' error is the error of the best approximation, and the error of the
+// force is that of the energy: F_h - F ~ |u - u_h|^2.
+//     kappa = 1000, springs shorter (a/kappa) than a cell: u ~ sqrt(r - a) beyond the rim, the cells around
+//         it contain a fraction h of the energy: order 1 for elements of any order (accepted: 0.8 to 1.2).
 //     kappa = 1: the pressure is bounded and jumps to 0 at the rim, u ~ (r - a) log|r - a|: h^2 log^2 h,
-//     which
-//         over a factor of two in h looks like 1.5 to 2.
+//         which over a factor of two in h appears as order 1.5 to 2 (accepted: 1.3 to 1.8).
 
 namespace palpate::validation {
 namespace {
@@ -39,11 +42,11 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kYoung = 1e4, kPoisson = 0.3;
 const double kReduced = kYoung / (1.0 - kPoisson * kPoisson);
-constexpr double kRadius = 0.5e-3, kDepth = 2e-4 * kRadius;  // a, d
+constexpr double kRadius = 0.5e-3, kDepth = 2e-4 * kRadius;  // a, d [m]
 constexpr double kStiff = 1000.0, kSoft = 1.0;               // kappa
-constexpr int kNear = 4;                                     // doublings: L = 11 a
+constexpr int kNear = 4;                                     // Doublings: L = 11 a.
 
-/// F/(2 a E* d) by the series.
+/// Returns F/(2 a E* d) from the series.
 double of_series(double kappa) {
   constexpr int kTerms = 300;
   Eigen::MatrixXd A(kTerms, kTerms);
@@ -59,17 +62,17 @@ double of_series(double kappa) {
 
 double theory(double kappa) { return 2.0 * kRadius * kReduced * kDepth * of_series(kappa); }
 
-/// m cells across the punch, from its middle to the rim.
+/// Returns a block with m cells across the punch, from its centre to the rim.
 BlockMesh block(int m, int doublings) {
   return {kRadius / std::sinh(std::log(2.0)), m, doublings, BlockShape::kRoundQuarter};
 }
 
-/// The cylinder's exact gaps at the block's vertices, or by its material points.
+/// Contact by the cylinder's exact gaps at the block's vertices, or by its material points.
 enum class Way { kVertices, kPoints };
 std::string name_of(Way way) { return way == Way::kPoints ? "material points" : "vertices"; }
 
 double force(Way way, double kappa, const BlockMesh& mesh, const std::string& fault) {
-  // the vertices on the rim are inside: of an exact cylinder its end is nearer to them than its side
+  // The radius is enlarged so that the vertices on the rim are nearer to the cylinder's end than to its side.
   constexpr double kBeyond = 2.0 * kDepth, kLength = 2.0 * kRadius, kCandidates = 0.01 * kRadius;
   fem::Material material;
   material.youngs_modulus = kYoung;
@@ -82,7 +85,8 @@ double force(Way way, double kappa, const BlockMesh& mesh, const std::string& fa
       side = contact::material_points(soft, mesh::boundary(rest).surface.vertices, rest,
                                       2.0 * mesh.half_width());
     }
-    // held: the tangent of points that follow leaves out how they move, and Newton's steps get small
+    // Held: the tangent of samples that follow the state omits their motion, which would make Newton's steps
+    // small.
     std::unique_ptr<contact::SampleSource> source = held(contact::make_cylinder_source(
         std::move(side), frame, std::move(motion), {Quat::Identity(), Vec3(0, 0, 0.5 * kLength - kDepth)},
         kRadius + kBeyond, kLength, kCandidates));
@@ -102,8 +106,8 @@ double force(Way way, double kappa, const BlockMesh& mesh, const std::string& fa
   return indentation_force(mesh, material, k, indenter);
 }
 
-/// The half-space's force: cells refined in the nearest block, and then the block's sides moved away, as in
-/// hertz-sphere.
+/// Measures the force on the half-space: cells are refined in the smallest block, then the sides of the block
+/// are moved away, as in hertz-sphere.
 Measurement measure(Way way, double kappa, const std::string& fault) {
   std::vector<double> h, by_size, far, by_block;
   for (const int m : {3, 4, 6}) {
@@ -127,7 +131,7 @@ Measurement measure(Way way, double kappa, const std::string& fault) {
           .note = note};
 }
 
-/// The elements' error in a small block, 2.5 a: the rim's is the same in any.
+/// Measures the elements' error in a small block, 2.5 a: the error at the rim is the same in any block.
 Measurement order_in_cells(Way way, double kappa, double low, double high) {
   std::vector<double> h, by_size, errors;
   for (const int m : {6, 8, 12}) {

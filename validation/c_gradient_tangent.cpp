@@ -8,8 +8,12 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Taylor: |E(x + h w) - E(x) + h f . w| and |f(x + h w) - f(x) + h K w| fall with h^2, down to rounding.
-// Shapes away from where two signed singular values cancel: R jumps there, and the force has no derivative.
+// Problem: the force must be minus the gradient of the energy, and the tangent the derivative of the force.
+//
+// Exact answer (Taylor): |E(x + h w) - E(x) + h f . w| and |f(x + h w) - f(x) + h K w| fall with h^2, down to
+// rounding. Measured: this order, accepted from 1.9 to 2.1, and the asymmetry of the tangent, limit 1e-14
+// (rounding). Shapes avoid the points at which two signed singular values cancel: R jumps there, and the
+// force has no derivative.
 
 namespace palpate::validation {
 namespace {
@@ -18,7 +22,7 @@ struct Shape {
   const char* name;
   TetMesh rest;
   VecX x;
-  double step;  ///< largest h; smaller where the mesh is fine
+  double step;  ///< Largest h; smaller for a fine mesh.
 };
 
 Mat3 rotated(const Vec3& stretches) {
@@ -44,7 +48,7 @@ std::vector<Shape> shapes() {
   return out;
 }
 
-/// Observed order of r(h) over h = step / 2^k, k = 0..6, as a measurement with the band 1.9 to 2.1.
+/// Measures the observed order of r(h) over h = step / 2^k, k = 0..6, with the accepted range 1.9 to 2.1.
 Measurement taylor(const std::string& quantity, double step, const std::function<double(double)>& remainder) {
   std::vector<double> h, r;
   for (int k = 0; k <= 6; ++k) {
@@ -63,7 +67,7 @@ Measurement taylor(const std::string& quantity, double step, const std::function
           .note = "error is of the order, absolute"};
 }
 
-/// K with a part that is not symmetric: each force by the next displacement as well.
+/// Adds an unsymmetric part to K: each force depends on the next displacement as well.
 class Unsymmetric final : public DecoratedTerm {
  public:
   using DecoratedTerm::DecoratedTerm;

@@ -6,34 +6,38 @@
 #include "palpate/mesh/boundary.h"
 #include "pressed_block.h"
 
-// A rigid, smooth sphere of radius R pressed by delta << R into an elastic half-space, E* = E/(1 - nu^2)
-// (Hertz 1882; Johnson 1985, 4.2):
-//     F = (4/3) E* sqrt(R) delta^(3/2),     a^2 = R delta the radius of contact.
+// Problem: a rigid, smooth sphere with radius R is pressed by delta << R into an elastic half-space, E* =
+// E/(1 - nu^2).
 //
-// The half-space is a block of half-width and depth L with its bottom held.  At a distance r >> a the
-// half-space would move like 1/r, so the block is stiffer by a part that starts with the first power of a/L:
-// L = 10 a, 20 a and 40 a (the same cells, more of them) are extrapolated by the parabola through them.  The
-// elements add an error c h^p, p between 3/2 (the pressure's square-root edge) and 2: three meshes, all cells
-// refined alike, give value and order.  Both are small enough to be taken one after the other:
+// Exact answer (Hertz 1882; Johnson 1985, 4.2):
+//     F = (4/3) E* sqrt(R) delta^(3/2),     a^2 = R delta, a the contact radius.
+//
+// Measured: the force and its order in the cell size. The half-space is a block with half-width and depth L
+// and a fixed bottom. At a distance r >> a the half-space would move like 1/r, so the block is stiffer by a
+// part that starts with the first power of a/L: L = 10 a, 20 a and 40 a (the same cells, more of them) are
+// extrapolated by the parabola through them. The elements add an error c h^p, p between 3/2 (square-root
+// edge of the pressure) and 2: three meshes, all cells refined equally, yield value and order. Both effects
+// are small enough to be treated in succession:
 //     F(0, 0) = F(h -> 0, L = 20 a) F(h, L -> infinity)/F(h, L = 20 a).
 //
-// The penalty is a spring in series: of the depth it takes p/k, (2/pi) E*/(k a) of delta in the middle,
-// less than 1e-3 at k a/E* = 1000 (at 50, the least that is still Hertz, 1 %).
+// The penalty is a spring in series and takes p/k of the depth, (2/pi) E*/(k a) of delta at the centre: less
+// than 1e-3 at k a/E* = 1000 (at 50, the least that is still Hertzian, 1 %). The limit on the force is 3 %,
+// on the exponent of the depth 0.03.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kYoung = 1e4, kPoisson = 0.3;
 const double kReduced = kYoung / (1.0 - kPoisson * kPoisson);
-constexpr double kRadius = 10e-3, kDepth = 0.025e-3, kContact = 0.5e-3;  // R, delta, a
-constexpr int kMiddle = 6;                                               // doublings: L = 20 a
+constexpr double kRadius = 10e-3, kDepth = 0.025e-3, kContact = 0.5e-3;  // R, delta, a [m]
+constexpr int kMiddle = 6;                                               // Doublings: L = 20 a.
 
-/// Cells of 0.22 a, 0.15 a and 0.11 a at the origin for 2, 3 and 4 cells a doubling.
+/// Returns a block with cells of 0.22 a, 0.15 a and 0.11 a at the origin for 2, 3 and 4 cells per doubling.
 BlockMesh block(int per_doubling, int doublings) {
   return {20.0 * kContact / std::sinh(kMiddle * std::log(2.0)), per_doubling, doublings};
 }
 
-/// The sphere's exact gaps at the block's vertices, or by its material points.
+/// Contact by the sphere's exact gaps at the block's vertices, or by its material points.
 enum class Way { kVertices, kPoints };
 
 double force(Way way, const BlockMesh& mesh, double depth, const std::string& fault) {
@@ -49,7 +53,8 @@ double force(Way way, const BlockMesh& mesh, double depth, const std::string& fa
       side = contact::material_points(soft, mesh::boundary(rest).surface.vertices, rest,
                                       2.0 * mesh.half_width());
     }
-    // held: the tangent of points that follow leaves out how they move, and Newton's steps get small
+    // Held: the tangent of samples that follow the state omits their motion, which would make Newton's steps
+    // small.
     std::unique_ptr<contact::SampleSource> source = held(contact::make_sphere_source(
         std::move(side), frame, std::move(motion), Vec3(0, 0, kRadius - depth), kRadius, kCandidates));
     if (fault == "rim-not-seen")
@@ -71,7 +76,7 @@ double theory(double depth) { return 4.0 / 3.0 * kReduced * std::sqrt(kRadius) *
 
 std::string name_of(Way way) { return way == Way::kPoints ? "material points" : "vertices"; }
 
-/// Force of the half-space, from a family of blocks.
+/// Measures the force on the half-space, from a family of blocks.
 Measurement measure(Way way, double depth, const std::string& fault) {
   std::vector<double> h, by_size, far, by_block;
   for (const int m : {2, 3, 4}) {
@@ -85,7 +90,7 @@ Measurement measure(Way way, double depth, const std::string& fault) {
   }
   const Limit limit = limit_of(h, by_size);
   const double exact = theory(depth), found = limit.value * at_zero(far, by_block) / by_block[1];
-  std::vector<double> errors;  // of the elements alone
+  std::vector<double> errors;  // Error of the elements alone.
   for (const double one : by_size) errors.push_back(std::abs(one / limit.value - 1.0));
   std::string note = "at L = 10, 20, 40 a:";
   for (const double one : by_block) note += fmt::format(" {:+.1f} %", 100.0 * (one / exact - 1.0));

@@ -8,10 +8,12 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Patch test (Irons 1966): boundary nodes are put to x = A X + t, interior nodes are free.  A linear
-// tetrahedron holds every affine field, so the field is reproduced inside, with the stress P(A) everywhere,
-// on any mesh: exact, no order involved.  With A = R S (docs/theory/elasticity.md)
+// Problem (patch test, Irons 1966): boundary nodes are set to x = A X + t, interior nodes are free.
+//
+// Exact answer: a linear tetrahedron represents every affine field, so the field is reproduced inside, with
+// the stress P(A) everywhere, on any mesh: exact, without an order. With A = R S (docs/theory/elasticity.md)
 //     P = 2 mu (A - R) + lambda tr(S - I) R.
+// Measured: largest error of a node and the mean stress, limit 1e-10 (rounding and Newton's tolerance).
 
 namespace palpate::validation {
 namespace {
@@ -38,7 +40,7 @@ std::vector<Field> fields() {
   return out;
 }
 
-/// An element of which no node is held.
+/// Returns an element none of whose nodes is on the boundary.
 Eigen::Vector4i inner_element(const TetMesh& mesh, const std::vector<char>& boundary) {
   for (const auto& tet : mesh.tets.colwise()) {
     bool inner = true;
@@ -72,7 +74,7 @@ std::vector<Measurement> run(const std::string& fault) {
       if (boundary[static_cast<std::size_t>(i)])
         body.hold(i, x);
       else
-        // Newton has work to do
+        // Displaced from the solution, so that Newton's method has to iterate.
         body.place(i, x + 0.01 * Vec3(std::sin(3.0 * i), std::cos(5.0 * i), std::sin(7.0 * i)));
     }
     const bool solved = body.solve();

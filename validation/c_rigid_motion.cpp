@@ -6,8 +6,11 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// x = Q X + t gives F = Q = R: P = 0 and psi = 0.  With v = w x x + v0 the strain rate sym(F^T F') vanishes,
-// and with it the damping force.
+// Problem: rigid motion of a soft body, at rest and spinning with damping.
+//
+// Exact answer: x = Q X + t gives F = Q = R, hence P = 0 and psi = 0. With v = w x x + v0 the strain rate
+// sym(F^T F') vanishes, and with it the damping force. Measured: forces and energy, limit 1e-10 of E h^2 and
+// E h^3 (rounding).
 
 namespace palpate::validation {
 namespace {

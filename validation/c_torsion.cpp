@@ -5,13 +5,16 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Square bar a x a between two ends that are rotated against each other by a small theta, in their plane and
-// free along the axis: Saint-Venant's torsion in the whole bar, however short, since the ends hinder no
-// warping.  Torque G J theta/L with (Timoshenko and Goodier, Theory of Elasticity, 109)
+// Problem: a square bar a x a between two ends that are rotated relative to each other by a small theta, in
+// their plane and free along the axis.
+//
+// Exact answer: Saint-Venant torsion in the whole bar, for any length, since the ends do not hinder warping.
+// Torque G J theta/L with (Timoshenko and Goodier, Theory of Elasticity, 109)
 //
 //   J = a^4 (1/3 - (64/pi^5) sum_{n odd} tanh(n pi/2)/n^5) = 0.140577 a^4.
 //
-// The torque is the moment of the forces that hold one end.
+// Measured: the torque, as the moment of the forces that hold one end. Limits: 5 % with 16 elements across, 1
+// % after extrapolation with order 2, and the order from 1.8 to 2.2.
 
 namespace palpate::validation {
 namespace {
@@ -32,7 +35,7 @@ double torque(int across, const std::string& fault) {
   if (fault == "half-stiffness") body.replace([](const auto& term) { return scaled(term, {.force = 0.5}); });
   if (fault == "no-lateral-strain") {
     fem::Material other = m;
-    other.poissons_ratio = 0.0;  // with the same G, but for this: E, and not G, is kept
+    other.poissons_ratio = 0.0;  // E is kept, so that G changes.
     body.replace([&](const auto&) {
       return std::make_shared<fem::SoftBody>("body", body.rest(), other, fem::SoftBodyOptions{}, 0);
     });
@@ -46,7 +49,7 @@ double torque(int across, const std::string& fault) {
       body.hold(i, 0, X(0, i) - angle * X(1, i));
       body.hold(i, 1, X(1, i) + angle * X(0, i));
     }
-    // no warping on the axis: one node of it stops the bar from drifting along
+    // No warping on the axis: one node there prevents a drift along the axis.
     if (!axis_held && X.col(i).head<2>().norm() < 1e-9) {
       body.hold(i, 2, X(2, i));
       axis_held = true;
@@ -68,7 +71,7 @@ std::vector<Measurement> run(const std::string& fault) {
     found.push_back(torque(across, fault));
     error.push_back(std::abs(found.back() / exact - 1.0));
   }
-  const double extrapolated = found[2] + (found[2] - found[1]) / 3.0;  // order 2 removed
+  const double extrapolated = found[2] + (found[2] - found[1]) / 3.0;  // Error of order 2 removed.
   return {{.quantity = "J / a^4",
            .computed = torsion_constant() / std::pow(kSide, 4),
            .exact = 0.140577,

@@ -6,24 +6,27 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Uniaxial stretch l, sides free: R = I, S = diag(l, s, s); no lateral stress,
+// Problem: one block stretched with free sides, and sheared, at large strain. Measured: nominal stress and
+// lateral stretch, limit 1e-10, as the uniform field is exact in linear elements.
+//
+// Exact answer, uniaxial stretch l, sides free: R = I, S = diag(l, s, s); zero lateral stress,
 //     2 mu (s - 1) + lambda (l + 2 s - 3) = 0,
 // gives
 //     s = 1 - nu (l - 1),   P = 2 mu (l - 1) + lambda (l + 2 s - 3) = E (l - 1)
 // (nominal stress; linear in l for this energy, at any l > 0).
 //
-// Simple shear F = I + g e1 e2^T: R rotates by the angle with cos = 2/r, sin = g/r, r = sqrt(4 + g^2), and tr
-// S = r + 1.  With s = g/r
+// Exact answer, simple shear F = I + g e1 e2^T: R rotates by the angle with cos = 2/r, sin = g/r, r = sqrt(4
+// + g^2), and tr S = r + 1. With s = g/r
 //     P12 = 2 mu (g - s) + lambda (r - 2) s,
 //     P21 = 2 mu s - lambda (r - 2) s,
 //     P11 = P22 = 2 mu (1 - 2/r) + lambda (r - 2) 2/r,
 //     P33 = lambda (r - 2).
 //
-// Stable neo-Hookean (Smith, de Goes and Kim 2018, eq. 14), in the stretches of the same uniaxial state: with
-// m = 4/3 mu, L = lambda + 5/6 mu, alpha = 1 + 3 m/(4 L), I = l^2 + 2 s^2, J = l s^2,
+// Exact answer, stable neo-Hookean (Smith, de Goes and Kim 2018, eq. 14), in the stretches of the same
+// uniaxial state: with m = 4/3 mu, L = lambda + 5/6 mu, alpha = 1 + 3 m/(4 L), I = l^2 + 2 s^2, J = l s^2,
 //     lateral stress  m s (1 - 1/(I + 1)) + L (J - alpha) l s = 0,
 //     P = m l (1 - 1/(I + 1)) + L (J - alpha) s^2.
-// The lateral stress over s grows with s, so that s is found by halving an interval.
+// The lateral stress over s grows with s, so that s is found by bisection.
 
 namespace palpate::validation {
 namespace {
@@ -85,7 +88,7 @@ void stretch(const Law& law, double l, const std::string& fault, std::vector<Mea
   options.law = law.name;
   StaticBody body(block(), material(), options);
   break_body(body, options, fault);
-  // Ends held along x, the block's rigid motion by three planes through a corner; the sides are free.
+  // Fixes the ends along x and the rigid motion by three planes through a corner; the sides are free.
   const Vec3 low = body.rest().nodes.rowwise().minCoeff(), high = body.rest().nodes.rowwise().maxCoeff();
   for (int i = 0; i < body.rest().nodes.cols(); ++i) {
     Vec3 X = body.rest().nodes.col(i);

@@ -1,7 +1,7 @@
 #pragma once
 #include "validation.h"
 
-/// One function a case, one file a function; registry.cpp puts them in order.
+/// Validation cases, one function per case and file; registry.cpp lists them in order.
 namespace palpate::validation {
 
 ValidationCase spheres_field();

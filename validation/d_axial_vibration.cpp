@@ -4,13 +4,17 @@
 #include "modal_body.h"
 #include "palpate/mesh/generators.h"
 
-// Bar of length L held at x = 0, nu = 0: axial strain makes no lateral stress, so u(x, t) obeys u_tt = c^2
-// u_xx, c = sqrt(E/rho), exactly, and
+// Problem: axial vibration of a bar with length L held at x = 0, nu = 0.
+//
+// Exact answer (Rayleigh 1877): axial strain causes no lateral stress, so u(x, t) obeys u_tt = c^2 u_xx,
+// c = sqrt(E/rho), exactly, and
 //     u_n = sin((2n - 1) pi x / 2L),   f_n = (2n - 1) c / (4 L).
-// Linear elements with lumped mass: w_h = w (1 - (k h)^2/24 ...) in one dimension, order 2 in any.
-// A quarter of the square section stands for the bar: its two inner faces are planes of symmetry (no
-// displacement across them), which keeps every axial motion and shuts out bending and torsion, whose
-// frequencies cross the axial ones.  Modes are named by their overlap with u_n.
+//
+// Measured: the first three frequencies, limit 5e-3, and their order in the element size (1.8 to 2.1). Linear
+// elements with lumped mass have w_h = w (1 - (k h)^2/24 ...) in one dimension, and order 2 in any. A
+// quarter of the square section represents the bar: its two inner faces are planes of symmetry (no
+// displacement across them), which keeps every axial motion and excludes bending and torsion, whose
+// frequencies cross the axial ones. Modes are identified by their overlap with u_n.
 
 namespace palpate::validation {
 namespace {
@@ -18,7 +22,7 @@ namespace {
 constexpr double kLength = 1.0, kHalfWidth = 0.125, kYoung = 1e6;
 constexpr int kModes = 3;
 
-/// Frequencies [Hz] of the first three axial modes; NaN where none overlaps by more than 0.95.
+/// Returns the frequencies [Hz] of the first three axial modes; NaN if no mode overlaps by more than 0.95.
 std::vector<double> frequencies(int cells_along, const std::string& fault) {
   ModalBody bar;
   bar.material.youngs_modulus = kYoung;

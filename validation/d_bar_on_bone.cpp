@@ -5,24 +5,30 @@
 #include "modal_body.h"
 #include "palpate/mesh/generators.h"
 
-// Bar of length L, section A, nu = 0, with its face x = 0 on a free rigid bone of mass m_b, its other end
-// free: u_tt = c^2 u_xx, c = sqrt(E/rho), and
+// Problem: axial vibration of a bar with length L, section A, nu = 0, whose face x = 0 is attached to a free
+// rigid bone with mass m_b and whose other end is free.
+//
+// Exact answer (Timoshenko, Vibration Problems in Engineering, 1937, section 52: a bar with a mass at its
+// end): u_tt = c^2 u_xx, c = sqrt(E/rho), and
 //     m_b u_tt(0) = E A u_x(0),   u_x(L) = 0.
 // u = cos(k (L - x)) cos(c k t) gives
 //     tan(kL) = -b kL,   b = m_b / (rho A L):
-// one root in each ((n - 1/2) pi, n pi) (Timoshenko, Vibration Problems in Engineering, 1937, section 52: a
-// bar with a mass at its end).  With a massless bone the bar is free, kL = n pi; a heavy bone holds it.
-// The bone's equation holds its inertia and the face's reaction alone: if that reaction, or the inertia of
-// the nodes on the face, did not reach it, both frequencies would be wrong.  A quarter of the square section
-// stands for the bar, as in the case without a bone: planes of symmetry shut out bending and torsion.  The
-// bone sits in the middle of the quarter's face, so that axial motion does not rotate it.
+// one root in each ((n - 1/2) pi, n pi). With a massless bone the bar is free, kL = n pi; a heavy bone fixes
+// it.
+//
+// Measured: the first frequency, limit 5e-3, with order 1.8 to 2.1 in the element size. The bone's equation
+// contains only its inertia and the reaction of the face: if that reaction, or the inertia of the nodes on
+// the face, did not reach it, the frequency would be wrong. A quarter of the square section represents the
+// bar, as in the case without a bone: planes of symmetry exclude bending and torsion. The bone is at the
+// centre of the quarter's face, so that axial motion does not rotate it.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kLength = 1.0, kHalfWidth = 0.125, kYoung = 1e6;
 
-/// kL of the n-th vibration by bisection: sin(z) + b z cos(z) changes sign once in ((n - 1/2) pi, n pi).
+/// Returns kL of the n-th vibration by bisection: sin(z) + b z cos(z) changes sign once in ((n - 1/2) pi, n
+/// pi).
 double root(double b, int n) {
   double low = (n - 0.5) * M_PI, high = n * M_PI;
   const auto f = [b](double z) { return std::sin(z) + b * z * std::cos(z); };
@@ -33,7 +39,7 @@ double root(double b, int n) {
   return 0.5 * (low + high);
 }
 
-/// Frequency [Hz] of the first axial vibration; NaN where no mode overlaps by more than 0.95.
+/// Returns the frequency [Hz] of the first axial vibration; NaN if no mode overlaps by more than 0.95.
 double frequency(int cells, double b, const std::string& fault) {
   ModalBody bar;
   bar.material.youngs_modulus = kYoung;

@@ -5,22 +5,23 @@
 #include "palpate/integrate/integrators.h"
 #include "vibrating_bar.h"
 
-// Fixed steps of every method that can take them: the observed order against the one that the registry
-// claims, on both sides.  (The motion and its exact answer: vibrating_bar.h.)  An order is seen only where
-// the method is in its asymptotic range for the modes that it carries; the motion starts at rest in the three
-// lowest, and runs for T, half a period of the first.  With w the third, the error of one step relative to
-// the mode is C (w H)^{p+1}, of the run C (w H)^p w T:
-//     order 1:      w^2 H T/2 <= 0.2      (the amplitude's damping e^{-w^2 H T/2})
-//     order 2:      w H <= 0.3 and w^3 H^2 T/12 <= 0.1      (the phase)
-//     order p >= 3: w H <= 0.1, where w^{p+1} H^p T/12 <= 0.1 holds by itself.
+// Problem: free vibration of a clamped bar by fixed steps of every method that supports them. The motion and
+// its exact answer are in vibrating_bar.h.
+//
+// Measured: the observed order against the order claimed by the registry, +/- 0.1. An order is observed only
+// in the asymptotic range of the method for the modes involved. The motion starts at rest in the three lowest
+// modes and runs for T, half a period of the first. With w the third, the error of one step relative to the
+// mode is C (w H)^{p+1}, of the run C (w H)^p w T:
+//     order 1:      w^2 H T/2 <= 0.2      (damping of the amplitude, e^{-w^2 H T/2})
+//     order 2:      w H <= 0.3 and w^3 H^2 T/12 <= 0.1      (phase)
+//     order p >= 3: w H <= 0.1, which implies w^{p+1} H^p T/12 <= 0.1.
 // Tables with a small leading or a large next term show their order later: the coarsest step is a quarter of
-// that bound for order 2 (sdirk212), and w H = 0.05 for order 3 (esdirk325).
-// An explicit method is also kept inside its stability limit for the highest mode: w_max H <= 0.5 for order 1
-// to 3, since that of order 2 has no limit on the imaginary axis but grows by (w_max H)^4/8 a step, which
-// must not lift rounding to where it is seen; 1.5 for higher order, whose error would else begin at rounding.
-// Steps shrink by 2 (order <= 2) or 1.5, so that the error at the finest stays above rounding.  Nonlinear and
-// linear equations are solved to rtol = newton_rtol = 1e-9: the problem is linear, and the first correction
-// is exact but for rounding.
+// this bound for order 2 (sdirk212), and w H = 0.05 for order 3 (esdirk325). Explicit methods also satisfy a
+// limit for the highest mode: w_max H <= 0.5 for order 1 to 3, since order 2 has no stability limit on the
+// imaginary axis but grows by (w_max H)^4/8 per step, which must not amplify rounding to a visible level; 1.5
+// for higher order, whose error would otherwise start at rounding. Steps shrink by 2 (order <= 2) or 1.5, so
+// that the error at the finest step remains above rounding. Nonlinear and linear equations are solved to
+// rtol = newton_rtol = 1e-9: the problem is linear, and the first correction is exact except for rounding.
 
 namespace palpate::validation {
 namespace {
@@ -67,7 +68,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const VibratingBar bar;
   std::vector<Measurement> out;
   const auto is_wanted = [&](const dynamics::StepperEntry& entry) {
-    if (!fault.empty()) return entry.name == "rk4" || entry.name == "implicit-midpoint";  // they find it
+    if (!fault.empty()) return entry.name == "rk4" || entry.name == "implicit-midpoint";  // They detect it.
     return entry.traits.stability != dynamics::Stability::kStatic &&
            entry.traits.control != StepControl::kAdaptive;
   };

@@ -4,21 +4,25 @@
 #include "modal_body.h"
 #include "palpate/mesh/generators.h"
 
-// Free block a x a x b.  The field (Lame 1852; Mindlin 1956)
+// Problem: vibration of a free block a x a x b in Lame's mode.
+//
+// Exact answer (Lame 1852; Mindlin 1956): the field
 //     u = cos(pi x/a) sin(pi y/a),   v = -sin(pi x/a) cos(pi y/a),   w = 0      (x, y in [0, a])
-// has no divergence, so lambda does not enter: rho u_tt = mu laplace u gives w^2 = 2 mu (pi/a)^2/rho.  Its
+// has no divergence, so lambda does not enter: rho u_tt = mu laplace u gives w^2 = 2 mu (pi/a)^2/rho. Its
 // stresses s_xx = -s_yy = -2 mu (pi/a) sin sin vanish on all four sides, and so do s_xy = mu (u_y + v_x) = 0
 // everywhere and all stresses on z = 0, b: it is a mode of the free block,
 //     omega = sqrt(2) pi sqrt(mu/rho)/a,
-// for any Poisson's ratio and thickness.  b differs from a, so that no mode in another plane has that
-// frequency and mixes with it.  The mode is found by its overlap (mass-weighted; modal assurance criterion,
-// Allemang and Brown 1982) > 0.95.
+// for any Poisson's ratio and thickness. b differs from a, so that no mode in another plane has this
+// frequency and mixes with it.
+//
+// Measured: the frequency, limit 5e-3 with order 1.8 to 2.1, and the overlap (mass-weighted; modal assurance
+// criterion, Allemang and Brown 1982) by which the mode is identified, > 0.95.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kSide = 0.1, kThickness = 0.04, kYoung = 5e4;
-constexpr int kSought = 30;  // modes, six rigid ones among them
+constexpr int kSought = 30;  // Number of modes, including six rigid ones.
 
 Match lame(double poisson, int cells, const std::string& fault) {
   ModalBody block;
@@ -48,7 +52,7 @@ void add(double poisson, const std::string& fault, std::vector<Measurement>& out
   std::vector<double> h, error;
   double overlap = 1.0, frequency = 0.0;
   for (int cells : {15, 20, 25}) {
-    if (!fault.empty() && cells == 25) break;  // a fault is found without it
+    if (!fault.empty() && cells == 25) break;  // A fault is detected without it.
     const Match match = lame(poisson, cells, fault);
     frequency = match.omega / (2.0 * M_PI);
     h.push_back(kSide / cells);

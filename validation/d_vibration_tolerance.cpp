@@ -4,44 +4,51 @@
 #include "palpate/integrate/integrators.h"
 #include "vibrating_bar.h"
 
-// Error control of every method that has it: over two periods of the lowest mode (the motion and its exact
-// answer: vibrating_bar.h) the error falls with the tolerance, slope 0.8 to 1.2.  Why 1: an embedded pair of
-// orders p and p - 1 estimates the error of a step as C h^p and holds it at rtol, so h ~ rtol^{1/p}; the
-// solution carried on has order p, so its error over a given time is ~ h^p ~ rtol.
-// Backward differences hold C h^{k+1} of order k <= 5 at a tolerance T: error ~ T^{k/(k+1)}.  They are given
-// T = rtol^{6/5} (error_test.h), which makes that 0.9 to 1 for k from 3 to 5.  Adams holds the same estimate,
-// but its k rises along the ladder up to 12, so that its error falls faster than at any one k.
+// Problem: error control of every method that has it, for the free vibration of a clamped bar over two
+// periods of the lowest mode. The motion and its exact answer are in vibrating_bar.h.
+//
+// Measured: slope of the error against the tolerance, accepted from 0.8 to 1.2. Why 1: an embedded pair of
+// orders p and p - 1 estimates the error of a step as C h^p and keeps it at rtol, so h ~ rtol^{1/p}; the
+// propagated solution has order p, so its error over a given time is ~ h^p ~ rtol.
+//
+// Backward differences keep C h^{k+1} of order k <= 5 at a tolerance T: error ~ T^{k/(k+1)}. They use
+// T = rtol^{6/5} (error_test.h), which makes this 0.9 to 1 for k from 3 to 5. Adams methods keep the same
+// estimate, but their k rises up to 12 along the sequence of tolerances, so that the error falls faster than
+// for any single k.
+//
 // Two pairs (ESDIRK437, and ARK548 also as one half of an additive pair) estimate a linear motion better than
-// others: of the conditions of order p on the embedded weights, that of the tall tree, b^T A^(p-1) 1 = 1/p!,
-// which alone counts in a linear system, is met to 2e-6 and 2e-8.  There the estimate is O(h^(p+1)); the
-// tolerance that they are given is half-way between (ark.cpp), and their slope here (p + 1/2)/(p + 1): 0.90
-// and 0.92.
-// Two motions in the three lowest modes: undamped; and with damping ratio 0.03 of the lowest, where beta K
-// damps the upper modes heavily.  Explicit methods are limited by stability, not by their error, once w_max h
-// is at its limit: they are judged undamped, below that.  The step's mean w_max h here is 1.6 of order 3 and
-// 2.6 of order 4 at rtol = 1e-3, as it is at 1e-2; from 1e-4 it falls.  Cash and Karp's pair of order 5 has
-// no limit on the imaginary axis to stay below: with its stability polynomial 1 + z + ... + z^5/120 +
-// z^6/800,
+// others: among the conditions of order p on the embedded weights, the condition of the tall tree, b^T
+// A^(p-1) 1 = 1/p!, the only one relevant in a linear system, is met to 2e-6 and 2e-8. There the estimate is
+// O(h^(p+1)); the tolerance used for them is half-way between (ark.cpp), and their slope here
+// (p + 1/2)/(p + 1): 0.90 and 0.92.
+//
+// Two motions in the three lowest modes: undamped; and with damping ratio 0.03 of the lowest mode, where beta
+// K damps the upper modes heavily. Explicit methods are limited by stability, not by their error, once w_max
+// h is at its limit: they are measured undamped, below it. The mean w_max h of the steps here is 1.6 for
+// order 3 and 2.6 for order 4 at rtol = 1e-3, as at 1e-2; from 1e-4 it falls. Cash and Karp's pair of order 5
+// has no stability limit on the imaginary axis: with its stability polynomial
+// 1 + z + ... + z^5/120 + z^6/800,
 //     |R(iy)|^2 - 1 = 2 (1/720 - 1/800) y^6 + ...,   |R(iy)| = 1 + y^6/7200 + ...,
-// so that it amplifies undamped motion at every step, by 2 % each at y = 2 and 7 % at 2.5.  Where the error
-// of the lowest modes would allow such steps, the highest modes grow from rounding to the tolerance, never
-// die away, and hold the step at w_max h = 1.35 whatever the tolerance (1e-3 to 3e-6): the error there is
-// that of the highest modes, 130 times that of the three modes at 1e-3, and some 0.8 rtol.  From rtol = 1e-7
-// the lowest modes ask for shorter steps than those that let the highest grow.
-// A third motion is reported and has no bar: undamped, all modes at equal amplitude, some of which no
-// tolerance of the ladder resolves.  Methods of order 2 take sqrt(10) times the steps for each decade,
+// so that it amplifies undamped motion at every step, by 2 % each at y = 2 and 7 % at 2.5. Where the error of
+// the lowest modes would allow such steps, the highest modes grow from rounding to the tolerance, never
+// decay, and keep the step at w_max h = 1.35 for any tolerance (1e-3 to 3e-6). The error there is due to the
+// highest modes, 130 times the error of the three modes at 1e-3, and about 0.8 rtol. From rtol = 1e-7 the
+// lowest modes require shorter steps than those at which the highest grow.
+//
+// A third motion is reported without a limit: undamped, all modes at equal amplitude, some of which no
+// tolerance of the sequence resolves. Methods of order 2 take sqrt(10) times the steps for each decade,
 // minutes at 1e-5: they end at 1e-4.
 
 namespace palpate::validation {
 namespace {
 
-constexpr double kDampingRatio = 0.03;  // of the lowest mode, where there is damping
+constexpr double kDampingRatio = 0.03;  // Ratio of the lowest mode in the damped motion.
 
 struct Decades {
   int loosest, tightest;  ///< rtol = 10^-k
 };
 
-/// Decades of rtol in which error control determines the step.
+/// Returns the decades of rtol in which error control determines the step.
 Decades decades(const dynamics::StepperTraits& traits, bool damped) {
   if (traits.multistep && traits.stability == dynamics::Stability::kAlpha) return {2, damped ? 8 : 6};
   if (traits.order <= 2) return {2, 5};
@@ -83,7 +90,7 @@ Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, 
 Measurement full_spectrum(const VibratingBar& bar, const dynamics::StepperEntry& entry) {
   IntegratorSpec spec;
   spec.name = entry.name;
-  spec.max_steps = 10'000'000;  // of order 2 it takes many
+  spec.max_steps = 10'000'000;  // Methods of order 2 take many.
   const int tightest = entry.traits.order <= 2 ? 4 : 5;
   std::vector<double> tolerances, errors;
   for (int k = 2; k <= tightest; ++k) {

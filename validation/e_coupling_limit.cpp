@@ -3,18 +3,22 @@
 #include "e_faulty_tool.h"
 #include "e_oscillator.h"
 
-// Semi-implicit Euler on m x'' = -k x - b x':
+// Problem: largest stable stiffness of the virtual coupling at a tick h.
+//
+// Exact answer. Semi-implicit Euler on m x'' = -k x - b x':
 //     z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0
-// has a root on the unit circle at z = -1, where k = 4 m/h^2 - 2 b/h.  Backward Euler:
+// has a root on the unit circle at z = -1, where k = 4 m/h^2 - 2 b/h. Backward Euler:
 //     (m + h b + h^2 k) z^2 - (2 m + h b) z + m = 0
 // has both roots inside for every k > 0.
 //
-// Force held over the tick, as motors hold it: the handle, of mass m, hangs on a tool that stands still, and
-// moves exactly under f = -(k x0 + b v0), of the tick's start,
+// Force held over the tick, as by motors: the handle, with mass m, is coupled to a fixed tool and moves
+// exactly under f = -(k x0 + b v0), evaluated at the start of the tick,
 //     v1 = v0 + h f/m,   x1 = x0 + h v0 + h^2 f/(2 m):   trace 2 - h^2 k/(2 m) - h b/m,
 //                                                         determinant 1 - h b/m + h^2 k/(2 m).
-// The determinant is the larger condition as long as b h < 2 m: below 1 where k < 2 b/h.  That is a bound on
-// the damping, not on the mass; without damping no k is stable.
+// The determinant is the stricter condition as long as b h < 2 m: below 1 where k < 2 b/h. This bounds the
+// damping, not the mass; without damping no k is stable.
+//
+// Measured: the limit, by bisection on whether the motion is bounded, to 2 %.
 
 namespace palpate::validation {
 namespace {
@@ -30,7 +34,8 @@ ToolSpec coupled(const std::string& scheme, double k, double b) {
   return spec;
 }
 
-/// The tool stands still, and the handle moves under what the coupling's force was at each tick's start.
+/// Returns whether the motion is bounded: the tool is fixed, and the handle moves under the coupling force
+/// evaluated at the start of each tick.
 bool bounded_held(double k, double b, const std::string& fault) {
   const ToolSpec spec = coupled("linearly-implicit-euler", k, b);
   const FaultyTool body(spec, fault);

@@ -4,16 +4,17 @@
 #include "cases.h"
 #include "palpate/device/limiter.h"
 
-// A property, not a formula: for any stream of wrenches (a millionfold too large, not finite, with lost
-// poses), force and torque stay within their maximum and their slew, and are zero from 20 ms after the last
-// valid tick on.
+// Problem: limits of the device force. Exact answer, a property instead of a formula: for any sequence of
+// wrenches (a millionfold too large, not finite, with lost poses), force and torque are within their maximum
+// and their slew rate, and are zero from 20 ms after the last valid tick. Measured: the largest of each over
+// its bound, limit 0, for the slew rate 1e-9 (the tick is known to rounding of t).
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kForce = 3.3, kTorque = 0.2, kForceSlew = 600.0, kTorqueSlew = 40.0;
 
-/// Output of a program without such limits: the last finite wrench that was wanted, clipped by component.
+/// Returns the output of a program without such limits: the requested wrench, clipped by component if `clip`.
 Wrench careless(const Wrench& requested, bool clip) {
   return clip ? Wrench{requested.moment.cwiseMax(-kTorque).cwiseMin(kTorque),
                        requested.force.cwiseMax(-kForce).cwiseMin(kForce)}

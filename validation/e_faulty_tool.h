@@ -5,7 +5,8 @@
 
 namespace palpate::validation {
 
-/// The tool, or with a fault the tool with a defect: the case's handle, wall and figures stay as they are.
+/// The tool, or with a fault the tool with a defect; handle, wall and expected values of the case are
+/// unchanged.
 class FaultyTool {
  public:
   FaultyTool(const ToolSpec& spec, const std::string& fault)

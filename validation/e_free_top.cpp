@@ -7,29 +7,29 @@
 #include "palpate/dynamics/system.h"
 #include "palpate/integrate/integrators.h"
 
-// Euler's equations of a top without torque, w in the body's principal axes, I1 < I2 < I3:
+// Problem: a top without torque. A tool without coupling is a top, and so is a free bone or a tool that is a
+// block of the State, where its gyroscopic force is a term of the System.
+//
+// Exact answer (Jacobi's solution; Landau and Lifshitz, Mechanics, 37). Euler's equations, w in the body's
+// principal axes, I1 < I2 < I3:
 //     I1 w1' = (I2 - I3) w2 w3,   I2 w2' = (I3 - I1) w3 w1,   I3 w3' = (I1 - I2) w1 w2.
-// They keep 2 T = sum I w^2 and L^2 = sum I^2 w^2.  Where L^2 > 2 T I2 the solution circles around axis 3,
+// They conserve 2 T = sum I w^2 and L^2 = sum I^2 w^2. If L^2 > 2 T I2 the solution circles around axis 3,
 //     w1 = a1 cn(wp t),   w2 = a2 sn(wp t),   w3 = a3 dn(wp t),
 //     wp^2 = (I3 - I2) (L^2 - 2 T I1)/(I1 I2 I3),   m = (I2 - I1) (2 T I3 - L^2)/((I3 - I2) (L^2 - 2 T I1)),
-// of period 4 K(m)/wp (Landau and Lifshitz, Mechanics, 37).  The world's L = R I w stands still.
+// with the period 4 K(m)/wp. L = R I w is constant in the world.
 //
-// The period is read where w2 crosses zero upwards: at the start, and a period later.  Between two
-// samples, h apart, w2 is Hermite's cubic with its slopes from Euler's equations: off by h^4 w2''''/384,
-// some 1e-14 of w2 at (wp h) = 1e-3.
-//
-// Drifts grow with time: with a local error of 1e-10, the tool's, backward differences (simbody-cpodes) lose
-// 6e-9 a period, so that three periods would exceed the bar.
-//
-// A tool without coupling is a top, and so is a free bone or a tool that is a block of the State: its
-// gyroscopic force is a term of the System there.
+// Measured: period, energy and angular momentum. The period is the time between upward zero crossings of w2:
+// at the start, and a period later. Between two samples, h apart, w2 is Hermite's cubic with its slopes from
+// Euler's equations: the error is h^4 w2''''/384, about 1e-14 of w2 at (wp h) = 1e-3. Limit 1e-8 for one
+// period: drifts grow with time, and with a local error of 1e-10, the tool's, backward differences
+// (simbody-cpodes) lose 6e-9 per period, so that three periods would exceed the limit.
 
 namespace palpate::validation {
 namespace {
 
 const Vec3 kInertia(2e-5, 3.5e-5, 5e-5);  // [kg m^2]
 constexpr double kMass = 0.1;             // [kg]
-const Vec3 kSpin(3.0, 0.0, 6.0);          // at the start, in the body's axes [rad/s]
+const Vec3 kSpin(3.0, 0.0, 6.0);          // At the start, in the body's axes [rad/s].
 const Pose kStart{quaternion_of(Vec3(0.9, -1.1, 0.7)), Vec3::Zero()};
 
 double twice_energy(const Vec3& w) { return w.dot(kInertia.cwiseProduct(w)); }
@@ -42,12 +42,13 @@ double period() {
   return 4.0 * std::comp_ellint_1(std::sqrt(m)) / wp;
 }
 
-/// What a top did: time of the last upward crossing of w2, largest drifts of energy and angular momentum.
+/// Observed motion of a top: time of the last upward crossing of w2, largest drifts of energy and angular
+/// momentum.
 struct Watch {
   double crossing = std::nan(""), energy = 0.0, momentum = 0.0;
   int crossings = 0;
 
-  /// Of a run that did not reach its end.
+  /// Returns the result of a run that did not reach its end.
   static Watch failed() {
     Watch out;
     out.energy = out.momentum = std::nan("");
@@ -74,11 +75,11 @@ struct Watch {
   }
 
  private:
-  /// NaN stays.
+  /// Returns the larger value, or NaN if either is NaN.
   static double worse(double a, double b) { return b <= a ? a : b; }
   static Vec3 body(const Pose& pose, const Vec3& spin) { return pose.rotation.conjugate() * spin; }
   static double slope(const Vec3& w) { return (kInertia.z() - kInertia.x()) / kInertia.y() * w.z() * w.x(); }
-  /// Where Hermite's cubic with these values and slopes on [0, 1] is zero.
+  /// Returns the zero of Hermite's cubic with these values and slopes on [0, 1].
   static double zero(double y0, double y1, double d0, double d1) {
     double low = 0.0, high = 1.0;
     for (int i = 0; i < 60; ++i) {
@@ -114,7 +115,7 @@ Watch tool_top(const std::string& scheme, const std::string& fault) {
   return watch;
 }
 
-/// Fault "no-gyroscopic-force": w stands still in the world.
+/// Simulates the top as a rigid block. Fault "no-gyroscopic-force": w is constant in the world.
 Watch block_top(const std::string& integrator, const std::string& fault) {
   dynamics::State state;
   dynamics::System system;

@@ -4,10 +4,15 @@
 #include "e_faulty_tool.h"
 #include "e_oscillator.h"
 
-// The handle jumps by a translation along, and a rotation below pi about, a principal axis of the tool, and
-// rests.  Along and about that axis nothing couples: the distance from the handle obeys
+// Problem: the handle jumps by a translation along, and a rotation below pi about, a principal axis of the
+// tool, and rests.
+//
+// Exact answer: translation along and rotation about this axis are not coupled to other motions. The distance
+// from the handle satisfies
 //     m y'' + b y' + k y = 0,   I a'' + b_r a' + k_r a = 0,
-// released at rest.
+// released at rest (e_oscillator.h, in time and in ticks). Measured: the deviation from it over the ticks,
+// limit 1e-6 for methods with error control; for fixed ticks 1e-10 from the closed form in ticks (rounding),
+// and order 0.9 to 1.1 in time.
 
 namespace palpate::validation {
 namespace {
@@ -15,7 +20,7 @@ namespace {
 constexpr double kTranslation = 0.01, kRotation = 2.5;  // [m], [rad]
 
 /// Largest relative deviation from `exact(oscillator, y0, tick number)` over the ticks, in rotation and in
-/// translation, and both at the last tick.
+/// translation, and both deviations at the last tick.
 struct Deviation {
   double rotation = 0, translation = 0, last_rotation = 0, last_translation = 0;
 };

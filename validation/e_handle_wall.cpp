@@ -2,10 +2,13 @@
 #include "e_faulty_tool.h"
 #include "e_oscillator.h"
 
-// A wall that pushes with K times the depth of the tool, the handle held a depth D below its surface: the two
-// springs are in series, k (D - z) = K z, so the tool stays at z = k D/(k + K) and the hand feels
+// Problem: a wall pushes with K times the depth of the tool, and the handle is held at the depth D below its
+// surface.
+//
+// Exact answer: the two springs are in series, k (D - z) = K z, so the tool rests at z = k D/(k + K) and the
+// force on the hand is
 //     F = k K/(k + K) D.
-// A device never renders a stiffness above that of its coupling.
+// A device never renders a stiffness above that of its coupling. Measured: this force, limit 1e-6.
 
 namespace palpate::validation {
 namespace {
@@ -16,7 +19,7 @@ dynamics::LinearisedContact wall(double stiffness) {
   dynamics::LinearisedContact record;
   record.version = 1;
   record.source = dynamics::LinearisedContact::Source::kFrozen;
-  record.J[6 * 5 + 5] = -stiffness;  // force along z by displacement along z
+  record.J[6 * 5 + 5] = -stiffness;  // Force along z by displacement along z.
   return record;
 }
 

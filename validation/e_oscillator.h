@@ -5,14 +5,14 @@
 
 #include "palpate/tool/tool.h"
 
-/// The damped oscillator m y'' + b y' + k y = 0 released at rest from y0: one direction of a virtual
-/// coupling, in time and in ticks.
+/// Damped oscillator m y'' + b y' + k y = 0 released at rest from y0: one direction of a virtual coupling, in
+/// time and in ticks.
 namespace palpate::validation {
 
 struct Oscillator {
   double m, b, k;
 
-  /// y0 e^{-g t} (cos w t + g/w sin w t), g = b/2m, w^2 = k/m - g^2 > 0.
+  /// Returns y0 e^{-g t} (cos w t + g/w sin w t), g = b/2m, w^2 = k/m - g^2 > 0.
   double at_time(double y0, double t) const {
     const double g = b / (2 * m), w = std::sqrt(k / m - g * g);
     return y0 * std::exp(-g * t) * (std::cos(w * t) + g / w * std::sin(w * t));
@@ -23,7 +23,8 @@ struct Oscillator {
   //       (m + hb + h^2 k) y_{n+1} - (2m + hb) y_n + m y_{n-1} = 0;
   // - semi-implicit Euler, m (u_{n+1} - u_n) = -h (b u_n + k y_n), gives
   //       m y_{n+1} - (2m - hb - h^2 k) y_n + (m - hb) y_{n-1} = 0.
-  // The start is u_0 = 0.  The solution is A z1^n + B z2^n over the roots of the recurrence.
+  //
+  // The start is u_0 = 0. The solution is A z1^n + B z2^n over the roots of the recurrence.
   double after_ticks(const std::string& scheme, double y0, double h, int n) const {
     const double hb = h * b, hhk = h * h * k;
     const bool implicit = scheme == "linearly-implicit-euler";
@@ -37,8 +38,8 @@ struct Oscillator {
   }
 };
 
-/// A desktop device's tool: 100 g, three different moments of inertia, an underdamped coupling in every
-/// direction.
+/// Returns the tool of a desktop device: 100 g, three different moments of inertia, an underdamped coupling
+/// in every direction.
 inline ToolSpec desktop_tool(const std::string& integrator) {
   ToolSpec spec;
   spec.integrator = integrator;

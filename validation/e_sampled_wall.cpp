@@ -4,21 +4,25 @@
 #include "cases.h"
 #include "palpate/device/passivity.h"
 
-// A virtual wall F = -K x - B (x_k - x_{k-1})/T in x > 0, its force held over T, against a device with the
-// viscous damping b.  Colgate and Schenkel (1997): passive where b > K T/2 + |B|; with one tick of delay and
-// B = 0, b > 3 K T/2.  The energy at the port (device/passivity.h) may not fall below zero inside, whatever
-// the hand does.  Outside, random motions do not find the counter-examples:
-// - the triangle wave of period 2T and amplitude A, wholly in the wall, changes the energy by (8 A^2/T)(b - K
-//   T/2 - B) a cycle for B >= 0;
-// - with one tick of delay, a sine of w changes it by sum D^2 (b/T - (K/2) sin(3wT/2)/sin(wT/2)) a cycle,
-//   which is negative for b = 0.99 * 3 K T/2 where w T is small.
+// Problem: passivity of a virtual wall F = -K x - B (x_k - x_{k-1})/T in x > 0, with its force held over T,
+// on a device with the viscous damping b.
+//
+// Exact answer (Colgate and Schenkel 1997): passive where b > K T/2 + |B|; with one tick of delay and B = 0,
+// b > 3 K T/2.
+//
+// Measured: the energy at the port (device/passivity.h) may not fall below zero within the bound for any
+// motion of the hand. Outside the bound, random motions do not find the counter-examples:
+// - the triangle wave with period 2T and amplitude A, completely in the wall, changes the energy by (8
+//   A^2/T)(b - K T/2 - B) per cycle for B >= 0;
+// - with one tick of delay, a sine with frequency w changes it by sum D^2 (b/T - (K/2)
+//   sin(3wT/2)/sin(wT/2)) per cycle, which is negative for b = 0.99 * 3 K T/2 where w T is small.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kT = 1e-3;
 
-/// The observer, or one with a defect.
+/// Passivity observer, or one with a defect.
 class FaultyObserver {
  public:
   FaultyObserver(double damping, const std::string& fault)
@@ -36,7 +40,7 @@ class FaultyObserver {
   device::PassivityObserver observer_;
 };
 
-/// Drives a wall along x(0), x(1), ...; returns the observer after each sample.
+/// Virtual wall, driven along x(0), x(1), ...; `after` receives the observer after each sample.
 struct Wall {
   double K, B, b;
   bool delayed = false;
@@ -59,7 +63,7 @@ struct Wall {
   }
 };
 
-/// The least energy over random motions, each from outside of the wall or its surface.
+/// Returns the least energy over random motions, each starting outside the wall or at its surface.
 double least_energy(const Wall& wall, int motions) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -67,7 +71,7 @@ double least_energy(const Wall& wall, int motions) {
   for (int i = 0; i < motions; ++i) {
     std::vector<double> x(2000, 0.0);
     double v = 0.0;
-    const double kept = i % 2 ? 0.99 : 0.0;  // smooth, and rough
+    const double kept = i % 2 ? 0.99 : 0.0;  // Smooth and rough motions.
     for (std::size_t k = 1; k < x.size(); ++k) {
       v = kept * v + (kept > 0.0 ? 1e-5 : 1e-4) * normal(random);
       x[k] = 0.999 * x[k - 1] + v;

@@ -87,7 +87,8 @@ class RayleighDamping final : public DecoratedTerm {
   double beta_;
 };
 
-// With f(u) = f(0) + g(u), the defect is e(u) = share g(s u)/s - g(u), s = 1, or so small that g is linear.
+// With f(u) = f(0) + g(u), the defect is e(u) = share g(s u)/s - g(u), with s = 1, or so small that g is
+// linear.
 class FrictionDefect final : public DecoratedTerm {
  public:
   FrictionDefect(std::shared_ptr<contact::ContactForce> contact, double share, bool linear)

@@ -7,13 +7,13 @@
 #include "palpate/dynamics/inertia_term.h"
 #include "palpate/loop/world.h"
 
-/// The library with a defect.  A case asks the same of it, and what answers is a part of the library behind a
-/// decorator that has one thing wrong: the code path, and the case's input, are those of the library as it
-/// is.
+/// Defects of the library, for the faults of cases. A case requests the same as without the fault, and a
+/// decorator with one defect wraps a part of the library, so that the code path and the case's input are
+/// unchanged.
 namespace palpate::validation {
 
-/// Forwards all that a force term is asked in a step; what a term is beside a ForceTerm (fused steps, stored
-/// tangents) is lost, so that every integrator takes the general way.  Its slow part is not forwarded: the
+/// Forwards all calls that a step makes to a force term. Extensions beyond ForceTerm (fused steps, stored
+/// tangents) are not forwarded, so that every integrator takes the general path. Nor is the slow part: the
 /// case refreshes the contact itself.
 class DecoratedTerm : public dynamics::ForceTerm {
  public:
@@ -43,31 +43,34 @@ class DecoratedTerm : public dynamics::ForceTerm {
   std::shared_ptr<dynamics::ForceTerm> term_;
 };
 
-/// How much of a term there is.
+/// Factors of the parts of a term.
 struct Shares {
-  double force = 1.0;  ///< and with it its tangents
+  double force = 1.0;  ///< And its tangents.
   double energy = 1.0;
-  double stiffness = 1.0, damping = 1.0;  ///< of the tangents, over the force's
+  double stiffness = 1.0, damping = 1.0;  ///< Factors of the tangents, relative to the force's.
 };
+/// Returns the term with its force, energy and tangents scaled.
 std::shared_ptr<dynamics::ForceTerm> scaled(std::shared_ptr<dynamics::ForceTerm> term, const Shares& shares);
 
-/// Elasticity without R: f = -K(X) (x - X), X the rest positions of the only node block.
+/// Returns elasticity without R: f = -K(X) (x - X), X the rest positions of the only node block.
 std::shared_ptr<dynamics::ForceTerm> small_strain(std::shared_ptr<dynamics::ForceTerm> term, VecX rest);
 
-/// Stiffness damping that is not objective beside the term: f - beta K(X) v.
+/// Returns the term with additional stiffness damping that is not objective: f - beta K(X) v.
 std::shared_ptr<dynamics::ForceTerm> with_rayleigh_damping(std::shared_ptr<dynamics::ForceTerm> term,
                                                            VecX rest, double beta);
 
-/// Of a contact, what its friction and damping are off by, f(u) - f(0) being the right ones: with `share` of
-/// them; with `linear` their slope at u = 0 for ever, friction without its cap.  Goes beside the contact.
+/// Returns the error term of a contact's friction and damping, to be added to the contact, f(u) - f(0) being
+/// correct. With `share` only this fraction of them acts; with `linear` they keep their slope at u = 0,
+/// friction without its cap.
 std::shared_ptr<dynamics::ForceTerm> friction_defect(std::shared_ptr<contact::ContactForce> contact,
                                                      double share, bool linear = false);
 
+/// Returns the inertia scaled by a factor.
 std::shared_ptr<dynamics::InertiaTerm> scaled(std::shared_ptr<dynamics::InertiaTerm> mass, double factor);
 
-/// Changes what an assembled scene computes with.
+/// Changes the parts that an assembled scene computes with.
 using Spoiler = std::function<void(loop::World& world)>;
-/// Adds a force to an assembled scene, as assembling would have done.
+/// Adds a force to an assembled scene, in the way assembly does.
 void add_to(loop::World& world, std::shared_ptr<dynamics::ForceTerm> term);
 void add_to(loop::World& world, std::shared_ptr<dynamics::InertiaTerm> mass);
 

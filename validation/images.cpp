@@ -12,7 +12,7 @@
 namespace palpate::validation {
 namespace {
 
-/// Empty where images work; else what is missing.
+/// Returns an empty string if images work; otherwise the missing part.
 const std::string& image_error() {
   static const std::string error = [] {
     try {

@@ -17,9 +17,9 @@ double BlockMesh::smallest_cell() const { return inner * std::sinh(std::log(2.0)
 
 namespace {
 
-/// The unit cube, six tetrahedra a cell around its diagonal (Kuhn 1960).  On the top, cells on x = y are cut
-/// along it: made round, two of their edges are nearly one line, and a cut across would leave a flat
-/// triangle.
+/// Returns the unit cube with six tetrahedra per cell around its diagonal (Kuhn 1960). On the top, cells
+/// on x = y are cut along it: when the mesh is made round, two of their edges are nearly collinear, and a cut
+/// across would leave a flat triangle.
 TetMesh cut_along_diagonals(int n) {
   const auto node = [n](const std::array<int, 3>& i) { return i[0] + (n + 1) * (i[1] + (n + 1) * i[2]); };
   TetMesh mesh;
@@ -40,7 +40,7 @@ TetMesh cut_along_diagonals(int n) {
             ++at[static_cast<std::size_t>(axes[static_cast<std::size_t>(k)])];
             tet[k + 1] = node(at);
           }
-          const bool even = (axes[1] - axes[0] + 3) % 3 == 1;  // positive volume
+          const bool even = (axes[1] - axes[0] + 3) % 3 == 1;  // Positive volume.
           if (!even) std::swap(tet[1], tet[2]);
           mesh.tets.col(next++) = tet;
         } while (std::next_permutation(axes.begin(), axes.end()));
@@ -72,8 +72,8 @@ TetMesh BlockMesh::tets() const {
 
 double indentation_force(const BlockMesh& mesh, const fem::Material& material, double stiffness_pa_m,
                          const MakeIndenter& indenter) {
-  constexpr int kQueries = 100;      // of material points each comes nearer by a quarter to a half
-  constexpr double kSettled = 1e-6;  // of the force, from one query to the next
+  constexpr int kQueries = 100;  // With material points each query reduces the error by a quarter to a half.
+  constexpr double kSettled = 1e-6;  // Relative change of the force from one query to the next.
   const double parts = mesh.shape == BlockShape::kWhole ? 1.0 : 4.0;
   const TetMesh rest = mesh.tets();
   const double small = 1e-3 * mesh.smallest_cell(), bottom = small - mesh.half_width();
@@ -108,7 +108,7 @@ double indentation_force(const BlockMesh& mesh, const fem::Material& material, d
   return std::nan("");
 }
 
-// With v = v0 + c h^p:  (v1 - v2)/(v2 - v3) = (h1^p - h2^p)/(h2^p - h3^p), which grows with p: bisection.
+// With v = v0 + c h^p: (v1 - v2)/(v2 - v3) = (h1^p - h2^p)/(h2^p - h3^p), which grows with p: bisection.
 Limit limit_of(const std::vector<double>& h, const std::vector<double>& value) {
   PALPATE_CHECK(h.size() == 3 && value.size() == 3, "{} sizes, {} values", h.size(), value.size());
   const double ratio = (value[0] - value[1]) / (value[1] - value[2]);

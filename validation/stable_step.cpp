@@ -13,8 +13,8 @@
 //     A = [0 1; -K -D].
 // symplectic-euler   u1 = u0 - h (K q0 + D u0), q1 = q0 + h u1:   [1 - h^2 K  h (1 - h D); -h K  1 - h D]
 // rk4                R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24 at z = h times each eigenvalue of A
-// multi-rate         integrate::multirate_amplification of A = S + F, contact and what is fast in F
-// A body that may move as it likes has eigenvalues 1, which rounding spreads.
+// multi-rate         integrate::multirate_amplification of A = S + F, contact and fast terms in F
+// An unconstrained body has eigenvalues 1, which rounding spreads.
 
 namespace palpate::validation {
 namespace {

@@ -74,7 +74,7 @@ double StaticBody::elastic_energy() {
 Points StaticBody::internal_forces() { return internal_force().reshaped(3, rest_.nodes.cols()); }
 
 // Balance div P = -b, so the integral of P is that of traction X^T and body force X^T: nodal forces times
-// rest positions. In equilibrium those are minus the internal ones.
+// rest positions. In equilibrium they are minus the internal forces.
 Mat3 StaticBody::mean_stress() { return -internal_forces() * rest_.nodes.transpose() / volume(rest_); }
 
 double volume(const TetMesh& mesh) {

@@ -33,7 +33,7 @@ class LinearBody final : public dynamics::ForceTerm {
   }
   void add_tangent(const dynamics::StateView&, double k_scale, double d_scale,
                    dynamics::BorderedMatrix& A) override {
-    auto& to = A.body.values();  // the only term: the patterns are the same
+    auto& to = A.body.values();  // The only term: the patterns are equal.
     for (std::size_t i = 0; i < to.size(); ++i)
       to[i] += (k_scale + beta_ * d_scale) * scale_ * K_.body.values()[i];
   }

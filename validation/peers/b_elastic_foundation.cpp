@@ -7,11 +7,15 @@
 #include "palpate/mesh/generators.h"
 #include "simbody/contact_headers.h"
 
-// Simbody's ElasticFoundationForce as a peer: the same sphere, delta0 deep in the same plane, the same
-// stiffness k per area.  It has one spring a triangle, with the triangle's own area and the distance of its
-// middle to the nearest point of the other surface; by nearest points ours has springs at the triangles'
-// corners, with their areas at rest.  As the mesh is refined both forces tend to
+// Problem: Simbody's ElasticFoundationForce as a peer, for the same sphere, delta0 deep in the same plane,
+// with the same stiffness k per area.
+//
+// Exact answer: it has one spring per triangle, with the triangle's area and the distance of its centroid
+// from the nearest point of the other surface; contact by nearest points has springs at the corners of the
+// triangles, with their areas at rest. As the mesh is refined both forces tend to
 //     k int depth dA over the sphere = k 2 pi R int_0^delta0 t dt = k pi R delta0^2.
+// Measured: the peer against this value (order 1.9 to 2.2, limit 5e-3), and the ratio of both forces on the
+// same meshes, limit 1e-3.
 
 namespace palpate::validation {
 namespace {
@@ -20,7 +24,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadius = 0.02, kDepth = 0.004, kStiffness = 5e7;
 constexpr int kOrientations = 3;
 
-/// About its own centre.
+/// Returns a rotated sphere, centred at the origin.
 TriMesh turned_sphere(int subdivisions, int orientation) {
   TriMesh mesh = mesh::sphere(kRadius, subdivisions);
   const Eigen::AngleAxisd turn(0.37 + 1.1 * orientation, Vec3(1, 2 - orientation, 3).normalized());
@@ -28,7 +32,7 @@ TriMesh turned_sphere(int subdivisions, int orientation) {
   return mesh;
 }
 
-/// Force of Simbody's elastic foundation on the sphere, along z [N].
+/// Returns the force of Simbody's elastic foundation on the sphere along z [N].
 double peer_force(const TriMesh& mesh) {
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter(system);
@@ -40,7 +44,7 @@ double peer_force(const TriMesh& mesh) {
   for (const auto& face : mesh.faces.colwise())
     for (const int corner : face) faces.push_back(corner);
   const SimTK::ContactSetIndex set = contacts.createContactSet();
-  // a half space is where its own x is positive: turned to lie below z = 0
+  // Simbody's half space is x > 0 in its frame: rotated so that it is below z = 0.
   contacts.addBody(set, matter.updGround(), SimTK::ContactGeometry::HalfSpace(),
                    SimTK::Transform(SimTK::Rotation(0.5 * kPi, SimTK::YAxis)));
   SimTK::MobilizedBody::Translation sphere(
@@ -55,8 +59,8 @@ double peer_force(const TriMesh& mesh) {
   return system.getRigidBodyForces(state, SimTK::Stage::Dynamics)[sphere.getMobilizedBodyIndex()][1][2];
 }
 
-/// Ours, on the same triangles.  Fault "projected-area": the law of volumes, with areas seen along the
-/// normal.
+/// Returns the force by nearest points on the same triangles [N]. Fault "projected-area": the volume law,
+/// with areas projected along the normal.
 double our_force(TriMesh mesh, const std::string& fault) {
   mesh.vertices.row(2).array() += kRadius - kDepth;
   SurfaceBody body(mesh);

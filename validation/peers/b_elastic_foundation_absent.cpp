@@ -1,6 +1,6 @@
 #include "cases.h"
 
-// In a build without Simbody the registry leaves this case out.
+// Without Simbody the registry omits this case.
 namespace palpate::validation {
 
 ValidationCase elastic_foundation_peer() { return {}; }

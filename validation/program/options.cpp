@@ -26,7 +26,7 @@ void add_validate(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1, 1024));
   command->add_flag("--inject-faults", arguments->inject_faults,
                     "break the library on purpose: what each fault is measured by must then fail");
-  command->add_flag("--sabotage", arguments->inject_faults)->group("");  // its name before 0.1, not shown
+  command->add_flag("--sabotage", arguments->inject_faults)->group("");  // Its name before 0.1, hidden.
   command->add_option("-o,--output", arguments->folder, "also write validation.json and report.html here")
       ->type_name("DIR");
   command->footer(R"(Examples:

@@ -8,12 +8,12 @@
 namespace palpate::cli {
 
 struct ValidateArguments {
-  std::vector<std::string> cases;  ///< empty: all
-  bool slow = false;               ///< also the slow cases, where no case is named
-  bool quick = false;              ///< the quick cases alone, where no case is named
-  int jobs = 0;                    ///< cases side by side; 0: as many as there are cores
-  bool inject_faults = false;      ///< break the physics of each case on purpose: every one must then fail
-  std::string folder;              ///< validation.json and report.html go here; empty: nowhere
+  std::vector<std::string> cases;  ///< Empty: all.
+  bool slow = false;               ///< Also the slow cases, if no case is named.
+  bool quick = false;              ///< Only the quick cases, if no case is named.
+  int jobs = 0;                    ///< Cases run in parallel; 0: number of cores.
+  bool inject_faults = false;      ///< Injects faults into the physics of each case: each must then fail.
+  std::string folder;              ///< Folder for validation.json and report.html; empty: none are written.
 };
 int validate(const ValidateArguments& arguments);
 

@@ -21,10 +21,11 @@ namespace {
 using stability::StabilityCell;
 using stability::Verdict;
 
-/// One letter a cell: the matrix fits a terminal.
+/// Returns one letter per cell, so that the matrix fits a terminal.
 char letter(const StabilityCell& cell) { return "ASBEGNFTW"[static_cast<std::size_t>(cell.verdict)]; }
 
-/// A row of letters a case, one column an integrator; a cell that differs from what theory expects is marked.
+/// Prints one row of letters per case, one column per integrator; marks cells that differ from the
+/// expectation.
 void print_matrix(const stability::StabilityMatrix& matrix) {
   std::vector<std::string> integrators;
   std::vector<std::pair<std::string, std::map<std::string, std::string>>> rows;

@@ -53,7 +53,7 @@ std::vector<std::string> row(const ValidationCase& one, const Measurement& m) {
           m.passed() ? "pass" : "FAIL"};
 }
 
-/// JSON has no NaN: what does not apply is null.
+/// Converts a number to JSON, which has no NaN: a quantity that does not apply is null.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json numbers(const std::vector<double>& values) {
@@ -62,7 +62,7 @@ Json numbers(const std::vector<double>& values) {
   return out;
 }
 
-/// Null where nothing is refined.
+/// Returns null if nothing is refined.
 Json to_json(const validation::Refinement& r) {
   if (r.size.empty()) return nullptr;
   Json out = {{"size_label", r.size_label}, {"size", numbers(r.size)}, {"error", numbers(r.error)}};
@@ -99,7 +99,7 @@ struct Run {
   int failed = 0;
 };
 
-/// A row of words alone, as long as those of figures.
+/// Returns a row with text only, as long as the rows with figures.
 std::vector<std::string> row_of_words(const ValidationCase& one, const std::string& words) {
   return {one.name, words, "-", "-", "-", "-", "-", "FAIL"};
 }
@@ -112,8 +112,8 @@ void take(const ValidationCase& one, const CaseEnd& end, Run& out) {
   if (!all_pass(end.measurements)) ++out.failed;
 }
 
-/// A measurement that still passes with its physics broken is worthless, and a case that breaks measures
-/// nothing.
+/// Records a run with a fault: a measurement that still passes with its physics broken is worthless, and a
+/// case that throws measures nothing.
 void take_fault(const CaseRun& run, const CaseEnd& end, Run& out) {
   const bool found = end.broken.empty() && run.fault->is_found(end.measurements);
   out.rows.push_back({run.one->name, run.fault->name, run.fault->fails,
@@ -123,7 +123,7 @@ void take_fault(const CaseRun& run, const CaseEnd& end, Run& out) {
   if (!found) ++out.failed;
 }
 
-/// Each case once, or once with each of its faults.
+/// Returns one run per case, or one per fault of each case.
 std::vector<CaseRun> runs_of(const std::vector<const ValidationCase*>& cases, bool with_faults) {
   std::vector<CaseRun> out;
   for (const ValidationCase* one : cases) {
@@ -134,7 +134,7 @@ std::vector<CaseRun> runs_of(const std::vector<const ValidationCase*>& cases, bo
   return out;
 }
 
-/// A line a case: its section, and what its figures mean.
+/// Prints one line per case: its section and the meaning of its figures.
 void print_meanings(const std::vector<const ValidationCase*>& cases) {
   std::vector<std::vector<std::string>> rows;
   for (const ValidationCase* one : cases) rows.push_back({one->name, one->section, one->summary});

@@ -14,7 +14,7 @@ namespace {
 using validation::Measurement;
 using validation::ValidationCase;
 
-constexpr double kLimitS = 7200.0;  // of CPU: what takes longer hangs
+constexpr double kLimitS = 7200.0;  // [s] of CPU time, after which a case counts as hanging.
 
 std::string encode_job(const CaseRun& run) {
   ByteWriter out;
@@ -23,7 +23,7 @@ std::string encode_job(const CaseRun& run) {
   return out.take();
 }
 
-/// A ProcessPool::Work: runs the case that encode_job() said.
+/// A ProcessPool::Work: runs the case encoded by encode_job().
 std::string run_job(const std::string& order, const std::atomic<bool>&) {
   ByteReader in(order);
   const ValidationCase& one =

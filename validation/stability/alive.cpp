@@ -17,7 +17,7 @@ std::string does_not_move(const CaseContext& context, scene::Description d, doub
     const Points shift = world.positions(world.bodies[0]) - world.bodies[0].placed;
     if (!(t > 0.0)) return;
     const double off = (shift.colwise() - t * speed).norm() / (t * speed.norm());
-    if (!(off <= most)) most = off;  // NaN stays
+    if (!(off <= most)) most = off;  // Keeps a NaN.
     ++periods;
   });
   if (!course.result.ok()) return fmt::format("let go at a speed, it ended: {}", course.result.message);

@@ -5,7 +5,7 @@
 
 namespace palpate::stability {
 
-/// A number that is not finite is null: JSON has no NaN.
+/// Encodes a cell; a number that is not finite becomes null, as JSON has no NaN.
 nlohmann::ordered_json cell_to_json(const StabilityCell& cell);
 StabilityCell cell_from_json(const nlohmann::json& json);
 

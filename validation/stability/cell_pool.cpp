@@ -11,7 +11,7 @@
 namespace palpate::stability {
 namespace {
 
-/// The cell that a process sent, or one made of the way the process ended.
+/// Returns the cell sent by a process, or a cell that describes the way in which the process ended.
 StabilityCell cell_of(const Task& task, const ProcessPool::Outcome& outcome) {
   using End = ProcessPool::Outcome::End;
   if (outcome.end == End::kDone) return cell_from_json(nlohmann::json::parse(outcome.bytes));
@@ -24,7 +24,8 @@ StabilityCell cell_of(const Task& task, const ProcessPool::Outcome& outcome) {
   return cell;
 }
 
-/// A cell as bytes, for a process that knows nothing of this matrix but the rows, which are always the same.
+/// Encodes a cell as bytes for a process that has no access to this matrix except its rows, which are
+/// constant.
 std::string encode_job(const Task& task, const StabilityOptions& options, double limit_s) {
   const auto registry = options.registry ? options.registry : &integrate::stepper_registry;
   ByteWriter out;
@@ -40,7 +41,7 @@ const Named& named(const std::vector<Named>& all, std::string Named::*name, cons
   fail("the process of a cell does not know \"{}\"", requested);
 }
 
-/// A ProcessPool::Work: runs the cell that encode_job() said.
+/// A ProcessPool::Work: runs the cell encoded by encode_job().
 std::string run_job(const std::string& order, const std::atomic<bool>& expired) {
   ByteReader in(order);
   const auto row_name = in.get<std::string>(), case_name = in.get<std::string>(),

@@ -10,14 +10,14 @@ struct Task {
   const Column* column = nullptr;
 };
 
-/// Runs one cell until `expired` becomes true.  Never throws: a refusal (Error) is an acceptable end, any
+/// Runs one cell until `expired` becomes true. Never throws: a rejection (Error) is an acceptable end, any
 /// other exception is not.
-/// @param limit_s  CPU time after which `expired` becomes true, for the message
+/// @param limit_s CPU time [s] after which `expired` becomes true, for the message
 StabilityCell run_cell(const Task& task, int seeds, double limit_s, const std::atomic<bool>& expired);
 
-/// Runs all cells, each in a process of its own, `jobs` at a time, and returns them in the order of the
-/// tasks.  A process that dies or ignores its limit leaves a cell with that verdict.  Cells that were not
-/// begun when `stop` became true are left out.
+/// Runs all cells, each in a separate process, `jobs` at a time, and returns them in the order of the tasks.
+/// A process that crashes or exceeds its limit leaves a cell with this verdict. Cells not started when `stop`
+/// became true are omitted.
 std::vector<StabilityCell> run_cells(const std::vector<Task>& tasks, const StabilityOptions& options);
 
 }  // namespace palpate::stability

@@ -18,7 +18,7 @@ std::vector<Column> stepper_columns(const dynamics::StepperRegistry& registry) {
     if (control == StepControl::kEither)
       columns.push_back({entry.name + ", fixed step", entry.name, &entry, true});
   }
-  // side by side they show the effect of error control
+  // Adjacent columns show the effect of error control.
   std::stable_partition(columns.begin(), columns.end(), [](const Column& column) { return !column.fixed; });
   return columns;
 }
@@ -42,7 +42,7 @@ IntegratorSpec spec_of(const Column& column, double rtol, double step_s) {
 
 std::unique_ptr<dynamics::Stepper> make_stepper(const Column& column, dynamics::System& system,
                                                 dynamics::State& state, const IntegratorSpec& spec) {
-  const dynamics::StepperTraits& traits = column.entry->traits;  // the entry may be in no registry
+  const dynamics::StepperTraits& traits = column.entry->traits;  // The entry may be in no registry.
   auto solver = traits.implicit
                     ? linear::make_linear_solver(
                           spec.linear_solver.empty() ? traits.linear_solver : spec.linear_solver, spec)

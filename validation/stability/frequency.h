@@ -3,7 +3,7 @@
 
 namespace palpate::stability {
 
-/// Largest w of K phi = w^2 M phi at a state [rad/s]; dense: small systems.
+/// Returns the largest w of K phi = w^2 M phi at a state [rad/s]; dense, for small systems.
 double largest_frequency(dynamics::System& system, const dynamics::StateView& state);
 
 }  // namespace palpate::stability

@@ -4,49 +4,50 @@
 
 namespace palpate::stability {
 
-inline constexpr int kLinearPeriods = 40;    ///< of H each
-inline constexpr double kLinearRtol = 1e-6;  ///< of the columns under error control
-/// Of elements: a hundred times looser, for their displacements are 1e-5 of positions that have a rounding.
+inline constexpr int kLinearPeriods = 40;    ///< Number of periods H.
+inline constexpr double kLinearRtol = 1e-6;  ///< For the columns under error control.
+/// Returns the tolerance. For elements it is a hundred times looser: their displacements are 1e-5 of
+/// positions with rounding errors.
 inline double linear_rtol(const LinearProblem& problem) {
   return problem.is_by_elements() ? 100.0 * kLinearRtol : kLinearRtol;
 }
-inline constexpr double kAccurate = 0.05;   ///< error of a fixed step that counts as accurate
-inline constexpr int kLastPeriod = 20000;   ///< a run whose formula overflows is followed to here
-inline constexpr double kLinearUpTo = 1e2;  ///< elements that grow are followed to this energy
+inline constexpr double kAccurate = 0.05;   ///< Largest error of a fixed step that counts as accurate.
+inline constexpr int kLastPeriod = 20000;   ///< A run whose formula overflows is followed up to this period.
+inline constexpr double kLinearUpTo = 1e2;  ///< Growing elements are followed up to this energy.
 
-/// What a run is judged by, or what the formula of its method says of it beforehand.
+/// Quantities that determine the verdict of a run, measured or predicted by the formula of its method.
 struct LinearOutcome {
-  double highest = 1.0;  ///< energy over that of the start
-  double error = 0.0;    ///< largest; for fixed steps and statics over the second half
+  double highest = 1.0;  ///< Energy over the initial energy.
+  double error = 0.0;    ///< Largest; for fixed steps and statics over the second half.
   bool overflows = false;
 };
 
-/// A fixed-step column's outcome by its formula alone (modal_steps.h).
+/// Returns the outcome of a fixed-step column from its formula alone (modal_steps.h).
 LinearOutcome predict_linear(const Column& column, const LinearProblem& problem, double H);
 
-/// Bars that separate the verdicts of an outcome; derivation in linear_theory.cpp.
+/// Limits that separate the verdicts of an outcome; derivation in linear_theory.cpp.
 struct LinearBars {
-  double error;      ///< accurate up to here
-  double kept;       ///< energy gain that counts as none
-  double gain;       ///< largest energy gain that theory knows a reason for
-  double agreement;  ///< with the formula of a fixed-step method, of the largest size of its course
+  double error;      ///< Accurate up to this error.
+  double kept;       ///< Energy gain that counts as none.
+  double gain;       ///< Largest energy gain explained by theory.
+  double agreement;  ///< With the formula of a fixed-step method, relative to the largest size of its course.
 };
 Verdict verdict_of(const LinearOutcome& outcome, const LinearBars& bars);
 LinearBars linear_bars(const Column& column, const LinearProblem& problem, double H, double highest,
                        long steps);
 
-/// Theoretical expectation of a column on a linear problem with periods (and fixed steps) of `H`; derivation
-/// in linear_theory.cpp.
+/// Returns the theoretical expectation for a column on a linear problem with periods (and fixed steps) `H`;
+/// derivation in linear_theory.cpp.
 Verdicts expect_linear(const CaseContext& context, const LinearProblem& problem, double H);
 
-/// The time [s] that a column under error control must have reached, accurately, before it may say that it
-/// has no steps left.
+/// Returns the time [s] that a column under error control must have reached, accurately, before it may end
+/// for lack of steps.
 double least_progress(const Column& column, const LinearProblem& problem);
 
-/// Runs the column over the problem and compares it with the exact motion, and with its own formula.
+/// Runs the column on the problem and compares it with the exact motion and with the formula of the method.
 StabilityCell linear_cell(const CaseContext& context, const LinearProblem& problem, double H);
 
-/// A case of a row: expect_linear() and linear_cell() of the problem that `make` builds.
+/// Returns a case of a row: expect_linear() and linear_cell() of the problem built by `make`.
 SubCase linear_case(std::string name, std::function<LinearProblem()> make, double H);
 
 }  // namespace palpate::stability

@@ -8,27 +8,27 @@
 namespace palpate::stability {
 namespace {
 
-/// An energy, over that of the start, from which on a run may end.  The first to give up is ARKODE: where the
-/// rounding of q, eps |q|, is above its tolerance rtol atol_q q_scale, so at |q| = 5e7 of the start, an
-/// energy of 2e15, or in the step before that.  The fast side of a multi-rate method meets what a slow step
-/// has on its way, with a contact up to w H (w_C H)^2 times what it ends with.
+/// Energy over the initial energy from which a run may fail. ARKODE is the first to fail: where the
+/// rounding of q, eps |q|, is above its tolerance rtol atol_q q_scale, thus at |q| = 5e7 times the initial
+/// one, an energy of 2e15, or in the step before. The fast side of a multi-rate method passes through
+/// intermediate values of a slow step, with a contact up to w H (w_C H)^2 times the final ones.
 constexpr double kOverflowing = 1e10, kOverflowingOnItsWay = 1e3;
-/// Energies up to here are compared with the formula's.
+/// Energies up to this one are compared with the formula's.
 constexpr double kComparable = 1e250;
 
 struct Course {
   dynamics::StepResult result;
   LinearOutcome seen;
-  double departure = 0.0;  ///< from the formula's course, of its size
-  double predicted = 1.0;  ///< highest energy so far by the formula, a failed step included
+  double departure = 0.0;  ///< From the formula's course, relative to its size.
+  double predicted = 1.0;  ///< Highest energy so far by the formula, including a failed step.
   bool finite = true, interrupted = false;
-  bool left_linear = false;  ///< of elements: grown, as predicted, beyond where they are linear
+  bool left_linear = false;  ///< Elements: grown, as predicted, beyond their linear range.
 };
 
 Course follow(const CaseContext& context, const LinearProblem& problem, LinearProblem::Instance& run,
               dynamics::Stepper& stepper, double H) {
   const bool by_formula = has_modal_steps(context.column);
-  // stiff transients of a fixed step are over by then
+  // The stiff transients of a fixed step have decayed by then.
   const int settled = context.column.fixed || is_static(context.column) ? kLinearPeriods / 2 : 0;
   std::optional<PredictedCourse> formula;
   if (by_formula) formula.emplace(context.column, problem, H);
@@ -63,7 +63,8 @@ Course follow(const CaseContext& context, const LinearProblem& problem, LinearPr
   return course;
 }
 
-/// An end with an error must have a reason: overflow of a fixed step, the limit of steps under error control.
+/// Checks the reason of an early end with an error: overflow for a fixed step, the limit of steps under error
+/// control.
 void judge_early_end(const CaseContext& context, const LinearProblem& problem, const Course& course,
                      const LinearProblem::Instance& last, double bar, StabilityCell& cell) {
   if (cell.verdict != Verdict::kError) return;

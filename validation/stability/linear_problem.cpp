@@ -12,7 +12,7 @@
 namespace palpate::stability {
 namespace {
 
-/// The stiffness of a mesh at rest, free directions only.
+/// Returns the stiffness of a mesh at rest, in its free directions.
 MatX rest_stiffness(const TetMesh& rest, const fem::Material& material, const std::vector<int>& free) {
   dynamics::State state;
   dynamics::BlockSpec spec;
@@ -31,10 +31,10 @@ MatX rest_stiffness(const TetMesh& rest, const fem::Material& material, const st
 
 using Complex = std::complex<double>;
 
-/// a(t) and a'(t) of a'' + 2 z w a' + w^2 a = 0 with a(0) = a0, a'(0) = 0, by the two roots s of
+/// Returns a(t) and a'(t) of a'' + 2 z w a' + w^2 a = 0 with a(0) = a0, a'(0) = 0, by the two roots s of
 ///     s^2 + 2 z w s + w^2.
-/// Where the roots nearly coincide they are moved apart by a relative 1e-6, an error of about 1e-12.  The
-/// small root of an overdamped mode is w^2 over the large one: no cancellation.
+/// Roots that nearly coincide are separated by a relative 1e-6, an error of about 1e-12. The small root of an
+/// overdamped mode is w^2 over the large one, which avoids cancellation.
 std::pair<double, double> oscillator(double w, double z, double a0, double t) {
   if (std::abs(z - 1.0) < 1e-12) z = 1.0 + 1e-12;
   const Complex root = std::sqrt(Complex(z * z - 1.0));
@@ -70,9 +70,9 @@ LinearProblem::LinearProblem(double omega, double damping_ratio, double contact_
   find_modes();
 }
 
-// M^-1/2 K M^-1/2 in extended precision: of a mesh with slivers the squares of the frequencies span 1e13, and
-// the lowest must not drown in the rounding of the highest.  Amplitude 1/w_j with alternating signs: each
-// mode holds 1/2 J.
+// Solves M^-1/2 K M^-1/2 in extended precision: with slivers in the mesh the squares of the frequencies span
+// 1e13, and the lowest must not be lost in the rounding of the highest. The amplitude is 1/w_j with
+// alternating signs: each mode has 1/2 J.
 void LinearProblem::find_modes() {
   using MatL = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   const Eigen::Matrix<long double, Eigen::Dynamic, 1> root =
@@ -168,8 +168,8 @@ std::unique_ptr<LinearProblem::Instance> LinearProblem::start() const {
   return out;
 }
 
-// The energy is evaluated in modal coordinates, where it is a sum of squares: with a stiff K, q.K q would
-// lose its small modes to rounding.
+// Evaluates the energy in modal coordinates, where it is a sum of squares: with a stiff K, q.K q would lose
+// its small modes to rounding.
 double LinearProblem::energy_of(const VecX& q, const VecX& u) const {
   const VecX a = phi_.transpose() * mass_.cwiseProduct(q);
   return 0.5 * (u.dot(mass_.cwiseProduct(u)) + omega_.cwiseProduct(a).squaredNorm());
@@ -209,7 +209,7 @@ double LinearProblem::largest_speed_rms() const {
 //     |dq| <= sqrt(2n) rtol atol_q q_scale,   |du| <= sqrt(2n) rtol (atol_u u_scale + rms u),
 // and the energy of such an error is
 //     2E = du.M du + dq.K dq <= m_max |du|^2 + w_max^2 m_max |dq|^2.
-// (The sum of both bounds, where only one of them can be reached, is up to 1.4 too much.)
+// (The sum of both bounds, of which only one can be reached, overestimates by up to 1.4.)
 double LinearProblem::tolerance(const IntegratorSpec& spec, double speed) const {
   const double heaviest = mass_.maxCoeff(), count = 2.0 * static_cast<double>(mass_.size());
   const double dq = spec.atol_q * q_scale_, du = spec.atol_u * u_scale_ + speed;

@@ -3,8 +3,8 @@
 
 namespace palpate::stability {
 
-/// f = -K (q + beta u) with a constant dense K over all nodes: exactly linear, so no rounding of rotations
-/// hides what an integrator does.
+/// f = -K (q + beta u) with a constant dense K over all nodes: exactly linear, so that rounding of rotations
+/// does not hide the behaviour of an integrator.
 class LinearTerm final : public dynamics::ForceTerm {
  public:
   LinearTerm(MatX K, double beta, bool contact) : K_(std::move(K)), beta_(beta), contact_(contact) {}
@@ -42,7 +42,7 @@ class LinearTerm final : public dynamics::ForceTerm {
   bool contact_;
 };
 
-/// Any diagonal mass over one node block.
+/// Diagonal mass over one node block.
 class DiagonalMass final : public dynamics::InertiaTerm {
  public:
   DiagonalMass(int block, VecX mass) : block_(block), mass_(std::move(mass)) {}

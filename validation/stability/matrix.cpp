@@ -31,7 +31,7 @@ StabilityMatrix run(const StabilityOptions& options) {
   for (const Column& column : tool_columns()) known.push_back(column.name);
   check_names(options.integrators, known, "integrator");
 
-  std::vector<std::vector<Column>> columns;  // of each row: tasks point into them
+  std::vector<std::vector<Column>> columns;  // Columns of each row; tasks point into them.
   for (const Row& row : rows) columns.push_back(columns_of(row, registry));
   std::vector<Task> tasks;
   for (std::size_t r = 0; r < rows.size(); ++r) {

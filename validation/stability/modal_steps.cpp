@@ -15,13 +15,12 @@
 //   classical Runge-Kutta                   1 + Z + Z^2/2 + Z^3/6 + Z^4/24
 //   symplectic Euler                        a' <- (1 - 2 z y) a' - y (w a),  then  w a <- w a + y a'
 //   BDF2                                    (3/2 - Z) x2 = 2 x1 - x0/2; the first step by Alexander's SDIRK
-//   of
-//                                           order 2, s = 1 - 1/sqrt 2: (1 - s Z)^-2 (1 + (1 - 2 s) Z)
+//                                           of order 2, s = 1 - 1/sqrt 2: (1 - s Z)^-2 (1 + (1 - 2 s) Z)
 //   generalised-alpha (Chung and Hulbert 1993), X = [D; V; A] = [w a; w H a'; w H^2 a''] = [w a; y a'; ..]:
 //     (1 - am) A1 + am A0 = -y^2 D_f - 2 z y V_f,      D_f = (1 - af) D1 + af D0, V_f alike,
 //     D1 = D0 + V0 + (1/2 - b) A0 + b A1,      V1 = V0 + (1 - g) A0 + g A1;  at first A0 = -y^2 D0 - 2 z y V0
-//   methods of SUNDIALS                     R(Z) of their tables (integrate/linear_step.h); of a contact
-//                                           with the share c of the force, additive methods have
+//   methods of SUNDIALS                     R(Z) of their tables (integrate/linear_step.h); for a contact
+//                                           with the fraction c of the force, additive methods have
 //                                           Z^ = c [0 0; -y -2zy] on the explicit side, multi-rate ones on
 //                                           the fast one, and Z - Z^ on the other
 
@@ -80,7 +79,7 @@ void ModalSteps::bdf2(const MatX& Z) {
 void ModalSteps::generalized_alpha(double y, double z, double r) {
   const double am = (2.0 * r - 1.0) / (r + 1.0), af = r / (r + 1.0), g = 0.5 - am + af,
                b = 0.25 * (1.0 - am + af) * (1.0 - am + af);
-  // left [D1; V1; A1] = right [D0; V0; A0], in X = [D; V/y; A/y^2], where no entry is large
+  // Left [D1; V1; A1] = right [D0; V0; A0], in X = [D; V/y; A/y^2], in which no entry is large.
   const double k = y * y, d = 2.0 * z * y;
   MatX left(3, 3), right(3, 3);
   left << 1.0, 0.0, -b, 0.0, 1.0, -g, (1.0 - af) * k, (1.0 - af) * d, 1.0 - am;

@@ -4,21 +4,21 @@
 namespace palpate::stability {
 
 /// One oscillator a'' + 2 z w a' + w^2 a = 0 under a method at fixed steps H, from the method's formula
-/// alone: the method is not run.  In x = [w a; a'] the energy is |x|^2/2, and with y = w H the step depends
-/// on y and z only.  A method that carries more than x along (an acceleration, the last step) has it behind
-/// x.
+/// alone: the method is not run. In x = [w a; a'] the energy is |x|^2/2, and with y = w H the step depends
+/// only on y and z. A method with more variables than x (an acceleration, the last step) has them after x.
 class ModalSteps {
  public:
-  /// @param contact_share  of the force, that additive methods take explicitly and multi-rate ones fast
-  /// @throws Error where the method has no formula here
+  /// @param contact_share fraction of the force that additive methods treat explicitly and multi-rate methods
+  /// fast
+  /// @throws Error if the method has no formula here
   ModalSteps(const Column& column, double y, double z, double contact_share = 0.0);
 
   VecX start(const Eigen::Vector2d& x) const { return start_ * x; }
-  /// The state after the first step from start(), and after each further one.
+  /// Propagation of the state from start() over the first step, and over each further step.
   const MatX& first() const { return first_; }
   const MatX& next() const { return next_; }
   double spectral_radius() const;
-  /// Largest factor by which one step from start() can multiply the amplitude |x|.
+  /// Returns the largest factor by which one step from start() can multiply the amplitude |x|.
   double norm_of_first() const;
 
  private:
@@ -28,7 +28,7 @@ class ModalSteps {
   MatX start_, first_, next_;
 };
 
-/// All fixed-step columns but statics.
+/// Returns whether the formula exists: all fixed-step columns but statics.
 bool has_modal_steps(const Column& column);
 
 }  // namespace palpate::stability

@@ -4,10 +4,9 @@
 
 #include "integrate/multirate.h"
 
-// Multi-rate methods are A-stable for each side alone.  For two sides that are stiff in each other no theorem
-// is known, so the matrix of their step is made from the coupling tables
-// (integrate::multirate_amplification): with y = [q; u] and K, D of the terms of each side (contact and what
-// calls itself fast on the fast one),
+// Multi-rate methods are A-stable for each side alone. No theorem is known for two sides that are mutually
+// stiff, so the matrix of a step is assembled from the coupling tables (integrate::multirate_amplification).
+// With y = [q; u] and K, D of the terms of each side (contact and terms declared fast on the fast one),
 //     S = [0 1; -M^-1 K_S  -M^-1 D_S],    F = [0 0; -M^-1 K_F  -M^-1 D_F].
 
 namespace palpate::stability {

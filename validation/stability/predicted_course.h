@@ -7,16 +7,19 @@
 
 namespace palpate::stability {
 
-/// What a method at fixed steps H makes of a linear problem, mode by mode, by its formula (modal_steps.h).
+/// Course of a linear problem under a method at fixed steps H, mode by mode, from its formula
+/// (modal_steps.h).
 class PredictedCourse {
  public:
   PredictedCourse(const Column& column, const LinearProblem& problem, double H);
-  void advance();  ///< one step
+  void advance();  ///< Performs one step.
   const LinearProblem::Points2& modes() const { return modes_; }
-  double highest() const { return highest_; }  ///< energy over that of the start; infinite once it overflows
-  /// Largest |x_n| so far, all modes together, over that of the start: the size that rounding is relative to.
+  /// Returns the highest energy so far over the initial energy; infinite once it overflows.
+  double highest() const { return highest_; }
+  /// Returns the largest |x_n| so far, all modes together, over the initial one: the size to which rounding
+  /// is relative.
   double size() const { return std::sqrt(highest_); }
-  double spectral_radius() const;  ///< the largest of a mode's step
+  double spectral_radius() const;  ///< Largest over the modes' steps.
 
  private:
   const LinearProblem& problem_;

@@ -13,44 +13,44 @@ namespace palpate::stability {
 struct CaseContext {
   const Column& column;
   int seeds = 10;
-  const std::atomic<bool>* expired = nullptr;  ///< the cell's time is up
+  const std::atomic<bool>* expired = nullptr;  ///< Time limit of the cell.
   bool time_is_up() const { return expired && expired->load(std::memory_order_relaxed); }
 };
 
-/// Decides whether a run ended before its time, and sets the verdict of `cell`: too slow, not finite, grown,
-/// error, silent.  False where it reached its end.  An implicit method that first grows beyond every bound
-/// and then fails has no acceptable end: only an explicit one may end so.
-/// @param grown  whether the bound on energy or motion was passed
+/// Determines whether a run ended early, and sets the verdict of `cell`: too slow, not finite, grown, error,
+/// silent. Returns false if it reached its end. For an implicit method, growth beyond every bound followed by
+/// a failure is not an acceptable end: only an explicit method may end in this way.
+/// @param grown whether the bound on energy or motion was exceeded
 bool ended_early(const Column& column, const dynamics::StepResult& result, bool finite, bool interrupted,
                  bool grown, StabilityCell& cell);
 
-/// Sets the verdict "wrong" where `mistake` is not empty, before what the cell says already.
+/// Sets the verdict "wrong" if `mistake` is not empty, and puts it before the cell's present reason.
 void mark_wrong(const std::string& mistake, StabilityCell& cell);
 
 struct SubCase {
   std::string name;
-  std::function<Verdicts(const CaseContext&)> expect;  ///< from theory, before anything of the case has run
-  /// Runs it: verdict and figures.  May throw Error (a refusal: that is an acceptable end).
+  std::function<Verdicts(const CaseContext&)> expect;  ///< From theory, before any part of the case has run.
+  /// Runs the case and returns verdict and figures. May throw Error (a rejection, which is an acceptable
+  /// end).
   std::function<StabilityCell(const CaseContext&)> run;
 };
 
-/// Which columns a row has.
+/// Columns of a row.
 enum class RowColumns {
   kSteppers,
-  kFixedSteppers,  ///< those that move at fixed steps: no error control, no statics
-  kFamilies,       ///< a few of those, one for each way of stepping
-  kSplitting,      ///< additive and multi-rate methods
+  kFixedSteppers,  ///< Methods that move at fixed steps: no error control, no statics.
+  kFamilies,       ///< A few fixed steppers, one per way of stepping.
+  kSplitting,      ///< Additive and multi-rate methods.
   kTools
 };
 
-/// One row of section F.  Each stands in a file of its own, with the theory that its expectations follow from
-/// on top.
+/// One row of section F. Each has a separate file, with the theory of its expectations on top.
 struct Row {
   std::string name, summary;
   RowColumns columns = RowColumns::kSteppers;
   bool slow = false;
   std::vector<SubCase> cases{};
-  std::size_t core = 0;  ///< the sub-case that stands for the row in the core of the matrix
+  std::size_t core = 0;  ///< Sub-case that represents the row in the core of the matrix.
 };
 
 Row youngs_modulus_row();

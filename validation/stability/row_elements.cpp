@@ -3,9 +3,9 @@
 #include "linear.h"
 #include "palpate/mesh/generators.h"
 
-// The clamped block of row_material.cpp, moved by the elements' own code: forces, tangents, damping of a soft
-// body with held nodes, displaced by 1e-5 of its size, where corotational elements are linear.  Expectations
-// are those of linear_theory.cpp, from the stiffness at rest alone.
+// The clamped block of row_material.cpp, moved by the element code: forces, tangents and damping of a soft
+// body with held nodes, displaced by 1e-5 of its size, where corotational elements are linear. Expectations
+// follow from linear_theory.cpp, with the stiffness at rest alone.
 
 namespace palpate::stability {
 namespace {

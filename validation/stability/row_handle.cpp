@@ -4,29 +4,31 @@
 #include "palpate/tool/tool.h"
 #include "scene_run.h"
 
-// The tool alone under its virtual coupling (m, I; k, b; k_r, b_r), against every integrator of its ticks of
+// The tool alone under its virtual coupling (m, I; k, b; k_r, b_r), with every integrator of its ticks of
 // h = 1 ms.
 //
-// Thrown: the handle jumps by d = 1 m at one tick and stays.  The coupling then stores 1/2 k d^2 and is
-// passive: the tool is never farther from the handle than d, and slower than d sqrt(k/m).  Stable: within
-// both, to 1 %.  Bounded: ten times.  And it must come: an oscillator of w = sqrt(k/m), s = b/(2 m) < w is
-// within d e^(-s T)/sqrt(1 - (s/w)^2) after T; twice that covers the damping that ticks of w h = 0.05 add.
+// Thrown: the handle jumps by d = 1 m at one tick and remains there. The coupling then stores 1/2 k d^2 and
+// is passive: the tool is never farther from the handle than d, and slower than d sqrt(k/m). Stable: within
+// both, to 1 %. Bounded: ten times. And it must arrive: an oscillator with w = sqrt(k/m), s = b/(2 m) < w is
+// within d e^(-s T)/sqrt(1 - (s/w)^2) after T; twice this covers the damping added by ticks of w h = 0.05.
 //
-// Spun: the handle rotates at W = 1000 rad/s, a radian a tick, about one axis.  The moment is at most
+// Spun: the handle rotates at W = 1000 rad/s, one radian per tick, about one axis. The moment is at most
 //     k_r pi + b_r (W - w):
-// the tool is braked as soon as b_r (w - W) > k_r pi, so w <= W + k_r pi/b_r.  Stable: within it, to 1 %.
-// Bounded: ten times.  The ticks see the handle's angle modulo 2 pi only: which way round the spring pulls is
-// chance, the bound does not care.  It must be taken along: I w' >= b_r (W - w) - k_r pi brings it to w >= W
-// - k_r pi/b_r at the rate b_r/I, 12 of its times in the 50 ticks; 9/10 of that is asked for.
+// the tool is braked as soon as b_r (w - W) > k_r pi, so w <= W + k_r pi/b_r. Stable: within it, to 1 %.
+// Bounded: ten times. The ticks resolve the handle's angle only modulo 2 pi: the direction in which the
+// spring pulls is arbitrary, and the bound holds for either. The tool must be carried along: I w' >= b_r (W -
+// w) - k_r pi brings it to w >= W - k_r pi/b_r at the rate b_r/I, 12 time constants in the 50 ticks; 9/10 of
+// this is required.
 //
-// An explicit scheme has a limit, which is kept here (k h^2/m = 3e-3, b h/m = 0.02, k_r h^2/I = 0.08, b_r h/I
-// = 0.25, all well below 2).  So for all schemes:
+// An explicit scheme has a limit, which is satisfied here (k h^2/m = 3e-3, b h/m = 0.02, k_r h^2/I = 0.08,
+// b_r h/I = 0.25, all well below 2). So for all schemes:
 //   -> stable, bounded
 //
-// A million ticks, the handle at rest and the tool on it: the coupling's wrench is zero to rounding and its
-// damper takes what rounding puts in; drift below 1e-12 m and rad, and memory does not grow.
+// A million ticks, with handle and tool at rest at the same place: the coupling's wrench is zero to rounding
+// and its damper dissipates the energy due to rounding; drift below 1e-12 m and rad, and memory does not
+// grow.
 //   -> accurate
-// With the tool also pulled by a constant contact force F, it rests F/k away, and stays there to 1e-9 F/k.
+// With the tool also pulled by a constant contact force F, it rests at the distance F/k, to 1e-9 F/k.
 //   -> accurate
 
 namespace palpate::stability {
@@ -45,11 +47,11 @@ ToolSpec tool_spec(const CaseContext& context) {
 struct Motion {
   dynamics::StepResult result;
   bool finite = true, interrupted = false;
-  double distance = 0.0, speed = 0.0, spin = 0.0;  ///< largest, from the handle's last position
+  double distance = 0.0, speed = 0.0, spin = 0.0;  ///< Largest, from the handle's last position.
   double last_distance = 0.0, last_spin = 0.0;
 };
 
-/// `handle(i)`: pose and twist at the end of tick i.
+/// Moves the tool with the handle; `handle(i)` returns pose and twist at the end of tick i.
 Motion move(const CaseContext& context, tool::Tool& tool, int ticks,
             const std::function<std::pair<Pose, Twist>(int)>& handle) {
   Motion motion;
@@ -74,7 +76,8 @@ Motion move(const CaseContext& context, tool::Tool& tool, int ticks,
   return motion;
 }
 
-/// @param follows  whether the tool went along with the handle as it must
+/// Returns the verdict for a ratio of motion to its bound.
+/// @param follows whether the tool followed the handle as required
 StabilityCell judge_ratio(const CaseContext& context, const Motion& motion, double ratio, bool follows,
                           const char* what) {
   StabilityCell cell;
@@ -117,7 +120,7 @@ StabilityCell spun(const CaseContext& context, int ticks) {
                      motion.last_spin >= 0.9 * (kSpin - by_spring), "spin");
 }
 
-/// Largest distance from where it should rest, over a million ticks, after the first ten thousand.
+/// Measures the largest distance from the rest position over a million ticks, after the first ten thousand.
 StabilityCell million(const CaseContext& context, double force) {
   constexpr int kTicks = 1000000, kSettling = 10000;
   const ToolSpec spec = tool_spec(context);

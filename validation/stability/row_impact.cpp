@@ -2,17 +2,16 @@
 
 #include "throw.h"
 
-// A slab of 5 mm, E = 1e6 Pa, at up to three times the speed of its own waves.  Its energy is bounded as in
-// throw.cpp.
-// - On a plane: what is behind it is inside, nothing can be missed.
-// - On a rigid plate as thin as itself, k = 1e7 Pa/m: a vertex that is above at one query and below at the
-//   next was never seen inside, and the contact must have counted it.  At 100 m/s a period is 200 mm long;
-//   the spring alone would stop the slab after v sqrt(m/(k A)) = 70 mm and throw it out of the half-space
-//   that it takes the plate for within 2.2 ms: after one period of 2 ms it is through.  (At 10 m/s the spring
-//   needs 7 mm: deeper than the plate is thick, the slab may leave below, and need not turn.)  The count is
-//   taken here once more, from the nodes' positions alone (a plate that reaches to where nothing arrives is
-//   crossed exactly where z changes from above to below or back), and must be the contact's own at every
-//   query.
+// A slab of 5 mm, E = 1e6 Pa, at up to three times its wave speed. Its energy is bounded as in throw.cpp.
+// - On a plane: everything behind it is inside, so no vertex can be missed.
+// - On a rigid plate of the same thickness, k = 1e7 Pa/m: a vertex above it at one query and below it at
+//   the next was never found inside, and the contact must have counted it as tunnelled. At 100 m/s a period
+//   is 200 mm long; the spring alone would stop the slab after v sqrt(m/(k A)) = 70 mm and eject it from the
+//   half-space that represents the plate within 2.2 ms: after one period of 2 ms it has passed through. (At
+//   10 m/s the spring needs 7 mm: deeper than the thickness of the plate, so the slab may leave below, and
+//   need not turn.) The count is computed here again from the nodes' positions alone (a plate wider than any
+//   motion is crossed exactly where z changes from above to below or back), and must equal the contact's
+//   count at every query.
 
 namespace palpate::stability {
 namespace {
@@ -39,19 +38,19 @@ ObstacleSpec thin_plate() {
   return plate;
 }
 
-/// Vertices that went through the plate between two probes, which are the times of the queries.
+/// Counts vertices that crossed the plate between two probes, which are at the times of the queries.
 class Crossings {
  public:
   void probe(const loop::World& world) {
     if (!misses_.empty()) return;
-    // up to the last query, one probe ago
+    // Up to the last query, one probe ago.
     if (!world.contact->tunnelled().empty()) reported_ = world.contact->tunnelled()[0];
     if (reported_ != counted_)
       misses_ =
           fmt::format("{} vertices went through the plate unseen, {} were reported", counted_, reported_);
     const loop::Body& slab = world.bodies[0];
     const Points x = world.positions(slab);
-    // an explicit method on its way to overflow
+    // An explicit method that is about to overflow.
     if (x.cwiseAbs().maxCoeff() > 0.5 * kHalfWidth) gone_ = true;
     if (gone_) return;
     Points now(3, slab.boundary.surface.vertices.cols());
@@ -80,7 +79,7 @@ StabilityCell run_on_plane(const CaseContext& context, const scene::Description&
   return projectile_case(context, d);
 }
 
-/// Whether the spring alone takes more than the plate's thickness to stop the slab.
+/// Returns whether the spring alone needs more than the plate's thickness to stop the slab.
 bool goes_through(const scene::Description& d) {
   const double mass_over_area = d.bodies[0].density_kg_m3 * kThickness;
   return d.bodies[0].velocity_m_s.norm() * std::sqrt(mass_over_area / d.contacts[0].stiffness_pa_m) >

@@ -3,13 +3,13 @@
 #include "linear.h"
 #include "palpate/mesh/generators.h"
 
-// A cube of 1 m clamped below, five tetrahedra.
-// What each column must show follows from w H and the damping ratio of every mode: linear_theory.cpp.
+// A cube of 1 m clamped below, five tetrahedra. Expectations for each column follow from w H and the damping
+// ratio of every mode: linear_theory.cpp.
 
 namespace palpate::stability {
 namespace {
 
-constexpr double kDampingRatio = 0.05;  // of the lowest mode
+constexpr double kDampingRatio = 0.05;  // Of the lowest mode.
 
 fem::Material material(double youngs_modulus, double poissons_ratio) {
   fem::Material m;

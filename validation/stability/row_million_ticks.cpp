@@ -6,40 +6,40 @@
 #include "multirate_theory.h"
 #include "scene_run.h"
 
-// A million haptic ticks are 1000 s, a hundred thousand exchange periods of 10 ms, each with its own query of
-// the contact.
+// A million haptic ticks are 1000 s, a hundred thousand exchange periods of 10 ms, each with one query of the
+// contact.
 //
-// Unloaded, the cube stays where it was put: rounding of eps a period, not summed but in the worst case, 1e5
-// eps = 2e-11 of its size.  The same cube must move when it is let go at a speed, to 1e-6 of its way
-// (alive.h). Stages are solved to a share of rtol, and what that leaves is in proportion to it: with 1e-5 up
-// to 2.8e-6 of the way (ark-dirk-sdirk534).  It is let go with 1e-6.
+// Unloaded, the cube remains in place: rounding of eps per period, summed only in the worst case, 1e5
+// eps = 2e-11 of its size. The same cube must move when it is released at a speed, to 1e-6 of its path
+// (alive.h). Stages are solved to a fraction of rtol, and the remainder is proportional to it: with 1e-5 up
+// to 2.8e-6 of the path (ark-dirk-sdirk534). It is released with 1e-6.
 //   -> accurate
-//   w H = 0.3 of its fastest mode, and light damping: within every explicit limit, that of the two-stage
-//   methods too, which have none on the imaginary axis but grow by y^4/8 a step, y = w H, less than the
-//   damping beta w^2 H/2 takes.
+//   w H = 0.3 for its fastest mode, and light damping: within every explicit limit, including that of
+//   two-stage methods, which have none on the imaginary axis but grow by y^4/8 per step, y = w H, less than
+//   the damping beta w^2 H/2 dissipates.
 //
-// On an incline below the angle of friction, without anchors (friction_anchors), it creeps, for regularised
-// friction is a damper at small speeds:
-// mu p A v/v_r = weight along the plane gives v = v_r tan(a)/mu, a steady motion that every consistent method
-// keeps, and that is subtracted; the rest stays below 1e-4 of the creep.  The run starts from the settled
-// creep, which linearly implicit Euler has found: contact is closed and stays so, the motion is linear but
-// for what is left of settling, and stability is that of linear theory.  (How contact closes is another row's
-// matter: only algebraically stable methods keep from making energy there.)
+// On an incline below the angle of friction, without anchors (friction_anchors), it creeps, because
+// regularised friction is a damper at small speeds: mu p A v/v_r = weight along the plane gives v = v_r
+// tan(a)/mu, a steady motion that every consistent method reproduces, and that is subtracted; the rest must
+// be below 1e-4 of the creep. The run starts from the settled creep, computed by linearly implicit Euler:
+// contact is closed and remains so, the motion is linear except for the last of settling, and stability
+// follows from linear theory. (Closing of the contact is tested in another row: only algebraically stable
+// methods create no energy there.)
 // - A-stable, fixed or under error control.
 //     -> accurate
-// - Explicit methods under error control stand at their stability limit, where the stiffest modes are kept
-//   alive at the size of the tolerance: d = rtol L in position, e = rtol c in speed (c the wave speed).
-//   Friction is the product of pressure and speed, so that shifts the mean creep v by (d/p)(e/v) of itself at
-//   most, p = rho g L/k = 5e-5 m the depth of rest: rtol is 1e-5, which makes that 5e-5.
+// - Explicit methods under error control run at their stability limit, where the stiffest modes persist at
+//   the size of the tolerance: d = rtol L in position, e = rtol c in speed (c the wave speed). Friction is
+//   the product of pressure and speed, so this shifts the mean creep v by at most (d/p)(e/v) relative, p =
+//   rho g L/k = 5e-5 m the depth at rest: rtol is 1e-5, which makes this 5e-5.
 //     -> accurate
 // - Explicit methods at fixed steps: the floor, k = 1e7 Pa/m under a quarter of the face, and an eighth of
-//   the mass make w H = 6, beyond their imaginary limits (2 to 4): the energy must have grown to 1e3 of what
-//   is there.
+//   the mass make w H = 6, beyond their imaginary limits (2 to 4): the energy must have grown to 1e3 of the
+//   available energy.
 //     -> error
-// - Multi-rate: where the spectral radius of its step about the steady creep (multirate_theory.cpp) makes 1e3
-//   of rounding in the run:
+// - Multi-rate: where the spectral radius of its step about the steady creep (multirate_theory.cpp) amplifies
+//   rounding by 1e3 in the run:
 //     -> grew, error
-// - Statics has no creep: nothing holds the cube along the plane; it must say so, or stay.
+// - Statics has no creep: no force holds the cube along the plane; it must report this, or remain.
 //
 // Memory must not grow: less than 2 MiB from the hundredth period to the last.
 
@@ -47,12 +47,12 @@ namespace palpate::stability {
 namespace {
 
 constexpr double kPeriod = 0.01, kDuration = 1000.0, kRtol = 1e-5;
-constexpr double kMovingRtol = 1e-6;  // of what is let go
-constexpr double kSize = 0.05;        // of the cube [m]
+constexpr double kMovingRtol = 1e-6;  // For released bodies.
+constexpr double kSize = 0.05;        // Edge of the cube [m].
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kFriction = 0.5, kSlope = 0.2, kRegularisation = 0.05;  // tan a, v_r [m/s]
+constexpr double kFriction = 0.5, kSlope = 0.2, kRegularisation = 0.05;  // mu; tan a; v_r [m/s]
 constexpr double kSettling = 2.0;                                        // [s]
-constexpr double kGrown = 1e3;                                           // of rounding, by instability
+constexpr double kGrown = 1e3;  // Amplification of rounding that counts as instability.
 
 scene::Description on_a_floor(double slope) {
   scene::Description d = soft_cube();
@@ -114,7 +114,7 @@ Verdicts expect(const CaseContext& context) {
   return {Verdict::kAccurate};
 }
 
-/// Spectral radius of one step of a multi-rate method, linearised about the settled creep.
+/// Returns the spectral radius of one step of a multi-rate method, linearised about the settled creep.
 double amplification_on_slope(const Column& column) {
   scene::Description d = on_a_floor(kSlope);
   d.integrator.name = "linearly-implicit-euler";

@@ -5,16 +5,17 @@
 #include "tool_scene.h"
 
 // A million ticks of tool and body together: a ball on its coupling rests on a soft cube that is held below,
-// the handle pressed in by a fixed depth.  The press is over after a second; from then on nothing moves but
-// what rounding moves, and any drift is the exchange's own: a record that is not the same twice, a stiffness
-// that a linearisation adds or loses, ticks that walk along it.  At rest the coupling carries what the
-// contact does, k (z_tool - z_handle) = F > 0, so the tool is away from the handle (it has touched), and
-// - the tool is where it was after the press, to 1e-6 of the depth;
+// with the handle pressed in by a fixed depth. The press ends after a second; from then on only rounding
+// causes motion, and any drift is due to the exchange: a record that is not reproducible, a stiffness added
+// or lost by a linearisation, ticks that drift along it. At rest the coupling carries the contact force, k
+// (z_tool - z_handle) = F > 0, so the tool is away from the handle (it has touched), and
+// - the tool is in the position after the press, to 1e-6 of the depth;
 // - so is the cube's energy, to 1e-6;
 // - memory does not grow: less than 2 MiB.
 //   -> accurate
-// The ticks are the loop's, whatever steps the cube takes; so the row has the methods that stand for a family
-// each.
+//
+// The loop performs the ticks, for any steps of the cube; so the row has one representative method per
+// family.
 
 namespace palpate::stability {
 namespace {

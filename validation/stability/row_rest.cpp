@@ -4,29 +4,30 @@
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/generators.h"
 
-// At rest without load every right-hand side is zero but for rounding of the rotations, eps E x (face area) a
-// node, which moves nothing farther than eps times the body's size against its stiffness: a thousand times
-// that, 1e-12 of the size, is the bar, for every method.
+// At rest without load every right-hand side is zero except for rounding of the rotations, eps E x (face
+// area) per node, which moves no node farther than eps times the body's size against its stiffness: a
+// thousand times this, 1e-12 of the size, is the limit, for every method.
 //   -> accurate
-// (Soft enough, w H < 1, for every explicit limit: beyond it rounding grows like anything else.)
-// Explicit methods alone may let it grow where a rotated body makes rounding a force: under error control
-// there is no error to see, so steps lengthen past the stability limit until rounding has grown to the
-// tolerance; and at a fixed step a Runge-Kutta method of order 2 has |R(iy)|^2 = 1 + y^4/4 > 1 on every
+// (Soft enough, w H < 1, for every explicit limit: beyond it rounding grows as any other perturbation.) Only
+// explicit methods may let it grow where rounding becomes a force in a rotated body: under error control the
+// error is too small to be detected, so steps lengthen past the stability limit until rounding has grown to
+// the tolerance; and at a fixed step a Runge-Kutta method of order 2 has |R(iy)|^2 = 1 + y^4/4 > 1 on every
 // undamped mode, at any step.
 //   -> accurate, bounded
-// A stepper that does nothing stays at rest as well.  So each cell lets its body go a second time, at a speed
-// v away from the floor: it must be where v t is, to 1e-6 of it (the internal force stays zero), or the cell
-// is wrong.  (Statics knows no speed.)
+// A stepper that does nothing stays at rest as well. So each cell releases its body a second time, at a speed
+// v away from the floor: it must be at v t, to a relative 1e-6 (the internal force remains zero), or the cell
+// is wrong. (Statics has no speed.)
 //
-// Free fall of one tetrahedron from rest, z = -g t^2/2, an internal force that stays zero:
-// - order 1 at a fixed step H (every one of them: the error per step is g H^2/2): relative error H/T exactly;
-// - order >= 2, one-step: exact for quadratics; multistep: its first step is of order 1, one error of g H^2/2
-//   carried on: at most H/T as well;
-// - error control: the sum of what its steps may err, taken as 100 rtol;
-// - statics: nothing holds the body, the matrix is singular: that must be said.
+// Free fall of one tetrahedron from rest, z = -g t^2/2, with zero internal force:
+// - order 1 at a fixed step H (all of them: the error per step is g H^2/2): relative error H/T exactly;
+// - order >= 2, one-step: exact for quadratics; multistep: its first step has order 1, and this one
+//   error of g H^2/2 is propagated: at most H/T as well;
+// - error control: the sum of the errors allowed in its steps, taken as 100 rtol;
+// - statics: no force holds the body, the matrix is singular: this must be reported.
 //     -> error
 //
-// No body: time passes.  A stepper that only passes time does so as well: the cell lets an element fall, too.
+// No body: time advances. A stepper that only advances time does this as well, so the cell also lets an
+// element fall.
 
 namespace palpate::stability {
 namespace {
@@ -42,7 +43,7 @@ double moved(const loop::World& world) {
 }
 
 Verdicts expect_rest(const CaseContext& context) {
-  // a free body: its matrix is singular
+  // A free body: its matrix is singular.
   if (is_static(context.column)) return {Verdict::kAccurate, Verdict::kError};
   if (is_explicit(context.column)) return {Verdict::kAccurate, Verdict::kBounded};
   return {Verdict::kAccurate};

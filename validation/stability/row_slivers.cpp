@@ -3,14 +3,15 @@
 #include "linear.h"
 #include "palpate/mesh/generators.h"
 
-// A clamped block (row_material.cpp) with elements that no mesher should make.
-// - Dihedral angle of 0.1 degree: an apex so low over a face of the cube that the three angles at that face's
-//   edges are 0.1 degree.
+// A clamped block (row_material.cpp) with elements that no mesher should generate.
+// - Dihedral angle of 0.1 degree: an apex so low over a face of the cube that the three angles at the
+//   edges of this face are 0.1 degree.
 // - Volume ratio of 1e6: the corner of a corner tetrahedron is cut off at a hundredth of its edges; the
 //   frustum below is three tetrahedra.
-// Both are linear: modes, and so expectations, are those of linear_theory.cpp.  A sliver of height e makes
-// frequencies of about c/e and a condition of 1e8: that is what the matrices, and the explicit limits, have
-// to bear.
+//
+// Both are linear: modes, and so expectations, follow from linear_theory.cpp. A sliver with the height e
+// causes frequencies of about c/e and a condition of 1e8: a test for the matrices, and for the explicit
+// limits.
 
 namespace palpate::stability {
 namespace {
@@ -29,7 +30,8 @@ void append_tet(TetMesh& mesh, int a, int b, int c, int d) {
   mesh.tets.rightCols<1>() << a, b, c, d;
 }
 
-/// The tetrahedra that have node `corner`, and their number.
+/// Returns the only tetrahedron at an upper node that belongs to no other, and this node in `corner`; -1 if
+/// none.
 int only_tet_at(const TetMesh& mesh, int& corner) {
   for (corner = 0; corner < mesh.nodes.cols(); ++corner) {
     if (mesh.nodes(2, corner) < 0.0) continue;
@@ -47,12 +49,12 @@ TetMesh mesh_with_flat_element() {
   TetMesh mesh = mesh::box(Vec3::Constant(1.0), {1, 1, 1});
   int corner = 0;
   const int tet = only_tet_at(mesh, corner);
-  int top[3], count = 0;  // the face of that element on the cube's upper side
+  int top[3], count = 0;  // Face of this element on the cube's upper side.
   for (int k = 0; k < 4; ++k)
     if (mesh.nodes(2, mesh.tets(k, tet)) > 0.0 && count < 3) top[count++] = mesh.tets(k, tet);
   const Vec3 a = mesh.nodes.col(top[0]), b = mesh.nodes.col(top[1]), c = mesh.nodes.col(top[2]);
   const double la = (b - c).norm(), lb = (c - a).norm(), lc = (a - b).norm();
-  // over the incentre the three angles are equal
+  // Over the incentre the three angles are equal.
   const double inradius = (b - a).cross(c - a).norm() / (la + lb + lc);
   const Vec3 incentre = (la * a + lb * b + lc * c) / (la + lb + lc);
   append_node(mesh, incentre + Vec3::UnitZ() * inradius * std::tan(0.1 * M_PI / 180.0));

@@ -2,16 +2,17 @@
 
 #include "linear.h"
 
-// One oscillator held by two springs: a body's, of frequency w_B, and a contact's, w_C; w^2 = w_B^2 + w_C^2,
-// damping ratio 1/20 of both together, each with its share.  Additive methods take the contact explicitly,
-// multi-rate ones in fast steps.  By the formula of each (integrate/linear_step.h), so from theory:
+// One oscillator held by two springs: the body's, with frequency w_B, and the contact's, w_C;
+// w^2 = w_B^2 + w_C^2, damping ratio 1/20 of both together, distributed in proportion. Additive methods treat
+// the contact explicitly, multi-rate ones in fast steps. From the formula of each (integrate/linear_step.h),
+// thus from theory:
 // - w_B H = w_C H = 0.3: resolved.
-// - A stiff body, w_B H = 1e3 or 1e6, and a soft contact, w_C H = 0.3: the implicit side damps what it
-// should.
-// - A stiff contact on a soft body: additive methods have the limit of their explicit side, as
-//   an explicit method has: all five are beyond it at w_C H = 10.  So are multi-rate ones: their fast side
-//   has the contact's force, but a node's q' = u is slow, and the force sees q move as the slow stages have
-//   it.  (A tool's kinematics are fast: a light tool on a stiff contact is what they are for.)
+// - A stiff body, w_B H = 1e3 or 1e6, and a soft contact, w_C H = 0.3: the implicit side provides the
+//   expected damping.
+// - A stiff contact on a soft body: additive methods have the limit of their explicit side, as an explicit
+//   method has: all five are beyond it at w_C H = 10. So are multi-rate ones: their fast side has the
+//   contact's force, but a node's q' = u is slow, and the force is evaluated at the q of the slow stages. (A
+//   tool's kinematics are fast: these methods are intended for a light tool on a stiff contact.)
 // - Both stiff: no theorem holds, the matrix of the step decides.
 
 namespace palpate::stability {

@@ -9,61 +9,59 @@
 #include "palpate/mesh/quality.h"
 #include "scene_run.h"
 
-// A free damped body whose nodes are put where no body's nodes should be, and let go without speed.  The
-// energy is then elastic, E0, and
+// A free damped body whose nodes are put into an inadmissible shape and released without speed. The energy is
+// then elastic, E0, and
 //     d(kinetic + elastic)/dt = -(damping power) <= 0:
-// it never rises, and the body comes to rest where the elastic force vanishes.  That is the rest shape in
-// some position, or a true local minimum with an inverted element (it exists: an element inverted through a
-// vertex is held by the sign convention of its rotation); at least 90 % of random starts must find the rest
-// shape.  For each start:
+// it never rises, and the body comes to rest where the elastic force vanishes. This is the rest shape in some
+// position, or a true local minimum with an inverted element (it exists: an element inverted through a vertex
+// is kept there by the sign convention of its rotation); at least 90 % of random starts must reach the rest
+// shape. For each start:
 // - at rest: elastic and kinetic energy below 1e-6 E0, no inverted element;
 // - energy rise: the largest over any earlier value;
-// - an element that is inverted (its volume is negative, found here from the nodes alone) must be reported by
-//   the body.
+// - an inverted element (negative volume, computed here from the nodes alone) must be reported by the body.
 //
-// Accurate: >= 90 % at rest and no rise beyond the tolerance.  Stable: no rise beyond it.  Bounded: a rise of
+// Accurate: >= 90 % at rest and no rise beyond the tolerance. Stable: no rise beyond it. Bounded: a rise of
 // at most E0, for a fixed step the bound below.
 //
-// Error control follows the exact flow within its tolerance, through the corners of the rotation field as
-// well (R jumps where two signed singular values cancel, the energy does not): rise <= (steps) x rtol, taken
-// as 100 rtol.
+// Error control follows the exact flow within its tolerance, also through the corners of the rotation field
+// (R jumps where two signed singular values cancel, the energy does not): rise <= (steps) x rtol, taken as
+// 100 rtol.
 //   -> accurate
-// A flow has no say in which of the two ends a start finds, so the count over random starts belongs to the
-// problem, not to the method.
+// The method does not determine which of the two ends a start reaches, so the count over random starts
+// belongs to the problem.
 //
-// Fixed steps of H = 5 ms (y = w H up to 2): no theorem for a potential that is not convex.  Newton's method
-// may find no way out of a start that is 1e-9 m from where rotations jump, at no step: such a start is tried
-// once more, the first period in steps of 2^-12, 2^-11 .. of it, in which the body moves off that set (by
-// 1e-7 m within 4e-5 s at f/m = E/(rho L)).  Nine starts of ten must get through; with explicit methods, and
-// under error control, all.  The effect of one
-// linearised step from a state of energy E0 = T0 + V0 is known:
+// Fixed steps of H = 5 ms (y = w H up to 2): no theorem for a potential that is not convex. For a start 1e-9
+// m from where rotations jump, Newton's method may fail at any step: this start is tried once more, with the
+// first period in steps of 2^-12, 2^-11 .. of it, in which the body moves off the singular set (by 1e-7 m
+// within 4e-5 s at f/m = E/(rho L)). Nine starts of ten must succeed; with explicit methods, and under error
+// control, all. The effect of one linearised step from a state with energy E0 = T0 + V0 is known:
 //     (M + ...) u1 = M u0 + H f
 // with a positive semi-definite remainder, and f.M^-1 f <= 2 w^2 V0 for an energy that is quadratic at a
 // given rotation, so
 //     sqrt T1 <= sqrt T0 + y sqrt V0,    sqrt V1 <= sqrt V0 + y sqrt T1
-// (V1 with the old rotation; the new one takes the least of the shear part).  The exact tangent of a body
-// thrown apart need not be semi-definite, but the step sees to it that the remainder along u1 is more than
-// -1/10 of its mass, so that with c = 10/9
+// (V1 with the old rotation; the new one minimises the shear part). The exact tangent of a body thrown apart
+// need not be semi-definite, but the step ensures that the remainder along u1 is more than -1/10 of its mass,
+// so that with c = 10/9
 //     sqrt T1 <= c (sqrt T0 + y sqrt V0).
 // The symmetric matrix [c cy; cy 1+cy^2] of this majorant has the trace s = 1 + c + c y^2 and the determinant
 // c, so the norm g = s/2 + sqrt(s^2/4 - c): rise <= (g^2 - 1) E0.
 //   -> accurate, stable, bounded
 //
 // SDIRK 2(1) of SUNDIALS has its second stage at the step's start, c = (1, 0), where Newton's method meets
-// the jumping rotations again: it may give up.
+// the jumping rotations again: it may fail.
 //   -> error as well
 //
-// Damping.  Of the energy half at least must be gone by the end (2 s; drag alone takes e^-4 of what moves,
-// and the slowest mode decays at 14/s).  Thrown apart at random the nodes are looked at for 0.2 s only: what
-// is elastic has decayed, but a quarter of the kinetic energy (6 of 24 directions) is that of rigid motion,
-// and drag takes little of it; a fifth of the whole is asked for.  That start has ten times as many seeds at
-// fixed steps.
+// Damping. At least half of the energy must be dissipated by the end (2 s; drag alone reduces the energy of
+// motion to e^-4, and the slowest mode decays at 14/s). Nodes thrown apart at random are followed for 0.2 s
+// only: the elastic part has decayed, but a quarter of the kinetic energy (6 of 24 directions) is rigid
+// motion, which drag hardly reduces; a fifth of the total is required. This start has ten times as many seeds
+// at fixed steps.
 //   -> stable, bounded; error control: stable
-// This start found steps along negative curvature: by a step matrix that a Cholesky factor accepts, with an
-// eigenvalue near zero, linearly implicit Euler made 42 E0 from the worst of 10 seeds and 102 E0 from the
+// This start found steps along negative curvature: with a step matrix that a Cholesky factor accepts, with an
+// eigenvalue near zero, linearly implicit Euler created 42 E0 from the worst of 10 seeds and 102 E0 from the
 // worst of 100, nearly all in one step.
 //
-// Statics looks for a stationary point, and a saddle is one: any end with a message is accepted.
+// Statics seeks a stationary point, and a saddle is one: any end with a message is accepted.
 
 namespace palpate::stability {
 namespace {
@@ -72,8 +70,8 @@ constexpr double kH = 5e-3, kRtol = 1e-4, kAtRest = 1e-6, kSettled = 1e-10;
 constexpr double kSize = 0.1, kPerturbation = 1e-9;
 constexpr double kShareAtRest = 0.9;
 constexpr int kHalvings = 12;
-constexpr double kFastest = 3.0;     // of a node in each direction [m/s], about the wave speed
-constexpr double kFallMoving = 0.2;  // part of E0
+constexpr double kFastest = 3.0;     // Largest speed of a node in each direction [m/s], about the wave speed.
+constexpr double kFallMoving = 0.2;  // Fraction of E0.
 
 using Placement = std::function<void(Points&, std::mt19937&)>;
 
@@ -122,25 +120,26 @@ double bound_of_a_step() {
   return g * g - 1.0;
 }
 
-/// Outcome of all the starts of a cell.
+/// Outcome of all starts of a cell.
 struct Tally {
   int starts = 0, at_rest = 0, elsewhere = 0, moving = 0, failed = 0, short_steps = 0;
-  double rise = 0.0, bound = 1.0;  ///< of the energy, relative to E0
+  double rise = 0.0, bound = 1.0;  ///< Rise of the energy, relative to E0.
   bool beyond() const { return !(rise <= bound); }
-  double least_fall = 1.0;  ///< of the energy, of all starts
+  double least_fall = 1.0;  ///< Least fall of the energy over all starts.
   bool unreported = false, silent = false, finite = true, interrupted = false;
   dynamics::StepResult failure;
   long steps = 0;
 };
 
-/// Where a start ends, and what it is looked at for.
+/// Duration of a start, and its limits.
 struct Bars {
   double duration = 2.0;  ///< [s]
-  double fall = 0.5;      ///< part of E0 that must be gone by then
+  double fall = 0.5;      ///< Fraction of E0 that must be dissipated by then.
   bool must_rest = true;
 };
 
-/// The end of period i; with short first steps the first period is covered by 2^-12, 2^-11 .. of itself.
+/// Returns the ends of the periods; with short first steps the first period is divided at 2^-12, 2^-11 .. of
+/// itself.
 std::vector<double> period_ends(double duration, bool short_steps) {
   std::vector<double> ends;
   if (short_steps)
@@ -149,7 +148,8 @@ std::vector<double> period_ends(double duration, bool short_steps) {
   return ends;
 }
 
-/// False where a step failed; the tally then has its result, and the rise of the energy until then.
+/// Releases the body. Returns false if a step failed; the tally then has its result, and the rise of the
+/// energy until then.
 bool let_go(const CaseContext& context, Body& body, const Bars& bars, bool short_steps, Tally& tally) {
   if (body.inverted() && body.system.inspect(body.state.view()).first.element < 0) tally.unreported = true;
   const auto stepper =

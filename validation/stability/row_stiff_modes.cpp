@@ -4,22 +4,23 @@
 #include "palpate/core/error.h"
 #include "predicted_course.h"
 
-// L- against A-stability.  One oscillator of y = w H from 1e2 to 1e8, damping ratio 1/20, let go at amplitude
-// 1/w, under every method at fixed steps.  The exact motion has come to rest within a step (z y = 5 and
-// more). After kFew steps:
+// L- against A-stability. One oscillator with y = w H from 1e2 to 1e8, damping ratio 1/20, released at the
+// amplitude 1/w, under every method at fixed steps. The exact motion has come to rest within a step (z y = 5
+// and more). After kFew steps:
 // - an L-stable method has |R(i y)| <= C/y, C below 20 for all in use: at most 20/y of the amplitude is left.
-//   (BDF2 has a double root of size y^(-1/2) instead; with its L-stable first step that makes y^(-2).)
+//   (BDF2 has a double root of size y^(-1/2) instead; with its L-stable first step this makes y^(-2).)
 //     -> accurate
 // - any other A-stable method keeps R(inf)^kFew of it, which its formula gives, and which does not depend on
-//   y; of generalised-alpha a multiple in the first step.
+//   y; generalised-alpha a multiple in the first step.
 //     -> stable, bounded
-//   The family of Newmark carries the acceleration along, right to eps y^2 of what it moves: above y = 1e7
-//   that hides which of the two.
+//   The Newmark family stores the acceleration, with an error of eps y^2 of the moving part: above y = 1e7
+//   this hides which of the two.
 // - an explicit method is y/2 and more beyond its limit: overflow.
 //     -> error
-// The registry's word L is taken at its value: a method that says so and keeps the mode is wrong.  For the
-// others the formula decides (a multi-rate method's slow side alone may do more than the whole can promise).
-// All of it besides the agreement with the formula of linear_theory.cpp, 1, over 40 steps.
+//
+// The registry's L-stability is required: a method registered as L-stable that keeps the mode is wrong. For
+// the others the formula decides (a multi-rate method's slow side alone may do more than the whole can
+// guarantee). The agreement with the formula of linear_theory.cpp, 1, over 40 steps is also required.
 
 namespace palpate::stability {
 namespace {

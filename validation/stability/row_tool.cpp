@@ -6,57 +6,57 @@
 #include "palpate/tool/tool.h"
 #include "tool_scene.h"
 
-// A rigid ball under a virtual coupling k, b, against a soft cube of edge L that is held below.  The hand is
-// the only source of energy.  With the handle's whole path d the coupling's spring can hold 1/2 k d^2, and a
-// cube squeezed by d over its whole face 1/2 E L d^2; the lesser of the two is more than the cube can be
-// given, E0.
+// A rigid ball under a virtual coupling k, b, against a soft cube with the edge L that is held below. The
+// hand is the only source of energy. With the handle's whole path d the coupling's spring can store 1/2 k
+// d^2, and a cube squeezed by d over its whole face 1/2 E L d^2; the lesser of the two is more than the cube
+// can receive, E0.
 //
-// A coupled system in continuous time is passive; partitioned, the tool sees a contact that is linear over a
-// period and the cube sees a tool that does not answer within it, and each exchange may create energy of the
-// order of the work done in it.  No theorem bounds it for every stiffness: "bounded" means here that the cube
-// never holds more than 100 E0 and the tool never strays from the handle's path by more than 10 d.  More is a
-// failure; so is an end without a message.  Stable: not more than E0 and within 2 d (a spring let go from d
-// swings to -d).
+// A coupled system in continuous time is passive. In the partitioned scheme, the tool uses a contact that is
+// linear over a period and the cube uses a tool that does not respond within it, and each exchange may create
+// energy of the order of the work done in it. No theorem bounds it for every stiffness: "bounded" means here
+// that the cube never stores more than 100 E0 and the tool never deviates from the handle's path by more than
+// 10 d. More is a failure; so is an end without a message. Stable: not more than E0 and within 2 d (a spring
+// released from d swings to -d).
 //
-// It must have touched in every case, the fast pull too: the cube has held more than rounding.  (A ball that
-// is wholly inside touches no vertex; it does where it comes out.  So exchanges are a fiftieth of the pull,
-// 10 ms at most, and the ticks a fifth of that, 1 ms at most: from one to the next the ball moves less than
-// its radius.)
+// The tool must have touched in every case, including the fast pull: the cube has stored more than rounding.
+// (A ball completely inside touches no vertex; it does when it emerges. So exchanges are a fiftieth of the
+// pull, 10 ms at most, and the ticks a fifth of that, 1 ms at most: from one to the next the ball moves less
+// than its radius.)
 //
-// An end with an error has a reason.  The cube alone has y = w H = 12 and more at the period of 10 ms:
+// An end with an error has a reason. The cube alone has y = w H = 12 and more at the period of 10 ms:
 // explicit methods at fixed steps overflow by their formula (modal_steps.h), and must not end before the cube
-// holds 1e3 of what was put in.
+// stores 1e3 of the energy put in.
 //   -> error
-// Error control has none, but for the light tool below; implicit fixed steps have none.
+// Error control has no reason, except for the light tool below; implicit fixed steps have none.
 //   -> error control: stable;  fixed steps: stable, bounded
 //
-// Statics follows the load from equilibrium to equilibrium; it may find none where the tool has come free,
-// and must then say so.
+// Statics follows the load from equilibrium to equilibrium; it may find none where the tool has lost contact,
+// and must then report this.
 //   -> stable, bounded, error
 //
-// Monolithic: cube and tool are one system, passive but for the hand's work.
-// - Error control keeps to that and finds its steps whatever the masses, if it is implicit.
+// Monolithic: cube and tool are integrated together, passive except for the hand's work.
+// - Error control satisfies this and finds its steps for any masses, if it is implicit.
 //     -> stable
-// - Explicit methods need steps of a few b^-1 m of the light tool, 1e-9 s and 1e6 a period and more, beyond
+// - Explicit methods need steps of a few b^-1 m of the light tool, 1e-9 s and 1e6 per period and more, beyond
 //   the limit, which they must have reached.
-//     -> error (the light one; multi-rate methods as well, whose fast side, the tool's, is explicit)
+//     -> error (the light tool; also for multi-rate methods, whose fast side, the tool's, is explicit)
 // - Fixed steps of a refresh, 10 ms, find the contact open or closed as in the contact rows: no theorem.
 //     -> stable, bounded
 //
 // Density ratio: the coupling of the heavy tool has k = m (60 rad/s)^2 and is critically damped; the light
-// tool, 4e-9 kg, hangs on 300 N/m: a frequency of 3e5 rad/s against ticks of 1 ms.
+// tool, 4e-9 kg, is coupled by 300 N/m: a frequency of 3e5 rad/s with ticks of 1 ms.
 
 namespace palpate::stability {
 
 namespace {
 
 constexpr double kRtol = 1e-4;
-/// A multi-rate method that ends with an error must have tried to follow the tool.
+/// A multi-rate method that ends with an error must have taken this number of fast steps.
 constexpr long kFewFastSteps = 1000;
 
 double period_of(const scene::Description& d) { return d.exchange.exchange_period_s; }
 
-/// The spectral radius of an explicit method's step in the cube's fastest mode.
+/// Returns the spectral radius of an explicit method's step in the cube's fastest mode.
 double growth_of_cube(const Column& column, scene::Description d) {
   const double period = period_of(d);
   d.tool.reset();
@@ -79,10 +79,10 @@ Verdicts expect(const CaseContext& context, const scene::Description& d) {
   return {Verdict::kStable, Verdict::kBounded};
 }
 
-/// Overshoot of positions in the first step.  The family of Newmark starts from the acceleration of the state
-/// that it is let go in: at most b y and c y^2 of what the mode has, y = w H of the tool on its coupling,
-/// with b = 1/4 and c = min(r/4, 1/6), r = 2 z/y = b/(k H), for every spectral radius.  A light tool has y =
-/// 3e3.
+/// Returns the factor by which positions may overshoot in the first step. The Newmark family starts from the
+/// acceleration of the initial state: at most b y and c y^2 of the mode's amplitude, y = w H of the tool on
+/// its coupling, with b = 1/4 and c = min(r/4, 1/6), r = 2 z/y = b/(k H), for every spectral radius. A light
+/// tool has y = 3e3.
 double overshoot(const Column& column, const scene::Description& d) {
   if (d.exchange.scheme != "monolithic" || column.entry->traits.family != "Newmark") return 1.0;
   const double y = kToolPeriod * std::sqrt(d.tool->coupling.stiffness_n_m / d.tool->mass_kg),
@@ -90,7 +90,7 @@ double overshoot(const Column& column, const scene::Description& d) {
   return 1.0 + 0.25 * y + std::min(0.25 * r, 1.0 / 6.0) * y * y;
 }
 
-/// Elastic and kinetic energy of the cube [J].
+/// Returns the elastic and kinetic energy of the cube [J].
 double energy_of_cube(loop::World& world) {
   const loop::Body& cube = world.bodies[0];
   const dynamics::Block* block = world.state.layout().find(cube.block_id);
@@ -106,7 +106,7 @@ StabilityCell run(const CaseContext& context, const scene::Description& d) {
   const double prepare_state =
       0.5 * path * path *
       std::min(d.tool->coupling.stiffness_n_m, d.bodies[0].youngs_modulus_pa * kToolCubeEdge);
-  double held = 0.0;  // by the cube, the most [J]
+  double held = 0.0;  // Largest energy of the cube [J].
   const SceneCourse course = run_scene(context, d, kRtol, prepare_state, [&](loop::World& world, double) {
     held = std::max(held, energy_of_cube(world));
     for (const KeyframeSpec& frame : frames)
@@ -149,7 +149,7 @@ double ball_mass(double density) { return density * 4.0 / 3.0 * M_PI * std::pow(
 
 Row density_ratio_row() {
   if (!tool::available()) return {"density-ratio", "needs tools, which were not compiled in"};
-  // rate [rad/s]
+  // Rate [rad/s].
   const double above = kToolCubeEdge + kToolRadius, heavy = ball_mass(1e9), light = ball_mass(1e-3),
                rate = 60.0;
   const std::vector<std::pair<double, double>> press = {
@@ -159,8 +159,8 @@ Row density_ratio_row() {
                            with_light = under_a_tool(press, light, 300.0, kLightDamping);
   const auto as_one = [](scene::Description d) {
     d.exchange.scheme = "monolithic";
-    // at vertices: explicit methods end by too many steps of the light ball, longer than a cell's 20 s by
-    // points
+    // At vertices: by points, explicit methods would end by too many steps of the light ball only after a
+    // cell's 20 s.
     d.contacts[0].method = "analytic";
     return d;
   };

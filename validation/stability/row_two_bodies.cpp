@@ -3,19 +3,20 @@
 #include "palpate/core/error.h"
 #include "throw.h"
 
-// Two soft cubes, one above the other, densities rho and D rho, D up to 1e6; the upper and light one is
-// thrown at the other, which rests and is free.  No gravity and no support: contact is the only force between
+// Two soft cubes, one above the other, densities rho and D rho, D up to 1e6; the upper, light one is thrown
+// at the other, which is at rest and free. Without gravity and support, contact is the only force between
 // them, and it balances, so
 //     m1 v1 + m2 v2 = m1 v
-// at every period, whatever the method: a linear invariant, which every method here keeps to rounding, to
-// what Newton's method leaves, and to the steps' tolerance under error control; 1e-4 of m1 v.
-// (Multi-rate and additive methods as well: each of their sides keeps it.)  Energy is bounded as in
-// throw.cpp, with the reduced mass m1 m2/(m1 + m2) on the contact.  By the end the light cube has been turned
-// round (throw.cpp), relative to the heavy one:
+// at every period, for any method: a linear invariant, which every method here conserves to rounding, to the
+// remainder of Newton's method, and to the steps' tolerance under error control; 1e-4 of m1 v. (Multi-rate
+// and additive methods as well: each of their sides conserves it.) Energy is bounded as in throw.cpp, with
+// the reduced mass m1 m2/(m1 + m2) on the contact. By the end the light cube has reversed its motion
+// (throw.cpp), relative to the heavy one:
 //     v1 - v2 >= -0.05 v    (v > 0 away from it),
-// and it has touched: v1 has changed by v/2 at least (of equal masses a perfectly plastic impact changes it
-// by v/2, of a heavier second body by more).  Energy as in throw.cpp: stable, bounded. E follows the density,
-// so that both have the same wave speed: else the heavy cube would not move as one body in the row's time.
+// and it has touched: v1 has changed by v/2 at least (with equal masses a perfectly plastic impact changes it
+// by v/2, with a heavier second body by more). Energy as in throw.cpp: stable, bounded. E is proportional to
+// the density, so that both have the same wave speed: otherwise the heavy cube would not move as one body in
+// the row's time.
 
 namespace palpate::stability {
 namespace {
@@ -42,7 +43,7 @@ scene::Description light_on_heavy(double ratio) {
   return d;
 }
 
-/// Momentum [kg m/s] and speed [m/s] along z of a body.
+/// Returns momentum [kg m/s] and speed [m/s] along z of a body.
 std::pair<double, double> motion_of(const loop::World& world, const loop::Body& body) {
   const dynamics::Block* block = world.state.layout().find(body.block_id);
   const Eigen::Map<const Points> v(world.state.u().data() + block->u_offset, 3, block->u_size / 3);

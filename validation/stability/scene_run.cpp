@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kGrownSpeed = 1e3, kFollow = 100.0;
 
-/// Follows the energy while the run goes on, and ends the run.
+/// Observer that records the energy during a run, and ends the run.
 class Watch : public loop::Observer {
  public:
   Watch(const CaseContext& context, SceneCourse& course, double duration, double prepare_state,
@@ -55,7 +55,7 @@ SceneCourse run_scene(const CaseContext& context, const scene::Description& desc
                       double prepare_state, const Probe& probe, const Settled* start) {
   scene::Description d = description;
   d.integrator = {};
-  // assembled with, and replaced: a column need not be in the registry
+  // Only for assembly, replaced afterwards: a column need not be in the registry.
   d.integrator.name = "linearly-implicit-euler";
   const auto world = loop::assemble(d);
   if (start) {
@@ -115,7 +115,7 @@ scene::Description soft_cube() {
   body.stiffness_damping_s = 1e-3;
   d.bodies.push_back(body);
   d.record.emplace();
-  d.record->state_period_s = 0.01;  // the loop's period where nothing else asks for one
+  d.record->state_period_s = 0.01;  // The loop's period if no other part specifies one.
   return d;
 }
 

@@ -7,80 +7,80 @@
 #include "modal_steps.h"
 #include "multirate_theory.h"
 
-// Thrown at an obstacle.  No gravity: what is available is the energy of the throw, E0 = 1/2 m v^2; the
-// mechanical energy counts body and contact spring.  In continuous time it never rises: damping takes, the
-// gap of a face with a fixed normal is conservative, and a vertex that is seen nearer to another face, or no
-// longer inside, leaves the spring less.
-// - Error control keeps to that within its tolerance, summed over the steps.  A step may err by rtol (atol_u
-//   c + rms u) in speed, c = sqrt(E/rho) the scale of speeds (error_weights.h): of a body at speed v a
-//   relative rtol max(1, atol_u c/v), and its energy by twice that at most; with some hundred steps of
-//   relevance 1e-2 E0, and more of a body that is slower than a tenth of its own waves.
+// A body thrown at an obstacle. Without gravity the available energy is that of the throw, E0 = 1/2 m v^2;
+// the mechanical energy includes body and contact spring. In continuous time it never rises: damping
+// dissipates, the gap of a face with a fixed normal is conservative, and a vertex found nearer to another
+// face, or no longer inside, reduces the energy of its spring.
+// - Error control satisfies this within its tolerance, summed over the steps.  A step may have the error rtol
+//   (atol_u c + rms u) in speed, c = sqrt(E/rho) the scale of speeds (error_weights.h): for a body at speed v
+//   a relative rtol max(1, atol_u c/v), and in energy at most twice that; with some hundred relevant steps
+//   1e-2 E0, and more for a body slower than a tenth of its wave speed.
 //     -> stable; error
-// - A fixed step H has no theorem for it.  Where the tangent is taken at the step's start, the contact is
-//   open there: the body flies on by v H into the plane, and the spring then holds
+// - A fixed step H has no such theorem.  Where the tangent is evaluated at the step's start, the contact is
+//   open there: the body moves on by v H into the plane, and the spring then stores
 //       1/2 k A (v H)^2 = (k A H^2/m) E0 = (8e-8 k m/Pa) E0,
-//   so at k = 1e12 Pa/m far more than there was, to be given back as velocity or damped away, depending on
-//   the method.  Twice that and E0 once more (a second touch, a bending body) is the bound; there is no such
-//   reason for more.  Methods that solve for the contact at the step's end do not need it.
+//   so at k = 1e12 Pa/m far more than was available, to be returned as velocity or damped, depending on the
+//   method.  Twice this and E0 once more (a second touch, a bending body) is the bound; nothing explains
+//   more. Methods that solve for the contact at the step's end do not need it.
 //     -> stable, bounded; error
-// - A multi-rate step has this flaw on its other side: within it the contact throws nodes about while the
-//   elastic force is a given polynomial of time.  Nodes that move on by v H without an elastic reaction load
-//   the springs between them by up to (w H)^2 E0, w the body's largest frequency.  Twice that is added to the
+// - A multi-rate step has this flaw on its other side: within it the contact moves nodes while the elastic
+//   force is a given polynomial of time. Nodes that move on by v H without an elastic reaction load the
+//   springs between them by up to (w H)^2 E0, w the body's largest frequency. Twice this is added to the
 //   bound; but where the step's matrix with all of the lower side in contact has a spectral radius r above 1
 //   (multirate_theory.cpp), each of the n steps of a touch multiplies the energy: where r^(2 n) > 2, n the
-//   steps of the row, that is no bound.
+//   steps of the row, there is no bound.
 //     -> stable, bounded, grew; error
-//   Generalised-alpha carries the acceleration along, from the step that closed the contact: the bound is
-//   multiplied by the square of what its first step does to a rigid body on the contact, by its formula
+//   Generalised-alpha keeps the acceleration from the step that closed the contact: the bound is multiplied
+//   by the square of the effect of its first step on a rigid body on the contact, by its formula
 //   (modal_steps.h).
-// - Explicit fixed steps.  Where the body's own fastest mode is outside the method's limit by its formula, it
-//   overflows, and must say so.
+// - Explicit fixed steps.  Where the body's fastest mode is outside the method's limit by its formula, it
+//   overflows, and must report this.
 //     -> error
-//   A node on the contact alone is an oscillator of w_c^2 = k A_n/m_n.  Within the limit for that, the energy
-//   is bounded by the square of what a touch's n = 1 + ceil(pi/y) steps or fewer, y = w_c H, can make of it:
-//   the largest norm of a power, where that is more than the bound above.
+//   A node on the contact alone is an oscillator with w_c^2 = k A_n/m_n.  Within the limit for it, the energy
+//   is bounded by the square of the growth in a touch of n = 1 + ceil(pi/y) steps or fewer, y = w_c H: the
+//   largest norm of a power, where this is more than the bound above.
 //     -> stable, bounded
-//   Outside it there is no bound: the body may be thrown back at any speed by a step or two, and is then
-//   free (its flight before that is as everywhere).
+//   Outside it there is no bound: the body may be thrown back at any speed by a step or two, and is then free
+//   (its flight before that is as everywhere).
 //     -> bounded, grew, error; where one step can multiply the energy by less than 1e6, also stable
-// - Statics has no velocity: a free body is in equilibrium where it is, and stays there.
+// - Statics has no velocity: a free body is in equilibrium in its initial position and remains there.
 //     -> stable
 //
-// What must have happened, whatever the method (else: wrong):
-// - Flight.  The throw is 2.5 periods high.  Without a force every consistent method, and any step, moves the
+// Required for every method (otherwise: wrong):
+// - Flight.  The throw is 2.5 periods high.  Without a force every consistent method, at any step, moves the
 //   centre of mass by -v t: after each of two periods it is there, to 1e-6 of v t (rtol under error control).
-// - Turn.  The obstacle's force is upwards.  Where a rigid body on the contact alone would be turned round by
-//   the end, w (T - t0) > pi/2 with w^2 = k A/m and t0 the time of touching, the speed of the centre of mass
-//   is then not downwards (to 5 % of v); where it would not, it is that of the rigid body, -v cos(w (T -
-//   t0)), to 5 % of v: the body itself, k L/E times softer than the contact, changes it by k L/E, which is
-//   below 1 % there.  A body that has gone through the obstacle, counted, need not turn.
-// - An early end has a reason: at explicit fixed steps an energy beyond 1e3 of the start's, under error
-//   control the limit of steps reached.  Of an implicit fixed step, Newton's method may fail where a period
-//   is more than kTooFar of the body's thicknesses long, so that the first step in contact turns its elements
-//   inside out: there an error is admitted, after a flight that was right.
+// - Reversal.  The obstacle's force is upwards.  Where a rigid body on the contact alone would reverse by the
+//   end, w (T - t0) > pi/2 with w^2 = k A/m and t0 the time of touching, the speed of the centre of mass is
+//   then not downwards (to 5 % of v); otherwise it is that of the rigid body, -v cos(w (T - t0)), to 5 % of
+//   v: the body, k L/E times softer than the contact, changes it by k L/E, which is below 1 % there.  A body
+//   counted as having gone through the obstacle need not reverse.
+// - An early end has a reason: at explicit fixed steps an energy beyond 1e3 of the initial one, under error
+//   control the limit of steps reached.  At an implicit fixed step, Newton's method may fail where the body
+//   moves by more than kTooFar of its thicknesses in a period, so that the first step in contact inverts its
+//   elements: there an error is accepted, after a correct flight.
 //     -> error as well
 
 namespace palpate::stability {
 namespace {
 
 constexpr double kPeriodsOfFlight = 2.5, kFlightError = 1e-6, kTurnError = 0.05;
-constexpr double kThrownBack = 1e6;  // of the energy, by one step: it then cannot look stable
-constexpr double kTooFar = 10.0;     // thicknesses in a period: between the rows' 4, and 40 at 100 m/s
+constexpr double kThrownBack = 1e6;  // Energy factor of one step: it then cannot appear stable.
+constexpr double kTooFar = 10.0;     // Thicknesses per period: between the rows' 4, and 40 at 100 m/s.
 
-/// Of the body that is thrown; at another body, of the two.
+/// Returns the mass of the thrown body; with a second body, the reduced mass of both [kg].
 double reduced_mass(const scene::Description& d) {
   double inverse = 0.0;
   for (const SoftBodySpec& body : d.bodies) inverse += 1.0 / (body.density_kg_m3 * body.mesh.size_m.prod());
   return 1.0 / inverse;
 }
 
-/// w of a rigid body on the contact alone [rad/s].
+/// Returns w of a rigid body on the contact alone [rad/s].
 double rigid_rate(const scene::Description& d) {
   const Vec3& size = d.bodies[0].mesh.size_m;
   return std::sqrt(d.contacts[0].stiffness_pa_m * size.x() * size.y() / reduced_mass(d));
 }
 
-/// The course of the centre of mass.
+/// Records the course of the centre of mass.
 class Flight {
  public:
   explicit Flight(const scene::Description& d)
@@ -96,7 +96,7 @@ class Flight {
     off_ = std::max(off_, (moved + Vec3(0, 0, speed_ * t)).norm() / (speed_ * t));
     ++flown_;
   }
-  /// What the body did that it cannot have done; empty for nothing.
+  /// Returns the discrepancy from free flight; empty if there is none.
   std::string in_flight(const Column& column) const {
     if (flown_ < 2) return "it ended in free flight";
     if (!(off_ <= (column.fixed ? kFlightError : kThrowRtol)))
@@ -124,7 +124,8 @@ class Flight {
   int flown_ = 0;
 };
 
-/// Largest k A_n/m_n of the body's lower side [rad^2/s^2], A_n a third of the faces around the node.
+/// Returns the largest k A_n/m_n of the body's lower side [rad^2/s^2], A_n a third of the faces around the
+/// node.
 double largest_contact_rate2(const loop::Body& body, double stiffness) {
   const TriMesh& surface = body.boundary.surface;
   VecX area = VecX::Zero(body.rest.nodes.cols());
@@ -137,11 +138,11 @@ double largest_contact_rate2(const loop::Body& body, double stiffness) {
   return stiffness * area.cwiseQuotient(body.masses).maxCoeff();
 }
 
-/// What theory has to say of an explicit method at fixed steps on a throw.
+/// Theoretical bounds for an explicit method at fixed steps on a throw.
 struct ExplicitTheory {
   bool body_is_stable, contact_is_stable;
-  double gain;      ///< of the energy by a touch, relative; where contact is stable
-  double one_step;  ///< factor of the energy by one step in contact
+  double gain;      ///< Relative energy gain in a touch, if contact is stable.
+  double one_step;  ///< Factor of the energy in one step in contact.
 };
 
 ExplicitTheory explicit_theory(const Column& column, const scene::Description& d) {
@@ -155,7 +156,7 @@ ExplicitTheory explicit_theory(const Column& column, const scene::Description& d
       contact(column, y, 0.0);
   constexpr double kRounds = 1e-9;
   MatX touch = MatX::Identity(2, 2);
-  double most = 1.0;  // a touch may end after any of its steps
+  double most = 1.0;  // A touch may end after any of its steps.
   const bool stable = contact.spectral_radius() <= 1.0 + kRounds;
   for (int i = 0; stable && i < 1 + static_cast<int>(std::ceil(M_PI / y)); ++i) {
     touch = contact.next() * touch;
@@ -165,7 +166,8 @@ ExplicitTheory explicit_theory(const Column& column, const scene::Description& d
           std::pow(contact.norm_of_first(), 2)};
 }
 
-/// Factor that the energy may grow by with a multi-rate method while the whole lower side is in contact.
+/// Returns the factor by which the energy may grow with a multi-rate method while the whole lower side is in
+/// contact.
 double growth_in_contact(const Column& column, scene::Description d) {
   constexpr double kDepth = 1e-6;
   d.integrator.name = "linearly-implicit-euler";
@@ -189,7 +191,7 @@ scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle,
   ContactSpec contact;
   contact.first = d.bodies[0].name;
   contact.second = obstacle.name;
-  contact.method = "analytic";  // k times the area of a side however deep it is, as in theory
+  contact.method = "analytic";  // k times the area of a side at any depth, as in theory.
   contact.stiffness_pa_m = stiffness_pa_m;
   d.contacts.push_back(contact);
   d.exchange.contact_refresh_s = kThrowPeriod;

@@ -29,7 +29,7 @@ scene::Description under_a_tool(const std::vector<std::pair<double, double>>& he
   contact.first = "cube";
   contact.second = "tool";
   contact.stiffness_pa_m = 1e7;
-  contact.quadrature_error = 0.1;  // what a method does with the force is asked for, not what the force errs
+  contact.quadrature_error = 0.1;  // The cell tests the method, not the accuracy of the force.
   d.contacts.push_back(contact);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = period;
   d.tool->tick_s = std::min(1e-3, 0.2 * period);
