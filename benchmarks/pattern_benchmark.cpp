@@ -1,9 +1,9 @@
-// What it costs when the nodes that contact couples change: a step of the beams S and M of `palpate bench
-// fem` (E = 1e5, 10 ms, linearly implicit) while a patch of coupled pairs lies still, and while it moves by a
-// node every step, so that the matrix has a new pattern.  The patch: 64 nodes of the beam's upper face, each
-// with 9 of the other half, as if the beam were folded onto itself.
-// pattern_ms: patterns of System and slots of the terms; symbolic_ms: what the solver makes of a pattern;
-// each a step.  `ratio` stands in the second of each pair.
+// Cost of a change of the nodes coupled by contact: one step of the beams S and M of `palpate bench fem`
+// (E = 1e5, 10 ms, linearly implicit) while a patch of coupled pairs is at rest, and while it moves by one
+// node per step, so that the matrix has a new pattern. The patch: 64 nodes of the beam's upper face, each
+// coupled with 9 nodes of the other half, as if the beam were folded onto itself. pattern_ms: patterns of
+// System and slots of the terms; symbolic_ms: the solver's analysis of a pattern; both per step. `ratio` is
+// in the second row of each pair.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 using namespace palpate;
 
-/// Nodes of the upper face by where they are along and across.
+/// Nodes of the upper face by their position along and across.
 struct UpperFace {
   std::map<std::pair<int, int>, int> node;
   int along = 0, across = 0;
@@ -32,8 +32,8 @@ struct UpperFace {
   }
 };
 
-/// Couples a patch with its mirror image in the beam's middle, with a zero tangent: the price is the
-/// pattern's alone.
+/// Couples a patch with its mirror image about the beam's middle, with a zero tangent: the cost is due to the
+/// pattern alone.
 class Patch final : public dynamics::ForceTerm {
  public:
   Patch(const UpperFace& face, bool moves) : face_(face), moves_(moves) {}
@@ -45,7 +45,7 @@ class Patch final : public dynamics::ForceTerm {
   std::uint64_t pattern_version() const override { return static_cast<std::uint64_t>(at_); }
   void add_pattern(dynamics::PatternBuilder& pattern) const override {
     constexpr int kEdge = 8;
-    const int first = face_.along / 8 + at_ % 3;  // there and back
+    const int first = face_.along / 8 + at_ % 3;  // Back and forth.
     for (int i = first; i < first + kEdge; ++i)
       for (int j = 0; j < kEdge; ++j)
         for (int di = -1; di <= 1; ++di)

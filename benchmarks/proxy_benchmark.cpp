@@ -1,6 +1,7 @@
 // Two bumpy balls of 44,000 skin vertices on 10,000 tetrahedra and 60 proxies each, pressed together, and one
-// touched by a small rigid ball. The reference is what proxies spare: placing every vertex of the two skins
-// once (SkinPlacedWhole).  A ring that the ball presses from inside its hole, as one hull and as parts.
+// touched by a small rigid ball. The reference is the work that proxies avoid: placing every vertex of the
+// two skins once (SkinPlacedWhole). A ring pressed by the ball from inside its hole, as one hull and as
+// parts.
 #include <benchmark/benchmark.h>
 
 #include <numeric>
@@ -34,7 +35,7 @@ const LayeredModel& rigid_ball() {
   return model;
 }
 
-/// Nodes of a head moved along x and dented a little, differently at each of eight phases.
+/// Returns the nodes of a head moved along x and slightly dented, differently at each of eight phases.
 std::vector<Points> phases(double x) {
   std::vector<Points> out;
   for (int i = 0; i < 8; ++i) {
@@ -93,7 +94,7 @@ void report(benchmark::State& state, const proxy::PruneCounts& counts, const pro
   state.counters["largest_turn"] = counts.largest_rotation;
 }
 
-/// Updates of both bodies and the query.
+/// Times the updates of both bodies and the query.
 void TwoHeads(benchmark::State& state) {
   proxy::ProxySet a(head()), b(head());
   proxy::Pruner pruner(a, b);
@@ -135,7 +136,7 @@ const TriMesh& ring() {
   return surface;
 }
 
-/// What a rigid tool costs when a scene is assembled: its hulls, and with them their set.
+/// Times the decomposition of a rigid tool into hulls during assembly.
 void DecomposeRing(benchmark::State& state) {
   proxy::DecomposeReport report;
   std::size_t hulls = 0;

@@ -1,7 +1,7 @@
-// Pruning on the paper's models: what a query costs (proxies, bounds, pairs, patches, regions) and what it
-// hands to the rasteriser, beside the true contact patch. The models are read from the folder that
-// PALPATE_MODELS names, else from where the tests' fixture leaves them (`ctest -R proxy.model`).
-// The reference is what proxies spare: placing every vertex of the skins once.
+// Pruning on the paper's models: cost of a query (proxies, bounds, pairs, patches, regions) and number of
+// faces passed to the rasteriser, compared with the true contact patch. The models are read from the folder
+// that PALPATE_MODELS specifies, otherwise from the folder of the tests' fixture (`ctest -R proxy.model`).
+// The reference is the work that proxies avoid: placing every vertex of the skins once.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -32,7 +32,7 @@ void add_counters(benchmark::State& state, const touch::Bodies& bodies,
   state.counters["handed_b_pct"] = 100.0 * each(counts.faces_b) / bodies.b.face_count();
 }
 
-/// What brute force says is in contact, at three phases; the time is that of finding it.
+/// Computes the true contact patch by brute force at three phases, and times it.
 void true_patch(benchmark::State& state, const touch::Case& c) {
   double a = 0.0, b = 0.0;
   const int phases[] = {0, touch::kPhases / 4, touch::kPhases / 2};
@@ -58,8 +58,8 @@ void query(benchmark::State& state, const touch::Case& c) {
   add_counters(state, bodies, pruner.counts());
 }
 
-/// The same with proxies swept by velocities, a flying into b within 10 ms, and with a look back on the way
-/// since the query before.
+/// Times a query with proxies swept by velocities, with a moving into b within 10 ms, and with a check of the
+/// path since the previous query.
 void swept_query(benchmark::State& state, const touch::Case& c, double speed) {
   constexpr double kTime = 0.01;
   touch::Bodies bodies(c);

@@ -1,8 +1,8 @@
-// CGAL: an AABB tree has no refit, so that it is built again at every query, of the triangles in the overlap
-// of the two skins' boxes alone; then a ray from each vertex in that overlap, along the mean normal of the
-// two patches, to where it leaves the other body.  That distance is the penetration depth of the vertex, as
-// Galoppo et al. (2007) define it.  Simple_cartesian<double>, without exact predicates, is CGAL's fastest
-// kernel.
+// CGAL: an AABB tree cannot be refitted, so it is rebuilt at every query, from the triangles in the
+// overlap of the two skins' boxes only. Then a ray from each vertex in this overlap, along the mean normal of
+// the two patches, is followed to its exit from the other body. This distance is the penetration depth of the
+// vertex as defined by Galoppo et al. (2007). Simple_cartesian<double>, without exact predicates, is CGAL's
+// fastest kernel.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -27,7 +27,7 @@ struct Box {
   bool holds(const Vec3& x) const { return (x.array() >= low.array() && x.array() <= high.array()).all(); }
 };
 
-/// The part of a skin in the overlap of both boxes.
+/// Part of a skin in the overlap of both boxes.
 class Patch {
  public:
   Patch(const Motion& motion, int body) : skin_(*motion.world, motion.body(body)) {}
@@ -53,7 +53,8 @@ class Patch {
     tree_.build();
   }
   const Vec3& area() const { return area_; }
-  /// Depths of the other's vertices, which lie inside where a ray along `out` leaves through this skin.
+  /// Adds the depths of the other skin's vertices that are inside: a ray along `out` leaves through this
+  /// skin.
   void add_depths(const Patch& other, const Vec3& out, Found& found) const {
     if (triangles_.empty()) return;
     const Kernel::Vector_3 along(out.x(), out.y(), out.z());
@@ -62,7 +63,7 @@ class Patch {
       const auto hit = tree_.first_intersection(ray);
       if (!hit) continue;
       const Triangle& face = *hit->second;
-      if (CGAL::cross_product(face[1] - face[0], face[2] - face[0]) * along <= 0.0) continue;  // enters
+      if (CGAL::cross_product(face[1] - face[0], face[2] - face[0]) * along <= 0.0) continue;  // Enters.
       const Kernel::Point_3* at = boost::get<Kernel::Point_3>(&hit->first);
       if (!at) continue;
       ++found.contacts;
@@ -91,7 +92,7 @@ class Cgal final : public Contender {
     if ((overlap.low.array() > overlap.high.array()).any()) return;
     a_.cut(overlap);
     b_.cut(overlap);
-    const Vec3 normal = (b_.area() - a_.area()).normalized();  // from b to a
+    const Vec3 normal = (b_.area() - a_.area()).normalized();  // From b to a.
     b_.add_depths(a_, normal, found_);
     a_.add_depths(b_, -normal, found_);
   }

@@ -1,5 +1,5 @@
-// palpate's contact by nearest points: from positions of nodes to forces on nodes, by exact nearest
-// points.  It is not told how the skins move: it bounds that by what it keeps from query to query.
+// palpate's contact by nearest points, from positions of nodes to forces on nodes. It receives no motion of
+// the skins: it bounds the motion by data kept from query to query.
 #include "contact/sources.h"
 #include "contender.h"
 #include "distance/skin_contact.h"

@@ -1,10 +1,10 @@
-// FCL: BVHModel's documented way for a mesh of constant topology, beginReplaceModel, replaceSubModel and
-// endReplaceModel(refit, bottomup), then all contacts of the pair with their depths.
+// FCL: the documented way for a mesh with constant topology, beginReplaceModel, replaceSubModel and
+// endReplaceModel(refit, bottomup) of BVHModel, then all contacts of the pair with their depths.
 //
-// fcl::collide copies a model of axis-aligned volumes at every call, for it may have to rotate it.  With the
-// traversal that it starts after that copy, called directly, nothing is copied: that is the faster way where
-// the skins stand in world coordinates already, and both are timed.  Oriented volumes are not copied, but
-// cost more to refit.
+// fcl::collide copies a model of axis-aligned volumes at every call, because it may have to rotate it. The
+// traversal that it starts after this copy can be called directly, without a copy: this is faster if the
+// skins are already in world coordinates, and both are timed. Oriented volumes are not copied, but cost more
+// to refit.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>

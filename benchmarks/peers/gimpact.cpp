@@ -1,8 +1,8 @@
-// Bullet's GImpact, whose documentation names deformable meshes: write the vertices, postUpdate() and
-// updateBound() refit the tree of boxes, and the algorithm that the dispatcher keeps for the pair goes on.
-// Bullet's own persistent manifold keeps four points of a pair of bodies; here the result takes every point
-// that the algorithm reports, which adds nothing to its work.  Margins are zero, so that what overlaps is
-// what is reported; single precision, Bullet's default and its fastest.
+// Bullet's GImpact, documented for deformable meshes: the vertices are written, postUpdate() and
+// updateBound() refit the tree of boxes, and the dispatcher's algorithm for the pair is reused. Bullet's
+// persistent manifold keeps four points per pair of bodies; here the result takes every reported point, which
+// adds no work to the algorithm. Margins are zero, so that only overlap is reported; single precision,
+// Bullet's default and its fastest.
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>

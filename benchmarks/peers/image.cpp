@@ -1,6 +1,5 @@
-// palpate's contact by images, from positions of nodes to forces on nodes.  A query is
-// ContactForce::refresh, which finds the samples and compares the forces before and after, and one evaluation
-// of the forces.
+// palpate's contact by images, from positions of nodes to forces on nodes. A query is ContactForce::refresh,
+// which finds the samples and compares the forces before and after, and one evaluation of the forces.
 #include <algorithm>
 
 #include "contender.h"
@@ -38,7 +37,7 @@ class Image final : public Contender {
   VecX force_;
 };
 
-/// What every other contender begins with.
+/// Common first stage of all other contenders.
 class SkinsAlone final : public Contender {
  public:
   explicit SkinsAlone(const Motion& motion)

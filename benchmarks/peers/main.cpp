@@ -1,9 +1,9 @@
-// What a query of contact between two deforming skins costs, beside what a user would take instead, in one
-// run on one thread: palpate from positions of nodes to forces on nodes, the others from positions of nodes
-// to contacts or depths.  The motion is that of a scene, recorded first; then everyone answers at the same
-// states, one after the other, in rounds.  Of each library the fastest way counts.
+// Cost of a contact query between two deforming skins, compared with alternative libraries in one run on one
+// thread: palpate from positions of nodes to forces on nodes, the others from positions of nodes to contacts
+// or depths. The motion of a scene is recorded first; then all contenders are queried at the same states, one
+// after the other, in rounds. For each library the fastest way is compared.
 //
-//   contact_peers [--once] [SCENE...]     --once: one state and one round, whether all of them run
+//   contact_peers [--once] [SCENE...]     --once: one state and one round, to check that all of them run
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,17 +22,17 @@
 namespace peers {
 namespace {
 
-/// A contender that has taken so long leaves out the rounds that are left [s].
+/// Time after which a contender skips the remaining rounds [s].
 constexpr double kEnough = 4.0;
 
 struct Options {
-  int rounds = 9;  ///< after one that is not timed
+  int rounds = 9;  ///< After one untimed round.
   bool one_state = false;
 };
 
 struct Timed {
-  std::vector<double> ms;     ///< of all states and rounds
-  std::vector<double> least;  ///< of each state over the rounds
+  std::vector<double> ms;     ///< Over all states and rounds.
+  std::vector<double> least;  ///< Least over the rounds, per state.
   double contacts = 0.0, deepest = 0.0;
   double spent_s = 0.0;
 };
@@ -54,7 +54,7 @@ std::vector<Timed> measure(const Motion& motion, const Contenders& contenders, i
         contenders[c]->query(motion.states[s]);
         const double ms = 1e3 * (wall_seconds() - start);
         out[c].spent_s += 1e-3 * ms;
-        if (round == 0) {  // patterns and memory are made
+        if (round == 0) {  // Patterns and memory are created.
           const Found found = contenders[c]->found();
           out[c].contacts += static_cast<double>(found.contacts) / static_cast<double>(motion.states.size());
           out[c].deepest = std::max(out[c].deepest, found.deepest);
@@ -67,7 +67,7 @@ std::vector<Timed> measure(const Motion& motion, const Contenders& contenders, i
   return out;
 }
 
-/// The median over the states of how many times as long.
+/// Returns the median over the states of the ratio of run times.
 double times(const Timed& of, const Timed& over) {
   std::vector<double> ratios(of.least.size());
   for (std::size_t s = 0; s < ratios.size(); ++s) ratios[s] = of.least[s] / over.least[s];

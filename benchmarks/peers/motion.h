@@ -9,13 +9,13 @@ namespace peers {
 
 using namespace palpate;
 
-/// One state of a run: positions and velocities of all nodes.
+/// State of a run: positions and velocities of all nodes.
 struct Snapshot {
   double time = 0.0;  ///< [s]
   VecX q, u;
 };
 
-/// The run of a scene with two soft bodies, and those of its states in which their skins overlap.
+/// Run of a scene with two soft bodies, and its states with overlapping skins.
 struct Motion {
   scene::Description description;
   std::unique_ptr<loop::World> world;
@@ -26,11 +26,12 @@ struct Motion {
   int vertices() const;
 };
 
-/// @param scene  path of its file
-/// @throws Error where the scene has not two soft bodies with skins, or they never touch
+/// Runs a scene and records the states in which its skins overlap.
+/// @param scene path of its file
+/// @throws Error if the scene does not have two soft bodies with skins, or they never touch
 Motion record_motion(const std::string& scene);
 
-/// The skin's vertices of a body in a state, from its nodes [m].
+/// Vertices [m] of a body's skin in a state, computed from its nodes.
 class SkinPositions {
  public:
   SkinPositions(const loop::World& world, const loop::Body& body);
@@ -39,7 +40,7 @@ class SkinPositions {
 
  private:
   const loop::Body& body_;
-  int offset_;  ///< of the body's nodes in q
+  int offset_;  ///< Offset of the body's nodes in q.
   Points nodes_, vertices_;
 };
 

@@ -12,164 +12,166 @@ namespace palpate::bench {
 
 /// One way to find the gaps of a scene.
 struct ContactBenchVariant {
-  std::string method = "distance";  ///< of all contacts but those with obstacles; or "image"
+  std::string method = "distance";  ///< Method of all contacts except with obstacles; or "image".
   int threads = 1;
 };
 
-/// Wall times over the exchange periods of a run in which something touches [ms].
+/// Wall times [ms] over the exchange periods of a run with contact.
 struct Spread {
   double least = 0.0, median = 0.0, p99 = 0.0;
 };
 
-/// What a period spends on contact, in its order; all but the last three are of images.  Passes and gather
-/// are timed by the GPU's own clock.
+/// Stages of contact in a period, in order; all but the last three apply to images only. Passes and gather
+/// are timed by the GPU's clock.
 enum class ContactStage {
-  kSkins,     ///< positions of skins, and of rigid surfaces, as far as regions need them
-  kRegions,   ///< bounds and pruning: which skin may touch, along which normal
-  kFaces,     ///< faces in axes of their region, and its camera
-  kUpload,    ///< what was made, or sent, of the surfaces for the GPU
-  kPasses,    ///< both surfaces drawn
-  kGather,    ///< both compared, and the pairs brought into one list
-  kReadback,  ///< all else of the images: commands, fence, and the list handed out by region
-  kGaps,      ///< gaps in double, and samples
-  kRest,      ///< the rest of the query; of nearest points all of it
-  kForces,    ///< of all samples, once, at the end of the period
-  kTangent    ///< likewise
+  kSkins,     ///< Positions of skins, and of rigid surfaces, as far as regions need them.
+  kRegions,   ///< Bounds and pruning: which skin may touch, along which normal.
+  kFaces,     ///< Faces in the axes of their region, and its camera.
+  kUpload,    ///< Surface data created or sent for the GPU.
+  kPasses,    ///< Rendering of both surfaces.
+  kGather,    ///< Comparison of both, and collection of the pairs in one list.
+  kReadback,  ///< Other work of images: commands, fence, and distribution of the list by region.
+  kGaps,      ///< Gaps in double precision, and samples.
+  kRest,      ///< Rest of the query; for nearest points all of it.
+  kForces,    ///< Forces of all samples, once, at the end of the period.
+  kTangent    ///< Tangent of all samples, once, at the end of the period.
 };
 inline constexpr int kContactStages = 11;
-inline constexpr int kQueryStages = 9;  ///< the first of them make up a query
+inline constexpr int kQueryStages = 9;  ///< The first of them, which make up a query.
 std::string_view name_of(ContactStage stage);
 
-/// What contact costs in an exchange period, and beside it the rest of the period (medians where nothing else
-/// is said).
+/// Cost of contact in an exchange period, and of the rest of the period (medians unless stated otherwise).
 struct ContactBenchRow {
   ContactBenchVariant variant;
-  std::string device;               ///< what made the images (device_of)
-  bool device_is_software = false;  ///< images by a rasteriser on the processor
+  std::string device;               ///< Device that rendered the images (device_of).
+  bool device_is_software = false;  ///< Images by a software rasteriser.
   int skin_vertices = 0, tetrahedra = 0;
-  /// that were timed: those in which something touched, or all where nothing ever did
+  /// Number of timed periods: those with contact, or all if there never was any.
   int periods = 0;
-  bool touches = false;  ///< in any period
-  long samples = 0;      ///< median of a query
-  double regions = 0.0;  ///< mean of a query, of contacts with proxies
-  long images = 0;       ///< median number of a query
-  Spread query;          ///< the whole query
-  Spread to_forces;      ///< the same and the forces on nodes
-  Spread period;         ///< the whole exchange period
-  Spread step;           ///< the period without its query: the integrator's steps, and the tool's ticks
+  bool touches = false;  ///< Whether there was contact in any period.
+  long samples = 0;      ///< Median per query.
+  double regions = 0.0;  ///< Mean per query, for contacts with proxies.
+  long images = 0;       ///< Median number per query.
+  Spread query;          ///< The whole query.
+  Spread to_forces;      ///< Query and forces on nodes.
+  Spread period;         ///< The whole exchange period.
+  Spread step;           ///< Period without its query: the integrator's steps and the tool's ticks.
   std::array<Spread, kContactStages> stages;
-  double linearise_ms = 0.0;  ///< of the contact for the tool's ticks, mean of all periods; 0 without a tool
-  double solve_ms = 0.0;      ///< factorisation and solution of the period's steps
-  double period_s = 0.0;      ///< simulated
-  /// forces and tangent as a fused step takes them, in one pass; 0 where the contact's tangent is none that
-  /// stands beside the pattern
+  /// Linearisation of the contact for the tool's ticks, mean of all periods; 0 without a tool.
+  double linearise_ms = 0.0;
+  double solve_ms = 0.0;  ///< Factorisation and solution of the period's steps.
+  double period_s = 0.0;  ///< Simulated time.
+  /// Forces and tangent as a fused step computes them, in one pass; 0 if the contact's tangent cannot be
+  /// stored outside the pattern.
   double assembly_ms = 0.0;
-  double elements_ms = 0.0;  ///< fused assembly over the elements of the first body at the same states
-  /// With friction, of the pairs whose tangent is symmetric, largest of the run: the friction that a step
-  /// left out, and the friction [N].
+  double elements_ms = 0.0;  ///< Fused assembly over the elements of the first body at the same states.
+  /// With friction, for the pairs with a symmetric tangent, largest of the run: friction omitted by a step,
+  /// and friction [N].
   double left_out_n = 0.0, friction_n = 0.0;
-  std::vector<Vec3> forces;  ///< sum over the first body's nodes after each period [N]
+  std::vector<Vec3> forces;  ///< Sum over the first body's nodes after each period [N].
 
   const Spread& of(ContactStage stage) const { return stages[static_cast<std::size_t>(stage)]; }
-  /// simulated time over median run time
+  /// Returns simulated time over median run time.
   double real_time_factor() const { return period.median > 0.0 ? 1e3 * period_s / period.median : 0.0; }
 };
 
-/// What finds the gaps of a method: "processor, instruction set", or of "image" the GPU and its driver, by
-/// the driver's own words.
+/// Device that finds the gaps of a method: "processor, instruction set", or for "image" the GPU and its
+/// driver, as named by the driver.
 struct ContactDevice {
   std::string name;
-  bool software = false;  ///< of "image": a rasteriser on the processor
+  bool software = false;  ///< For "image": a software rasteriser.
 };
-/// @throws Error for "image" where it cannot be opened, saying why
+/// Returns the device of a method. @throws Error for "image" if it cannot be opened, with the reason
 ContactDevice device_of(const std::string& method);
 
 /// Runs the scene for its duration, one exchange period after the other.
-/// @param stop  true: ends early, with what there is
-/// @throws Error where the scene has no contact but with obstacles
+/// @param description scene to run
+/// @param variant method and number of threads
+/// @param stop true: ends early, with the results so far
+/// @throws Error if the scene has contacts only with obstacles
 ContactBenchRow bench_contact(scene::Description description, const ContactBenchVariant& variant,
                               const std::atomic<bool>* stop = nullptr);
 
-/// The scene's first body alone, held and moved as there, with contact of its own skin only: what looking
-/// for it costs where nothing touches.
+/// Returns the scene's first body alone, held and moved as there, with self-contact of its skin only: the
+/// cost of contact detection without contact.
 scene::Description against_itself(scene::Description description);
 
-/// Copies of the scene's first body in a row along x, each held as it is there and in contact with the next:
-/// many contacts in one implicit solve.
+/// Returns copies of the scene's first body in a row along x, each held as in the scene and in contact with
+/// the next: many contacts in one implicit solve.
 scene::Description row_of_bodies(scene::Description description, int count, double spacing_m);
 
-/// What friction 0.3 makes of a step, with the tangent's unsymmetric part left out and with it ("full").
+/// Effect of friction 0.3 on a step, without and with the unsymmetric part of the tangent ("full").
 struct FrictionPrice {
   double symmetric_ms = 0.0, full_ms = 0.0;
-  double left_out = 0.0;  ///< largest friction that a step left out, over the largest friction
-  /// Between the two runs, over the largest force: the largest difference of the force on the first body at
-  /// the same time.
+  double left_out = 0.0;  ///< Largest friction omitted by a step, over the largest friction.
+  /// Largest difference between the two runs' forces on the first body at the same time, over the largest
+  /// force.
   double force_change = 0.0;
 };
 
-/// Contact by nearest points beside the rest of a step, as ratios of one run: medians of periods, one thread
-/// [ms].
+/// Contact by nearest points compared with the rest of a step, as ratios of one run: medians of periods, one
+/// thread [ms].
 struct ContactCost {
   std::string scene;
-  /// A step of the first body without contact or tool, with linear_rtol = 1e-3.  As all that is without
-  /// contact it moves under its weight: at rest there is nothing to solve.
+  /// Step of the first body without contact or tool, with linear_rtol = 1e-3. Like all runs without contact,
+  /// it moves under its weight: at rest there is nothing to solve.
   double one_body_ms = 0.0;
-  /// With the scene's tolerance: the sum of such steps of each body by itself, and a step of all together.
+  /// With the scene's tolerance: the sum of such steps over each body alone, and a step of all together.
   double bodies_ms = 0.0, contact_free_ms = 0.0;
   ContactBenchRow row;
-  FrictionPrice friction;  ///< zeros of a scene with a tool, and where nothing touches
+  FrictionPrice friction;  ///< Zero for a scene with a tool, and without contact.
 };
 ContactCost bench_contact_price(const scene::Description& description,
                                 const std::atomic<bool>* stop = nullptr);
 
-/// A rigid sphere pressed into a ball under a fine skin, as one query by nearest points sees it.
+/// Rigid sphere pressed into a ball under a fine skin, measured by one query by nearest points.
 struct ContactGrowthRow {
   int skin_vertices = 0;
-  double area_m2 = 0.0;  ///< of the contact region, from the samples: sum of areas where they overlap
+  double area_m2 = 0.0;  ///< Area of the contact region, from the samples: sum of areas where they overlap.
   long samples = 0;
   Spread query;  ///< [ms]
 };
-/// The same contact region, of the same radius and under the same triangles, on skins of more and more
-/// vertices: balls of a growing radius, about 10,000 tetrahedra each.
+/// Measures the same contact region, with the same radius and under the same triangles, on skins with
+/// increasing numbers of vertices: balls with a growing radius, about 10,000 tetrahedra each.
 std::vector<ContactGrowthRow> bench_skin_growth(const std::vector<int>& skin_vertices,
                                                 const std::atomic<bool>* stop = nullptr);
-/// One skin and contact regions of an area that grows by `factor` in `count` steps.
+/// Measures one skin with contact regions whose area grows by `factor` in `count` steps.
 std::vector<ContactGrowthRow> bench_patch_growth(int skin_vertices, double factor, int count,
                                                  const std::atomic<bool>* stop = nullptr);
 
-/// How the query's time grows with what `rows` differ in: a power.
+/// Growth of the query's time with the quantity that differs between `rows`: a power.
 struct ContactGrowth {
-  std::string with;  ///< "skin" or "area"
+  std::string with;  ///< "skin" or "area".
   std::vector<ContactGrowthRow> rows;
-  double exponent() const;  ///< NaN for fewer than two rows
+  double exponent() const;  ///< NaN for fewer than two rows.
 };
 
-/// All that `palpate bench contact` measures.
+/// All measurements of `palpate bench contact`.
 struct ContactBenchReport {
   struct Scene {
     std::string name;
     std::vector<ContactBenchRow> rows;
-    /// Null where there is none.
+    /// Returns null if there is none.
     const ContactBenchRow* find(const std::string& method, int threads) const;
   };
   std::vector<Scene> scenes;
   std::vector<ContactCost> prices;
   std::vector<ContactGrowth> growth;
-  std::string no_image;  ///< why "image" was left out; empty: it was not
+  std::string no_image;  ///< Reason why "image" was skipped; empty: it was not.
 };
 
-/// What a figure of the report must keep.
+/// Acceptance limit of a figure in the report.
 struct ContactBar {
-  std::string scene;  ///< empty: of no scene
+  std::string scene;  ///< Empty: not specific to a scene.
   std::string what;
   double value = 0.0, bar = 0.0;
-  bool at_least = false;                                                  ///< else at most
-  bool is_met() const { return at_least ? value >= bar : value <= bar; }  ///< false for NaN
+  bool at_least = false;                                                  ///< Otherwise at most.
+  bool is_met() const { return at_least ? value >= bar : value <= bar; }  ///< False for NaN.
 };
-/// The bars of all that was measured, in the report's order; bars.cpp lists them.
+/// Returns the acceptance limits of all measurements, in the report's order; bars.cpp lists them.
 std::vector<ContactBar> contact_bars(const ContactBenchReport& report);
 
-/// With the bars, and the processor that all of it ran on.
+/// Returns the report with its acceptance limits and the processor that it was measured on.
 std::string to_json(const ContactBenchReport& report);
 
 }  // namespace palpate::bench

@@ -23,7 +23,7 @@ struct Figures {
   double startup_ms, memory_mib, step_ms;
 };
 
-/// Runs `measure` in a child process, so that what one variant loads or allocates is not there for the next.
+/// Runs `measure` in a child process, so that libraries and memory of one variant do not affect the next.
 Figures in_child(const std::function<Figures()>& measure) {
   int ends[2];
   PALPATE_CHECK(pipe(ends) == 0, "pipe failed");
@@ -41,7 +41,7 @@ Figures in_child(const std::function<Figures()>& measure) {
     _exit(status);
   }
   close(ends[1]);
-  std::string said;  // the figures, or why there are none
+  std::string said;  // The figures, or the reason why there are none.
   std::array<char, 4096> part{};
   for (ssize_t n = 0; (n = read(ends[0], part.data(), part.size())) > 0;)
     said.append(part.data(), static_cast<std::size_t>(n));
@@ -56,7 +56,7 @@ Figures in_child(const std::function<Figures()>& measure) {
   return figures;
 }
 
-/// The loop that a user would write by hand over the same parts: query, restart, advance.
+/// Runs the loop that a user would write by hand over the same parts: query, restart, advance.
 Figures bare_loop(const scene::Description& d) {
   const double start = wall_seconds();
   const auto world = loop::assemble(d);

@@ -31,11 +31,11 @@ scene::Description beam(int cells_along, double step_s, int steps, const std::st
   d.integrator.linear_solver = linear_solver;
   d.record.emplace();
   d.record->states = false;
-  d.record->state_period_s = step_s;  // the loop's period: one step each
+  d.record->state_period_s = step_s;  // The loop's period: one step each.
   return d;
 }
 
-/// Differences of the stepper's cumulative times from one period to the next.
+/// Records the differences of the stepper's cumulative times from one period to the next.
 class StageTimes : public loop::Observer {
  public:
   void period(loop::World& world, double) override {
@@ -46,7 +46,7 @@ class StageTimes : public loop::Observer {
     last_ = now;
     started_ = true;
   }
-  /// Medians in ms; the first step carries the symbolic analysis and is left out.
+  /// Returns medians in ms, without the first step, which includes the symbolic analysis.
   double median(std::size_t stage) const {
     std::vector<double> times(stages_[stage].begin() + 1, stages_[stage].end());
     std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),

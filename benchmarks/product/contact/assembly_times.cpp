@@ -8,7 +8,7 @@
 namespace palpate::bench {
 namespace {
 
-constexpr double kStiffness = 1e-4, kRate = 1e-2;  // h^2 and h of a step of 10 ms
+constexpr double kStiffness = 1e-4, kRate = 1e-2;  // h^2 and h of a step of 10 ms.
 
 }  // namespace
 

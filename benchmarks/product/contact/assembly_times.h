@@ -7,14 +7,14 @@
 
 namespace palpate::bench {
 
-/// Times what a linearly implicit step assembles: forces and tangent of all contact samples, against those of
-/// all elements of the first body, both in one pass and as the mixed-precision step takes them.
+/// Times the assembly of a linearly implicit step: forces and tangent of all contact samples, and of all
+/// elements of the first body, both in one pass and in the form used by the mixed-precision step.
 class AssemblyTimes {
  public:
   explicit AssemblyTimes(loop::World& world);
 
-  double elements_ms();  ///< at the World's present state
-  double contact_ms();   ///< 0 where the contact's tangent does not stand beside the pattern
+  double elements_ms();  ///< At the World's present state.
+  double contact_ms();   ///< 0 if the contact's tangent cannot be stored outside the pattern.
 
  private:
   loop::World& world_;

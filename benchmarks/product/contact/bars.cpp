@@ -1,15 +1,15 @@
-// Bounds the cost of a query and of a step with contact, as ratios of one run.  Nearest points, one thread,
-// where nothing else is said:
+// Acceptance limits for the cost of a query and of a step with contact, as ratios of one run. Nearest points
+// and one thread, unless stated otherwise:
 //
 //   samples / elements    forces and tangent of all samples over the elements' own assembly            <= 1
 //   query / step          from positions of nodes to forces on nodes, over an interactive step of the
-//                         first body; with a sphere on the head and on the human             <= 1, 1/20
+//                         first body; for a sphere on the head and on the human              <= 1, 1/20
 //   contact / apart       two pumpkins: a step, without its query, over those of each body alone     <= 1.3
-//   friction / contact    two pumpkins: that with friction 0.3 over that without                     <= 1.5
+//   friction / contact    two pumpkins: the same step with friction 0.3 over that without           <= 1.5
 //   real time             touch-head, touch-human and two-pumpkins as the scenes are, on two threads   >= 1
 //   image                 the query by the image on hardware                                      <= 0.3 ms
-//   growth with skin      exponent in the number of the skin's vertices, the region held             <= 0.2
-//   growth with area      exponent in the region's area, the skin held                               <= 1.1
+//   growth with skin      exponent in the number of the skin's vertices, region fixed               <= 0.2
+//   growth with area      exponent in the region's area, skin fixed                                 <= 1.1
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,13 +21,13 @@
 namespace palpate::bench {
 namespace {
 
-constexpr int kCores = 2;  ///< of the machine that real time is asked of
+constexpr int kCores = 2;  ///< Cores of the machine for which real time is required.
 
 bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// NaN, which keeps no bar, where one was not measured.
+/// Returns NaN, which meets no limit, if either time was not measured.
 double ratio(double ms, double over_ms) { return ms > 0.0 && over_ms > 0.0 ? ms / over_ms : std::nan(""); }
 
 void add_rows(const ContactBenchReport::Scene& scene, std::vector<ContactBar>& out) {

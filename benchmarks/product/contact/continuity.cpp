@@ -13,17 +13,17 @@
 namespace palpate::bench {
 namespace {
 
-constexpr double kTurn = 0.2;   // of the body before a path [rad]
-constexpr double kFloor = 0.1;  // of the path's largest force: what a change is measured by at least
+constexpr double kTurn = 0.2;   // Rotation of the body before a path [rad].
+constexpr double kFloor = 0.1;  // Smallest reference of a change, over the path's largest force.
 
-/// The contact at one pose: the wrench on the moved body about the pivot, and where it presses.
+/// Contact at one pose: wrench on the moved body about the pivot, and the location of contact.
 struct Contact {
   Wrench wrench;
-  double volume = 0.0;         // of what overlaps [m^3]
-  Vec3 centre = Vec3::Zero();  // its middle [m]
+  double volume = 0.0;         // Overlap volume [m^3].
+  Vec3 centre = Vec3::Zero();  // Its centre [m].
 };
 
-/// A World whose last body is moved as a whole.
+/// World whose last body is moved rigidly.
 class Probe {
  public:
   explicit Probe(const scene::Description& d) : world_(loop::assemble(d)) {
@@ -78,7 +78,7 @@ class Probe {
   VecX force_;
 };
 
-/// From far away, along the line of both middles, to where they touch.
+/// Approaches from far away, along the line of both centres, to the first touch.
 class Approach {
  public:
   explicit Approach(Probe& probe) : probe_(probe) {
@@ -112,7 +112,7 @@ class Approach {
   }
 
  private:
-  /// How far away they still touch, over the reach; minus infinity where they do not.
+  /// Returns the largest distance at which they still touch, over the reach; minus infinity if they do not.
   double first_touch(const Pose& start, const Vec3& away) {
     const auto touches = [&](double s) {
       return !probe_.at({start.rotation, start.translation + s * reach_ * away}, Vec3::Zero())
@@ -129,17 +129,17 @@ class Approach {
     return s;
   }
 
-  static constexpr double kStep = 0.01;  // of the reach
+  static constexpr double kStep = 0.01;  // Fraction of the reach.
   static constexpr int kDeeper = 3;
   Probe& probe_;
   double reach_ = 0.0;
   bool inside_ = false;
 };
 
-/// Changes between two poses, over the sizes of force and moment.
+/// Changes between two poses, relative to the sizes of force and moment.
 struct Change {
   double force = 0.0, moment = 0.0;
-  double size = 0.0;  ///< of the force [N]
+  double size = 0.0;  ///< Size of the force [N].
 };
 
 struct Scale {
@@ -183,8 +183,8 @@ class Walk {
   double time(int i) const { return static_cast<double>(i) / options_.steps; }
   Contact at(double s) { return probe_.at(path_->at(s), pivot_); }
 
-  /// Into the half with the greater change, step by step.  The steps before lead to it again; where that
-  /// ends in another force, the force depends on the way.
+  /// Bisects a step repeatedly into the half with the greater change. The steps before it are repeated to
+  /// reach it; if this yields another force, the force depends on the path.
   ForceJump halve(int step) {
     Contact before;
     for (int i = std::max(0, step - 2); i <= step; ++i) before = at(time(i));

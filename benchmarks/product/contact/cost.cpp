@@ -9,11 +9,11 @@
 namespace palpate::bench {
 namespace {
 
-constexpr double kInteractive = 1e-3;  ///< tolerance of an interactive step's linear solve
+constexpr double kInteractive = 1e-3;  ///< Tolerance of an interactive step's linear solve.
 constexpr double kFriction = 0.3;
 const Vec3 kGravity(0, 0, -9.81);
 
-/// Run time of each period of a scene without contact [ms].
+/// Records the run time of each period of a scene without contact [ms].
 class PeriodTimes : public loop::Observer {
  public:
   void period(loop::World&, double) override {
@@ -21,7 +21,7 @@ class PeriodTimes : public loop::Observer {
     if (last_ > 0.0) ms_.push_back(1e3 * (now - last_));
     last_ = wall_seconds();
   }
-  /// The first one carries the symbolic analysis and is left out.
+  /// Returns the median without the first period, which includes the symbolic analysis.
   double median_ms() const {
     return ms_.size() < 2 ? 0.0 : median(std::vector<double>(ms_.begin() + 1, ms_.end()));
   }
@@ -31,10 +31,10 @@ class PeriodTimes : public loop::Observer {
   std::vector<double> ms_;
 };
 
-/// The bodies alone, falling under their weight as far as they are not held: at rest there is nothing to
-/// solve.
+/// Measures the bodies alone, falling under their weight as far as they are not held: at rest there is
+/// nothing to solve.
 double bodies_alone_ms(scene::Description d, const std::atomic<bool>* stop) {
-  RecordSpec record;  // nothing is kept, but without contact its period is the loop's
+  RecordSpec record;  // Records nothing, but sets the loop's period without contact.
   record.states = false;
   record.state_period_s = loop::period_of(d);
   d.record = record;
@@ -54,8 +54,8 @@ double bodies_alone_ms(scene::Description d, const std::atomic<bool>* stop) {
   return times.median_ms();
 }
 
-/// |F_symmetric - F_full| at each time, the largest over the largest |F_full|; both runs have the same
-/// periods.
+/// Returns the largest |F_symmetric - F_full| at equal times over the largest |F_full|; both runs have the
+/// same periods.
 double largest_change(const std::vector<Vec3>& symmetric, const std::vector<Vec3>& full) {
   double change = 0.0, size = 0.0;
   for (std::size_t i = 0; i < std::min(symmetric.size(), full.size()); ++i) {

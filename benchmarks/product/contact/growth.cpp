@@ -1,7 +1,8 @@
-// A rigid sphere of radius r and a ball of radius R meet in a circle of radius a where their centres are
-//     sqrt(r^2 - a^2) + sqrt(R^2 - a^2)
-// apart, which keeps the radius of the contact region whatever R is.  With R growing like the square root of
-// the number of vertices the skin's triangles keep their size as well: the query sees the same region under
+// A rigid sphere of radius r and a ball of radius R meet in a circle of radius a if the distance of their
+// centres is
+//     sqrt(r^2 - a^2) + sqrt(R^2 - a^2),
+// which keeps the radius of the contact region for any R. With R proportional to the square root of the
+// number of vertices the skin's triangles keep their size as well: the query processes the same region under
 // the same triangles, on a skin that is larger elsewhere.
 #include <algorithm>
 #include <cmath>
@@ -18,14 +19,14 @@
 namespace palpate::bench {
 namespace {
 
-constexpr double kEdge = 0.01;           ///< of the skin's triangles [m]
-constexpr int kCells = 11;               ///< elements along the radius: 10,000 tetrahedra or so
-constexpr double kRegion = 0.05;         ///< a, of the smallest region [m]
-constexpr double kToolOverRegion = 4.0;  ///< r/a: the same slope at the rim of every region
+constexpr double kEdge = 0.01;           ///< Edge of the skin's triangles [m].
+constexpr int kCells = 11;               ///< Elements along the radius: about 10,000 tetrahedra.
+constexpr double kRegion = 0.05;         ///< a of the smallest region [m].
+constexpr double kToolOverRegion = 4.0;  ///< r/a: the same slope at the rim of every region.
 constexpr int kToolSubdivisions = 48;
 constexpr int kQueries = 24, kUntimed = 4;
 
-/// A frame that is put where a query wants it.
+/// Frame placed by each query.
 class PutFrame final : public contact::MovingFrame {
  public:
   Pose pose(const dynamics::StateView&) const override { return at; }
@@ -35,7 +36,7 @@ class PutFrame final : public contact::MovingFrame {
 
 LayeredModel ball_of(int skin_vertices) {
   const int subdivisions = std::max(4, static_cast<int>(std::lround(std::sqrt(skin_vertices / 10.0))));
-  // an icosahedron's edge is 1.05 times its radius; cut into parts and blown up, 1.1 on average
+  // An icosahedron's edge is 1.05 times its radius; subdivided and projected onto the sphere, 1.1 on average.
   const double radius = kEdge * subdivisions / 1.1;
   LayeredModel model;
   model.name = "ball";
@@ -45,7 +46,7 @@ LayeredModel ball_of(int skin_vertices) {
   return model;
 }
 
-/// The ball as a block of a State and one side of a contact.
+/// Ball as a block of a State and one side of a contact.
 struct Touched {
   LayeredModel model;
   double radius;
@@ -63,7 +64,7 @@ struct Touched {
   }
 };
 
-/// Where the tool's sphere meets the ball: no node of the icosahedron, and nothing along an axis.
+/// Direction in which the tool's sphere meets the ball: no node of the icosahedron, and not along an axis.
 const Vec3 kWhere = Vec3(0.36, 0.48, 0.8);
 
 ContactGrowthRow touch(Touched& ball, double region) {
@@ -82,7 +83,7 @@ ContactGrowthRow touch(Touched& ball, double region) {
   VecX force;
   std::vector<double> ms, areas, samples;
   for (int k = 0; k < kUntimed + kQueries; ++k) {
-    // The tool goes round by an edge or so: no two queries find the same nearest points.
+    // The tool moves around by about an edge: no two queries find the same nearest points.
     const double angle = 2.0 * M_PI * k / kQueries;
     const Vec3 aside = kEdge * (std::cos(angle) * Vec3(0.8, -0.6, 0.0) + std::sin(angle) * Vec3(0, 0, 1));
     frame->at.translation = apart * (R * kWhere + aside).normalized();

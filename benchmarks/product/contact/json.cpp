@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Of what was not measured, which is NaN: null.
+/// Converts a number to JSON; NaN, which marks a quantity that was not measured, becomes null.
 ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(); }
 
 ordered_json json_of(const Spread& spread) {

@@ -6,7 +6,7 @@
 namespace palpate::bench {
 namespace {
 
-/// The same on every machine, which std::uniform_real_distribution is not.
+/// Returns the same numbers on every machine, unlike std::uniform_real_distribution.
 double uniform(std::mt19937& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
 }

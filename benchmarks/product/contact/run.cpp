@@ -20,13 +20,13 @@ struct Times {
   long images = 0, regions = 0;
 };
 
-/// Of the periods, one entry each; times in [ms].
+/// Measurements with one entry per period; times in [ms].
 struct Periods {
   std::vector<double> query, to_forces, solve, whole, step, samples, images, regions, assembly, elements;
   std::array<std::vector<double>, kContactStages> stages;
 };
 
-/// What each period took; what the observer does itself is not counted.
+/// Records the times of each period, without the observer's work.
 class Watch : public loop::Observer {
  public:
   explicit Watch(loop::World& world) : assembly_(world) {
@@ -35,7 +35,7 @@ class Watch : public loop::Observer {
 
   void period(loop::World& world, double) override {
     const Times now = times_of(world);
-    // the first call is at the start of the run: its query is no period's
+    // The first call is at the start of the run: its query belongs to no period.
     if (started_) {
       const dynamics::StateView state = world.state.view();
       force_.setZero(state.layout->u_size);
@@ -133,12 +133,12 @@ void fill(ContactBenchRow& out, const Periods& of) {
   out.elements_ms = median(of.elements);
   out.samples = static_cast<long>(median(of.samples));
   out.images = static_cast<long>(median(of.images));
-  // the sum first: of n times 8/n there would be rounding, and 8 would not be 8
+  // Sums first: summing n times 8/n would round, and the mean would not be exactly 8.
   for (const double regions : of.regions) out.regions += regions;
   out.regions /= static_cast<double>(std::max<std::size_t>(1, of.regions.size()));
 }
 
-/// Sets how the gaps of all contacts but those with obstacles are found; whether there is one.
+/// Sets the method of all contacts except with obstacles; returns whether there is one.
 bool set_variant(scene::Description& d, const ContactBenchVariant& variant) {
   bool any = false;
   for (ContactSpec& contact : d.contacts) {

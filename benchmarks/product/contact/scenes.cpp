@@ -6,7 +6,7 @@
 namespace palpate::bench {
 namespace {
 
-/// The contact of the scene's first body, between others.
+/// Returns the contact of the scene's first body, applied to other bodies.
 ContactSpec contact_between(const scene::Description& d, const std::string& first,
                             const std::string& second) {
   ContactSpec out = d.contacts.empty() ? ContactSpec{} : d.contacts.front();

@@ -5,7 +5,7 @@
 
 namespace palpate::bench {
 
-/// The least value that `share` of the values do not exceed; 0 where there are none.
+/// Returns the least value that a fraction `share` of the values do not exceed; 0 if there are none.
 double quantile(std::vector<double> values, double share);
 inline double median(const std::vector<double>& values) { return quantile(values, 0.5); }
 Spread spread_of(const std::vector<double>& values);

@@ -11,7 +11,7 @@
 namespace palpate::bench {
 namespace {
 
-/// End time: the softest beam falls from rest up to here; its end has rotated by half a radian, and no
+/// End time: the softest beam falls from rest until then; its end has rotated by half a radian, and no
 /// element is inverted.
 constexpr double kFallFor = 0.2, kYoungsModulus = 1e5;
 constexpr double kFirstStep = 1e-3, kShake = 1e-2;
@@ -22,9 +22,9 @@ struct Fall {
   double setup_s, seconds;
 };
 
-/// Times the fall from rest.  A first step from another state is not timed with it: it finds patterns, maps
-/// and orderings, which the programs compared with also have beforehand.  It shakes the nodes against each
-/// other, so that a solver cannot reuse its solution.
+/// Times the fall from rest. A first step from another state is excluded: it performs one-time work
+/// (patterns, maps, orderings), which the compared programs also do beforehand. It moves the nodes relative
+/// to each other, so that a solver cannot reuse its solution.
 Fall fall(const BeamSize& size, const IntegratorSpec& spec) {
   Beam beam(size.along, size.across, kYoungsModulus);
   const VecX rest = beam.state.q();
@@ -48,7 +48,7 @@ Fall fall(const BeamSize& size, const IntegratorSpec& spec) {
   return out;
 }
 
-/// |v|_M
+/// Returns |v|_M.
 double mass_norm(const VecX& v, const VecX& masses) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < v.size(); ++i) sum += masses[i / 3] * v[i] * v[i];
@@ -80,7 +80,7 @@ std::vector<AccuracyPoint> run_accuracy(const std::string& size_name, bool (*sto
         best = std::min(best, one.seconds);
       }
     } catch (const Error&) {
-      return;  // a step too long for its method: no point
+      return;  // The step is too long for its method: no point.
     }
     if (!(p.error < 1.0)) return;
     p.ms_of_ten_ms = 1e3 * best * 1e-2 / kFallFor;
@@ -89,7 +89,7 @@ std::vector<AccuracyPoint> run_accuracy(const std::string& size_name, bool (*sto
   for (const double h : {1e-2, 5e-3, 2e-3, 1e-3})
     for (const double rtol : {1e-1, 1e-2, 1e-3, 1e-6})
       measure({.name = "linearly-implicit-euler", .step_s = h, .linear_solver = "auto", .linear_rtol = rtol});
-  // Order two, and so longer steps for the same error; Newton as far as the step's own error deserves.
+  // Order two allows longer steps for the same error; Newton's tolerance matches the step's error.
   for (const char* name : {"implicit-midpoint", "generalized-alpha", "newmark", "bdf2"})
     for (const double h : {1e-1, 5e-2, 2e-2, 1e-2, 5e-3})
       measure({.name = name,

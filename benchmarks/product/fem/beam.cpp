@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDensity = 1000.0, kSpin = 3.0, kStart = 0.1, kFallsBelow = 3e5;
 
-/// Angle and its derivatives: a constant angular acceleration over kStart, then constant speed.
+/// Returns angle and derivatives: a constant angular acceleration over kStart, then constant speed.
 dynamics::PathPoint rotating_end(double t) {
   const double rate = kSpin / kStart, s = std::min(t, kStart);
   dynamics::PathPoint p;
@@ -26,7 +26,7 @@ dynamics::PathPoint rotating_end(double t) {
 
 TetMesh beam_mesh(int along, int across) {
   TetMesh beam = mesh::box(Vec3(1.0, 0.25, 0.25), {along, across, across});
-  mesh::renumber_nodes(beam, mesh::spatial_order(beam.nodes));  // as a body of a scene has it
+  mesh::renumber_nodes(beam, mesh::spatial_order(beam.nodes));  // As for a body of a scene.
   return beam;
 }
 
@@ -70,7 +70,7 @@ double Beam::body_bytes() const {
 double Beam::end_rotation() const {
   Vec3 then = Vec3::Zero(), now = Vec3::Zero();
   const auto q = state.q();
-  double x1 = -1.0, x2 = -1.0;  // the last two cross-sections
+  double x1 = -1.0, x2 = -1.0;  // The last two cross-sections.
   for (Eigen::Index i = 0; i < rest.size(); i += 3) x1 = std::max(x1, rest[i]);
   for (Eigen::Index i = 0; i < rest.size(); i += 3)
     if (rest[i] < x1 - 1e-9) x2 = std::max(x2, rest[i]);

@@ -7,15 +7,15 @@ namespace palpate::bench {
 
 TetMesh beam_mesh(int along, int across);
 
-/// The beam in motion.  E = 1e5: it falls under its weight, hanging by its held end.  Stiffer ones would only
-/// tremble: their held end rotates, at 3 rad/s after a start of 0.1 s, and bends them.
+/// Beam in motion. E = 1e5: it falls under its weight, hanging from its held end. Stiffer ones would only
+/// vibrate slightly: their held end rotates, at 3 rad/s after a start of 0.1 s, and bends them.
 struct Beam {
   dynamics::State state;
   dynamics::System system;
   VecX rest, masses;
   int tetrahedra = 0;
   Beam(int along, int across, double youngs_modulus_pa);
-  /// Angle between the line through the free end's axis now and at rest.
+  /// Returns the angle between the line through the free end's axis now and at rest.
   double end_rotation() const;
   double body_bytes() const;
 

@@ -17,11 +17,11 @@ namespace {
 
 using namespace dynamics;
 
-constexpr double kBent = 0.8;  ///< [rad] over the length
+constexpr double kBent = 0.8;  ///< [rad] over the length.
 constexpr double kDamping = 0.01, kMass = 1.0, kStiffness = 1e-6, kRate = 1e-3;
 constexpr int kFewestRuns = 9;
 
-/// A beam bent to a circle, its nodes in some motion.
+/// Beam bent to a circle, with moving nodes.
 struct Bent {
   TetMesh mesh;
   State state;
@@ -55,7 +55,7 @@ std::vector<ElementTiming> time_elements(const BeamSize& size, double time_s) {
   Bent beam(size);
   std::vector<ElementTiming> out;
   const auto time = [&](const std::string& stage, auto&& run) {
-    run();  // maps and memory
+    run();  // Creates maps and memory.
     std::vector<double> ms;
     for (const double start = wall_seconds();
          static_cast<int>(ms.size()) < kFewestRuns || wall_seconds() - start < time_s;) {

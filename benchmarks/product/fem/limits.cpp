@@ -10,12 +10,12 @@
 namespace palpate::bench {
 namespace {
 
-/// Working sets [bytes] and the time that each measurement is repeated for.
+/// Working sets [bytes], and the time [s] for which each measurement is repeated.
 constexpr std::size_t kSmallest = std::size_t{1} << 18, kLargest = std::size_t{1} << 28;
 constexpr double kMeasureFor = 0.012;
 constexpr int kLeastRepeats = 3;
 
-/// Best of some repeats of a pass of a team over `bytes` [GB/s].
+/// Returns the best bandwidth of several passes of a team over `bytes` [GB/s].
 template <class Pass>
 double fastest_gb_s(Team& team, double bytes, double measure_for, Pass&& pass) {
   double best = 0.0;
@@ -28,7 +28,7 @@ double fastest_gb_s(Team& team, double bytes, double measure_for, Pass&& pass) {
   return best;
 }
 
-/// Bounds of thread k's share of `count` numbers, in whole lines.
+/// Returns the bounds of thread k's share of `count` numbers, in whole lines.
 std::pair<std::size_t, std::size_t> share(std::size_t count, int k, int threads) {
   const std::size_t lines = count / 8, parts = static_cast<std::size_t>(threads);
   return {8 * (lines * static_cast<std::size_t>(k) / parts),
@@ -60,7 +60,7 @@ void write_all(double* to, std::size_t count, double value) {
   for (std::size_t i = 0; i + 8 <= count; i += 8) *reinterpret_cast<LineInMemory*>(to + i) = all;
 }
 
-/// Bandwidth of copying one half of `memory` to the other; read and write counted.
+/// Returns the bandwidth of copying one half of `memory` to the other; read and write counted.
 double copy_gb_s(Team& team, std::vector<double>& memory, std::size_t bytes, double measure_for) {
   const std::size_t half = bytes / sizeof(double) / 2;
   return fastest_gb_s(team, static_cast<double>(2 * half * sizeof(double)), measure_for, [&](int k) {
@@ -69,7 +69,7 @@ double copy_gb_s(Team& team, std::vector<double>& memory, std::size_t bytes, dou
   });
 }
 
-/// Multiply-adds in registers, chains enough to hide their latency.
+/// Performs multiply-adds in registers, with enough chains to hide their latency.
 template <class Pack, int kWidth>
 [[gnu::always_inline]] inline double multiply_add(double seed, int rounds) {
   constexpr int kChains = 8;
@@ -85,7 +85,7 @@ template <class Pack, int kWidth>
     for (int l = 0; l < kWidth; ++l) total += static_cast<double>(sum[c][l]);
   return total;
 }
-constexpr int kRounds = 1000000, kOperations = 2 * 8;  // a round and a lane
+constexpr int kRounds = 1000000, kOperations = 2 * 8;  // Per round and lane.
 
 typedef float Floats __attribute__((vector_size(64)));
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -115,7 +115,7 @@ double gflop_s(Team& team, double (*work)(double), int lanes) {
   return best;
 }
 
-/// Between the measured working sets: linear in the logarithm of their size.
+/// Interpolates between the measured working sets, linearly in the logarithm of their size.
 double at_size(const std::vector<Bandwidth>& measured, double bytes, double Bandwidth::*kind) {
   if (bytes <= measured.front().bytes) return measured.front().*kind;
   for (std::size_t i = 1; i < measured.size(); ++i) {

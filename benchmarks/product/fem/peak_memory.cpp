@@ -11,7 +11,7 @@
 namespace palpate::bench {
 namespace {
 
-/// A line of /proc/self/status, in bytes.
+/// Returns a line of /proc/self/status, in bytes.
 double status_bytes(const std::string& requested) {
   std::ifstream status("/proc/self/status");
   std::string key;
@@ -28,9 +28,9 @@ double status_bytes(const std::string& requested) {
 
 PeakMemory::PeakMemory() {
 #if defined(__GLIBC__)
-  ::malloc_trim(0);  // memory that was given back, but kept for later, would hide what is taken from it
+  ::malloc_trim(0);  // Freed memory kept by the allocator would hide later allocations.
 #endif
-  std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew
+  std::ofstream("/proc/self/clear_refs") << "5";  // Resets the peak.
   before_ = status_bytes("VmRSS:");
 }
 

@@ -2,7 +2,7 @@
 
 namespace palpate::bench {
 
-/// Peak memory [bytes] of the process since this object was made, above what it held then; NaN where the
+/// Peak memory [bytes] of the process since this object was made, above its memory at that time; NaN if the
 /// system does not report it.
 class PeakMemory {
  public:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// A figure of a source that the file describes.
+/// Checks that the source of a figure is described in the file.
 void check_source(const nlohmann::json& figure, const nlohmann::json& sources) {
   if (const std::string source = figure.at("source"); !sources.contains(source))
     fail("\"{}\" quotes the source \"{}\", which \"sources\" does not describe",

@@ -22,13 +22,13 @@ namespace {
 
 using namespace dynamics;
 
-constexpr int kDirectNodes = 12000;  ///< above: the direct factor costs seconds and gigabytes
+constexpr int kDirectNodes = 12000;  ///< Above: the direct factor costs seconds and gigabytes.
 constexpr double kTight = 1e-10;
-/// the motion before the timed steps: large rotation is there
+/// Motion before the timed steps, which produces large rotation.
 constexpr double kWarmTo = 0.2, kWarmStep = 1e-2;
 
-/// The solver that is timed, and for the checked steps a direct one behind it, of the step's matrix assembled
-/// anew in double, which measures the error of the answer.
+/// Timed solver, with a direct solver for the checked steps, which uses the step's matrix reassembled in
+/// double precision and measures the error of the solution.
 class CheckedSolver final : public LinearSolver, public MixedPrecisionSolver {
  public:
   CheckedSolver(std::unique_ptr<LinearSolver> solver, Beam& beam, const IntegratorSpec& spec)
@@ -80,7 +80,7 @@ class CheckedSolver final : public LinearSolver, public MixedPrecisionSolver {
   bool check_next = false;
   double cpu_s = 0.0, checking_s = 0.0, checking_cpu_s = 0.0, error = 0.0, mass_error = 0.0;
   int checks = 0, step_matrices = 0, lagged = 0;
-  /// The matrix of the step that begins now.
+  /// Returns the matrix of the step that begins now.
   const BorderedMatrix& matrix() {
     const double h = spec_.step_s, t1 = beam_.state.time() + h;
     beam_.system.step_matrix(beam_.state.view(t1, beam_.state.q().data(), beam_.state.u().data()), 1.0, h,
@@ -123,7 +123,7 @@ class CheckedSolver final : public LinearSolver, public MixedPrecisionSolver {
   }
 
   std::unique_ptr<LinearSolver> solver_, direct_;
-  MixedPrecisionSolver* mixed_;  ///< capability of solver_; null: it lacks it
+  MixedPrecisionSolver* mixed_;  ///< Capability of solver_; null: not available.
   Beam& beam_;
   IntegratorSpec spec_;
   BorderedMatrix matrix_;
@@ -135,25 +135,25 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Squared Courant-type number 1 + h^2 tr K / tr M, from the rows of the step matrix (a row sums to its
-/// mass).
+/// Returns the squared Courant-type number 1 + h^2 tr K / tr M, from the rows of the step matrix (each row
+/// sums to its mass).
 double squared_courant_number(const BlockSparse& A, const VecX& masses) {
   double own = 0.0, mass = 0.0;
   for (int i = 0; i < A.block_rows(); ++i) {
     const double* block = A.block(A.diagonal(i));
-    if (block[1] == 0.0 && block[0] == 1.0) continue;  // held
+    if (block[1] == 0.0 && block[0] == 1.0) continue;  // Held.
     own += block[0] + block[4] + block[8];
     mass += 3.0 * masses[i];
   }
   return own / mass;
 }
 
-/// The beam where the timed steps begin; the same for every kind of step of one beam.
+/// State of the beam at the start of the timed steps; the same for every kind of step of one beam.
 struct Warm {
   VecX q, u;
 };
 
-/// Number of timed steps of length h: as many as take the same motion, or always as many.
+/// Returns the number of timed steps of length h: enough for the same motion, or a constant number.
 int timed_steps(const FemBenchOptions& options, double h) {
   return options.same_motion ? static_cast<int>(std::lround(options.steps * std::max(1.0, kWarmStep / h)))
                              : options.steps;
@@ -181,14 +181,14 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
   CheckedSolver& solver = *checked;
   const auto stepper = find(integrate::stepper_registry(), spec.name, "integrator")
                            .make(beam.system, beam.state, spec, std::move(checked));
-  constexpr int kUntimed = 4;  // symbolic analysis, and the solutions that a start is made of
+  constexpr int kUntimed = 4;  // Symbolic analysis, and the solutions used for initial guesses.
   std::array<std::vector<double>, 7> ms;
   long iterations = 0;
   double peak = 0.0;
   const int steps = timed_steps(options, spec.step_s);
   long lagged = 0;
   for (int k = 0; k < kUntimed + steps; ++k) {
-    if (k == kUntimed) peak = memory.bytes();  // before the first check, which holds a factor
+    if (k == kUntimed) peak = memory.bytes();  // Before the first check, which stores a factor.
     solver.check_next = options.checks > 0 && k >= kUntimed &&
                         (k - kUntimed) % std::max(1, steps / options.checks) == 0 &&
                         solver.checks < options.checks;
@@ -286,7 +286,7 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
               report.rows.push_back(time_steps(size_named(size), spec, E, options, warm));
             }
     }
-  for (const std::string& size : options.sizes)  // now, so that their memory is not in the peaks
+  for (const std::string& size : options.sizes)  // Last, so that their memory is not in the peaks.
     for (const int threads : options.threads) {
       if (stop && stop()) break;
       const workers::Count count(threads);

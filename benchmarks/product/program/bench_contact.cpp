@@ -17,11 +17,11 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// The paper's pairs; of the human at rest nothing touches, which is what its row is about.
+/// The paper's pairs; nothing touches the human at rest, which is the purpose of its row.
 const std::vector<std::string> kScenes = {"touch-head", "touch-human", "two-pumpkins",
                                           "two-heads",  "gears",       "scrape-pumpkin"};
 const char* const kAtRest = "touch-human";
-/// Nine pumpkins, so near that each overlaps the next: eight contacts in one solve.
+/// Nine pumpkins, so close that each overlaps the next: eight contacts in one solve.
 const char* const kInARow = "two-pumpkins";
 constexpr int kRow = 9;
 constexpr double kSpacing = 0.28;
@@ -46,7 +46,7 @@ Row row_of(const bench::ContactBenchRow& r, const bench::ContactBenchRow* points
   return out;
 }
 
-/// Medians, or the least and the 99th percentile as well.
+/// Returns medians, or also the least and the 99th percentile.
 Row stages_of(const bench::ContactBenchRow& r, bool all) {
   Row out = variant_of(r);
   for (const bench::Spread& stage : r.stages) out.push_back(all ? ms(stage) : ms(stage.median));
@@ -91,7 +91,7 @@ bench::ContactBenchReport::Scene run_scene(const scene::Description& description
   return out;
 }
 
-/// Those asked for, or nearest points and, where OpenGL opens, images.
+/// Returns the requested methods, or nearest points and, where OpenGL opens, images.
 std::vector<std::string> methods_of(const BenchArguments& arguments, std::string& no_image) {
   if (!arguments.methods.empty()) return arguments.methods;
   std::vector<std::string> out = {"distance"};
@@ -123,7 +123,7 @@ void run_scenes(const BenchArguments& arguments, bench::ContactBenchReport& repo
   const std::vector<std::string> methods = methods_of(arguments, report.no_image);
   for (const scene::Description& description : descriptions) {
     if (stop_flag()) return;
-    const bool own = !description.contacts.empty() &&  // a body has no image of itself
+    const bool own = !description.contacts.empty() &&  // A body has no image of itself.
                      description.contacts.front().first == description.contacts.front().second;
     report.scenes.push_back(
         run_scene(description, own ? std::vector<std::string>{"distance"} : methods, arguments));

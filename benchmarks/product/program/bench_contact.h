@@ -3,9 +3,9 @@
 
 namespace palpate::cli {
 
-/// `palpate bench contact`: two tables a scene, a row a method, resolution and number of threads, and what
-/// contact costs beside a step.
-/// @return the exit status: kExitError where a bar was to be checked and is missed
+/// Runs `palpate bench contact`: prints two tables per scene with one row per method, resolution and
+/// number of threads, and the cost of contact relative to a step.
+/// @return the exit status: kExitError if limits were to be checked and one is missed
 int bench_contact(const BenchArguments& arguments);
 
 }  // namespace palpate::cli

@@ -10,7 +10,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// "2.31 (0.87)": a time and how much of another it is; "-" where one was not measured.
+/// Returns "2.31 (0.87)": a time and its ratio to another; "-" if one was not measured.
 std::string over(double ms, double other_ms) {
   return ms > 0.0 && other_ms > 0.0 ? fmt::format("{:.2f} ({:.2f})", ms, ms / other_ms) : "-";
 }

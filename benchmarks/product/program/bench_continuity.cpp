@@ -13,7 +13,7 @@
 namespace palpate::cli {
 namespace {
 
-constexpr double kPieces = 12800;  // of a path: the length that halvings end at
+constexpr double kPieces = 12800;  // Number of pieces of a path at which bisection ends.
 
 std::string quantile(std::vector<double> values, double share) {
   if (values.empty()) return "-";

@@ -3,7 +3,7 @@
 
 namespace palpate::cli {
 
-/// `palpate bench continuity`: a row a scene, and its jumps by cause.
+/// Runs `palpate bench continuity`: prints one row per scene, and its jumps by cause.
 void bench_continuity(const BenchArguments& arguments);
 
 }  // namespace palpate::cli

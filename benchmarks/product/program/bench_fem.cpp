@@ -164,7 +164,7 @@ void print_memory(const FemBenchReport& report) {
           {"size", "solver", "tetrahedra", "must be stored", "soft body", "peak", "peak [MiB]"}, rows));
 }
 
-/// Groups of rows that differ in size alone.
+/// Returns groups of rows that differ only in size.
 std::map<std::string, std::vector<const FemBenchRow*>> by_kind(const FemBenchReport& report) {
   std::map<std::string, std::vector<const FemBenchRow*>> kinds;
   for (const FemBenchRow& r : report.rows)
