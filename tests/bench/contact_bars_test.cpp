@@ -1,4 +1,4 @@
-// Which figures of a report have bars, and when they are missed.
+// Tests which figures of a report have acceptance limits, and when they are missed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ ContactBenchRow row(const std::string& method, int threads, double query_ms) {
   return out;
 }
 
-/// Contact with a price of one thing each, on its bar.
+/// Returns a contact cost with each figure at its limit.
 ContactCost price(const std::string& scene, double query_ms) {
   ContactCost out;
   out.scene = scene;
@@ -31,7 +31,7 @@ ContactCost price(const std::string& scene, double query_ms) {
   return out;
 }
 
-/// Skins or areas from 10 to 1,000 with times that grow by the power `exponent`.
+/// Returns skins or areas from 10 to 1,000 with times that grow by the power `exponent`.
 ContactGrowth growth(const std::string& with, double exponent) {
   ContactGrowth out{with, {}};
   for (const double size : {10.0, 100.0, 1000.0}) {
@@ -46,7 +46,7 @@ ContactGrowth growth(const std::string& with, double exponent) {
 
 constexpr double kJustBelow = 1.0 - 1e-9, kJustAbove = 1.0 + 1e-9;
 
-/// All figures within rounding of their bars, on the right side.
+/// Returns a report with all figures within rounding of their limits, on the accepted side.
 ContactBenchReport on_the_bars() {
   ContactBenchReport out;
   for (const char* name : {"touch-head", "gears"}) {
@@ -60,7 +60,7 @@ ContactBenchReport on_the_bars() {
     out.scenes.push_back(scene);
   }
   out.prices = {price("touch-head", 0.15 * kJustBelow), price("two-pumpkins", 3.0), price("two-heads", 3.0)};
-  out.prices[2].row.step.median = 1e3;  // of two pumpkins alone it is asked
+  out.prices[2].row.step.median = 1e3;  // This limit applies to two pumpkins alone.
   out.growth = {growth("skin", 0.2 * kJustBelow), growth("area", 1.1 * kJustBelow)};
   return out;
 }
@@ -75,8 +75,8 @@ std::vector<std::string> missed(const ContactBenchReport& report) {
 TEST(ContactBars, AreMetBySoMuchAndMissedByMore) {
   const ContactBenchReport good = on_the_bars();
   EXPECT_EQ(missed(good), std::vector<std::string>{});
-  // real time of one scene; an image on hardware; of three prices samples and queries; two more of the
-  // pumpkins; two growths
+  // Real time of one scene; an image on hardware; samples and queries of three costs; two more of the
+  // pumpkins; two growths.
   EXPECT_EQ(contact_bars(good).size(), 1u + 1u + 2u * 3u + 2u + 2u);
   const std::vector<std::pair<std::string, std::function<void(ContactBenchReport&)>>> faults = {
       {"touch-head: simulated over run time, 2 threads",
@@ -118,7 +118,7 @@ TEST(ContactBars, StandInTheFileWithDevicesAndStages) {
   r.stages[static_cast<std::size_t>(ContactStage::kPasses)] = {1.0, 2.0, 3.0};
   report.prices[1].friction.full_ms = 36.0;
   report.prices[1].friction.force_change = 0.01;
-  report.growth[0].rows.resize(1);  // no exponent
+  report.growth[0].rows.resize(1);  // No exponent.
   report.no_image = "no EGL device";
   const auto json = nlohmann::json::parse(to_json(report));
   EXPECT_FALSE(json.at("processor").get<std::string>().empty());

@@ -19,8 +19,8 @@ TEST(ContactBench, QuantilesAreValuesThatWereMeasured) {
   EXPECT_EQ(spread_of({}).median, 0.0);
 }
 
-// The lens of two spheres that meet in a circle of radius a is pi a^2 large, seen along the line of their
-// centres; the skins are polyhedra inside the spheres.
+// The lens of two spheres that meet in a circle of radius a has the area pi a^2, projected along the line of
+// their centres; the skins are polyhedra inside the spheres.
 TEST(ContactBench, TheSameRegionOnAnySkin) {
   const auto rows = bench_skin_growth({2000, 8000});
   ASSERT_EQ(rows.size(), 2u);

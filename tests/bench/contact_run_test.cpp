@@ -1,4 +1,4 @@
-// What one run says of contact: stages, devices, prices.
+// Tests the results of one run with contact: stages, devices, costs.
 #include <gtest/gtest.h>
 #include "contact/gpu_device.h"
 #include "core/instructions.h"
@@ -9,7 +9,7 @@
 namespace palpate::bench {
 namespace {
 
-/// A block held at its foot, and another one held at its top, which is pushed into it and then aside.
+/// Returns a block held at its foot, and another held at its top, which is pushed into it and then sideways.
 scene::Description rubbing_blocks(double step_s = 0.01) {
   constexpr double kLength = 0.02, kPressed = 1e-3;
   scene::Description d = small_scenes::held_block();
@@ -41,8 +41,8 @@ std::vector<std::string> methods() {
   return out;
 }
 
-// Of every period the stages make up the query, so the sum of the least is no more than the least query, and
-// that of the largest no less than the largest one: p99 of a few periods is the largest.
+// In every period the stages make up the query, so the sum of the least stage times is no more than the least
+// query, and the sum of the largest no less than the largest query: p99 of a few periods is the largest.
 TEST(ContactRun, StagesMakeUpTheQuery) {
   for (const std::string& method : methods()) {
     SCOPED_TRACE(method);
@@ -68,7 +68,7 @@ TEST(ContactRun, StagesMakeUpTheQuery) {
       EXPECT_EQ(r.of(stage).median > 0.0, method == "image") << name_of(stage);
     EXPECT_GE(r.to_forces.least, r.query.least + r.of(ContactStage::kForces).least - kRounding);
     EXPECT_LE(r.to_forces.p99, r.query.p99 + r.of(ContactStage::kForces).p99 + kRounding);
-    // the lower block is pushed down by the upper one
+    // The lower block is pushed down by the upper one.
     EXPECT_LT(r.forces.back().z(), 0.0);
   }
 }
@@ -92,9 +92,10 @@ TEST(ContactRun, NamesWhatFindsTheGaps) {
   EXPECT_EQ(r.device_is_software, gpu.software);
 }
 
-// Friction follows the pressure one step late where the tangent is symmetric, and opposes the velocity at the
-// step's end: something is left out, and the force differs, by what a step of that length leaves open.  Of
-// the truth (64 steps a period) both err by a half and a quarter of the force, in these 10 steps.
+// Friction follows the pressure one step late if the tangent is symmetric, and opposes the velocity at the
+// step's end: a part is omitted, and the force differs, by an amount within the error of a step of this
+// length. Relative to the converged solution (64 steps per period) both have errors of a half and a
+// quarter of the force, in these 10 steps.
 TEST(ContactRun, PricesStandWithBothTangents) {
   const ContactCost price = bench_contact_price(rubbing_blocks());
   EXPECT_EQ(price.scene, "rubbing blocks");
@@ -111,7 +112,8 @@ TEST(ContactRun, PricesStandWithBothTangents) {
   EXPECT_LT(price.friction.force_change, 0.6);
 }
 
-// The two tangents' forces tend to each other: by a tenth of the step to less than a fifth of the difference.
+// The two tangents' forces converge to each other: a tenth of the step reduces the difference to less than a
+// fifth.
 TEST(ContactRun, TheDifferenceOfBothTangentsGoesWithTheStep) {
   const ContactCost coarse = bench_contact_price(rubbing_blocks(5e-3)),
                     fine = bench_contact_price(rubbing_blocks(5e-4));

@@ -1,4 +1,4 @@
-// How much the contact force jumps along smooth paths.
+// Tests how much the contact force jumps along smooth paths.
 #include "product/continuity.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@ using block_model::ModelOnDisk;
 
 namespace {
 
-// what is left of a step after seven halvings: 1 % for a change that they leave, and a point's share
+// Remainder of a step after seven bisections: 1 % for the change that they leave, and the share of a point.
 constexpr double kBound = 0.02;
-constexpr double kSeen = 0.1;  // of the scene's largest force: what presses with less has few points
+constexpr double kSeen = 0.1;  // Fraction of the scene's largest force: below it few points are in contact.
 
 struct Blocks {
   std::deque<ModelOnDisk> files;
@@ -37,7 +37,7 @@ struct Blocks {
     out.stiffness_pa_m = 1e6;
     return out;
   }
-  /// A slab, and a block with an edge towards it.
+  /// Returns a slab, and a block with an edge towards it.
   scene::Description ridge() {
     scene::Description d;
     d.name = "ridge";
@@ -47,7 +47,7 @@ struct Blocks {
     d.contacts = {contact("slab", "edge")};
     return d;
   }
-  /// A ball on a block's top, in its middle or at its edge.
+  /// Returns a ball on a block's top, in its middle or at its edge.
   scene::Description ball(const std::string& name, double x) {
     scene::Description d;
     d.name = name;
@@ -61,7 +61,7 @@ struct Blocks {
     d.contacts = {contact("block", "tool")};
     return d;
   }
-  /// A block face down on a slab, samples at the few vertices of both.
+  /// Returns a block face down on a slab, with samples at the few vertices of both.
   scene::Description few_vertices() {
     scene::Description d;
     d.name = "few vertices";
@@ -87,7 +87,7 @@ void expect_no_jumps(const scene::Description& scene, int paths) {
     EXPECT_LT(jump.force, kBound) << scene.name << " path " << jump.path << " at " << jump.at;
     EXPECT_LT(jump.moment, 2.0 * kBound) << scene.name << " path " << jump.path << " at " << jump.at;
   }
-  EXPECT_GT(checked, 10) << scene.name;  // steps that were halved
+  EXPECT_GT(checked, 10) << scene.name;  // Bisected steps.
 }
 
 }  // namespace
@@ -98,8 +98,8 @@ TEST(Continuity, ABallGoesOverAnEdgeWithoutJumps) { expect_no_jumps(Blocks().bal
 #endif
 TEST(Continuity, TheRidgeOfABlockPressesWithoutJumps) { expect_no_jumps(Blocks().ridge(), 6); }
 
-// A point that lies as near to the other block's side as to its face turns there, with its share of the
-// force: few points have large ones.
+// A point that is as near to the other block's side as to its face changes direction there, with its share of
+// the force: with few points the shares are large.
 TEST(Continuity, WhatJumpsIsFound) {
   bench::ContinuityOptions options;
   options.paths = 2;

@@ -44,7 +44,8 @@ TEST(FemBench, WorkGrowsWithTheMeshAndTheSolveWithItsIterations) {
   EXPECT_NEAR(bytes_to_store(ten) / bytes_to_store(one), 10.0, 1e-12);
 }
 
-// Fused assembly over the elements: their deformation and rotation once, and no matrix in double.
+// Fused assembly over the elements computes deformation and rotation once, and has no matrix in double
+// precision.
 TEST(FemBench, FusedAssemblyHasLessToDo) {
   StepCounts counts{.nodes = 1e3, .tetrahedra = 4e3, .blocks = 1.3e4, .iterations = 10.0};
   const StepWork passes = work_of(counts);

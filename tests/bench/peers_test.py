@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""contact_peers on one state of two pumpkins: every library answers, and finds them in contact.
+"""Tests contact_peers on one state of two pumpkins: every library must return a result with contact.
 
-    peers_test.py [CONTACT_PEERS PALPATE]      without them it exits 77 (skipped, aloud)
+    peers_test.py [CONTACT_PEERS PALPATE]      without them it exits 77 (skipped, with a message)
 
-PALPATE makes the pumpkins' model, once, in the folder that PALPATE_MODELS names.
+PALPATE builds the pumpkins' model, once, in the folder that PALPATE_MODELS specifies.
 """
 import re
 import subprocess

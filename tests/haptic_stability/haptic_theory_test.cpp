@@ -18,7 +18,7 @@ using namespace palpate::haptic_stability;
 
 namespace {
 
-/// The coupling as a virtual wall.
+/// Returns a loop with the coupling as a virtual wall.
 HapticLoopModel wall(double stiffness, double damping, double device_damping = 0.1, int delay_ticks = 0) {
   HapticLoopModel loop;
   loop.tool_held = true;
@@ -45,7 +45,7 @@ TEST(HapticTheory, no_stiffness_is_stable_without_damping) {
     const HapticLoopModel loop = wall(K, 0.0, 0.0);
     const double per_m = K * loop.tick_s * loop.tick_s / loop.device.mass_kg;
     EXPECT_FALSE(is_stable(loop)) << K;
-    if (per_m > 16.0) continue;  // real roots
+    if (per_m > 16.0) continue;  // Real roots.
     EXPECT_NEAR(spectral_radius(loop), std::sqrt(1.0 + 0.5 * per_m), 1e-9) << K;
     ++complex_pairs;
   }
@@ -77,7 +77,7 @@ TEST(HapticTheory, radius_is_that_of_the_characteristic_polynomial) {
     const double T = loop.tick_s, K = loop.coupling_stiffness_n_m, B = loop.coupling_damping_n_s_m;
     const HeldMass G(loop.device.mass_kg, loop.device.damping_n_s_m, T);
     const int degree = n + 3;
-    VecX c = VecX::Zero(degree + 1);  // ascending powers
+    VecX c = VecX::Zero(degree + 1);  // Ascending powers.
     c[n + 3] += 1.0, c[n + 2] -= 1.0 + G.a, c[n + 1] += G.a;
     c[2] += (K + B / T) * G.g1, c[1] += (K + B / T) * G.g0 - B / T * G.g1, c[0] -= B / T * G.g0;
     MatX companion = MatX::Zero(degree, degree);
@@ -91,7 +91,7 @@ TEST(HapticTheory, radius_is_that_of_the_characteristic_polynomial) {
   EXPECT_GT(unstable, 30);
 }
 
-// The delay bound leaves out terms of O((b + B) t/m).
+// The delay bound omits terms of O((b + B) t/m).
 TEST(HapticTheory, delay_bound_is_the_limit_of_small_damping) {
   for (const int n : {0, 1, 3}) {
     double coarse = 0.0;
@@ -129,7 +129,7 @@ TEST(HapticTheory, passive_lies_within_stable_whatever_arm_holds_it) {
   EXPECT_EQ(checked, 400);
 }
 
-// A hand that does not yield leaves the tool's own limit, 4 m/h^2 - 2 b/h, and none to the implicit scheme.
+// A rigidly held handle leaves the tool's limit, 4 m/h^2 - 2 b/h, and none for the implicit scheme.
 TEST(HapticTheory, tool_under_a_heavy_device_has_the_limit_of_its_scheme) {
   HapticLoopModel loop;
   loop.device.mass_kg = 1e5;
@@ -218,7 +218,7 @@ double stiffest(const scene::Description& d) { return contact_range(d).greatest.
 
 }  // namespace
 
-// A flat tool lies on its largest side: k times its area, not that of a disc about it.
+// A flat tool rests on its largest side: k times its area, not the area of a disc around it.
 TEST(ZWidth, lays_flat_tools_on_their_largest_side) {
   EXPECT_NEAR(stiffest(on_a_wall(box(Vec3(0.02, 0.02, 0.02)))), 400.0, 1e-9);
   EXPECT_NEAR(stiffest(on_a_wall(box(Vec3(0.01, 0.02, 0.04)))), 800.0, 1e-9);
@@ -242,7 +242,7 @@ TEST(ToolSection, is_that_of_a_box) {
   EXPECT_EQ(section_area(surface, n, n.dot(low) - 0.001), 0.0);
 }
 
-// A ball of triangles is cut by its largest circle nearly: the polyhedron lies within it.
+// A triangulated ball is cut at nearly its largest circle: the polyhedron is inside it.
 TEST(ZWidth, cuts_round_meshes_at_their_widest) {
   MeshSpec ball;
   ball.generator = "ball";
@@ -253,7 +253,7 @@ TEST(ZWidth, cuts_round_meshes_at_their_widest) {
   EXPECT_NEAR(found / circle, 1.0, 0.02);
 }
 
-// Of a soft body the flat punch of the same area is in series; of two contacts the stiffest counts.
+// For a soft body the flat punch of the same area is in series; among two contacts the stiffest counts.
 TEST(ZWidth, puts_flat_tools_in_series_with_soft_bodies) {
   scene::Description d = on_a_wall(box(Vec3(0.02, 0.02, 0.02)));
   d.bodies.resize(1);
@@ -268,8 +268,8 @@ TEST(ZWidth, puts_flat_tools_in_series_with_soft_bodies) {
 }
 
 #ifdef PALPATE_HAS_TOOL
-// The stiffness that a run has: the slope of the force of a box that is pressed flat on a wall, without what
-// its sides, of a width of 4 a over a face of a^2, have of it: 4/a times the mean depth.
+// Stiffness in a run: the slope of the force on a box pressed flat on a wall, without the contribution of its
+// sides, with the perimeter 4 a for a face of a^2: 4/a times the mean depth.
 TEST(ZWidth, has_the_stiffness_of_a_run) {
   scene::Description d = on_a_wall(box(Vec3(0.02, 0.02, 0.02)));
   d.duration_s = 0.3;
@@ -296,7 +296,7 @@ TEST(ZWidth, has_the_stiffness_of_a_run) {
 }
 #endif
 
-// The device that verdicts are about is the scene's.
+// The verdicts refer to the scene's device.
 TEST(ZWidth, takes_the_scene_s_device) {
   scene::Description d;
   d.tool.emplace();
@@ -327,14 +327,14 @@ TEST(ZWidth, takes_the_scene_s_device) {
 }
 
 #ifdef PALPATE_HAS_TOOL
-// A ball of 100 g and 10 mm has 2/5 m r^2 = 4e-6 kg m^2 about any axis.  Under a held handle semi-implicit
-// Euler is stable below k = 4 I/h^2 - 2 b/h, by theory and in the simulation of its ticks.
+// A ball of 100 g and 10 mm has 2/5 m r^2 = 4e-6 kg m^2 about any axis. Under a held handle semi-implicit
+// Euler is stable below k = 4 I/h^2 - 2 b/h, in theory and in the simulation of its ticks.
 TEST(RotationalLoop, has_the_limit_of_the_tools_scheme_in_its_own_units) {
   scene::Description d;
   d.tool.emplace();
   d.tool->integrator = "semi-implicit-euler";
   d.device.emplace();
-  d.device->profile = "omni";  // which drives no torque
+  d.device->profile = "omni";  // Has no torque output.
   const ToolContactRange range{{100.0, 1.0}, {1000.0, 2.0}};
   const RotationalLoop rotation = rotational_loop_of(d, loop_of(d), range);
   EXPECT_NEAR(rotation.inertia_kg_m2, 4e-6, 1e-12);
@@ -416,7 +416,7 @@ TEST(ZWidth, verdicts_on_a_scene_s_own_loop) {
 
 namespace {
 
-/// Both limits at once, and that they agree to 2 %.
+/// Computes both limits, and checks that they agree to 2 %.
 void expect_same_limit(const HapticLoopModel& loop, double damping, const std::string& what) {
   const double theory = spectral_stiffness(loop, damping), found = simulated_stiffness(loop, damping, 4.0);
   ASSERT_TRUE(std::isfinite(theory) && theory > 0.0) << what;

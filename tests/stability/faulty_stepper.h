@@ -10,8 +10,8 @@
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 
-/// Linearly implicit Euler with one injected defect, which the stability matrix must find.  It bears that
-/// method's name, by whose formula it is judged, or that of the method that it claims to be.
+/// Linearly implicit Euler with one injected defect, which the stability matrix must find. It has the name of
+/// this method, whose formula it is compared with, or of the method that it claims to be.
 namespace palpate::faulty {
 
 enum class Defect {
@@ -25,10 +25,10 @@ enum class Defect {
   kCrashes,
   kClaimsErrorControl,
   kClaimsToBeExplicit,
-  kClaimsToBeLStable,  ///< is the implicit midpoint rule, and calls itself backward Euler
+  kClaimsToBeLStable,  ///< Is the implicit midpoint rule, registered as backward Euler.
   kFallsUpward,
-  kForgetsToSplit,  ///< an additive method that takes contact implicitly
-  kDrags            ///< one per cent of the velocity a step
+  kForgetsToSplit,  ///< An additive method that treats contact implicitly.
+  kDrags            ///< One per cent of the velocity per step.
 };
 
 template <Defect kDefect>
@@ -78,7 +78,7 @@ const dynamics::StepperRegistry& registry_of() {
                        : kDefect == Defect::kClaimsToBeLStable ? "backward-euler"
                        : kDefect == Defect::kForgetsToSplit    ? "ark-imex-3"
                                                                : "linearly-implicit-euler";
-    // what is expected of it is what is expected of the method itself
+    // The expectation is that for the method itself.
     dynamics::StepperEntry entry = find(integrate::stepper_registry(), name, "integrator");
     entry.summary = "broken on purpose";
     if (kDefect == Defect::kClaimsErrorControl) entry.traits.control = StepControl::kAdaptive;
@@ -92,7 +92,7 @@ const dynamics::StepperRegistry& registry_of() {
   return registry;
 }
 
-/// A registry with this defect, for StabilityOptions::registry.
+/// Registry with this defect, for StabilityOptions::registry.
 using Registry = const dynamics::StepperRegistry& (*)();
 inline Registry registry(Defect defect) {
   switch (defect) {

@@ -20,8 +20,8 @@ inline std::vector<Named> all() {
   return {{"only_the_clock", registry<Laziness::kOnlyTheClock>}, {"refuses", registry<Laziness::kRefuses>}};
 }
 
-/// The part of the stepper cells that a lazy stepper in every column satisfies; prints it row by row.  (The
-/// tool's own ticks are not the registry's, and left out.)
+/// Returns the fraction of the stepper cells that a lazy stepper in every column satisfies; prints it row by
+/// row. (The tool's ticks are not in the registry, and excluded.)
 inline double satisfied_share(const Named& lazy, stability::StabilityOptions options) {
   options.registry = lazy.registry;
   struct Count {

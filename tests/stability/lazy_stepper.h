@@ -1,13 +1,13 @@
 #pragma once
 #include "palpate/integrate/integrators.h"
 
-/// Two steppers that do no work.  Each takes the place of every method of the registry, with that method's
-/// traits, so that it meets what theory expects of each of them.
+/// Two steppers that do no work. Each replaces every method of the registry, with the traits of that method,
+/// so that all expectations of theory are applied to it.
 namespace palpate::lazy {
 
 enum class Laziness {
-  kOnlyTheClock,  ///< advances the time, leaves the state as it is, and calls that a success
-  kRefuses        ///< ends every step with an error and a message
+  kOnlyTheClock,  ///< Advances the time, leaves the state unchanged, and reports success.
+  kRefuses        ///< Ends every step with an error and a message.
 };
 
 template <Laziness kLaziness>

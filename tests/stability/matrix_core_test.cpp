@@ -9,7 +9,7 @@
 using namespace palpate;
 using namespace palpate::stability;
 
-/// The core of the stability matrix: one sub-case of every row that does not take minutes, over every
+/// Core of the stability matrix: one sub-case of every row that does not take minutes, over every
 /// integrator of the registry.
 class CoreOfARow : public testing::TestWithParam<StabilityRow> {};
 INSTANTIATE_TEST_SUITE_P(Stability, CoreOfARow, testing::ValuesIn(rows_of_the_matrix(false)), name_of_row);

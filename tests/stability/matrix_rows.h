@@ -19,7 +19,7 @@ inline std::string name_of_row(const testing::TestParamInfo<StabilityRow>& param
   return name;
 }
 
-/// @param slow  those that take minutes as well
+/// @param slow also includes rows that take minutes
 inline std::vector<StabilityRow> rows_of_the_matrix(bool slow) {
   std::vector<StabilityRow> rows = stability_rows();
   std::erase_if(rows,

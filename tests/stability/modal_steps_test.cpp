@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDamping = 0.1;
 
-/// |x(T) - exp| after T = 1/w at n steps.
+/// Returns |x(T) - exp| after T = 1/w at n steps.
 double error_of(const Column& column, int n, double contact_share = 0.0) {
   const ModalSteps steps(column, 1.0 / n, kDamping, contact_share);
   const Eigen::Vector2d start(1.0, -0.5);
@@ -37,7 +37,7 @@ TEST(ModalSteps, HaveTheOrderOfTheirMethod) {
   EXPECT_EQ(checked, 43);
 }
 
-// The conditions that couple the two sides, too: each alone would not show them.
+// Also tests the conditions that couple the two sides, which either side alone does not show.
 TEST(ModalSteps, HaveTheOrderOfTheirMethodWhereItSplits) {
   int checked = 0;
   for (const Column& column : stepper_columns(integrate::stepper_registry())) {

@@ -6,7 +6,7 @@
 using namespace palpate;
 using namespace palpate::stability;
 
-/// Each row of the stability matrix, whole, over every integrator of the registry.
+/// Each complete row of the stability matrix, over every integrator of the registry.
 class WholeRow : public testing::TestWithParam<StabilityRow> {};
 INSTANTIATE_TEST_SUITE_P(Stability, WholeRow, testing::ValuesIn(rows_of_the_matrix(true)), name_of_row);
 TEST_P(WholeRow, IsAsTheoryExpects) {
@@ -25,8 +25,8 @@ TEST_P(LazyStepper, SatisfiesNextToNothing) {
   options.jobs = 2;
   EXPECT_LT(lazy::satisfied_share(GetParam(), options), 0.02);
 }
-/// A few columns, of each way of stepping one: a million ticks take their time even where no step does
-/// anything.
+/// Uses a few columns, one per way of stepping: a million ticks take their time even if no step does any
+/// work.
 TEST_P(LazyStepper, SatisfiesNothingOfAMillionTicks) {
   StabilityOptions options;
   options.rows = {"million-ticks"};

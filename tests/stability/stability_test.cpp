@@ -58,8 +58,8 @@ TEST(Verdicts, AreSets) {
 }
 
 TEST(Stability, EndsWithTheMethodThatTheoryNames) {
-  // Backward Euler by hand: order 1, L-stable.  Resolved at 1e3 Pa it is not yet accurate, in between it is
-  // stable, and where every mode has w H > 100 it finds rest.
+  // Backward Euler by hand: order 1, L-stable. Resolved at 1e3 Pa it is not yet accurate, in between it is
+  // stable, and where every mode has w H > 100 it reaches rest.
   const StabilityMatrix matrix = matrix_of(faulty::registry(Defect::kNothing), {"youngs-modulus"});
   EXPECT_EQ(unexpected_of(matrix), "");
   EXPECT_EQ(cell_of(matrix, "E = 1e6 Pa").verdict, Verdict::kStable);
@@ -67,7 +67,7 @@ TEST(Stability, EndsWithTheMethodThatTheoryNames) {
   for (const StabilityCell& cell : matrix.cells) EXPECT_LE(cell.gain, 1e-6);
 }
 
-// --- steppers with an injected defect: each must make cells fail, with the verdict that names its defect
+// --- steppers with an injected defect: each must make cells fail, with the verdict of its defect
 struct Fault {
   Defect defect;
   std::string row, sub_case;
@@ -78,7 +78,7 @@ void PrintTo(const Fault& fault, std::ostream* out) {
   *out << fault.row << ", " << fault.sub_case << ": " << to_string(fault.verdict);
 }
 class BrokenStepper : public testing::TestWithParam<Fault> {};
-/// At least one for each row of steppers.
+/// Returns at least one fault for each row of steppers.
 std::vector<Fault> faults() {
   std::vector<Fault> all = {
       Fault{Defect::kNotANumber, "youngs-modulus", "E = 1e5 Pa", Verdict::kNotFinite, ""},
@@ -193,7 +193,7 @@ TEST(Stability, StopsBetweenCells) {
   EXPECT_EQ(matrix.cells.size(), 2u);
 }
 
-// Rows and integrators that a cell's process finds by name.
+// Rows and cases must be unique: a cell's process finds them by name.
 TEST(Stability, CasesOfARowHaveNamesOfTheirOwn) {
   std::set<std::string> rows;
   for (const StabilityRow& row : stability_rows()) {
