@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The Debian packages on an empty Debian: made by `cpack`, installed by apt on a root that debootstrap makes,
-and run there by a user without rights, in an empty folder.
+"""Tests the Debian packages on an empty Debian system: built by `cpack`, installed by apt on a root created
+by debootstrap, and run there by an unprivileged user in an empty folder.
 
-    clean_root_test.py BUILD       exits 77 (skipped, aloud) without root, debootstrap, or mounts of one's own
+    clean_root_test.py BUILD     exits 77 (skipped, with a message) without root, debootstrap, private mounts
 
-It takes minutes and needs the network: apt's own mirror, as it is set up on this machine.
+It takes minutes and needs the network: the mirror for which apt is configured on this machine.
 """
 import gzip
 import os
@@ -34,12 +34,12 @@ def must(*command, **options):
 
 
 def release():
-    """Name of this Debian release: the packages are for it."""
+    """Returns the name of this Debian release, for which the packages are built."""
     return re.search(r"^VERSION_CODENAME=(\w+)", Path("/etc/os-release").read_text(), re.M).group(1)
 
 
 def mirror():
-    """Where this machine's apt gets that release from."""
+    """Returns the mirror from which apt on this machine gets this release; None if there is none."""
     lines = output("apt-get", "indextargets", "--format", "$(SITE) $(CODENAME) $(COMPONENT)",
                    "Identifier: Packages").stdout.splitlines()
     sites = [line.split()[0] for line in lines if line.split()[1:] == [release(), "main"]]
@@ -47,7 +47,7 @@ def mirror():
 
 
 def missing():
-    """Why this cannot run here; empty: it can."""
+    """Returns the reason why this test cannot run here; empty if it can."""
     if os.geteuid() != 0:
         return "it needs root, for debootstrap and chroot"
     for program, package in (("debootstrap", "debootstrap"), ("dpkg-shlibdeps", "dpkg-dev")):
@@ -61,7 +61,7 @@ def missing():
 
 
 class Root:
-    """A folder with an empty Debian.  Nothing stays mounted: /proc is that of a namespace of each command."""
+    """Folder with an empty Debian system.  Nothing remains mounted: each command has a private /proc."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -85,7 +85,7 @@ class Root:
                 "chroot", *identity, self.folder, *inside]
 
     def install(self, *packages):
-        """What they depend on alone: what apt would bring besides must not be needed."""
+        """Installs packages with their dependencies only: packages that apt recommends must not be needed."""
         return must(*self.command(["apt-get", "install", "--yes", "--no-install-recommends", *packages]))
 
     def run(self, *words, folder="/home/user"):
@@ -113,11 +113,11 @@ class CleanRoot(unittest.TestCase):
 
     def test_fields(self):
         depends = {word.split()[0] for word in self.field(self.runtime, "Depends").split(", ")}
-        # names with a version of the library's interface differ between releases of Debian
+        # names with an ABI version differ between Debian releases
         for package in ("libc6", r"libcholmod\d", r"libsimbody3\.7", r"libhdf5-\d[\d-]*", "libsqlite3-0",
                         "libcairo2", "libepoxy0", "libegl1", "libgl1-mesa-dri", "libopenblas0-pthread"):
             self.assertTrue(any(re.fullmatch(package + "(t64)?", name) for name in depends), package)
-        # SUNDIALS, Qhull's archive and CGAL are inside; nobody runs a compiler
+        # SUNDIALS, Qhull's archive and CGAL are linked in; users run no compiler
         self.assertFalse([name for name in depends if name.endswith("-dev") or "sundials" in name])
         version = self.field(self.runtime, "Version")
         self.assertIn(f"palpate (= {version})", self.field(self.library, "Depends"))
@@ -155,7 +155,7 @@ class CleanRoot(unittest.TestCase):
         self.assertTrue((self.folder / "root/home/user/out/falling-ball/run.vtkhdf").exists())
 
     def test_pictures_and_images_by_software(self):
-        """EGL and Mesa come with the package."""
+        """EGL and Mesa are dependencies of the package."""
         done = self.root.run("palpate", "run", "press-ball", "--picture", "--set", "contact.1.method=gpu")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("taken over", done.stderr)
@@ -172,7 +172,7 @@ class CleanRoot(unittest.TestCase):
         self.assertIn("install the package gnuplot-nox", done.stderr)
 
     def test_z_examples(self):
-        """Last: it brings a compiler."""
+        """Runs last, as it installs a compiler."""
         self.root.install(f"/{self.library.name}", "cmake", "g++", "make")
         shutil.copytree(TREE / "examples", self.folder / "root/home/user/examples")
         source = "/home/user/examples"

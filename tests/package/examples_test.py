@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Builds and runs the programs of examples/ by the commands of examples/README.md, against an installed copy,
-and compares the printed results with theory.
+"""Builds and runs the programs of examples/ with the commands of examples/README.md, against an installed
+copy, and compares the printed results with theory.
 
     examples_test.py BUILD [CXX]
 """
@@ -19,7 +19,7 @@ PROGRAMS = sorted(path.stem for path in EXAMPLES.glob("*.cpp"))
 class Examples(Installed):
     @classmethod
     def setUpClass(cls):
-        """Runs the commands in a folder with examples/ and nothing else; HOME has the installed palpate."""
+        """Runs the commands in a folder with only examples/; HOME contains the installed palpate."""
         super().setUpClass()
         cls.clone = cls.folder / "clone"
         cls.clone.mkdir()
@@ -66,7 +66,7 @@ class Examples(Installed):
             "custom_force", "ok: shifted by NUMBER m, by theory d cos.w t. = NUMBER m; "
             "energy NUMBER J, at the start NUMBER J")
         self.assertAlmostEqual(theory, 0.02 * math.cos(5.0), delta=1e-8)
-        # the midpoint rule at w h = 0.01 turns by w t (1 - (w h)^2/12): 4e-5 rad, of 0.02 sin(5) m
+        # the midpoint rule at w h = 0.01 rotates by w t (1 - (w h)^2/12): 4e-5 rad less, times 0.02 sin(5) m
         self.assertAlmostEqual(shift, theory, delta=2e-6)
         self.assertAlmostEqual(energy, before, delta=1e-5 * before)
 
@@ -76,7 +76,7 @@ class Examples(Installed):
             "by theory -m g = NUMBER N")
         self.assertAlmostEqual(theory, -0.981, delta=1e-9)
         self.assertAlmostEqual(force, theory, delta=0.01)  # the limiter's curve: 1 % below half the maximum
-        # it hangs m g / k below the handle, which has risen for 1.5 s
+        # m g / k below the handle, which has risen for 1.5 s
         self.assertAlmostEqual(height, 0.03 - 0.981 / 300.0, delta=2e-5)
 
     def test_result_of_custom_integrator(self):
@@ -85,7 +85,7 @@ class Examples(Installed):
             "by theory 2")
         self.assertEqual(step, 1e-4)
         self.assertLess(coarse, 1e-3)
-        self.assertAlmostEqual(math.log2(coarse / fine), order, delta=0.02)  # of three digits
+        self.assertAlmostEqual(math.log2(coarse / fine), order, delta=0.02)  # printed with three digits
         self.assertAlmostEqual(order, 2.0, delta=0.05)
 
     def test_result_of_custom_material(self):
@@ -104,7 +104,7 @@ class Examples(Installed):
         self.assertEqual(figures_in("ok: -1e-3 m, by theory 2 m\n", pattern), [-1e-3, 2.0])
 
     def test_soft_bodies_need_no_other_library(self):
-        """All but custom_device, where Simbody, HDF5 and all of pkg-config cannot be found."""
+        """Builds all but custom_device without Simbody, HDF5 and pkg-config."""
         hidden = [f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in ("Simbody", "HDF5", "PkgConfig")]
         folder = self.build(EXAMPLES, "soft", "-DWITH_DEVICE=OFF", *hidden)
         for program in PROGRAMS:
@@ -114,7 +114,7 @@ class Examples(Installed):
             self.assertIn("libpalpate_integrate", loaded)
             self.assertIn("moved elsewhere", loaded)
             self.assertNotRegex(loaded, "(?i)simtk|libEGL|libGL|epoxy|hdf5|sqlite|cairo|not found")
-        # and a component that does need them says so
+        # a component that needs them reports it
         status, text = self.configure(EXAMPLES, self.folder / "hidden", *hidden)
         self.assertNotEqual(status, 0)
         self.assertIn("Simbody", text)

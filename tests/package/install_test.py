@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Installs the build, moves the installed tree, and builds and runs programs that use it alone: that of
-docs/library.md, and one that has Simbody and SUNDIALS in one process.  examples_test.py runs examples/.
+"""Installs the build, moves the installed tree, and builds and runs programs that use only this tree: the
+program of docs/library.md, and one with Simbody and SUNDIALS in one process.
+examples_test.py runs examples/.
 
     install_test.py BUILD [CXX]
 """
@@ -36,7 +37,7 @@ class Package(Installed):
                     self.assertEqual(text.count(": right"), 9, text)
 
     def test_every_promised_header_can_be_included(self):
-        """All of them together, from the installed folder alone."""
+        """Includes all headers together, from the installed folder only."""
         source = self.folder / "headers"
         source.mkdir()
         include = self.prefix / "include"
@@ -59,7 +60,7 @@ class Package(Installed):
         self.assertEqual(told - {"component"}, parts)
 
     def test_program_of_the_documentation(self):
-        """docs/library.md's first program runs the scene of README.md."""
+        """The first program of docs/library.md runs the scene of README.md."""
         pages = (SOURCE / "docs/library.md").read_text() + (SOURCE / "README.md").read_text()
         source = self.folder / "mine"
         source.mkdir()

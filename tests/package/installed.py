@@ -1,4 +1,4 @@
-"""An installed copy of the build: what the tests of this folder share."""
+"""Installed copy of the build, shared by the tests of this folder."""
 import os
 import re
 import shutil
@@ -23,7 +23,7 @@ def call(*command, env=CLEAN, **options):
 
 
 def figures_in(text, pattern):
-    """Returns the numbers of a program's output; NUMBER in the pattern stands for each of them."""
+    """Returns the numbers of a program's output; NUMBER in the pattern represents each of them."""
     match = re.fullmatch(pattern.replace("NUMBER", r"(-?[\d.e+-]+)"), text.strip())
     if match is None:
         raise AssertionError(f"not as expected: {text}")
@@ -31,7 +31,7 @@ def figures_in(text, pattern):
 
 
 class Installed(unittest.TestCase):
-    """Installs the build and moves the installed tree to `prefix`, whose name has a blank."""
+    """Installs the build and moves the installed tree to `prefix`, whose name contains a blank."""
 
     @classmethod
     def setUpClass(cls):

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Every entry of .packages is a package of this Debian, and the list alone is all that apt-get needs.
+"""Tests that every entry of .packages is a package of this Debian release, and that apt-get needs no other
+list.
 
-    packages_test.py       exits 77 (skipped, aloud) where apt has no package lists
+    packages_test.py       exits 77 (skipped, with a message) if apt has no package lists
 """
 import shutil
 import subprocess

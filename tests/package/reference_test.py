@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Doxygen reads the promised headers (include/palpate) without a warning: every class, function, member and
-enumeration is documented, and where one parameter is, all are.  The check itself can fail.
+"""Tests that Doxygen reads the promised headers (include/palpate) without a warning: every class, function,
+member and enumeration is documented, and if one parameter is, all are.  Also tests that the check can fail.
 
-    reference_test.py       exits 77 (skipped, aloud) where Doxygen is missing
+    reference_test.py       exits 77 (skipped, with a message) if Doxygen is missing
 """
 import shutil
 import subprocess
@@ -34,7 +34,7 @@ def warnings_of(tree, output):
     done = subprocess.run(["doxygen", "-"], input=settings, cwd=tree, capture_output=True, text=True)
     if done.returncode != 0:
         raise AssertionError(done.stderr)
-    return done.stderr.splitlines()  # Doxygen is quiet but for warnings
+    return done.stderr.splitlines()  # Doxygen prints only warnings
 
 
 class Reference(unittest.TestCase):
@@ -51,7 +51,7 @@ class Reference(unittest.TestCase):
             self.assertIn(page, pages)
 
     def planted(self, old, new):
-        """Warnings of a tree with one header, in which something is changed."""
+        """Returns the warnings for a tree with one header, in which `old` is replaced by `new`."""
         tree = self.folder / "tree"
         header = tree / "include/palpate/core/length.h"
         header.parent.mkdir(parents=True, exist_ok=True)

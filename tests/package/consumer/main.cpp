@@ -1,5 +1,5 @@
-// Uses the installed parts as a simulator would: SUNDIALS inside palpate::integrate and CPodes inside
-// Simbody, in one process, in the order that the argument names; a soft body's mass; one tick of a tool.
+// Uses the installed parts in the way of a simulator: SUNDIALS inside palpate::integrate and CPodes inside
+// Simbody, in one process, in the order given by the argument; a soft body's mass; one tick of a tool.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -27,7 +27,7 @@ void sundials() {
     expect_near(answer.library.c_str(), answer.y, std::exp(-1.0), 1e-6);
 }
 
-/// Volume 1/6 m^3 at 1200 kg/m^3.
+/// Checks the mass of a body with the volume 1/6 m^3 at 1200 kg/m^3.
 void soft_body() {
   palpate::TetMesh tet;
   tet.nodes.resize(3, 4);
@@ -37,7 +37,7 @@ void soft_body() {
   expect_near("mass of a tetrahedron", palpate::fem::lumped_masses(tet, 1200.0).sum(), 200.0, 1e-10);
 }
 
-/// Nothing pulls: the handle is where the tool is.
+/// Checks a tick without forces: handle and tool are in the same place.
 void tool() {
   palpate::tool::Tool tool(palpate::ToolSpec{}, palpate::Vec3::Zero());
   const auto result = tool.advance(1e-3, {}, {});
