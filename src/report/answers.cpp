@@ -35,11 +35,11 @@ Peak peak_of(const Table& force, const std::string& prefix, const std::string& u
 }
 
 std::string of_limit(double limit, const char* unit) {
-  return limit > 0.0 ? fmt::format(", of the {:g} {} that the device can do", limit, unit) : "";
+  return limit > 0.0 ? fmt::format(" (device limit {:g} {})", limit, unit) : "";
 }
 
 std::string at_time(double time_s) {
-  return std::isfinite(time_s) ? fmt::format(", at {} s", time_text(time_s)) : "";
+  return std::isfinite(time_s) ? fmt::format(" at {} s", time_text(time_s)) : "";
 }
 
 /// Returns the label of the method that is cheapest at every target that any method reaches; empty if there
@@ -67,9 +67,9 @@ Answer headline(const Table& compare, const ReferenceError& reference) {
                                                    reference.force_error_rms_n)
                                  : positions;
   if (positions.empty() || force != positions)
-    return {"Which integrator is the cheapest for a wanted error?", {}, true};
-  return {fmt::format("{} is the cheapest at every wanted error that can be judged{}.", positions,
-                      felt ? ", of positions and of the force on the hand" : "")};
+    return {"Which integrator is the cheapest for a target error?", {}, true};
+  return {fmt::format("{} is the cheapest at every target error that is reached and resolved{}.", positions,
+                      felt ? ", for positions and for the force on the hand" : "")};
 }
 
 }  // namespace
@@ -111,12 +111,12 @@ Answer run_answer(const Json& summary, const std::optional<Table>& force) {
     return out;
   }
   if (f.value > kNothing)
-    out.points.push_back(fmt::format("The hand feels at most {} N{}{}.", short_number(f.value),
+    out.points.push_back(fmt::format("The peak force on the hand is {} N{}{}.", short_number(f.value),
                                      at_time(f.time_s), of_limit(number_at(options, "max_force_n"), "N")));
   else
-    out.points.push_back("The hand feels no force.");
+    out.points.push_back("The force on the hand is zero.");
   if (t.value > kNothing)
-    out.points.push_back(fmt::format("The torque on it is at most {} N m{}{}.", short_number(t.value),
+    out.points.push_back(fmt::format("The peak torque on the hand is {} N m{}{}.", short_number(t.value),
                                      at_time(t.time_s),
                                      of_limit(number_at(options, "max_torque_n_m"), "N m")));
   return out;
@@ -149,10 +149,10 @@ Answer haptic_answer(const Table& haptic, const Json& summary) {
                torque = number_at(own, "torque_error_rms_of_peak");
   if (!std::isfinite(force)) return out;
   out.lead = fmt::format(
-      "At the scene's own settings the force on the hand is {} % of its peak away from that of tool and "
-      "bodies as one system (root mean square){}.",
+      "At the settings of the scene, the RMS error of the force on the hand against the monolithic solution "
+      "is {} % of the peak{}.",
       short_number(100.0 * force),
-      std::isfinite(torque) && torque > 0.0 ? fmt::format(", the torque {} %", short_number(100.0 * torque))
+      std::isfinite(torque) && torque > 0.0 ? fmt::format(" (torque: {} %)", short_number(100.0 * torque))
                                             : "");
   const std::vector<double> errors = haptic.numbers("force_error_rms_of_peak"),
                             costs = haptic.numbers("cpu_s_median");
@@ -162,11 +162,10 @@ Answer haptic_answer(const Table& haptic, const Json& summary) {
         (best == errors.size() || errors[i] < errors[best]))
       best = i;
   if (best < errors.size() && errors[best] < force)
-    out.points.push_back(
-        fmt::format("Of the changes that were tried, {} of {} helps most: {} %, in {} s of CPU "
-                    "time.",
-                    haptic.rows[best][haptic.column("variable")], haptic.rows[best][haptic.column("value")],
-                    short_number(100.0 * errors[best]), short_number(costs[best])));
+    out.points.push_back(fmt::format("The most accurate variant is {} = {}: error {} %, {} s of CPU time.",
+                                     haptic.rows[best][haptic.column("variable")],
+                                     haptic.rows[best][haptic.column("value")],
+                                     short_number(100.0 * errors[best]), short_number(costs[best])));
   return out;
 }
 

@@ -46,19 +46,20 @@ Answer validation_answer(const Json& validation) {
   }
   if (failed.empty())
     out.lead = fmt::format(
-        "The library answers as theory says: {} of {} keep{} the bar.",
+        "The library agrees with theory: {} of {} meet{} the acceptance limit.",
         measurements == 1 ? "the one measurement" : fmt::format("all {} measurements", measurements),
         counted(static_cast<double>(cases.size()), "case"), measurements == 1 ? "s" : "");
   else
-    out.lead = fmt::format("{} of {} measurements miss their bars.", failed.size(), measurements);
+    out.lead = fmt::format("{} of {} measurements are outside their acceptance limits.", failed.size(),
+                           measurements);
   if (!failed.empty()) out.points.push_back("They are: " + named(failed) + ".");
   if (closest >= 0.01)
     out.points.push_back(
-        fmt::format("The closest to its bar of those that keep it is {}: its error is {:.0f} % "
-                    "of what is allowed.",
+        fmt::format("Among the passing measurements, the closest to its acceptance limit is {}: its error is "
+                    "{:.0f} % of the limit.",
                     closest_name, 100.0 * closest));
   else if (measurements > failed.size())
-    out.points.push_back("Of those that keep theirs, none errs by a hundredth of what is allowed.");
+    out.points.push_back("All passing measurements have errors below 1 % of their acceptance limits.");
   return out;
 }
 
@@ -78,15 +79,14 @@ Answer stability_answer(const Json& stability) {
                                 text_at(cell, "integrator"), verdict));
   }
   if (odd.empty())
-    out.lead = fmt::format("All {} cells end as theory says that they must.", cells.size());
+    out.lead = fmt::format("All {} cells end as theory predicts.", cells.size());
   else
-    out.lead =
-        fmt::format("{} of {} cells do not end as theory says that they must.", odd.size(), cells.size());
+    out.lead = fmt::format("{} of {} cells do not end as theory predicts.", odd.size(), cells.size());
   if (!odd.empty()) out.points.push_back("They are: " + named(odd) + ".");
   std::string how;
   for (const std::string& verdict : verdicts)
     how += fmt::format("{}{} {}", how.empty() ? "" : ", ", count[verdict], verdict);
-  out.points.push_back("By how they end: " + how + ".");
+  out.points.push_back("Cells by verdict: " + how + ".");
   return out;
 }
 
@@ -105,7 +105,7 @@ Answer bench_answer(const Json& bench) {
         known->second = &row;
     }
     if (!fastest.empty()) {
-      out.lead = "How long does one implicit step take? The fastest of each size:";
+      out.lead = "How long does one implicit step take? Fastest solver for each size:";
       out.asks = true;
     }
     for (const auto& [what, row] : fastest)
@@ -118,8 +118,9 @@ Answer bench_answer(const Json& bench) {
     for (const Json& bar : bench["bars"])
       if (!bar.value("met", false)) missed.push_back(text_at(bar, "scene") + ", " + text_at(bar, "what"));
     out.lead = missed.empty()
-                   ? fmt::format("All {} figures keep their bars.", bench["bars"].size())
-                   : fmt::format("{} of {} figures miss their bars.", missed.size(), bench["bars"].size());
+                   ? fmt::format("All {} figures meet their acceptance limits.", bench["bars"].size())
+                   : fmt::format("{} of {} figures are outside their acceptance limits.", missed.size(),
+                                 bench["bars"].size());
     if (!missed.empty()) out.points.push_back("They are: " + named(missed) + ".");
   }
   return out;

@@ -16,8 +16,8 @@ std::string name_of(const std::string& key) {
                                                            {"elements", "Loops over elements"},
                                                            {"limits", "Limits of the machine"},
                                                            {"points", "Error against run time"},
-                                                           {"prices", "What contact costs beside a step"},
-                                                           {"bars", "Bars"}};
+                                                           {"prices", "Cost of contact relative to a step"},
+                                                           {"bars", "Acceptance limits"}};
   const auto known = names.find(key);
   return known == names.end() ? key_text(key) : known->second;
 }

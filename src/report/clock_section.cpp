@@ -32,7 +32,7 @@ std::string duration_text(double us) {
 }  // namespace
 
 LogHistogram log_histogram(const std::vector<double>& values) {
-  PALPATE_CHECK(!values.empty(), "a histogram of nothing");
+  PALPATE_CHECK(!values.empty(), "a histogram needs at least one value");
   const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
   const int first = bin_of(*least), last = bin_of(*greatest);
   LogHistogram out;
@@ -80,12 +80,12 @@ void add_clock(Page& page, const Table& clock) {
   const std::vector<double> late = finite("late_us"), work = finite("work_us");
   if (late.empty() || work.empty()) return;
   page.add_heading("Ticks in real time");
-  add_plot(page, tick_histogram(late, "tick late"),
-           fmt::format("How late {} ticks began after they were due; lines at half of them, at 99 % and "
-                       "99.9 %, and at the latest.",
+  add_plot(page, tick_histogram(late, "tick lateness"),
+           fmt::format("Lateness of {} ticks: start after the due time. Lines mark the median, the 99 % and "
+                       "99.9 % quantiles, and the maximum.",
                        late.size()));
-  add_plot(page, tick_histogram(work, "tick's work"),
-           "How long each took from there to the wrench on the device.");
+  add_plot(page, tick_histogram(work, "tick work"),
+           "Time of each tick from its start to the wrench on the device.");
 }
 
 }  // namespace palpate::report

@@ -23,20 +23,21 @@ Series one_step_per_query(const Table& restarts) {
 }  // namespace
 
 void add_restarts(Page& page, const Table& restarts) {
-  page.add_heading("What a restart costs");
+  page.add_heading("Cost of restarts");
   page.add_paragraph(
-      "A contact query that changes the set of contacts makes a multistep method drop its history and begin "
-      "again with low order and short steps. A one-step method has no history to lose. No step of either "
-      "kind extends past a query: where queries are more frequent than steps, each costs a step. Here every "
-      "integrator runs at the scene's own tolerance or step, with more and more frequent queries.");
+      "A contact query that changes the set of contacts makes a multistep method discard its history and "
+      "restart with low order and short steps. A one-step method has no history to discard. No step of "
+      "either kind extends past a query: where queries are more frequent than steps, each query costs a "
+      "step. Here every integrator runs at the tolerance or step of the scene, with increasingly frequent "
+      "queries.");
   for (const std::string& scene : distinct(restarts, "scene")) {
     const Table own = rows_where(restarts, "scene", scene);
     Plot steps = restart_plot(own, "steps", "steps per simulated second");
     steps.series.push_back(one_step_per_query(own));
     add_plot(page, steps,
              scene +
-                 ": steps. No method can stay below the dashed line, one step per query; what a multistep "
-                 "method takes above a one-step method, restarts cost it.");
+                 ": steps. No method can stay below the dashed line, one step per query; the steps that a "
+                 "multistep method takes in excess of a one-step method are the cost of its restarts.");
     page.begin_details("Force evaluations");
     add_plot(page, restart_plot(own, "force_evaluations", "force evaluations per simulated second"),
              scene + ": force evaluations.");
@@ -62,11 +63,11 @@ void add_restarts(Page& page, const Table& restarts) {
 }
 
 void add_exchange(Page& page, const Table& exchange) {
-  page.add_heading("Error of the exchange period");
+  page.add_heading("Error due to the exchange period");
   page.add_paragraph(
-      "How often tool and bodies exchange forces belongs to the scene, not to the integrator. This is what "
-      "the choice costs by itself: the distance of the partitioned scheme at each period from tool and "
-      "bodies stepped as one system, both by the same tight integrator.");
+      "The period at which tool and bodies exchange forces is a setting of the scene, not of the integrator. "
+      "This is the error that it causes: the partitioned scheme at each period against the monolithic "
+      "solution, both by the same integrator at a tight tolerance.");
   const std::vector<std::string> scenes =
       exchange.has("scene") ? distinct(exchange, "scene") : std::vector<std::string>{""};
   for (const std::string& scene : scenes) {
@@ -87,15 +88,15 @@ void add_exchange(Page& page, const Table& exchange) {
 }
 
 void add_methods(Page& page, const Table& methods) {
-  page.add_heading("Ways to find the contact");
+  page.add_heading("Contact methods");
   page.add_paragraph(
-      "The same touch at the same integrator settings, its contact found in different ways. Differences are "
-      "from the first way, in which all other errors on this page were measured: those are of the time "
-      "integration, these are of the contact, and no integrator removes them. Each way discretises the same "
-      "law on the same mesh (an exact tool or facets, samples at vertices or at points between them), so "
-      "that "
-      "none of them is the right one. All approach it, and each other, as elements become smaller: run the "
-      "scene with half the element size to learn how far this mesh is from it.");
+      "The same scene at the same integrator settings, with different contact methods. Differences are "
+      "relative to the first method, which all other errors on this page use: those are errors of the time "
+      "integration, these are differences of the contact discretisation, and no integrator removes them. "
+      "Each method discretises the same law on the same mesh (an exact tool or facets, samples at vertices "
+      "or at points between them), so none of them is exact. All converge to the same solution as elements "
+      "become smaller: run the scene with half the element size to estimate the discretisation error of this "
+      "mesh.");
   const std::vector<std::string> columns = {"scene",
                                             "method",
                                             "position_difference_rel_l2",

@@ -27,7 +27,7 @@ std::string winner_text(const Winner& win) {
 }  // namespace
 
 void add_orders_table(Page& page, const Table& compare, const std::vector<Quantity>& quantities) {
-  std::vector<std::string> headers = {"integrator", "against"};
+  std::vector<std::string> headers = {"integrator", "variable"};
   std::vector<std::vector<std::string>> rows;
   for (const Quantity& q : quantities) {
     headers.push_back(q.label);
@@ -42,7 +42,8 @@ void add_orders_table(Page& page, const Table& compare, const std::vector<Quanti
   page.add_heading("Fitted order", 3);
   page.add_table(headers, rows,
                  "Least-squares slope of log error against log step (or tolerance: 1 means that the error "
-                 "follows the tolerance). Points within 10 times of the reference's own error are left out.");
+                 "is proportional to the tolerance). Points within 10 times the reference error are "
+                 "excluded.");
 }
 
 void add_winners_table(Page& page, const Table& compare, const Quantity& q, double scale,
@@ -56,7 +57,7 @@ void add_winners_table(Page& page, const Table& compare, const Quantity& q, doub
     const std::string target = fmt::format("{:g}", kTargets[i]);
     if (!win.found) {
       rows.push_back(
-          {target, win.resolved ? "none reaches it" : "the reference cannot tell", "-", "-", "-", "-", "-"});
+          {target, win.resolved ? "not reached" : "not resolved by the reference", "-", "-", "-", "-", "-"});
       continue;
     }
     rows.push_back({target, winner_text(win), cost_text(win.cost), spread_text(win.cost),
@@ -64,16 +65,15 @@ void add_winners_table(Page& page, const Table& compare, const Quantity& q, doub
                     ratio_text(win.baseline_ratio)});
   }
   page.add_table(
-      {scale == 1.0 ? "position error" : "force error / peak", "cheapest", cost_label, "from, to",
-       "runner-up", "runner-up / cheapest", kBaseline + " / cheapest"},
+      {scale == 1.0 ? "position error" : "force error / peak", "cheapest", cost_label, "range", "runner-up",
+       "runner-up / cheapest", kBaseline + " / cheapest"},
       rows,
       !explained
           ? ""
-          : "Log cost against log error on each ladder's monotone envelopes, never extrapolated nor across "
-            "rungs "
-            "that failed. “From, to”: by the spread of repeats, and of rungs that lie out of line. No "
-            "winner: the "
-            "spreads overlap. “<=”: the coarsest usable rung is better than asked for, and costs this much.");
+          : "Interpolated in log cost against log error on the monotone envelopes of each refinement "
+            "sequence, without extrapolation and not across failed levels. “Range”: spread over repeats and "
+            "over levels that deviate from the trend. No winner: the ranges overlap. “<=”: the coarsest "
+            "usable level is more accurate than the target; its cost is an upper bound.");
 }
 
 void add_costs_table(Page& page, const Table& compare, double reference_error) {
@@ -83,9 +83,9 @@ void add_costs_table(Page& page, const Table& compare, double reference_error) {
   for (const Ladder& ladder : all)
     for (std::size_t t = 0; t < kTargets.size(); ++t)
       best[t] = std::fmin(best[t], cost_at(ladder, kTargets[t], reference_error).value);  // NaN: no cost
-  std::vector<std::string> headers = {"integrator", "family", "order in theory", "fitted", "against"};
+  std::vector<std::string> headers = {"integrator", "family", "theoretical order", "fitted", "variable"};
   for (const double target : kTargets)
-    headers.push_back(fmt::format("CPU [s] at {:g}", target)), headers.push_back("of the best");
+    headers.push_back(fmt::format("CPU [s] at {:g}", target)), headers.push_back("ratio");
   std::vector<std::vector<std::string>> rows;
   std::vector<RowMark> marks;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -98,8 +98,8 @@ void add_costs_table(Page& page, const Table& compare, double reference_error) {
     }
     marks.push_back(all[i].points.empty() ? RowMark::kBad : RowMark::kNone);
   }
-  page.add_table(headers, rows, "“Of the best”: times the cheapest cost at that error. Red: no usable point.",
-                 marks);
+  page.add_table(headers, rows,
+                 "“Ratio”: cost divided by the lowest cost at that error. Red: no usable point.", marks);
 }
 
 }  // namespace palpate::report

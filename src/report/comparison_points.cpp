@@ -73,13 +73,12 @@ void add_points_table(Page& page, const Table& compare) {
                             : "ok"});
     marks.push_back(!ok ? RowMark::kBad : under ? RowMark::kFaint : RowMark::kNone);
   }
-  page.add_table(
-      {"integrator", "setting", "its error test", "position error / rtol", "position error, rel. L2",
-       "force error, RMS [N]", "torque error, RMS [N m]", "energy error [J]", "CPU [s], median",
-       "CPU [s], least – most", "runs", "linear solver", "held against", "status"},
-      rows,
-      "“Below reference”: the error is within ten times the reference's own, and says no more than that.",
-      marks);
+  page.add_table({"integrator", "setting", "error test", "position error / rtol", "position error, rel. L2",
+                  "force error, RMS [N]", "torque error, RMS [N m]", "energy error [J]", "CPU [s], median",
+                  "CPU [s], least – most", "runs", "linear solver", "reference", "status"},
+                 rows,
+                 "“Below reference”: the error is within ten times the reference error and is not resolved.",
+                 marks);
 }
 
 void add_counts_and_maxima(Page& page, const Table& compare) {
@@ -93,21 +92,21 @@ void add_counts_and_maxima(Page& page, const Table& compare) {
                                                              {"reinitialisations", "restarts"},
                                                              {"contact_queries", "contact queries"}};
   for (auto& further : further_counts(compare)) counts.push_back(std::move(further));
-  add_columns_table(page, compare, counts, "Counts, which no noise of the machine touches.");
+  add_columns_table(page, compare, counts, "Counts, independent of timing noise.");
   add_columns_table(page, compare,
-                    {{"cpu_s_median", "all but set-up and recording, median"},
-                     {"method_s", "the method"},
+                    {{"cpu_s_median", "total without set-up and recording, median"},
+                     {"method_s", "method"},
                      {"contact_query_s", "contact queries"},
                      {"linearise_s", "linearisation for the tool"},
-                     {"tool_ticks_s", "the tool's ticks"},
+                     {"tool_ticks_s", "tool ticks"},
                      {"setup_s", "set-up"},
-                     {"record_s", "recording, with the bodies' energy"}},
-                    "Where the time went, of the first repeat [s].");
+                     {"record_s", "recording, including the energy of the bodies"}},
+                    "Distribution of the run time in the first repeat [s].");
   add_columns_table(page, compare,
                     {{"position_error_max_m", "position error [m]"},
                      {"force_error_max_n", "force error [N]"},
                      {"torque_error_max_n_m", "torque error [N m]"}},
-                    "The largest errors over all nodes and times.");
+                    "Largest errors over all nodes and times.");
 }
 
 }  // namespace palpate::report

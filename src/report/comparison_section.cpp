@@ -19,11 +19,11 @@ void add_work_precision(Page& page, const Table& compare, const Quantity& q) {
         " Not drawn: {} point{} with an error above {:g}{}.", count, count == 1 ? "" : "s", kLargestDrawn,
         q.unit.empty() ? "" : fmt::format(" times the peak of {} {}", short_number(q.scale), q.unit));
   add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale),
-           capitalised(q.label) + " against CPU time; down and to the left is better. " +
-               (many ? "One line a ladder, coloured by family; the dark line joins the points that none "
-                       "beats, named where another integrator takes over. "
-                     : "Each point carries its relative tolerance or its step. ") +
-               "Rings are within 10 times the reference's own error" +
+           capitalised(q.label) + " against CPU time; lower left is better. " +
+               (many ? "One line per refinement sequence, coloured by family; the dark line is the Pareto "
+                       "front, labelled where the best integrator changes. "
+                     : "Each point is labelled with its relative tolerance or step. ") +
+               "Rings mark points within 10 times the reference error" +
                (std::isfinite(q.reference) ? fmt::format(" of {}.", short_number(q.reference)) : ".") +
                left_out);
 }
@@ -52,8 +52,8 @@ void add_counts_of_work(Page& page, const Table& compare, const Quantity& q) {
   }
   for (const auto& [column, label] : counted)
     add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale, column, label),
-             fmt::format("{} against {}, which no noise of the machine touches.{}", capitalised(q.label),
-                         label, column == "factorisations" ? " What factors no matrix is not here." : ""));
+             fmt::format("{} against {}, independent of timing noise.{}", capitalised(q.label), label,
+                         column == "factorisations" ? " Methods that factor no matrix are not shown." : ""));
   page.end_details();
 }
 
@@ -61,10 +61,10 @@ void add_reference(Page& page, const ReferenceError& reference) {
   if (!reference.description.empty())
     page.add_paragraph("Reference: " + reference.description +
                        (std::isfinite(reference.position_error_rel_l2)
-                            ? fmt::format("; the two differ by {}, which is taken as its own error.",
+                            ? fmt::format("; the two differ by {}, which is taken as the reference error.",
                                           short_number(reference.position_error_rel_l2))
                             : "."));
-  if (!reference.trouble.empty()) page.add_paragraph("Mind: " + reference.trouble + ".");
+  if (!reference.trouble.empty()) page.add_paragraph("Note: " + reference.trouble + ".");
 }
 
 void add_winners(Page& page, const Table& compare, const std::vector<Quantity>& quantities,
@@ -89,7 +89,7 @@ void add_scene_comparison(Page& page, const Table& compare, const ReferenceError
   const std::vector<Quantity> quantities = quantities_of(compare, reference);
   const bool judged = std::isfinite(reference.position_error_rel_l2);
   if (judged) {
-    page.add_heading("Cheapest for a wanted error", 3);
+    page.add_heading("Cheapest integrator for a target error", 3);
     add_winners(page, compare, quantities, "cpu_s_median", "CPU [s]");
   }
   page.add_heading("Error against run time", 3);
@@ -98,15 +98,15 @@ void add_scene_comparison(Page& page, const Table& compare, const ReferenceError
                                              ? compare.numbers("torque_error_max_n_m")
                                              : std::vector<double>{};
       !torque.empty() && *std::max_element(torque.begin(), torque.end()) <= kRounding)
-    page.add_paragraph("No torque: its largest error is rounding, for this scene makes none.");
+    page.add_paragraph("No torque: the scene produces none, and the largest error is rounding.");
   if (quantities.empty()) page.add_paragraph("No point of the comparison has a measured error.");
   for (const Quantity& q : quantities) add_counts_of_work(page, compare, q);
-  page.add_heading("What bears these figures", 3);
+  page.add_heading("Reliability of these figures", 3);
   for (const std::string& remark : remarks_in_words(compare, reference)) page.add_paragraph(remark);
   add_reference(page, reference);
-  for (const std::string& note : reference.notes) page.add_paragraph("Mind: " + note + ".");
+  for (const std::string& note : reference.notes) page.add_paragraph("Note: " + note + ".");
   if (judged) {
-    page.add_heading("Cost of a wanted error", 3);
+    page.add_heading("Cost of a target error", 3);
     add_costs_table(page, compare, reference.position_error_rel_l2);
     page.begin_details("Cheapest by force evaluations");
     add_winners(page, compare, quantities, "force_evaluations", "force evaluations");

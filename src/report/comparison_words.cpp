@@ -76,7 +76,7 @@ std::vector<std::string> winners_in_words(const Table& compare, const std::strin
   }
   if (!unreached.empty()) out.push_back(fmt::format("No point reaches {}.", list_of(unreached)));
   if (!unresolved.empty() && std::isfinite(reference_error))
-    out.push_back(fmt::format("The reference cannot tell {}.", list_of(unresolved)));
+    out.push_back(fmt::format("The reference does not resolve {}.", list_of(unresolved)));
   return out;
 }
 
@@ -132,7 +132,7 @@ std::string failures_in_words(const std::vector<Ladder>& all) {
   std::string out;
   for (const auto& [why, labels] : nothing) out += fmt::format("No point of {}: {}. ", list_of(labels), why);
   for (const auto& [why, labels] : some)
-    out += fmt::format("Some rungs of {} failed: {}. ", list_of(labels), why);
+    out += fmt::format("Some levels of {} failed: {}. ", list_of(labels), why);
   return out;
 }
 
@@ -156,14 +156,13 @@ std::string explicit_in_words(const Table& compare) {
     }
     if (flat) by_tolerance.push_back(ladder.label);
     if (unstable && std::isfinite(longest))
-      by_step.push_back(
-          fmt::format("{} (usable from {} on)", ladder.label, setting_text(ladder.setting_name, longest)));
+      by_step.push_back(fmt::format("{} (usable at {} and finer)", ladder.label,
+                                    setting_text(ladder.setting_name, longest)));
   }
   std::string out;
   if (!by_tolerance.empty())
-    out += fmt::format(
-        "Explicit and held by its stability limit, so that a looser tolerance saves nothing: {}. ",
-        list_of(by_tolerance));
+    out += fmt::format("Explicit and limited by stability, so that a looser tolerance saves nothing: {}. ",
+                       list_of(by_tolerance));
   if (!by_step.empty()) out += fmt::format("Explicit and unstable at longer steps: {}. ", list_of(by_step));
   return out;
 }
@@ -178,21 +177,22 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
     }
   if (std::isnan(best)) return "No point has an error that can be distinguished from the reference's.";
   if (std::isnan(reference_error))
-    return "The reference's own error is not known: nothing is declared, and small errors may be its own.";
+    return "The reference error is not known: no winner is declared, and small errors may be errors of the "
+           "reference.";
   if (best < kResolved * reference_error)
     return fmt::format(
-        "The reference's own error is {}: errors below {} are not resolved by it (the best point has {}).",
+        "The reference error is {}: errors below {} are not resolved by it (the best point has {}).",
         short_number(reference_error), short_number(kResolved * reference_error), short_number(best));
   std::string out = fmt::format(
-      "The reference's own error is {}, {} below the best point that it resolves ({}): all figures{} are "
-      "resolved by the reference.",
+      "The reference error is {}, {} below the best point that it resolves ({}): all figures{} are resolved "
+      "by the reference.",
       short_number(reference_error),
       reference_error > 0.0 ? factor(best / reference_error) + " times" : "to rounding", short_number(best),
       unresolved ? " except those marked" : "");
   if (unresolved)
     out += fmt::format(" {} within {:g} times that error, {}: errors below {} are not resolved.",
                        unresolved == 1 ? "1 point is" : fmt::format("{} points are", unresolved), kResolved,
-                       unresolved == 1 ? "is marked, and counts nowhere" : "are marked, and count nowhere",
+                       unresolved == 1 ? "is marked and not counted" : "are marked and not counted",
                        short_number(kResolved * reference_error));
   return out;
 }
@@ -202,7 +202,7 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
 std::vector<Answer> cheapest_in_words(const Table& compare, const ReferenceError& reference) {
   const double reference_error = reference.position_error_rel_l2;
   const std::vector<Ladder> all = ladders(compare, kError, "cpu_s_median");
-  Answer positions{"The positions, their error relative to the deformation.",
+  Answer positions{"Position error relative to the deformation.",
                    winners_in_words(compare, kError, "an error of ", 1.0, reference_error), true};
   std::string reach = baseline_in_words(all) + families_in_words(all, kTargets.back(), reference_error);
   reach.erase(reach.find_last_not_of(' ') + 1);
@@ -210,7 +210,7 @@ std::vector<Answer> cheapest_in_words(const Table& compare, const ReferenceError
   std::vector<Answer> out;
   if (!positions.points.empty()) out.push_back(std::move(positions));
   if (!has_force(compare, reference)) return out;
-  Answer force{fmt::format("The force on the hand, its error over the peak of {} N.",
+  Answer force{fmt::format("Error of the force on the hand relative to the peak of {} N.",
                            short_number(reference.peak_force_n)),
                winners_in_words(compare, kForce, "", reference.peak_force_n, reference.force_error_rms_n),
                true};

@@ -67,7 +67,7 @@ Plot frame_of(const Felt& q, const std::string& x_label) {
   plot.y_label = fmt::format("error of the {}, RMS [% of its peak]", q.name);
   plot.log_x = plot.log_y = true;
   plot.floor_y = q.peak > 0.0 ? 100.0 * q.own_error / q.peak : kUnknown;
-  plot.floor_label = "the reference's own error";
+  plot.floor_label = "reference error";
   return plot;
 }
 
@@ -85,9 +85,9 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
     add_fit(period, period.series.back(),
             number_at(orders, fmt::format("exchange alone: {}", q.name).c_str()));
   add_plot(page, period,
-           fmt::format("Error of the {} against the exchange period: at the scene's own settings, and with "
-                       "nothing but exchange and tick (a tenth of the period) left to err. Rings lie within "
-                       "10 times of the reference's own error.",
+           fmt::format("Error of the {} against the exchange period: at the settings of the scene, and with "
+                       "only the errors of exchange and tick (a tenth of the period) left. Rings mark points "
+                       "within 10 times the reference error.",
                        q.name));
   if (holds(table, q, "tick")) {
     Plot rate = frame_of(q, "haptic rate [ticks/s]");
@@ -109,8 +109,7 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
     if (variable != "exchange alone" && holds(table, q, variable))
       cost.series.push_back(series_of(table, q, variable, "cpu_s_median", true));
   add_plot(page, cost,
-           fmt::format("Error of the {} against CPU time, every variant; down and to the left is better.",
-                       q.name));
+           fmt::format("Error of the {} against CPU time, all variants; lower left is better.", q.name));
 }
 
 std::string percent(const Table& table, std::size_t row, const char* column) {
@@ -139,9 +138,7 @@ void add_variables(Page& page, const Table& table) {
   page.add_table(
       {"variable", "", "force, RMS [N]", "[% of peak]", "largest [%]", "torque, RMS [N m]", "[% of peak]",
        "largest [%]", "CPU [s]", "queries [s]", "linearise [s]", "ticks [s]", "bodies [s]", "status"},
-      rows,
-      "“Not resolved”: within 10 times of the reference's own error. All times but CPU are "
-      "of the wall clock.",
+      rows, "“Not resolved”: within 10 times the reference error. All times except CPU are wall-clock times.",
       marks);
 }
 
@@ -154,15 +151,15 @@ void add_haptic(Page& page, const Table& table, const Json& summary) {
     return figures.is_object() && figures.contains(name) ? figures[name] : Json::object();
   };
   const Json reference = group("monolithic reference"), orders = group("observed orders");
-  page.add_heading("Force on the hand against one system");
+  page.add_heading("Force on the hand against the monolithic solution");
   page.add_paragraph(
-      "Tool and bodies in two rates, against tool and bodies as one system under the same hand: one thing at "
-      "a time differs from the scene. Errors are of what the device sends to the hand, at the ticks that "
-      "both have, in percent of the largest of the reference.");
+      "Two-rate solution of tool and bodies against the monolithic solution with the same motion of the "
+      "hand; each variant changes one setting of the scene. Errors are those of the wrench that the device "
+      "sends to the hand, at the common ticks, in percent of the peak of the reference.");
   if (const std::string made_by = text_at(reference, "made_by"); !made_by.empty())
     page.add_paragraph("Reference: " + made_by + ".");
   if (const std::string trouble = text_at(reference, "trouble"); !trouble.empty())
-    page.add_paragraph("Mind: " + trouble + ".");
+    page.add_paragraph("Note: " + trouble + ".");
   for (const Felt& q : {felt("force", "n", reference), felt("torque", "n_m", reference)}) {
     const std::vector<double> errors = table.numbers(q.error);
     if (std::any_of(errors.begin(), errors.end(), [](double e) { return e > kRounding; }))

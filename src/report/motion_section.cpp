@@ -14,14 +14,14 @@ void add_motion(Page& page, const std::filesystem::path& vtkhdf, double shown_at
     if (!json.empty())
       page.add_view(
           json,
-          fmt::format("The run as it was recorded{}: drag to turn; after a click the wheel zooms, as + "
-                      "and - do. A tool is grey.",
+          fmt::format("Recorded motion{}: drag to rotate; after a click, the wheel or the keys + and - zoom. "
+                      "Tools are grey.",
                       std::isfinite(shown_at_s)
-                          ? fmt::format(", beginning with the state that follows the largest force on the "
-                                        "hand (at {} s)",
+                          ? fmt::format(", starting at the first state after the peak force on the hand (at "
+                                        "{} s)",
                                         time_text(shown_at_s))
                           : ""));
-  } catch (const Error& e) { page.add_missing_figure("the bodies over time", e.what()); }
+  } catch (const Error& e) { page.add_missing_figure("motion of the bodies", e.what()); }
 }
 
 }  // namespace palpate::report

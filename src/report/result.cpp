@@ -125,11 +125,12 @@ std::string Result::first_answer() const {
 }
 
 Result open_result(const fs::path& dir) {
-  if (!fs::is_directory(dir)) fail("{}: is not a directory; give the one that a run wrote", dir.string());
+  if (!fs::is_directory(dir))
+    fail("{}: is not a directory; give the output directory of a run", dir.string());
   Result out{dir, kinds_in(dir), "", json_in(dir, "summary.json"), {}};
   if (out.kinds.empty())
     fail(
-        "{}: holds no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, "
+        "{}: contains no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, "
         "haptic.csv, study.csv, validation.json, stability.json, bench-*.json); give the directory that a "
         "run, a comparison, a study, a validation, a stability matrix or a benchmark wrote",
         dir.string());
@@ -174,7 +175,7 @@ void add_result(Page& page, const Result& result) {
   add_parts(page, result.summary);
   add_provenance(page, result.summary);
   if (const std::string source = scene_source(result); !source.empty())
-    page.add_heading("The scene").begin_details("Its text, as it was run").add_code(source).end_details();
+    page.add_heading("Scene").begin_details("Scene file of the run").add_code(source).end_details();
 }
 
 }  // namespace palpate::report

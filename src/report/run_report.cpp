@@ -18,7 +18,7 @@ RunReport written(const Page& page, const fs::path& path) {
 RunReport write_run_report(const fs::path& dir) { return write_report({dir}, dir / "report.html"); }
 
 RunReport write_report(const std::vector<fs::path>& dirs, const fs::path& path) {
-  PALPATE_CHECK(!dirs.empty(), "a report of nothing");
+  PALPATE_CHECK(!dirs.empty(), "a report needs at least one directory");
   std::vector<Result> results;
   for (const fs::path& dir : dirs) results.push_back(open_result(dir));
   if (results.size() == 1) {

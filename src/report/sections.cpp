@@ -45,7 +45,7 @@ std::string sentence_case(std::string text) {
 
 /// Returns the end of a caption with the limit of the device, since a limit far above the curve is not drawn.
 std::string limit_text(double limit, const char* unit) {
-  return limit > 0.0 ? fmt::format("; the device can do at most {:g} {}.", limit, unit) : ".";
+  return limit > 0.0 ? fmt::format("; device limit {:g} {}.", limit, unit) : ".";
 }
 
 }  // namespace
@@ -71,13 +71,13 @@ void add_head(Page& page, const Json& summary) {
                                     {&timings, "loop_cpu_s"}})
     if (object->contains(key)) facts.emplace_back(key_text(key), value_text((*object)[key]));
   if (facts.empty()) return;
-  page.add_heading("What was run");
+  page.add_heading("Run");
   page.add_facts(facts);
 }
 
 void add_figures(Page& page, const Json& summary) {
   if (!summary.is_object() || !summary.contains("figures")) return;
-  page.begin_details("All that was counted and timed");
+  page.begin_details("All counts and times");
   add_object(page, summary["figures"], kElsewhere);
   page.end_details();
 }
@@ -111,8 +111,7 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
   const double max_force = number_at(options, "max_force_n"),
                max_torque = number_at(options, "max_torque_n_m");
   add_plot(page, force_plot(force, max_force),
-           "Force that the device sends to the hand, in world components and as a magnitude" +
-               limit_text(max_force, "N"));
+           "Force of the device on the hand: world components and magnitude" + limit_text(max_force, "N"));
   constexpr double kRounding = 1e-15;  // [N m]
   const bool has_torque = std::any_of(force.headers.begin(), force.headers.end(), [&](const std::string& h) {
     if (!h.ends_with("_n_m")) return false;
@@ -121,7 +120,9 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
   });
   if (!has_torque) page.add_paragraph("No torque: no moment acts on the tool in this scene.");
   if (has_torque)
-    add_plot(page, torque_plot(force, max_torque), "Torque, likewise" + limit_text(max_torque, "N m"));
+    add_plot(
+        page, torque_plot(force, max_torque),
+        "Torque of the device on the hand: world components and magnitude" + limit_text(max_torque, "N m"));
 }
 
 void add_parts(Page& page, const Json& summary) {
@@ -137,8 +138,8 @@ void add_parts(Page& page, const Json& summary) {
     marks.push_back(RowMark::kFaint);
   }
   if (rows.empty()) return;
-  page.begin_details(fmt::format("{} parts in use or left out, and why", rows.size()));
-  page.add_table({"part", "", "why"}, rows, "", marks);
+  page.begin_details(fmt::format("{} parts in use or left out, with reasons", rows.size()));
+  page.add_table({"part", "", "reason"}, rows, "", marks);
   page.end_details();
 }
 

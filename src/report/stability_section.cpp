@@ -15,15 +15,15 @@ struct VerdictName {
   const char* meaning;
 };
 constexpr std::array<VerdictName, 9> kVerdicts = {
-    {{"accurate", "A", "within the error that theory allows of an exact answer"},
-     {"stable", "S", "never more energy or motion than was put in"},
-     {"bounded", "B", "more than was put in, within a bound"},
-     {"error", "E", "ended early, with a message that says why"},
-     {"grew", "G", "went beyond every bound and called it success"},
-     {"not finite", "N", "returned a result that is no finite number"},
-     {"silent", "F", "failed without a reason, or kept back what it had to report"},
-     {"too slow", "T", "cut off at the time limit"},
-     {"wrong", "W", "did not do what physics or the method's own formula says must happen"}}};
+    {{"accurate", "A", "within the theoretical error bound of the exact solution"},
+     {"stable", "S", "energy and motion never exceed the input"},
+     {"bounded", "B", "energy or motion exceeds the input, within a bound"},
+     {"error", "E", "ended early with a message that gives the reason"},
+     {"grew", "G", "exceeded all bounds and reported success"},
+     {"not finite", "N", "returned a result that is not finite"},
+     {"silent", "F", "failed without a reason, or omitted a required report"},
+     {"too slow", "T", "stopped at the time limit"},
+     {"wrong", "W", "contradicts physics or the formula of the method"}}};
 
 std::size_t index_of(const std::string& verdict) {
   std::size_t v = 0;
@@ -105,7 +105,7 @@ void add_unexpected(Page& page, const Json& cells) {
                       text_at(cell, "verdict"), expected_text(cell), text_at(cell, "figure"),
                       text_at(cell, "reason")});
   if (rows.empty()) return;
-  page.add_heading("Cells that are not what theory expects", 3);
+  page.add_heading("Cells that differ from theory", 3);
   page.add_table({"row", "case", "integrator", "verdict", "expected", "figure", "reason"}, rows, "",
                  std::vector<RowMark>(rows.size(), RowMark::kBad));
 }
@@ -117,7 +117,7 @@ void add_ends(Page& page, const Json& cells) {
       rows.push_back({text_at(cell, "row"), text_at(cell, "sub_case"), text_at(cell, "integrator"),
                       text_at(cell, "reason")});
   if (rows.empty()) return;
-  page.begin_details("What the clear ends said");
+  page.begin_details("Messages of cells that ended early");
   page.add_table({"row", "case", "integrator", "message"}, rows);
   page.end_details();
 }
@@ -135,16 +135,16 @@ void add_stability(Page& page, const Json& stability) {
 
   page.add_heading("Stability");
   page.add_paragraph(
-      "Stiff and extreme cases against every integrator. What each must show was written down beforehand, "
-      "from theory, as a set of verdicts; a cell that does not is outlined. A cell tells its figure, its "
-      "expectation and its reason where the pointer rests on it, and beneath the map when it is clicked, or "
-      "the arrow keys come to it.");
+      "Stiff and extreme cases against every integrator. The expected verdicts of each cell follow from "
+      "theory; a cell with any other verdict is outlined. The figure, expected verdicts and reason of a cell "
+      "are shown under the pointer, and below the map when the cell is clicked or selected with the arrow "
+      "keys.");
   add_unexpected(page, cells);
   std::vector<HeatCell> key;
   for (std::size_t v = 0; v < kVerdicts.size(); ++v)
     key.push_back({kVerdicts[v].letter, fmt::format("v{}", v),
                    fmt::format("{}: {}", kVerdicts[v].name, kVerdicts[v].meaning)});
-  key.push_back({"A", "v0", "outlined: not what theory expects", true});
+  key.push_back({"A", "v0", "outlined: differs from theory", true});
   page.add_fragment(heat_key_html(key));
   for (const auto& part : parted(cells)) {
     HeatMap map;

@@ -133,7 +133,7 @@ void add_charts(Page& page, const Table& study, const StudyColumns& columns, con
     add_plot(
         page, plot,
         capitalised(figure.label) + " over " + name +
-            (columns.seeds && !drawn ? "; lines are means over the seeds, points are each of them." : "."));
+            (columns.seeds && !drawn ? "; lines are means over the seeds, points are single seeds." : "."));
   }
   page.end_multiples();
 }
@@ -164,9 +164,8 @@ void add_spreads(Page& page, const Table& study, const StudyColumns& columns) {
   }
   page.add_heading("Spread over the seeds", 3);
   page.add_paragraph(
-      "The mean of each figure over the seeds, and its standard deviation (of the sample). Tasks that did "
-      "not "
-      "reach their end are left out.");
+      "Mean and sample standard deviation of each figure over the seeds. Tasks that did not finish are "
+      "excluded.");
   page.add_table(headers, rows);
 }
 
@@ -191,14 +190,14 @@ void add_tables(Page& page, const Table& study, const StudyColumns& columns) {
   }
   first.emplace_back("reason");
   headers.emplace_back("reason");
-  page.add_heading("The tasks", 3);
+  page.add_heading("Tasks", 3);
   std::vector<RowMark> marks;
   for (std::size_t r = 0; r < std::min(kMostRows, study.rows.size()); ++r)
     marks.push_back(is_ok(study, r) ? RowMark::kNone : RowMark::kBad);
   page.add_table(headers, cells_of(study, first), "", marks);
   if (study.rows.size() > kMostRows)
     page.add_paragraph(
-        fmt::format("The first {} of {} tasks; study.csv has them all.", kMostRows, study.rows.size()));
+        fmt::format("The first {} of {} tasks; study.csv lists all.", kMostRows, study.rows.size()));
   page.begin_details("All figures of all tasks");
   std::vector<std::string> all;
   for (const std::string& column : study.headers) all.push_back(key_text(column));
@@ -219,11 +218,11 @@ Table with_times(Table study, const Table& times) {
 void add_study(Page& page, const Table& study, const std::string& text, const Json& summary) {
   if (study.rows.empty()) return;
   const StudyColumns columns = columns_of_study(study);
-  page.add_heading("The study");
+  page.add_heading("Study");
   add_charts(page, study, columns, summary);
   add_spreads(page, study, columns);
   add_tables(page, study, columns);
-  if (!text.empty()) page.begin_details("The study's text").add_code(text).end_details();
+  if (!text.empty()) page.begin_details("Study file").add_code(text).end_details();
 }
 
 Answer study_answer(const Table& study) {
@@ -233,12 +232,12 @@ Answer study_answer(const Table& study) {
   for (const auto& row : study.rows) ++count[row[study.column("status")]];
   const std::size_t ok = count["ok"];
   if (ok == study.rows.size()) {
-    out.lead = fmt::format("All {} tasks reached their end.", ok);
+    out.lead = fmt::format("All {} tasks finished.", ok);
   } else {
     std::string others;
     for (const auto& [status, n] : count)
       if (status != "ok") others += fmt::format("{}{} {}", others.empty() ? "" : ", ", n, status);
-    out.lead = fmt::format("{} of {} tasks reached their end; {}.", ok, study.rows.size(), others);
+    out.lead = fmt::format("{} of {} tasks finished; {}.", ok, study.rows.size(), others);
   }
   std::map<std::string, bool> explained;  // the first reason of each status
   for (std::size_t r = 0; r < study.rows.size(); ++r) {

@@ -63,7 +63,7 @@ Plot step_plot(const Table& trace) {
 }
 
 void add_trace(Page& page, const Table& trace) {
-  page.add_heading("Steps, and why they were rejected");
+  page.add_heading("Steps and causes of rejection");
   const std::size_t outcome = trace.column("outcome"), inverted = trace.column("inverted_body");
   std::map<std::string, long> outcomes, worst_rejected, worst_accepted, inverted_in;
   for (std::size_t i = 0; i < trace.rows.size(); ++i) {
@@ -74,17 +74,18 @@ void add_trace(Page& page, const Table& trace) {
     if (const std::string& body = trace.rows[i][inverted]; !body.empty()) ++inverted_in[body];
   }
   add_plot(page, step_plot(trace),
-           "Step over time: the line is what was accepted, a point is an attempt that was not, coloured by "
-           "the reason (an event cuts a step short at a root).");
+           "Step size over time: the line shows accepted steps, points show rejected attempts, coloured by "
+           "cause (an event ends a step at a root).");
   page.add_table({"outcome", "attempts"}, most_frequent(outcomes, outcomes.size()));
   if (!worst_rejected.empty())
-    page.add_table({"where the error was largest when a step was rejected", "times"},
+    page.add_table({"location of the largest error in rejected steps", "count"},
                    most_frequent(worst_rejected, 10));
   if (!worst_accepted.empty())
-    page.add_table({"where the error was largest in accepted steps", "times"},
+    page.add_table({"location of the largest error in accepted steps", "count"},
                    most_frequent(worst_accepted, 10));
   if (!inverted_in.empty())
-    page.add_table({"attempts with an inverted element, in", "times"}, most_frequent(inverted_in, 10));
+    page.add_table({"location of inverted elements in attempted steps", "count"},
+                   most_frequent(inverted_in, 10));
 }
 
 }  // namespace palpate::report

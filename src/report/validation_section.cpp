@@ -157,20 +157,20 @@ void add_validation(Page& page, const Json& validation) {
     add_case(one, by_case);
     add_measurements(one, all);
   }
-  page.add_heading("Validation against exact answers");
-  page.add_table({"case", "what it measures", "measurements", "% of bar", "time [s]", "verdict"},
-                 by_case.rows, "% of bar: the largest error of the case over what it may be.", by_case.marks);
+  page.add_heading("Validation against exact solutions");
+  page.add_table({"case", "description", "measurements", "% of limit", "time [s]", "verdict"}, by_case.rows,
+                 "% of limit: largest error of the case relative to its acceptance limit.", by_case.marks);
   Marked missed;
   for (std::size_t i = 0; i < all.rows.size(); ++i)
     if (all.marks[i] == RowMark::kBad) missed.add(all.rows[i], false);
   const std::vector<std::string> headers = {"case",     "quantity", "error", "bar",
                                             "computed", "exact",    "order", "verdict"};
   if (!missed.rows.empty()) {
-    page.add_heading("Measurements that miss their bar", 3);
+    page.add_heading("Measurements outside their acceptance limit", 3);
     page.add_table(headers, missed.rows, "", missed.marks);
   }
-  page.begin_details("Every measurement");
-  page.add_table(headers, all.rows, "Errors are relative unless the quantity says otherwise.", all.marks);
+  page.begin_details("All measurements");
+  page.add_table(headers, all.rows, "Errors are relative unless the quantity states otherwise.", all.marks);
   page.end_details();
   add_convergence(page, cases);
 }

@@ -63,7 +63,7 @@ Series best_envelope(const std::vector<Ladder>& all, double scale) {
     return a.cost != b.cost ? a.cost < b.cost : a.error < b.error;
   });
   Series out{
-      .name = "best of all", .x = {}, .y = {}, .mark = Mark::kLine, .labels_below = true, .colour = "ink"};
+      .name = "Pareto front", .x = {}, .y = {}, .mark = Mark::kLine, .labels_below = true, .colour = "ink"};
   double least = std::numeric_limits<double>::infinity();
   std::set<const Ladder*> named;
   for (const Entry& e : entries) {
@@ -82,7 +82,7 @@ Plot frame_of(const std::string& error_label, double reference_error, const std:
   plot.y_label = error_label;
   plot.log_x = plot.log_y = true;
   plot.floor_y = reference_error;
-  plot.floor_label = "the reference's own error";
+  plot.floor_label = "reference error";
   return plot;
 }
 

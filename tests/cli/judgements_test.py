@@ -256,7 +256,7 @@ class Judgements(Cli):
         figures = json.loads((self.folder / "felt/summary.json").read_text())["figures"]
         self.assertGreater(figures["monolithic reference"]["peak_force_n"], 0.1)
         self.assertLess(figures["the scene's own settings"]["force_error_rms_of_peak"], 0.2)
-        self.assertIn("Force on the hand against one system", (self.folder / "felt/report.html").read_text())
+        self.assertIn("Force on the hand against the monolithic solution", (self.folder / "felt/report.html").read_text())
         self.assertIn("were done before", self.good(*arguments))
         self.assertIn("there is no [tool]", self.refused("compare", "--haptic", "cantilever"))
         self.assertIn("takes one SCENE", self.refused("compare", "--haptic", "press-ball", "twist-ball"))

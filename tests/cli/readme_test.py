@@ -81,8 +81,8 @@ class Readme(Page, unittest.TestCase):
         xml.dom.minidom.parseString(page)
         self.assertIn("data:image/png;base64,", page)
         self.assertGreaterEqual(page.count("<svg"), 3)
-        for word in ("Force on the hand", "Error against run time", "Error of the exchange period",
-                     "Ways to find the contact"):
+        for word in ("Force on the hand", "Error against run time", "Error due to the exchange period",
+                     "Contact methods"):
             self.assertIn(word, page)
         self.assertGreaterEqual(len((folder / "methods.csv").read_text().splitlines()), 1 + 2)
         self.assertFalse(re.search(r'(src|href)="(?!data:|#)', page), "it needs no other file")

@@ -68,7 +68,7 @@ class Results(Cli):
         columns = "time_s,step_s,order,error,newton_iterations,outcome,worst_body,"
         self.assertTrue(lines[0].startswith(columns))
         self.assertEqual(len(lines) - 1, int(re.search(r"trace: (\d+)", text).group(1)))
-        self.assertIn("why they were rejected", (self.folder / "traced/report.html").read_text())
+        self.assertIn("causes of rejection", (self.folder / "traced/report.html").read_text())
 
     def test_report_is_one_page_of_any_results(self):
         self.good("run", "one-tet", "-o", "one", "--duration-s", "0.1")
@@ -79,7 +79,7 @@ class Results(Cli):
         xml.dom.minidom.parseString(page)
         part = {name: page.index(f'id="result-{number}"') for number, name in ((1, "run"), (2, "checks"))}
         self.assertLess(page.index("The run finished: 0.1 s simulated"), part["run"], "the answer is first")
-        self.assertLess(page.index("The library answers as theory says"), part["run"])
+        self.assertLess(page.index("The library agrees with theory"), part["run"])
         self.assertLess(part["run"], part["checks"])
         view = json.loads(re.search(r'class="view-data">(.*?)</script>', page)[1])
         with h5py.File(self.folder / "one/run.vtkhdf") as file:
@@ -89,7 +89,7 @@ class Results(Cli):
 
     def test_report_refuses_a_folder_without_results(self):
         (self.folder / "empty").mkdir()
-        self.assertIn("empty: holds no results to report", self.refused("report", "empty"))
+        self.assertIn("empty: contains no results to report", self.refused("report", "empty"))
         self.assertIn("nowhere: is not a directory", self.refused("report", "nowhere"))
         self.assertFalse((self.folder / "empty/report.html").exists())
 

@@ -79,7 +79,7 @@ class Tables(Studies):
         self.assertIn(f"{QUICK_TASKS} tasks: {QUICK_TASKS} ok", text)
         page = (self.folder / "out/report.html").read_text()
         xml.dom.minidom.parseString(page)
-        for words in ("<h1>Study: quick", f"All {QUICK_TASKS} tasks reached their end.",
+        for words in ("<h1>Study: quick", f"All {QUICK_TASKS} tasks finished.",
                       "Spread over the seeds", "largest displacement [m]",
                       "Largest displacement [m] over body.0.youngs_modulus_pa",
                       "lines are means over the seeds", "[[random]]"):

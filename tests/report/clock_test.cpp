@@ -80,8 +80,8 @@ TEST(RunReport, ShowsTheClockOfRealTime) {
             "time_s,late_us,work_us\n0.001,3,40\n0.002,5,41\n0.003,4,39\n0.004,2000,45\n0.005,6,38\n");
   const std::string html = report_of(dir);
   EXPECT_EQ(well_formed_problem(html), "");
-  for (const char* text : {"Ticks in real time", "How late 5 ticks began", "p50 5 µs", "max 2 ms",
-                           "p50 40 µs", "max 45 µs", "[µs]"})
+  for (const char* text : {"Ticks in real time", "Lateness of 5 ticks", "p50 5 µs", "max 2 ms", "p50 40 µs",
+                           "max 45 µs", "[µs]"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
   dir.write("clock.csv", "time_s,late_us,work_us\n");  // stopped before the first tick
   EXPECT_EQ(report_of(dir).find("Ticks in real time"), std::string::npos);

@@ -61,13 +61,13 @@ TEST(StudySection, KnowsWhatIsSweptAndWhatIsDrawn) {
 
 TEST(StudySection, AnswersInWords) {
   const Answer answer = study_answer(table_of(kStudy));
-  EXPECT_EQ(answer.lead, "6 of 8 tasks reached their end; 1 failed, 1 missing.");
+  EXPECT_EQ(answer.lead, "6 of 8 tasks finished; 1 failed, 1 missing.");
   ASSERT_GE(answer.points.size(), 2u);
   EXPECT_EQ(answer.points[0], "failed, task 3: too many <steps>") << "as standard output has it";
   EXPECT_EQ(answer.points[1], "Peak force on the hand [N]: from 1 (task 0) to 8 (task 6).")
       << "a task that failed says nothing of the force";
   const Answer all = study_answer(table_of("task,scene,status,reason,steps\n0,a,ok,,3\n1,b,ok,,4\n"));
-  EXPECT_EQ(all.lead, "All 2 tasks reached their end.");
+  EXPECT_EQ(all.lead, "All 2 tasks finished.");
 }
 
 TEST(StudySection, DrawsTheSweepAndTheSeeds) {

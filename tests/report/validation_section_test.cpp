@@ -44,14 +44,14 @@ TEST(ValidationSection, HasALineACaseAndFoldsItsMeasurementsAway) {
   const std::string page = page_of(one_case(
       "patch", measurement("first stress", 0.02, true) + ", " + measurement("second stress", 0.05, true)));
   EXPECT_EQ(well_formed_problem(page), "");
-  const std::string cases = between(page, "Validation against exact answers", "<details");
+  const std::string cases = between(page, "Validation against exact solutions", "<details");
   EXPECT_NE(cases.find("what patch measures &amp; &lt;why&gt;"), std::string::npos);
   EXPECT_NE(cases.find("2 of 2"), std::string::npos);
   EXPECT_NE(cases.find(">50<"), std::string::npos) << "0.05 of 0.1";
   EXPECT_NE(cases.find(">pass<"), std::string::npos);
   EXPECT_EQ(cases.find("first stress"), std::string::npos);
   EXPECT_NE(between(page, "<details", "</details>").find("second stress"), std::string::npos);
-  EXPECT_EQ(page.find("miss their bar"), std::string::npos);
+  EXPECT_EQ(page.find("outside their acceptance limit"), std::string::npos);
 }
 
 TEST(ValidationSection, ShowsWhatMissesItsBarAndWhatBroke) {
@@ -60,7 +60,7 @@ TEST(ValidationSection, ShowsWhatMissesItsBarAndWhatBroke) {
                                     measurement("second stress", 0.3, false)) +
               ", " + one_case("crash", "", "killed by signal 11") + ", " + one_case("idle", ""));
   EXPECT_EQ(well_formed_problem(page), "");
-  const std::string shown = between(page, "Validation against exact answers", "<details");
+  const std::string shown = between(page, "Validation against exact solutions", "<details");
   EXPECT_NE(shown.find("1 of 2"), std::string::npos);
   EXPECT_NE(shown.find("second stress"), std::string::npos);
   EXPECT_EQ(shown.find("first stress"), std::string::npos);

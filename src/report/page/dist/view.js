@@ -1,4 +1,4 @@
-/* made by src/report/page/build.mjs, sources sha256 a0c5fcf6009769c5d1be135cff712df2f3c68060be4325d68500ae40c08b381a
+/* made by src/report/page/build.mjs, sources sha256 82f2a4aeac12245e9ecedba39910e05c412c565f03bcf3cc7d1d89fd1529dcb2
 
 This part of the page holds three 0.170.0
 

@@ -1,7 +1,7 @@
 // A heat map's cells by keyboard, click and touch: what a cell's title says stands in a line beneath the map.
 
 const STEPS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] };
-const HINT = "Click or touch a cell, or move between cells with the arrow keys: its figures stand here.";
+const HINT = "Click or touch a cell, or move between cells with the arrow keys: its details appear here.";
 
 export function makeHeatMapsReadable() {
   for (const table of document.querySelectorAll("table.heat")) makeReadable(table);
