@@ -27,16 +27,17 @@ void remove_checkpoint(const std::string& folder) {
 
 void check_checkpoints(const RunArguments& arguments, const scene::Description& description) {
   const auto refuse = [](const char* option, const char* why) {
-    fail("--checkpoint-every does not go with {}: {}", option, why);
+    fail("--checkpoint-every cannot be combined with {}: {}", option, why);
   };
   if (arguments.real_time)
-    refuse("--realtime", "it follows the machine's clock and the hand, which cannot be had again");
+    refuse("--realtime", "a resumed run cannot reproduce the clock and the motion of the hand");
   if (arguments.picture || arguments.contact_picture || arguments.frames || !arguments.movie.empty())
     refuse("--picture, --contact-picture, --frames and --movie",
-           "what they have gathered by then is not kept; `palpate movie` draws a run that is over");
-  if (arguments.trace) refuse("--trace", "the steps that it has seen by then are not kept");
+           "checkpoints do not contain recorded frames; use `palpate movie` after the run");
+  if (arguments.trace) refuse("--trace", "checkpoints do not contain the trace");
   if (arguments.against_monolithic)
-    refuse("--against-monolithic", "the motion that it repeats is not kept; `palpate replay` does it later");
+    refuse("--against-monolithic",
+           "checkpoints do not contain the motion that it repeats; use `palpate replay` after the run");
   loop::check_checkpoints(description, arguments.checkpoint_every_s, arguments.duration_s);
 }
 
@@ -57,7 +58,7 @@ void RunIdentity::archive(Archive& a) {
 
 std::string instructions_in_use() {
   const char* blas = std::getenv("OPENBLAS_CORETYPE");
-  return fmt::format("{}, OpenBLAS {}", name_of(best_instructions()), blas ? blas : "as it chooses");
+  return fmt::format("{}, OpenBLAS {}", name_of(best_instructions()), blas ? blas : "default kernels");
 }
 
 loop::CheckpointPlan checkpoint_plan(RunIdentity identity, const scene::Description& description,
@@ -78,9 +79,8 @@ loop::CheckpointPlan checkpoint_plan(RunIdentity identity, const scene::Descript
 
 void print_checkpoints(const loop::CheckpointCost& cost, double every_s) {
   fmt::print(
-      "checkpoints: {}, one every {:g} s of simulated time; {:.3g} s to keep them and {:.3g} s to assemble "
-      "the "
-      "scene anew, with integrator, factors and initial guesses, at each\n",
+      "checkpoints: {}, one per {:g} s of simulated time; {:.3g} s to write them and {:.3g} s to reassemble "
+      "the scene, with integrator, factors and initial guesses, after each\n",
       cost.written, every_s, cost.keep_s, cost.assemble_s);
 }
 

@@ -34,8 +34,7 @@ std::vector<scene::Description> scenes_of(const CompareArguments& arguments) {
     out.push_back(scene_of(one));
     const auto same = std::count_if(out.begin(), out.end(),
                                     [&](const scene::Description& d) { return d.name == out.back().name; });
-    if (same > 1)
-      fail("two scenes are called \"{}\"; give one of them another [scene] name", out.back().name);
+    if (same > 1) fail("two scenes have the name \"{}\"; change the [scene] name of one", out.back().name);
   }
   return out;
 }
@@ -99,8 +98,7 @@ int compare(const CompareArguments& arguments, MissingOutputs& missing) {
   const compare::Comparison comparison = compare_watched(scenes, arguments, folder);
   compare::write(comparison, folder);
   if (comparison.reused > 0)
-    fmt::print("{} runs were done before, and were not done again (--fresh starts anew)\n\n",
-               comparison.reused);
+    fmt::print("{} results are from earlier runs (--fresh repeats them)\n\n", comparison.reused);
   const fs::path points = fs::path(folder) / "compare.csv";
   const report::Table table = fs::exists(points) ? report::read_csv(points) : report::Table{};
   for (const compare::SceneComparison& scene : comparison.scenes) {
@@ -125,7 +123,7 @@ int compare(const CompareArguments& arguments, MissingOutputs& missing) {
     add_missing(comparison, missing);
     return 0;
   }
-  fmt::print(stderr, "palpate: stopped; the same command goes on from {}\n", folder);
+  fmt::print(stderr, "palpate: stopped; the same command resumes from {}\n", folder);
   return kExitStopped;
 }
 

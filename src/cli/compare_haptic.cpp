@@ -86,8 +86,8 @@ void print_points(const HapticComparison& c) {
 void print_reference(const HapticComparison& c) {
   const compare::Reference& r = c.reference;
   fmt::print("{}: reference {}; {:.3g} s of CPU\n", c.scene, r.description, r.cpu_s);
-  fmt::print("{}: peak {:.4g} N and {:.4g} N m; the reference's own error {} N and {} N m, {} % and {} %\n",
-             c.scene, c.peak_force_n, c.peak_torque_n_m, report::short_number(r.own_error.force_rms_n),
+  fmt::print("{}: peak {:.4g} N and {:.4g} N m; reference error {} N and {} N m, {} % and {} %\n", c.scene,
+             c.peak_force_n, c.peak_torque_n_m, report::short_number(r.own_error.force_rms_n),
              report::short_number(r.own_error.torque_rms_n_m),
              percent(r.own_error.force_rms_n, c.peak_force_n),
              percent(r.own_error.torque_rms_n_m, c.peak_torque_n_m));
@@ -168,8 +168,7 @@ int compare_haptic(const CompareArguments& arguments) {
   compare::write(comparison, folder);
   keep_summary(arguments, scene, comparison, folder);
   if (comparison.reused > 0)
-    fmt::print("{} runs were done before, and were not done again (--fresh starts anew)\n\n",
-               comparison.reused);
+    fmt::print("{} results are from earlier runs (--fresh repeats them)\n\n", comparison.reused);
   print_reference(comparison);
   print_points(comparison);
   print_orders(comparison);
@@ -177,7 +176,7 @@ int compare_haptic(const CompareArguments& arguments) {
   const report::RunReport written = report::write_run_report(folder);
   fmt::print("written: {}\n", written.page.string());
   if (comparison.stopped) {
-    fmt::print(stderr, "palpate: stopped; the same command goes on from {}\n", folder);
+    fmt::print(stderr, "palpate: stopped; the same command resumes from {}\n", folder);
     return kExitStopped;
   }
   MissingOutputs missing;

@@ -19,7 +19,7 @@ std::string outcome_text(const compare::ComparePoint& p) {
   if (p.status == compare::PointStatus::kOk) {
     const std::string silent = loop::describe_fallbacks(p.result.counters);
     if (!p.unresolved) return silent;
-    return "not distinguishable from the reference" + (silent.empty() ? "" : "; " + silent);
+    return "not resolved by the reference" + (silent.empty() ? "" : "; " + silent);
   }
   const std::string line = p.reason.substr(0, p.reason.find('\n'));
   return line.size() <= kReasonLength ? line : line.substr(0, line.find_last_of(' ', kReasonLength)) + " ...";
@@ -62,7 +62,7 @@ void print_points(const compare::SceneComparison& scene) {
   if (rows.size() <= kPointsOnScreen)
     fmt::print("{}\n", report::format_table(headers, rows));
   else
-    fmt::print("{} points; each is a line of compare.csv.\n\n", scene.points.size());
+    fmt::print("{} points; compare.csv has one line per point.\n\n", scene.points.size());
 }
 
 void print_trials(const compare::SceneComparison& scene) {
@@ -100,15 +100,15 @@ void print_prices(const report::Table& table, double reference_error) {
   for (const report::Winner& win :
        report::winners(table, kError, "cpu_s_median", report::kTargets, reference_error))
     rows.push_back({fmt::format("{:g}", win.target),
-                    !win.resolved    ? "the reference cannot tell"
-                    : !win.found     ? "none reaches it"
+                    !win.resolved    ? "not resolved by the reference"
+                    : !win.found     ? "not reached"
                     : win.declared() ? win.label
                                      : "no winner: " + win.label,
                     report::cost_text(win.cost), report::spread_text(win.cost),
                     win.runner_up.empty() ? "-" : win.runner_up, report::ratio_text(win.runner_up_ratio),
                     report::ratio_text(win.baseline_ratio)});
-  fmt::print("{}\n", report::format_table({"position error at most", "cheapest", "CPU [s]", "from, to",
-                                           "runner-up", "times", report::kBaseline},
+  fmt::print("{}\n", report::format_table({"position error at most", "cheapest", "CPU [s]", "range",
+                                           "runner-up", "ratio", report::kBaseline},
                                           rows));
 }
 
@@ -134,7 +134,7 @@ void print_restarts(const compare::SceneComparison& scene) {
 void print_exchange(const compare::SceneComparison& scene) {
   if (scene.exchange.points.empty()) return;
   const compare::ExchangeStudy& study = scene.exchange;
-  fmt::print("tool and bodies as one system by {}, checked by {}; its own error: position {}, force {} N\n",
+  fmt::print("monolithic solution by {}, checked by {}; reference error: position {}, force {} N\n",
              study.made_by, study.checked_by, report::short_number(study.own_error.position_rel_l2),
              report::short_number(study.own_error.force_rms_n));
   Rows rows;
@@ -143,7 +143,7 @@ void print_exchange(const compare::SceneComparison& scene) {
                     fmt::format("{:.2e}", p.error.position_rel_l2),
                     fmt::format("{:.2e}", p.error.force_rms_n), fmt::format("{:.2e}", p.error.torque_rms_n_m),
                     fmt::format("{:.3f}", p.cpu_s),
-                    p.unresolved || p.force_unresolved ? "not distinguishable from the reference" : ""});
+                    p.unresolved || p.force_unresolved ? "not resolved by the reference" : ""});
   fmt::print("{}\n", report::format_table({"exchange period [ms]", "position error", "force error [N]",
                                            "torque error [N m]", "CPU [s]", ""},
                                           rows));
@@ -157,14 +157,14 @@ void print_methods(const compare::SceneComparison& scene) {
                     fmt::format("{:.2e}", p.difference.force_rms_n), fmt::format("{:.4f}", p.peak_force_n),
                     std::to_string(p.most_samples), fmt::format("{:.3f}", p.query_s),
                     fmt::format("{:.3f}", p.cpu_s)});
-  fmt::print("{}\n", report::format_table({"contact found by", "position difference", "force difference [N]",
+  fmt::print("{}\n", report::format_table({"contact method", "position difference", "force difference [N]",
                                            "peak force [N]", "samples", "queries [s]", "CPU [s]"},
                                           rows));
 }
 
 void print_reference(const compare::SceneComparison& scene) {
   const compare::Reference& r = scene.reference;
-  fmt::print("{}: reference {}; its own error: position {}{}\n", scene.scene, r.description,
+  fmt::print("{}: reference {}; reference error: position {}{}\n", scene.scene, r.description,
              std::isfinite(r.own_error.position_rel_l2) ? fmt::format("{:.1e}", r.own_error.position_rel_l2)
                                                         : "unknown",
              scene.tool && std::isfinite(r.own_error.force_rms_n)

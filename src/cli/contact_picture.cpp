@@ -153,7 +153,7 @@ void add_proxies(render::Scene& scene, const std::vector<loop::ProxyShape>& prox
     bool& named = proxy.of_a ? named_a : named_b;
     render::Surface hull{named        ? ""
                          : proxy.of_a ? "proxies in contact"
-                                      : "those of the other side",
+                                      : "proxies of the other side",
                          proxy.surface.vertices, proxy.surface.faces};
     named = true;
     hull.colour = proxy.of_a ? kHullA : kHullB;
@@ -297,10 +297,11 @@ void ContactSnapshot::save(const loop::World& world, const std::string& folder,
   const std::string title =
       fmt::format("{}, contact at t = {} s", world.description.name, time_text(instant_.time));
   keep("contact.png", [&] {
-    if (!touched()) fail("nothing touched in this run");
+    if (!touched()) fail("no contact occurred in this run");
     const render::Scene scene = scene_of(world, instant_, Shade::kPenetration);
     const Patch patch = largest_patch(scene, contact_);
-    if (patch.vertices.cols() == 0) fail("no vertex of a body's surface lies in what touches it");
+    if (patch.vertices.cols() == 0)
+      fail("no surface vertex of a body lies inside the other side of the contact");
     return render::beside({overview(scene, contact_, patch, title), close_up(scene, patch)});
   });
   const bool pixels = std::any_of(contact_.regions.begin(), contact_.regions.end(),

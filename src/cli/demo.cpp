@@ -6,7 +6,7 @@
 namespace palpate::cli {
 
 int demo(const DemoArguments& arguments) {
-  fmt::print("A tool under a hand's virtual spring presses a soft ball on a plane.\n\n");
+  fmt::print("A tool on the virtual spring of a hand presses a soft ball on a plane.\n\n");
   RunArguments touch;
   touch.scene.scene = "press-ball";
   touch.folder = arguments.folder;
@@ -14,7 +14,7 @@ int demo(const DemoArguments& arguments) {
   MissingOutputs missing;
   if (const int status = run(touch, missing); status != 0) return missing.close(status);
 
-  fmt::print("\nThe same touch by each integrator: how far from the reference, at what price?\n\n");
+  fmt::print("\nError and run time of each integrator on the same scene:\n\n");
   CompareArguments price;
   price.scenes = {touch.scene.scene};
   price.folder = arguments.folder;

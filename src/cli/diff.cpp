@@ -44,10 +44,10 @@ int diff(const DiffArguments& arguments) {
     if (has(theirs, hand))
       fmt::print("{}:\n{}", hand, difference(fmt::format("haptic-{}.h5", hand)));
     else
-      fmt::print("{}: there is none in {}\n", hand, other.string());
+      fmt::print("{}: not present in {}\n", hand, other.string());
   }
   for (const std::string& hand : theirs)
-    if (!has(mine, hand)) fmt::print("{}: there is none in {}\n", hand, reference.string());
+    if (!has(mine, hand)) fmt::print("{}: not present in {}\n", hand, reference.string());
   return 0;
 }
 

@@ -45,7 +45,7 @@ std::string run_file_of(const std::string& argument) {
          argument);
   const fs::path file = fs::path(argument) / "run.vtkhdf";
   if (!fs::exists(file))
-    fail("{}: no such file; runs keep it where the scene has record.states = true", file.string());
+    fail("{}: no such file; a run writes it if the scene sets record.states = true", file.string());
   return file.string();
 }
 
@@ -54,7 +54,7 @@ int step_at(const store::RunReader& run, double time) {
   const std::vector<double>& times = run.times_s();
   const double slack = 1e-9 * std::max(std::abs(times.front()), std::abs(times.back()));
   if (!(time >= times.front() - slack && time <= times.back() + slack))
-    fail("--at {}: the states of the run go from {} to {} s", time_text(time), time_text(times.front()),
+    fail("--at {}: the states of the run cover {} to {} s", time_text(time), time_text(times.front()),
          time_text(times.back()));
   const auto nearest = std::min_element(times.begin(), times.end(), [time](double a, double b) {
     return std::abs(a - time) < std::abs(b - time);
@@ -63,7 +63,8 @@ int step_at(const store::RunReader& run, double time) {
 }
 
 std::vector<int> chosen_steps(const store::RunReader& run, const ExportArguments& arguments) {
-  if (run.steps() == 0) fail("{}: its run recorded no state, so there is nothing to export", arguments.run);
+  if (run.steps() == 0)
+    fail("{}: the run recorded no states; set record.states = true and run the scene again", arguments.run);
   if (arguments.at_s) return {step_at(run, *arguments.at_s)};
   if (arguments.step) {
     if (*arguments.step < 0 || *arguments.step >= run.steps())
@@ -131,7 +132,7 @@ void export_gltf(const Chosen& chosen, ExportDraft& draft) {
   const RecordedSurfaces surfaces(chosen.run, chosen.run_file, chosen.parts, chosen.skins);
   const Animation animation = animated(chosen.run, surfaces, chosen.steps);
   if (animation.steps.size() < chosen.steps.size())
-    fmt::print("{} of {} states are in it: a .glb gets at most {} of them, and {} MiB of positions\n",
+    fmt::print("exported {} of {} states: a .glb holds at most {} states and {} MiB of positions\n",
                animation.steps.size(), chosen.steps.size(), kMostKeyframes, kMostPositionBytes >> 20);
   if (!stop_flag().load()) draft.write(chosen.stem + ".glb", animation.glb);
 }

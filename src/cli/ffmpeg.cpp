@@ -25,8 +25,8 @@ constexpr const char* kProgram = "ffmpeg";
 
 [[noreturn]] void fail_not_found() {
   fail(
-      "ffmpeg was not found: it makes WebM movies; install the package ffmpeg, or name a file that ends in "
-      ".png, which needs no program");
+      "ffmpeg was not found, and WebM movies require it; install the package ffmpeg, or give a file name "
+      "that ends in .png");
 }
 
 /// Returns the last line of the log of ffmpeg, which states the error.
@@ -39,7 +39,7 @@ std::string last_line(int log) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
   const std::size_t begin = text.find_last_of("\r\n");
   if (begin != std::string::npos) text.erase(0, begin + 1);
-  return text.empty() ? "without a word" : text;
+  return text.empty() ? "no message" : text;
 }
 
 }  // namespace

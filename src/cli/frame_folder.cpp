@@ -37,7 +37,7 @@ class FrameFolder final : public FrameSink {
   explicit FrameFolder(const std::string& folder) : folder_(folder) {}
   void close() override {}
   std::string missing() const override {
-    return fmt::format("frame {} and those behind it", next().string());
+    return fmt::format("frame {} and all later frames", next().string());
   }
 
  private:

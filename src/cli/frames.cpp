@@ -98,8 +98,8 @@ void check_rate(const scene::Description& d, double per_s, const std::string& as
   const double period = loop::period_of(d);
   if (per_s * period <= 1.001) return;
   fail(
-      "{}: this scene can be seen every {:g} s, {:g} times a second of simulated time: that is the period of "
-      "its loop ({}); ask for at most that, or shorten the period",
+      "{}: the frame rate exceeds the loop rate of the scene, one state per {:g} s or {:g} per second of "
+      "simulated time ({}); reduce the frame rate or shorten the period",
       asked, period, 1.0 / period,
       d.tool && d.exchange.scheme != "monolithic" ? "exchange.exchange_period_s"
       : !d.contacts.empty()                       ? "exchange.contact_refresh_s"
@@ -157,7 +157,7 @@ FrameSize frame_size(const std::string& text) {
   const bool first = bad == std::errc() && cross != end && *cross == 'x';
   const auto [stop, worse] = first ? std::from_chars(cross + 1, end, out.height) : std::from_chars_result{};
   if (!first || worse != std::errc() || stop != end)
-    fail("--size {}: is no size in pixels; write WIDTHxHEIGHT, as in 640x480", text);
+    fail("--size {}: is not a size in pixels; write WIDTHxHEIGHT, for example 640x480", text);
   for (const int side : {out.width, out.height})
     if (side < 160 || side > 4096 || side % 2 != 0)
       fail("--size {}: each side must be an even number of pixels, 160 to 4096", text);

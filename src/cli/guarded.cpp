@@ -25,8 +25,8 @@ int refuse(const std::string& why) {
 int refuse_memory() {
   const AvailableMemory left = available_memory();
   return refuse(
-      fmt::format("not enough memory: {} are left ({}); a coarser mesh (element_size_m), fewer "
-                  "tetrahedra or fewer recorded states need less",
+      fmt::format("not enough memory: {} are available ({}); use a coarser mesh (element_size_m), fewer "
+                  "tetrahedra or fewer recorded states",
                   memory_text(left.bytes), left.limited_by));
 }
 
@@ -41,7 +41,7 @@ int run(const std::function<int()>& action, const char* input) {
     return refuse(fmt::format("{}: {}", e.path1().string(), e.code().message()));
   } catch (const std::system_error& e) { return refuse(e.what()); } catch (const std::exception& e) {
     fmt::print(stderr,
-               "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report "
+               "palpate: internal error: {}\nThis is an error in palpate, not in your input: please report "
                "it with the {} and this message.\n",
                e.what(), input);
     return kExitInternalError;
@@ -53,7 +53,7 @@ int run(const std::function<int()>& action, const char* input) {
 int guarded(const std::function<int()>& action, const char* input) {
   const int status = run(action, input);
   if (const std::string why = output_failure(); !why.empty() && status == 0)
-    return refuse(fmt::format("standard output has not taken everything: {}; all else was done", why));
+    return refuse(fmt::format("standard output is incomplete: {}; all other outputs are complete", why));
   return status;
 }
 

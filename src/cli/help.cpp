@@ -29,9 +29,9 @@ void print_topics() {
   for (const HelpPage& page : help_pages())
     rows.push_back({std::string(page.topic), title_of(std::string(page.markdown))});
   fmt::print(
-      "{}\n`palpate help TOPIC` prints one of these pages, `palpate COMMAND --help` the options of a "
+      "{}\n`palpate help TOPIC` prints one of these pages; `palpate COMMAND --help` prints the options of a "
       "command.\n",
-      report::format_table({"topic", "what it says"}, rows));
+      report::format_table({"topic", "content"}, rows));
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ Shade check_picture(const std::string& name, const scene::Description& descripti
   if (found == known.end()) fail("--shade: unknown \"{}\"{}", name, suggestion(name, known));
   const auto shade = static_cast<Shade>(found - known.begin());
   if (shade == Shade::kPenetration && description.contacts.empty())
-    fail("--shade penetration: the scene has no [[contact]], so nothing is penetrated");
+    fail("--shade penetration: the scene has no [[contact]]; add one, or choose another shade");
   return shade;
 }
 

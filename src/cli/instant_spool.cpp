@@ -86,7 +86,7 @@ InstantSpool::~InstantSpool() {
 }
 
 void InstantSpool::refuse(const char* what) const {
-  fail("{}: the run's positions for pictures cannot be {}: {}", folder_, what, std::strerror(errno));
+  fail("{}: the positions for pictures cannot be {}: {}", folder_, what, std::strerror(errno));
 }
 
 void InstantSpool::append(const Instant& instant) {

@@ -17,10 +17,10 @@ constexpr const char* kIntroduction = R"(# Every key of a scene: unit, range, de
 
 <!-- Made by `palpate list keys --markdown` from the loader's own tables; a test compares them. -->
 
-A scene is a TOML file of the tables below. `[x]` stands once, `[[x]]` as often as needed. All numbers are in
-SI units, and a key that holds one ends in its unit. "Required" is what a scene must say wherever it has the
-table. "Used by" names the choices (of `integrator.name`, `obstacle.type`, ...) with which the key may stand;
-where that is empty, it always may. Elsewhere, and where a key is not listed here, the scene is refused with
+A scene is a TOML file of the tables below. `[x]` appears once, `[[x]]` any number of times. All numbers are
+in SI units, and a key with a unit ends in it. "Required" marks keys that a scene must contain if it has the
+table. "Used by" lists the choices (of `integrator.name`, `obstacle.type`, ...) that accept the key; if it is
+empty, the key is always accepted. A scene with a key that is not accepted or not listed here is rejected with
 file, line and column, and with the nearest known key.
 
 [0, 1] includes its ends, (0, 1) does not. [names.md](names.md) has the names of integrators, solvers,
@@ -35,10 +35,10 @@ constexpr const char* kStudyIntroduction = R"(# Every key of a study: unit, rang
 
 <!-- Made by `palpate list study-keys --markdown` from the loader's own tables; a test compares them. -->
 
-A study is a TOML file of the tables below, which `palpate study` runs; [studies.md](studies.md) says how.
-`[x]` stands once, `[[x]]` as often as needed. All numbers are in SI units. An unknown key is refused with
-file, line and column, and with the nearest known key. [keys.md](keys.md) has the keys of a scene, which the
-`key` of `[[sweep]]` and `[[random]]` names.
+A study is a TOML file of the tables below, which `palpate study` runs; see [studies.md](studies.md).
+`[x]` appears once, `[[x]]` any number of times. All numbers are in SI units. An unknown key is rejected with
+file, line and column, and with the nearest known key. [keys.md](keys.md) lists the keys of a scene, which the
+`key` of `[[sweep]]` and `[[random]]` specifies.
 
 | table | what it is |
 |---|---|

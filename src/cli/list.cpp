@@ -85,7 +85,7 @@ std::string capitalised(std::string text) {
 /// Prints the lists as a page, docs/names.md.
 void print_names_page(const std::vector<loop::ChoiceList>& lists) {
   fmt::print(
-      "# Every name that scenes and options know\n\n"
+      "# All names in scenes and options\n\n"
       "<!-- Made by `palpate list --markdown`; a test compares them. -->\n\n"
       "`palpate list` prints these tables in a terminal, `palpate list WHAT` one of them.\n");
   for (const loop::ChoiceList& list : lists) {
@@ -133,8 +133,7 @@ int list(const ListArguments& arguments) {
   std::vector<std::string> known = {kKeys, kStudyKeys};
   bool found = std::find(known.begin(), known.end(), arguments.what) != known.end();
   if (arguments.markdown && !found)
-    fail("--markdown goes with \"keys\", with \"study-keys\" or without a list, not with \"{}\"",
-         arguments.what);
+    fail("--markdown requires \"keys\", \"study-keys\" or no list name, not \"{}\"", arguments.what);
   if (arguments.what == kKeys)
     arguments.markdown ? print_key_page() : print_keys(scene::key_rows(loop::kinds()));
   if (arguments.what == kStudyKeys)

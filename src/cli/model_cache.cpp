@@ -40,8 +40,8 @@ void make_model(const std::string& name, const fs::path& path) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
   if (error)
-    fail("the model \"{}\" cannot be kept in {}: {}", name, path.parent_path().string(), error.message());
-  fmt::print(stderr, "palpate: making the model \"{}\", once; kept in {}\n", name, path.string());
+    fail("the model \"{}\" cannot be stored in {}: {}", name, path.parent_path().string(), error.message());
+  fmt::print(stderr, "palpate: making the model \"{}\", once; stored in {}\n", name, path.string());
   // under a temporary name until it is complete: two runs may build the model at the same time
   const fs::path draft = path.parent_path() / fmt::format("{}-{}.h5", name, ::getpid());
   const int status = run_to_end({path_of(kModel), name, "-o", draft.string()});

@@ -68,7 +68,7 @@ void draw_modes(const loop::World& world, const modes::Modes& modes, const std::
     frequencies.push_back(fmt::format("{}: {:.3g} Hz", pictured[i] + 1, modes.frequency_hz(pictured[i])));
   }
   scene.scale.label = "displacement";
-  scene.scale.unit = "of the largest";
+  scene.scale.unit = "of the maximum";
   scene.title = fmt::format("modes of {}", world.description.name);
   scene.subtitle = fmt::format("{}", fmt::join(frequencies, "   "));
   render::Options options;

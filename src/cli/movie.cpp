@@ -26,12 +26,12 @@ class States {
     std::size_t expected = world.bodies.size() + hands.size();
     for (const loop::Bone& bone : world.bones) expected += bone.surface.vertices.cols() > 0;
     if (reader.parts().size() != expected)
-      fail("{}: {} parts, but its scene has {}; it was made by another version of palpate", path,
+      fail("{}: has {} parts, but its scene has {}; the run was made by another version of palpate", path,
            reader.parts().size(), expected);
     for (std::size_t i = 0; i < world.bodies.size(); ++i)
       if (reader.parts()[i].reference.cols() != world.bodies[i].placed.cols())
-        fail("{}: body \"{}\" has {} nodes, but its scene makes it of {}: the mesh is another now", path,
-             world.bodies[i].name, reader.parts()[i].reference.cols(), world.bodies[i].placed.cols());
+        fail("{}: body \"{}\" has {} nodes, but its scene now has {}: the mesh has changed since the run",
+             path, world.bodies[i].name, reader.parts()[i].reference.cols(), world.bodies[i].placed.cols());
     for (const scene::Hand& hand : hands) tools_.push_back(loop::tool_surface(*hand.tool, world.folder));
   }
 
@@ -67,15 +67,15 @@ class States {
 /// Returns the time between two frames [s], a multiple of the interval of recorded states.
 double between(const std::vector<double>& times, double fps, double slow, const std::string& run) {
   if (times.size() < 2)
-    fail("{}: its run recorded {} state{}; a movie needs two at least", run, times.size(),
+    fail("{}: the run recorded {} state{}; a movie requires at least two", run, times.size(),
          times.size() == 1 ? "" : "s");
   const double state = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   const double rate = fps > 0.0 ? fps : std::min(kMovieRate, 1.0 / (state * slow));
   const double requested = 1.0 / (rate * slow);
   if (requested < 0.999 * state)
     fail(
-        "--fps {:g} --slow {:g}: the run kept a state every {:g} s (record.state_period_s), which is {:g} a "
-        "second as it is played; ask for at most that",
+        "--fps {:g} --slow {:g}: the frame rate exceeds that of the recorded states, one per {:g} s "
+        "(record.state_period_s) or {:g} per second of playback; reduce the frame rate",
         rate, slow, state, 1.0 / (state * slow));
   return static_cast<double>(std::max(1L, std::lround(requested / state))) * state;
 }
@@ -96,11 +96,11 @@ int movie(const MovieArguments& arguments, MissingOutputs& missing) {
   const std::filesystem::path folder(arguments.run);
   const std::string states_file = (folder / "run.vtkhdf").string();
   if (!std::filesystem::exists(states_file))
-    fail("{}: no such file; runs keep it where the scene has record.states = true", states_file);
+    fail("{}: no such file; a run writes it if the scene sets record.states = true", states_file);
   if (arguments.shade == "penetration")
     fail(
-        "--shade penetration: a run does not record it; `palpate run SCENE --movie --shade penetration` "
-        "does");
+        "--shade penetration: runs do not record penetration; use `palpate run SCENE --movie --shade "
+        "penetration`");
   const store::RunReader reader(states_file);
   const scene::Description description = recorded_scene(reader.info().scene_source, folder);
   const Shade shade = check_picture(arguments.shade, description);

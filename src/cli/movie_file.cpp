@@ -123,7 +123,7 @@ void check_movie(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
-  if (fs::is_directory(path)) fail("--movie {}: is a folder; name a file", path);
+  if (fs::is_directory(path)) fail("--movie {}: is a folder; give a file name", path);
   std::FILE* draft = error ? nullptr : std::fopen(draft_of(path).c_str(), "wb");
   if (!draft)
     fail("--movie {}: cannot be written ({})", path, error ? error.message() : std::strerror(errno));

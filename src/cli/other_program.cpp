@@ -58,7 +58,7 @@ bool is_there(const OtherProgram& other) { return fs::exists(place_of(other)); }
 
 std::string path_of(const OtherProgram& other) {
   const std::string program = place_of(other).string();
-  if (!is_there(other)) fail("{}: {} is not there: {}", other.command, program, other.absent);
+  if (!is_there(other)) fail("{}: {} does not exist: {}", other.command, program, other.absent);
   return program;
 }
 

@@ -16,17 +16,17 @@ struct OtherProgram {
 
 /// Meshing, in a separate program: palpate neither links nor loads CGAL and Gmsh.
 inline constexpr OtherProgram kModel = {
-    "model", "a layered model of a closed surface: tetrahedra, skin, proxies", "palpate-model",
+    "model", "make a layered model of a closed surface: tetrahedra, skin, proxies", "palpate-model",
     "this build makes no models; configure with -DPALPATE_WITH_MODEL=ON (packages libcgal-dev, "
     "libgmsh-dev) and build the target palpate-model",
     false};
 inline constexpr OtherProgram kBench = {
-    "bench", "how long things take on this machine", "palpate-bench",
+    "bench", "benchmarks on this machine", "palpate-bench",
     "the packages do not include it; `./palpate bench` in a clone of the sources builds it"};
 inline constexpr OtherProgram kValidate = {"validate", "run the cases with a known answer",
                                            "palpate-validation", "build the target palpate-validation"};
 inline constexpr OtherProgram kStability = {
-    "stability", "stiff and extreme cases against every integrator, each compared with theory",
+    "stability", "run stiff and extreme cases with every integrator and compare each with theory",
     kValidate.program, kValidate.absent};  ///< Stability matrix; `--haptic` runs in palpate
 inline constexpr OtherProgram kCases = {"cases", "the cases with a known answer, for `palpate list`",
                                         kValidate.program, kValidate.absent};

@@ -56,7 +56,7 @@ Invocation parse_line(int argc, char** argv, const CommandLine& line) {
   });
   app.formatter(std::make_shared<HelpFormatter>());
   app.add_flag("-q,--quiet", invocation.quiet, "only errors");
-  app.add_flag("-v,--verbose", invocation.verbose, "details, too");
+  app.add_flag("-v,--verbose", invocation.verbose, "also details");
   app.footer(line.examples);
   app.require_subcommand(1);
   app.fallthrough();

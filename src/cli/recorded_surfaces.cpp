@@ -22,7 +22,8 @@ std::unique_ptr<loop::World> assembled(const store::RunReader& run, const std::s
     return loop::assemble(
         recorded_scene(run.info().scene_source, std::filesystem::path(run_file).parent_path()));
   } catch (const Error& e) {
-    fail("{}; --no-skin takes the surfaces of the tetrahedra, for which {} suffices", e.what(), run_file);
+    fail("{}; use --no-skin to export the surfaces of the tetrahedra, which require only {}", e.what(),
+         run_file);
   }
 }
 
@@ -37,11 +38,10 @@ RecordedSurfaces::RecordedSurfaces(const store::RunReader& run, const std::strin
     const loop::Body* body = world_ && p.tets.cols() > 0 ? world_->find_body(p.name) : nullptr;
     if (world_ && p.tets.cols() > 0 && (!body || body->placed.cols() != p.reference.cols()))
       fail(
-          "{}: body \"{}\" has {} nodes, but its scene makes {}: the mesh is another now; --no-skin takes "
-          "the "
-          "surface of the tetrahedra that the run kept",
+          "{}: body \"{}\" has {} nodes, but its scene now has {}: the mesh has changed since the run; use "
+          "--no-skin to export the recorded surface of the tetrahedra",
           run_file, p.name, p.reference.cols(),
-          body ? fmt::format("it of {}", body->placed.cols()) : "no such body");
+          body ? fmt::format("{} nodes", body->placed.cols()) : "no such body");
     add(part, body);
   }
 }

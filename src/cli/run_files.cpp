@@ -47,7 +47,7 @@ void remove_run_files(const scene::Description& description, const std::string& 
     const fs::path path = fs::path(folder) / name;
     std::error_code error;
     fs::remove(path, error);
-    if (error) fail("{}: of an earlier run, cannot be removed: {}", path.string(), error.message());
+    if (error) fail("{}: file of an earlier run cannot be removed: {}", path.string(), error.message());
   }
 }
 
@@ -58,13 +58,13 @@ void refuse_own_input(const scene::Description& description, const std::string& 
     std::error_code none;
     if (is_of_a_run(input.filename().string(), hands) &&
         fs::equivalent(input.parent_path() / ".", folder, none))
-      fail("{}: is {}, and the run would write its own over it; choose another folder with -o DIR",
-           input.string(), what);
+      fail("{}: is {}, and the run would overwrite it; choose another folder with -o DIR", input.string(),
+           what);
   };
-  refuse(fs::absolute(scene), "the scene that is to run");
+  refuse(fs::absolute(scene), "the scene of this run");
   for (const scene::Hand& hand : hands)
     if (!hand.device->file.empty())
-      refuse(fs::absolute(scene.parent_path() / hand.device->file), "the recording that the hand repeats");
+      refuse(fs::absolute(scene.parent_path() / hand.device->file), "the recording that the hand replays");
 }
 
 }  // namespace palpate::cli

@@ -17,7 +17,8 @@ scene::Description scene_of(const SceneArguments& arguments) {
   scene::Description description = loop::load(find_scene(arguments.scene), overrides);
   for (const std::string& key : description.not_carried_over)
     fmt::print(stderr,
-               "palpate: {} of the scene is left out: what --integrator or --set names has no use for it\n",
+               "palpate: {} of the scene is ignored: the selection by --integrator or --set does not use "
+               "it\n",
                key);
   make_missing_models(description);
   return description;

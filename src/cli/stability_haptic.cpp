@@ -68,12 +68,13 @@ void print_points(const std::vector<OperatingPoint>& points, double scale, const
 void print_rotation(const RotationalLoop& r, const std::vector<OperatingPoint>& points) {
   const double a2 = r.lever_m * r.lever_m;
   fmt::print(
-      "about the tool's axis of least inertia, {:.3g} kg m^2; coupling {:.4g} N m/rad, {:.3g} N m s/rad; ",
+      "about the axis of least inertia of the tool, {:.3g} kg m^2; coupling {:.4g} N m/rad, {:.3g} N m "
+      "s/rad; ",
       r.inertia_kg_m2, a2 * r.loop.coupling_stiffness_n_m, a2 * r.loop.coupling_damping_n_s_m);
   if (r.driven)
     fmt::print("device and arm of {:.3g} kg m^2\n\n", a2 * r.loop.device.total_mass());
   else
-    fmt::print("the device drives no torque: its handle is held\n\n");
+    fmt::print("the device renders no torque: the rotation of its handle is held\n\n");
   print_points(points, a2, "N m/rad");
 }
 
@@ -136,7 +137,7 @@ ToolContactRange range_of(const StabilityArguments& a, const scene::Description&
   out.least.stiffness = a.contact_stiffness_n_m.front();
   out.greatest.stiffness = a.contact_stiffness_n_m.back();
   if (!(out.least.stiffness > 0.0 && out.least.stiffness <= out.greatest.stiffness))
-    fail("--contact-stiffness-n-m {} {}: the least first, both above 0", out.least.stiffness,
+    fail("--contact-stiffness-n-m {} {}: must be two positive values, the smaller first", out.least.stiffness,
          out.greatest.stiffness);
   return out;
 }
@@ -156,8 +157,7 @@ std::vector<std::string> verdicts_of(const ZWidth& z, double tick_s,
   for (const OperatingPoint& p : turning)
     out.push_back(fmt::format("{}, rotation: {}", p.name, p.words(tick_s, scale, "N m/rad")));
   if (std::all_of(z.rows.begin(), z.rows.end(), [](const ZWidthRow& r) { return r.passive <= 0.0; }))
-    out.emplace_back(
-        "no wall is passive: the device has no viscous friction of its own, which alone can make one so");
+    out.emplace_back("no wall is passive: the device has no viscous friction, which passivity requires");
   if (z.stopped)
     out.emplace_back("stopped before all walls were simulated");
   else

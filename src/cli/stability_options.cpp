@@ -13,21 +13,23 @@ void add_stability(CLI::App& app, std::function<void(const std::shared_ptr<Stabi
   command->add_option("--row", arguments->rows, "only this row; may be given more than once")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command->add_option("--integrator", arguments->integrators, "only this one; may be given more than once")
+  command
+      ->add_option("--integrator", arguments->integrators,
+                   "only this integrator; may be given more than once")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command->add_flag("--slow", arguments->slow, "also the rows that take minutes");
+  command->add_flag("--slow", arguments->slow, "also run the rows that take minutes");
   command->add_flag("--cells", arguments->cells,
                     "print every cell with its figure, not only the unexpected ones");
   command->add_option("--seeds", arguments->seeds, "random starts of the squashed and scattered bodies")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--jobs", arguments->jobs, "processes")
+  command->add_option("--jobs", arguments->jobs, "number of parallel processes")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   command
       ->add_option("--limit-s", arguments->limit_s,
-                   "CPU time of a cell; in rows that take minutes ten times that [s]")
+                   "limit of the CPU time per cell; ten times as much in the slow rows [s]")
       ->type_name("SECONDS")
       ->check(duration)
       ->capture_default_str();
@@ -35,8 +37,8 @@ void add_stability(CLI::App& app, std::function<void(const std::shared_ptr<Stabi
       ->type_name("DIR");
   CLI::Option* haptic = command->add_flag(
       "--haptic", arguments->haptic,
-      "instead: how stiff a wall the loop of a scene's device, coupling and tool renders, by passivity, by "
-      "its exact linear map, and by simulation");
+      "instead: largest wall stiffness that the loop of device, coupling and tool of a scene can render, by "
+      "passivity, by its exact linear map, and by simulation");
   command->add_option("SCENE", arguments->scene.scene, std::string("haptic: ") + kSceneHelp);
   command->add_option("--set", arguments->scene.overrides, "haptic: change one value of the scene, KEY=VALUE")
       ->type_name("KEY=VALUE")
@@ -44,23 +46,23 @@ void add_stability(CLI::App& app, std::function<void(const std::shared_ptr<Stabi
       ->needs(haptic);
   command
       ->add_option("--device-mass-kg", arguments->device_mass_kg,
-                   "haptic: of the device at its handle; default: the scene's, else 0.045")
+                   "haptic: apparent mass of the device at its handle; default: the scene's, else 0.045")
       ->check(CLI::Range(1e-4, 1e3))
       ->needs(haptic);
   command
       ->add_option("--device-damping-n-s-m", arguments->device_damping_n_s_m,
-                   "haptic: of the device's own friction, without which no wall is passive; default: the "
-                   "scene's where it has a hand, else 0.1")
+                   "haptic: viscous friction of the device, without which no wall is passive; default: the "
+                   "scene's if it has a hand, else 0.1")
       ->check(CLI::Range(0.0, 1e3))
       ->needs(haptic);
   command
       ->add_option("--delay-ticks", arguments->delay_ticks,
-                   "haptic: from a sample to the force made of it; default: the scene's, else 0")
+                   "haptic: delay from a sample to its force; default: the scene's, else 0")
       ->check(CLI::Range(0, 100))
       ->needs(haptic);
   command
       ->add_option("--contact-stiffness-n-m", arguments->contact_stiffness_n_m,
-                   "haptic: least and greatest of the contacts at the tool; default: estimated")
+                   "haptic: smallest and largest contact stiffness at the tool; default: estimated")
       ->type_name("LEAST GREATEST")
       ->expected(2)
       ->needs(haptic);
@@ -71,7 +73,8 @@ void add_stability(CLI::App& app, std::function<void(const std::shared_ptr<Stabi
   palpate stability --haptic press-ball --device-mass-kg 0.1 --delay-ticks 1
 
 Writes stability.csv, stability.json and report.html with the heat map; haptic: z_width.csv and z_width.svg.
-Exit status 0 when every cell is as theory expects; haptic: when passive lies within stable; else 1.)");
+Exit status 0 if every cell agrees with theory; haptic: if the passive range lies within the stable one; else
+1.)");
   command->callback([arguments, then = std::move(then)] {
     if (arguments->haptic && arguments->scene.scene.empty()) throw CLI::RequiredError("--haptic: SCENE");
     // checked after options with typing errors are reported: the word after such an option is no scene

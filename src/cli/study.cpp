@@ -86,7 +86,7 @@ void print_results(const Results& results) {
   }
   fmt::print("{}", report::format_table(headers, rows));
   if (results.rows.size() > kMostRows)
-    fmt::print("... and {} more; study.csv has them all\n", results.rows.size() - kMostRows);
+    fmt::print("... and {} more; study.csv lists all\n", results.rows.size() - kMostRows);
 }
 
 std::string counts_of(const Results& results) {
@@ -172,8 +172,7 @@ StudyEnd run_all(Plan& plan, const StudyArguments& arguments, const std::string&
   if (arguments.slurm) return study_by_slurm(plan, arguments, folder);
   const study::RunOutcome outcome = run_here(plan, all_of(plan), arguments, folder);
   if (outcome.reused > 0)
-    fmt::print("{} tasks were done before, and were not done again (--fresh starts anew)\n\n",
-               outcome.reused);
+    fmt::print("{} results are from earlier runs (--fresh repeats them)\n\n", outcome.reused);
   return {outcome.stopped, false, why_lost(outcome)};
 }
 
@@ -208,8 +207,8 @@ int study(const StudyArguments& arguments) {
   Plan plan = study::list_tasks(spec, help_of());
   if (!arguments.plan.empty() && arguments.plan != plan.key)
     fail(
-        "{}: the study, one of its scenes or palpate itself is not what it was when the job was submitted; "
-        "submit it anew",
+        "{}: the study, one of its scenes or palpate has changed since the job was submitted; submit it "
+        "again",
         arguments.study);
   if (!arguments.tasks.empty()) return run_some(plan, arguments, folder);
   study::settle_all(plan, help_of());
@@ -235,7 +234,7 @@ int study(const StudyArguments& arguments) {
   fmt::print("\nwritten: {0}/study.csv, {0}/study-times.csv, {1}\n", folder, written.page.string());
   fmt::print("{} tasks: {}\n", results.rows.size(), counts_of(results));
   if (end.stopped) {
-    fmt::print(stderr, "palpate: stopped; the same command goes on from {}\n", folder);
+    fmt::print(stderr, "palpate: stopped; the same command resumes from {}\n", folder);
     return kExitStopped;
   }
   MissingOutputs missing;

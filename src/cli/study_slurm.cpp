@@ -53,8 +53,8 @@ std::string job_of(const Plan& plan, const std::vector<std::size_t>& open, const
   if (!last.job.empty() && study::job_state(last.job) == JobState::kWaiting) {
     if (last.plan != plan.key)
       fail(
-          "job {} of this folder is still queued or running, and it is of another version of the study: "
-          "wait for it (squeue -j {}), or end it (scancel {})",
+          "job {} of this folder is still queued or running, for another version of the study: wait for it "
+          "(squeue -j {}), or cancel it (scancel {})",
           last.job, last.job, last.job);
     fmt::print("job {} of this study is still queued or running\n", last.job);
     return last.job;
@@ -114,14 +114,14 @@ StudyEnd study_by_slurm(Plan& plan, const StudyArguments& arguments, const std::
   if (open.empty()) return {};
   const std::string job = job_of(plan, open, arguments, folder);
   fmt::print("  squeue -j {0}        shows it\n  scancel {0}          ends it\n", job);
-  fmt::print("  palpate study {} -o {} --merge        makes the table of what there is\n", arguments.study,
-             folder);
+  fmt::print("  palpate study {} -o {} --merge        makes the table of the results so far\n",
+             arguments.study, folder);
   if (arguments.no_wait) return {false, true, ""};
   std::fflush(stdout);
   wait_for(plan, job, folder, open);
-  if (stop_flag()) fmt::print(stderr, "palpate: job {} goes on without this command\n", job);
+  if (stop_flag()) fmt::print(stderr, "palpate: job {} continues without this command\n", job);
   return {stop_flag().load(), false,
-          fmt::format("job {} is over and left none: see {}/slurm/{}_*.log; the same command runs them again",
+          fmt::format("job {} ended without them: see {}/slurm/{}_*.log; the same command runs them again",
                       job, folder, job)};
 }
 

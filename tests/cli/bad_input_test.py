@@ -296,7 +296,7 @@ class EarlierRun(Case):
         self.good("run", "one-tet", "--duration-s", "0.02", "-o", "one")
         shutil.copy(self.folder / "one/scene.toml", scene)
         before = scene.read_bytes()
-        self.assertIn("is the scene that is to run", self.refused("run", "scene.toml", "-o", "."))
+        self.assertIn("is the scene of this run", self.refused("run", "scene.toml", "-o", "."))
         self.assertEqual(scene.read_bytes(), before)
         self.good("run", "press-ball", "--duration-s", "0.02", "-o", "press")
         force = (self.folder / "press/force.csv").read_bytes()
@@ -305,7 +305,7 @@ class EarlierRun(Case):
         again = re.sub(r"^\[\[device\.[^\n]*\n(?:(?!\[)[^\n]*\n)*", "", again, flags=re.M)
         (self.folder / "press/again.toml").write_text(again)
         text = self.refused("run", "press/again.toml", "-o", "press")
-        self.assertIn("is the recording that the hand repeats", text)
+        self.assertIn("is the recording that the hand replays", text)
         self.assertEqual((self.folder / "press/force.csv").read_bytes(), force)
         self.assertIn("would overwrite the run", self.refused("replay", "press", "--integrator",
                                                           "linearly-implicit-euler", "-o", "press"))

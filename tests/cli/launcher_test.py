@@ -207,7 +207,7 @@ class Launcher(unittest.TestCase):
         done = self.launch("list")
         self.assertEqual(done.returncode, 1)
         self.assertIn("E: broken", done.stderr)
-        self.assertIn("apt-get could not install them", done.stderr)
+        self.assertIn("apt-get failed to install them", done.stderr)
 
     def test_other_system_is_told_what_is_needed(self):
         bare = self.folder / "bare"
@@ -221,7 +221,7 @@ class Launcher(unittest.TestCase):
             (bare / name).symlink_to(self.fake / name)
         done = self.launch("list", path=str(bare))
         self.assertEqual(done.returncode, 1)
-        self.assertIn("no Debian system", done.stderr)
+        self.assertIn("not a Debian system", done.stderr)
         self.assertIn("libsimbody-dev", done.stderr)
         done = self.launch("--assume-packages", "list", path=str(bare))
         self.assertEqual((done.returncode, done.stdout), (7, "[list]\n"), done.stderr)

@@ -142,8 +142,8 @@ class Frames(Movie):
         self.assertEqual(Animation(self.folder / "b.png").delays, [0.04] * 5)
         self.good("movie", "here", *SMALL, PATH="/nowhere")  # default formats require no other program
         self.assertEqual(Animation(self.folder / "here/movie.png").delays, [0.04] * 2)
-        self.assertIn("a run does not record it", self.refused("movie", "here", "--shade", "penetration"))
-        self.assertIn("a state every 0.01 s", self.refused("movie", "here", "--fps", "200", "-o", "c.png"))
+        self.assertIn("runs do not record penetration", self.refused("movie", "here", "--shade", "penetration"))
+        self.assertIn("one per 0.01 s", self.refused("movie", "here", "--fps", "200", "-o", "c.png"))
         self.assertIn("run.vtkhdf: no such file", self.refused("movie", "nowhere"))
         (self.folder / "here/run.vtkhdf").write_bytes(b"no HDF5")
         self.refused("movie", "here", "-o", "c.png")
@@ -209,7 +209,7 @@ class Refusals(Movie):
         for name in "a.gif", "a.mp4", "a", "png", "a.png.txt":
             self.assertIn(".webm (by ffmpeg), .png or .apng", self.refused(*self.press(0.1, "--movie", name)))
         movie = self.press(0.1, "--movie", "a.png")
-        self.assertIn("100 times a second of simulated time", self.refused(*movie, "--fps", "101"))
+        self.assertIn("100 per second of simulated time", self.refused(*movie, "--fps", "101"))
         self.assertIn("--fps 25 --slow 5", self.refused(*movie, "--fps", "25", "--slow", "5"))
         for option in "--fps", "--slow":
             for value in "0", "-1", "nan", "inf", "fast":
@@ -247,7 +247,7 @@ class Refusals(Movie):
     def test_no_ffmpeg(self):
         text = self.refused(*self.press(0.1, "--movie", "a.webm"), PATH="/nowhere")
         self.assertIn("install the package ffmpeg", text)
-        self.assertIn(".png, which needs no program", text)
+        self.assertIn("give a file name that ends in .png", text)
         self.good(*self.press(0.05, "--movie", "a.png"), PATH="/nowhere")
 
     def test_ffmpeg_that_fails(self):
@@ -256,7 +256,7 @@ class Refusals(Movie):
         self.assertIn("movie a.webm (ffmpeg failed (exit status 7): Unknown encoder: vp9)", last)
         (self.folder / "bin/ffmpeg").write_text("#!/bin/sh\ncat >/dev/null\nkill -9 $$\n")
         last = self.incomplete(*self.press(0.2, "--movie", "a.webm"), **at_once)
-        self.assertIn("movie a.webm (ffmpeg failed (exit status 137): without a word)", last)
+        self.assertIn("movie a.webm (ffmpeg failed (exit status 137): no message)", last)
         self.assertFalse(list(self.folder.glob("a.webm*")))
 
     def test_ffmpeg_is_given_every_frame(self):

@@ -194,7 +194,7 @@ class Results(Cli):
         scene = ["run", "two-pumpkins", "--duration-s", "0.01", "-o", "kept"]
         first = self.call(*scene, PALPATE_MODELS=models)
         self.assertEqual(first.returncode, 0, first.stderr)
-        self.assertEqual(first.stderr.count('making the model "pumpkin", once; kept in '), 1, first.stderr)
+        self.assertEqual(first.stderr.count('making the model "pumpkin", once; stored in '), 1, first.stderr)
         kept = list(Path(models).glob("*/*"))
         self.assertEqual([path.name for path in kept], ["pumpkin.h5"])
         summary = json.loads((self.folder / "kept/summary.json").read_text())
@@ -225,7 +225,7 @@ class Results(Cli):
         self.assertEqual(self.frames("here"), numbered[:3] + ["mine.png"])
         self.assertIn("--frames-per-s 50 --shade penetration",
                       json.loads((self.folder / "here/summary.json").read_text())["command"])
-        self.assertIn("at most that", self.refused(*run, "--frames-per-s", "1000"))
+        self.assertIn("reduce the frame rate", self.refused(*run, "--frames-per-s", "1000"))
         self.assertIn("--frames", self.refused("run", "press-ball", "--frames-per-s", "10"))
 
     def test_contact_picture_is_drawn_where_it_is_asked_for(self):
@@ -333,8 +333,8 @@ class Results(Cli):
     def test_another_method_says_what_it_leaves_out(self):
         done = self.call("run", "one-tet", "--integrator", "rk4", "--duration-s", "0.001")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("palpate: integrator.rtol of the scene is left out: what --integrator or --set names "
-                      "has no use for it\n", done.stderr)
+        self.assertIn("palpate: integrator.rtol of the scene is ignored: the selection by --integrator or --set "
+                      "does not use it\n", done.stderr)
         self.assertEqual(self.call("run", "one-tet", "--duration-s", "0.001").stderr, "")
 
     def test_keys_of_another_method_are_refused(self):

@@ -158,7 +158,7 @@ class Resume(unittest.TestCase):
             with self.subTest(name):
                 command = self.command(name)
                 whole = self.whole(command)
-                self.assertRegex(self.said, r"checkpoints: [2-9], one every .* s to keep them and .* s to a")
+                self.assertRegex(self.said, r"checkpoints: [2-9], one per .* s to write them and .* s to r")
                 self.assertFalse((whole / "run" / "checkpoint.h5").exists())
                 killed = self.run_killed(command, 2)
                 self.assertIn("resumes at t = ", self.good("resume", "run", where=killed))

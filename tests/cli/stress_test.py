@@ -128,7 +128,7 @@ class Outputs(Bounded):
                 with self.subTest(command=command):
                     done = self.call(*command, stdout=full)
                     self.assertEqual(done.returncode, 1)
-                    self.assertIn("standard output has not taken everything: No space left on device",
+                    self.assertIn("standard output is incomplete: No space left on device",
                                   done.stderr)
             done = self.call("run", "one-tet", "--duration-s", "0.02", "-o", "x", stdout=full)
             self.assertEqual(done.returncode, 1)

@@ -149,7 +149,7 @@ class Slurm(Studies):
         child.send_signal(signal.SIGINT)
         _, err = child.communicate(timeout=60)
         self.assertEqual(child.returncode, 130)
-        self.assertRegex(err, r"job \d+ goes on without this command")
+        self.assertRegex(err, r"job \d+ continues without this command")
         self.until(lambda: not self.cluster.said("squeue", "-h"))
         self.assertEqual(len(self.results("cluster")), LONG_TASKS)
         self.assertIn(f"{LONG_TASKS} ok", self.good("long.toml", "-o", "cluster", "--merge"))
@@ -166,7 +166,7 @@ class Slurm(Studies):
         logs = [path.read_text() for path in (self.folder / "cluster/slurm").glob("*.log")]
         self.assertEqual(len(logs), LONG_TASKS)
         for log in logs:
-            self.assertIn("submit it anew", log)
+            self.assertIn("submit it again", log)
 
 
 if __name__ == "__main__":

@@ -104,7 +104,7 @@ class Tables(Studies):
         self.assertIn(f"there is no result of tasks 0-{QUICK_TASKS - 1}", done.stderr)
         self.assertEqual({row["status"] for row in self.rows("out")}, {"missing"})
         self.assertNotIn("done before", self.good("quick.toml", "-o", "out"))
-        self.assertIn(f"{QUICK_TASKS} tasks were done before", self.good("quick.toml", "-o", "out"))
+        self.assertIn(f"{QUICK_TASKS} results are from earlier runs", self.good("quick.toml", "-o", "out"))
         self.assertNotIn("done before", self.good("quick.toml", "-o", "out", "--fresh"))
 
 
@@ -126,7 +126,7 @@ class Refusals(Studies):
         self.assertIn("tasks 0 to 15, and no 16", self.refused("quick.toml", "--task", "16"))
 
     def test_another_plan_is_not_run(self):
-        self.assertIn("submit it anew", self.refused("quick.toml", "--task", "0", "--plan", "0" * 32))
+        self.assertIn("submit it again", self.refused("quick.toml", "--task", "0", "--plan", "0" * 32))
 
     def test_without_slurm_the_package_is_named(self):
         empty = {**self.environment, "PATH": str(self.folder)}
@@ -160,7 +160,7 @@ class Losses(Studies):
         kept = len(self.results("killed"))
         self.assertGreaterEqual(kept, 9)
         text = self.good("quick.toml", "-o", "killed")
-        self.assertIn(f"{kept} tasks were done before", text)
+        self.assertIn(f"{kept} results are from earlier runs", text)
         self.assertEqual(self.table("killed"), self.table("whole"))
         for name in self.results("killed"):
             json.loads((self.folder / "killed/tasks" / name).read_text())
@@ -186,7 +186,7 @@ class Losses(Studies):
         self.assertRegex(err, r"there is no result of task \d \(task \d: killed by signal 9 .*run")
         self.assertEqual(sorted(row["status"] for row in self.rows("out")), ["missing"] + ["ok"] * 3)
         before = self.rows("out")
-        self.assertIn("3 tasks were done before", self.good("long.toml", "-o", "out"))
+        self.assertIn("3 results are from earlier runs", self.good("long.toml", "-o", "out"))
         after = self.rows("out")
         self.assertEqual({row["status"] for row in after}, {"ok"})
         for old, new in zip(before, after):
@@ -199,7 +199,7 @@ class Losses(Studies):
         child.send_signal(signal.SIGINT)
         _, err = child.communicate(timeout=60)
         self.assertEqual(child.returncode, 130)
-        self.assertIn("the same command goes on", err)
+        self.assertIn("the same command resumes", err)
         self.assertEqual(self.results("out"), [])
 
 

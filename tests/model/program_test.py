@@ -175,7 +175,7 @@ class Program(unittest.TestCase):
             ((open_body, "--creases", "some"), "--creases some: must be auto, none, or an angle in degrees"),
             ((open_body, "--tetrahedra", "500", "--element-size-m", "1"), "excludes"),
             ((open_body, "--picture", "a.jpg"), "pictures are PNG files"),
-            ((open_body, "--skin-vertices", "5000"), "open.obj is a file, whose skin is its own surface"),
+            ((open_body, "--skin-vertices", "5000"), "open.obj is a file, and its surface is the skin"),
             (("ball", "--skin-vertices", "50"), "skin_vertices = 50 must lie in [1000, 4000000]"),
             (("ball", "--skin-vertices", "-1"), "--skin-vertices"),
             ((open_body, "--scale", "-1"), "-1 must be a positive, finite number"),
@@ -261,7 +261,7 @@ class Program(unittest.TestCase):
                     file.write("f {} {} {}\n".format(*f))
         done = run("model", self.path / "tangle.obj", "-o", self.path / "a.h5", "--limit-s", "0.001")
         self.assertEqual(done.returncode, 1, done.stdout)
-        self.assertRegex(done.stderr, r'tangle.obj.*face \d+ at \(.*\) m: "repair the surface" did not end '
+        self.assertRegex(done.stderr, r'tangle.obj.*face \d+ at \(.*\) m: "repair the surface" did not finish '
                                       r"within 0.001 s.*--limit-s")
         self.assertFalse((self.path / "a.h5").exists())
 
@@ -270,11 +270,11 @@ class Program(unittest.TestCase):
         make = ["model", large, "-o", self.path / "a.h5", "--tetrahedra", "600", "--proxies", "0"]
         done = run(*make)
         self.assertEqual(done.returncode, 1)
-        self.assertEqual(done.stderr, "palpate: error: large.obj: the body is 30 m large: is that meant? "
-                                      "Then say --scale 1; a file in millimetres takes --scale 0.001\n")
+        self.assertEqual(done.stderr, "palpate: error: large.obj: the body is 30 m large: is this intended? "
+                                      "If so, use --scale 1; for a file in millimetres, use --scale 0.001\n")
         for answer, status in [("y\n", 0), ("n\n", 1), ("\n", 1)]:
             asked = Terminal(*make)
-            self.assertTrue(asked.read_until(r"large.obj: the body is 30 m large: is that meant\? \[y/N\]"))
+            self.assertTrue(asked.read_until(r"large.obj: the body is 30 m large: is this intended\? \[y/N\]"))
             asked.type(answer)
             self.assertEqual(asked.end(), status, asked.text)
             self.assertEqual((self.path / "a.h5").exists(), status == 0)
@@ -282,7 +282,7 @@ class Program(unittest.TestCase):
         for scale in ("1", "0.001"):
             self.assertEqual(run(*make, "--scale", scale).returncode, 0)
         small = scaled(octahedron(self.path), "small.obj", 1e-5)
-        self.assertIn("the body is 2e-05 m large: is that meant? Then say --scale 1; a file in kilometres",
+        self.assertIn("the body is 2e-05 m large: is this intended? If so, use --scale 1; for a file in kilometres",
                       run("model", small).stderr)
 
     def test_flat_tetrahedra_are_refused_filled_anew_or_taken_at_a_price(self):
@@ -299,7 +299,7 @@ class Program(unittest.TestCase):
         (self.path / "scene.toml").write_text(scene_of("a.h5"))
         done = run("inspect", self.path / "scene.toml")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("leave one out", run(*make, "--accept-angles", "--remesh").stderr)
+        self.assertIn("remove one of the options", run(*make, "--accept-angles", "--remesh").stderr)
 
     @unittest.skipUnless(DATA, "PALPATE_TEST_DATA is not set: real tetrahedra are not tested")
     def test_real_tetrahedra_with_sharp_relief_are_filled_anew(self):

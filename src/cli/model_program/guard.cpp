@@ -90,7 +90,7 @@ SignalsHeld::SignalsHeld() {
   sigprocmask(SIG_BLOCK, &all, nullptr);
 }
 
-void SignalsHeld::written() { stopped = "palpate: stopped; the model was written before\n"; }
+void SignalsHeld::written() { stopped = "palpate: stopped; the model is complete\n"; }
 
 SignalsHeld::~SignalsHeld() {
   const sigset_t all = guarded_signals();

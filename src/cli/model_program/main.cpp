@@ -30,12 +30,12 @@ namespace {
 class Bars : public model::ProgressListener {
  public:
   explicit Bars(const ModelArguments& arguments) : arguments_(arguments) {
-    refuse(fmt::format("{}: no model", arguments_.source), "");
+    refuse(fmt::format("{}: the model was not completed", arguments_.source), "");
   }
   void begin(const std::string& step) override {
     step_ = step;
     worker_stage(step);
-    refuse(fmt::format("{}: \"{}\" did not end", arguments_.source, step_), "");
+    refuse(fmt::format("{}: \"{}\" did not finish", arguments_.source, step_), "");
     bar_ = std::make_unique<Progress>(step);
     (*bar_)(0.0);
   }
@@ -46,8 +46,8 @@ class Bars : public model::ProgressListener {
   }
   void place(const std::string& where) override {
     worker_place(where);
-    refuse(fmt::format("{}: \"{}\" did not end", where, step_),
-           ", or mend the surface there with a program for that");
+    refuse(fmt::format("{}: \"{}\" did not finish", where, step_),
+           ", or repair the surface there with a mesh editor");
   }
   void end(const model::Step& step) override {
     bar_.reset();
@@ -56,7 +56,7 @@ class Bars : public model::ProgressListener {
 
  private:
   void refuse(const std::string& what, const char* way_out) const {
-    set_refusal(fmt::format("palpate: error: {} within {:.3g} s; give more with --limit-s{}", what,
+    set_refusal(fmt::format("palpate: error: {} within {:.3g} s; raise --limit-s{}", what,
                             arguments_.options.tetrahedra.limits.seconds, way_out));
   }
 
@@ -88,9 +88,8 @@ int make(ModelArguments& arguments, model::Input input, double seconds) {
 
 [[noreturn]] void refuse(const ModelArguments& arguments, const WorkerEnd& end) {
   fail(
-      "{}: no model: a library that palpate uses did not survive \"{}\"{} ({}); ask for another number with "
-      "--tetrahedra, leave creases out with --creases none, or mend the surface there with a program for "
-      "that",
+      "{}: the model was not completed: a library crashed in \"{}\"{} ({}); change --tetrahedra, omit "
+      "creases with --creases none, or repair the surface there with a mesh editor",
       arguments.source, end.stage.empty() ? "the start" : end.stage, end.place.empty() ? "" : " " + end.place,
       end.signal);
 }

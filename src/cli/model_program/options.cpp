@@ -20,34 +20,34 @@ namespace palpate::cli {
 namespace {
 
 constexpr const char* kDescription =
-    "palpate model: a layered model of a closed surface, for a scene's mesh = {file = \"MODEL.h5\"}.  The "
-    "surface is mended, filled with tetrahedra, tied to them as the skin,\n"
-    "and cut into convex proxies; each step's quality is measured, and a bad mesh is refused.  The same "
-    "input gives the same file, byte for byte.";
+    "palpate model: makes a layered model of a closed surface, for mesh = {file = \"MODEL.h5\"} in a scene.  "
+    "The surface is repaired, filled with tetrahedra, attached to them as the skin,\nand decomposed into "
+    "convex proxies; the quality of each step is measured, and a bad mesh is rejected.  The same input gives "
+    "the same file, byte for byte.";
 
 constexpr const char* kExamples = R"(Examples:
   palpate model liver.obj -o liver.h5                         about 10,000 tetrahedra
   palpate model scan.stl --scale 0.001 -o scan.h5             a file in millimetres
   palpate model part.ply --tetrahedra 30000 --creases 40      edges that turn by more than 40 degrees stay
                                                               sharp
-  palpate model liver.msh --remesh --element-size-m 0.01      the boundary of tetrahedra, filled anew
+  palpate model liver.msh --remesh --element-size-m 0.01      the boundary of tetrahedra, remeshed
   palpate model liver.msh --accept-angles                     tetrahedra as they are, however flat
   palpate model liver.obj --picture liver.png                 surface, tetrahedra cut open, skin and proxies
-  palpate model leg.obj --region bone=femur.obj -o leg.h5     tetrahedra inside of femur.obj become the region
+  palpate model leg.obj --region bone=femur.obj -o leg.h5     tetrahedra inside femur.obj become the region
                                                               "bone"
   palpate model head --tetrahedra 1000000 --skin-vertices 1000000
                                                               a shape of the paper at another resolution
-  palpate model human --region bone=skeleton -o human.h5      those inside of the bones
+  palpate model human --region bone=skeleton -o human.h5      those inside the bones
 
 A scene gives a region its own material: [[body.region]] with name = "bone" and youngs_modulus_pa, ...
 Regions of a file of tetrahedra are kept.
 
-The budget is printed first: a model is made within --limit-s seconds and --points points, or refused.
-A body larger than 10 m or smaller than 1 mm is asked about; --scale 1 says that it is meant.
-The outcome is printed: counts, smallest dihedral angle (at least 8 degrees, 4 where creases are kept), volume
-error (at most 1 %), worst aspect ratio, seconds a step, peak memory.  Exit status 0, or 1 where the surface
-or the mesh was refused; the message says where, why, and what to do.  Ctrl-C ends it at once, with 130, and
-writes nothing.)";
+The budget is printed first: the model is rejected if it exceeds --limit-s seconds or --points points.
+A body larger than 10 m or smaller than 1 mm requires confirmation, or --scale 1.
+The result is printed: counts, smallest dihedral angle (at least 8 degrees, 4 if creases are kept), volume
+error (at most 1 %), worst aspect ratio, seconds per step, peak memory.  Exit status 0, or 1 if the surface
+or the mesh is rejected; the message states where, why, and what to do.  Ctrl-C stops at once, with status
+130, and writes nothing.)";
 
 void set_creases(const std::string& text, model::Options& options) {
   if (text == "auto") return;
@@ -120,16 +120,16 @@ ModelArguments parse_model(int argc, char** argv) {
   app.add_option("SURFACE", out.source, source_help())->required();
   app.add_option("-o,--output", out.output, "the model file; default NAME.h5 here")->type_name("FILE.h5");
   CLI::Option* count =
-      app.add_option("--tetrahedra", options.tetrahedra.tetrahedra, "wanted number, met within 3 %")
+      app.add_option("--tetrahedra", options.tetrahedra.tetrahedra, "target number, met within 3 %")
           ->type_name("N")
           ->capture_default_str();
   app.add_option("--element-size-m", options.tetrahedra.element_size_m,
-                 "instead: wanted mean edge length [m], met within 3 %")
+                 "instead: target mean edge length [m], met within 3 %")
       ->type_name("M")
       ->check(positive)
       ->excludes(count);
   app.add_option("--skin-vertices", out.skin_vertices,
-                 "of a shape: vertices of its skin, met within 1 %; 0: its own number")
+                 "for a shape: number of skin vertices, met within 1 %; 0: default of the shape")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);
   CLI::Option* scale =
@@ -141,33 +141,34 @@ ModelArguments parse_model(int argc, char** argv) {
                  "edges to keep sharp: auto, none, or those that turn by more than this angle [degrees]")
       ->type_name("WHICH")
       ->capture_default_str();
-  app.add_option("--proxies", options.proxies, "convex hulls wanted; 0: none")
+  app.add_option("--proxies", options.proxies, "number of convex hulls; 0: none")
       ->type_name("N")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   app.add_option("--bone-margin-m", options.bone_margin_m,
-                 "nodes nearer to a bone than this belong to it, beside those inside [m]")
+                 "nodes inside a bone or closer to it than this distance belong to it [m]")
       ->type_name("M")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--region", regions,
-                 "tetrahedra with their middle inside the closed surface FILE become the region NAME; "
-                 "skeleton in its place: inside the bones.  May stand several times; the last counts")
+                 "tetrahedra with their centre inside the closed surface FILE become the region NAME; with "
+                 "skeleton instead of FILE: those inside the bones.  May be repeated; the last takes "
+                 "precedence")
       ->type_name("NAME=FILE")
       ->allow_extra_args(false);
   app.add_flag("--remesh", options.remesh,
-               "tetrahedra of a file: fill their boundary anew instead of taking them");
+               "for a file of tetrahedra: remesh the volume inside their boundary");
   app.add_flag("--accept-angles", options.accept_angles,
-               "tetrahedra of a file: take them whatever their angles, and print what that costs");
+               "for a file of tetrahedra: accept any dihedral angles, and print the cost");
   app.add_flag("--largest-shell", options.repair.largest_shell,
-               "several bodies in one file: keep the largest");
+               "for several bodies in one file: keep the largest");
   app.add_flag_callback(
       "--no-wrap", [&options] { options.repair.wrap = false; },
-      "refuse what cannot be mended locally, instead of wrapping it");
-  app.add_option("--limit-s", options.tetrahedra.limits.seconds, "time that all steps may take [s]")
+      "reject a surface that cannot be repaired locally, instead of wrapping it");
+  app.add_option("--limit-s", options.tetrahedra.limits.seconds, "time limit of all steps together [s]")
       ->type_name("S")
       ->check(positive)
       ->capture_default_str();
-  app.add_option("--points", options.tetrahedra.limits.points, "points that refinement may make")
+  app.add_option("--points", options.tetrahedra.limits.points, "maximum number of points made by refinement")
       ->type_name("N")
       ->check(CLI::Range(100, 100'000'000))
       ->capture_default_str();
@@ -175,9 +176,9 @@ ModelArguments parse_model(int argc, char** argv) {
       ->type_name("FILE.png");
   app.add_flag_callback(
       "--beyond-memory", [] { ::setenv("PALPATE_BEYOND_MEMORY", "1", 1); },
-      "go on where the model is likely to need more memory than there is");
+      "continue even if the model probably needs more memory than is available");
   app.add_flag("-q,--quiet", out.quiet, "only errors");
-  app.add_flag("-v,--verbose", out.verbose, "details, too");
+  app.add_flag("-v,--verbose", out.verbose, "also details");
   if (argc == 1) {
     fmt::print("{}", app.help());
     return out;
@@ -197,8 +198,8 @@ ModelArguments parse_model(int argc, char** argv) {
   if (out.counted || options.tetrahedra.element_size_m > 0) options.remesh = true;
   if (options.remesh && options.accept_angles)
     fail(
-        "--accept-angles takes the tetrahedra of the file; --remesh (and --tetrahedra, --element-size-m) "
-        "makes others: leave one out");
+        "--accept-angles keeps the tetrahedra of the file, but --remesh, --tetrahedra and --element-size-m "
+        "replace them; remove one of the options");
   options.tetrahedra.at_least = !out.counted;
   out.as_given = canonical(app);
   out.given = true;

@@ -30,7 +30,7 @@ Rows figures(const model::Made& made) {
   for (const auto& [name, value] : made.file.record.figures) {
     if (name == "skin_vertices_outside")
       add("skin vertices outside the tetrahedra", fmt::format("{:.0f}", value));
-    if (name == "farthest_outside_m") add("the farthest of them [m]", fmt::format("{:.3g}", value));
+    if (name == "farthest_outside_m") add("largest distance outside [m]", fmt::format("{:.3g}", value));
     if (name == "nodes_on_bones") add("nodes on bones", fmt::format("{:.0f}", value));
   }
   return rows;

@@ -53,8 +53,8 @@ model::Input input_of(ModelArguments& arguments) {
   if (std::filesystem::exists(source) || source.find_first_of("./") != std::string::npos) {
     if (arguments.skin_vertices > 0)
       fail(
-          "--skin-vertices {}: {} is a file, whose skin is its own surface; the option is for the shapes "
-          "({})",
+          "--skin-vertices {}: {} is a file, and its surface is the skin; use the option only with the "
+          "shapes ({})",
           arguments.skin_vertices, source, shape_names());
     return model::input_of_file(source);
   }

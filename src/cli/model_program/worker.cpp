@@ -93,7 +93,7 @@ WorkerEnd run_worker(const std::function<int()>& work) {
   action.sa_handler = pass_on;
   for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
   const pid_t parent = ::getpid(), started = ::fork();
-  if (started < 0) fail("no process can be started that makes the model: {}", std::strerror(errno));
+  if (started < 0) fail("the process that makes the model cannot be started: {}", std::strerror(errno));
   if (started == 0) live(work, parent);
   child = started;
   int status = 0;
