@@ -50,7 +50,7 @@ Figures in_child(const std::function<Figures()>& measure) {
   waitpid(child, &status, 0);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 1) fail("bench leave-out: {}", said);
   if (status != 0 || said.size() != sizeof(Figures))
-    fail("bench leave-out: a measured process died (status {})", status);
+    fail("bench leave-out: a measured process terminated abnormally (status {})", status);
   Figures figures{};
   std::memcpy(&figures, said.data(), sizeof figures);
   return figures;
@@ -147,8 +147,8 @@ std::vector<Variant> variants_of(const scene::Description& d) {
   scene::Description recorded = quiet;
   if (!recorded.record) recorded.record.emplace();
   std::vector<Variant> out;
-  out.push_back({"bare loop over the same parts", [quiet] { return bare_loop(quiet); }});
-  out.push_back({"palpate, as the scene names it", [quiet] { return palpate_loop(quiet, false); }});
+  out.push_back({"bare loop over the same components", [quiet] { return bare_loop(quiet); }});
+  out.push_back({"palpate, scene as given", [quiet] { return palpate_loop(quiet, false); }});
   out.push_back({"... and recording", [recorded] { return palpate_loop(recorded, true); }});
   out.push_back({"... and a plane out of reach",
                  [quiet] { return palpate_loop(with_plane_out_of_reach(quiet), false); }});
@@ -165,10 +165,8 @@ std::vector<Variant> variants_of(const scene::Description& d) {
 
 std::vector<LeaveOutRow> bench_leave_out(const scene::Description& d, int repeats) {
   if (d.tool)
-    fail(
-        "scene \"{}\" has a tool; bench leave-out takes a scene that leaves it out (falling-ball, "
-        "cantilever)",
-        d.name);
+    fail("scene \"{}\" has a tool; bench leave-out requires a scene without one (falling-ball, cantilever)",
+         d.name);
   if (d.bodies.empty()) fail("scene \"{}\" has no body to step", d.name);
   const std::vector<Variant> variants = variants_of(d);
   std::vector<std::vector<Figures>> runs(variants.size());

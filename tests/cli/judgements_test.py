@@ -116,7 +116,7 @@ class Judgements(Cli):
         done = self.call("bench", "contact", "press-ball", "--threads", "1",
                          __EGL_VENDOR_LIBRARY_FILENAMES="/nowhere")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"(?m)^image is left out: .*install ")
+        self.assertRegex(done.stdout, r"(?m)^image is omitted: .*install ")
         self.assertNotRegex(done.stdout, r"(?m)^image +1 ")
 
     def test_bench_contact_checks_its_bars(self):
@@ -132,14 +132,14 @@ class Judgements(Cli):
         self.assertEqual(done.stderr, "")
         self.assertRegex(done.stdout, r"(?m)^press-ball +query / step +\S+ +<= 1 +missed *$")
         bars = re.findall(r"(?m)^press-ball .* (?:<=|>=) \S+ +(met|missed) *$", done.stdout)
-        self.assertTrue(done.stdout.endswith(f"\n{bars.count('met')} of {len(bars)} bars met\n"), done.stdout)
+        self.assertTrue(done.stdout.endswith(f"\n{bars.count('met')} of {len(bars)} limits met\n"), done.stdout)
         # before contact there are few events: in one of several attempts, however busy the machine is
         (self.folder / "apart.toml").write_text(scene.replace("duration_s = 0.4", "duration_s = 0.05"))
         for _ in range(10):
             done = self.call("bench", "contact", "apart.toml", "--method", "distance", "--threads", "1",
                              "--check")
             met = 1 if done.returncode == 0 else 0
-            self.assertTrue(done.stdout.endswith(f"\n{met} of 1 bars met\n"), done.stdout + done.stderr)
+            self.assertTrue(done.stdout.endswith(f"\n{met} of 1 limits met\n"), done.stdout + done.stderr)
             if met:
                 break
         self.assertEqual(done.returncode, 0, done.stdout)

@@ -28,8 +28,10 @@ class Probe {
  public:
   explicit Probe(const scene::Description& d) : world_(loop::assemble(d)) {
     if (world_->bodies.empty() || !world_->contact || (world_->bodies.size() < 2 && !d.tool))
-      fail("bench continuity: scene \"{}\" has no second body, and no tool, to move its last body against",
-           d.name);
+      fail(
+          "bench continuity: scene \"{}\" has neither a second body nor a tool; its last body needs one to "
+          "move against",
+          d.name);
     world_->state.u().setZero();
     placed_ = world_->positions(world_->bodies.back());
     partner_ = world_->bodies.size() > 1 ? Vec3(world_->positions(world_->bodies.front()).rowwise().mean())
@@ -84,7 +86,7 @@ class Approach {
   explicit Approach(Probe& probe) : probe_(probe) {
     const Vec3 line = probe.middle() - probe.partner();
     reach_ = line.norm();
-    if (!(reach_ > 0.0)) fail("bench continuity: the bodies have the same middle");
+    if (!(reach_ > 0.0)) fail("bench continuity: the bodies have the same centre");
     inside_ = first_touch(Pose{}, line / reach_) > 0.02;
   }
 

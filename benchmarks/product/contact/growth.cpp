@@ -125,7 +125,10 @@ std::vector<ContactGrowthRow> bench_skin_growth(const std::vector<int>& skin_ver
 std::vector<ContactGrowthRow> bench_patch_growth(int skin_vertices, double factor, int count,
                                                  const std::atomic<bool>* stop) {
   if (!(factor > 1.0) || count < 2)
-    fail("bench contact: regions that grow by {} in {} steps; more than 1 and at least 2", factor, count);
+    fail(
+        "bench contact: the region grows by a factor of {} in {} steps; use a factor above 1 and at least 2 "
+        "steps",
+        factor, count);
   std::vector<ContactGrowthRow> out;
   Touched ball(skin_vertices);
   for (int k = 0; k < count && !stopped(stop); ++k)

@@ -33,7 +33,7 @@ scene::Description against_itself(scene::Description d) {
 }
 
 scene::Description row_of_bodies(scene::Description d, int count, double spacing_m) {
-  if (count < 2) fail("bench contact: a row of {} bodies; at least 2", count);
+  if (count < 2) fail("bench contact: a row of {} bodies is too short; use at least 2", count);
   leave_bodies_alone(d);
   d.name += fmt::format(", {} in a row", count);
   const SoftBodySpec one = d.bodies.front();

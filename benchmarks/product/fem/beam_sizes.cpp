@@ -12,7 +12,7 @@ const std::vector<BeamSize>& beam_sizes() {
 const BeamSize& size_named(const std::string& name) {
   for (const BeamSize& size : beam_sizes())
     if (size.name == name) return size;
-  fail("bench fem: there is no size \"{}\"; XS, S, M, L and XL are", name);
+  fail("bench fem: unknown size \"{}\"; use XS, S, M, L or XL", name);
 }
 
 }  // namespace palpate::bench

@@ -51,12 +51,14 @@ PublishedTimings read_published_timings(const std::string& path) {
   std::ifstream in(path);
   if (!in)
     fail(
-        "{}: cannot be read; `palpate bench fem` quotes the timings of other programs from this file, which "
-        "comes with palpate",
+        "{}: cannot be read; `palpate bench fem` requires this file of published timings, which is part of "
+        "palpate",
         path);
   try {
     return read(nlohmann::json::parse(in));
-  } catch (const std::exception& e) { fail("{}: no file of published timings: {}", path, e.what()); }
+  } catch (const std::exception& e) {
+    fail("{}: is not a valid file of published timings: {}", path, e.what());
+  }
 }
 
 double PublishedTimings::reference_bandwidth_gb_s(int threads) const {

@@ -267,7 +267,7 @@ void set_limits(FemBenchRow& row, const MachineLimits& limits) {
 }  // namespace
 
 FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
-  if (options.steps < 3) fail("bench fem: {} steps; at least 3", options.steps);
+  if (options.steps < 3) fail("bench fem: --steps {} is too small; use at least 3", options.steps);
   FemBenchReport report;
   for (const std::string& size : options.sizes)
     for (const double E : options.youngs_moduli_pa) {

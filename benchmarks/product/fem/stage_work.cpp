@@ -101,7 +101,7 @@ StageWork element_work(const std::string& stage, const StepCounts& c) {
     return work;
   }
   const bool damped = stage == "force, damped";
-  PALPATE_CHECK(damped || stage == "force", "nothing is known of the work of a stage \"{}\"", stage);
+  PALPATE_CHECK(damped || stage == "force", "the work of the stage \"{}\" is unknown", stage);
   return {.read_bytes = kElement * c.tetrahedra + (damped ? 3.0 : 2.0) * kVector * c.nodes,
           .written_bytes = kVector * c.nodes,
           .double_flops = (kGradient + kRotation + kForceTail + (damped ? kGradient + kDampingTail : 0.0)) *

@@ -29,7 +29,7 @@ void bench_fem(const BenchArguments& arguments) {
   add("tangent", b.tangent_ms);
   add("factorisation", b.factor_ms);
   add("solve", b.solve_ms);
-  add("all else", b.other_ms);
+  add("other", b.other_ms);
   add("step", b.step_ms);
   fmt::print("{}\nassembled in {:.2f} s, peak memory {:.0f} MiB\n",
              report::format_table({"stage", "ms", "% of the step"}, rows), b.assemble_s, b.peak_mib);
@@ -41,7 +41,7 @@ void bench_leave_out(const std::string& scene, int repeats) {
   for (const bench::LeaveOutRow& r : bench::bench_leave_out(description, repeats))
     rows.push_back({r.variant, fmt::format("{:.1f}", r.startup_ms), fmt::format("{:.1f}", r.memory_mib),
                     fmt::format("{:.4g}", r.step_ms), fmt::format("{:.3f}", r.ratio)});
-  fmt::print("{}, median of {} runs, each in a process of its own\n{}\n", short_name(description), repeats,
+  fmt::print("{}, median of {} runs, each in a separate process\n{}\n", short_name(description), repeats,
              report::format_table(
                  {"variant", "start-up [ms]", "memory [MiB]", "step [ms]", "step / bare loop"}, rows));
 }

@@ -60,12 +60,12 @@ void print_scene(const bench::ContactBenchReport::Scene& scene, bool all) {
   for (const bench::ContactBenchRow& r : scene.rows) {
     rows.push_back(row_of(r, scene.find("distance", r.variant.threads)));
     stages.push_back(stages_of(r, all));
-    devices[r.variant.method] = r.device + (r.device_is_software ? ": a rasteriser on the processor" : "");
+    devices[r.variant.method] = r.device + (r.device_is_software ? ": software rasteriser" : "");
   }
   const bench::ContactBenchRow& last = scene.rows.back();
   fmt::print("{}: {} tetrahedra, skin of {} vertices; the {} exchange periods of {:g} ms {} [ms]\n",
              scene.name, last.tetrahedra, last.skin_vertices, last.periods, 1e3 * last.period_s,
-             last.touches ? "in which something touches" : "(nothing touches)");
+             last.touches ? "with contact" : "(no contact)");
   for (const auto& [method, device] : devices) fmt::print("  {}: {}\n", method, device);
   fmt::print("{}\n", report::format_table(
                          {"method", "threads", "samples", "regions", "query: least / median / p99",
@@ -100,19 +100,23 @@ std::vector<std::string> methods_of(const BenchArguments& arguments, std::string
     out.emplace_back("image");
   } catch (const Error& error) {
     no_image = error.what();
-    fmt::print("image is left out: {}\n\n", no_image);
+    fmt::print("image is omitted: {}\n\n", no_image);
   }
   return out;
 }
 
 void print_legend() {
   fmt::print(
-      "A query is the sum of the stages from skins to rest; forces and tangent are the contact's own, once.\n"
-      "Of images: skins: positions from nodes; regions: bounds and pruning; faces: in axes of their region; "
-      "upload, passes,\ngather and readback: the images, passes and gather by the GPU's own clock; gaps: in "
-      "double, and samples.\nNearest points: all of the query is rest.  / distance: beside the same query by "
-      "nearest points.  linearise: contact for the tool's\nticks; solve: factorisation and solution of a "
-      "period's steps; real time: simulated over run time.\n\n");
+      "A query is the sum of the stages from skins to rest; forces and tangent are those of the contact, "
+      "evaluated once.\n"
+      "Images: skins: positions from nodes; regions: bounds and pruning; faces: in axes of their region; "
+      "upload, passes,\n"
+      "gather and readback: image passes, with passes and gather timed by the GPU; gaps: in double, with "
+      "samples.\n"
+      "Nearest points: the whole query is rest.  / distance: ratio to the same query by nearest points.  "
+      "linearise: contact for the tool\n"
+      "ticks; solve: factorisation and solution of the steps of a period; real time: simulated over run "
+      "time.\n\n");
 }
 
 void run_scenes(const BenchArguments& arguments, bench::ContactBenchReport& report) {

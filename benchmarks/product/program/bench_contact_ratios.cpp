@@ -36,30 +36,35 @@ void print_contact_prices(const std::vector<bench::ContactCost>& prices) {
   Rows rows, solves, tangents;
   for (const bench::ContactCost& p : prices) add_rows(p, rows, solves, tangents);
   fmt::print(
-      "Contact beside the rest of a step: nearest points, one thread, medians [ms]\n"
-      "  elements: forces and matrix over the first body's elements in one pass; samples: those of the "
-      "contact, and over the elements'\n"
-      "  step: a step of the first body without contact, 1e-3; query: the contact's, to forces on nodes, and "
-      "over that step\n{}\n",
+      "Cost of contact relative to a step: nearest points, one thread, medians [ms]\n"
+      "  elements: forces and matrix of all elements of the first body in one pass; samples: contact "
+      "samples, and their ratio to elements\n"
+      "  step: a step of the first body without contact, linear_rtol 1e-3; query: contact query up to nodal "
+      "forces, "
+      "and its ratio to step\n"
+      "{}\n",
       report::format_table({"scene", "samples", "elements", "samples (ratio)", "step", "query (ratio)"},
                            rows));
   fmt::print(
       "A step without its query, medians [ms]\n"
-      "  apart: the sum of steps of each body by itself, without contact; free: a step of all bodies "
-      "together, without contact;\n"
-      "  contact: the scene's own step, over apart and over free; friction: with friction 0.3, over contact\n"
-      "  without contact the bodies fall under their weight: at rest there is nothing to solve\n{}\n",
+      "  apart: sum of separate steps of each body, without contact; free: a step of all bodies together, "
+      "without contact;\n"
+      "  contact: a step of the scene, and its ratios to apart and free; friction: with friction 0.3, ratio "
+      "to contact\n"
+      "  without contact the bodies fall under gravity, because a step at rest requires no solution\n"
+      "{}\n",
       report::format_table({"scene", "samples", "apart", "free", "contact (/ apart)", "contact (/ free)",
                             "friction (/ contact)"},
                            solves));
   if (tangents.empty()) return;
   fmt::print(
       "A step with friction 0.3, without its query, medians [ms]\n"
-      "  symmetric: friction follows the pressure one step late, friction_tangent = \"secant\", the default "
-      "of such steps; full: the unsymmetric tangent, over symmetric\n"
-      "  left out: largest friction that a step left out, of the largest friction; force: largest difference "
-      "of the contact force\n"
-      "  between both runs at the same time, of the largest force [%]\n{}\n",
+      "  symmetric: friction lags the pressure by one step, friction_tangent = \"secant\", the default of "
+      "such steps; full: unsymmetric tangent, ratio to symmetric\n"
+      "  left out: largest neglected friction of a step, relative to the largest friction; force: largest "
+      "difference of the contact force\n"
+      "  between both runs at equal times, relative to the largest force [%]\n"
+      "{}\n",
       report::format_table({"scene", "symmetric", "full (/ symmetric)", "left out [%]", "force [%]"},
                            tangents));
 }
@@ -79,11 +84,12 @@ void print_contact_growth(const std::vector<bench::ContactGrowth>& growth) {
                       fmt::format("{}", r.samples),
                       fmt::format("{:.2f} / {:.2f} / {:.2f}", r.query.least, r.query.median, r.query.p99)});
     const bool area = g.with == "area";
-    fmt::print("{}\n{}\n  the query's time grows with {} to the power {:.2f}\n\n",
-               area ? "Larger and larger regions of one skin" : "A contact region on larger and larger skins",
+    fmt::print("{}\n{}\n  the query time grows with {} to the power {:.2f}\n\n",
+               area ? "Contact regions of increasing area on one skin"
+                    : "One contact region on skins of increasing size",
                report::format_table(
                    {"vertices", "region [cm^2]", "samples", "query: least / median / p99 [ms]"}, rows),
-               area ? "the region's area" : "the skin's vertices", g.exponent());
+               area ? "the area of the region" : "the number of skin vertices", g.exponent());
   }
 }
 
@@ -96,9 +102,11 @@ bool print_contact_bars(const std::vector<bench::ContactBar>& bars) {
                     fmt::format("{} {:.3g}", b.at_least ? ">=" : "<=", b.bar),
                     b.is_met() ? "met" : "missed"});
   }
-  fmt::print("Bars: nearest points, one thread where nothing else is said\n{}\n{} of {} bars met\n",
-             report::format_table({"scene", "figure", "measured", "bar", ""}, rows), bars.size() - missed,
-             bars.size());
+  fmt::print(
+      "Acceptance limits: nearest points, one thread unless stated otherwise\n"
+      "{}\n{} of {} limits met\n",
+      report::format_table({"scene", "figure", "measured", "limit", ""}, rows), bars.size() - missed,
+      bars.size());
   return missed == 0;
 }
 

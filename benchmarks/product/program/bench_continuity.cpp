@@ -61,17 +61,19 @@ void bench_continuity(const BenchArguments& arguments) {
     const auto worst = std::max_element(row.jumps.begin(), row.jumps.end(),
                                         [](const auto& p, const auto& q) { return p.force < q.force; });
     if (worst != row.jumps.end())
-      fmt::print("{}: the largest jump, {:.3f}, is on path {} at {:.5f} of its length\n",
+      fmt::print("{}: the largest jump, {:.3f}, occurs on path {} at {:.5f} of its length\n",
                  short_name(description), worst->force, worst->path, worst->at);
   }
   const std::vector<std::string> head{"scene", "paths", "steps", "halved", "force [N]",
                                       "p50",   "p99",   "max",   "moment", "by history"};
   fmt::print(
-      "\n{}\nOne body moves past the other along random smooth paths of {} steps; a step across which the "
-      "force "
-      "changes by\nmore than {:g} of itself is halved {} times.  p50, p99, max: what is left then, each "
-      "path's largest, over the\nforce; moment: the same of the moment; by history: jumps of one pose "
-      "that was reached in two ways.\n",
+      "\n{}\n"
+      "One body moves past the other along random smooth paths of {} steps; a step with a relative change of "
+      "the force\n"
+      "above {:g} is halved {} times.  p50, p99, max: largest remaining jump of each path, relative to the "
+      "force;\n"
+      "moment: largest jump of the moment; by history: jumps between two histories with the same final "
+      "pose.\n",
       report::format_table(head, rows), options.steps, options.threshold, options.halvings);
 }
 

@@ -33,17 +33,17 @@ void print_limits(const FemBenchReport& report) {
     rows.push_back({fmt::format("{}", l.threads), fmt::format("{:.1f}", l.small_copy_gb_s),
                     fmt::format("{:.1f}", l.large_copy_gb_s), shown_ms(l.reference_copy_gb_s),
                     fmt::format("{:.0f}", l.gflop_s), fmt::format("{:.0f}", l.double_gflop_s)});
-  fmt::print("what this machine can do, measured now\n{}\n",
-             report::format_table(
-                 {"threads", "copy 8 MB [GB/s]", "copy 67 MB [GB/s]", "the reference machine's [GB/s]",
-                  "float multiply-adds [GFLOP/s]", "double [GFLOP/s]"},
-                 rows));
+  fmt::print(
+      "measured limits of this machine\n{}\n",
+      report::format_table({"threads", "copy 8 MB [GB/s]", "copy 67 MB [GB/s]", "reference machine [GB/s]",
+                            "float multiply-adds [GFLOP/s]", "double [GFLOP/s]"},
+                           rows));
   Rows sizes;
   for (const bench::MachineLimits& l : report.limits)
     for (const bench::Bandwidth& b : l.bandwidths)
       sizes.push_back({fmt::format("{}", l.threads), fmt::format("{:.3g}", b.bytes / 1048576.0),
                        fmt::format("{:.1f}", b.read_gb_s), fmt::format("{:.1f}", b.write_gb_s)});
-  fmt::print("passes over one working set, again and again\n{}\n",
+  fmt::print("repeated passes over one working set\n{}\n",
              report::format_table({"threads", "MiB", "read [GB/s]", "write [GB/s]"}, sizes));
 }
 
@@ -74,15 +74,16 @@ void print_steps(const FemBenchReport& report) {
                     fmt::format("{:.1f}", r.rotation_rad)});
   fmt::print(
       "one linearly implicit step, median over a motion with large rotation\n"
-      "  *: fused assembly of forces, product and matrix; scaled: step x measured copy "
-      "bandwidth / that of the reference machine;\n"
-      "  lagged: steps solved with the matrix of an earlier one, by iterative refinement; the residuals of "
-      "their own equations are timed as force;\n"
-      "  error: of the velocity change against a direct solution, largest of the checks, in the norms of "
-      "energy and of mass\n\n{}\n",
+      "  *: fused assembly of forces, product and matrix; scaled: step x measured copy bandwidth / that of "
+      "the reference machine;\n"
+      "  lagged: steps solved with the matrix of an earlier step, by iterative refinement; the residuals of "
+      "the current equations are timed as force;\n"
+      "  error: error of the velocity change against a direct solution, maximum of the checks, in the energy "
+      "and mass norms\n\n"
+      "{}\n",
       report::format_table(
           {"size",   "nodes",      "E [Pa]", "h [ms]",    "rtol", "solver",        "thr", "force",
-           "matrix", "factor",     "solve",  "step [ms]", "mean", "least",         "CPU", "its solver",
+           "matrix", "factor",     "solve",  "step [ms]", "mean", "least",         "CPU", "solver CPU",
            "scaled", "lagged [%]", "iter",   "error",     "mass", "rotation [rad]"},
           rows));
 }
@@ -100,8 +101,9 @@ void print_shares(const FemBenchReport& report) {
                     share(r.factor_limit_ms, r.factor_ms), share(r.solve_limit_ms, r.solve_ms),
                     share(r.step_limit_ms, r.step_ms), shown_ms(r.step_limit_ms)});
   fmt::print(
-      "share of the limit [%]: what a stage must read and write once, at the bandwidth of the step's (the "
-      "solve's) working set, or its operations, whichever takes longer\n{}\n",
+      "share of the limit [%]: time for the necessary reads and writes of a stage at the bandwidth of the "
+      "working set of the step (of the solve), or for its operations, whichever is longer\n"
+      "{}\n",
       report::format_table({"size", "E [Pa]", "h [ms]", "rtol", "solver", "thr", "force", "matrix", "factor",
                             "solve", "step", "limit [ms]"},
                            rows));
@@ -117,11 +119,11 @@ void print_elements(const FemBenchReport& report) {
     kinds[{t.stage, t.threads}].push_back(&t);
   }
   fmt::print(
-      "one evaluation over the elements by itself, again and again: bent beam, E = 1e6; share of what its "
-      "bytes and operations take at the bandwidth of just these bytes\n"
-      "  residual: forces less K w; fused assembly: that and the warped matrix in single precision; tangents "
-      "are "
-      "stored in a matrix in double, whatever it held before\n\n{}\n",
+      "one evaluation over the elements, repeated: bent beam, E = 1e6; limit: time for its bytes and "
+      "operations at the bandwidth of a working set of that size\n"
+      "  residual: forces minus K w; fused assembly: residual and warped matrix in single precision; "
+      "tangents are stored in double, overwriting the matrix\n\n"
+      "{}\n",
       report::format_table(
           {"size", "thr", "stage", "least [ms]", "median [ms]", "least [ns/tet]", "limit [%]", "runs"},
           rows));
@@ -142,7 +144,9 @@ void print_elements(const FemBenchReport& report) {
   }
   if (!growth.empty())
     fmt::print(
-        "growth of the least time: exponent over tetrahedra, over nodes; of the limit over tetrahedra\n{}\n",
+        "growth of the minimum time: exponent in the number of tetrahedra, in the number of nodes; growth of "
+        "the limit in the number of tetrahedra\n"
+        "{}\n",
         report::format_table({"stage", "thr", "tetrahedra", "nodes", "limit"}, growth));
 }
 
@@ -158,10 +162,11 @@ void print_memory(const FemBenchReport& report) {
                     each(r.body_bytes), each(r.peak_bytes), fmt::format("{:.1f}", r.peak_bytes / 1048576.0)});
   }
   fmt::print(
-      "memory [bytes a tetrahedron]: the sum of what must be stored; of that and beside it, what the soft "
-      "body holds; peak of the process above what it held before\n{}\n",
-      report::format_table(
-          {"size", "solver", "tetrahedra", "must be stored", "soft body", "peak", "peak [MiB]"}, rows));
+      "memory [bytes per tetrahedron]: necessary storage; storage of the soft body; increase of the peak "
+      "memory of the process\n"
+      "{}\n",
+      report::format_table({"size", "solver", "tetrahedra", "necessary", "soft body", "peak", "peak [MiB]"},
+                           rows));
 }
 
 /// Returns groups of rows that differ only in size.
@@ -201,9 +206,10 @@ void print_exponents(const FemBenchReport& report) {
   }
   if (rows.empty()) return;
   fmt::print(
-      "growth with the number of nodes n: exponent e of ms ~ n^e, and in brackets that of the limit\n{}\n"
-      "  with less surface there is more to a node: tetrahedra grow with {:.3f}, blocks of the matrix with "
-      "{:.3f}\n\n",
+      "growth with the number of nodes n: exponent e of ms ~ n^e, and in brackets the exponent of the limit\n"
+      "{}\n"
+      "  large bodies have more tetrahedra per node: tetrahedra grow with exponent {:.3f}, blocks of the "
+      "matrix with {:.3f}\n\n",
       report::format_table({"kind", "force", "matrix", "factor", "solve", "step"}, rows), tetrahedra, blocks);
 }
 
@@ -216,8 +222,9 @@ void print_published(const FemBenchReport& report, const bench::PublishedTimings
       rows.push_back({p.program, p.size, shown_ms(p.ten_ms), shown_ms(p.one_ms), p.tolerance});
   if (!rows.empty())
     fmt::print(
-        "others on this beam at E = 1e5, one thread, quoted (measured once on the reference machine, not "
-        "here): compare with \"scaled\"\n{}\n",
+        "other programs on this beam at E = 1e5, one thread, quoted (measured once on the reference "
+        "machine): compare with \"scaled\"\n"
+        "{}\n",
         report::format_table({"program", "size", "10 ms step [ms]", "1 ms step [ms]", "tolerance"}, rows));
 }
 
@@ -226,7 +233,7 @@ void write_accuracy(const std::vector<bench::AccuracyPoint>& points, const std::
   report::Plot plot;
   plot.title = "Fall of the beam: error against run time";
   plot.x_label = "run time of 10 ms of motion, one thread [ms]";
-  plot.y_label = "error of the end";
+  plot.y_label = "error of the final state";
   plot.log_x = plot.log_y = true;
   std::map<std::string, report::Series> kinds;
   for (const bench::AccuracyPoint& p : points) {
@@ -261,9 +268,10 @@ void bench_accuracy(const BenchArguments& arguments) {
                     fmt::format("{:.3g}", p.ms_of_ten_ms), fmt::format("{:.2e}", p.error),
                     p.setup_ms > 0.0 ? fmt::format("{:.3g}", p.setup_ms) : "-", p.quoted ? "quoted" : ""});
   fmt::print(
-      "{}, E = 1e5 Pa: fall from rest for 0.2 s; error of the end against the exact motion of the same mesh "
-      "and material, over the way fallen (norm of mass)\n  set-up: a first step, done once a mesh and no "
-      "part of the time beside it\n{}\n",
+      "{}, E = 1e5 Pa: fall from rest for 0.2 s; error of the final state against the exact motion of the "
+      "same mesh and material, relative to the distance fallen (mass norm)\n"
+      "  set-up: first step, once per mesh, not included in the run time\n"
+      "{}\n",
       size,
       report::format_table({"program", "h [ms]", "tolerance", "ms of 10 ms", "error", "set-up [ms]", ""},
                            rows));
