@@ -91,7 +91,7 @@ ValidationCase box_corner() {
       .section = "A",
       .summary = "volume and area of a tilted box's corner in a plane, by the image's pixels",
       .why =
-          "corners and edges are where an image has kinks; flat facets leave the pixels alone to err "
+          "corners and edges cause kinks in an image; with flat facets, only the pixels contribute error "
           "(tetrahedron with a right-angled corner)",
       .quick = true,
       .run = run,

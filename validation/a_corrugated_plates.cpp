@@ -87,7 +87,7 @@ std::vector<Measurement> run(const std::string& fault) {
     cell.push_back(1.0 / cells);
     error.push_back(std::abs(last / exact - 1.0));
   }
-  out.push_back({.quantity = "overlap volume against the sines, 80 cells a wavelength [m^3]",
+  out.push_back({.quantity = "overlap volume against the sines, 80 cells per wavelength [m^3]",
                  .computed = last,
                  .exact = exact,
                  .error = error.back(),
@@ -95,7 +95,7 @@ std::vector<Measurement> run(const std::string& fault) {
                  .order = fitted_order(cell, error),
                  .order_low = 1.9,
                  .order_high = 2.1,
-                 .note = "order in facet size over 20 to 80 cells a wavelength",
+                 .note = "order in facet size over 20 to 80 cells per wavelength",
                  .refinement = {"cell / wavelength", cell, error}});
   return out;
 }
@@ -108,8 +108,8 @@ ValidationCase corrugated_plates() {
       .section = "A",
       .summary = "overlap volume and area of two corrugated plates, by the image's pixels",
       .why =
-          "rough on rough is the contact that images are for: several islands in one image, none of them "
-          "lost or merged (closed form of the sines and of their facets)",
+          "contact of two rough surfaces has several islands in one image; none may be lost or merged "
+          "(closed form of the sines and of their facets)",
       .quick = true,
       .run = run,
       .faults = {{"gaps-as-depths", "overlap area against"}, {"sixteen-steps", "overlap volume against"}}};

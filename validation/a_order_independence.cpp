@@ -128,7 +128,7 @@ Measurement sides_swapped(const TwoSoft& bodies, const std::string& fault) {
           .computed = static_cast<double>(different),
           .error = plain.size() > 100 ? static_cast<double>(different) : std::nan(""),
           .bar = 0.0,
-          .note = fmt::format("{} samples, bit by bit: nodes, weights, normal, area and gap", plain.size())};
+          .note = fmt::format("{} samples, bitwise: nodes, weights, normal, area and gap", plain.size())};
 }
 
 std::vector<Measurement> run(const std::string& fault) {
@@ -151,18 +151,18 @@ std::vector<Measurement> run(const std::string& fault) {
                    .computed = static_cast<double>(different),
                    .error = plain.size() > 10000 ? static_cast<double>(different) : std::nan(""),
                    .bar = 0.0,
-                   .note = fmt::format("{} pixels, 4 orders, bit by bit; largest difference {:.1e} R",
+                   .note = fmt::format("{} pixels, 4 orders, bitwise; largest difference {:.1e} R",
                                        plain.size(), largest)});
     const TwoSoft bodies = two_soft(mesh.a, mesh.b), exchanged = two_soft(mesh.b, mesh.a);
     out.push_back(sides_swapped(bodies, fault));
     const double ab = overlap_volume(samples_of_two_soft(bodies, false, fault)),
                  ba = overlap_volume(samples_of_two_soft(exchanged, false, fault));
-    out.push_back({.quantity = "overlap volume by vertices with the bodies' places swapped [m^3]",
+    out.push_back({.quantity = "overlap volume by vertices with the order of the bodies swapped [m^3]",
                    .computed = ba,
                    .exact = ab,
                    .error = std::abs(ba / ab - 1.0),
                    .bar = 1e-4,
-                   .note = "the grid of pixels is another one"});
+                   .note = "the pixel grid differs"});
   }
   say_what_is_skipped(out);
   return out;
@@ -174,7 +174,7 @@ ValidationCase order_independence() {
   return {
       .name = "order-independence",
       .section = "A",
-      .summary = "bit by bit the same pixels for shuffled triangles, and the same samples for swapped sides",
+      .summary = "bitwise equal pixels for shuffled triangles, and bitwise equal samples for swapped sides",
       .why =
           "a result that depends on how a mesh file lists its triangles cannot be reproduced, and two "
           "bodies must agree on how far they overlap",

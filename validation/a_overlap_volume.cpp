@@ -226,7 +226,8 @@ ValidationCase overlap_volume() {
   return {"overlap-volume",
           "A",
           "overlap volume of two spheres: pixels against the facets, facets against the spheres",
-          "the image decides who faces whom, the rest is exact in double (closed form of the lens)",
+          "the image only determines which facets face each other, the rest is exact in double (closed form "
+          "of the lens)",
           false,
           true,
           run,

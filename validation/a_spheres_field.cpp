@@ -171,8 +171,8 @@ ValidationCase spheres_field() {
               "depth fields of a sphere on a plane and of two spheres: facets to rounding, spheres to "
               "order 2",
           .why =
-              "every force comes from this field; a pixel that reads its neighbour, or a depth of few bits, "
-              "is felt as texture that no surface has (line and sphere, in closed form)",
+              "every force is computed from this field; a pixel that reads its neighbour, or a depth of few "
+              "bits, causes spurious texture in the force (line and sphere, in closed form)",
           .quick = true,
           .run = run,
           .faults = {{"sixteen-bits", "against the facets"},

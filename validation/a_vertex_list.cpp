@@ -134,7 +134,7 @@ ValidationCase vertex_list() {
   return {.name = "vertex-list",
           .section = "A",
           .summary = "the colliding vertices of two spheres and their depths",
-          .why = "a vertex that is missed is a spring that is missing (line and triangle, in double)",
+          .why = "a missed vertex is a missing spring (line and triangle, in double)",
           .quick = true,
           .run = run,
           .faults = {{"neighbours-depth", "depths of the colliding"}, {"lost-samples", "missed or extra"}}};

@@ -99,7 +99,7 @@ ValidationCase volume_on_plane() {
       .name = "volume-on-plane",
       .section = "A",
       .summary = "overlap volume of a sphere and a plane: pixels against facets, facets against the sphere",
-      .why = "the simplest overlap there is (closed form of a spherical cap)",
+      .why = "the simplest overlap (closed form of a spherical cap)",
       .quick = true,
       .run = run,
       .faults = {{"pixels-lost", "against the facets"}, {"radial-depth", "against the true sphere"}}};

@@ -207,8 +207,8 @@ ValidationCase balance() {
           .section = "B",
           .summary = "forces and moments of contact on both bodies sum to zero, for random poses and skins",
           .why =
-              "a contact that is out of balance drives bodies that touch, on their own (action and reaction, "
-              "points on one line)",
+              "an unbalanced contact accelerates the bodies in contact without external force (action and "
+              "reaction, points on one line)",
           .quick = true,
           .run = run,
           .faults = {{"no-rest-offset", "sum of their moments"},

@@ -99,10 +99,11 @@ std::vector<Measurement> run(const std::string& fault) {
                    .note = note});
   };
   add("nearest points: net work around the loop, over force x length", Way::kPoints, 1e-4, "");
-  add("vertices over a plane: the same", Way::kPlane, 1e-10, "");
+  add("vertices over a plane: net work around the loop, over force x length", Way::kPlane, 1e-10, "");
   if (images_work() && fault.empty())
-    add("image: the same", Way::kImage, std::numeric_limits<double>::infinity(),
-        "reported, not barred: a force along one normal has no potential");
+    add("image: net work around the loop, over force x length", Way::kImage,
+        std::numeric_limits<double>::infinity(),
+        "reported without acceptance limit: a force along one normal has no potential");
   say_what_is_skipped(out);
   return out;
 }
@@ -114,8 +115,8 @@ ValidationCase closed_loop() {
           .section = "B",
           .summary = "net work of contact around a closed loop: two corrugated plates, and one over a plane",
           .why =
-              "contact that does work around a loop drives what rubs; the gradient of an energy does none "
-              "(conservation of energy)",
+              "contact that does net work around a loop drives rubbing bodies; the gradient of an energy "
+              "does none (conservation of energy)",
           .quick = true,
           .run = run,
           .faults = {{"skin-normals", "nearest points: net work"}}};

@@ -196,7 +196,7 @@ std::vector<Measurement> run(const std::string& fault) {
       own.order = validation::fitted_order(step, errors);
       own.order_low = method.order - 0.2;
       own.order_high = method.order + 0.2;
-      own.note = "the integrator's own: order in its step";
+      own.note = "error of the integrator: order in its step";
       own.refinement = {"step [s]", step, errors};
     }
     out.push_back(own);
@@ -226,11 +226,11 @@ ValidationCase contact_refresh() {
       .name = "contact-refresh",
       .section = "B",
       .summary =
-          "a sphere dragged over a soft block: order of the error in the refresh interval in every family "
-          "of integrators, and the integrator's own error with exact gaps",
+          "a sphere dragged over a soft block: order of the error in the refresh interval in every family of "
+          "integrators, and the error of the integrator with exact gaps",
       .why =
-          "the price of a slow query must be known apart from the integrator's: first order, as normals "
-          "and areas are held between two queries (one-step error analysis)",
+          "the error of a slow query must be known separately from that of the integrator: first order, "
+          "because normals and areas are held between two queries (one-step error analysis)",
       .quick = true,
       .run = run,
       .faults = {{"samples-stay", "exact gaps"}, {"one-query", "error of a refresh"}}};

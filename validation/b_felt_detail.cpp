@@ -202,13 +202,14 @@ std::vector<Measurement> run(const std::string& fault) {
                    .error = std::abs(skin.amplitude() / exact - 1.0),
                    .bar = 0.02,
                    .note = fmt::format("{:g} Hz, on a mean force of {:.3f} N", kFrequency, skin.mean())});
-    out.push_back(
-        {.quantity = "amplitude on the tetrahedra's own surface [N] (error: over the exact one on the skin)",
-         .computed = coarse.amplitude(),
-         .exact = 0.0,
-         .error = coarse.amplitude() / exact,
-         .bar = 0.02,
-         .note = fmt::format("on a mean force of {:.3f} N", coarse.mean())});
+    out.push_back({.quantity =
+                       "amplitude on the surface of the tetrahedra [N] (error: relative to the exact one on "
+                       "the skin)",
+                   .computed = coarse.amplitude(),
+                   .exact = 0.0,
+                   .error = coarse.amplitude() / exact,
+                   .bar = 0.02,
+                   .note = fmt::format("on a mean force of {:.3f} N", coarse.mean())});
   }
   return out;
 }
@@ -220,9 +221,9 @@ ValidationCase felt_detail() {
           .section = "B",
           .summary = "a tool dragged over a corrugated skin: the device force at the corrugation's frequency",
           .why =
-              "the hand feels detail that only the skin has, at the right strength, through points, law, "
-              "exchange and coupling; nothing of it comes from the coarse levels (the law's weight over the "
-              "disc of contact, with a Bessel function)",
+              "detail that only the skin has reaches the hand with the correct amplitude through points, "
+              "law, exchange and coupling, and the coarse levels contribute nothing to it (weight of the law "
+              "over the disc of contact, with a Bessel function)",
           .quick = true,
           .run = run,
           .faults = {{"coarse-surface", "on the skin [N]"},

@@ -134,8 +134,8 @@ ValidationCase block_on_incline() {
               "a block on an inclined plane with friction: creep where it sticks, acceleration where it "
               "slides",
           .why =
-              "friction that is a few per cent off lets objects slide that should stay; the regularisation's "
-              "creep is known and stated (balance along the plane)",
+              "an error of a few per cent in the friction lets objects slide that should stick; the creep of "
+              "the regularisation is known (balance along the plane)",
           .quick = true,
           .run = run_block,
           .faults = {{"half-friction", "creep"}, {"friction-without-cap", "acceleration of a block"}}};
@@ -146,8 +146,8 @@ ValidationCase rolling_sphere() {
           .section = "B",
           .summary = "a sphere rolls down an inclined plane without slipping: (5/7) g sin a",
           .why =
-              "friction must have its moment about the centre too: without it the sphere slides with g sin a "
-              "(linear and angular momentum of a rolling sphere)",
+              "friction must also exert its moment about the centre: without it the sphere slides with g sin "
+              "a (linear and angular momentum of a rolling sphere)",
           .quick = true,
           .run = run_sphere,
           .faults = {{"no-friction", "acceleration of a sphere"}}};

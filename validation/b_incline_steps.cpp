@@ -97,8 +97,8 @@ Measurement slide(const std::string& integrator, double step_s, double ratio, co
   const double angle = std::atan(ratio * kFriction),
                exact = kGravity * kFriction * std::cos(angle) * (ratio - 1.0) * kTime * kTime / 2.0,
                way = way_of(block_on_slope(integrator, ratio, step_s), fault);
-  return {.quantity = fmt::format("{}, steps of {:.3g} ms: way slid in {} s, tan a = {} mu [m]", integrator,
-                                  1e3 * step_s, kTime, ratio),
+  return {.quantity = fmt::format("{}, steps of {:.3g} ms: distance slid in {} s, tan a = {} mu [m]",
+                                  integrator, 1e3 * step_s, kTime, ratio),
           .computed = way,
           .exact = exact,
           .error = std::abs(way / exact - 1.0),
@@ -132,15 +132,16 @@ ValidationCase sliding_in_fixed_steps() {
       .name = "sliding-in-fixed-steps",
       .section = "B",
       .summary =
-          "a soft block on an inclined plane slides by every fixed-step method, at 10 ms or its stable step",
+          "sliding of a soft block on an inclined plane by every fixed-step method, at 10 ms or its stable "
+          "step",
       .why =
-          "friction of a step that is not within the cone at the step's end holds what should slide "
-          "(balance along the plane)",
+          "friction that is outside the cone at the end of a step holds bodies that should slide (balance "
+          "along the plane)",
       .quick = true,
       .run = run_slope,
-      .faults = {{"half-friction", "linearly-implicit-euler, steps of 10 ms: way slid"},
+      .faults = {{"half-friction", "linearly-implicit-euler, steps of 10 ms: distance slid"},
                  {"friction-of-the-start",
-                  "linearly-implicit-euler, steps of 10 ms: way slid in 2 s, tan a = 1.02 "}}};
+                  "linearly-implicit-euler, steps of 10 ms: distance slid in 2 s, tan a = 1.02 "}}};
 }
 
 }  // namespace palpate::validation

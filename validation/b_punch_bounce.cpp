@@ -253,7 +253,7 @@ Measurement order_in_contact(const Method& method, const std::string& fault) {
     // Exact: x = v0/w, x' = 0.
     error.push_back(std::hypot(kOmega * b.height() + kSpeed, b.velocity()) / kSpeed);
   }
-  Measurement m = against(fmt::format("{} in contact, {} steps a quarter period: depth w/v0 and speed/v0",
+  Measurement m = against(fmt::format("{} in contact, {} steps per quarter period: depth w/v0 and speed/v0",
                                       method.name, method.order > 2 ? 80 : 800),
                           1.0 + error.back(), 1.0, 5e-3);
   m.order = validation::fitted_order(h, error);
@@ -374,7 +374,8 @@ ValidationCase punch_bounce() {
   return {"punch-bounce",
           "B",
           "Undamped bounce of a flat punch on a plane: duration, speed, energy; fixed-step order in contact",
-          "A flat contact is one linear spring k A: it must give back what it took, through any integrator.",
+          "A flat contact is one linear spring k A: it must return the energy that it stores, with any "
+          "integrator.",
           false,
           true,
           run_undamped,
@@ -389,8 +390,8 @@ ValidationCase punch_bounce_damped() {
       "punch-bounce-damped",
       "B",
       "Bounce of a flat punch with Kelvin-Voigt damping and no adhesion, zeta = 0.1, 0.3, 0.5, 1",
-      "The pressure is cut where it would pull, so the punch separates before the depth is gone: the closed "
-      "form of exactly that.",
+      "The pressure is cut off at zero, so the punch separates before the depth vanishes: the closed form "
+      "includes the cut-off.",
       false,
       true,
       run_damped,
@@ -404,7 +405,7 @@ ValidationCase punch_bounce_hunt_crossley() {
       "punch-bounce-hunt-crossley",
       "B",
       "Bounce with Hunt-Crossley damping against its implicit closed form, 3/2 c v0 = 0.3 and 1, two shapes",
-      "The continuous damping law: its loss depends on speed in a way that no linear damper copies.",
+      "The continuous damping law: its loss depends on speed, unlike that of a linear damper.",
       false,
       true,
       run_hunt_crossley,

@@ -117,8 +117,8 @@ ValidationCase rocking_box() {
           .summary =
               "moment and rotational stiffness of a box that rocks on a plane: k I_A - m g h_G and its walls",
           .why =
-              "whether a standing object stays upright is decided by this difference of two parts that are "
-              "nearly equal (balance of moments)",
+              "this difference of two nearly equal terms decides whether a standing object remains upright "
+              "(balance of moments)",
           .quick = true,
           .run = run,
           .faults = {{"arm-does-not-rotate", "of the tangent"}, {"area-lost", "moment of the box"}}};

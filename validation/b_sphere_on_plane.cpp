@@ -142,8 +142,8 @@ ValidationCase sphere_on_plane() {
           "B",
           "force of a sphere held in a plane: k pi R delta^2 by nearest points, k times the cap's volume by "
           "vertices and by an image",
-          "the law of contact, independent of the mesh up to its own facets (closed forms of a sphere's zone "
-          "and cap)",
+          "the law of contact, independent of the mesh except for its facets (closed forms of a sphere's "
+          "zone and cap)",
           false,
           true,
           run,

@@ -97,7 +97,7 @@ ValidationCase cantilever() {
               "slender cantilever under a small end load against Timoshenko's deflection, order and "
               "Richardson value",
           .why =
-              "bending is where linear tetrahedra are poor: says how many elements a thickness needs; "
+              "linear tetrahedra are inaccurate in bending: shows how many elements the thickness requires; "
               "Timoshenko 1921, shear factor of Cowper 1966",
           .run = run,
           .faults = {{"half-stiffness", "tip deflection"}}};

@@ -203,7 +203,7 @@ std::vector<Measurement> run(const std::string& fault) {
                    .note = "order in the points' spacing over 4, 2, 1 and 0.6 mm",
                    .refinement = {"spacing [m]", h, errors}});
   };
-  add("mean pressure of the contact, from D/(H1/M + H2/M + 1/k), over it", pressure, 1e-2);
+  add("mean pressure of the contact, error relative to D/(H1/M + H2/M + 1/k)", pressure, 1e-2);
   add("largest error of an element's stress / the stress, away from the sides", inside, 2e-2);
   add("largest error of an element's stress / the stress, everywhere", all, kFinest / 5e-3);
   if (images_work() && fault.empty()) {
@@ -212,7 +212,7 @@ std::vector<Measurement> run(const std::string& fault) {
                    .computed = image.deviation,
                    .error = image.deviation,
                    .bar = std::numeric_limits<double>::infinity(),
-                   .note = "reported, not barred: vertices alone do not pass the patch test"});
+                   .note = "reported without acceptance limit: vertices alone do not pass the patch test"});
   }
   say_what_is_skipped(out);
   return out;
@@ -223,10 +223,10 @@ std::vector<Measurement> run(const std::string& fault) {
 ValidationCase contact_patch() {
   return {.name = "contact-patch",
           .section = "C",
-          .summary = "two blocks with meshes that do not match, pressed together: the stress stays uniform",
+          .summary = "two blocks with non-matching meshes, pressed together: the stress remains uniform",
           .why =
-              "whether meshes that do not match pass on a uniform pressure decides whether contact converges "
-              "with the mesh (the contact patch test, Taylor and Papadopoulos 1991)",
+              "contact converges with the mesh only if non-matching meshes transmit a uniform pressure (the "
+              "contact patch test, Taylor and Papadopoulos 1991)",
           .quick = true,
           .run = run,
           .faults = {{"force-on-first-corner", "away from the sides"},

@@ -223,21 +223,22 @@ void measure_work(const std::string& fault, std::vector<Measurement>& out) {
                  .error = relative(work, exact),
                  .bar = 1e-2,
                  .note = fmt::format("6 cells along L; {:.1f} % of it in the springs", 100.0 * springs)});
-  out.push_back({.quantity = "energy that is said to be stored, against its definition [J]",
+  out.push_back({.quantity = "reported stored energy against its definition [J]",
                  .computed = stored,
                  .exact = exact,
                  .error = relative(stored, exact),
                  .bar = 1e-10});
-  out.push_back({.quantity = "work given back on the way out [J]",
+  out.push_back({.quantity = "work returned during retraction [J]",
                  .computed = returned,
                  .exact = work,
                  .error = relative(returned, work),
                  .bar = 1e-6});
-  out.push_back({.quantity = "force on the way out against the way in, largest difference / whole force",
+  out.push_back({.quantity = "force during retraction against indentation, largest difference / maximum "
+                             "force",
                  .computed = apart,
                  .error = apart,
                  .bar = 1e-6});
-  out.push_back({.quantity = "farthest node from its place at rest in the end / L",
+  out.push_back({.quantity = "largest final displacement of a node from rest / L",
                  .computed = dent.distance_from_rest(),
                  .error = dent.distance_from_rest(),
                  .bar = 1e-9});
@@ -284,13 +285,13 @@ ValidationCase deep_dent() {
   return {
       .name = "deep-dent",
       .section = "C",
-      .summary = "a soft block dented by 35 % of its radius by a rigid sphere: force, and work given back",
+      .summary = "a soft block dented by 35 % of its radius by a rigid sphere: force, and returned work",
       .why =
-          "this is how deep objects may be dented; small-strain formulas end long before, so force is "
-          "held against refinement and energy against work",
+          "objects may be dented this deeply, far beyond small-strain formulas; the force is compared with "
+          "refined meshes and the energy with the work",
       .run = run,
       .faults = {{"small-strain", "work of the tool"},
-                 {"energy-off", "said to be stored"},
+                 {"energy-off", "reported stored energy"},
                  {"areas-forgotten", "force of the whole dent"}}};
 }
 

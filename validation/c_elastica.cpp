@@ -138,14 +138,15 @@ std::vector<Measurement> run(const std::string& fault) {
 }  // namespace
 
 ValidationCase large_deflection() {
-  return {
-      .name = "large-deflection",
-      .section = "C",
-      .summary =
-          "slender cantilever under an end load that bends it by up to 75 degrees, against the elastica",
-      .why = "large rotation with small strain is what corotated elements are for; Bisshopp and Drucker 1945",
-      .run = run,
-      .faults = {{"half-stiffness", "/L at"}, {"small-strain", "/L at"}}};
+  return {.name = "large-deflection",
+          .section = "C",
+          .summary =
+              "slender cantilever under an end load that bends it by up to 75 degrees, against the elastica",
+          .why =
+              "corotated elements are designed for large rotation with small strain; Bisshopp and Drucker "
+              "1945",
+          .run = run,
+          .faults = {{"half-stiffness", "/L at"}, {"small-strain", "/L at"}}};
 }
 
 }  // namespace palpate::validation

@@ -140,7 +140,8 @@ Measurement order_in_cells(Way way, double kappa, double low, double high) {
   }
   const Limit limit = limit_of(h, by_size);
   for (const double one : by_size) errors.push_back(std::abs(one / limit.value - 1.0));
-  return {.quantity = fmt::format("{}: the cells' error of the force at k a/E* = {:g}, 12 across the radius",
+  return {.quantity = fmt::format("{}: discretisation error of the force at k a/E* = {:g}, 12 cells across "
+                                  "the radius",
                                   name_of(way), kappa),
           .computed = by_size.back(),
           .exact = limit.value,
@@ -179,8 +180,8 @@ ValidationCase flat_punch() {
       .section = "C",
       .summary = "force of a rigid flat-ended cylinder on a soft block, through stiff and soft springs",
       .why =
-          "the area of contact is given, so that the force is all compliance: of the elements, whose order "
-          "the rim's singular pressure limits, and of the springs in series (Sneddon 1965)",
+          "the contact area is given, so the force depends only on the compliance of the elements, whose "
+          "order is limited by the singular pressure at the rim, and of the springs in series (Sneddon 1965)",
       .slow = true,
       .run = run,
       .faults = {{"rim-not-seen", "force at k a/E*"}, {"half-area", "k a/E* = 1 [N]"}},

@@ -64,7 +64,7 @@ Measurement taylor(const std::string& quantity, double step, const std::function
           .order = order,
           .order_low = 1.9,
           .order_high = 2.1,
-          .note = "error is of the order, absolute"};
+          .note = "error: absolute error of the order"};
 }
 
 /// Adds an unsymmetric part to K: each force depends on the next displacement as well.
@@ -139,8 +139,8 @@ ValidationCase gradient_and_tangent() {
               "the force is minus the gradient of the energy, the exact tangent the derivative of the force; "
               "flat and inverted elements too",
           .why =
-              "energy is kept and Newton converges only if both hold; finite differences know nothing of the "
-              "derivation",
+              "energy is conserved and Newton converges only if both hold; finite differences are "
+              "independent of the derivation",
           .quick = true,
           .run = run,
           .faults = {{"wrong-sign", "energy + force"},

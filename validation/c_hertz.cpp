@@ -133,8 +133,8 @@ ValidationCase hertz_sphere() {
       .section = "C",
       .summary = "force of a rigid sphere on a soft block and its exponent in the depth",
       .why =
-          "Hertz comes out when the compliance is the elements' and not the penalty's: the area of contact "
-          "must be found, not given (Hertz 1882)",
+          "the Hertz solution results only if the elements, not the penalty, provide the compliance: the "
+          "contact area must be found, not given (Hertz 1882)",
       .slow = true,
       .run = run,
       .faults = {{"rim-not-seen", "force of the half-space"}, {"gaps-too-small", "force of the half-space"}},

@@ -138,8 +138,8 @@ ValidationCase layered_bar() {
       .section = "C",
       .summary = "a bar of two materials, 30 to 1 in stiffness, pulled: springs in series and in parallel",
       .why =
-          "shows that each element has its own material, on the right side of the border, and that the two "
-          "share its nodes; exact for nu = 0",
+          "shows that each element has the material of its side of the border, and that both materials share "
+          "the nodes on it; exact for nu = 0",
       .quick = true,
       .run = run,
       .faults = {{"one-material", "layers in parallel"}, {"layers-swapped", "the border between"}}};

@@ -106,8 +106,8 @@ ValidationCase patch_test() {
           .section = "C",
           .summary = "any uniform strain is reproduced inside an irregular mesh, and with it its stress",
           .why =
-              "an element that fails it does not converge on irregular meshes (Irons 1966); exact by theory, "
-              "on any mesh",
+              "an element that fails this test does not converge on irregular meshes (Irons 1966); exact by "
+              "theory, on any mesh",
           .quick = true,
           .run = run,
           .faults = {{"one-element-counted-twice", "largest error of a node"},

@@ -57,7 +57,7 @@ std::vector<Measurement> run(const std::string& fault) {
            .computed = force,
            .error = force,
            .bar = 1e-10},
-          {.quantity = "largest while it spins, damping on / (E h^2)",
+          {.quantity = "largest nodal force while spinning, with damping / (E h^2)",
            .computed = spinning,
            .error = spinning,
            .bar = 1e-10},
@@ -75,7 +75,7 @@ ValidationCase rigid_motion() {
           "small-strain elasticity fails it by design: a rotated body swells; the corotated energy must not",
       .quick = true,
       .run = run,
-      .faults = {{"small-strain", " / (E h^"}, {"rayleigh-damping", "while it spins"}}};
+      .faults = {{"small-strain", " / (E h^"}, {"rayleigh-damping", "while spinning"}}};
 }
 
 }  // namespace palpate::validation

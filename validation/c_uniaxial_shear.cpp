@@ -173,9 +173,7 @@ ValidationCase uniaxial_and_shear() {
       .section = "C",
       .summary = "one block stretched with free sides, and sheared: nominal stress and lateral contraction",
       .why =
-          "the constitutive laws themselves at large strain, in closed form for their energies (derivation "
-          "in "
-          "the file)",
+          "the constitutive laws at large strain, in closed form for their energies (derivation in the file)",
       .run = run,
       .faults = {{"half-stiffness", "nominal stress"},
                  {"no-lateral-coupling", "lateral stretch"},

@@ -101,8 +101,8 @@ ValidationCase bar_on_bone() {
               "a bar vibrates along its axis against a free bone at its end: frequency against tan(kL) = "
               "-(m_b/m) kL, order in the element size",
           .why =
-              "momentum goes from tissue to bone and back at the right rate, also where the bone is a "
-              "thousandth of the tissue (Timoshenko 1937)",
+              "tissue and bone must exchange momentum at the correct rate, even if the bone has a thousandth "
+              "of the mass of the tissue (Timoshenko 1937)",
           .quick = true,
           .run = run,
           .faults = {{"half-stiffness", "frequency"}, {"light-bone", "bone of 3 "}}};

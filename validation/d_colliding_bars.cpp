@@ -138,7 +138,7 @@ std::vector<Measurement> run(const std::string& fault) {
       velocity.push_back(
           std::max(std::abs(one.left / (-0.5 * kSpeed) - 1.0), std::abs(one.right / (0.5 * kSpeed) - 1.0)));
     }
-    out.push_back({.quantity = "contact lasts, 200 elements [s]",
+    out.push_back({.quantity = "contact duration, 200 elements [s]",
                    .computed = one.lasts,
                    .exact = exact,
                    .error = std::max(time[3], time[4]),
@@ -147,7 +147,7 @@ std::vector<Measurement> run(const std::string& fault) {
                    .order_low = 0.8,
                    .note = "error: the larger of 100 and 200 elements; order over 13 to 200",
                    .refinement = {"element size [m]", h, time}});
-    out.push_back({.quantity = "mean velocity of the left bar after it, 200 elements [m/s]",
+    out.push_back({.quantity = "mean velocity of the left bar after contact, 200 elements [m/s]",
                    .computed = one.left,
                    .exact = -0.5 * kSpeed,
                    .error = std::max(velocity[3], velocity[4]),
@@ -165,9 +165,9 @@ std::vector<Measurement> run(const std::string& fault) {
 ValidationCase colliding_bars() {
   return {.name = "colliding-bars",
           .section = "D",
-          .summary = "two equal elastic bars meet: how long the contact lasts, velocities after it",
+          .summary = "two equal elastic bars collide: contact duration, velocities after contact",
           .why =
-              "contact, waves and their release in one: only the right stiffness, mass and opening of the "
+              "contact, waves and release combined: only the correct stiffness, mass and opening of the "
               "contact give 2 L/c and the exchange of velocities (d'Alembert; St Venant 1867)",
           .quick = true,
           .run = run,

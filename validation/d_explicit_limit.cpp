@@ -151,8 +151,8 @@ ValidationCase explicit_limit() {
           .summary =
               "largest stable step of symplectic Euler: undamped, damped at the old and at the new velocity",
           .why =
-              "what an explicit method costs on a stiff body is set by one number, the highest frequency; "
-              "linear stability theory",
+              "the highest frequency determines the cost of an explicit method on a stiff body; linear "
+              "stability theory",
           .quick = true,
           .run = run,
           .faults = {{"stiffer", "largest stable step"},

@@ -59,7 +59,7 @@ void add(double poisson, const std::string& fault, std::vector<Measurement>& out
     error.push_back(std::abs(frequency / exact - 1.0));
     overlap = std::min(overlap, match.overlap);
   }
-  out.push_back({.quantity = fmt::format("frequency [Hz], nu = {}, 25 cells a side", poisson),
+  out.push_back({.quantity = fmt::format("frequency [Hz], nu = {}, 25 cells per side", poisson),
                  .computed = frequency,
                  .exact = exact,
                  .error = error.back(),
@@ -67,7 +67,7 @@ void add(double poisson, const std::string& fault, std::vector<Measurement>& out
                  .order = validation::fitted_order(h, error),
                  .order_low = 1.8,
                  .order_high = 2.1,
-                 .note = "15, 20, 25 cells a side",
+                 .note = "15, 20, 25 cells per side",
                  .refinement = {"element size [m]", h, error}});
   out.push_back({.quantity = fmt::format("1 - overlap with Lame's mode, nu = {}", poisson),
                  .computed = 1.0 - overlap,
@@ -92,8 +92,8 @@ ValidationCase lame_mode() {
               "a free block vibrates in Lame's mode, found by its overlap: frequency and order in the "
               "element size",
           .why =
-              "the only mode of a three-dimensional free body in closed form; G alone is in it, so a wrong "
-              "lambda shows; rigid motions must not disturb it",
+              "the only mode of a three-dimensional free body in closed form; it depends only on G, so a "
+              "wrong lambda is detected; rigid motions must not disturb it",
           .run = run,
           .faults = {{"double-mass", "frequency"},
                      {"other-poisson", "frequency"},

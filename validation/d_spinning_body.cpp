@@ -179,7 +179,7 @@ void add_drifts(const std::string& fault, std::vector<Measurement>& out) {
   spec.name = "implicit-midpoint";
   spec.step_s = 2.0 * M_PI / (32 * kSpin.norm());
   spec.newton_rtol = 1e-11;
-  add(spec, "32 steps a revolution, newton_rtol 1e-11, stiffness damping on", true);
+  add(spec, "32 steps per revolution, newton_rtol 1e-11, stiffness damping on", true);
 }
 
 /// Measures, over random states, the moment of all internal forces, and the power of damping under a rigid
@@ -216,7 +216,8 @@ void add_instantaneous(const std::string& fault, std::vector<Measurement>& out) 
                  .computed = moment,
                  .error = moment,
                  .bar = 1e-12});
-  out.push_back({.quantity = "damping power under v = w x x / that of the same speeds at random",
+  out.push_back({.quantity = "damping power under v = w x x / damping power of random velocities of equal "
+                             "speed",
                  .computed = power,
                  .error = power,
                  .bar = 1e-12});
@@ -236,8 +237,8 @@ ValidationCase spinning_body() {
       .name = "spinning-body",
       .section = "D",
       .summary =
-          "free soft body spinning in relative equilibrium, stiffness damping on: angular momentum and "
-          "energy kept",
+          "free soft body spinning in relative equilibrium, stiffness damping on: conservation of angular "
+          "momentum and energy",
       .why =
           "damping that is not objective brakes every rotating body; relative equilibrium by Newton (Simo, "
           "Posbergh, Marsden 1990)",

@@ -133,8 +133,8 @@ ValidationCase two_material_bar() {
               "a bar of two materials vibrates along its axis: first three frequencies against the roots of "
               "its frequency equation, order in the element size",
           .why =
-              "stiffness and mass of both materials, and what passes between them, against one-dimensional "
-              "waves, whose solution is exact for nu = 0",
+              "stiffness and mass of both materials, and the transmission between them, against "
+              "one-dimensional waves, whose solution is exact for nu = 0",
           .quick = true,
           .run = run,
           .faults = {{"one-stiffness", "frequency"}, {"one-density", "frequency"}}};

@@ -83,7 +83,7 @@ ValidationCase device_limits() {
           .summary =
               "200,000 random ticks: force, torque and slew never above their bounds, zero 20 ms after the "
               "last valid pose",
-          .why = "the last thing before motors that a person holds",
+          .why = "the last stage before motors that act on a hand",
           .quick = true,
           .run = run,
           .faults = {{"no-limiter", "number not finite"},

@@ -180,8 +180,8 @@ ValidationCase free_top() {
           .section = "E",
           .summary = "a top without torque: period, energy and angular momentum, the tool and a rigid block",
           .why =
-              "gyroscopic forces are small in a hand's motion, so that nothing else shows when they are "
-              "wrong (Jacobi's solution of Euler's equations)",
+              "gyroscopic forces are small in the motion of a hand, so no other case detects errors in them "
+              "(Jacobi's solution of Euler's equations)",
           .quick = true,
           .run = run,
           .faults = {{"first-two-axes-swapped", "tool, "},

@@ -119,8 +119,8 @@ ValidationCase handle_step() {
       .section = "E",
       .summary = "the tool follows a jump of the handle: damped oscillator, in time and in ticks",
       .why =
-          "what a user feels of the coupling is this response; a fixed tick must be off by its own "
-          "closed form and by nothing else",
+          "this is the response of the coupling that reaches the user; the error of a fixed tick must equal "
+          "its discrete closed form",
       .quick = true,
       .run = run,
       .faults = {

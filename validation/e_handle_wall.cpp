@@ -46,16 +46,15 @@ std::vector<Measurement> run(const std::string& fault) {
 }  // namespace
 
 ValidationCase handle_below_wall() {
-  return {
-      .name = "handle-below-wall",
-      .section = "E",
-      .summary = "steady force of a handle held below a linear wall: coupling and wall in series",
-      .why = "the force that a device renders is the wall's softened by the coupling, by exactly k K/(k + K)",
-      .quick = true,
-      .run = run,
-      .faults = {{"half-contact", "force on the hand"},
-                 {"half-stiffness", "force on the hand"},
-                 {"wrong-sign", "force on the hand"}}};
+  return {.name = "handle-below-wall",
+          .section = "E",
+          .summary = "steady force of a handle held below a linear wall: coupling and wall in series",
+          .why = "a device renders the wall in series with the coupling, with stiffness k K/(k + K) exactly",
+          .quick = true,
+          .run = run,
+          .faults = {{"half-contact", "force on the hand"},
+                     {"half-stiffness", "force on the hand"},
+                     {"wrong-sign", "force on the hand"}}};
 }
 
 }  // namespace palpate::validation

@@ -128,9 +128,9 @@ std::vector<Measurement> run(const std::string& fault) {
                  .bar = 0.5,
                  .note = fmt::format("{:.2e} and {:.2e} N m; friction below its cap: {:.3f} of {:g} m/s",
                                      contact.moment, contact.torque, contact.speed, limit)});
-  add("force on the hand, RMS distance at the shortest period [N]", force, 1e-3);
-  add("torque on the hand, RMS distance at the shortest period [N m]", torque, 1e-5);
-  add("nodes of the block, distance at the shortest period, rel. L2", position, 3e-3);
+  add("force on the hand, RMS error at the shortest period [N]", force, 1e-3);
+  add("torque on the hand, RMS error at the shortest period [N m]", torque, 1e-5);
+  add("nodes of the block, error at the shortest period, rel. L2", position, 3e-3);
   return out;
 }
 
@@ -141,13 +141,14 @@ ValidationCase partitioned_monolithic() {
       .name = "partitioned-monolithic",
       .section = "E",
       .summary =
-          "a block pressed in two rates tends to the same as one system as the exchange period shrinks",
+          "a block pressed in two rates converges to the monolithic solution as the exchange period "
+          "decreases",
       .why =
-          "an exchange that lacks a part of the bodies' answer stays away from the reference at any period; "
-          "the device force is only as good as this distance",
+          "an exchange that lacks a part of the response of the bodies does not converge to the reference; "
+          "the device force is only as accurate as this error",
       .quick = true,
       .run = run,
-      .faults = {{"half-contact", "RMS distance"}, {"half-stiffness", "nodes of the block"}}};
+      .faults = {{"half-contact", "RMS error"}, {"half-stiffness", "nodes of the block"}}};
 }
 
 }  // namespace palpate::validation

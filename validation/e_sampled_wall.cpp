@@ -113,7 +113,7 @@ std::vector<Measurement> run(const std::string& fault) {
     const double b = 0.5 * K * kT + std::abs(B);
     const double least = least_energy({.K = K, .B = B, .b = b, .fault = fault}, 60);
     out.push_back(
-        {.quantity = fmt::format("least energy at the port at the limit of theory, B = {} N s/m [J]", B),
+        {.quantity = fmt::format("minimum energy at the port at the theoretical limit, B = {} N s/m [J]", B),
          .computed = least,
          .error = std::max(0.0, -least),
          .bar = 1e-9});
@@ -143,7 +143,7 @@ ValidationCase sampled_wall() {
   return {.name = "sampled-wall",
           .section = "E",
           .summary = "passivity of a sampled virtual wall: b > K T/2 + |B|, and 3 K T/2 with a tick of delay",
-          .why = "a wall that gives back more than the hand puts in makes it vibrate, whatever the hand does",
+          .why = "a wall that returns more energy than the hand supplies vibrates with any hand",
           .quick = true,
           .run = run,
           .faults = {{"friction-left-out", "energy"}, {"held-too-early", "triangle wave"}}};

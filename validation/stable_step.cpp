@@ -72,7 +72,7 @@ double amplification(const dynamics::StepperEntry& entry, loop::World& world, do
   if (entry.traits.stability != dynamics::Stability::kExplicit) return 1.0;
   if (entry.name == "symplectic-euler") return symplectic_euler(linearised(world), h);
   if (entry.name == "rk4") return rk4(linearised(world), h);
-  fail("no stability limit is known of integrator \"{}\"", entry.name);
+  fail("the stability limit of integrator \"{}\" is unknown", entry.name);
 }
 
 }  // namespace

@@ -328,7 +328,8 @@ class Interrupt(Cli):
         out, err = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 130, err)
         self.assertLess(time.monotonic() - start, 60)
-        self.assertRegex(out, r"(0 of 0|1 of 1) cases keep their bars; stopped before the other [12]\n$")
+        self.assertRegex(out, r"(0 of 0|1 of 1) cases meet their acceptance limits; "
+                              r"stopped before the other [12]\n$")
 
     def test_progress_bar_on_a_terminal_with_time_left(self):
         terminal, end = open_terminal()

@@ -142,7 +142,8 @@ class Frames(Movie):
         self.assertEqual(Animation(self.folder / "b.png").delays, [0.04] * 5)
         self.good("movie", "here", *SMALL, PATH="/nowhere")  # default formats require no other program
         self.assertEqual(Animation(self.folder / "here/movie.png").delays, [0.04] * 2)
-        self.assertIn("runs do not record penetration", self.refused("movie", "here", "--shade", "penetration"))
+        self.assertIn("runs do not record penetration",
+                      self.refused("movie", "here", "--shade", "penetration"))
         self.assertIn("one per 0.01 s", self.refused("movie", "here", "--fps", "200", "-o", "c.png"))
         self.assertIn("run.vtkhdf: no such file", self.refused("movie", "nowhere"))
         (self.folder / "here/run.vtkhdf").write_bytes(b"no HDF5")

@@ -333,8 +333,8 @@ class Results(Cli):
     def test_another_method_says_what_it_leaves_out(self):
         done = self.call("run", "one-tet", "--integrator", "rk4", "--duration-s", "0.001")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("palpate: integrator.rtol of the scene is ignored: the selection by --integrator or --set "
-                      "does not use it\n", done.stderr)
+        self.assertIn("palpate: integrator.rtol of the scene is ignored: the selection by --integrator or "
+                      "--set does not use it\n", done.stderr)
         self.assertEqual(self.call("run", "one-tet", "--duration-s", "0.001").stderr, "")
 
     def test_keys_of_another_method_are_refused(self):

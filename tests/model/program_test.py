@@ -261,8 +261,8 @@ class Program(unittest.TestCase):
                     file.write("f {} {} {}\n".format(*f))
         done = run("model", self.path / "tangle.obj", "-o", self.path / "a.h5", "--limit-s", "0.001")
         self.assertEqual(done.returncode, 1, done.stdout)
-        self.assertRegex(done.stderr, r'tangle.obj.*face \d+ at \(.*\) m: "repair the surface" did not finish '
-                                      r"within 0.001 s.*--limit-s")
+        self.assertRegex(done.stderr, r'tangle.obj.*face \d+ at \(.*\) m: "repair the surface" did not '
+                                      r"finish within 0.001 s.*--limit-s")
         self.assertFalse((self.path / "a.h5").exists())
 
     def test_a_size_that_cannot_be_meant_is_asked_about(self):
@@ -274,7 +274,8 @@ class Program(unittest.TestCase):
                                       "If so, use --scale 1; for a file in millimetres, use --scale 0.001\n")
         for answer, status in [("y\n", 0), ("n\n", 1), ("\n", 1)]:
             asked = Terminal(*make)
-            self.assertTrue(asked.read_until(r"large.obj: the body is 30 m large: is this intended\? \[y/N\]"))
+            self.assertTrue(
+                asked.read_until(r"large.obj: the body is 30 m large: is this intended\? \[y/N\]"))
             asked.type(answer)
             self.assertEqual(asked.end(), status, asked.text)
             self.assertEqual((self.path / "a.h5").exists(), status == 0)
@@ -282,7 +283,8 @@ class Program(unittest.TestCase):
         for scale in ("1", "0.001"):
             self.assertEqual(run(*make, "--scale", scale).returncode, 0)
         small = scaled(octahedron(self.path), "small.obj", 1e-5)
-        self.assertIn("the body is 2e-05 m large: is this intended? If so, use --scale 1; for a file in kilometres",
+        self.assertIn("the body is 2e-05 m large: is this intended? If so, use --scale 1; "
+                      "for a file in kilometres",
                       run("model", small).stderr)
 
     def test_flat_tetrahedra_are_refused_filled_anew_or_taken_at_a_price(self):

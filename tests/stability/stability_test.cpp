@@ -106,7 +106,7 @@ std::vector<Fault> faults() {
       Fault{Defect::kDrags, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kWrong, "free flight"},
       Fault{Defect::kDrags, "impact", "1 m/s", Verdict::kWrong, "free flight"},
       Fault{Defect::kDrags, "two-bodies", "1 times as dense", Verdict::kWrong, "momentum"},
-      Fault{Defect::kDrags, "rest", "a free cube", Verdict::kWrong, "let go"},
+      Fault{Defect::kDrags, "rest", "a free cube", Verdict::kWrong, "released"},
       Fault{Defect::kGainsEnergy, "squashed", "scattered", Verdict::kGrew, ""},
       Fault{Defect::kFallsUpward, "sizes", "one element falls", Verdict::kGrew, ""}};
 #ifdef PALPATE_HAS_TOOL

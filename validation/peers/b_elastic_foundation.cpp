@@ -96,16 +96,15 @@ std::vector<Measurement> run(const std::string& fault) {
     error.push_back(std::abs(peer / peer_limit - 1.0));
   }
   std::vector<Measurement> out;
-  out.push_back(
-      {.quantity = "Simbody's force, finest mesh, mean of 3 orientations, against its own limit [N]",
-       .computed = peer,
-       .exact = peer_limit,
-       .error = error.back(),
-       .bar = 5e-3,
-       .order = fitted_order(h, error),
-       .order_low = 1.9,
-       .order_high = 2.2,
-       .note = "order in facet size over 12 to 34 subdivisions of the icosahedron"});
+  out.push_back({.quantity = "Simbody's force, finest mesh, mean of 3 orientations, against its limit [N]",
+                 .computed = peer,
+                 .exact = peer_limit,
+                 .error = error.back(),
+                 .bar = 5e-3,
+                 .order = fitted_order(h, error),
+                 .order_low = 1.9,
+                 .order_high = 2.2,
+                 .note = "order in facet size over 12 to 34 subdivisions of the icosahedron"});
   out.push_back({.quantity = "Simbody's force over ours on the same meshes",
                  .computed = peer / ours,
                  .exact = 1.0,
@@ -125,7 +124,7 @@ ValidationCase elastic_foundation_peer() {
           "Simbody's ElasticFoundationForce on the same sphere and plane: its limit, and its ratio to "
           "ours, 1",
       .why =
-          "two codes that share nothing, with one law, on one problem (elastic foundation: Sherman, Seth, "
+          "two independent codes with the same law on the same problem (elastic foundation: Sherman, Seth, "
           "Delp 2011)",
       .quick = true,
       .run = run,

@@ -12,20 +12,21 @@ namespace {
 void add_validate(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand(std::string(kValidate.command), kValidate.summary);
   auto arguments = std::make_shared<ValidateArguments>();
-  command->add_option("CASE", arguments->cases, "only these; see `palpate list cases`");
+  command->add_option("CASE", arguments->cases, "only these cases; see `palpate list cases`");
   CLI::Option* slow = command->add_flag("--slow", arguments->slow,
-                                        "also the cases that take minutes: a quarter of an hour on one core");
+                                        "also run the cases that take minutes: a quarter of an hour on one "
+                                        "core");
   command
       ->add_flag("--quick", arguments->quick,
                  "only the cases that take seconds: a minute for all of them on one core")
       ->excludes(slow);
   command
       ->add_option("--jobs", arguments->jobs,
-                   "cases side by side, each in a process of its own; default: as many as there are cores. "
-                   "With 1 nothing disturbs their run times")
+                   "number of parallel cases, each in a separate process; default: number of cores. 1 gives "
+                   "undisturbed run times")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--inject-faults", arguments->inject_faults,
-                    "break the library on purpose: what each fault is measured by must then fail");
+                    "inject faults into the library: the measurement of each fault must then fail");
   command->add_flag("--sabotage", arguments->inject_faults)->group("");  // Its name before 0.1, hidden.
   command->add_option("-o,--output", arguments->folder, "also write validation.json and report.html here")
       ->type_name("DIR");
@@ -34,7 +35,7 @@ void add_validate(CLI::App& app, Invocation& invocation) {
   palpate validate patch-test cantilever -o out/validation
   palpate validate --inject-faults               shows that the cases can fail
 
-Exit status 0 when every measurement keeps its bar, else 1.)");
+Exit status 0 if every measurement meets its acceptance limit, else 1.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return validate(*arguments); };
     invocation.factorises = true;

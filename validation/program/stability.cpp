@@ -49,8 +49,8 @@ void print_matrix(const stability::StabilityMatrix& matrix) {
     fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
   }
   fmt::print(
-      "\nA accurate  S stable  B bounded  E ended with a clear error  G grew  N not finite  F failed in "
-      "silence  T too slow  W wrong  ! unexpected  . no such cell\n");
+      "\nA accurate  S stable  B bounded  E ended with a clear error message  G grew  N not finite  F failed "
+      "without a reason  T too slow  W wrong  ! unexpected  . not applicable\n");
 }
 
 void print_cells(const stability::StabilityMatrix& matrix, bool only_unexpected) {
@@ -100,10 +100,10 @@ int stability(const StabilityArguments& arguments) {
   const long unexpected = matrix.unexpected();
   const report::RunReport written = report::write_run_report(folder);
   fmt::print("\nwritten: {}\n", written.page.string());
-  fmt::print("{} of {} cells as theory expects, in {:.0f} s\n",
+  fmt::print("{} of {} cells agree with theory, in {:.0f} s\n",
              static_cast<long>(matrix.cells.size()) - unexpected, matrix.cells.size(), matrix.wall_s);
   if (matrix.stopped) {
-    fmt::print(stderr, "palpate: stopped; the cells that were finished are in {}\n", folder);
+    fmt::print(stderr, "palpate: stopped; the finished cells are in {}\n", folder);
     return kExitStopped;
   }
   MissingOutputs missing;

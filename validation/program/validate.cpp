@@ -117,7 +117,7 @@ void take(const ValidationCase& one, const CaseEnd& end, Run& out) {
 void take_fault(const CaseRun& run, const CaseEnd& end, Run& out) {
   const bool found = end.broken.empty() && run.fault->is_found(end.measurements);
   out.rows.push_back({run.one->name, run.fault->name, run.fault->fails,
-                      found                ? "fails, as it must"
+                      found                ? "fails, as required"
                       : end.broken.empty() ? "STILL PASSES"
                                            : end.broken});
   if (!found) ++out.failed;
@@ -138,7 +138,7 @@ std::vector<CaseRun> runs_of(const std::vector<const ValidationCase*>& cases, bo
 void print_meanings(const std::vector<const ValidationCase*>& cases) {
   std::vector<std::vector<std::string>> rows;
   for (const ValidationCase* one : cases) rows.push_back({one->name, one->section, one->summary});
-  fmt::print("{}\n", report::format_table({"case", "section", "what it measures"}, rows));
+  fmt::print("{}\n", report::format_table({"case", "section", "description"}, rows));
 }
 
 void write_results(const Run& run, const std::string& folder, MissingOutputs& missing) {
@@ -179,12 +179,12 @@ int validate(const ValidateArguments& arguments) {
   fmt::print("{}",
              report::format_table(arguments.inject_faults ? Headers{"case", "fault", "measured by", "outcome"}
                                                           : Headers{"case", "quantity", "computed", "exact",
-                                                                    "error", "bar", "order", "verdict"},
+                                                                    "error", "limit", "order", "verdict"},
                                   out.rows));
   MissingOutputs missing;
   if (!arguments.folder.empty() && !arguments.inject_faults) write_results(out, arguments.folder, missing);
   fmt::print("{} of {} {}{}\n", done - static_cast<std::size_t>(out.failed), done,
-             arguments.inject_faults ? "faults make their cases fail" : "cases keep their bars",
+             arguments.inject_faults ? "faults make their cases fail" : "cases meet their acceptance limits",
              done < runs.size() ? fmt::format("; stopped before the other {}", runs.size() - done) : "");
   return missing.close(out.failed > 0 ? kExitError : 0);
 }

@@ -20,9 +20,11 @@ std::string does_not_move(const CaseContext& context, scene::Description d, doub
     if (!(off <= most)) most = off;  // Keeps a NaN.
     ++periods;
   });
-  if (!course.result.ok()) return fmt::format("let go at a speed, it ended: {}", course.result.message);
+  if (!course.result.ok())
+    return fmt::format("released with a velocity, the run ended: {}", course.result.message);
   if (periods < 5 || !(most <= 1e-6))
-    return fmt::format("let go at a speed, it is {:.1e} of its way off after {} periods", most, periods);
+    return fmt::format("released with a velocity, its error is {:.1e} of the distance after {} periods", most,
+                       periods);
   return {};
 }
 

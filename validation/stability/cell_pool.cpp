@@ -38,7 +38,7 @@ template <typename Named>
 const Named& named(const std::vector<Named>& all, std::string Named::*name, const std::string& requested) {
   for (const Named& one : all)
     if (one.*name == requested) return one;
-  fail("the process of a cell does not know \"{}\"", requested);
+  fail("the process of a cell got an unknown cell \"{}\"", requested);
 }
 
 /// A ProcessPool::Work: runs the cell encoded by encode_job().

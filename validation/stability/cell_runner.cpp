@@ -14,7 +14,7 @@ StabilityCell guarded(const Task& task, const CaseContext& context) {
     cell = task.sub_case->run(context);
   } catch (const Error& refusal) {
     cell.verdict = Verdict::kError;
-    cell.reason = fmt::format("refused: {}", refusal.what());
+    cell.reason = fmt::format("rejected: {}", refusal.what());
   } catch (const std::exception& mistake) {
     cell.verdict = Verdict::kSilent;
     cell.reason = fmt::format("internal error: {}", mistake.what());

@@ -11,13 +11,13 @@ bool ended_early(const Column& column, const dynamics::StepResult& result, bool 
     return false;
   } else if (result.ok()) {
     cell.verdict = Verdict::kNotFinite;
-    cell.reason = "a state with a value that is not finite was called good";
+    cell.reason = "a state with a non-finite value was reported as valid";
   } else if (result.message.empty()) {
     cell.verdict = Verdict::kSilent;
     cell.reason = fmt::format("{} without a message", dynamics::to_string(result.status));
   } else if (grown && !(column.entry && is_explicit(column))) {
     cell.verdict = Verdict::kGrew;
-    cell.reason = fmt::format("grew beyond every bound, and then: {}", result.message);
+    cell.reason = fmt::format("grew beyond all bounds, and then: {}", result.message);
   } else {
     cell.verdict = Verdict::kError;
     cell.reason = result.message;

@@ -73,14 +73,14 @@ void judge_early_end(const CaseContext& context, const LinearProblem& problem, c
     const bool fast_contact =
         context.column.entry->traits.family == "multi-rate" && problem.contact_share() > 0.0;
     if (!(course.predicted > (fast_contact ? kOverflowingOnItsWay : kOverflowing)))
-      mistake = fmt::format("gave up where its formula has {:.1e} of the start's energy", course.predicted);
+      mistake = fmt::format("stopped where its formula has {:.1e} of the initial energy", course.predicted);
   } else if (!context.column.fixed) {
     const double least = least_progress(context.column, problem), t = last.state.time();
     const double error = problem.error(last, t);
     if (t < least)
-      mistake = fmt::format("gave up at {:.1e} s, where its steps reach {:.1e} s at least", t, least);
+      mistake = fmt::format("stopped at {:.1e} s, but its steps reach at least {:.1e} s", t, least);
     else if (!(error <= bar))
-      mistake = fmt::format("gave up with an error of {:.1e} of {:.1e}", error, bar);
+      mistake = fmt::format("stopped with an error of {:.1e} (limit {:.1e})", error, bar);
   }
   mark_wrong(mistake, cell);
 }
@@ -99,7 +99,7 @@ StabilityCell linear_cell(const CaseContext& context, const LinearProblem& probl
   const LinearBars bars = linear_bars(context.column, problem, H, course.seen.highest, cell.steps);
   cell.gain = course.seen.highest - 1.0;
   cell.error = course.seen.error;
-  cell.figure = fmt::format("energy {:+.1e}, error {:.1e} of {:.1e}", cell.gain, cell.error, bars.error);
+  cell.figure = fmt::format("energy {:+.1e}, error {:.1e} (limit {:.1e})", cell.gain, cell.error, bars.error);
   if (has_modal_steps(context.column))
     cell.figure += fmt::format(", {:.0e} from its formula", course.departure);
 
@@ -112,7 +112,7 @@ StabilityCell linear_cell(const CaseContext& context, const LinearProblem& probl
   if (cell.verdict <= Verdict::kError && course.departure > bars.agreement) {
     cell.verdict = Verdict::kWrong;
     cell.reason =
-        fmt::format("departs from its own formula by {:.1e} of {:.1e}", course.departure, bars.agreement);
+        fmt::format("departs from its formula by {:.1e} (limit {:.1e})", course.departure, bars.agreement);
   }
   return cell;
 }

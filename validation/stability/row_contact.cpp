@@ -13,8 +13,8 @@ scene::Description thrown_cube(double stiffness) {
 
 Row contact_stiffness_row() {
   Row row{"contact-stiffness",
-          "k from 1e2 to 1e12 Pa/m: a soft cube thrown on a plane at 0.5 m/s.  Finds motion that is not that "
-          "of the throw, contact that does not turn it round, energy without a reason"};
+          "k from 1e2 to 1e12 Pa/m: a soft cube thrown on a plane at 0.5 m/s.  Detects motion that differs "
+          "from the throw, contact that does not reverse it, and unexplained energy"};
   for (int decade = 2; decade <= 12; decade += 2) {
     const scene::Description thrown = thrown_cube(std::pow(10.0, decade));
     row.cases.push_back({fmt::format("k = 1e{} Pa/m", decade),

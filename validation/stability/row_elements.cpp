@@ -32,9 +32,9 @@ SubCase block_case(std::string name, double youngs_modulus, double poissons_rati
 Row elements_row() {
   Row row{
       "elements",
-      "the clamped block by the elements' own code, E from 1e3 to 1e9 Pa at H = 10 ms, displaced by 1e-5: "
-      "against the exact motion and the method's formula.  Finds forces, tangents and damping that do not "
-      "belong together, and steps that do not take them as they are"};
+      "the clamped block with the code of the elements, E from 1e3 to 1e9 Pa at H = 10 ms, displaced by "
+      "1e-5, against the exact motion and the formula of the method.  Detects inconsistent forces, tangents "
+      "and damping, and steps that modify them"};
   for (int decade = 3; decade <= 9; decade += 2)
     row.cases.push_back(block_case(fmt::format("E = 1e{} Pa", decade), std::pow(10.0, decade), 0.3));
   row.cases.push_back(block_case("nu = 0.49", 1e5, 0.49));

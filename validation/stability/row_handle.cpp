@@ -82,7 +82,7 @@ StabilityCell judge_ratio(const CaseContext& context, const Motion& motion, doub
                           const char* what) {
   StabilityCell cell;
   cell.gain = ratio - 1.0;
-  cell.figure = fmt::format("{} {:.3f} of what the coupling can give", what, ratio);
+  cell.figure = fmt::format("{} {:.3f} of the maximum that the coupling can supply", what, ratio);
   if (ended_early(context.column, motion.result, motion.finite, motion.interrupted, ratio > 10.0, cell))
     return cell;
   cell.verdict = ratio <= 1.01 ? Verdict::kStable : ratio <= 10.0 ? Verdict::kBounded : Verdict::kGrew;
@@ -145,8 +145,8 @@ StabilityCell million(const CaseContext& context, double force) {
   const double grown = resident_memory_mib() - memory, bar = force > 0.0 ? 1e-9 * rest.norm() : 1e-12;
   cell.steps = kTicks;
   cell.error = drift;
-  cell.figure =
-      fmt::format("drift {:.1e} m of {:.0e}, {:.1e} rad, memory {:+.1f} MiB", drift, bar, rotation, grown);
+  cell.figure = fmt::format("drift {:.1e} m (limit {:.0e}), {:.1e} rad, memory {:+.1f} MiB", drift, bar,
+                            rotation, grown);
   if (ended_early(context.column, result, std::isfinite(drift + rotation), interrupted, false, cell))
     return cell;
   cell.verdict = drift <= bar && rotation <= 1e-12 && grown < 1.0 ? Verdict::kAccurate : Verdict::kGrew;
@@ -160,11 +160,11 @@ Verdicts accurate(const CaseContext&) { return {Verdict::kAccurate}; }
 
 Row thrown_handle_row() {
   if (!tool::available())
-    return {"thrown-handle", "needs tools, which were not compiled in", RowColumns::kTools};
+    return {"thrown-handle", "requires tools, which were not compiled in", RowColumns::kTools};
   return {
       "thrown-handle",
-      "a handle that jumps by 1 m, or spins at 1000 rad/s, and the tool's own ticks.  Finds ticks that make "
-      "energy, and tools that do not follow",
+      "a handle that jumps by 1 m, or spins at 1000 rad/s, and the ticks of the tool.  Detects ticks that "
+      "produce energy, and tools that do not follow",
       RowColumns::kTools,
       false,
       {{"jumps by 1 m", passive, thrown},
@@ -173,9 +173,9 @@ Row thrown_handle_row() {
 
 Row million_tool_ticks_row() {
   if (!tool::available())
-    return {"million-tool-ticks", "needs tools, which were not compiled in", RowColumns::kTools, true};
+    return {"million-tool-ticks", "requires tools, which were not compiled in", RowColumns::kTools, true};
   return {"million-tool-ticks",
-          "a million ticks of the tool alone.  Finds drift and leaks of the ticks",
+          "a million ticks of the tool alone.  Detects drift and memory leaks of the ticks",
           RowColumns::kTools,
           true,
           {{"unloaded", accurate, [](const CaseContext& context) { return million(context, 0.0); }},

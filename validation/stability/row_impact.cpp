@@ -46,8 +46,7 @@ class Crossings {
     // Up to the last query, one probe ago.
     if (!world.contact->tunnelled().empty()) reported_ = world.contact->tunnelled()[0];
     if (reported_ != counted_)
-      misses_ =
-          fmt::format("{} vertices went through the plate unseen, {} were reported", counted_, reported_);
+      misses_ = fmt::format("{} vertices tunnelled through the plate, {} were reported", counted_, reported_);
     const loop::Body& slab = world.bodies[0];
     const Points x = world.positions(slab);
     // An explicit method that is about to overflow.
@@ -107,9 +106,9 @@ StabilityCell run_on_plate(const CaseContext& context, const scene::Description&
 Row impact_row() {
   Row row{
       "impact",
-      "a thin slab thrown at 0.1 to 100 m/s (three times the speed of its own waves) on a plane, and on "
-      "a plate as thin as itself: what goes through is counted.  Finds bodies that are not turned round or "
-      "leave with more energy than they came with, and vertices that go through uncounted"};
+      "a thin slab thrown at 0.1 to 100 m/s (three times its wave speed) on a plane, and on an equally thin "
+      "plate: tunnelled vertices are counted.  Detects bodies that are not reversed or that gain energy, and "
+      "tunnelled vertices that are not reported"};
   const auto add = [&row](std::string name, const scene::Description& thrown,
                           StabilityCell (*run)(const CaseContext&, const scene::Description&)) {
     row.cases.push_back({std::move(name),

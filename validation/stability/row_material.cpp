@@ -33,12 +33,10 @@ SubCase block_case(std::string name, double youngs_modulus, double poissons_rati
 }  // namespace
 
 Row youngs_modulus_row() {
-  Row row{
-      "youngs-modulus",
-      "E from 1e3 to 1e11 Pa at H = 10 ms: a clamped block, every mode excited, against the exact motion "
-      "and, "
-      "at fixed steps, the method's formula.  Finds a step that is not the method's, growth, limits that are "
-      "not kept"};
+  Row row{"youngs-modulus",
+          "E from 1e3 to 1e11 Pa at H = 10 ms: a clamped block, every mode excited, against the exact motion "
+          "and, at fixed steps, the formula of the method.  Detects a step that differs from the method's, "
+          "growth, and violated limits"};
   for (int decade = 3; decade <= 11; ++decade)
     row.cases.push_back(block_case(fmt::format("E = 1e{} Pa", decade), std::pow(10.0, decade), 0.3, 0.01));
   row.core = 4;
@@ -47,8 +45,8 @@ Row youngs_modulus_row() {
 
 Row poissons_ratio_row() {
   Row row{"poissons-ratio",
-          "nu from 0.3 to 0.4999 at E = 1e5 Pa, H = 10 ms: the same block.  Finds the same where stiffnesses "
-          "part"};
+          "nu from 0.3 to 0.4999 at E = 1e5 Pa, H = 10 ms: the same block.  Detects the same with strongly "
+          "different stiffnesses"};
   for (const double nu : {0.3, 0.4, 0.45, 0.49, 0.499, 0.4999})
     row.cases.push_back(block_case(fmt::format("nu = {}", nu), 1e5, nu, 0.01));
   row.core = 2;
@@ -56,10 +54,9 @@ Row poissons_ratio_row() {
 }
 
 Row undamped_row() {
-  Row row{
-      "undamped",
-      "the same block without any damping, E from 1e3 to 1e7 Pa at H = 10 ms: its energy is constant.  Finds "
-      "damping and growth that are not the method's"};
+  Row row{"undamped",
+          "the same block without any damping, E from 1e3 to 1e7 Pa at H = 10 ms: its energy is constant.  "
+          "Detects damping and growth that the method does not have"};
   for (int decade = 3; decade <= 7; ++decade)
     row.cases.push_back(
         block_case(fmt::format("E = 1e{} Pa", decade), std::pow(10.0, decade), 0.3, 0.01, 0.0));
@@ -69,7 +66,7 @@ Row undamped_row() {
 
 Row step_row() {
   Row row{"step",
-          "H from 1e-4 to 1 s at E = 1e5 Pa: the same block.  Finds what depends on the step's own size"};
+          "H from 1e-4 to 1 s at E = 1e5 Pa: the same block.  Detects errors that depend on the step size"};
   for (const double H : {1e-4, 1e-3, 1e-2, 1e-1, 1.0})
     row.cases.push_back(block_case(fmt::format("H = {:g} s", H), 1e5, 0.3, H));
   row.core = 2;

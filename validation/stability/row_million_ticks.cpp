@@ -94,8 +94,9 @@ StabilityCell run(const CaseContext& context, double slope) {
   StabilityCell cell;
   cell.steps = course.steps;
   cell.error = drift;
-  cell.figure = fmt::format("drift {:.1e} m of {:.0e} beside a creep of {:.1e} m, memory {:+.1f} MiB", drift,
-                            bar, speed * kDuration, grown);
+  cell.figure =
+      fmt::format("drift {:.1e} m (limit {:.0e}) in excess of a creep of {:.1e} m, memory {:+.1f} MiB", drift,
+                  bar, speed * kDuration, grown);
   std::string mistake;
   if (ended_early(context.column, course.result, course.finite, course.interrupted, drift > 1e3 * bar,
                   cell)) {
@@ -135,7 +136,8 @@ Verdicts expect_on_slope(const CaseContext& context) {
 
 Row million_ticks_row() {
   return {"million-ticks",
-          "a cube on a floor for a million ticks (1000 s).  Finds drift, leaks, creep that is not the law's",
+          "a cube on a floor for a million ticks (1000 s).  Detects drift, memory leaks, and creep that "
+          "differs from the law's",
           RowColumns::kSteppers,
           true,
           {{"unloaded", expect, [](const CaseContext& context) { return run(context, 0.0); }},

@@ -74,9 +74,10 @@ Verdicts expect(const CaseContext&) { return {Verdict::kAccurate}; }
 
 Row million_touch_ticks_row() {
   if (!tool::available())
-    return {"million-touch-ticks", "needs tools, which were not compiled in", RowColumns::kFamilies, true};
+    return {"million-touch-ticks", "requires tools, which were not compiled in", RowColumns::kFamilies, true};
   Row row{"million-touch-ticks",
-          "a million ticks of a tool that rests on a soft cube.  Finds drift of the exchange and leaks",
+          "a million ticks of a tool that rests on a soft cube.  Detects drift of the exchange and memory "
+          "leaks",
           RowColumns::kFamilies, true};
   row.cases.push_back({"at rest under a press", expect, press});
   return row;

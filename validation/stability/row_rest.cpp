@@ -116,7 +116,7 @@ StabilityCell fall(const CaseContext& context) {
   });
   cell.steps = course.steps;
   const double bar = bar_of_fall(context.column);
-  cell.figure = fmt::format("error of the path {:.1e} of {:.1e}", cell.error, bar);
+  cell.figure = fmt::format("error of the path {:.1e} (limit {:.1e})", cell.error, bar);
   if (ended_early(context.column, course.result, course.finite, course.interrupted, cell.error > 0.1, cell))
     return cell;
   cell.verdict = cell.error <= bar   ? Verdict::kAccurate
@@ -138,7 +138,7 @@ StabilityCell nothing(const CaseContext& context) {
   cell.verdict = state.time() == 1.0 ? Verdict::kAccurate : Verdict::kGrew;
   if (is_static(context.column) || fall(context).verdict == Verdict::kAccurate) return cell;
   cell.verdict = Verdict::kWrong;
-  cell.reason = "time passes, but an element does not fall as it must";
+  cell.reason = "time advances, but an element does not fall as required";
   return cell;
 }
 
@@ -146,9 +146,8 @@ StabilityCell nothing(const CaseContext& context) {
 
 Row rest_row() {
   return {"rest",
-          "no gravity, everything at rest: it stays at rest to rounding, and moves when let go at a speed.  "
-          "Finds "
-          "forces that rounding makes, and steppers that do nothing",
+          "no gravity, everything at rest: it remains at rest to rounding, and moves when released with a "
+          "velocity.  Detects forces due to rounding, and steppers that do nothing",
           RowColumns::kSteppers,
           false,
           {{"a free cube", expect_rest,
@@ -161,7 +160,7 @@ Row rest_row() {
 
 Row size_row() {
   return {"sizes",
-          "one element falling, no body at all.  Finds errors of the path, and sizes that are forgotten",
+          "one element falling, and no body.  Detects errors of the path, and unhandled sizes",
           RowColumns::kSteppers,
           false,
           {{"one element falls", expect_fall, fall},

@@ -91,7 +91,7 @@ Row sliver_row() {
     };
   };
   return {"slivers",
-          "degenerate elements in the same block, H = 10 ms.  Finds solves that lose the soft modes",
+          "degenerate elements in the same block, H = 10 ms.  Detects solves that lose the soft modes",
           RowColumns::kSteppers,
           false,
           {linear_case("dihedral 0.1 degree", problem_of(mesh_with_flat_element), kH),

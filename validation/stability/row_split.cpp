@@ -20,9 +20,9 @@ namespace palpate::stability {
 Row split_row() {
   Row row{
       "split",
-      "a stiff mode on a body's spring and a contact's, w H of each from 0.3 to 1e6, by methods that take "
-      "the contact explicitly or in fast steps.  Finds a split that is not made, sides taken for each "
-      "other, a step that is not the method's",
+      "a stiff mode on the spring of a body and that of a contact, w H of each from 0.3 to 1e6, by methods "
+      "that treat the contact explicitly or in fast steps.  Detects a missing split, interchanged sides, and "
+      "a step that differs from the method's",
       RowColumns::kSplitting};
   constexpr double kH = 0.01, kDampingRatio = 0.05;
   const auto add = [&row](double body, double contact) {

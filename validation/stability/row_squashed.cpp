@@ -207,8 +207,7 @@ StabilityCell verdict_on(const CaseContext& context, const Bars& bars, const Tal
   }
   if (!tally.beyond() && tally.least_fall < bars.fall) {
     cell.verdict = Verdict::kWrong;
-    cell.reason =
-        fmt::format("a start kept more than {:.2f} of its energy, damped as it is", 1.0 - bars.fall);
+    cell.reason = fmt::format("a start kept more than {:.2f} of its energy despite damping", 1.0 - bars.fall);
     return cell;
   }
   const bool no_rise = tally.rise <= 100.0 * kRtol;
@@ -287,8 +286,8 @@ Row squashed_row() {
   Row row{
       "squashed",
       "all nodes on a plane, a line, a mirror image, a point (each perturbed by 1e-9 m), or scattered at "
-      "random, at rest or at random speeds.  Finds energy that a step makes where rotations jump, damping "
-      "that does not act, inverted elements that are not reported"};
+      "random, at rest or at random speeds.  Detects energy gained where rotations jump, missing damping, "
+      "and inverted elements that are not reported"};
   row.cases = {start_of("on a plane", along(Vec3(1, 1, 0))), start_of("on a line", along(Vec3(1, 0, 0))),
                start_of("mirror image", along(Vec3(1, 1, -1))), start_of("on a point", along(Vec3::Zero())),
                start_of("scattered", scatter)};

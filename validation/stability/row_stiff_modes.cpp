@@ -55,7 +55,7 @@ StabilityCell run(const CaseContext& context, double y) {
       make_stepper(context.column, few->system, few->state, spec_of(context.column, kLinearRtol, kH));
   for (int i = 1; i <= kFew; ++i)
     if (!stepper->advance_to(i * kH).ok()) {
-      mark_wrong("forty steps went well, and a few do not", cell);
+      mark_wrong("forty steps succeeded, but fewer steps failed", cell);
       return cell;
     }
   const double left = problem.from_rest(*few);
@@ -68,8 +68,8 @@ StabilityCell run(const CaseContext& context, double y) {
 
 Row stiff_modes_row() {
   Row row{"stiff-modes",
-          "a stiff mode let go, w H from 1e2 to 1e8, fixed steps: an L-stable method damps it at once, an "
-          "A-stable one by R(inf) a step.  Finds methods that are not what the registry says of them",
+          "a stiff mode released, w H from 1e2 to 1e8, fixed steps: an L-stable method damps it at once, an "
+          "A-stable one by R(inf) per step.  Detects methods that differ from their registry entry",
           RowColumns::kFixedSteppers};
   for (const int decade : {2, 3, 4, 6, 8}) {
     const double y = std::pow(10.0, decade);

@@ -118,23 +118,24 @@ StabilityCell run(const CaseContext& context, const scene::Description& d) {
   cell.steps = course.steps;
   cell.gain = held / prepare_state - 1.0;
   cell.figure =
-      fmt::format("cube held {:.1e} of {:.1e} J, tool strayed {:+.1e} paths", held, prepare_state, strayed);
+      fmt::format("largest energy of the cube {:.1e} J (supplied {:.1e} J), tool deviated {:+.1e} paths",
+                  held, prepare_state, strayed);
   if (ended_early(context.column, course.result, course.finite && std::isfinite(strayed + held),
                   course.interrupted, held > most || strayed > farthest, cell)) {
     if (cell.verdict != Verdict::kError) return cell;
     if (is_multirate(context.column)) {
       if (course.run.counters.fast_steps < kFewFastSteps)
-        mark_wrong(fmt::format("gave up after {} fast steps", course.run.counters.fast_steps), cell);
+        mark_wrong(fmt::format("stopped after {} fast steps", course.run.counters.fast_steps), cell);
     } else if (!context.column.fixed || !is_explicit(context.column)) {
       mark_wrong(gave_up_early(context, course), cell);
     } else if (held <= 1e3 * prepare_state && strayed <= farthest) {
-      mark_wrong(fmt::format("gave up at {:.1e} J", held), cell);
+      mark_wrong(fmt::format("stopped at {:.1e} J", held), cell);
     }
     return cell;
   }
   if (held < 1e-9 * prepare_state) {
     cell.verdict = Verdict::kSilent;
-    cell.reason = "the tool never touched the cube: nothing was tried";
+    cell.reason = "the tool never touched the cube: nothing was tested";
     return cell;
   }
   cell.verdict = held <= prepare_state && strayed <= 1.0 ? Verdict::kStable
@@ -148,7 +149,7 @@ double ball_mass(double density) { return density * 4.0 / 3.0 * M_PI * std::pow(
 }  // namespace
 
 Row density_ratio_row() {
-  if (!tool::available()) return {"density-ratio", "needs tools, which were not compiled in"};
+  if (!tool::available()) return {"density-ratio", "requires tools, which were not compiled in"};
   // Rate [rad/s].
   const double above = kToolCubeEdge + kToolRadius, heavy = ball_mass(1e9), light = ball_mass(1e-3),
                rate = 60.0;
@@ -164,10 +165,9 @@ Row density_ratio_row() {
     d.contacts[0].method = "analytic";
     return d;
   };
-  Row row{
-      "density-ratio",
-      "a ball a million times as dense as the soft cube that it presses, or a millionth.  Finds energy that "
-      "an exchange makes, tools that fly off, contact that is missed"};
+  Row row{"density-ratio",
+          "a ball a million times as dense as the soft cube that it presses, or a millionth.  Detects energy "
+          "produced by an exchange, tools that fly off, and missed contact"};
   const auto add = [&row](std::string name, const scene::Description& d) {
     row.cases.push_back({std::move(name), [d](const CaseContext& context) { return expect(context, d); },
                          [d](const CaseContext& context) { return run(context, d); }});
@@ -180,13 +180,13 @@ Row density_ratio_row() {
 }
 
 Row swallowed_tool_row() {
-  if (!tool::available()) return {"swallowed-tool", "needs tools, which were not compiled in"};
+  if (!tool::available()) return {"swallowed-tool", "requires tools, which were not compiled in"};
   const auto out_in = [](double duration) {
     return under_a_tool({{0.0, 0.6 * kToolCubeEdge}, {duration, 2.0 * kToolCubeEdge}}, 0.05, 300.0, 4.0,
                         std::min(kToolPeriod, duration / 50.0));
   };
   Row row{"swallowed-tool",
-          "a ball that starts wholly inside the soft cube is pulled out.  Finds forces without bound at deep "
+          "a ball that starts entirely inside the soft cube is pulled out.  Detects unbounded forces at deep "
           "penetration"};
   for (const double duration : {1.0, 0.1, 0.01}) {
     const scene::Description d = out_in(duration);

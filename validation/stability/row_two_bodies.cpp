@@ -62,17 +62,17 @@ StabilityCell run(const CaseContext& context, const scene::Description& d) {
   });
   StabilityCell cell;
   judge(context, course, throw_bars(context.column, d), cell);
-  cell.figure +=
-      fmt::format(", momentum {:.0e} off, parts at {:+.2f} of its speed", off, (first - second) / kSpeed);
+  cell.figure += fmt::format(", momentum error {:.0e}, separates at {:+.2f} of its speed", off,
+                             (first - second) / kSpeed);
   std::string mistake;
   if (cell.verdict == Verdict::kError) mistake = gave_up_early(context, course);
   if (cell.verdict <= Verdict::kBounded && !is_static(context.column)) {
     if (!(off <= kMomentum))
-      mistake = fmt::format("momentum is {:.1e} of itself off", off);
+      mistake = fmt::format("the relative error of the momentum is {:.1e}", off);
     else if (!(first + kSpeed >= 0.45 * kSpeed))
-      mistake = "it was not stopped";
+      mistake = "the first body was not stopped";
     else if (!(first - second >= -0.05 * kSpeed))
-      mistake = "it was not turned round";
+      mistake = "the first body was not reversed";
   }
   mark_wrong(mistake, cell);
   return cell;
@@ -83,8 +83,8 @@ StabilityCell run(const CaseContext& context, const scene::Description& d) {
 Row two_bodies_row() {
   Row row{
       "two-bodies",
-      "a soft cube thrown at one that is up to 1e6 times as dense, both free.  Finds contact that does not "
-      "balance, momentum that a method makes or loses, bodies that do not part"};
+      "a soft cube thrown at one that is up to 1e6 times as dense, both free.  Detects unbalanced contact, "
+      "momentum gained or lost by a method, and bodies that do not separate"};
   for (const double ratio : {1.0, 1e3, 1e6}) {
     const scene::Description d = light_on_heavy(ratio);
     row.cases.push_back({fmt::format("{:g} times as dense", ratio),

@@ -84,10 +84,10 @@ std::string gave_up_early(const CaseContext& context, const SceneCourse& course)
   if (is_static(context.column)) return {};
   if (context.column.fixed && is_explicit(context.column))
     return course.gain() > kGrownSpeed ? std::string()
-                                       : fmt::format("gave up at {:.1e} of the energy", 1.0 + course.gain());
+                                       : fmt::format("stopped at {:.1e} of the energy", 1.0 + course.gain());
   if (!context.column.fixed)
-    return course.steps >= kMaxSteps ? std::string() : fmt::format("gave up after {} steps", course.steps);
-  return "gave up";
+    return course.steps >= kMaxSteps ? std::string() : fmt::format("stopped after {} steps", course.steps);
+  return "stopped";
 }
 
 void judge(const CaseContext& context, const SceneCourse& course, const GainBars& bars, StabilityCell& cell) {

@@ -98,9 +98,9 @@ class Flight {
   }
   /// Returns the discrepancy from free flight; empty if there is none.
   std::string in_flight(const Column& column) const {
-    if (flown_ < 2) return "it ended in free flight";
+    if (flown_ < 2) return "the run ended in free flight";
     if (!(off_ <= (column.fixed ? kFlightError : kThrowRtol)))
-      return fmt::format("in free flight it is {:.1e} of its way off", off_);
+      return fmt::format("in free flight its error is {:.1e} of the distance", off_);
     return {};
   }
   std::string mistake(const Column& column, bool passed) const {
@@ -110,11 +110,12 @@ class Flight {
     if (phase > 0.5 * M_PI)
       return last_speed_ >= -kTurnError * speed_
                  ? std::string()
-                 : fmt::format("not turned round: its speed is {:.2f} of the throw's", -last_speed_ / speed_);
+                 : fmt::format("not reversed: its speed is {:.2f} of the initial speed",
+                               -last_speed_ / speed_);
     const double rigid = -std::cos(phase);
     return std::abs(last_speed_ / speed_ - rigid) <= kTurnError
                ? std::string()
-               : fmt::format("its speed is {:.3f} of the throw's, a rigid body's {:.3f}",
+               : fmt::format("its speed is {:.3f} of the initial speed, that of a rigid body {:.3f}",
                              last_speed_ / speed_, rigid);
   }
   double last_speed() const { return last_speed_ / speed_; }
