@@ -2,8 +2,8 @@
 #include <optional>
 #include <string>
 
-#include "commands.h"
 #include "loop/checkpoints.h"
+#include "run.h"
 #include "store/checkpoint_file.h"
 #include "store/summary.h"
 

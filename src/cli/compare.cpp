@@ -1,17 +1,17 @@
-#include "palpate/compare/compare.h"
+#include "compare.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/missing_outputs.h"
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "cli/scene_of.h"
 #include "cli/stop.h"
-#include "cli/missing_outputs.h"
-#include "commands.h"
 #include "compare_tables.h"
+#include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
 #include "report/run_report.h"
 #include "report/table.h"

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cli/missing_outputs.h"
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "cli/scene_of.h"
 #include "cli/stop.h"
-#include "cli/missing_outputs.h"
-#include "commands.h"
+#include "compare.h"
 #include "compare_tables.h"
 #include "palpate/core/error.h"
 #include "report/run_report.h"

@@ -1,9 +1,20 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <memory>
+
 #include "cli/missing_outputs.h"
+#include "cli/program.h"
 #include "commands.h"
+#include "compare.h"
+#include "run.h"
 
 namespace palpate::cli {
+namespace {
+
+struct DemoArguments {
+  std::string folder = "out/demo";
+};
 
 int demo(const DemoArguments& arguments) {
   fmt::print("A tool on the virtual spring of a hand presses a soft ball on a plane.\n\n");
@@ -23,6 +34,24 @@ int demo(const DemoArguments& arguments) {
   // reference a thousand times more accurate than these two, at a third of the time of the default reference
   price.overrides = {"compare.reference_rtol=1e-9", "compare.reference_check_rtol=1e-8"};
   return missing.close(compare(price, missing));
+}
+
+}  // namespace
+
+void add_demo(CLI::App& app, Invocation& invocation) {
+  CLI::App* command =
+      app.add_subcommand("demo", "a tool presses a soft ball: picture, force curve, error and its price");
+  auto arguments = std::make_shared<DemoArguments>();
+  command->add_option("-o,--output", arguments->folder, "folder for the results")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->footer(
+      "Example:\n  palpate demo                                   then open out/demo/report.html");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return demo(*arguments); };
+    invocation.factorises = true;
+    invocation.starts_processes = true;
+  });
 }
 
 }  // namespace palpate::cli

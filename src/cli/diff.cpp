@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 
 #include "cli/paths.h"
+#include "cli/program.h"
 #include "commands.h"
 #include "compare/perceptible_difference.h"
 #include "loop/haptic_record.h"
@@ -12,6 +15,10 @@
 
 namespace palpate::cli {
 namespace {
+
+struct DiffArguments {
+  std::string reference, other;  ///< folders of runs
+};
 
 /// Returns the further hands of the scene of a run. The files in the folder are no substitute: an earlier run
 /// may have left files of other hands.
@@ -23,8 +30,6 @@ std::vector<std::string> more_hands(const std::filesystem::path& folder) {
     out.push_back(hand.name);
   return out;
 }
-
-}  // namespace
 
 int diff(const DiffArguments& arguments) {
   const std::filesystem::path reference(arguments.reference), other(arguments.other);
@@ -49,6 +54,25 @@ int diff(const DiffArguments& arguments) {
   for (const std::string& hand : theirs)
     if (!has(mine, hand)) fmt::print("{}: not present in {}\n", hand, reference.string());
   return 0;
+}
+
+}  // namespace
+
+void add_diff(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("diff", "what a hand would feel of the difference of two runs");
+  auto arguments = std::make_shared<DiffArguments>();
+  command->add_option("reference", arguments->reference, "folder of a run, with haptic.h5 in it")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("other", arguments->other, "folder of another")->required()->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate diff out/press-ball out/replay-press-ball
+
+Forces and torques on the hand at the reference's ticks: root mean square and largest difference, its
+spectrum in bands, and in how many ticks it is more than fingers notice (7 % of a force, 12.7 % of a
+torque).)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return diff(*arguments); }; });
 }
 
 }  // namespace palpate::cli

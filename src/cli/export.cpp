@@ -1,4 +1,6 @@
 // Export of a finished run to files that other programs open.
+#include "export.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <functional>
 
 #include "cli/stop.h"
-#include "commands.h"
 #include "core/time_text.h"
 #include "export_animation.h"
 #include "export_draft.h"

@@ -4,8 +4,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 
+#include "cli/other_program.h"
+#include "cli/program.h"
 #include "commands.h"
 #include "help_pages.h"
 #include "palpate/core/error.h"
@@ -14,6 +18,12 @@
 
 namespace palpate::cli {
 namespace {
+
+struct HelpArguments {
+  std::string topic;                  ///< empty: which there are
+  bool markdown = false;              ///< the page as it is written
+  std::vector<std::string> commands;  ///< names that an unknown topic may have meant
+};
 
 /// Returns the text width: the width of the terminal, at most 100 columns, since longer lines are hard to
 /// read.
@@ -33,8 +43,6 @@ void print_topics() {
       "command.\n",
       report::format_table({"topic", "content"}, rows));
 }
-
-}  // namespace
 
 bool is_help_topic(const std::string& name) {
   return std::any_of(help_pages().begin(), help_pages().end(),
@@ -59,6 +67,40 @@ int help(const HelpArguments& arguments) {
   const std::string near = nearest_name(arguments.topic, candidates);
   fail("there is no help topic \"{}\"{}; topics: {}", arguments.topic,
        near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), fmt::join(known, ", "));
+}
+
+}  // namespace
+
+void add_help(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("help", "the documentation, page by page");
+  auto arguments = std::make_shared<HelpArguments>();
+  command->add_option(
+      "TOPIC", arguments->topic,
+      "a page, or a command, whose options it then prints; without it: which pages there are");
+  command->add_flag("--markdown", arguments->markdown,
+                    "the page as it is written, not filled to the terminal");
+  command->footer(R"(Examples:
+  palpate help
+  palpate help first-touch
+  palpate help keys)");
+  command->callback([arguments, &app, &invocation] {
+    for (const CLI::App* one : app.get_subcommands({})) arguments->commands.push_back(one->get_name());
+    const bool is_command =
+        std::count(arguments->commands.begin(), arguments->commands.end(), arguments->topic);
+    if (const OtherProgram* other = find_other_program(arguments->topic)) {
+      invocation.action = [other, topic = arguments->topic] { return start(*other, {topic, "--help"}); };
+      return;
+    }
+    if (is_command && !is_help_topic(arguments->topic)) {
+      const std::string text = app.get_subcommand(arguments->topic)->help(app.get_name());
+      invocation.action = [text] {
+        fmt::print("{}", text);
+        return 0;
+      };
+      return;
+    }
+    invocation.action = [arguments] { return help(*arguments); };
+  });
 }
 
 }  // namespace palpate::cli

@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/program.h"
 #include "cli/scene_of.h"
 #include "commands.h"
 #include "core/clock.h"
@@ -7,9 +11,14 @@
 #include "loop/summary.h"
 #include "palpate/loop/run.h"
 #include "report/table.h"
+#include "scene_options.h"
 
 namespace palpate::cli {
 namespace {
+
+struct InspectArguments {
+  SceneArguments scene;
+};
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -109,8 +118,6 @@ void print_system(loop::World& world, double assemble_s, double memory_mib) {
   fmt::print("{}", report::format_table({"system", ""}, rows));
 }
 
-}  // namespace
-
 int inspect(const InspectArguments& arguments) {
   const scene::Description description = scene_of(arguments.scene);
   fmt::print("{}: {}\n\n", description.path, description.name);
@@ -123,6 +130,20 @@ int inspect(const InspectArguments& arguments) {
   print_bones(*world);
   print_system(*world, seconds, used);
   return 0;
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app, Invocation& invocation) {
+  CLI::App* command =
+      app.add_subcommand("inspect", "what a scene uses, what it leaves out, sizes and memory");
+  auto arguments = std::make_shared<InspectArguments>();
+  add_scene(*command, arguments->scene, true);
+  command->footer(R"(Examples:
+  palpate inspect press-ball
+  palpate inspect my.toml --set body.0.mesh.element_size_m=0.005      how large would it be?)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return inspect(*arguments); }; });
 }
 
 }  // namespace palpate::cli

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <sstream>
 
 #include "cli/other_program.h"
 #include "cli/paths.h"
+#include "cli/program.h"
 #include "commands.h"
 #include "key_page.h"
 #include "loop/registries.h"
@@ -17,6 +20,11 @@
 
 namespace palpate::cli {
 namespace {
+
+struct ListArguments {
+  std::string what;
+  bool markdown = false;  ///< as a page of docs/: keys.md, names.md
+};
 
 const char* const kKeys = "keys";
 const char* const kStudyKeys = "study-keys";
@@ -120,8 +128,6 @@ void print_keys(const std::vector<scene::KeyRow>& all) {
   flush();
 }
 
-}  // namespace
-
 int list(const ListArguments& arguments) {
   std::vector<loop::ChoiceList> lists = loop::registries();
   lists.push_back(case_choices(arguments.what));
@@ -146,6 +152,29 @@ int list(const ListArguments& arguments) {
   }
   if (!found) fail("there is no list \"{}\"{}", arguments.what, suggestion(arguments.what, known));
   return 0;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("list", "the names that scenes and options know");
+  auto arguments = std::make_shared<ListArguments>();
+  command->add_option(
+      "WHAT", arguments->what,
+      "integrators, linear-solvers, materials, tool-integrators, obstacles, contact-methods, "
+      "contact-springs, contact-laws, generators, devices, device-profiles, motions, parts, cases, scenes; "
+      "all of these without it; or keys: every key of a scene with its unit, range, default and meaning; or "
+      "study-keys: likewise of a study");
+  command->add_flag(
+      "--markdown", arguments->markdown,
+      "as a page of the documentation: docs/keys.md with keys, docs/study-keys.md with study-keys, "
+      "docs/names.md without WHAT");
+  command->footer(R"(Examples:
+  palpate list
+  palpate list integrators
+  palpate list keys)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return list(*arguments); }; });
 }
 
 }  // namespace palpate::cli

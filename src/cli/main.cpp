@@ -1,4 +1,4 @@
 #include "cli/program.h"
-#include "commands.h"
+#include "parse.h"
 
 int main(int argc, char** argv) { return palpate::cli::run_program(argc, argv, palpate::cli::parse); }

@@ -2,21 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 
-#include "cli/paths.h"
-#include "cli/scene_of.h"
 #include "cli/missing_outputs.h"
+#include "cli/paths.h"
+#include "cli/program.h"
+#include "cli/scene_of.h"
 #include "commands.h"
 #include "palpate/core/error.h"
 #include "render/available.h"
 #include "render/scene.h"
 #include "report/table.h"
+#include "scene_options.h"
 #include "store/csv.h"
 #include "store/result_folder.h"
 
 namespace palpate::cli {
 namespace {
+
+struct ModesArguments {
+  SceneArguments scene;
+  std::string folder;  ///< empty: out/modes-NAME
+  int count = 12;
+  bool picture = false;
+};
 
 void print_modes(const modes::Modes& modes) {
   std::vector<std::vector<std::string>> rows;
@@ -76,8 +87,6 @@ void draw_modes(const loop::World& world, const modes::Modes& modes, const std::
   render::save_png(render::draw(scene, options), path);
 }
 
-}  // namespace
-
 int modes(const ModesArguments& arguments) {
   if (arguments.picture) render::check_available();
   const scene::Description description = scene_of(arguments.scene);
@@ -106,6 +115,33 @@ int modes(const ModesArguments& arguments) {
         "the modes did not converge (see their residuals); improve the elements of the mesh, or request "
         "fewer modes (--count)");
   return missing.close(0);
+}
+
+}  // namespace
+
+void add_modes(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("modes", "frequencies and shapes of a scene's free vibrations");
+  auto arguments = std::make_shared<ModesArguments>();
+  add_scene(*command, arguments->scene, false);
+  command->add_option("--count", arguments->count, "how many, from the lowest")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--picture", arguments->picture,
+                    "also a picture of the first six that are no rigid motions (modes.png)");
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/modes-SCENE")
+      ->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate modes cantilever
+  palpate modes cantilever --count 20 --picture -o out/modes
+  palpate modes press-ball --set body.0.youngs_modulus_pa=2e4
+
+Solves K phi = w^2 M phi at the scene's start, damping left out; a free body begins with six rigid motions,
+0 Hz.  Writes modes.csv, and modes.vtkhdf: ParaView opens it as a time series in which time is the mode's
+number, step by step the displaced shapes.)");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return modes(*arguments); };
+    invocation.factorises = true;
+  });
 }
 
 }  // namespace palpate::cli

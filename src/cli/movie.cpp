@@ -1,10 +1,13 @@
 // Pictures of a finished run, from its recorded states.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 
-#include "cli/stop.h"
 #include "cli/missing_outputs.h"
+#include "cli/program.h"
+#include "cli/stop.h"
 #include "commands.h"
 #include "core/rigid_fit.h"
 #include "frames.h"
@@ -16,6 +19,14 @@
 
 namespace palpate::cli {
 namespace {
+
+struct MovieArguments {
+  std::string run;                     ///< folder of a run
+  std::string file;                    ///< empty: movie.png in it
+  double fps = 0.0, slow = 1.0;        ///< as it is played; 0: 25, or what was recorded
+  std::string size;                    ///< "640x480"; empty: the default
+  std::string shade = "displacement";  ///< or "stress"
+};
 
 /// Recorded states of a run, with its parts in the order of the recorder: bodies, bones with a shape, tools.
 class States {
@@ -127,11 +138,40 @@ int movie(const MovieArguments& arguments, MissingOutputs& missing) {
   return kExitStopped;
 }
 
-}  // namespace
-
 int movie(const MovieArguments& arguments) {
   MissingOutputs missing;
   return missing.close(movie(arguments, missing));
+}
+
+}  // namespace
+
+void add_movie(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("movie", "a movie of a run that is over");
+  auto arguments = std::make_shared<MovieArguments>();
+  command->add_option("run", arguments->run, "folder of a run, with run.vtkhdf in it")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("-o,--output", arguments->file, "the movie (.webm, .png or .apng); default DIR/movie.png")
+      ->type_name("FILE");
+  command->add_option("--fps", arguments->fps, "frames a second as it is played; default 25 at most")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--slow", arguments->slow, "so many times slower than the run")
+      ->type_name("FACTOR")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--size", arguments->size, "of a frame in pixels")->type_name("WIDTHxHEIGHT");
+  command->add_option("--shade", arguments->shade, "what colours the bodies: displacement or stress")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"displacement", "stress", "penetration"}));
+  command->footer(R"(Examples:
+  palpate movie out/press-ball
+  palpate movie out/press-ball --slow 4 --shade stress -o touch.webm
+
+It shows the states that the run kept (record.state_period_s), also of one that was cut off, with the force on
+the hand beneath, and computes nothing anew.)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return movie(*arguments); }; });
 }
 
 }  // namespace palpate::cli

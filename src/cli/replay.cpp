@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 
 #include "cli/paths.h"
+#include "cli/program.h"
 #include "cli/progress.h"
 #include "cli/scene_of.h"
 #include "cli/stop.h"
@@ -23,6 +26,14 @@
 
 namespace palpate::cli {
 namespace {
+
+struct ReplayArguments {
+  std::string run;                     ///< folder of a run
+  std::vector<std::string> overrides;  ///< of its scene
+  std::string integrator;              ///< instead of its own; empty: its own
+  std::string folder;                  ///< empty: out/replay-NAME
+  bool changes() const { return !overrides.empty() || !integrator.empty(); }
+};
 
 std::string text_of_file(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path))
@@ -64,8 +75,6 @@ int repeat_ticks(const scene::Description& description, const std::vector<loop::
         "machine");
   return 0;
 }
-
-}  // namespace
 
 int replay(const ReplayArguments& arguments) {
   const scene::Description recorded = scene_of(arguments.run, {});
@@ -118,6 +127,33 @@ int replay(const ReplayArguments& arguments) {
   for (std::size_t i = 0; i < records.size(); ++i)
     print_difference(description, i, ticks.of[i], records[i].ticks);
   return result.stopped ? kExitStopped : 0;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("replay", "feel the motion of a run again");
+  auto arguments = std::make_shared<ReplayArguments>();
+  command->add_option("run", arguments->run, "folder of a run, with haptic.h5 in it")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--set", arguments->overrides, "change a key of its scene (KEY=VALUE, repeatable)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--integrator", arguments->integrator, "another integrator than the run's")
+      ->type_name("NAME");
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/replay-SCENE")
+      ->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate replay out/press-ball                  each tick from its recorded input and exchange, bit for bit
+  palpate replay out/press-ball --integrator cvode-bdf --set exchange.scheme=monolithic
+  palpate replay out/press-ball --set exchange.exchange_period_s=0.02
+
+Without a change nothing but the ticks is computed again: what comes out must be what was recorded, of a
+run in real time as well; else the exit status is 1.  With a change the whole scene runs again in virtual
+time, under the hand as it was recorded, and what a hand would feel of the difference is printed.)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return replay(*arguments); }; });
 }
 
 }  // namespace palpate::cli

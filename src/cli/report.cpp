@@ -1,13 +1,22 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 
 #include "cli/missing_outputs.h"
+#include "cli/program.h"
 #include "commands.h"
 #include "report/run_report.h"
 #include "store/result_folder.h"
 
 namespace palpate::cli {
+namespace {
+
+struct ReportArguments {
+  std::vector<std::string> folders;
+  std::string file;  ///< empty: report.html, in the folder where there is one
+};
 
 int report(const ReportArguments& arguments) {
   const std::vector<std::filesystem::path> folders(arguments.folders.begin(), arguments.folders.end());
@@ -21,6 +30,30 @@ int report(const ReportArguments& arguments) {
   MissingOutputs missing;
   missing.add(written);
   return missing.close(0);
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("report", "one HTML page of any results");
+  auto arguments = std::make_shared<ReportArguments>();
+  command
+      ->add_option("folders", arguments->folders,
+                   "folders that run, compare, study, validate, stability or bench wrote, in any mix")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("-o,--output", arguments->file,
+                   "the page; default report.html, in the folder where only one is given")
+      ->type_name("FILE");
+  command->footer(R"(Examples:
+  palpate report out/press-ball
+  palpate report out/press-ball out/compare-press-ball out/stability -o out/report.html
+
+The page needs no other file and no network.  It says in words first what each result answers; its tables
+sort, its charts zoom and tell their values, and a run's bodies turn and play (decimated, at most 4 MB).)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return report(*arguments); }; });
 }
 
 }  // namespace palpate::cli

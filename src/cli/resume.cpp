@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 
 #include "checkpoints.h"
-#include "cli/scene_of.h"
 #include "cli/missing_outputs.h"
+#include "cli/program.h"
+#include "cli/scene_of.h"
+#include "commands.h"
 #include "core/time_text.h"
 #include "palpate/core/error.h"
 #include "store/provenance.h"
@@ -12,6 +16,10 @@
 
 namespace palpate::cli {
 namespace {
+
+struct ResumeArguments {
+  std::string run;  ///< folder of a run with checkpoints
+};
 
 /// Returns whether the run in the folder is finished.
 bool is_complete(const std::filesystem::path& folder) {
@@ -54,8 +62,6 @@ scene::Description scene_of(const Resumption& r) {
   return description;
 }
 
-}  // namespace
-
 int resume(const ResumeArguments& arguments) {
   const std::filesystem::path folder(arguments.run);
   if (!std::filesystem::is_directory(folder))
@@ -79,6 +85,28 @@ int resume(const ResumeArguments& arguments) {
   fmt::print("{} resumes at t = {} s\n", arguments.run, time_text(r.checkpoint.time_s));
   MissingOutputs missing;
   return missing.close(resume_run(r, description, missing));
+}
+
+}  // namespace
+
+void add_resume(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("resume", "go on with a run that was stopped or killed");
+  auto arguments = std::make_shared<ResumeArguments>();
+  command->add_option("run", arguments->run, "folder of a run, with checkpoint.h5 in it")
+      ->required()
+      ->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate run two-heads --checkpoint-every 0.1 -o out/heads
+  palpate resume out/heads                       after Ctrl-C, a kill, or a loss of power
+
+The run goes on from its last checkpoint with the options that it was started with, and ends as if it had
+never stopped: all that it records is the same to the last bit.  What was recorded after the checkpoint is
+cut off, and computed again.  Needs the same version of palpate, scene and meshes.  Exit status 0 where the
+run is complete already.)");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return resume(*arguments); };
+    invocation.factorises = true;
+  });
 }
 
 }  // namespace palpate::cli

@@ -1,3 +1,5 @@
+#include "run.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,13 +10,12 @@
 
 #include "against_monolithic.h"
 #include "checkpoints.h"
+#include "cli/missing_outputs.h"
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "cli/scene_of.h"
 #include "cli/stop.h"
-#include "cli/missing_outputs.h"
 #include "clock_figures.h"
-#include "commands.h"
 #include "contact_picture.h"
 #include "core/clock.h"
 #include "core/counters.h"

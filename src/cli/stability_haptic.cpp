@@ -1,3 +1,5 @@
+#include "stability_haptic.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -5,12 +7,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cli/missing_outputs.h"
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "cli/scene_of.h"
 #include "cli/stop.h"
-#include "cli/missing_outputs.h"
-#include "commands.h"
 #include "haptic_stability/z_width.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
@@ -29,6 +30,7 @@ namespace fs = std::filesystem;
 
 /// Acceptance limit of the relative difference between simulation and exact theory.
 constexpr double kAgreement = 0.05;
+constexpr double kHapticDuration = 4.0;  ///< of a simulation [s]
 
 std::string stiffness_text(double value) {
   return std::isinf(value) ? fmt::format("> {:g}", kStiffest) : fmt::format("{:.4g}", value);

@@ -105,17 +105,13 @@ std::string canonical(const CLI::App& app) {
   return out;
 }
 
-}  // namespace
-
-ModelArguments parse_model(int argc, char** argv) {
-  ModelArguments out;
+/// Options that are parsed after CLI11 has read all words.
+struct Texts {
   std::string creases = "auto";
   std::vector<std::string> regions;
-  CLI::App app(kDescription, "palpate model");
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.footer(kExamples);
-  app.set_version_flag("--version",
-                       [] { return fmt::format("palpate model {}", store::provenance().version); });
+};
+
+void add_shape_options(CLI::App& app, ModelArguments& out, Texts& texts) {
   model::Options& options = out.options;
   app.add_option("SURFACE", out.source, source_help())->required();
   app.add_option("-o,--output", out.output, "the model file; default NAME.h5 here")->type_name("FILE.h5");
@@ -132,12 +128,11 @@ ModelArguments parse_model(int argc, char** argv) {
                  "for a shape: number of skin vertices, met within 1 %; 0: default of the shape")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);
-  CLI::Option* scale =
-      app.add_option("--scale", options.scale, "multiplies every coordinate: 0.001 for a file in millimetres")
-          ->type_name("S")
-          ->check(positive)
-          ->capture_default_str();
-  app.add_option("--creases", creases,
+  app.add_option("--scale", options.scale, "multiplies every coordinate: 0.001 for a file in millimetres")
+      ->type_name("S")
+      ->check(positive)
+      ->capture_default_str();
+  app.add_option("--creases", texts.creases,
                  "edges to keep sharp: auto, none, or those that turn by more than this angle [degrees]")
       ->type_name("WHICH")
       ->capture_default_str();
@@ -149,12 +144,16 @@ ModelArguments parse_model(int argc, char** argv) {
                  "nodes inside a bone or closer to it than this distance belong to it [m]")
       ->type_name("M")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--region", regions,
+  app.add_option("--region", texts.regions,
                  "tetrahedra with their centre inside the closed surface FILE become the region NAME; with "
                  "skeleton instead of FILE: those inside the bones.  May be repeated; the last takes "
                  "precedence")
       ->type_name("NAME=FILE")
       ->allow_extra_args(false);
+}
+
+void add_repair_options(CLI::App& app, ModelArguments& out) {
+  model::Options& options = out.options;
   app.add_flag("--remesh", options.remesh,
                "for a file of tetrahedra: remesh the volume inside their boundary");
   app.add_flag("--accept-angles", options.accept_angles,
@@ -179,6 +178,37 @@ ModelArguments parse_model(int argc, char** argv) {
       "continue even if the model probably needs more memory than is available");
   app.add_flag("-q,--quiet", out.quiet, "only errors");
   app.add_flag("-v,--verbose", out.verbose, "also details");
+}
+
+/// Sets what follows from several options together.
+void settle(const CLI::App& app, const Texts& texts, ModelArguments& out) {
+  model::Options& options = out.options;
+  set_creases(texts.creases, options);
+  for (const std::string& region : texts.regions) options.regions.push_back(region_of(region));
+  out.counted = app.count("--tetrahedra") > 0;
+  out.scaled = app.count("--scale") > 0;
+  if (out.counted || options.tetrahedra.element_size_m > 0) options.remesh = true;
+  if (options.remesh && options.accept_angles)
+    fail(
+        "--accept-angles keeps the tetrahedra of the file, but --remesh, --tetrahedra and --element-size-m "
+        "replace them; remove one of the options");
+  options.tetrahedra.at_least = !out.counted;
+  out.as_given = canonical(app);
+  out.given = true;
+}
+
+}  // namespace
+
+ModelArguments parse_model(int argc, char** argv) {
+  ModelArguments out;
+  Texts texts;
+  CLI::App app(kDescription, "palpate model");
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.footer(kExamples);
+  app.set_version_flag("--version",
+                       [] { return fmt::format("palpate model {}", store::provenance().version); });
+  add_shape_options(app, out, texts);
+  add_repair_options(app, out);
   if (argc == 1) {
     fmt::print("{}", app.help());
     return out;
@@ -191,18 +221,7 @@ ModelArguments parse_model(int argc, char** argv) {
     fmt::print("{}", text.str());
     return out;
   } catch (const CLI::ParseError& error) { fail("{}; see `palpate model --help`", error.what()); }
-  set_creases(creases, options);
-  for (const std::string& region : regions) options.regions.push_back(region_of(region));
-  out.counted = count->count() > 0;
-  out.scaled = scale->count() > 0;
-  if (out.counted || options.tetrahedra.element_size_m > 0) options.remesh = true;
-  if (options.remesh && options.accept_angles)
-    fail(
-        "--accept-angles keeps the tetrahedra of the file, but --remesh, --tetrahedra and --element-size-m "
-        "replace them; remove one of the options");
-  options.tetrahedra.at_least = !out.counted;
-  out.as_given = canonical(app);
-  out.given = true;
+  settle(app, texts, out);
   return out;
 }
 
