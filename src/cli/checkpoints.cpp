@@ -56,6 +56,11 @@ void RunIdentity::archive(Archive& a) {
   a("instructions", instructions);
 }
 
+RunIdentity identity_of(const RunArguments& arguments, const loop::World& world) {
+  return {arguments, std::filesystem::absolute(world.description.path).lexically_normal().string(),
+          loop::fingerprint(world), store::provenance().cpu, instructions_in_use()};
+}
+
 std::string instructions_in_use() {
   const char* blas = std::getenv("OPENBLAS_CORETYPE");
   return fmt::format("{}, OpenBLAS {}", name_of(best_instructions()), blas ? blas : "default kernels");

@@ -31,6 +31,10 @@ struct RunIdentity {
   void archive(Archive& a);
 };
 
+/// Returns the identity of a run on this machine.
+/// @param world  the World as assembled
+RunIdentity identity_of(const RunArguments& arguments, const loop::World& world);
+
 /// Returns the instruction sets in use, as "avx512, OpenBLAS SKYLAKEX".
 std::string instructions_in_use();
 

@@ -1,6 +1,7 @@
 #include "run_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -39,6 +40,15 @@ std::vector<std::string> run_files(const scene::Description& description, const 
       out.push_back(name);
   std::sort(out.begin(), out.end());
   return out;
+}
+
+void print_run_files(const scene::Description& description, const std::string& folder) {
+  fmt::print("in {}: {}\n", folder, fmt::join(run_files(description, folder), ", "));
+  if (!description.record)
+    fmt::print(
+        "states{} were not written, because the scene has no [record]; --set record.states=true writes "
+        "them\n",
+        description.tool ? " and the force over time" : "");
 }
 
 void remove_run_files(const scene::Description& description, const std::string& folder) {

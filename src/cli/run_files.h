@@ -12,6 +12,9 @@ namespace palpate::cli {
 /// would give.
 std::vector<std::string> run_files(const scene::Description& description, const std::string& folder);
 
+/// Prints these names, and why states were not written.
+void print_run_files(const scene::Description& description, const std::string& folder);
+
 /// Removes these files except scene.toml and summary.json, which the run replaces at once.
 /// @throws Error for a file that cannot be removed
 void remove_run_files(const scene::Description& description, const std::string& folder);

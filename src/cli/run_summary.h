@@ -1,0 +1,47 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/haptic.h"
+#include "loop/checkpoints.h"
+#include "palpate/loop/run.h"
+#include "run.h"
+
+namespace palpate::cli {
+
+/// Records the largest force and torque on each hand, and when.
+class PeakWrench : public loop::Observer {
+ public:
+  void tick_of(std::size_t hand, const loop::TickRecord& tick) override;
+  void archive(Archive& a) override;
+  struct Peak {
+    double force_n = 0.0, force_s = 0.0, torque_n_m = 0.0, torque_s = 0.0;
+  };
+  std::vector<Peak> of{1};  ///< each hand
+};
+
+/// Result of one run and its cost.
+struct RunOutput {
+  loop::RunResult result;
+  std::vector<std::string> remarks;  ///< run_remarks()
+  double assemble_s = 0.0;
+  PeakWrench peak;
+  loop::CheckpointCost checkpoints;
+  std::optional<compare::AgainstMonolithic> against;  ///< with --against-monolithic
+};
+
+/// How a run ended, where its result does not say so.
+struct Outcome {
+  std::string word, message;
+};
+
+/// Prints the cost of a run, the largest force and torque on each hand, and the remarks.
+void print_outcome(const loop::World& world, const RunOutput& ran);
+
+/// Writes summary.json and scene.toml.
+/// @param outcome  instead of that of the result
+void keep_summary(const loop::World& world, const RunOutput& ran, const RunArguments& arguments,
+                  const std::string& folder, const std::optional<Outcome>& outcome = {});
+
+}  // namespace palpate::cli
