@@ -9,16 +9,16 @@ class MissingOutputs;
 /// Arguments of `palpate compare`.
 struct CompareArguments {
   std::vector<std::string> scenes;
-  std::vector<std::string> overrides;  ///< of every scene
-  std::string folder;
-  std::vector<std::string> integrators;  ///< names, or labels of ladders; empty: every one
-  bool all = false;                      ///< all others beside those named
-  int repeats = 3, jobs = 0;             ///< jobs = 0: what is timed runs alone
-  double limit_s = 10.0, reference_limit_s = 120.0;
-  double duration_s = 0.0;
-  std::string linear_solver = "cholmod";  ///< of all; "best": each method's fastest; "named": the scene's
-  bool fresh = false;                     ///< forget what an earlier study left in the folder
-  bool haptic = false;                    ///< what a hand feels against one system, of one scene
+  std::vector<std::string> overrides;    ///< Changes of keys of every scene
+  std::string folder;                    ///< Output folder; empty: out/compare-SCENE
+  std::vector<std::string> integrators;  ///< Names, or labels of [[compare.ladder]]; empty: all
+  bool all = false;                      ///< Includes all integrators in addition to `integrators`
+  int repeats = 3, jobs = 0;             ///< jobs = 0: timed runs run alone
+  double limit_s = 10.0, reference_limit_s = 120.0;  ///< Limits of the CPU time of one run [s]
+  double duration_s = 0.0;                           ///< Simulated time [s]; 0: the duration of each scene
+  std::string linear_solver = "cholmod";             ///< Or "best" (of each method), "named" (by the scene)
+  bool fresh = false;   ///< Discards the results of an earlier study in the folder
+  bool haptic = false;  ///< Compares one scene with its monolithic solution
 };
 
 /// Compares the error and run time of integrators.  @return the exit status

@@ -17,7 +17,7 @@ namespace palpate::cli {
 namespace {
 
 struct DiffArguments {
-  std::string reference, other;  ///< folders of runs
+  std::string reference, other;  ///< Folders of runs
 };
 
 /// Returns the further hands of the scene of a run. The files in the folder are no substitute: an earlier run

@@ -20,9 +20,9 @@ namespace palpate::cli {
 namespace {
 
 struct HelpArguments {
-  std::string topic;                  ///< empty: which there are
-  bool markdown = false;              ///< the page as it is written
-  std::vector<std::string> commands;  ///< names that an unknown topic may have meant
+  std::string topic;                  ///< Page; empty: prints the list of pages
+  bool markdown = false;              ///< Prints the page as Markdown
+  std::vector<std::string> commands;  ///< Names of commands, to suggest for an unknown topic
 };
 
 /// Returns the text width: the width of the terminal, at most 100 columns, since longer lines are hard to

@@ -22,8 +22,8 @@ namespace palpate::cli {
 namespace {
 
 struct ListArguments {
-  std::string what;
-  bool markdown = false;  ///< as a page of docs/: keys.md, names.md
+  std::string what;       ///< Name of a list; empty: all lists
+  bool markdown = false;  ///< Prints a page of docs/: keys.md, study-keys.md or names.md
 };
 
 const char* const kKeys = "keys";

@@ -24,7 +24,7 @@ namespace {
 
 struct ModesArguments {
   SceneArguments scene;
-  std::string folder;  ///< empty: out/modes-NAME
+  std::string folder;  ///< Output folder; empty: out/modes-NAME
   int count = 12;
   bool picture = false;
 };

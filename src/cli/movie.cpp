@@ -21,11 +21,11 @@ namespace palpate::cli {
 namespace {
 
 struct MovieArguments {
-  std::string run;                     ///< folder of a run
-  std::string file;                    ///< empty: movie.png in it
-  double fps = 0.0, slow = 1.0;        ///< as it is played; 0: 25, or what was recorded
-  std::string size;                    ///< "640x480"; empty: the default
-  std::string shade = "displacement";  ///< or "stress"
+  std::string run;                     ///< Folder of a run
+  std::string file;                    ///< Movie file; empty: movie.png in that folder
+  double fps = 0.0, slow = 1.0;        ///< Playback; fps = 0: 25, or the rate of the recorded states
+  std::string size;                    ///< "640x480"; empty: default size
+  std::string shade = "displacement";  ///< Or "stress"
 };
 
 /// Recorded states of a run, with its parts in the order of the recorder: bodies, bones with a shape, tools.

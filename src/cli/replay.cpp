@@ -28,10 +28,10 @@ namespace palpate::cli {
 namespace {
 
 struct ReplayArguments {
-  std::string run;                     ///< folder of a run
-  std::vector<std::string> overrides;  ///< of its scene
-  std::string integrator;              ///< instead of its own; empty: its own
-  std::string folder;                  ///< empty: out/replay-NAME
+  std::string run;                     ///< Folder of a run
+  std::vector<std::string> overrides;  ///< Changes of keys of its scene
+  std::string integrator;              ///< Integrator that replaces the one of the run; empty: unchanged
+  std::string folder;                  ///< Output folder; empty: out/replay-NAME
   bool changes() const { return !overrides.empty() || !integrator.empty(); }
 };
 

@@ -14,8 +14,8 @@ namespace palpate::cli {
 namespace {
 
 struct ReportArguments {
-  std::vector<std::string> folders;
-  std::string file;  ///< empty: report.html, in the folder where there is one
+  std::vector<std::string> folders;  ///< Folders of results
+  std::string file;                  ///< Page; empty: report.html, in the folder if there is one only
 };
 
 int report(const ReportArguments& arguments) {

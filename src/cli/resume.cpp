@@ -18,7 +18,7 @@ namespace palpate::cli {
 namespace {
 
 struct ResumeArguments {
-  std::string run;  ///< folder of a run with checkpoints
+  std::string run;  ///< Folder of a run with checkpoints
 };
 
 /// Returns whether the run in the folder is finished.

@@ -10,18 +10,18 @@ class MissingOutputs;
 /// Arguments of `palpate run`.
 struct RunArguments {
   SceneArguments scene;
-  std::string folder;       ///< empty: out/NAME
-  double duration_s = 0.0;  ///< 0: the scene's
+  std::string folder;       ///< Output folder; empty: out/NAME
+  double duration_s = 0.0;  ///< Simulated time [s]; 0: the duration of the scene
   bool picture = false, report = false, trace = false, real_time = false;
   bool contact_picture = false, frames = false;
-  double frames_per_s = 0.0;           ///< of simulated time; 0: as the scene records
-  std::string movie;                   ///< file; empty: none
-  double fps = 0.0, slow = 1.0;        ///< of the movie as it is played; 0: 25, or what the loop allows
-  std::string size;                    ///< of frames and movie, "640x480"; empty: the default
-  std::string shade = "displacement";  ///< of picture, frames and movie; or "stress", "penetration"
-  std::string passivity = "off";       ///< or "observe", "control"
-  bool against_monolithic = false;     ///< repeat it as one system, and print the distance
-  double checkpoint_every_s = 0.0;     ///< simulated time between checkpoints; 0: none
+  double frames_per_s = 0.0;           ///< Frames per second of simulated time; 0: as the scene records
+  std::string movie;                   ///< Movie file; empty: none
+  double fps = 0.0, slow = 1.0;        ///< Playback of the movie; fps = 0: 25, or as the loop allows
+  std::string size;                    ///< Size of frames and movie, "640x480"; empty: default size
+  std::string shade = "displacement";  ///< Colours of pictures; or "stress", "penetration"
+  std::string passivity = "off";       ///< Or "observe", "control"
+  bool against_monolithic = false;     ///< Compares with the monolithic solution
+  double checkpoint_every_s = 0.0;     ///< Simulated time between checkpoints [s]; 0: none
 };
 
 /// Runs a scene and keeps what it records.  @return the exit status  @throws Error for invalid input

@@ -14,8 +14,8 @@ namespace palpate::cli {
 /// Appearance of the pictures.
 struct PictureOptions {
   Shade shade = Shade::kDisplacement;
-  double between_s = 0.0;  ///< simulated time from frame to frame
-  FrameSize size = {};     ///< of frames
+  double between_s = 0.0;  ///< Simulated time between frames [s]
+  FrameSize size = {};     ///< Size of frames
 };
 
 /// Checks at the start whether the requested pictures can be drawn.  @throws Error if not
@@ -24,7 +24,7 @@ PictureOptions check_pictures(const RunArguments& arguments, const scene::Descri
 /// Observes a run for its pictures.
 class RunPictures {
  public:
-  /// @param folder  of the run; instants of frames are kept there while it runs
+  /// @param folder  output folder of the run; the snapshots of frames are kept there during the run
   RunPictures(loop::World& world, const RunArguments& arguments, const PictureOptions& options,
               const std::string& folder);
 

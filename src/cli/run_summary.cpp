@@ -28,14 +28,14 @@ void print_hand(const std::string& who, const PeakWrench::Peak& peak, long ticks
       who, peak.force_n, time_text(peak.force_s), peak.torque_n_m, time_text(peak.torque_s), ticks, limited);
 }
 
-/// What was asked for, and what the method makes of it.
+/// Prints the requested tolerance, and the tolerance of the error test that the method derives from it.
 void print_tolerance(const IntegratorSpec& spec) {
   const auto& method = find(loop::steppers(), spec.name, "integrator");
   if (method.error_test_rtol && !spec.fixed_step)
     fmt::print("{}: rtol {:g}, error test at {:.3g}\n", spec.name, spec.rtol, method.error_test_rtol(spec));
 }
 
-/// The largest force and torque on each hand, as summary.json keeps them.
+/// Adds the largest force and torque on each hand to the summary.
 void add_peaks(store::Summary& summary, const scene::Description& description, const RunOutput& ran) {
   if (ran.result.ticks == 0) return;
   const std::vector<scene::Hand> hands = scene::hands_of(description);

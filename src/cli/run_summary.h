@@ -18,20 +18,20 @@ class PeakWrench : public loop::Observer {
   struct Peak {
     double force_n = 0.0, force_s = 0.0, torque_n_m = 0.0, torque_s = 0.0;
   };
-  std::vector<Peak> of{1};  ///< each hand
+  std::vector<Peak> of{1};  ///< Peaks of each hand
 };
 
 /// Result of one run and its cost.
 struct RunOutput {
   loop::RunResult result;
-  std::vector<std::string> remarks;  ///< run_remarks()
+  std::vector<std::string> remarks;  ///< Lines of run_remarks()
   double assemble_s = 0.0;
   PeakWrench peak;
   loop::CheckpointCost checkpoints;
-  std::optional<compare::AgainstMonolithic> against;  ///< with --against-monolithic
+  std::optional<compare::AgainstMonolithic> against;  ///< Set with --against-monolithic
 };
 
-/// How a run ended, where its result does not say so.
+/// Outcome of a run that has no result.
 struct Outcome {
   std::string word, message;
 };
@@ -40,7 +40,7 @@ struct Outcome {
 void print_outcome(const loop::World& world, const RunOutput& ran);
 
 /// Writes summary.json and scene.toml.
-/// @param outcome  instead of that of the result
+/// @param outcome  replaces the outcome that the result implies
 void keep_summary(const loop::World& world, const RunOutput& ran, const RunArguments& arguments,
                   const std::string& folder, const std::optional<Outcome>& outcome = {});
 

@@ -1,4 +1,4 @@
-// `palpate stability`: of a scene's haptic loop here; the matrix of cases is another program's.
+// `palpate stability`: runs --haptic, and starts palpate-validation for the matrix of cases.
 #include <memory>
 
 #include "cli/other_program.h"

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 /// Acceptance limit of the relative difference between simulation and exact theory.
 constexpr double kAgreement = 0.05;
-constexpr double kHapticDuration = 4.0;  ///< of a simulation [s]
+constexpr double kHapticDuration = 4.0;  ///< Simulated time of each wall [s]
 
 std::string stiffness_text(double value) {
   return std::isinf(value) ? fmt::format("> {:g}", kStiffest) : fmt::format("{:.4g}", value);

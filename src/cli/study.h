@@ -9,17 +9,17 @@ namespace palpate::cli {
 /// Arguments of `palpate study`.
 struct StudyArguments {
   std::string study;          ///< STUDY.toml
-  std::string folder;         ///< empty: out/study-NAME
-  int jobs = 0;               ///< tasks side by side; 0: as many as there are cores for their threads
-  bool dry_run = false;       ///< print the tasks alone
-  bool merge = false;         ///< make the table of the results that there are, run nothing
-  bool fresh = false;         ///< forget the results that an earlier call left in the folder
-  std::string tasks;          ///< only these, and no table: "0-3,7"; empty: all
-  std::string plan;           ///< key that the list of tasks must have; empty: any
-  bool slurm = false;         ///< as an array job
-  std::string slurm_options;  ///< of sbatch
-  int chunk = 1;              ///< tasks of an element of the array, at least
-  bool no_wait = false;       ///< submit alone
+  std::string folder;         ///< Output folder; empty: out/study-NAME
+  int jobs = 0;               ///< Tasks in parallel; 0: as many as the cores allow for their threads
+  bool dry_run = false;       ///< Only prints the tasks
+  bool merge = false;         ///< Tabulates the existing results and runs nothing
+  bool fresh = false;         ///< Discards the results that an earlier call left in the folder
+  std::string tasks;          ///< Tasks to run, without a table: "0-3,7"; empty: all
+  std::string plan;           ///< Required key of the list of tasks; empty: any
+  bool slurm = false;         ///< Runs the tasks as an array job
+  std::string slurm_options;  ///< Options of sbatch
+  int chunk = 1;              ///< Least number of tasks per element of the array
+  bool no_wait = false;       ///< Submits the job and returns
 };
 
 /// Runs the tasks of a study and tabulates their results.  @return the exit status
