@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "cli/missing_outputs.h"
 #include "cli/progress.h"
 #include "cli/stop.h"
-#include "cli/missing_outputs.h"
 #include "palpate/core/error.h"
 #include "render/seen.h"
 

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <numeric>
 
+#include "cli/missing_outputs.h"
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "cli/stop.h"
-#include "cli/missing_outputs.h"
 #include "core/clock.h"
 #include "model_cache.h"
 #include "palpate/core/error.h"

@@ -7,7 +7,7 @@
 namespace palpate::distance {
 
 /// Nearest point of a triangle. A weight is exactly zero where the point lies on the edge opposite to its
-/// corner. Without a zero weight the nearest feature is the face, with one zero an edge, with two a vertex.
+/// corner. Without a zero weight the nearest feature is the face, one zero: an edge, two zeros: a vertex.
 struct TrianglePoint {
   Vec3 weights = Vec3::Zero();  ///< Barycentric weights of the corners.
   Vec3 away = Vec3::Zero();     ///< Vector from the nearest point to the query point [m].

@@ -136,7 +136,7 @@ std::vector<int> corners_of(const Elements& elements, std::size_t e, std::size_t
 }
 
 /// Reads the tetrahedra, volume by volume, with their groups; without groups the volumes are the groups.  In
-/// versions 1 and 2 an element is listed once for each of its groups.
+/// versions 1 and 2, an element is listed once for each of its groups.
 void read_tetrahedra(const Gmsh& gmsh, const std::map<std::size_t, int>& place, const std::string& path,
                      Cells& cells) {
   const std::map<int, std::vector<int>> volumes = groups_of_volumes(gmsh, cells);

@@ -5,8 +5,8 @@
 
 #include "cli/contact_picture.h"
 #include "cli/frames.h"
-#include "cli/picture.h"
 #include "cli/missing_outputs.h"
+#include "cli/picture.h"
 #include "contact/grid_proxies.h"
 #include "core/counters.h"
 #include "loop/over_block.h"

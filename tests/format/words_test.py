@@ -17,7 +17,7 @@ COMMENT = re.compile(r"(?:^|\s)//[/!]?<?\s?(.*)")
 FRAGMENT = re.compile(r"(of|what)\b", re.I)
 MOST_FRAGMENTS = 0.005  # share of comment lines
 
-QUANTITY = r"(?:one|two|three|four|six|eight|ten|once|twice|\d[\d,.]*(?: bytes| numbers)?)"
+QUANTITY = r"(?:one|two|three|four|six|eight|ten|once|twice|\d[\d,]*(?:\.\d+)?(?: bytes| numbers)?)"
 COUNTED = (r"(?:node|line|tick|step|query|point|thread|body|hand|tool|pair|period|contact|sample|row|vertex|"
            r"block|second|cluster|exchange|element|record|part|file)")
 FOR_PER = re.compile(rf"\b{QUANTITY} an? {COUNTED}\b", re.I)
@@ -31,7 +31,6 @@ PRIVATE = {
     r"at no price": "without cost",
     r"held against": "compared with",
     r"own error": "reference error",
-    r"leave-outs?": "overhead of absent parts",
     r"gives? up": "fails, stops",
     r"lets? go": "releases",
     r"hears?": "receives",

@@ -6,10 +6,10 @@
 #include <array>
 #include <map>
 
+#include "cli/missing_outputs.h"
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "cli/stop.h"
-#include "cli/missing_outputs.h"
 #include "options.h"
 #include "report/run_report.h"
 #include "report/table.h"

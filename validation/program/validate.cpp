@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cli/missing_outputs.h"
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "cli/stop.h"
-#include "cli/missing_outputs.h"
 #include "options.h"
 #include "palpate/core/error.h"
 #include "report/run_report.h"

@@ -103,23 +103,23 @@ StabilityCell run(const CaseContext& context, const scene::Description& d) {
   const auto& frames = d.device->keyframes;
   for (std::size_t i = 1; i < frames.size(); ++i)
     path += (frames[i].position_m - frames[i - 1].position_m).norm();
-  const double prepare_state =
+  const double external_work_j =
       0.5 * path * path *
       std::min(d.tool->coupling.stiffness_n_m, d.bodies[0].youngs_modulus_pa * kToolCubeEdge);
   double held = 0.0;  // Largest energy of the cube [J].
-  const SceneCourse course = run_scene(context, d, kRtol, prepare_state, [&](loop::World& world, double) {
+  const SceneCourse course = run_scene(context, d, kRtol, external_work_j, [&](loop::World& world, double) {
     held = std::max(held, energy_of_cube(world));
     for (const KeyframeSpec& frame : frames)
       strayed = std::max(strayed, (world.tool_pose().translation - frame.position_m).norm() / path - 1.0);
   });
-  const double over = overshoot(context.column, d), most = 101.0 * over * over * prepare_state,
+  const double over = overshoot(context.column, d), most = 101.0 * over * over * external_work_j,
                farthest = 10.0 * over - 1.0;
   StabilityCell cell;
   cell.steps = course.steps;
-  cell.gain = held / prepare_state - 1.0;
+  cell.gain = held / external_work_j - 1.0;
   cell.figure =
       fmt::format("largest energy of the cube {:.1e} J (supplied {:.1e} J), tool deviated {:+.1e} paths",
-                  held, prepare_state, strayed);
+                  held, external_work_j, strayed);
   if (ended_early(context.column, course.result, course.finite && std::isfinite(strayed + held),
                   course.interrupted, held > most || strayed > farthest, cell)) {
     if (cell.verdict != Verdict::kError) return cell;
@@ -128,19 +128,19 @@ StabilityCell run(const CaseContext& context, const scene::Description& d) {
         mark_wrong(fmt::format("stopped after {} fast steps", course.run.counters.fast_steps), cell);
     } else if (!context.column.fixed || !is_explicit(context.column)) {
       mark_wrong(gave_up_early(context, course), cell);
-    } else if (held <= 1e3 * prepare_state && strayed <= farthest) {
+    } else if (held <= 1e3 * external_work_j && strayed <= farthest) {
       mark_wrong(fmt::format("stopped at {:.1e} J", held), cell);
     }
     return cell;
   }
-  if (held < 1e-9 * prepare_state) {
+  if (held < 1e-9 * external_work_j) {
     cell.verdict = Verdict::kSilent;
     cell.reason = "the tool never touched the cube: nothing was tested";
     return cell;
   }
-  cell.verdict = held <= prepare_state && strayed <= 1.0 ? Verdict::kStable
-                 : held <= most && strayed <= farthest   ? Verdict::kBounded
-                                                         : Verdict::kGrew;
+  cell.verdict = held <= external_work_j && strayed <= 1.0 ? Verdict::kStable
+                 : held <= most && strayed <= farthest     ? Verdict::kBounded
+                                                           : Verdict::kGrew;
   return cell;
 }
 

@@ -12,28 +12,32 @@ constexpr double kGrownSpeed = 1e3, kFollow = 100.0;
 /// Observer that records the energy during a run, and ends the run.
 class Watch : public loop::Observer {
  public:
-  Watch(const CaseContext& context, SceneCourse& course, double duration, double prepare_state,
+  Watch(const CaseContext& context, SceneCourse& course, double duration, double external_work_j,
         const Probe& probe)
-      : lab_(context), course_(course), duration_(duration), put_in_(prepare_state), probe_(probe) {}
+      : context_(context),
+        course_(course),
+        duration_(duration),
+        external_work_j_(external_work_j),
+        probe_(probe) {}
   void period(loop::World& world, double t) override {
     const double energy = world.mechanical_energy();
-    if (t == 0.0) course_.available = energy + put_in_;
+    if (t == 0.0) course_.available = energy + external_work_j_;
     course_.finite =
         course_.finite && std::isfinite(energy) && world.state.q().allFinite() && world.state.u().allFinite();
     course_.highest = std::max(course_.highest, energy);
     course_.last = energy;
-    course_.interrupted = lab_.time_is_up();
+    course_.interrupted = context_.time_is_up();
     if (probe_) probe_(world, t);
-    const bool growing = lab_.column.entry && lab_.column.fixed && is_explicit(lab_.column) &&
+    const bool growing = context_.column.entry && context_.column.fixed && is_explicit(context_.column) &&
                          course_.highest > kGrownSpeed * course_.available;
     if (course_.interrupted || !course_.finite || (t >= duration_ * (1.0 - 1e-9) && !growing)) stop_ = true;
   }
   const std::atomic<bool>* stop() const { return &stop_; }
 
  private:
-  const CaseContext& lab_;
+  const CaseContext& context_;
   SceneCourse& course_;
-  double duration_, put_in_;
+  double duration_, external_work_j_;
   const Probe& probe_;
   std::atomic<bool> stop_{false};
 };
@@ -52,7 +56,7 @@ Settled settle(const scene::Description& description, double duration_s) {
 }
 
 SceneCourse run_scene(const CaseContext& context, const scene::Description& description, double rtol,
-                      double prepare_state, const Probe& probe, const Settled* start) {
+                      double external_work_j, const Probe& probe, const Settled* start) {
   scene::Description d = description;
   d.integrator = {};
   // Only for assembly, replaced afterwards: a column need not be in the registry.
@@ -68,7 +72,7 @@ SceneCourse run_scene(const CaseContext& context, const scene::Description& desc
     world->stepper->set_interrupt(context.expired);
   }
   SceneCourse course;
-  Watch watch(context, course, d.duration_s, prepare_state, probe);
+  Watch watch(context, course, d.duration_s, external_work_j, probe);
   loop::RunOptions options;
   options.duration_s = kFollow * d.duration_s;
   options.observers = {&watch};

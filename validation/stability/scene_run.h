@@ -33,11 +33,11 @@ using Probe = std::function<void(loop::World&, double t)>;
 /// @param context column and time limit of the cell
 /// @param description scene to run; its integrator is replaced
 /// @param rtol tolerance under error control
-/// @param prepare_state work done from outside [J]
+/// @param external_work_j  work of external forces
 /// @param probe called after every period
 /// @param start initial state, at time 0; null: as described
 SceneCourse run_scene(const CaseContext& context, const scene::Description& description, double rtol,
-                      double prepare_state, const Probe& probe = {}, const Settled* start = nullptr);
+                      double external_work_j, const Probe& probe = {}, const Settled* start = nullptr);
 
 /// Returns positions and velocities of a scene after `duration_s` of linearly implicit Euler.
 Settled settle(const scene::Description& description, double duration_s);

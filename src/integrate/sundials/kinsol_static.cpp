@@ -185,7 +185,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     message_.clear();
     finite_ = true;
     set_tolerance(start_tolerance_);
-    // Where sigma = 0 a step that moves no position is the last; proximal steps may be arbitrarily small.
+    // Where sigma = 0, a step that moves no position is the last; proximal steps may be arbitrarily small.
     check(KINSetScaledStepTol(kinsol_, sigma_ == 0.0 ? std::numeric_limits<double>::epsilon() : kSmallest),
           "KINSetScaledStepTol", state_.time(), 0.0);
     int flag = KINSol(kinsol_, x_, KIN_NONE, displacement_scale_, force_scale_);
