@@ -14,53 +14,55 @@ constexpr const char* kCompareExamples = R"(Examples:
   palpate compare cantilever
   palpate compare cantilever press-ball --limit-s 5 -o out/both
   palpate compare press-ball --repeats 1 --integrator cvode-bdf --integrator linearly-implicit-euler
-  palpate compare --haptic press-ball            how far its force is from the exact one, and why
+  palpate compare --haptic press-ball            error of its force, and its sources
 
-Each point is one integrator at one tolerance or step, at the scene's fixed exchange period, in a process of
-its own, against a tight reference whose own error is printed.  The ladders are the scene's
-[[compare.ladder]], and a default one for every other integrator, down to where the reference cannot tell
-errors or --limit-s ends it.  A winner is named only where the spreads of times and rungs do not overlap.
-Ctrl-C or a crash loses nothing: the same line goes on where it stopped.  Writes compare.csv, reference.json,
-study.sqlite (one row a run) and report.html.
+Each point is one integrator at one tolerance or step size, at the scene's fixed exchange period, in a
+separate process, compared with a tight reference whose error is printed.  The refinement sequences are the
+scene's [[compare.ladder]], and a default for each other integrator, down to errors that the reference cannot
+resolve or to --limit-s.  A winner is reported only if the spreads of times and levels do not overlap.
+After Ctrl-C or a crash the same command continues where it stopped.  Writes compare.csv, reference.json,
+study.sqlite (one row per run) and report.html.
 
-With --haptic one thing at a time differs from the scene, as its [compare.haptic] says; points run one at a
-time unless --jobs is given, and have 120 s of CPU each, references 1800, unless --limit-s and
---reference-limit-s are given.  Writes haptic.csv, summary.json, study.sqlite and report.html.)";
+With --haptic one setting at a time differs from the scene, as listed in its [compare.haptic].  Points run one
+at a time unless --jobs is given, with limits of 120 s of CPU time per point and 1800 s per reference unless
+--limit-s and --reference-limit-s are given.  Writes haptic.csv, summary.json, study.sqlite and report.html.)";
 
 void add_method_options(CLI::App& command, CompareArguments& arguments) {
   command
       .add_option("--integrator", arguments.integrators,
-                  "only this one: a name of `palpate list integrators`, or the label of a "
+                  "only this integrator: a name of `palpate list integrators`, or the label of a "
                   "[[compare.ladder]]; may be given more than once")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command.add_flag(
-      "--all", arguments.all,
-      "every integrator that moves in time, beside those named: the default where none is named");
+  command.add_flag("--all", arguments.all,
+                   "every time integrator, in addition to those given; the default if none is given");
   command
-      .add_option("--repeats", arguments.repeats, "runs of each point at most, for the spread of its time")
+      .add_option("--repeats", arguments.repeats,
+                  "maximum number of runs per point, for the spread of its time")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command.add_option("--limit-s", arguments.limit_s, "CPU time of a point [s]")
+  command.add_option("--limit-s", arguments.limit_s, "limit of the CPU time per point [s]")
       ->type_name("SECONDS")
       ->check(duration)
       ->capture_default_str();
   command
       .add_option("--reference-limit-s", arguments.reference_limit_s,
-                  "CPU time of a reference, and of its check [s]")
+                  "limit of the CPU time of a reference, and of its check [s]")
       ->type_name("SECONDS")
       ->check(duration)
       ->capture_default_str();
   command
-      .add_option("--linear-solver", arguments.linear_solver,
-                  "of all implicit methods: a name of `palpate list linear-solvers`; best: each method's "
-                  "fastest, found by trying; named: the scene's, or the method's own")
+      .add_option(
+          "--linear-solver", arguments.linear_solver,
+          "for all implicit methods: a name of `palpate list linear-solvers`; best: the fastest for each "
+          "method, found by trial; named: that of the scene, else the default of the method")
       ->type_name("NAME|best|named")
       ->capture_default_str();
   command
-      .add_option("--jobs", arguments.jobs,
-                  "runs side by side, at the expense of their times; default: references on all cores, all "
-                  "else alone")
+      .add_option(
+          "--jobs", arguments.jobs,
+          "number of parallel runs, which disturb each other's times; default: references on all cores, "
+          "all other runs one at a time")
       ->check(CLI::Range(1, 1024));
 }
 
@@ -75,12 +77,10 @@ void settle_haptic(const CLI::App& command, CompareArguments& arguments) {
 }  // namespace
 
 void add_compare(CLI::App& app, Invocation& invocation) {
-  CLI::App* command =
-      app.add_subcommand("compare", "error against run time of every integrator on one scene or several");
+  CLI::App* command = app.add_subcommand(
+      "compare", "measure error against run time of every integrator on one or more scenes");
   auto arguments = std::make_shared<CompareArguments>();
-  command
-      ->add_option("SCENE", arguments->scenes,
-                   "one or several: a scene file (.toml), or the name of one that comes with palpate")
+  command->add_option("SCENE", arguments->scenes, "scene files (.toml), or names of included scenes")
       ->required();
   command
       ->add_option("--set", arguments->overrides,
@@ -89,11 +89,12 @@ void add_compare(CLI::App& app, Invocation& invocation) {
       ->allow_extra_args(false);
   add_beyond_memory(*command);
   add_method_options(*command, *arguments);
-  command->add_flag("--fresh", arguments->fresh, "start anew instead of continuing the study in the folder");
+  command->add_flag("--fresh", arguments->fresh,
+                    "start anew instead of continuing the comparison in the folder");
   command->add_flag(
       "--haptic", arguments->haptic,
-      "instead, of one scene: force and torque on the hand against tool and bodies as one "
-      "system, over exchange period, haptic rate, contact resolution, integrator, linearisation");
+      "instead, for one scene: error of force and torque on the hand against the monolithic "
+      "solution, over exchange period, haptic rate, contact resolution, integrator, linearisation");
   command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scenes' [s]")
       ->type_name("SECONDS")
       ->check(duration);

@@ -40,7 +40,7 @@ int demo(const DemoArguments& arguments) {
 
 void add_demo(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
-      app.add_subcommand("demo", "a tool presses a soft ball: picture, force curve, error and its price");
+      app.add_subcommand("demo", "press a soft ball with a tool: picture, force curve, error and run time");
   auto arguments = std::make_shared<DemoArguments>();
   command->add_option("-o,--output", arguments->folder, "folder for the results")
       ->type_name("DIR")

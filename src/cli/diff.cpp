@@ -59,17 +59,17 @@ int diff(const DiffArguments& arguments) {
 }  // namespace
 
 void add_diff(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("diff", "what a hand would feel of the difference of two runs");
+  CLI::App* command = app.add_subcommand("diff", "measure the perceptible difference of two runs");
   auto arguments = std::make_shared<DiffArguments>();
-  command->add_option("reference", arguments->reference, "folder of a run, with haptic.h5 in it")
+  command->add_option("reference", arguments->reference, "folder of a run, which contains haptic.h5")
       ->required()
       ->type_name("DIR");
-  command->add_option("other", arguments->other, "folder of another")->required()->type_name("DIR");
+  command->add_option("other", arguments->other, "folder of another run")->required()->type_name("DIR");
   command->footer(R"(Examples:
   palpate diff out/press-ball out/replay-press-ball
 
-Forces and torques on the hand at the reference's ticks: root mean square and largest difference, its
-spectrum in bands, and in how many ticks it is more than fingers notice (7 % of a force, 12.7 % of a
+Prints for force and torque on the hand, at the reference's ticks: RMS and largest difference, its spectrum in
+bands, and the share of ticks above the perception threshold of fingers (7 % of a force, 12.7 % of a
 torque).)");
   command->callback(
       [arguments, &invocation] { invocation.action = [arguments] { return diff(*arguments); }; });

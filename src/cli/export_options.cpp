@@ -8,9 +8,9 @@
 namespace palpate::cli {
 
 void add_export(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("export", "a run that is over, as files for other programs");
+  CLI::App* command = app.add_subcommand("export", "write a completed run as files for other programs");
   auto arguments = std::make_shared<ExportArguments>();
-  command->add_option("run", arguments->run, "folder of a run, with run.vtkhdf in it; or such a file")
+  command->add_option("run", arguments->run, "folder of a run, which contains run.vtkhdf; or such a file")
       ->required()
       ->type_name("DIR");
   command->add_option("--to", arguments->to, "vtu, obj, ply, csv or gltf")->required()->type_name("FORMAT");
@@ -23,7 +23,7 @@ void add_export(CLI::App& app, Invocation& invocation) {
   CLI::Option* step = command->add_option("--step", arguments->step, "only this recorded state, from 0")
                           ->type_name("N")
                           ->excludes(at);
-  command->add_option("--every", arguments->every, "each Nth recorded state, beginning with the first")
+  command->add_option("--every", arguments->every, "every Nth recorded state, beginning with the first")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000000))
       ->excludes(at)
@@ -34,16 +34,16 @@ void add_export(CLI::App& app, Invocation& invocation) {
   palpate export out/press-ball --to vtu                     run_0000.vtu ..., and run.pvd for ParaView
   palpate export out/press-ball --to ply --at 0.12           the surface, coloured by displacement
   palpate export out/press-ball --to obj --body ball --every 10 -o shapes
-  palpate export out/press-ball --to csv                     nodes.csv, and the run's own tables
+  palpate export out/press-ball --to csv                     nodes.csv, and the tables of the run
   palpate export out/two-heads --to gltf                     run.glb, an animation for browsers
 
-Every recorded state, unless --at, --step or --every says otherwise.  Metres, seconds, pascals.
+Writes every recorded state, or those selected by --at, --step or --every.  Units: metres, seconds, pascals.
   vtu   tetrahedra and tools with displacement, velocity and stress
-  obj   skins, or the surfaces of tetrahedra where there are none, and tools: a file a state
-  ply   the same with displacement, stress and colours, one range of colours for all states
-  csv   a row a node and state
-  gltf  the surfaces as one animated .glb of at most 100 states, thinned evenly where the run has more
-Files get their names when all are whole; after an error or Ctrl-C nothing is left.)");
+  obj   skins, or the surfaces of tetrahedra without skins, and tools: one file per state
+  ply   as obj, with displacement, stress and colours, one range of colours for all states
+  csv   one row per node and state
+  gltf  the surfaces as one animated .glb of at most 100 states, thinned evenly if the run has more
+Files get their final names once all are complete; after an error or Ctrl-C no file remains.)");
   command->callback(
       [arguments, &invocation] { invocation.action = [arguments] { return export_run(*arguments); }; });
 }

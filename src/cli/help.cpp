@@ -72,13 +72,12 @@ int help(const HelpArguments& arguments) {
 }  // namespace
 
 void add_help(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("help", "the documentation, page by page");
+  CLI::App* command = app.add_subcommand("help", "print a page of the documentation");
   auto arguments = std::make_shared<HelpArguments>();
-  command->add_option(
-      "TOPIC", arguments->topic,
-      "a page, or a command, whose options it then prints; without it: which pages there are");
+  command->add_option("TOPIC", arguments->topic,
+                      "page, or command whose options to print; default: the list of pages");
   command->add_flag("--markdown", arguments->markdown,
-                    "the page as it is written, not filled to the terminal");
+                    "print the page as Markdown, not formatted for the terminal");
   command->footer(R"(Examples:
   palpate help
   palpate help first-touch

@@ -136,12 +136,12 @@ int inspect(const InspectArguments& arguments) {
 
 void add_inspect(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
-      app.add_subcommand("inspect", "what a scene uses, what it leaves out, sizes and memory");
+      app.add_subcommand("inspect", "print the parts that a scene uses and omits, sizes and memory");
   auto arguments = std::make_shared<InspectArguments>();
   add_scene(*command, arguments->scene, true);
   command->footer(R"(Examples:
   palpate inspect press-ball
-  palpate inspect my.toml --set body.0.mesh.element_size_m=0.005      how large would it be?)");
+  palpate inspect my.toml --set body.0.mesh.element_size_m=0.005      size with finer elements)");
   command->callback(
       [arguments, &invocation] { invocation.action = [arguments] { return inspect(*arguments); }; });
 }

@@ -157,14 +157,14 @@ int list(const ListArguments& arguments) {
 }  // namespace
 
 void add_list(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("list", "the names that scenes and options know");
+  CLI::App* command = app.add_subcommand("list", "print the names accepted in scenes and options");
   auto arguments = std::make_shared<ListArguments>();
   command->add_option(
       "WHAT", arguments->what,
       "integrators, linear-solvers, materials, tool-integrators, obstacles, contact-methods, "
       "contact-springs, contact-laws, generators, devices, device-profiles, motions, parts, cases, scenes; "
-      "all of these without it; or keys: every key of a scene with its unit, range, default and meaning; or "
-      "study-keys: likewise of a study");
+      "default: all of these; or keys: every key of a scene with its unit, range, default and meaning; or "
+      "study-keys: the keys of a study");
   command->add_flag(
       "--markdown", arguments->markdown,
       "as a page of the documentation: docs/keys.md with keys, docs/study-keys.md with study-keys, "

@@ -120,14 +120,15 @@ int modes(const ModesArguments& arguments) {
 }  // namespace
 
 void add_modes(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("modes", "frequencies and shapes of a scene's free vibrations");
+  CLI::App* command =
+      app.add_subcommand("modes", "compute frequencies and shapes of a scene's free vibrations");
   auto arguments = std::make_shared<ModesArguments>();
   add_scene(*command, arguments->scene, false);
-  command->add_option("--count", arguments->count, "how many, from the lowest")
+  command->add_option("--count", arguments->count, "number of modes, from the lowest")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--picture", arguments->picture,
-                    "also a picture of the first six that are no rigid motions (modes.png)");
+                    "also a picture of the first six non-rigid modes (modes.png)");
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/modes-SCENE")
       ->type_name("DIR");
   command->footer(R"(Examples:
@@ -135,9 +136,9 @@ void add_modes(CLI::App& app, Invocation& invocation) {
   palpate modes cantilever --count 20 --picture -o out/modes
   palpate modes press-ball --set body.0.youngs_modulus_pa=2e4
 
-Solves K phi = w^2 M phi at the scene's start, damping left out; a free body begins with six rigid motions,
-0 Hz.  Writes modes.csv, and modes.vtkhdf: ParaView opens it as a time series in which time is the mode's
-number, step by step the displaced shapes.)");
+Solves K phi = w^2 M phi at the scene's start, without damping; a free body has six rigid motions of 0 Hz.
+Writes modes.csv, and modes.vtkhdf, which ParaView opens as a time series of displaced shapes, with the mode's
+number as time.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return modes(*arguments); };
     invocation.factorises = true;

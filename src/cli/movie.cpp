@@ -146,30 +146,30 @@ int movie(const MovieArguments& arguments) {
 }  // namespace
 
 void add_movie(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("movie", "a movie of a run that is over");
+  CLI::App* command = app.add_subcommand("movie", "make a movie of a completed run");
   auto arguments = std::make_shared<MovieArguments>();
-  command->add_option("run", arguments->run, "folder of a run, with run.vtkhdf in it")
+  command->add_option("run", arguments->run, "folder of a run, which contains run.vtkhdf")
       ->required()
       ->type_name("DIR");
   command
       ->add_option("-o,--output", arguments->file, "the movie (.webm, .png or .apng); default DIR/movie.png")
       ->type_name("FILE");
-  command->add_option("--fps", arguments->fps, "frames a second as it is played; default 25 at most")
+  command->add_option("--fps", arguments->fps, "frames per second of playback; default at most 25")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
-  command->add_option("--slow", arguments->slow, "so many times slower than the run")
+  command->add_option("--slow", arguments->slow, "slow the movie down by FACTOR")
       ->type_name("FACTOR")
       ->check(CLI::PositiveNumber);
-  command->add_option("--size", arguments->size, "of a frame in pixels")->type_name("WIDTHxHEIGHT");
-  command->add_option("--shade", arguments->shade, "what colours the bodies: displacement or stress")
+  command->add_option("--size", arguments->size, "size of a frame [pixels]")->type_name("WIDTHxHEIGHT");
+  command->add_option("--shade", arguments->shade, "quantity that colours the bodies: displacement or stress")
       ->type_name("NAME")
       ->check(CLI::IsMember({"displacement", "stress", "penetration"}));
   command->footer(R"(Examples:
   palpate movie out/press-ball
   palpate movie out/press-ball --slow 4 --shade stress -o touch.webm
 
-It shows the states that the run kept (record.state_period_s), also of one that was cut off, with the force on
-the hand beneath, and computes nothing anew.)");
+Shows the recorded states (record.state_period_s), also of an interrupted run, with the force on the hand
+below.  Nothing is computed again.)");
   command->callback(
       [arguments, &invocation] { invocation.action = [arguments] { return movie(*arguments); }; });
 }

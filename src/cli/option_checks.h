@@ -9,7 +9,7 @@
 namespace palpate::cli {
 
 inline constexpr const char* kSceneHelp =
-    "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";
+    "scene file (.toml), or name of an included scene (`palpate list scenes`)";
 
 /// Validator of a duration [s]. CLI::PositiveNumber accepts NaN, and its message prints the largest double.
 inline const CLI::Validator duration(

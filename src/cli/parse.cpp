@@ -15,24 +15,23 @@ namespace {
 constexpr const char* kDescription =
     "palpate renders touch: a hand moves a haptic handle, a virtual spring pulls a rigid tool after it, the "
     "tool presses into a soft body,\n"
-    "and the force goes back to the hand.  Every figure has a known error, and every error its price in run "
-    "time.";
+    "and the force returns to the hand.  Every result comes with its error and its cost in run time.";
 
 constexpr const char* kExamples = R"(Examples:
-  palpate demo                                   the whole of it in a minute; open out/demo/report.html
+  palpate demo                                   an overview in a minute; open out/demo/report.html
   palpate run press-ball                         a tool presses a soft ball; results in out/press-ball
   palpate run my.toml --set body.0.youngs_modulus_pa=2e4 -o out/softer
-  palpate inspect press-ball                     what a scene uses, what it leaves out, how large it is
+  palpate inspect press-ball                     parts that a scene uses and omits, sizes, memory
   palpate export out/press-ball --to vtu         a run as files for other programs
   palpate model liver.obj -o liver.h5            a layered model of a closed surface
   palpate compare cantilever                     error against run time, for every integrator
-  palpate validate                               every case with a known answer
-  palpate list integrators                       the names that scenes and --integrator know
+  palpate validate                               all cases with a known answer
+  palpate list integrators                       names accepted in scenes and by --integrator
 
-`palpate COMMAND --help` tells more about each, `palpate help` prints the documentation.
+`palpate COMMAND --help` describes a command, `palpate help` prints the documentation.
 
-Exit status: 0 when all that the command promises was done; 1 on an error; 3 when something of it is
-missing, which the last line names; 130 after Ctrl-C.)";
+Exit status: 0 on success; 1 on an error; 3 if part of the output is missing, which the last line lists; 130
+after Ctrl-C.)";
 
 /// Line of `palpate --help` about a command of another program, which parses its arguments.
 void add_other(CLI::App& app, const OtherProgram& other) {

@@ -132,26 +132,27 @@ int replay(const ReplayArguments& arguments) {
 }  // namespace
 
 void add_replay(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("replay", "feel the motion of a run again");
+  CLI::App* command =
+      app.add_subcommand("replay", "repeat the ticks of a run, or rerun it under the recorded hand");
   auto arguments = std::make_shared<ReplayArguments>();
-  command->add_option("run", arguments->run, "folder of a run, with haptic.h5 in it")
+  command->add_option("run", arguments->run, "folder of a run, which contains haptic.h5")
       ->required()
       ->type_name("DIR");
   command->add_option("--set", arguments->overrides, "change a key of its scene (KEY=VALUE, repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--integrator", arguments->integrator, "another integrator than the run's")
+  command->add_option("--integrator", arguments->integrator, "replace the integrator of the run")
       ->type_name("NAME");
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/replay-SCENE")
       ->type_name("DIR");
   command->footer(R"(Examples:
-  palpate replay out/press-ball                  each tick from its recorded input and exchange, bit for bit
+  palpate replay out/press-ball                  each tick from its recorded input and exchange, bitwise
   palpate replay out/press-ball --integrator cvode-bdf --set exchange.scheme=monolithic
   palpate replay out/press-ball --set exchange.exchange_period_s=0.02
 
-Without a change nothing but the ticks is computed again: what comes out must be what was recorded, of a
-run in real time as well; else the exit status is 1.  With a change the whole scene runs again in virtual
-time, under the hand as it was recorded, and what a hand would feel of the difference is printed.)");
+Without changes only the ticks are computed again; they must equal the recorded ticks, also for a run in real
+time, else the exit status is 1.  With changes the scene runs again in virtual time under the recorded hand,
+and the perceptible difference is printed.)");
   command->callback(
       [arguments, &invocation] { invocation.action = [arguments] { return replay(*arguments); }; });
 }

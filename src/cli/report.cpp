@@ -35,23 +35,23 @@ int report(const ReportArguments& arguments) {
 }  // namespace
 
 void add_report(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("report", "one HTML page of any results");
+  CLI::App* command = app.add_subcommand("report", "make one HTML page of results");
   auto arguments = std::make_shared<ReportArguments>();
   command
       ->add_option("folders", arguments->folders,
-                   "folders that run, compare, study, validate, stability or bench wrote, in any mix")
+                   "output folders of run, compare, study, validate, stability or bench")
       ->required()
       ->type_name("DIR");
   command
       ->add_option("-o,--output", arguments->file,
-                   "the page; default report.html, in the folder where only one is given")
+                   "the page; default report.html, in the folder if only one is given")
       ->type_name("FILE");
   command->footer(R"(Examples:
   palpate report out/press-ball
   palpate report out/press-ball out/compare-press-ball out/stability -o out/report.html
 
-The page needs no other file and no network.  It says in words first what each result answers; its tables
-sort, its charts zoom and tell their values, and a run's bodies turn and play (decimated, at most 4 MB).)");
+The page needs no other file and no network.  It begins with a summary in words; tables sort, charts zoom and
+show their values, and the bodies of a run rotate and play (decimated, at most 4 MB).)");
   command->callback(
       [arguments, &invocation] { invocation.action = [arguments] { return report(*arguments); }; });
 }

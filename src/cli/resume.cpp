@@ -90,19 +90,18 @@ int resume(const ResumeArguments& arguments) {
 }  // namespace
 
 void add_resume(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("resume", "go on with a run that was stopped or killed");
+  CLI::App* command = app.add_subcommand("resume", "continue an interrupted run");
   auto arguments = std::make_shared<ResumeArguments>();
-  command->add_option("run", arguments->run, "folder of a run, with checkpoint.h5 in it")
+  command->add_option("run", arguments->run, "folder of a run, which contains checkpoint.h5")
       ->required()
       ->type_name("DIR");
   command->footer(R"(Examples:
   palpate run two-heads --checkpoint-every 0.1 -o out/heads
   palpate resume out/heads                       after Ctrl-C, a kill, or a loss of power
 
-The run goes on from its last checkpoint with the options that it was started with, and ends as if it had
-never stopped: all that it records is the same to the last bit.  What was recorded after the checkpoint is
-cut off, and computed again.  Needs the same version of palpate, scene and meshes.  Exit status 0 where the
-run is complete already.)");
+The run continues from its last checkpoint with its original options.  Its results are bitwise identical to
+those of an uninterrupted run: data recorded after the checkpoint are truncated and computed again.  Requires
+the same version of palpate, the same scene and meshes.  Exit status 0 if the run is already complete.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return resume(*arguments); };
     invocation.factorises = true;

@@ -17,7 +17,7 @@ COMMENT = re.compile(r"(?:^|\s)//[/!]?<?\s?(.*)")
 FRAGMENT = re.compile(r"(of|what)\b", re.I)
 MOST_FRAGMENTS = 0.005  # share of comment lines
 
-QUANTITY = r"(?:one|two|three|four|six|eight|ten|once|twice|\d[\d,]*(?:\.\d+)?(?: bytes| numbers)?)"
+QUANTITY = r"(?:one|two|three|four|six|eight|ten|once|twice|\d+(?:,\d{3})*(?:\.\d+)?(?: bytes| numbers)?)"
 COUNTED = (r"(?:node|line|tick|step|query|point|thread|body|hand|tool|pair|period|contact|sample|row|vertex|"
            r"block|second|cluster|exchange|element|record|part|file)")
 FOR_PER = re.compile(rf"\b{QUANTITY} an? {COUNTED}\b", re.I)
