@@ -25,19 +25,6 @@ void add_lines(const std::string& whose, const compare::HandError& felt, std::ve
                 line_of("torque error", e.torque_rms_n_m, e.torque_max_n_m, felt.peak_torque_n_m, "N m"));
 }
 
-void add_figures(store::SummarySection& s, const compare::HandError& felt) {
-  const compare::TrajectoryError& e = felt.error;
-  s.values.insert(s.values.end(),
-                  {{"force_error_rms_n", e.force_rms_n},
-                   {"force_error_max_n", e.force_max_n},
-                   {"force_error_rms_of_peak", share_of_peak(e.force_rms_n, felt.peak_force_n)},
-                   {"peak_force_n", felt.peak_force_n},
-                   {"torque_error_rms_n_m", e.torque_rms_n_m},
-                   {"torque_error_max_n_m", e.torque_max_n_m},
-                   {"torque_error_rms_of_peak", share_of_peak(e.torque_rms_n_m, felt.peak_torque_n_m)},
-                   {"peak_torque_n_m", felt.peak_torque_n_m}});
-}
-
 }  // namespace
 
 compare::AgainstMonolithic against_monolithic(const loop::World& world,
@@ -63,21 +50,6 @@ std::vector<std::string> against_monolithic_remarks(const scene::Description& de
   for (std::size_t i = 0; i < against.more_hands.size(); ++i)
     add_lines(fmt::format("{}hand {}: ", what, description.hands[i].name), against.more_hands[i], out);
   return out;
-}
-
-void add_against_monolithic(store::Summary& summary, const scene::Description& description,
-                            const compare::AgainstMonolithic& a) {
-  store::SummarySection& s = summary.section("against monolithic");
-  s.values.emplace_back("reference", a.made_by);
-  if (!a.trouble.empty()) {
-    s.values.emplace_back("trouble", a.trouble);
-    return;
-  }
-  add_figures(s, a);
-  s.values.emplace_back("reference_cpu_s", a.cpu_s);
-  for (std::size_t i = 0; i < a.more_hands.size(); ++i)
-    add_figures(summary.section(fmt::format("hand {} against monolithic", description.hands[i].name)),
-                a.more_hands[i]);
 }
 
 }  // namespace palpate::cli

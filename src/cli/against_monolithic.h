@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "compare/haptic.h"
-#include "store/summary.h"
 
 namespace palpate::cli {
 
@@ -17,9 +16,5 @@ compare::AgainstMonolithic against_monolithic(const loop::World& world,
 /// if there is no monolithic solution.
 std::vector<std::string> against_monolithic_remarks(const scene::Description& description,
                                                     const compare::AgainstMonolithic& against);
-
-/// Adds the errors against the monolithic solution to the summary of the run.
-void add_against_monolithic(store::Summary& summary, const scene::Description& description,
-                            const compare::AgainstMonolithic& against);
 
 }  // namespace palpate::cli

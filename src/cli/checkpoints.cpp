@@ -89,11 +89,4 @@ void print_checkpoints(const loop::CheckpointCost& cost, double every_s) {
       cost.written, every_s, cost.keep_s, cost.assemble_s);
 }
 
-void add_checkpoints(store::Summary& summary, const loop::CheckpointCost& cost, double every_s) {
-  summary.section("checkpoints").values = {{"every_s", every_s},
-                                           {"written", static_cast<long long>(cost.written)},
-                                           {"keep_s", cost.keep_s},
-                                           {"assemble_anew_s", cost.assemble_s}};
-}
-
 }  // namespace palpate::cli

@@ -5,7 +5,6 @@
 #include "loop/checkpoints.h"
 #include "run.h"
 #include "store/checkpoint_file.h"
-#include "store/summary.h"
 
 namespace palpate::cli {
 
@@ -46,8 +45,6 @@ loop::CheckpointPlan checkpoint_plan(RunIdentity identity, const scene::Descript
 /// Prints the number of checkpoints and the time that they took; `every_s` is their interval in simulated
 /// time [s].
 void print_checkpoints(const loop::CheckpointCost& cost, double every_s);
-/// Adds these figures to the summary of the run.
-void add_checkpoints(store::Summary& summary, const loop::CheckpointCost& cost, double every_s);
 
 /// Run to resume from its checkpoint.
 struct Resumption {

@@ -11,6 +11,7 @@
 #include "cli/scene_of.h"
 #include "cli/stop.h"
 #include "compare.h"
+#include "compare/summary.h"
 #include "compare_tables.h"
 #include "palpate/core/error.h"
 #include "report/run_report.h"
@@ -124,31 +125,7 @@ void keep_summary(const CompareArguments& a, const scene::Description& d, const 
   summary.overrides = a.overrides;
   summary.outcome = c.stopped ? "interrupted" : "finished";
   summary.provenance = store::provenance();
-  const compare::TrajectoryError& own = c.reference.own_error;
-  summary.section("monolithic reference").values = {{"made_by", c.reference.description},
-                                                    {"trouble", c.reference.trouble},
-                                                    {"peak_force_n", c.peak_force_n},
-                                                    {"peak_torque_n_m", c.peak_torque_n_m},
-                                                    {"own_force_error_rms_n", own.force_rms_n},
-                                                    {"own_torque_error_rms_n_m", own.torque_rms_n_m},
-                                                    {"cpu_s", c.reference.cpu_s}};
-  for (const compare::HapticOrder& order : c.orders) {
-    auto& values = summary.section("observed orders").values;
-    values.emplace_back(order.variable + ": force", order.force);
-    values.emplace_back(order.variable + ": torque", order.torque);
-  }
-  for (const HapticPoint& p : c.points) {
-    if (!p.own || p.status != compare::PointStatus::kOk) continue;
-    summary.section("the scene's own settings").values = {
-        {"force_error_rms_n", p.error.force_rms_n},
-        {"force_error_max_n", p.error.force_max_n},
-        {"force_error_rms_of_peak", compare::share_of_peak(p.error.force_rms_n, c.peak_force_n)},
-        {"torque_error_rms_n_m", p.error.torque_rms_n_m},
-        {"torque_error_max_n_m", p.error.torque_max_n_m},
-        {"torque_error_rms_of_peak", compare::share_of_peak(p.error.torque_rms_n_m, c.peak_torque_n_m)},
-        {"cpu_s", p.cpu_median_s}};
-    break;
-  }
+  compare::add_to_summary(summary, d, c);
   store::write_summary((fs::path(folder) / "summary.json").string(), summary);
 }
 

@@ -102,18 +102,19 @@ int replay(const ReplayArguments& arguments) {
   const store::ResultFolder mine(folder);
   remove_run_files(description, folder);
   Ticks ticks(records.size());
+  loop::RunFigures figures;
   loop::RunResult result;
   {
     loop::Recorder recorder(*world, folder);
     Progress progress(fmt::format("replaying {}", arguments.run));
     loop::RunOptions options;
     options.duration_s = records.front().ticks.back().time;
-    options.observers = {&ticks, &recorder};
+    options.observers = {&ticks, &figures, &recorder};
     options.progress = [&progress](double fraction) { progress(fraction); };
     options.stop = &stop_flag();
     result = loop::run(*world, options);
   }
-  store::Summary summary = loop::summarise(*world, result, assemble_s);
+  store::Summary summary = loop::summarise(*world, result, assemble_s, figures);
   summary.command = fmt::format("palpate replay {}", arguments.run);
   summary.overrides = arguments.overrides;
   store::write_summary((std::filesystem::path(folder) / "summary.json").string(), summary);

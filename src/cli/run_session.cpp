@@ -119,7 +119,7 @@ void RunSession::open_folder() {
 }
 
 void RunSession::attach_observers(const PictureOptions& options) {
-  observers_ = {&ran_.peak, &overlaps_};
+  observers_ = {&ran_.figures, &overlaps_};
   pictures_.emplace(*world_, arguments_, options, folder_);
   for (loop::Observer* observer : pictures_->observers()) observers_.push_back(observer);
   if (description_.record) {

@@ -2,30 +2,29 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "against_monolithic.h"
-#include "checkpoints.h"
 #include "cli/scene_of.h"
 #include "clock_figures.h"
+#include "compare/summary.h"
 #include "core/clock.h"
 #include "core/time_text.h"
 #include "loop/registries.h"
 #include "loop/summary.h"
 #include "palpate/core/log.h"
-#include "palpate/scene/hands.h"
 #include "run_command_line.h"
 #include "store/atomic_file.h"
 
 namespace palpate::cli {
 namespace {
 
-void print_hand(const std::string& who, const PeakWrench::Peak& peak, long ticks, long limited) {
+void print_hand(const std::string& who, const loop::PeakWrench& peak, long ticks, long limited) {
   fmt::print(
       "on {}: at most {:.4g} N (at {} s) and {:.4g} N m (at {} s) in {} ticks; {} held at the device's "
       "limit\n",
-      who, peak.force_n, time_text(peak.force_s), peak.torque_n_m, time_text(peak.torque_s), ticks, limited);
+      who, peak.force_n, time_text(peak.force_at_s), peak.torque_n_m, time_text(peak.torque_at_s), ticks,
+      limited);
 }
 
 /// Prints the requested tolerance, and the tolerance of the error test that the method derives from it.
@@ -35,43 +34,11 @@ void print_tolerance(const IntegratorSpec& spec) {
     fmt::print("{}: rtol {:g}, error test at {:.3g}\n", spec.name, spec.rtol, method.error_test_rtol(spec));
 }
 
-/// Adds the largest force and torque on each hand to the summary.
-void add_peaks(store::Summary& summary, const scene::Description& description, const RunOutput& ran) {
-  if (ran.result.ticks == 0) return;
-  const std::vector<scene::Hand> hands = scene::hands_of(description);
-  for (std::size_t i = 0; i < std::min(hands.size(), ran.peak.of.size()); ++i) {
-    auto& values =
-        summary.section(i == 0 ? "on the hand" : fmt::format("on the hand {}", hands[i].name)).values;
-    const PeakWrench::Peak& peak = ran.peak.of[i];
-    values.emplace_back("peak_force_n", peak.force_n);
-    values.emplace_back("peak_force_at_s", peak.force_s);
-    values.emplace_back("peak_torque_n_m", peak.torque_n_m);
-    values.emplace_back("peak_torque_at_s", peak.torque_s);
-  }
-}
-
 }  // namespace
-
-void PeakWrench::tick_of(std::size_t hand, const loop::TickRecord& tick) {
-  if (hand >= of.size()) of.resize(hand + 1);
-  Peak& p = of[hand];
-  if (tick.device.force.norm() > p.force_n) p.force_n = tick.device.force.norm(), p.force_s = tick.time;
-  if (tick.device.moment.norm() > p.torque_n_m)
-    p.torque_n_m = tick.device.moment.norm(), p.torque_s = tick.time;
-}
-
-void PeakWrench::archive(Archive& a) {
-  a.list("peak", of, [&](Peak& p) {
-    a("force_n", p.force_n);
-    a("force_s", p.force_s);
-    a("torque_n_m", p.torque_n_m);
-    a("torque_s", p.torque_s);
-  });
-}
 
 void print_outcome(const loop::World& world, const RunOutput& ran) {
   const loop::RunResult& result = ran.result;
-  const PeakWrench& peak = ran.peak;
+  const std::vector<loop::PeakWrench>& peaks = ran.figures.peaks();
   fmt::print("{}: {} s simulated in {:.2f} s, assembled in {:.2f} s, peak memory {:.0f} MiB\n",
              short_name(world.description), time_text(result.time), result.wall_s, ran.assemble_s,
              peak_memory_mib());
@@ -82,9 +49,9 @@ void print_outcome(const loop::World& world, const RunOutput& ran) {
                c.solver.factorisations, result.contact_queries);
     print_tolerance(world.description.integrator);
   }
-  if (result.ticks > 0) print_hand("the hand", peak.of[0], result.ticks, result.limited_ticks);
-  for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peak.of.size(); ++i)
-    print_hand(fmt::format("hand \"{}\"", world.description.hands[i].name), peak.of[i + 1],
+  if (!peaks.empty()) print_hand("the hand", peaks[0], result.ticks, result.limited_ticks);
+  for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peaks.size(); ++i)
+    print_hand(fmt::format("hand \"{}\"", world.description.hands[i].name), peaks[i + 1],
                result.more_hands[i].ticks, result.more_hands[i].limited_ticks);
   if (result.real_time) print_clock(*result.real_time);
   for (const std::string& remark : ran.remarks) fmt::print("{}\n", remark);
@@ -92,12 +59,11 @@ void print_outcome(const loop::World& world, const RunOutput& ran) {
 
 void keep_summary(const loop::World& world, const RunOutput& ran, const RunArguments& arguments,
                   const std::string& folder, const std::optional<Outcome>& outcome) {
-  store::Summary summary = loop::summarise(world, ran.result, ran.assemble_s);
-  add_peaks(summary, world.description, ran);
+  store::Summary summary = loop::summarise(world, ran.result, ran.assemble_s, ran.figures);
   if (outcome) summary.outcome = outcome->word, summary.message = outcome->message;
-  if (ran.against) add_against_monolithic(summary, world.description, *ran.against);
+  if (ran.against) compare::add_to_summary(summary, world.description, *ran.against);
   if (const double every_s = arguments.checkpoint_every_s; every_s > 0.0)
-    add_checkpoints(summary, ran.checkpoints, every_s);
+    loop::add_checkpoints(summary, ran.checkpoints, every_s);
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
   summary.remarks = log::warnings();

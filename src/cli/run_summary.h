@@ -5,28 +5,18 @@
 
 #include "compare/haptic.h"
 #include "loop/checkpoints.h"
+#include "loop/run_figures.h"
 #include "palpate/loop/run.h"
 #include "run.h"
 
 namespace palpate::cli {
-
-/// Records the largest force and torque on each hand, and when.
-class PeakWrench : public loop::Observer {
- public:
-  void tick_of(std::size_t hand, const loop::TickRecord& tick) override;
-  void archive(Archive& a) override;
-  struct Peak {
-    double force_n = 0.0, force_s = 0.0, torque_n_m = 0.0, torque_s = 0.0;
-  };
-  std::vector<Peak> of{1};  ///< Peaks of each hand
-};
 
 /// Result of one run and its cost.
 struct RunOutput {
   loop::RunResult result;
   std::vector<std::string> remarks;  ///< Lines of run_remarks()
   double assemble_s = 0.0;
-  PeakWrench peak;
+  loop::RunFigures figures;
   loop::CheckpointCost checkpoints;
   std::optional<compare::AgainstMonolithic> against;  ///< Set with --against-monolithic
 };

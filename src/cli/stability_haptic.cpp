@@ -169,6 +169,19 @@ std::vector<std::string> verdicts_of(const ZWidth& z, double tick_s,
   return out;
 }
 
+/// @param scale  from [N/m] to the unit whose suffix is `unit`
+void add_point(store::Summary& summary, const OperatingPoint& p, const char* motion, double scale,
+               const std::string& unit) {
+  summary.list("operating_points")
+      .push_back({{"name", p.name},
+                  {"motion", motion},
+                  {"contact_stiffness" + unit, scale * p.contact.stiffness},
+                  {"stiffness_with_coupling" + unit, scale * p.series},
+                  {"spectral_radius", p.radius},
+                  {"simulated_stable", p.simulated_stable},
+                  {"passive", p.passive}});
+}
+
 void keep_summary(const StabilityArguments& a, const scene::Description& d, const ZWidth& z,
                   const std::vector<OperatingPoint>& points, const RotationalLoop& rotation,
                   const std::vector<OperatingPoint>& turning, const std::vector<std::string>& verdicts,
@@ -182,21 +195,11 @@ void keep_summary(const StabilityArguments& a, const scene::Description& d, cons
   summary.overrides = a.scene.overrides;
   summary.outcome = z.stopped ? "interrupted" : "finished";
   summary.provenance = store::provenance();
-  summary.section("verdicts").values = {{"passive_within_stable", z.passive_within_stable()},
-                                        {"largest_difference_simulated_spectral", z.largest_difference()}};
+  summary.section("haptic_stability").values = {{"passive_within_stable", z.passive_within_stable()},
+                                                {"largest_relative_difference", z.largest_difference()}};
+  for (const OperatingPoint& p : points) add_point(summary, p, "translation", 1.0, "_n_m");
   const double a2 = rotation.lever_m * rotation.lever_m;
-  for (const OperatingPoint& p : turning)
-    summary.section("rotation: " + p.name).values = {{"contact_n_m_rad", a2 * p.contact.stiffness},
-                                                     {"with_coupling_n_m_rad", a2 * p.series},
-                                                     {"spectral_radius", p.radius},
-                                                     {"simulated_stable", p.simulated_stable},
-                                                     {"passive", p.passive}};
-  for (const OperatingPoint& p : points)
-    summary.section(p.name).values = {{"contact_n_m", p.contact.stiffness},
-                                      {"with_coupling_n_m", p.series},
-                                      {"spectral_radius", p.radius},
-                                      {"simulated_stable", p.simulated_stable},
-                                      {"passive", p.passive}};
+  for (const OperatingPoint& p : turning) add_point(summary, p, "rotation", a2, "_n_m_rad");
   store::write_summary((fs::path(folder) / "summary.json").string(), summary);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <numeric>
 
@@ -89,9 +90,12 @@ void print_results(const Results& results) {
     fmt::print("... and {} more; study.csv lists all\n", results.rows.size() - kMostRows);
 }
 
+/// All ways in which a task may end, as study.csv names them.
+constexpr std::array kStatuses = {"ok", "failed", "out of time", "crashed", "refused", "missing"};
+
 std::string counts_of(const Results& results) {
   std::string out;
-  for (const char* status : {"ok", "failed", "out of time", "crashed", "refused", "missing"})
+  for (const char* status : kStatuses)
     if (const std::size_t n = results.count(status); n > 0)
       out += fmt::format("{}{} {}", out.empty() ? "" : ", ", n, status);
   return out;
@@ -176,6 +180,11 @@ StudyEnd run_all(Plan& plan, const StudyArguments& arguments, const std::string&
   return {outcome.stopped, false, why_lost(outcome)};
 }
 
+/// Adds a parameter whose values are spaced by equal ratios.
+void add_log_spaced(store::Summary& summary, const std::string& key) {
+  summary.list("log_spaced_parameters").push_back({{"key", key}});
+}
+
 void keep_summary(const Plan& plan, const Results& results, const StudyArguments& arguments, bool stopped,
                   double wall_s, const std::string& folder) {
   store::Summary summary;
@@ -183,16 +192,18 @@ void keep_summary(const Plan& plan, const Results& results, const StudyArguments
   summary.scene = plan.spec.name;
   summary.outcome = stopped ? "interrupted" : "finished";
   summary.provenance = store::provenance();
-  store::SummarySection& counts = summary.section("counts");
-  counts.values.emplace_back("tasks", static_cast<long long>(results.rows.size()));
-  for (const char* status : {"ok", "failed", "out of time", "crashed", "refused", "missing"})
-    counts.values.emplace_back(status, static_cast<long long>(results.count(status)));
+  store::SummaryFields& counts = summary.section("tasks").values;
+  counts.emplace_back("total", static_cast<long long>(results.rows.size()));
+  for (const char* status : kStatuses) {
+    std::string key = status;
+    std::replace(key.begin(), key.end(), ' ', '_');
+    counts.emplace_back(key, static_cast<long long>(results.count(status)));
+  }
   summary.section("timings").values = {{"wall_s", wall_s}};
   for (const scene::SweepSpec& sweep : plan.spec.sweeps)
-    if (sweep.spacing == "log") summary.section("logarithmic").values.emplace_back(sweep.key, true);
+    if (sweep.spacing == "log") add_log_spaced(summary, sweep.key);
   for (const scene::RandomSpec& random : plan.spec.randoms)
-    if (random.distribution == "log-uniform")
-      summary.section("logarithmic").values.emplace_back(random.key, true);
+    if (random.distribution == "log-uniform") add_log_spaced(summary, random.key);
   store::write_summary((fs::path(folder) / "summary.json").string(), summary);
 }
 

@@ -2,6 +2,7 @@
 
 #include "compare/haptic.h"
 #include "loop/replay.h"
+#include "loop/run_figures.h"
 #include "palpate/core/error.h"
 #include "palpate/scene/hands.h"
 
@@ -27,10 +28,9 @@ class EachHand : public loop::Observer {
 
 HandError hand_error(const Trajectory& felt, const Trajectory& reference) {
   HandError out;
-  for (const Wrench& w : reference.device) {
-    out.peak_force_n = std::max(out.peak_force_n, w.force.norm());
-    out.peak_torque_n_m = std::max(out.peak_torque_n_m, w.moment.norm());
-  }
+  const loop::PeakWrench peak = loop::peak_of(reference.device, reference.tick_times);
+  out.peak_force_n = peak.force_n;
+  out.peak_torque_n_m = peak.torque_n_m;
   out.error = wrench_distance(felt, reference);
   return out;
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "loop/run_figures.h"
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
 
@@ -43,7 +44,7 @@ bool run_method(const scene::Description& d, const std::string& method, const st
   point.most_samples = samples.most;
   point.query_s = result.query_s;
   point.cpu_s = result.cpu_s;
-  for (const Wrench& w : trajectory.device) point.peak_force_n = std::max(point.peak_force_n, w.force.norm());
+  point.peak_force_n = loop::peak_of(trajectory.device, trajectory.tick_times).force_n;
   return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "loop/run_figures.h"
 #include "palpate/core/error.h"
 
 namespace palpate::compare {
@@ -58,10 +59,9 @@ Reference settle(const PlannedReference& planned, const ReferenceRun& primary, c
   if (!out.available) return out;
   const Run& used = *(primary.run ? primary : check).run;
   out.cpu_s = used.result.cpu_s;
-  for (const Wrench& w : used.trajectory.device) {
-    out.peak_force_n = std::max(out.peak_force_n, w.force.norm());
-    out.peak_torque_n_m = std::max(out.peak_torque_n_m, w.moment.norm());
-  }
+  const loop::PeakWrench peak = loop::peak_of(used.trajectory.device, used.trajectory.tick_times);
+  out.peak_force_n = peak.force_n;
+  out.peak_torque_n_m = peak.torque_n_m;
   return out;
 }
 

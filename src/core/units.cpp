@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 28> kUnits = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 29> kUnits = {{
     {"_n_m_s_rad", "N m s/rad"},
     {"_n_m_rad", "N m/rad"},
     {"_gflop_s", "Gflop/s"},
@@ -22,6 +22,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 28> kUnits =
     {"_m_s2", "m/s^2"},
     {"_gb_s", "GB/s"},
     {"_n_m", "N/m"},
+    {"_m2", "m^2"},
     {"_m_s", "m/s"},
     {"_n_s", "N/s"},
     {"_s_m", "s/m"},

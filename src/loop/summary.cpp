@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "contact/gpu_device.h"
 #include "contact/sources.h"
@@ -63,9 +64,6 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
     s.values.emplace_back("linearisation", d.exchange.linearisation);
   }
   s.values.emplace_back("tool_integrator", monolithic ? d.integrator.name : d.tool->integrator);
-  const device::DeviceFigures figures = device::figures_of(*d.device);
-  s.values.emplace_back("max_force_n", figures.max_force);
-  s.values.emplace_back("max_torque_n_m", figures.max_torque);
 }
 
 /// Returns the provenance from store, with the libraries of the other parts.
@@ -79,12 +77,11 @@ store::Provenance full_provenance() {
 
 /// Adds the cached files of models that the scene specifies by "model:NAME".
 void add_models(store::Summary& summary, const scene::Description& d) {
+  std::set<std::string> added;
   const auto add = [&](const std::string& file) {
     const std::string name = store::name_of_cached(file);
-    if (name.empty()) return;
-    auto& kept = summary.section("models").values;
-    if (std::none_of(kept.begin(), kept.end(), [&](const auto& value) { return value.first == name; }))
-      kept.emplace_back(name, file);
+    if (!name.empty() && added.insert(name).second)
+      summary.list("models").push_back({{"name", name}, {"file", file}});
   };
   for (const SoftBodySpec& body : d.bodies) add(body.mesh.file);
   for (const scene::Hand& hand : scene::hands_of(d)) add(hand.tool->mesh.file);
@@ -92,53 +89,83 @@ void add_models(store::Summary& summary, const scene::Description& d) {
 
 /// Adds the changes of the resultants on bodies by queries: with images, the pairs and normals of a query
 /// hold until the next.
-void add_jumps(store::Summary& summary, const World& world) {
+void add_resultants(store::Summary& summary, const World& world) {
   if (!world.contact) return;
-  store::SummarySection& s = summary.section("contact");
   const contact::ResultantSize jump = world.contact->largest_jump(),
                                after = world.contact->largest_resultant();
-  s.values.emplace_back("largest_force_jump_at_a_query_n", jump.force);
-  s.values.emplace_back("largest_moment_jump_at_a_query_n_m", jump.moment);
-  s.values.emplace_back("largest_force_after_a_query_n", after.force);
-  s.values.emplace_back("largest_moment_after_a_query_n_m", after.moment);
-  const std::vector<long> fast = world.contact->fast_regions();
-  const std::vector<long> kept = world.contact->normals_kept();
-  const std::vector<Overlap> overlaps = overlaps_of(world);
-  for (std::size_t i = 0; i < fast.size(); ++i) {
-    const Overlap& overlap = overlaps[i];
-    s.values.emplace_back(overlap.pair + ": regions fast enough to go through",
-                          static_cast<long long>(fast[i]));
-    s.values.emplace_back(overlap.pair + ": deep poses that kept the last normal",
-                          static_cast<long long>(kept[i]));
-    s.values.emplace_back(overlap.pair + ": deepest_overlap_m", overlap.deepest_m);
-    if (overlap.quadrature_error > 0.0)
-      s.values.emplace_back(overlap.pair + ": largest_quadrature_error", overlap.quadrature_error);
-    if (overlap.largest_share > 0.0)
-      s.values.emplace_back(overlap.pair + ": largest_share_of_a_point", overlap.largest_share);
-  }
-  long pairs = 0;
-  bool images = false;
-  for (const contact::QueryStages* stages : world.contact->stages())
-    if (stages) {
-      images = true;
-      pairs += stages->pairs;
-    }
-  if (images) s.values.emplace_back("pixels_seen", static_cast<long long>(pairs));
+  store::SummaryFields& values = summary.section("contact_resultants").values;
+  values = {{"largest_force_jump_n", jump.force},
+            {"largest_moment_jump_n_m", jump.moment},
+            {"largest_force_n", after.force},
+            {"largest_moment_n_m", after.moment}};
   if (const double friction = world.contact->largest_lagged_friction(); friction > 0.0) {
-    s.values.emplace_back("largest_friction_n", friction);
-    s.values.emplace_back("largest_friction_left_out_of_a_step_n", world.contact->largest_friction_lag());
+    values.emplace_back("largest_lagged_friction_n", friction);
+    values.emplace_back("largest_friction_lag_n", world.contact->largest_friction_lag());
   }
 }
 
-void add_answers(store::Summary& summary, const World& world) {
+/// Adds the work that proxies saved in image contact, over all queries.
+void add_pruning(store::SummaryFields& row, const proxy::PruneCounts& c, const World& world,
+                 const ContactSpec& contact) {
+  row.insert(row.end(), {{"pruned_queries", static_cast<long long>(c.queries)},
+                         {"proxy_pairs", static_cast<long long>(c.pairs)},
+                         {"pairs_after_boxes", static_cast<long long>(c.after_boxes)},
+                         {"pairs_after_hulls", static_cast<long long>(c.after_hulls)},
+                         {"regions", static_cast<long long>(c.regions)},
+                         {"approaching_regions", static_cast<long long>(c.regions_ahead)},
+                         {"rasterised_triangles", std::vector<long long>{c.faces_a, c.faces_b}}});
+  const auto mean_share = [&](const std::string& side, long faces) {
+    const Body* body = world.find_body(side);  // else a tool
+    if (!body || c.queries == 0) return std::nan("");
+    return static_cast<double>(faces) /
+           (static_cast<double>(c.queries) * static_cast<double>(body->surface_faces().cols()));
+  };
+  row.emplace_back("mean_rasterised_share", std::vector<double>{mean_share(contact.first, c.faces_a),
+                                                                mean_share(contact.second, c.faces_b)});
+  row.emplace_back("largest_normal_rotation_rad", c.largest_rotation);
+}
+
+/// Adds one row per [[contact]].
+void add_contacts(store::Summary& summary, const World& world, const RunResult& result) {
+  if (!world.contact) return;
+  const std::vector<Overlap> overlaps = overlaps_of(world);
+  const std::vector<std::string> methods = world.contact->methods();
+  const std::vector<long> fast = world.contact->fast_regions(), kept = world.contact->normals_kept();
+  const auto stages = world.contact->stages();
+  const auto pruning = world.contact->pruning();
+  for (std::size_t i = 0; i < overlaps.size(); ++i) {
+    const ContactSpec& contact = world.description.contacts[i];
+    const Overlap& overlap = overlaps[i];
+    store::SummaryFields row = {{"between", std::vector<std::string>{contact.first, contact.second}},
+                                {"method", methods[i]}};
+    if (i < result.tunnelled.size())
+      row.emplace_back("tunnelled", static_cast<long long>(result.tunnelled[i]));
+    row.emplace_back("deepest_overlap_m", overlap.deepest_m);
+    if (overlap.quadrature_error > 0.0)
+      row.emplace_back("largest_quadrature_error", overlap.quadrature_error);
+    if (overlap.largest_share > 0.0) row.emplace_back("largest_share_of_a_point", overlap.largest_share);
+    row.emplace_back("fast_regions", static_cast<long long>(fast[i]));
+    if (stages[i]) {
+      row.emplace_back("normals_kept", static_cast<long long>(kept[i]));
+      row.emplace_back("images", static_cast<long long>(stages[i]->images));
+      row.emplace_back("triangle_pairs", static_cast<long long>(stages[i]->pairs));
+    }
+    if (pruning[i]) add_pruning(row, *pruning[i], world, contact);
+    summary.list("contacts").push_back(std::move(row));
+  }
+}
+
+/// Adds one row per tool whose contact with bodies was reduced to points.
+void add_reductions(store::Summary& summary, const World& world) {
   for (const AnswerError& e : answer_errors_of(world))
-    summary.section("answers to " + e.tool).values = {
-        {"wanted_error", e.requested},
-        {"largest_error_bound", e.largest},
-        {"mean_error_bound", e.mean},
-        {"exchanges", static_cast<long long>(e.exchanges)},
-        {"exchanges_beyond_wanted_error", static_cast<long long>(e.beyond)},
-        {"exchanges_factored", static_cast<long long>(e.factored)}};
+    summary.list("reductions")
+        .push_back({{"hand", e.tool},
+                    {"requested_error", e.requested},
+                    {"largest_error_bound", e.largest},
+                    {"mean_error_bound", e.mean},
+                    {"exchanges", static_cast<long long>(e.exchanges)},
+                    {"exchanges_beyond_requested_error", static_cast<long long>(e.beyond)},
+                    {"exchanges_factored", static_cast<long long>(e.factored)}});
 }
 
 /// Adds the grasps of the tools.
@@ -149,28 +176,17 @@ void add_grasps(store::Summary& summary, const World& world) {
   summary.section("grasps").values = {{"closed", static_cast<long long>(counts.closed)},
                                       {"closed_on_nothing", static_cast<long long>(counts.empty)},
                                       {"largest_area_m2", counts.largest_area},
-                                      {"area_at_the_end_m2", counts.area}};
+                                      {"final_area_m2", counts.area}};
 }
 
-/// Adds the contacts with images, and the device that renders them.
-void add_images(store::Summary& summary, const World& world) {
+/// Adds the OpenGL device of contact in image space.
+void add_renderer(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   const auto stages = world.contact->stages();
-  const auto methods = world.contact->methods();
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    if (!stages[i]) continue;
-    const ContactSpec& contact = world.description.contacts[i];
-    const std::string who = fmt::format("{} - {}", contact.first, contact.second);
-    summary.section("images").values.emplace_back(who, methods[i]);
-  }
-  if (const contact::GpuDevice device = contact::gpu_device();
-      !device.name.empty() &&
-      std::any_of(stages.begin(), stages.end(), [](auto* s) { return s != nullptr; })) {
-    store::SummarySection& s = summary.section("images");
-    s.values.emplace_back("device", device.name);
-    s.values.emplace_back("driver", device.driver);
-    s.values.emplace_back("device_is_software", device.software);
-  }
+  const bool images = std::any_of(stages.begin(), stages.end(), [](auto* s) { return s != nullptr; });
+  if (const contact::GpuDevice device = contact::gpu_device(); images && !device.name.empty())
+    summary.section("renderer").values = {
+        {"device", device.name}, {"driver", device.driver}, {"is_software", device.software}};
 }
 
 /// Adds the energy balance at the end of the run, if the scene records it.
@@ -181,83 +197,58 @@ void add_energy(store::Summary& summary, const RunResult& result) {
 }
 
 /// Adds the vibration of a device's force, and the energy at its port.
-void add_feel(store::SummarySection& s, const std::optional<double>& buzz_n,
-              const std::optional<PortEnergy>& port) {
-  if (buzz_n) s.values.emplace_back("buzz_above_30_hz_rms_n", *buzz_n);
-  if (!port) return;
-  s.values.insert(s.values.end(),
-                  {{"port_energy_j", port->energy},
-                   {"port_least_energy_j", port->least},
-                   {"port_work_j", port->work},
-                   {"passivity_controller_dissipated_j", port->controller_dissipated},
-                   {"passivity_controller_ticks", static_cast<long long>(port->controller_ticks)}});
+void add_vibration_and_port(store::SummaryFields& row, const HandResult& hand) {
+  if (hand.buzz_n) row.emplace_back("buzz_above_30_hz_rms_n", *hand.buzz_n);
+  if (!hand.port) return;
+  row.insert(row.end(),
+             {{"port_energy_j", hand.port->energy},
+              {"port_least_energy_j", hand.port->least},
+              {"port_work_j", hand.port->work},
+              {"passivity_controller_dissipated_j", hand.port->controller_dissipated},
+              {"passivity_controller_ticks", static_cast<long long>(hand.port->controller_ticks)}});
 }
 
-/// Adds the results of further hands.
-void add_more_hands(store::Summary& summary, const scene::Description& d, const RunResult& result) {
-  for (std::size_t i = 0; i < result.more_hands.size(); ++i) {
-    const HandResult& hand = result.more_hands[i];
-    const DeviceSpec& spec = d.hands[i].device;
-    store::SummarySection& s = summary.section("hand " + d.hands[i].name);
-    s.values = {{"ticks", static_cast<long long>(hand.ticks)},
-                {"limited_ticks", static_cast<long long>(hand.limited_ticks)},
-                {"ticks_outside_workspace", static_cast<long long>(hand.outside_ticks)},
-                {"rejected_ticks", static_cast<long long>(hand.rejected_ticks)},
-                {"max_force_n", device::figures_of(spec).max_force},
-                {"max_torque_n_m", device::figures_of(spec).max_torque}};
-    add_feel(s, hand.buzz_n, hand.port);
-  }
+/// Returns the result of a hand, in the numbering of scene::hands_of().
+HandResult hand_result(const RunResult& r, std::size_t hand) {
+  if (hand == 0) return {r.ticks, r.limited_ticks, r.outside_ticks, r.rejected_ticks, r.port, r.buzz_n};
+  return hand <= r.more_hands.size() ? r.more_hands[hand - 1] : HandResult{};  // the run has not ended
 }
 
-/// Adds the counters of the devices.
-void add_tallies(store::Summary& summary, const World& world) {
+/// Adds one row per hand: its result, the peaks of the wrench on it, and the counters of its device.
+void add_hands(store::Summary& summary, const World& world, const RunResult& result,
+               const std::vector<PeakWrench>& peaks) {
   if (!world.description.tool) return;
-  for (std::size_t i = 0; i < scene::hands_of(world.description).size(); ++i)
-    for (const auto& [name, count] : tallies_of(world, i))
-      summary.section(i == 0 ? "device" : "hand " + world.description.hands[i - 1].name)
-          .values.emplace_back(name, count);
+  const std::vector<scene::Hand> hands = scene::hands_of(world.description);
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    const HandResult hand = hand_result(result, i);
+    const device::DeviceFigures device = device::figures_of(*hands[i].device);
+    store::SummaryFields row = {{"name", hands[i].name},
+                                {"ticks", static_cast<long long>(hand.ticks)},
+                                {"limited_ticks", static_cast<long long>(hand.limited_ticks)},
+                                {"ticks_outside_workspace", static_cast<long long>(hand.outside_ticks)},
+                                {"rejected_ticks", static_cast<long long>(hand.rejected_ticks)},
+                                {"max_force_n", device.max_force},
+                                {"max_torque_n_m", device.max_torque}};
+    if (i < peaks.size())
+      row.insert(row.end(), {{"peak_force_n", peaks[i].force_n},
+                             {"peak_force_at_s", peaks[i].force_at_s},
+                             {"peak_torque_n_m", peaks[i].torque_n_m},
+                             {"peak_torque_at_s", peaks[i].torque_at_s}});
+    add_vibration_and_port(row, hand);
+    for (const auto& [name, count] : tallies_of(world, i)) row.emplace_back(name, count);
+    summary.list("hands").push_back(std::move(row));
+  }
 }
 
 /// Adds the timing of a run in real time.
 void add_real_time(store::Summary& summary, const RunResult& result) {
   if (!result.real_time) return;
-  store::SummarySection& s = summary.section("real time");
+  store::SummarySection& s = summary.section("real_time");
   s.values.emplace_back("scheduling", result.real_time->scheduling);
   s.values.emplace_back("processor", static_cast<long long>(result.real_time->cpu));
   s.values.emplace_back("memory", result.real_time->memory);
   visit_real_time([&](const char* name, auto value) { s.values.emplace_back(name, value); },
                   *result.real_time);
-}
-
-/// Adds the work that proxies saved in image contact, over all queries.
-void add_pruning(store::Summary& summary, const World& world) {
-  if (!world.contact) return;
-  const auto counts = world.contact->pruning();
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (!counts[i]) continue;
-    const proxy::PruneCounts& c = *counts[i];
-    const ContactSpec& contact = world.description.contacts[i];
-    store::SummarySection& s = summary.section("pruning");
-    const auto add = [&](const char* what, auto value) {
-      s.values.emplace_back(fmt::format("{} - {}: {}", contact.first, contact.second, what), value);
-    };
-    add("queries", static_cast<long long>(c.queries));
-    add("pairs of proxies", static_cast<long long>(c.pairs));
-    add("left by boxes", static_cast<long long>(c.after_boxes));
-    add("left by hulls", static_cast<long long>(c.after_hulls));
-    add("regions", static_cast<long long>(c.regions));
-    add("of them apart, but fast enough to meet", static_cast<long long>(c.regions_ahead));
-    for (const auto& [name, faces] :
-         {std::pair(contact.first, c.faces_a), std::pair(contact.second, c.faces_b)}) {
-      add(fmt::format("skin triangles of {} handed on", name).c_str(), static_cast<long long>(faces));
-      const Body* body = world.find_body(name);  // else a tool
-      if (body && c.queries > 0)
-        add(fmt::format("share of the skin of {} handed on, mean", name).c_str(),
-            static_cast<double>(faces) /
-                (static_cast<double>(c.queries) * static_cast<double>(body->surface_faces().cols())));
-    }
-    add("largest rotation of a normal [rad]", c.largest_rotation);
-  }
 }
 
 /// Returns half of the smallest extent of a side of a contact, along the axes in which it was defined [m].
@@ -322,7 +313,15 @@ std::vector<scene::Need> needs(const scene::Description& description) {
   return scene::needs(description, integrate::linear_solver_of(description.integrator));
 }
 
-store::Summary summarise(const World& world, const RunResult& result, double assemble_s) {
+void add_checkpoints(store::Summary& summary, const CheckpointCost& cost, double every_s) {
+  summary.section("checkpoints").values = {{"every_s", every_s},
+                                           {"written", static_cast<long long>(cost.written)},
+                                           {"keep_s", cost.keep_s},
+                                           {"reassemble_s", cost.assemble_s}};
+}
+
+store::Summary summarise(const World& world, const RunResult& result, double assemble_s,
+                         const RunFigures& figures) {
   store::Summary summary;
   summary.scene = world.description.name;
   summary.scene_source = world.description.source;
@@ -336,31 +335,22 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   add_models(summary, world.description);
   add_numbers<long>(summary.section("counts"), result);
   if (const long halvings = result.counters.most_halvings; halvings > 0)
-    summary.section("sizes").values.emplace_back("smallest_part_of_a_step",
+    summary.section("sizes").values.emplace_back("smallest_step_part",
                                                  std::ldexp(1.0, -static_cast<int>(halvings)));
   summary.section("timings").values.emplace_back("assemble_s", assemble_s);
   add_numbers<double>(summary.section("timings"), result);
-  // Vertices that tunnelled, one value per [[contact]].
-  for (std::size_t i = 0; i < result.tunnelled.size(); ++i) {
-    const ContactSpec& contact = world.description.contacts[i];
-    summary.section("tunnelled")
-        .values.emplace_back(contact.first + " - " + contact.second,
-                             static_cast<long long>(result.tunnelled[i]));
-  }
   add_energy(summary, result);
   add_real_time(summary, result);
-  if (result.buzz_n || result.port) add_feel(summary.section("device"), result.buzz_n, result.port);
-  add_more_hands(summary, world.description, result);
-  add_tallies(summary, world);
-  add_answers(summary, world);
+  add_hands(summary, world, result, figures.peaks());
+  add_reductions(summary, world);
   add_grasps(summary, world);
-  add_jumps(summary, world);
-  add_images(summary, world);
-  add_pruning(summary, world);
+  add_contacts(summary, world, result);
+  add_resultants(summary, world);
+  add_renderer(summary, world);
   for (const scene::Need& need : needs(world.description))
-    summary.section(need.used ? "in_use" : "left_out").values.emplace_back(need.part, need.why);
-  for (const auto& [name, value] : counters::snapshot())
-    summary.section("constructions").values.emplace_back(name, static_cast<long long>(value));
+    summary.list("parts").push_back({{"name", need.part}, {"used", need.used}, {"why", need.why}});
+  for (const auto& [name, count] : counters::snapshot())
+    summary.list("constructions").push_back({{"name", name}, {"count", static_cast<long long>(count)}});
   return summary;
 }
 

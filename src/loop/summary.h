@@ -1,5 +1,7 @@
 #pragma once
+#include "checkpoints.h"
 #include "palpate/loop/run.h"
+#include "run_figures.h"
 #include "scene/needs.h"
 #include "store/summary.h"
 
@@ -13,7 +15,7 @@ std::vector<std::pair<std::string, long long>> tallies_of(const World& world, st
 
 /// Penetration depth of a [[contact]], and quadrature error of its sum over points.
 struct Overlap {
-  std::string pair;        ///< "head - tool"
+  std::string pair;        ///< "head - tool", for messages.
   double deepest_m = 0.0;  ///< Largest overlap of all queries; 0: no contact.
   /// Half of the smallest extent of the two sides' bounding boxes: deeper overlaps may be pushed out at the
   /// far side, or not at all. Infinite without contact. For a body against itself, kOwnShare of the depth up
@@ -43,8 +45,13 @@ struct AnswerError {
 /// Returns one entry per tool that was in contact with a body in this way.
 std::vector<AnswerError> answer_errors_of(const World& world);
 
-/// Returns the summary of a run and its cost: options, sizes, counts, timings, constructions. The caller adds
-/// the command line and writes it.
-store::Summary summarise(const World& world, const RunResult& result, double assemble_s);
+/// Returns the summary of a run and its cost, by the keys of docs/files.md: options, sizes, counts, timings,
+/// hands, contacts, parts, constructions. The caller adds the command line and writes it.
+/// @param figures  observer of the run; without its peaks the hands have none in the summary
+store::Summary summarise(const World& world, const RunResult& result, double assemble_s,
+                         const RunFigures& figures = {});
+
+/// Adds the cost of checkpoints.  @param every_s  simulated time between two of them [s]
+void add_checkpoints(store::Summary& summary, const CheckpointCost& cost, double every_s);
 
 }  // namespace palpate::loop

@@ -9,13 +9,6 @@
 namespace palpate::report {
 namespace {
 
-Json group_of(const Json& summary, const char* name) {
-  if (!summary.is_object() || !summary.contains("figures") || !summary["figures"].is_object() ||
-      !summary["figures"].contains(name))
-    return Json::object();
-  return summary["figures"][name];
-}
-
 constexpr double kNothing = 1e-12;  ///< Peaks below it are rounding [N], [N m]
 
 /// Largest magnitude of a vector in force.csv, and its time.
@@ -84,8 +77,8 @@ Answer remarks_answer(const Json& summary) {
 
 Answer run_answer(const Json& summary, const std::optional<Table>& force) {
   Answer out;
-  const Json options = group_of(summary, "options"), sizes = group_of(summary, "sizes"),
-             timings = group_of(summary, "timings"), counts = group_of(summary, "counts");
+  const Json options = section_of(summary, "options"), sizes = section_of(summary, "sizes"),
+             timings = section_of(summary, "timings"), counts = section_of(summary, "counts");
   const double simulated = number_at(timings, "simulated_s"), cpu = number_at(timings, "loop_cpu_s"),
                steps = number_at(counts, "steps"), nodes = number_at(sizes, "nodes");
   const std::string outcome = text_at(summary, "outcome"), by = text_at(options, "integrator");
@@ -100,11 +93,12 @@ Answer run_answer(const Json& summary, const std::optional<Table>& force) {
   if (!out.lead.empty()) out.lead += ".";
   if (const std::string message = text_at(summary, "message"); !message.empty())
     out.points.push_back(message);
+  const Json hands = list_of(summary, "hands"), hand = hands.empty() ? Json::object() : hands[0];
   Peak f, t;
   if (force && !force->rows.empty()) {
     f = peak_of(*force, "force", "n");
     t = peak_of(*force, "torque", "n_m");
-  } else if (const Json hand = group_of(summary, "on the hand"); !hand.empty()) {
+  } else if (hand.is_object() && hand.contains("peak_force_n")) {
     f = {number_at(hand, "peak_force_n"), number_at(hand, "peak_force_at_s")};
     t = {number_at(hand, "peak_torque_n_m"), number_at(hand, "peak_torque_at_s")};
   } else {
@@ -112,13 +106,12 @@ Answer run_answer(const Json& summary, const std::optional<Table>& force) {
   }
   if (f.value > kNothing)
     out.points.push_back(fmt::format("The peak force on the hand is {} N{}{}.", short_number(f.value),
-                                     at_time(f.time_s), of_limit(number_at(options, "max_force_n"), "N")));
+                                     at_time(f.time_s), of_limit(number_at(hand, "max_force_n"), "N")));
   else
     out.points.push_back("The force on the hand is zero.");
   if (t.value > kNothing)
     out.points.push_back(fmt::format("The peak torque on the hand is {} N m{}{}.", short_number(t.value),
-                                     at_time(t.time_s),
-                                     of_limit(number_at(options, "max_torque_n_m"), "N m")));
+                                     at_time(t.time_s), of_limit(number_at(hand, "max_torque_n_m"), "N m")));
   return out;
 }
 
@@ -144,7 +137,8 @@ std::vector<Answer> comparison_answers(const Table& compare,
 
 Answer haptic_answer(const Table& haptic, const Json& summary) {
   Answer out;
-  const Json own = group_of(summary, "the scene's own settings");
+  const Json errors_of_hands = list_of(summary, "against_monolithic"),
+             own = errors_of_hands.empty() ? Json::object() : errors_of_hands[0];
   const double force = number_at(own, "force_error_rms_of_peak"),
                torque = number_at(own, "torque_error_rms_of_peak");
   if (!std::isfinite(force)) return out;

@@ -24,7 +24,7 @@ Felt felt(const std::string& name, const std::string& unit, const Json& referenc
           fmt::format("{}_error_rms_of_peak", name),
           fmt::format("{}_unresolved", name),
           number_at(reference, fmt::format("peak_{}_{}", name, unit).c_str()),
-          number_at(reference, fmt::format("own_{}_error_rms_{}", name, unit).c_str())};
+          number_at(reference, fmt::format("{}_error_rms_{}", name, unit).c_str())};
 }
 
 /// Returns the points of one variable, in percent of the peak of the reference.
@@ -83,7 +83,7 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
     if (holds(table, q, variable)) period.series.push_back(series_of(table, q, variable, "setting", false));
   if (!period.series.empty())
     add_fit(period, period.series.back(),
-            number_at(orders, fmt::format("exchange alone: {}", q.name).c_str()));
+            number_at(row_where(orders, "variable", "exchange alone"), (q.name + "_order").c_str()));
   add_plot(page, period,
            fmt::format("Error of the {} against the exchange period: at the settings of the scene, and with "
                        "only the errors of exchange and tick (a tenth of the period) left. Rings mark points "
@@ -146,11 +146,8 @@ void add_variables(Page& page, const Table& table) {
 
 void add_haptic(Page& page, const Table& table, const Json& summary) {
   if (table.rows.empty()) return;
-  const Json figures = summary.is_object() && summary.contains("figures") ? summary["figures"] : Json();
-  const auto group = [&](const char* name) {
-    return figures.is_object() && figures.contains(name) ? figures[name] : Json::object();
-  };
-  const Json reference = group("monolithic reference"), orders = group("observed orders");
+  const Json reference = section_of(summary, "monolithic_reference"),
+             orders = list_of(summary, "observed_orders");
   page.add_heading("Force on the hand against the monolithic solution");
   page.add_paragraph(
       "Two-rate solution of tool and bodies against the monolithic solution with the same motion of the "

@@ -18,6 +18,33 @@ Json read_json(const std::filesystem::path& path) {
   return store::parse_json(store::read_file(path.string()), path.string());
 }
 
+namespace {
+
+Json figures_at(const Json& summary, const char* name) {
+  if (!summary.is_object() || !summary.contains("figures") || !summary["figures"].is_object() ||
+      !summary["figures"].contains(name))
+    return {};
+  return summary["figures"][name];
+}
+
+}  // namespace
+
+Json section_of(const Json& summary, const char* name) {
+  Json section = figures_at(summary, name);
+  return section.is_object() ? section : Json::object();
+}
+
+Json list_of(const Json& summary, const char* name) {
+  Json list = figures_at(summary, name);
+  return list.is_array() ? list : Json::array();
+}
+
+Json row_where(const Json& list, const char* key, const std::string& text) {
+  for (const Json& row : list)
+    if (text_at(row, key) == text) return row;
+  return Json::object();
+}
+
 double number_at(const Json& object, const char* key) {
   if (!object.is_object() || !object.contains(key) || !object[key].is_number())
     return std::numeric_limits<double>::quiet_NaN();
@@ -45,6 +72,7 @@ std::string value_text(const Json& value) {
 std::string key_text(const std::string& key) {
   if (key == "gflop_s") return "Gflop/s";
   auto [name, unit] = split_unit(key);
+  if (const std::size_t at = name.find("p99_9"); at != std::string::npos) name.replace(at, 5, "p99.9");
   std::replace(name.begin(), name.end(), '_', ' ');
   if (unit.empty()) return name;
   for (const auto& [plain, set] : std::array{std::pair{"^2", "²"}, std::pair{"^3", "³"}})

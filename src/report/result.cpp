@@ -1,11 +1,13 @@
 #include "result.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "answers.h"
 #include "palpate/core/error.h"
 #include "sections.h"
 #include "store/atomic_file.h"
+#include "store/summary.h"
 
 namespace palpate::report {
 namespace {
@@ -62,6 +64,16 @@ std::map<std::string, ReferenceError> read_references(const Json& json) {
 
 Json json_in(const fs::path& dir, const char* file) {
   return fs::exists(dir / file) ? read_json(dir / file) : Json::object();
+}
+
+/// Returns summary.json.  @throws Error where its keys are those of another schema
+Json summary_in(const fs::path& dir) {
+  Json summary = json_in(dir, "summary.json");
+  if (const double schema = number_at(summary, "schema_version");
+      std::isfinite(schema) && schema != store::kSummarySchema)
+    fail("{}: schema_version is {:g}, and this version of palpate reads {}", (dir / "summary.json").string(),
+         schema, store::kSummarySchema);
+  return summary;
 }
 
 /// Returns the table of a study, with CPU times if there are any.
@@ -127,7 +139,7 @@ std::string Result::first_answer() const {
 Result open_result(const fs::path& dir) {
   if (!fs::is_directory(dir))
     fail("{}: is not a directory; give the output directory of a run", dir.string());
-  Result out{dir, kinds_in(dir), "", json_in(dir, "summary.json"), {}};
+  Result out{dir, kinds_in(dir), "", summary_in(dir), {}};
   if (out.kinds.empty())
     fail(
         "{}: contains no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, "
@@ -150,7 +162,7 @@ void add_result(Page& page, const Result& result) {
   page.add_answer(result.answers);
   if (has("run.vtkhdf"))
     add_motion(page, dir / "run.vtkhdf", has("force.csv") ? time_of_peak_force(csv("force.csv")) : kUnknown);
-  add_pictures(page, result.summary, dir);
+  add_pictures(page, dir);
   if (has("force.csv")) add_forces(page, result.summary, csv("force.csv"));
   if (has("clock.csv")) add_clock(page, csv("clock.csv"));
   if (has("trace.csv")) add_trace(page, csv("trace.csv"));

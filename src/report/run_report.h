@@ -17,10 +17,9 @@ struct RunReport {
 /// list of contents. The files read are summary.json, force.csv, clock.csv, trace.csv, run.vtkhdf,
 /// compare.csv, reference.json, restarts.csv, exchange.csv, methods.csv, haptic.csv, validation.json,
 /// stability.json, bench-fem.json, bench-fem-accuracy.json, bench-contact.json and *.png; the source of the
-/// scene comes from summary.json, or else from scene.toml. In summary.json, the groups `in_use` and
-/// `left_out` (part: reason) of the figures become one table, and `pictures` (file name: caption) contains
-/// the captions of pictures. A missing file has no section. A plot that gnuplot cannot draw is replaced by a
-/// paragraph with the reason, and the page is still written.
+/// scene comes from summary.json, or else from scene.toml. docs/files.md lists the keys of
+/// summary.json. A missing file has no section. A plot that gnuplot cannot draw is replaced by a paragraph
+/// with the reason, and the page is still written.
 /// @throws Error if a directory contains none of these files, or one of them is invalid
 /// @pre dirs not empty
 RunReport write_report(const std::vector<std::filesystem::path>& dirs, const std::filesystem::path& path);

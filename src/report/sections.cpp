@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "palpate/core/error.h"
@@ -14,25 +15,63 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Groups of figures that other sections show.
-const std::set<std::string> kElsewhere = {"in_use", "left_out", "pictures", "logarithmic"};
+/// Figures that the page shows elsewhere.
+const std::set<std::string> kElsewhere = {"parts", "log_spaced_parameters"};
 
-/// Returns a group of figures from summary.json, or an empty object.
-Json figures_of(const Json& summary, const char* group) {
-  if (!summary.is_object() || !summary.contains("figures") || !summary["figures"].is_object() ||
-      !summary["figures"].contains(group))
-    return Json::object();
-  return summary["figures"][group];
+/// Heading of one row of a list in summary.json; key_text() of the list's key by default.
+std::string row_label(const std::string& list) {
+  static const std::map<std::string, std::string> labels = {
+      {"against_monolithic", "error against the monolithic solution"},
+      {"contacts", "contact"},
+      {"hands", "hand"},
+      {"observed_orders", "observed order"},
+      {"operating_points", "operating point"},
+      {"reductions", "reduced response of the bodies"}};
+  const auto found = labels.find(list);
+  return found == labels.end() ? key_text(list) : found->second;
 }
 
-/// Adds the facts of an object, then each object inside it as a group.
+/// Returns what a row is about, its first entry: "tool", "ball - tool".
+std::string row_name(const Json& row) {
+  const Json& first = row.begin().value();
+  if (!first.is_array()) return value_text(first);
+  std::string text;
+  for (const Json& one : first) text += (text.empty() ? "" : " - ") + value_text(one);
+  return text;
+}
+
+using Groups = std::vector<std::pair<std::string, Page::Facts>>;
+
+/// Adds the rows of a list: as one group where each is a name and a value, otherwise a group for each.
+void add_list(const std::string& key, const Json& list, Groups& groups) {
+  const bool rows =
+      std::all_of(list.begin(), list.end(), [](const Json& row) { return row.is_object() && !row.empty(); });
+  if (!rows || list.empty()) return;
+  Page::Facts pairs;
+  for (Json row : list) {
+    const std::string name = row_name(row);
+    row.erase(row.begin());
+    Page::Facts facts = facts_of(row);
+    if (row.size() == 1 && facts.size() == 1)
+      pairs.emplace_back(name, facts.front().second);
+    else
+      groups.emplace_back(fmt::format("{}: {}", row_label(key), name), std::move(facts));
+  }
+  if (!pairs.empty()) groups.emplace_back(key_text(key), std::move(pairs));
+}
+
+/// Adds the facts of an object, then each object and each list in it as groups.
 void add_object(Page& page, const Json& object, const std::set<std::string>& without) {
   page.add_facts(facts_of(object));
-  std::vector<std::pair<std::string, Page::Facts>> groups;
+  Groups groups;
   if (object.is_object())
-    for (const auto& [key, value] : object.items())
-      if (auto facts = facts_of(value); !without.contains(key) && !facts.empty())
+    for (const auto& [key, value] : object.items()) {
+      if (without.contains(key)) continue;
+      if (value.is_array())
+        add_list(key, value, groups);
+      else if (auto facts = facts_of(value); !facts.empty())
         groups.emplace_back(key_text(key), std::move(facts));
+    }
   if (!groups.empty()) page.add_fact_groups(groups);
 }
 
@@ -62,8 +101,8 @@ void add_head(Page& page, const Json& summary) {
     if (summary.is_object() && summary.contains(key))
       if (std::string text = value_text(summary[key]); !text.empty())
         facts.emplace_back(key_text(key), std::move(text));
-  const Json options = figures_of(summary, "options"), sizes = figures_of(summary, "sizes"),
-             timings = figures_of(summary, "timings");
+  const Json options = section_of(summary, "options"), sizes = section_of(summary, "sizes"),
+             timings = section_of(summary, "timings");
   for (const auto& [object, key] : {std::pair{&options, "integrator"},
                                     {&sizes, "nodes"},
                                     {&sizes, "tetrahedra"},
@@ -82,18 +121,16 @@ void add_figures(Page& page, const Json& summary) {
   page.end_details();
 }
 
-void add_pictures(Page& page, const Json& summary, const fs::path& dir) {
+void add_pictures(Page& page, const fs::path& dir) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(dir))
     if (entry.path().extension() == ".png" || entry.path().extension() == ".svg")
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
-  const Json captions = figures_of(summary, "pictures");
   for (const fs::path& file : files) {
     // "picture" is no useful caption; that picture contains a title
     const std::string stem = file.stem().string();
-    const std::string caption =
-        text_at(captions, file.filename().c_str(), stem == "picture" ? "" : sentence_case(stem));
+    const std::string caption = stem == "picture" ? "" : sentence_case(stem);
     if (file.extension() == ".png")
       page.add_png(file, caption);
     else
@@ -102,14 +139,13 @@ void add_pictures(Page& page, const Json& summary, const fs::path& dir) {
 }
 
 void add_forces(Page& page, const Json& summary, const Table& force) {
-  const Json options = figures_of(summary, "options");
+  const Json hands = list_of(summary, "hands"), hand = hands.empty() ? Json::object() : hands[0];
   page.add_heading("Force on the hand");
   if (force.rows.empty()) {
     page.add_paragraph("No tick was written before the run ended.");
     return;
   }
-  const double max_force = number_at(options, "max_force_n"),
-               max_torque = number_at(options, "max_torque_n_m");
+  const double max_force = number_at(hand, "max_force_n"), max_torque = number_at(hand, "max_torque_n_m");
   add_plot(page, force_plot(force, max_force),
            "Force of the device on the hand: world components and magnitude" + limit_text(max_force, "N"));
   constexpr double kRounding = 1e-15;  // [N m]
@@ -128,14 +164,11 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
 void add_parts(Page& page, const Json& summary) {
   std::vector<std::vector<std::string>> rows;
   std::vector<RowMark> marks;
-  const Json in_use = figures_of(summary, "in_use"), left_out = figures_of(summary, "left_out");
-  for (const auto& [part, why] : in_use.items()) {
-    rows.push_back({part, "in use", value_text(why)});
-    marks.push_back(RowMark::kNone);
-  }
-  for (const auto& [part, why] : left_out.items()) {
-    rows.push_back({part, "left out", value_text(why)});
-    marks.push_back(RowMark::kFaint);
+  for (const Json& part : list_of(summary, "parts")) {
+    if (!part.is_object()) continue;
+    const bool used = part.contains("used") && part["used"] == true;
+    rows.push_back({text_at(part, "name"), used ? "in use" : "left out", text_at(part, "why")});
+    marks.push_back(used ? RowMark::kNone : RowMark::kFaint);
   }
   if (rows.empty()) return;
   page.begin_details(fmt::format("{} parts in use or left out, with reasons", rows.size()));

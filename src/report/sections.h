@@ -17,7 +17,7 @@ void add_plot(Page& page, const Plot& plot, const std::string& caption);
 
 void add_head(Page& page, const Json& summary);     ///< Adds the description of the run, a few lines
 void add_figures(Page& page, const Json& summary);  ///< Adds all counts and times
-void add_pictures(Page& page, const Json& summary, const std::filesystem::path& dir);
+void add_pictures(Page& page, const std::filesystem::path& dir);
 void add_forces(Page& page, const Json& summary, const Table& force);
 /// Adds a comparison.
 /// @param references  references by scene

@@ -14,10 +14,9 @@
 namespace palpate::report {
 namespace {
 
-constexpr std::size_t kMostRows = 2000;              ///< Most rows of a table on the page
-constexpr const char* kLogarithmic = "logarithmic";  ///< Group of summary.json, by parameter
-constexpr std::size_t kMostSeries = 12;              ///< Most series of a readable chart
-constexpr double kLogRatio = 30.0;                   ///< Least ratio of two values for a logarithmic axis
+constexpr std::size_t kMostRows = 2000;  ///< Most rows of a table on the page
+constexpr std::size_t kMostSeries = 12;  ///< Most series of a readable chart
+constexpr double kLogRatio = 30.0;       ///< Least ratio of two values for a logarithmic axis
 
 struct SeedSpread {
   double n = 0.0, sum = 0.0, square = 0.0, least = HUGE_VAL, greatest = -HUGE_VAL;
@@ -115,9 +114,7 @@ void add_charts(Page& page, const Table& study, const StudyColumns& columns, con
   const std::string& name = abscissa->column;
   const bool drawn = std::find(columns.drawn.begin(), columns.drawn.end(), name) != columns.drawn.end();
   const std::vector<double> x = study.numbers(name);
-  const bool declared = summary.is_object() && summary.contains("figures") &&
-                        summary["figures"].is_object() && summary["figures"].contains(kLogarithmic) &&
-                        summary["figures"][kLogarithmic].contains(name),
+  const bool declared = !row_where(list_of(summary, "log_spaced_parameters"), "key", name).empty(),
              logarithmic = is_logarithmic(x, declared);
   const std::vector<StudyGroup> groups = groups_of(study, columns, abscissa->without);
   page.begin_multiples();

@@ -8,13 +8,26 @@
 
 namespace palpate::store {
 
-/// Value in a summary.  Numbers that are not finite are written as null: JSON has no NaN.
-using SummaryValue = std::variant<bool, long long, double, std::string, std::vector<double>>;
+/// Version of the keys of summary.json, `schema_version`: 1 more wherever a key changes its name or meaning.
+/// docs/files.md lists the keys.
+constexpr int kSummarySchema = 1;
 
-/// Named group of figures; names carry units: {"timings", {{"total_s", 1.2}}}.
+/// Value in a summary.  Numbers that are not finite are written as null: JSON has no NaN.
+using SummaryValue = std::variant<bool, long long, double, std::string, std::vector<double>,
+                                  std::vector<long long>, std::vector<std::string>>;
+/// Keys and values in order.  Keys are snake_case, with the unit at the end: {{"total_s", 1.2}}.
+using SummaryFields = std::vector<std::pair<std::string, SummaryValue>>;
+
+/// Named group of figures: {"timings", {{"total_s", 1.2}}}.
 struct SummarySection {
   std::string name;
-  std::vector<std::pair<std::string, SummaryValue>> values;
+  SummaryFields values;
+};
+
+/// Named list of rows, for example one row per contact.  A row omits figures that it does not have.
+struct SummaryList {
+  std::string name;
+  std::vector<SummaryFields> rows;
 };
 
 /// Content of summary.json: command, scene, provenance and results of a run.
@@ -28,15 +41,18 @@ struct Summary {
   std::vector<std::string> remarks;  ///< Warnings and verdicts, as on standard output.
   Provenance provenance;
   std::vector<SummarySection> sections;  ///< Options, counts, timings, errors, ...
+  std::vector<SummaryList> lists;        ///< Hands, contacts, parts, ...
 
   /// Returns the section of that name, created on first use.
   SummarySection& section(const std::string& name);
+  /// Returns the rows of the list of that name, created on first use.
+  std::vector<SummaryFields>& list(const std::string& name);
 };
 
 /// Returns the summary as JSON.
 std::string to_json(const Summary& summary);
 void write_summary(const std::string& path, const Summary& summary);  ///< Writes atomically.
-/// Reads summary.json.  @throws Error where the file is missing or is no summary
+/// Reads summary.json.  @throws Error where the file is missing, is no summary or has another schema
 Summary read_summary(const std::string& path);
 
 }  // namespace palpate::store

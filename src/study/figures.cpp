@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/clock.h"
+#include "loop/run_figures.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #include "store/content_hash.h"
@@ -30,10 +31,7 @@ class FigureObserver : public loop::Observer {
     }
   }
   void tick_of(std::size_t hand, const loop::TickRecord& tick) override {
-    ticks = true;
-    if (tick.device.force.norm() > peak_force_n)
-      peak_force_n = tick.device.force.norm(), peak_force_at_s = tick.time;
-    peak_torque_n_m = std::max(peak_torque_n_m, tick.device.moment.norm());
+    of_hands.tick_of(hand, tick);
     tools_[hand] = tick.tool;
   }
   bool wants_energy() const override { return energy_; }
@@ -50,8 +48,8 @@ class FigureObserver : public loop::Observer {
     return hash.hex();
   }
 
-  bool ticks = false;
-  double largest_displacement_m = 0.0, peak_force_n = 0.0, peak_force_at_s = 0.0, peak_torque_n_m = 0.0;
+  loop::RunFigures of_hands;
+  double largest_displacement_m = 0.0;
 
  private:
   template <class Vector>
@@ -71,10 +69,11 @@ Json figures_of(const loop::World& world, const loop::RunResult& result, const F
   for (const loop::Body& body : world.bodies) nodes += body.rest.nodes.cols(), tets += body.rest.tets.cols();
   out["nodes"] = nodes;
   out["tetrahedra"] = tets;
-  if (seen.ticks) {
-    out["peak_force_n"] = seen.peak_force_n;
-    out["peak_force_at_s"] = seen.peak_force_at_s;
-    out["peak_torque_n_m"] = seen.peak_torque_n_m;
+  if (!seen.of_hands.peaks().empty()) {
+    const loop::PeakWrench peak = seen.of_hands.largest();
+    out["peak_force_n"] = peak.force_n;
+    out["peak_force_at_s"] = peak.force_at_s;
+    out["peak_torque_n_m"] = peak.torque_n_m;
   }
   if (!world.bodies.empty()) out["largest_displacement_m"] = seen.largest_displacement_m;
   if (result.buzz_n) out["buzz_above_30_hz_rms_n"] = *result.buzz_n;

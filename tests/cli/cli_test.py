@@ -227,7 +227,8 @@ class LeftOut(Cli):
                 graphics = r"lib(EGL|GL|GLX|GLdispatch|OpenGL|gallium|LLVM)[._-]"
                 self.assertFalse([name for name in names if re.match(graphics, name)])
                 summary = json.loads((self.folder / scene / "summary.json").read_text())
-                made = summary["figures"]["constructions"]
+                made = [one["name"] for one in summary["figures"]["constructions"]]
+                self.assertTrue(made)
                 left_out = ("gl.", "tool.", "render.", "proxy.")
                 self.assertFalse([name for name in made if name.startswith(left_out)], made)
 

@@ -92,7 +92,7 @@ class Scenes(unittest.TestCase):
         self.assertAlmostEqual(rows[-1]["time_s"], duration_s, delta=1e-6)
         for row in rows:
             self.assertTrue(all(map(math.isfinite, row.values())), row)
-        return summary["device"], rows
+        return summary["hands"][0], rows
 
     def check(self, scene, duration_s=10.0, held_s=5.0, more=(), least_j=LEAST_ENERGY_J, buzz_n=BUZZ_N,
               share=CONTROL_SHARE, pressing_n=0.05):

@@ -114,7 +114,7 @@ class WithPeer(unittest.TestCase):
         out, error = run.communicate(timeout=LIMIT_S)
         peer.end()
         self.assertEqual(run.returncode, 0, error)
-        device = self.summary()["figures"]["device"]
+        (device,) = self.summary()["figures"]["hands"]
         self.assertGreaterEqual(device["packets_out_of_bounds"], 2)
         self.assertEqual(device["packets_far_ahead"], 1)
         self.assertGreater(device["packets_accepted"], 100)
@@ -145,7 +145,7 @@ class WithPeer(unittest.TestCase):
         peer.end()
         self.assertTrue(pressed, error)
         self.assertEqual(run.returncode, 0, error)
-        figures = self.summary()["figures"]["real time"]
+        figures = self.summary()["figures"]["real_time"]
         self.assertGreater(figures["left_out_ticks"], 900)
         self.assertGreaterEqual(figures["stalls"], 1)
         self.assertRegex(out, r"the clock was restarted .* [0-9]+ ticks were skipped")

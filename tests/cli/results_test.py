@@ -132,28 +132,31 @@ class Results(Cli):
     def test_the_peak_on_each_hand_is_kept(self):
         self.good("run", "two-hands", "--duration-s", "0.06", "-o", "out")
         figures = json.loads((self.folder / "out/summary.json").read_text())["figures"]
-        for section, file in (("on the hand", "force.csv"), ("on the hand left", "force-left.csv")):
+        self.assertEqual([hand["name"] for hand in figures["hands"]], ["tool", "left"])
+        for hand, file in zip(figures["hands"], ("force.csv", "force-left.csv")):
             rows = [[float(row[f"force_{axis}_n"]) for axis in "xyz"] + [float(row["time_s"])]
                     for row in csv.DictReader((self.folder / "out" / file).read_text().splitlines())]
             *peak, time_s = max(rows, key=lambda row: math.hypot(*row[:3]))
             self.assertGreater(math.hypot(*peak), 0.01)
-            self.assertAlmostEqual(figures[section]["peak_force_n"], math.hypot(*peak), delta=1e-5)
-            self.assertAlmostEqual(figures[section]["peak_force_at_s"], time_s, delta=1e-9)
+            self.assertAlmostEqual(hand["peak_force_n"], math.hypot(*peak), delta=1e-5)
+            self.assertAlmostEqual(hand["peak_force_at_s"], time_s, delta=1e-9)
 
     def test_a_bound_beyond_the_target_is_no_error(self):
         """Exchanges within the target are counted, and the bounds of the others listed separately."""
         text = self.good("run", "two-hands", "--duration-s", "0.12", "-o", "out")
         figures = json.loads((self.folder / "out/summary.json").read_text())["figures"]
         beyond = 0
-        for tool in ("tool", "left"):
-            kept = figures[f"answers to {tool}"]
-            all_of_them, missed = kept["exchanges"], kept["exchanges_beyond_wanted_error"]
+        self.assertEqual([kept["hand"] for kept in figures["reductions"]], ["tool", "left"])
+        for kept in figures["reductions"]:
+            tool = kept["hand"]
+            all_of_them, missed = kept["exchanges"], kept["exchanges_beyond_requested_error"]
             beyond += missed
             line = next(x for x in text.splitlines() if x.startswith(f"{tool}: reduced response"))
             self.assertIn(f"(bound) in {all_of_them - missed} of {all_of_them} exchanges", line)
             self.assertEqual("stopped at its limit" in line, missed > 0)
             self.assertEqual("which are not informative" in line, kept["largest_error_bound"] > 1.0)
-            self.assertLessEqual(float(re.search(r"at most (\S+) %", line)[1]), 100.0 * kept["wanted_error"])
+            self.assertLessEqual(float(re.search(r"at most (\S+) %", line)[1]),
+                                 100.0 * kept["requested_error"])
         self.assertGreater(beyond, 0)  # otherwise the test has no effect
 
     def test_integrator_option_is_the_one_that_runs(self):
@@ -198,7 +201,7 @@ class Results(Cli):
         kept = list(Path(models).glob("*/*"))
         self.assertEqual([path.name for path in kept], ["pumpkin.h5"])
         summary = json.loads((self.folder / "kept/summary.json").read_text())
-        self.assertEqual(summary["figures"]["models"], {"pumpkin": str(kept[0])})
+        self.assertEqual(summary["figures"]["models"], [{"name": "pumpkin", "file": str(kept[0])}])
         again = self.call(*scene, PALPATE_MODELS=models)
         self.assertEqual((again.returncode, again.stderr), (0, ""))
         wrong = self.call("run", "two-pumpkins", "--set", 'body.0.mesh.file="model:heed"',
@@ -255,10 +258,14 @@ class Results(Cli):
             torque[method] = max(abs(float(row[f"torque_{axis}_n_m"])) for row in rows for axis in "xyz")
             summary = json.loads((self.folder / method / "summary.json").read_text())
             steps[method] = summary["figures"]["counts"]["steps"]
-            contact = summary["figures"]["contact"]
+            contact = next(one for one in summary["figures"]["contacts"]
+                           if one["between"] == ["ball", "tool"])
+            self.assertEqual(contact["method"], method)
             for name in "largest_quadrature_error", "largest_share_of_a_point":
-                self.assertEqual(f"ball - tool: {name}" in contact, method == "distance")
-        self.assertLess(contact["ball - tool: largest_quadrature_error"], 0.3)
+                self.assertEqual(name in contact, method == "distance")
+            for name in "normals_kept", "triangle_pairs":
+                self.assertEqual(name in contact, method == "image")
+        self.assertLess(contact["largest_quadrature_error"], 0.3)
         self.assertGreater(force["image"], 0.3)
         self.assertAlmostEqual(force["distance"] / force["image"], 1.0, delta=0.2)
         self.assertLess(steps["distance"], steps["image"])
@@ -277,7 +284,9 @@ class Results(Cli):
                                     "exchange.exchange_period_s=0.005", "record.energy=true")
                 for word in ("--set", change)))
             summary = json.loads((self.folder / name / "summary.json").read_text())
-            self.assertGreater(summary["figures"]["contact"]["ball - floor: deepest_overlap_m"], 1e-4)
+            (contact,) = summary["figures"]["contacts"]
+            self.assertEqual(contact["between"], ["ball", "floor"])
+            self.assertGreater(contact["deepest_overlap_m"], 1e-4)
             with (self.folder / name / "energy.csv").open(newline="") as file:
                 rows = list(csv.DictReader(file))
             potential = 1000 * 4 / 3 * math.pi * 0.05 ** 3 * 9.81 * fall

@@ -74,6 +74,9 @@ def figures(path):
         if isinstance(value, dict):
             for key, inner in value.items():
                 walk(inner, f"{at}/{key}")
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            for row in value:
+                walk(row, f"{at}/{next(iter(row.values()))}")
         elif at.startswith("/figures/constructions/gl."):
             pass  # every process that makes a query opens OpenGL
         elif not at.endswith(CLOCKS) or at.endswith(("simulated_s", "every_s", "period_s", "step_s")):

@@ -15,6 +15,7 @@ TEST(SplitUnit, TakesTheLongestEnding) {
   EXPECT_EQ(text("stiffness_pa_m"), "stiffness|Pa/m");
   EXPECT_EQ(text("gravity_m_s2"), "gravity|m/s^2");
   EXPECT_EQ(text("inertia_kg_m2"), "inertia|kg m^2");
+  EXPECT_EQ(text("largest_area_m2"), "largest_area|m^2");
   EXPECT_EQ(text("rotational_damping_n_m_s_rad"), "rotational_damping|N m s/rad");
   EXPECT_EQ(text("contact_n_m_rad"), "contact|N m/rad");
   EXPECT_EQ(text("nodes"), "nodes|");
@@ -23,8 +24,8 @@ TEST(SplitUnit, TakesTheLongestEnding) {
 }
 
 TEST(SplitUnit, TellsMomentsFromStiffnesses) {
-  for (const char* key : {"max_torque_n_m", "torque_x_n_m", "torque_error_rms_n_m",
-                          "largest_moment_jump_at_a_query_n_m", "rotational_friction_n_m"})
+  for (const char* key : {"max_torque_n_m", "torque_x_n_m", "torque_error_rms_n_m", "largest_moment_jump_n_m",
+                          "rotational_friction_n_m"})
     EXPECT_EQ(split_unit(key).unit, "N m") << key;
   for (const char* key : {"stiffness_n_m", "k_passive_n_m", "contact_n_m", "arm_stiffness_n_m"})
     EXPECT_EQ(split_unit(key).unit, "N/m") << key;

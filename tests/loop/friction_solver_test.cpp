@@ -11,6 +11,7 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/world.h"
+#include "summary_rows.h"
 
 using namespace palpate;
 
@@ -124,8 +125,9 @@ TEST(FrictionSolver, SummaryCountsTheMatricesLeftToLu) {
     const loop::RunResult result = loop::run(*world, {});
     store::Summary summary = loop::summarise(*world, result, 0.0);
     long long named = 0;
-    for (const auto& [name, value] : summary.section("constructions").values)
-      if (name == "integrate.matrices_left_to_lu") named = std::get<long long>(value);
+    for (const store::SummaryFields& row : summary.list("constructions"))
+      if (std::get<std::string>(*summary_rows::find(row, "name")) == "integrate.matrices_left_to_lu")
+        named = summary_rows::count(row, "count");
     EXPECT_EQ(named > 0, some);
   }
 }

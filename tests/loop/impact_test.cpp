@@ -5,6 +5,7 @@
 #include "loop/small_scenes.h"
 #include "loop/summary.h"
 #include "palpate/loop/run.h"
+#include "summary_rows.h"
 
 using namespace palpate;
 
@@ -73,9 +74,8 @@ TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
       << "every vertex of its surface";
   EXPECT_LT(fast->positions(fast->bodies[0]).row(2).maxCoeff(), -0.001) << "it is through";
   store::Summary summary = loop::summarise(*fast, result, 0.0);
-  ASSERT_EQ(summary.section("tunnelled").values.size(), 1u);
-  EXPECT_EQ(summary.section("tunnelled").values[0].first, "block - floor");
-  EXPECT_EQ(std::get<long long>(summary.section("tunnelled").values[0].second), result.tunnelled[0]);
+  ASSERT_EQ(summary.list("contacts").size(), 1u);
+  EXPECT_EQ(summary_rows::count(summary.list("contacts")[0], "tunnelled"), result.tunnelled[0]);
   const auto caught = loop::assemble(through_plate(0.5, 1e7));
   const loop::RunResult stopped = loop::run(*caught, {});
   ASSERT_TRUE(stopped.status.ok()) << stopped.status.message;

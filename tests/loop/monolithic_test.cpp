@@ -8,6 +8,7 @@
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/loop/run.h"
+#include "summary_rows.h"
 #ifdef PALPATE_HAS_TOOL
 
 using namespace palpate;
@@ -134,7 +135,9 @@ TEST(Monolithic, SummaryNamesTheSchemeAndNoExchange) {
   EXPECT_NE(options.find("exchange_scheme"), std::string::npos);
   EXPECT_EQ(options.find("exchange_period_s"), std::string::npos) << "there is none";
   bool left_out = false;
-  for (const auto& [name, why] : summary.section("left_out").values) left_out |= name == "exchange";
+  for (const store::SummaryFields& part : summary.list("parts"))
+    left_out |= std::get<std::string>(*summary_rows::find(part, "name")) == "exchange" &&
+                !std::get<bool>(*summary_rows::find(part, "used"));
   EXPECT_TRUE(left_out);
 }
 

@@ -5,6 +5,7 @@
 #include "loop/small_scenes.h"
 #include "loop/summary.h"
 #include "palpate/loop/run.h"
+#include "summary_rows.h"
 
 /// Deepest overlap that a run reports, for a round tool of 15 mm in a block 20 mm high.
 namespace {
@@ -46,13 +47,13 @@ TEST(Overlap, IsTooDeepBeyondHalfOfTheThinnerSide) {
 TEST(Overlap, StandsInTheSummary) {
   const auto world = loop::assemble(small_scenes::pressed_block(0.003));
   const loop::RunResult result = loop::run(*world, {});
-  for (const store::SummarySection& s : loop::summarise(*world, result, 0.0).sections)
-    for (const auto& [name, value] : s.values)
-      if (name == "block - tool: deepest_overlap_m") {
-        EXPECT_EQ(std::get<double>(value), loop::overlaps_of(*world).at(0).deepest_m);
-        return;
-      }
-  ADD_FAILURE() << "no deepest_overlap_m";
+  store::Summary summary = loop::summarise(*world, result, 0.0);
+  const store::SummaryFields& row = summary.list("contacts").at(0);
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(std::get<Names>(*summary_rows::find(row, "between")), (Names{"block", "tool"}));
+  ASSERT_NE(summary_rows::find(row, "deepest_overlap_m"), nullptr);
+  EXPECT_EQ(std::get<double>(*summary_rows::find(row, "deepest_overlap_m")),
+            loop::overlaps_of(*world).at(0).deepest_m);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "palpate/loop/run.h"
 #include "palpate/loop/world.h"
 #include "proxy/pruner.h"
+#include "summary_rows.h"
 
 using namespace palpate;
 using block_model::block;
@@ -266,27 +267,21 @@ TEST(ImageScene, TheSummarySpeaksOfBothSkins) {
   const auto result = loop::run(*world, {});
   EXPECT_TRUE(result.status.ok());
   store::Summary summary = loop::summarise(*world, result, 0.0);
-  EXPECT_EQ(std::get<std::string>(summary.section("images").values.at(0).second), "image");
-  const auto two = summary.section("pruning").values;
+  const store::SummaryFields& row = summary.list("contacts").at(0);
+  EXPECT_EQ(std::get<std::string>(*summary_rows::find(row, "method")), "image");
   const auto of_two = world->contact->pruning()[0][0];
-  const auto find = [](const auto& values, const std::string& name) -> const store::SummaryValue* {
-    const store::SummaryValue* out = nullptr;
-    for (const auto& [key, value] : values)
-      if (key == name) {
-        EXPECT_EQ(out, nullptr) << name << " stands twice";
-        out = &value;
-      }
-    return out;
-  };
-  for (const auto& [name, handed_on, skin] :
-       {std::tuple("lower", of_two.faces_a, blocks.lower.skin.faces.cols()),
-        std::tuple("upper", of_two.faces_b, blocks.upper.skin.faces.cols())}) {
-    const std::string of = std::string("lower - upper: ");
-    ASSERT_NE(find(two, of + "skin triangles of " + name + " handed on"), nullptr);
-    EXPECT_EQ(std::get<long long>(*find(two, of + "skin triangles of " + name + " handed on")), handed_on);
-    EXPECT_GT(handed_on, 0);
-    EXPECT_DOUBLE_EQ(std::get<double>(*find(two, of + "share of the skin of " + name + " handed on, mean")),
-                     static_cast<double>(handed_on) / static_cast<double>(of_two.queries * skin));
+  const auto* triangles = summary_rows::find(row, "rasterised_triangles");
+  const auto* shares = summary_rows::find(row, "mean_rasterised_share");
+  ASSERT_TRUE(triangles && shares);
+  EXPECT_EQ(std::get<std::vector<long long>>(*triangles),
+            (std::vector<long long>{of_two.faces_a, of_two.faces_b}));
+  for (const auto& [side, rasterised, skin] :
+       {std::tuple(0u, of_two.faces_a, blocks.lower.skin.faces.cols()),
+        std::tuple(1u, of_two.faces_b, blocks.upper.skin.faces.cols())}) {
+    EXPECT_GT(rasterised, 0);
+    EXPECT_DOUBLE_EQ(std::get<std::vector<double>>(*shares)[side],
+                     static_cast<double>(rasterised) / static_cast<double>(of_two.queries * skin));
   }
+  EXPECT_EQ(summary_rows::count(row, "normals_kept"), world->contact->normals_kept()[0]);
 }
 #endif

@@ -3,6 +3,7 @@
 #include "loop/small_scenes.h"
 #include "loop/summary.h"
 #include "palpate/loop/run.h"
+#include "summary_rows.h"
 
 /// A free block thrown at a plate thinner than its path between two queries.
 namespace {
@@ -90,12 +91,6 @@ Ran run(const scene::Description& d, bool real_time = false) {
   return out;
 }
 
-long long counted(store::Summary& summary, const std::string& section, const std::string& name) {
-  for (const auto& [key, value] : summary.section(section).values)
-    if (key == name) return std::get<long long>(value);
-  return -1;
-}
-
 using Target = scene::Description (*)(double);
 std::vector<Target> targets() {
   std::vector<Target> out = {at_soft_plate};
@@ -135,10 +130,9 @@ TEST(Tunnelling, WhatGoesThroughABodyIsReported) {
     const long expected = speed < 1.0 ? 0 : speed < 9.0 ? kBottomVertices : kBlockVertices + kPlateVertices;
     ASSERT_EQ(ran.result.tunnelled.size(), 1u);
     EXPECT_EQ(ran.result.tunnelled[0], expected);
-    const std::string pair = "block - " + d.contacts[0].second;
-    EXPECT_EQ(counted(ran.summary, "tunnelled", pair), expected);
-    EXPECT_EQ(counted(ran.summary, "contact", pair + ": regions fast enough to go through") > 0,
-              speed >= 1.0);
+    const store::SummaryFields& row = ran.summary.list("contacts").at(0);
+    EXPECT_EQ(summary_rows::count(row, "tunnelled"), expected);
+    EXPECT_EQ(summary_rows::count(row, "fast_regions") > 0, speed >= 1.0);
     EXPECT_EQ(ran.result.sub_steps, 0);
   });
 }
@@ -157,7 +151,7 @@ TEST(Tunnelling, SubStepsTurnItRound) {
     EXPECT_EQ(ran.result.sub_steps > 0, speed >= 1.0);
     EXPECT_LT(ran.result.sub_steps, 40);
     EXPECT_EQ(ran.result.shortest_refreshes, 0);
-    EXPECT_EQ(counted(ran.summary, "counts", "sub_steps"), ran.result.sub_steps);
+    EXPECT_EQ(summary_rows::count(ran.summary.section("counts").values, "sub_steps"), ran.result.sub_steps);
   });
 }
 

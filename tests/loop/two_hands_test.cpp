@@ -12,6 +12,7 @@
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 #include "store/force_file.h"
+#include "summary_rows.h"
 
 #ifdef PALPATE_HAS_TOOL
 
@@ -302,11 +303,12 @@ TEST(TwoHands, AreRecordedEach) {
   d.record->state_period_s = 0.01;
   const auto world = loop::assemble(d);
   HandsFelt both;
+  loop::RunFigures figures;
   loop::RunResult result;
   {
     loop::Recorder recorder(*world, folder.string());
     loop::RunOptions options;
-    options.observers = {&recorder, &both};
+    options.observers = {&recorder, &both, &figures};
     result = loop::run(*world, options);
   }
   for (const int hand : {0, 1}) {
@@ -315,8 +317,16 @@ TEST(TwoHands, AreRecordedEach) {
     EXPECT_NEAR((rows.back().on_hand.force - both.of[hand].back().device.force).norm(), 0.0, 1e-9);
     EXPECT_NEAR(rows.back().tool.translation.x(), both.of[hand].back().tool.translation.x(), 1e-9);
   }
-  store::Summary summary = loop::summarise(*world, result, 0.0);
-  ASSERT_FALSE(summary.section("hand left").values.empty());
+  store::Summary summary = loop::summarise(*world, result, 0.0, figures);
+  ASSERT_EQ(summary.list("hands").size(), 2u);
+  for (const std::size_t hand : {0u, 1u}) {
+    const store::SummaryFields& row = summary.list("hands")[hand];
+    EXPECT_EQ(std::get<std::string>(*summary_rows::find(row, "name")), hand ? "left" : "tool");
+    EXPECT_EQ(summary_rows::count(row, "ticks"), static_cast<long long>(both.of[hand].size()));
+    double peak_n = 0.0;
+    for (const loop::TickRecord& tick : both.of[hand]) peak_n = std::max(peak_n, tick.device.force.norm());
+    EXPECT_EQ(std::get<double>(*summary_rows::find(row, "peak_force_n")), peak_n);
+  }
   // each hand's ticks are replayed bitwise from its record, and not from the other hand's
   const std::vector<loop::HapticRecord> records = loop::read_haptic_records(folder.string(), d);
   ASSERT_EQ(records.size(), 2u);

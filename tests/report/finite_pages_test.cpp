@@ -100,15 +100,17 @@ std::vector<Kind> kinds() {
   const std::pair<std::string, std::string> summary = {
       "summary.json",
       R"({"command": "palpate run x", "scene": "x", "outcome": "finished", "message": "", "overrides": [],
-          "figures": {"options": {"integrator": "cvode-bdf", "max_force_n": 2.5, "max_torque_n_m": 0.1},
+          "figures": {"options": {"integrator": "cvode-bdf"},
             "sizes": {"nodes": 30}, "counts": {"steps": 812},
              "timings": {"simulated_s": 0.5, "loop_cpu_s": 2},
-            "on the hand": {"peak_force_n": 1.2, "peak_force_at_s": 0.1, "peak_torque_n_m": 0.1,
-              "peak_torque_at_s": 0.2},
-            "monolithic reference": {"made_by": "one", "peak_force_n": 2, "own_force_error_rms_n": 1e-3},
-            "observed orders": {"exchange alone: force": 1.0},
-            "the scene's own settings": {"force_error_rms_of_peak": 0.02, "torque_error_rms_of_peak": 0.01},
-            "tool in the air": {"contact_n_m": 0, "spectral_radius": 0.9}}})"};
+            "hands": [{"name": "tool", "max_force_n": 2.5, "max_torque_n_m": 0.1, "peak_force_n": 1.2,
+              "peak_force_at_s": 0.1, "peak_torque_n_m": 0.1, "peak_torque_at_s": 0.2}],
+            "monolithic_reference": {"made_by": "one", "peak_force_n": 2, "force_error_rms_n": 1e-3},
+            "observed_orders": [{"variable": "exchange alone", "force_order": 1.0}],
+            "against_monolithic": [{"hand": "tool", "force_error_rms_of_peak": 0.02,
+              "torque_error_rms_of_peak": 0.01}],
+            "operating_points": [{"name": "tool in the air", "contact_stiffness_n_m": 0,
+              "spectral_radius": 0.9}]}})"};
   return {
       {"summary", {summary}},
       {"force",

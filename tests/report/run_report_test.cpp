@@ -53,13 +53,17 @@ void fill(const TemporaryFolder& dir) {
   put(dir / "summary.json",
       R"({"command": "palpate run press-ball", "scene": "press <ball>", "outcome": "finished",
         "message": "", "overrides": ["a=1"],
-      "figures": {"options": {"integrator": "cvode-bdf", "max_force_n": 2.5}, "counts": {"steps": 812},
-        "monolithic reference": {"made_by": "one <system>", "peak_force_n": 2, "own_force_error_rms_n": 1e-3},
-        "observed orders": {"exchange alone: force": 1.0},
-        "the scene's own settings": {"force_error_rms_of_peak": 0.02},
-        "in_use": {"fem": "a soft body"},
-      "left_out": {"proxy": "one body"}, "pictures": {"picture-of-it.png": "The ball & its dent"}},
-      "provenance": {"version": "0.1.0", "commit": "abc", "libraries": {"Eigen": "3.4.0"}}})");
+      "figures": {"options": {"integrator": "cvode-bdf"}, "counts": {"steps": 812},
+        "hands": [{"name": "tool", "max_force_n": 2.5}, {"name": "left", "rejected_ticks": 77}],
+        "contacts": [{"between": ["left", "press <ball>"], "deepest_overlap_m": 1e-3}],
+        "monolithic_reference": {"made_by": "one <system>", "peak_force_n": 2, "force_error_rms_n": 1e-3},
+        "observed_orders": [{"variable": "tick", "force_order": 3},
+          {"variable": "exchange alone", "force_order": 1.0}],
+        "against_monolithic": [{"hand": "tool", "force_error_rms_of_peak": 0.02}],
+        "parts": [{"name": "fem", "used": true, "why": "a soft body"},
+          {"name": "proxy", "used": false, "why": "one body"}]},
+      "provenance": {"version": "0.1.0", "commit": "abc",
+        "libraries": [{"name": "Eigen", "version": "3.4.0"}]}})");
   put(dir / "scene.toml", "name = \"press <ball>\" # a & b\n");
   put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n0,0,0,0\n0.001,0,0,1\n0.002,0,0,2\n");
   std::string compare = joined(store::compare_columns());
@@ -114,7 +118,11 @@ TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
   EXPECT_NE(page, html) << "a table that can be sorted needs the script";
   for (const char* text :
        {"Run, comparison, haptic comparison and validation: press &lt;ball&gt;",
-        "The ball &amp; its dent",
+        "Picture of it",
+        "hand: left",
+        "rejected ticks",
+        "contact: left - press &lt;ball&gt;",
+        "deepest overlap [m]",
         "palpate run press-ball",
         "<td class=\"n\">812</td>",
         "a soft body",
@@ -305,9 +313,9 @@ TEST(RunReport, LeavesOutSectionsWithoutAFile) {
 TEST(RunReport, SaysThePeakOfAForceThatWasNotRecorded) {
   const TemporaryFolder dir;
   const std::string before = R"({"scene": "x", "outcome": "finished", "figures": {
-    "options": {"max_force_n": 3.3}, "on the hand": {"peak_force_n": 1.25, "peak_force_at_s": 0.13,
+    "hands": [{"name": "tool", "max_force_n": 3.3, "peak_force_n": 1.25, "peak_force_at_s": 0.13,
       "peak_torque_n_m": )";
-  put(dir / "summary.json", before + R"(0.002, "peak_torque_at_s": 0.2}}})");
+  put(dir / "summary.json", before + R"(0.002, "peak_torque_at_s": 0.2}]}})");
   std::string html = read(report::write_run_report(dir.path()).page);
   for (const char* text : {"The peak force on the hand is 1.25 N at 0.13 s (device limit 3.3 N).",
                            "The peak torque on the hand is 0.002 N m at 0.2 s."})
@@ -322,7 +330,7 @@ TEST(RunReport, WritesOneMomentInOneWay) {
   const TemporaryFolder dir;
   put(dir / "summary.json", R"({"scene": "x", "outcome": "finished", "figures": {
     "timings": {"simulated_s": 1.2345, "loop_cpu_s": 1},
-    "on the hand": {"peak_force_n": 1, "peak_force_at_s": 1.2340000000000002}}})");
+    "hands": [{"name": "tool", "peak_force_n": 1, "peak_force_at_s": 1.2340000000000002}]}})");
   const std::string html = read(report::write_run_report(dir.path()).page);
   EXPECT_NE(html.find("1.2345 s simulated"), std::string::npos);
   EXPECT_NE(html.find("at most 1 N, at 1.234 s."), std::string::npos)
@@ -355,6 +363,17 @@ TEST(RunReport, RefusesADirectoryWithoutResults) {
     EXPECT_NE(std::string(e.what()).find("contains no results to report"), std::string::npos);
   }
   EXPECT_THROW(report::write_run_report("/nowhere"), Error);
+}
+
+TEST(RunReport, RefusesAnotherSchema) {
+  const TemporaryFolder dir;
+  put(dir / "summary.json", R"({"schema_version": 1000, "scene": "one-tet"})");
+  try {
+    report::write_run_report(dir.path());
+    FAIL() << "another schema was accepted";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("schema_version is 1000"), std::string::npos);
+  }
 }
 
 TEST(RunReport, NamesAFileThatIsBroken) {

@@ -97,7 +97,8 @@ bool log_axis(const std::vector<double>& values, bool declared = false) {
   for (std::size_t i = 0; i < values.size(); ++i)
     study += fmt::format("{},a,bdf2,{},ok,,{}\n", i, values[i], 10 + i);
   folder.write("study.csv", study);
-  if (declared) folder.write("summary.json", R"({"scene": "s", "figures": {"logarithmic": {"key": true}}})");
+  if (declared)
+    folder.write("summary.json", R"({"scene": "s", "figures": {"log_spaced_parameters": [{"key": "key"}]}})");
   const std::string html = read(write_run_report(folder.path()).page);
   EXPECT_EQ(count_of(html, "\"log_x\":true") + count_of(html, "\"log_x\":false"), 1u);
   return count_of(html, "\"log_x\":true") == 1u;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -25,6 +26,9 @@ store::Summary sample() {
   s.section("errors").values = {
       {"position_relative", 1.5e-3}, {"reference_error", std::nan("")}, {"marked", true}};
   s.section("timings").values = {{"cpu_s", std::vector<double>{0.1, 0.2}}};
+  s.list("contacts") = {
+      {{"between", std::vector<std::string>{"ball", "tool"}}, {"triangles", std::vector<long long>{3, 4}}},
+      {{"between", std::vector<std::string>{"ball", "floor"}}, {"deepest_overlap_m", 1e-3}}};
   return s;
 }
 
@@ -33,8 +37,34 @@ TEST(Summary, IsValidJsonWithUnitsAndOrder) {
   EXPECT_EQ(json["figures"]["counts"]["force_evaluations"], 1234);
   EXPECT_TRUE(json["figures"]["errors"]["reference_error"].is_null()) << "JSON has no NaN";
   EXPECT_EQ(json["figures"].begin().key(), "counts") << "in the order in which they were given";
+  EXPECT_EQ(json.begin().key(), "schema_version");
+  EXPECT_EQ(json["schema_version"], store::kSummarySchema);
   EXPECT_EQ(json["outcome"], "finished");
-  EXPECT_TRUE(json["provenance"]["libraries"].contains("HDF5"));
+  const auto& libraries = json["provenance"]["libraries"];
+  EXPECT_TRUE(
+      std::any_of(libraries.begin(), libraries.end(), [](const auto& l) { return l["name"] == "HDF5"; }));
+}
+
+TEST(Summary, RowsAreAnArrayOfObjects) {
+  const auto json = nlohmann::ordered_json::parse(store::to_json(sample()));
+  const auto& contacts = json["figures"]["contacts"];
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_EQ(contacts[0]["between"], (std::vector<std::string>{"ball", "tool"}));
+  EXPECT_EQ(contacts[0]["triangles"], (std::vector<int>{3, 4}));
+  EXPECT_FALSE(contacts[0].contains("deepest_overlap_m")) << "a row omits what it does not have";
+  EXPECT_EQ(contacts[1]["deepest_overlap_m"], 1e-3);
+}
+
+TEST(Summary, RefusesAnotherSchema) {
+  const sample_run::Folder folder;
+  const std::string path = folder / "s.json";
+  const std::string is = fmt::format("\"schema_version\": {}", store::kSummarySchema);
+  std::string text = store::to_json(sample());
+  const std::size_t at = text.find(is);
+  ASSERT_NE(at, std::string::npos);
+  store::write_atomically(path, text.replace(at, is.size(), "\"schema_version\": 1000"));
+  EXPECT_NE(expectations::message_of([&] { store::read_summary(path); }).find("schema_version is 1000"),
+            std::string::npos);
 }
 
 TEST(Summary, RoundTrip) {
@@ -48,6 +78,8 @@ TEST(Summary, RoundTrip) {
   EXPECT_EQ(store::to_json(again), store::to_json(s));
   EXPECT_EQ(std::get<long long>(again.sections[0].values[0].second), 1234);
   EXPECT_TRUE(std::isnan(std::get<double>(again.sections[1].values[1].second)));
+  EXPECT_EQ(std::get<std::vector<long long>>(again.lists[0].rows[0][1].second),
+            (std::vector<long long>{3, 4}));
   EXPECT_EQ(again.remarks, s.remarks);
 }
 

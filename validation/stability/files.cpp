@@ -28,8 +28,8 @@ store::Summary summarise(const StabilityMatrix& matrix, const std::string& comma
   summary.provenance = made_by();
   double cpu = 0.0;
   for (const StabilityCell& cell : matrix.cells) cpu += cell.cpu_s;
-  summary.section("counts").values = {{"cells", static_cast<long long>(matrix.cells.size())},
-                                      {"unexpected", static_cast<long long>(matrix.unexpected())}};
+  summary.section("cells").values = {{"total", static_cast<long long>(matrix.cells.size())},
+                                     {"unexpected", static_cast<long long>(matrix.unexpected())}};
   summary.section("timings").values = {{"wall_s", matrix.wall_s}, {"cells_cpu_s", cpu}};
   return summary;
 }

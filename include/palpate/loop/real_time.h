@@ -53,9 +53,9 @@ void visit_real_time(F&& f, const RealTimeResult& r) {
   f("stalls", static_cast<long long>(r.stalls));
   f("left_out_ticks", static_cast<long long>(r.left_out_ticks));
   for (const Series& s :
-       {Series{"tick_late_p50_s", "tick_late_p99_s", "tick_late_p99.9_s", "tick_late_max_s", r.lateness_s},
-        Series{"tick_work_p50_s", "tick_work_p99_s", "tick_work_p99.9_s", "tick_work_max_s", r.work_s},
-        Series{"exchange_latency_p50_s", "exchange_latency_p99_s", "exchange_latency_p99.9_s",
+       {Series{"tick_late_p50_s", "tick_late_p99_s", "tick_late_p99_9_s", "tick_late_max_s", r.lateness_s},
+        Series{"tick_work_p50_s", "tick_work_p99_s", "tick_work_p99_9_s", "tick_work_max_s", r.work_s},
+        Series{"exchange_latency_p50_s", "exchange_latency_p99_s", "exchange_latency_p99_9_s",
                "exchange_latency_max_s", r.latency_s}}) {
     f(s.p50, quantile(s.values, 0.5));
     f(s.p99, quantile(s.values, 0.99));
