@@ -62,7 +62,9 @@ std::vector<std::string> clock_remarks(const loop::RunResult& result, const std:
     add("real time: the bodies were not advanced in {} periods ({:.3g} s in total), because they are slower "
         "than real time",
         clock.dropped_periods, clock.dropped_s());
-  if (clock.stretched_periods + clock.dropped_periods > 0 && linearisation != "frozen")
+  // Without soft bodies nothing is linearised.
+  if (clock.stretched_periods + clock.dropped_periods > 0 && linearisation != "frozen" &&
+      result.linearise_s > 0.0)
     add("real time: --set exchange.linearisation={} makes an exchange cheaper{}",
         linearisation == "condensed" ? "points" : "frozen",
         linearisation == "condensed" ? "" : ", but the error of the force much larger");
