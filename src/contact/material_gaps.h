@@ -20,7 +20,7 @@ class MaterialGaps {
   double largest_lowering() const { return lowered_.size() ? lowered_.maxCoeff() : 0.0; }
 
   /// Selects the requested points and all points that share a triangle with one of them.
-  /// @param wanted  per point, whether it is requested
+  /// @param requested  per point, whether it is requested
   void start(const std::vector<char>& requested);
   /// Returns the selected points, ascending.
   const std::vector<int>& points() const { return taken_; }

@@ -14,7 +14,7 @@ bool has_instructions(Instructions set);
 /// processor supports it
 bool find_instructions(std::string_view name, Instructions& set);
 /// Returns the requested set.
-/// @param wanted  name of a set, or empty for `widest`
+/// @param requested  name of a set, or empty for `widest`
 /// @param widest  widest set that the processor supports; it supports all narrower ones
 /// @throws Error for an unknown name, and for a set wider than `widest`
 Instructions choose_instructions(std::string_view requested, Instructions widest);

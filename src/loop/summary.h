@@ -10,7 +10,7 @@ namespace palpate::loop {
 /// Returns scene::needs() with the linear solver that the scene's integrator will use.
 std::vector<scene::Need> needs(const scene::Description& description);
 
-/// Returns the counters of a hand's device (device::Device::tallies).
+/// Returns the counters of a hand's device (device::Device::counters).
 std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand);
 
 /// Penetration depth of a [[contact]], and quadrature error of its sum over points.

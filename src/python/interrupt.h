@@ -11,7 +11,7 @@ class Interrupt {
  public:
   /// Installs the handler of SIGINT.
   /// @param stop  set to true by SIGINT
-  /// @param wanted  false in a thread that receives no signals; the object then has no effect
+  /// @param requested  false in a thread that receives no signals; the object then has no effect
   Interrupt(std::atomic<bool>& stop, bool requested);
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;

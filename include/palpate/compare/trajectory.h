@@ -85,7 +85,7 @@ struct Run {
 /// @param description  scene
 /// @param duration_s  simulated time [s]
 /// @param stop  set from outside; ends the run
-/// @param spoil  modifies the World after assembly: seeds a defect that a study must detect
+/// @param seed_defect  modifies the World after assembly: seeds a defect that a study must detect
 Run run_once(const scene::Description& description, double duration_s,
              const std::atomic<bool>* stop = nullptr,
              const std::function<void(loop::World&)>& seed_defect = {});

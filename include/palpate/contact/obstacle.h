@@ -10,10 +10,10 @@
 #include "palpate/core/registry.h"
 #include "palpate/mesh/mesh.h"
 
-/// Rigid shapes with exact gaps, fixed in the world. Each is implemented in one file of
-/// src/contact/obstacles: its gap, its keys, its picture. A new obstacle needs that file, one line in
-/// obstacle_registry() and one line in CMakeLists.txt; tests/contact/obstacle_conformance_test.cpp runs over
-/// all obstacles.
+/// Rigid shapes with exact gaps. As obstacles they are fixed in the world; a tool reuses the sphere. Each is
+/// implemented in one file of src/contact/obstacles: its gap, its keys, its picture. A new obstacle needs
+/// that file, its name in PALPATE_OBSTACLES (obstacles/registry.cpp) and its file name in CONTACT_OBSTACLES
+/// (CMakeLists.txt); tests/contact/obstacle_conformance_test.cpp runs over all obstacles.
 namespace palpate::contact {
 
 /// Point of a shape's surface nearest to a point x.

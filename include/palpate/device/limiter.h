@@ -43,7 +43,7 @@ class WrenchLimiter {
   /// @param device  its last sample is the position of the handle; it must outlive the limiter
   void confine(const Workspace& workspace, const Device& device);
   /// Returns the limited wrench of one tick.
-  /// @param wanted  requested force and moment on the hand
+  /// @param requested  requested force and moment on the hand
   /// @param t  time [s], increasing  @param valid  whether the handle's pose of this tick is valid
   Wrench limit(double t, const Wrench& requested, bool valid);
   /// Restarts the ramp: the next valid wrench ramps in from zero. To be called if no wrench reached the hand

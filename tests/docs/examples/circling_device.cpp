@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "palpate/device/device.h"
+#include "palpate/device/profile.h"
 
 namespace palpate::device {
 namespace {
@@ -9,7 +10,8 @@ namespace {
 /// force, as motors hold it.
 class CirclingDevice : public Device {
  public:
-  DeviceSpecification specification() const override { return {}; }
+  explicit CirclingDevice(const DeviceSpec& spec) : specification_(figures_of(spec).specification) {}
+  DeviceSpecification specification() const override { return specification_; }
 
  protected:
   void do_open() override {}  // open the hardware; fail("device: ...") if it does not respond
@@ -26,13 +28,14 @@ class CirclingDevice : public Device {
   void do_feedback(double, const Wrench& on_hand) override { on_hand_ = on_hand; }  // limited already
 
  private:
+  DeviceSpecification specification_;
   Wrench on_hand_;
 };
 
 }  // namespace
 
-std::unique_ptr<Device> make_circling(const DeviceSpec&, const std::string&) {
-  return std::make_unique<CirclingDevice>();
+std::unique_ptr<Device> make_circling(const DeviceSpec& spec, const std::string&) {
+  return std::make_unique<CirclingDevice>(spec);
 }
 
 }  // namespace palpate::device
