@@ -25,7 +25,8 @@ study.sqlite (one row per run) and report.html.
 
 With --haptic one setting at a time differs from the scene, as listed in its [compare.haptic].  Points run
 one at a time unless --jobs is given, with limits of 120 s of CPU time per point and 1800 s per reference
-unless --limit-s and --reference-limit-s are given.  Writes haptic.csv, summary.json, study.sqlite and report.html.)";
+unless --limit-s and --reference-limit-s are given.  Writes haptic.csv, summary.json, study.sqlite and
+report.html.)";
 
 void add_method_options(CLI::App& command, CompareArguments& arguments) {
   command

@@ -295,6 +295,44 @@ class Results(Cli):
         self.assertLess(changed["points"], 1e-3)
         self.assertGreater(changed["vertices"], 3e-3)
 
+    def test_deep_penetration_is_reported_with_its_time_and_depth(self):
+        """A block of 5 cm weighs 490 Pa on its floor: at 1e4 Pa/m it would come to rest 4.9 cm deep."""
+        scene = """
+            [scene]
+            name = "deep"
+            duration_s = 0.15
+            gravity_m_s2 = [0.0, 0.0, -9.81]
+            [[body]]
+            name = "block"
+            position_m = [0.0, 0.0, 0.026]
+            mesh = { generator = "box", size_m = [0.05, 0.05, 0.05], element_size_m = 0.025 }
+            youngs_modulus_pa = 5e4
+            poissons_ratio = 0.4
+            [[obstacle]]
+            name = "floor"
+            type = "plane"
+            [[contact]]
+            between = ["block", "floor"]
+            stiffness_pa_m = 1e4
+            [integrator]
+            name = "linearly-implicit-euler"
+            step_s = 0.002
+            """
+        (self.folder / "deep.toml").write_text(scene)
+        warned = self.call("run", "deep.toml").stderr
+        found = re.search(
+            r"contact block - floor at t = (\S+) s: penetration reached (\S+) mm, more than half the "
+            r"thickness of the thinner side \(50 mm\): the two may pass through each other\. Increase "
+            r"contact\.stiffness_pa_m", warned)
+        self.assertTrue(found, warned)
+        self.assertLess(abs(float(found[1]) - math.sqrt(2 * 0.026 / 9.81)), 0.03)  # free fall by 2.5 cm
+        self.assertGreaterEqual(float(found[2]), 25.0)
+        begins = self.call("run", "deep.toml", "--set", "body.0.position_m=[0, 0, -0.005]", "-o", "begins")
+        self.assertIn("at t = 0 s: penetration reached 30 mm", begins.stderr)
+        self.assertIn("pushed out at the nearest side", begins.stderr)
+        firm = self.call("run", "deep.toml", "--set", "contact.0.stiffness_pa_m=1e6", "-o", "firm")
+        self.assertNotIn("penetration reached", firm.stderr)
+
     def test_the_order_of_a_contacts_names_changes_no_byte(self):
         swapped = [f"contact.{i}.between={names}" for i, names in enumerate(
             ['["floor", "slab"]', '["slab", "ball"]', '["tool", "ball"]', '["floor", "tool"]'])]
