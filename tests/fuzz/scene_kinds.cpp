@@ -54,14 +54,14 @@ void add_hand(const std::string& prefix, scene::Kinds& out) {
                  .selector = "type",
                  .what = "device type",
                  .kinds = kinds_of(device::device_registry()),
-                 .unsaid = [](const Description&) { return DeviceSpec{}.type; }});
+                 .default_kind = [](const Description&) { return DeviceSpec{}.type; }});
   KindTable profiles{.table = prefix + "device", .selector = "profile", .kinds = {}};
   for (const device::DeviceProfile& one : device::device_profiles()) profiles.kinds.push_back({one.name});
   out.push_back(std::move(profiles));
   out.push_back({.table = prefix + "device.motion",
                  .selector = "kind",
                  .kinds = kinds_of(device::motion_registry()),
-                 .unsaid = [](const Description&) { return MotionSpec{}.kind; }});
+                 .default_kind = [](const Description&) { return MotionSpec{}.kind; }});
 }
 
 scene::Kinds make() {
@@ -69,28 +69,28 @@ scene::Kinds make() {
       {.table = "integrator",
        .selector = "name",
        .kinds = integrators(),
-       .unsaid = [](const Description& d) { return d.integrator.name; },
+       .default_kind = [](const Description& d) { return d.integrator.name; },
        .lists = {"compare.haptic.integrators"}},
       {.table = "integrator",
        .selector = "linear_solver",
        .kinds = {{"cholmod"}, {"pcg", part_keys({"linear_rtol"})}},
-       .unsaid = [](const Description&) { return std::string("cholmod"); }},
+       .default_kind = [](const Description&) { return std::string("cholmod"); }},
       {.table = "body",
        .selector = "material",
        .kinds = {{"corotational", part_keys({"tangent", "volumetric"})}, {"stable_neo_hookean"}},
-       .unsaid = [](const Description&) { return SoftBodySpec{}.material; }},
+       .default_kind = [](const Description&) { return SoftBodySpec{}.material; }},
       {.table = "obstacle", .selector = "type", .kinds = obstacles(), .open = true},
       {.table = "contact",
        .selector = "method",
        .kinds = {{"analytic", part_keys({"gaps"})}, {"auto", part_keys({"gaps", "pixels", "samples"})}},
        .absent = {{"vertex", "does not exist"}},
-       .unsaid = [](const Description&) { return ContactSpec{}.method; },
+       .default_kind = [](const Description&) { return ContactSpec{}.method; },
        .lists = {"compare.contact_methods"}},
       {.table = "contact", .selector = "spring", .kinds = named({"linear"})},
       {.table = "exchange",
        .selector = "scheme",
        .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error"})}, {"monolithic"}},
-       .unsaid = [](const Description&) { return scene::CosimulationSpec{}.scheme; }},
+       .default_kind = [](const Description&) { return scene::CosimulationSpec{}.scheme; }},
       mesh_kinds("body.mesh", kinds_of(mesh::tet_generators()))};
   for (const char* table : {"tool.mesh", "hand.tool.mesh"})
     out.push_back(mesh_kinds(table, kinds_of(mesh::surface_generators())));

@@ -227,7 +227,7 @@ TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
     k.leave(kCount, y, 0.25, at_AV, b.data(), r.data(), kFirst, kLast);
     k.residual(0.25, b.data(), Ax.data(), from_all.data(), kFirst, kLast);
     k.image(0.25, b.data(), d.data(), image.data(), kFirst, kLast);
-    const double largest = k.put_nodes(node.data(), x.data(), out.data(), kFirst, kLast);
+    const double largest = k.scatter_nodes(node.data(), x.data(), out.data(), kFirst, kLast);
     k.difference(2, 4.0, 0.5, x.data(), differences, kFirst, kLast);
     added = x;
     k.add_nodes(node.data(), out.data(), added.data(), kFirst, kLast);

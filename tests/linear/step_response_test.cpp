@@ -146,7 +146,7 @@ TEST_P(StepResponses, LackAboutWhatTheySayTheyLack) {
   begin(response, of, B);
   for (const double requested : {1e-1, 1e-2, 1e-3, 1e-4}) {
     for (int k = 0; k < 60; ++k) {
-      if ((response.missing().array() <= requested * exact.diagonal().array()).all()) break;
+      if ((response.error_bound().array() <= requested * exact.diagonal().array()).all()) break;
       advance(response, 1);
     }
     EXPECT_LT(apart(response.response(), exact), requested);
@@ -187,12 +187,12 @@ TEST_P(StepResponses, LackNoMoreThanTheySayBeforeTheFirstStep) {
     begin(response, of, B);
     if (begun++ > 0) {
       const VecX lacks = exact - response.response().diagonal();
-      EXPECT_TRUE((lacks.array() <= response.missing().array() + 1e-5 * exact.array()).all())
+      EXPECT_TRUE((lacks.array() <= response.error_bound().array() + 1e-5 * exact.array()).all())
           << "at " << along << ": " << lacks.cwiseQuotient(exact).transpose() << ", not "
-          << response.missing().cwiseQuotient(exact).transpose();
-      enough += (response.missing().array() <= 0.1 * exact.array()).all();
+          << response.error_bound().cwiseQuotient(exact).transpose();
+      enough += (response.error_bound().array() <= 0.1 * exact.array()).all();
     }
-    for (int k = 0; k < 60 && !(response.missing().array() <= 1e-2 * exact.array()).all(); ++k)
+    for (int k = 0; k < 60 && !(response.error_bound().array() <= 1e-2 * exact.array()).all(); ++k)
       advance(response, 1);
   }
   EXPECT_GT(enough, begun / 2) << "a bound that is never small says nothing";
