@@ -18,18 +18,14 @@ namespace fs = std::filesystem;
 /// Figures that the page shows elsewhere.
 const std::set<std::string> kElsewhere = {"parts", "log_spaced_parameters"};
 
-/// Heading of one row of a list in summary.json; key_text() of the list's key by default.
-std::string row_label(const std::string& list) {
-  static const std::map<std::string, std::string> labels = {
-      {"against_monolithic", "error against the monolithic solution"},
-      {"contacts", "contact"},
-      {"hands", "hand"},
-      {"observed_orders", "observed order"},
-      {"operating_points", "operating point"},
-      {"reductions", "reduced response of the bodies"}};
-  const auto found = labels.find(list);
-  return found == labels.end() ? key_text(list) : found->second;
-}
+/// Headings of the rows of lists in summary.json. Rows of other lists are a name and a value.
+const std::map<std::string, std::string> kRowHeadings = {
+    {"against_monolithic", "error against the monolithic solution"},
+    {"contacts", "contact"},
+    {"hands", "hand"},
+    {"observed_orders", "observed order"},
+    {"operating_points", "operating point"},
+    {"reductions", "reduced response of the bodies"}};
 
 /// Returns what a row is about, its first entry: "tool", "ball - tool".
 std::string row_name(const Json& row) {
@@ -42,20 +38,21 @@ std::string row_name(const Json& row) {
 
 using Groups = std::vector<std::pair<std::string, Page::Facts>>;
 
-/// Adds the rows of a list: as one group where each is a name and a value, otherwise a group for each.
+/// Adds the rows of a list: a group for each, or one group of names and values.
 void add_list(const std::string& key, const Json& list, Groups& groups) {
   const bool rows =
       std::all_of(list.begin(), list.end(), [](const Json& row) { return row.is_object() && !row.empty(); });
   if (!rows || list.empty()) return;
+  const auto heading = kRowHeadings.find(key);
   Page::Facts pairs;
   for (Json row : list) {
     const std::string name = row_name(row);
     row.erase(row.begin());
     Page::Facts facts = facts_of(row);
-    if (row.size() == 1 && facts.size() == 1)
-      pairs.emplace_back(name, facts.front().second);
+    if (heading != kRowHeadings.end())
+      groups.emplace_back(fmt::format("{}: {}", heading->second, name), std::move(facts));
     else
-      groups.emplace_back(fmt::format("{}: {}", row_label(key), name), std::move(facts));
+      for (const auto& fact : facts) pairs.emplace_back(name, fact.second);
   }
   if (!pairs.empty()) groups.emplace_back(key_text(key), std::move(pairs));
 }

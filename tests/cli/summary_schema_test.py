@@ -123,14 +123,14 @@ class Schema(Cli):
         def change(*changes):
             return [word for one in changes for word in ("--set", one)]
 
-        # two bodies, a tool, contact of three methods
+        # two bodies, a tool, contact in image space and with shapes in formulas
         figures = take("run", "press-stack", "--duration-s", "0.1", "--passivity", "control",
-                       "--against-monolithic", *change("contact.1.method=image", "contact.2.method=distance",
+                       "--against-monolithic", *change("contact.1.method=image",
                                                        "compare.haptic.reference_rtol=1e-4"))
         self.assertEqual([contact["between"] for contact in figures["contacts"]],
-                         [["slab", "floor"], ["ball", "slab"], ["ball", "tool"], ["tool", "floor"]])
+                         [["slab", "floor"], ["slab", "ball"], ["ball", "tool"], ["tool", "floor"]])
         methods = [contact["method"] for contact in figures["contacts"]]
-        self.assertEqual(methods[1:3], ["image", "distance"])
+        self.assertEqual(methods, ["plane", "image", "sphere", "plane"])
         for contact in figures["contacts"]:
             images = contact["method"] == "image"
             self.assertEqual("normals_kept" in contact, images)
@@ -138,6 +138,8 @@ class Schema(Cli):
             self.assertNotIn("proxy_pairs", contact, "no body has proxies")
         self.assertEqual([hand["name"] for hand in figures["hands"]], ["tool"])
         self.assertEqual([error["hand"] for error in figures["against_monolithic"]], ["tool"])
+        figures = take("run", "press-stack", "--duration-s", "0.05")
+        self.assertEqual(figures["contacts"][1]["method"], "distance")
         figures = take("run", "lift-ball", "--duration-s", "0.25")
         self.assertEqual(figures["grasps"]["closed"], 1)
         figures = take("run", "press-ball", "--duration-s", "0.1", "--realtime",
