@@ -243,7 +243,7 @@ class Resume(unittest.TestCase):
 
     def test_unsupported_options_are_refused_at_the_start(self):
         start = ["run", "press-ball", "--checkpoint-every"]
-        for options, reason in ((["--realtime"], "machine's clock"), (["--trace"], "--trace"),
+        for options, reason in ((["--realtime"], "cannot reproduce the clock"), (["--trace"], "--trace"),
                                 (["--picture"], "palpate movie"), (["--frames"], "palpate movie"),
                                 (["--against-monolithic"], "palpate replay")):
             with self.subTest(options):

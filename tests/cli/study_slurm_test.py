@@ -86,7 +86,7 @@ class Slurm(Studies):
         _, err = child.communicate(timeout=400)
         self.assertEqual(child.returncode, 3, err)
         task = element.split("_")[1]
-        self.assertIn(f"there is no result of task {task} (job ", err)
+        self.assertIn(f"missing result of task {task} (job ", err)
         status = [row["status"] for row in self.rows("cluster")]
         self.assertEqual(status.count("missing"), 1)
         self.assertEqual(status[int(task)], "missing")
@@ -102,7 +102,7 @@ class Slurm(Studies):
             os.kill(pid, signal.SIGKILL)
         _, err = child.communicate(timeout=400)
         self.assertEqual(child.returncode, 3, err)
-        self.assertIn(f"there is no result of task {task} (job ", err)
+        self.assertIn(f"missing result of task {task} (job ", err)
         self.good("long.toml", "-o", "cluster")  # the remaining tasks on this machine: results are shared
         self.assertEqual(self.table("cluster"), self.local("long.toml"))
 

@@ -101,7 +101,7 @@ class Tables(Studies):
         self.put("block.toml", (self.folder / "block.toml").read_text().replace("-9.81", "-9.82"))
         done = self.call("quick.toml", "-o", "out", "--merge")
         self.assertEqual(done.returncode, 3)
-        self.assertIn(f"there is no result of tasks 0-{QUICK_TASKS - 1}", done.stderr)
+        self.assertIn(f"missing result of tasks 0-{QUICK_TASKS - 1}", done.stderr)
         self.assertEqual({row["status"] for row in self.rows("out")}, {"missing"})
         self.assertNotIn("done before", self.good("quick.toml", "-o", "out"))
         self.assertIn(f"{QUICK_TASKS} results are from earlier runs", self.good("quick.toml", "-o", "out"))
@@ -183,7 +183,7 @@ class Losses(Studies):
     def test_a_task_that_is_killed_from_outside_is_missing_and_run_again(self):
         status, _, err = self.kill_a_worker(signal.SIGKILL, "out")
         self.assertEqual(status, 3)
-        self.assertRegex(err, r"there is no result of task \d \(task \d: killed by signal 9 .*run")
+        self.assertRegex(err, r"missing result of task \d \(task \d: killed by signal 9 .*run")
         self.assertEqual(sorted(row["status"] for row in self.rows("out")), ["missing"] + ["ok"] * 3)
         before = self.rows("out")
         self.assertIn("3 results are from earlier runs", self.good("long.toml", "-o", "out"))

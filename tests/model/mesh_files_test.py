@@ -69,7 +69,7 @@ surface("OBJ", "line ends of other systems", "b.obj", m.obj(PLATE).replace("\n",
 surface("OBJ", "byte order mark", "a.obj", "\ufeff" + m.obj(PLATE))
 surface("OBJ", "millimetres", "a.obj", m.obj(PLATE.scaled(1000)), PLATE, "--scale", "0.001")
 surface("OBJ", "millimetres, not said", "a.obj", m.obj(PLATE.scaled(1000)), volume=None,
-        refused="a file in millimetres takes --scale 0.001")
+        refused="for a file in millimetres, use --scale 0.001")
 
 # PLY
 surface("PLY", "triangles", "a.ply", m.ply(m.block().triangles()), m.block())

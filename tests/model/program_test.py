@@ -243,7 +243,8 @@ class Program(unittest.TestCase):
         source = octahedron(self.path)
         for words, expected in [
             (("--limit-s", "1"), r"within 1 s: .*at \(.*--limit-s"),
-            (("--points", "1000"), r"about 6e\+05 points, more than the 1000 of the budget.*--points"),
+            (("--points", "1000"),
+             r"about 6e\+05 points, more than the limit of 1000; raise it with --points"),
         ]:
             done = run("model", source, "-o", self.path / "a.h5", "--tetrahedra", "3000000", *words)
             self.assertEqual(done.returncode, 1, done.stdout)

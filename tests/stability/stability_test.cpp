@@ -82,9 +82,9 @@ class BrokenStepper : public testing::TestWithParam<Fault> {};
 std::vector<Fault> faults() {
   std::vector<Fault> all = {
       Fault{Defect::kNotANumber, "youngs-modulus", "E = 1e5 Pa", Verdict::kNotFinite, ""},
-      Fault{Defect::kNotANumber, "rest", "a free cube", Verdict::kNotFinite, "not finite"},
-      Fault{Defect::kNotANumber, "contact-stiffness", "k = 1e6 Pa/m", Verdict::kNotFinite, "not finite"},
-      Fault{Defect::kNotANumber, "squashed", "mirror image", Verdict::kNotFinite, "not finite"},
+      Fault{Defect::kNotANumber, "rest", "a free cube", Verdict::kNotFinite, "non-finite value"},
+      Fault{Defect::kNotANumber, "contact-stiffness", "k = 1e6 Pa/m", Verdict::kNotFinite, "non-finite value"},
+      Fault{Defect::kNotANumber, "squashed", "mirror image", Verdict::kNotFinite, "non-finite value"},
       Fault{Defect::kGainsEnergy, "youngs-modulus", "E = 1e5 Pa", Verdict::kGrew, ""},
       Fault{Defect::kGainsEnergy, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kWrong, "then:"},
       Fault{Defect::kGainsALittle, "youngs-modulus", "E = 1e3 Pa", Verdict::kGrew, ""},

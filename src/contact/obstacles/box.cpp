@@ -83,7 +83,7 @@ const ObstacleEntry& box_obstacle() {
   static const ObstacleEntry entry = {
       "box",
       "box with edge lengths size_m, centred at position_m",
-      {position_key("centre"),
+      {position_key("position of the centre"),
        rotation_key(),
        {.name = "size_m",
         .range = MeshRanges::length,

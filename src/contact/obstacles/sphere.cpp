@@ -71,7 +71,7 @@ const ObstacleEntry& sphere_obstacle() {
   static const ObstacleEntry entry = {
       "sphere",
       "ball of radius radius_m, centred at position_m",
-      {position_key("centre"), length_key("radius_m", "radius")},
+      {position_key("position of the centre"), length_key("radius_m", "radius of the surface")},
       [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
          double look_ahead) {
         return make_sphere_source(std::move(side), frame, std::move(motion), position_of(shape),
