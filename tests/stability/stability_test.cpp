@@ -83,7 +83,8 @@ std::vector<Fault> faults() {
   std::vector<Fault> all = {
       Fault{Defect::kNotANumber, "youngs-modulus", "E = 1e5 Pa", Verdict::kNotFinite, ""},
       Fault{Defect::kNotANumber, "rest", "a free cube", Verdict::kNotFinite, "non-finite value"},
-      Fault{Defect::kNotANumber, "contact-stiffness", "k = 1e6 Pa/m", Verdict::kNotFinite, "non-finite value"},
+      Fault{Defect::kNotANumber, "contact-stiffness", "k = 1e6 Pa/m", Verdict::kNotFinite,
+            "non-finite value"},
       Fault{Defect::kNotANumber, "squashed", "mirror image", Verdict::kNotFinite, "non-finite value"},
       Fault{Defect::kGainsEnergy, "youngs-modulus", "E = 1e5 Pa", Verdict::kGrew, ""},
       Fault{Defect::kGainsEnergy, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kWrong, "then:"},

@@ -129,7 +129,8 @@ const ObstacleEntry& cylinder_obstacle() {
   static const ObstacleEntry entry = {
       "cylinder",
       "cylinder along its local z axis with flat ends, centred at position_m",
-      {position_key("position of the centre"), rotation_key(), length_key("radius_m", "radius of the surface"),
+      {position_key("position of the centre"), rotation_key(),
+       length_key("radius_m", "radius of the surface"),
        length_key("length_m", "length along the local z axis")},
       [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
          double look_ahead) {
