@@ -9,7 +9,7 @@
 namespace palpate::stability {
 namespace {
 
-constexpr double kDampingRatio = 0.05;  // Of the lowest mode.
+constexpr double kDampingRatio = 0.05;  // Damping ratio of the lowest mode.
 
 fem::Material material(double youngs_modulus, double poissons_ratio) {
   fem::Material m;
