@@ -52,5 +52,5 @@ int main() {
   return same ? 0 : 1;
 }
 END
-g++ -O1 -std=c++17 -I"$usr/include/simbody" nearest.cpp -o nearest -L"$lib" -lSimTKmath -lSimTKcommon
+g++ -O1 -w -std=c++17 -I"$usr/include/simbody" nearest.cpp -o nearest -L"$lib" -lSimTKmath -lSimTKcommon
 LD_LIBRARY_PATH=$lib:$lib/openblas-pthread:$lib/lapack:$lib/blas ./nearest
