@@ -5,6 +5,8 @@
 
 #include "core/time_text.h"
 #include "palpate/core/error.h"
+#include "report/comparison_words.h"
+#include "report/cost_envelope.h"
 
 namespace palpate::report {
 namespace {

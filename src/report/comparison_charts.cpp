@@ -4,6 +4,7 @@
 #include "comparison_cells.h"
 #include "palpate/core/error.h"
 #include "sections.h"
+#include "work_precision_plots.h"
 
 /// Further charts of a comparison: restarts, exchange periods, methods of contact search.
 namespace palpate::report {
@@ -34,13 +35,13 @@ void add_restarts(Page& page, const Table& restarts) {
     const Table own = rows_where(restarts, "scene", scene);
     Plot steps = restart_plot(own, "steps", "steps per simulated second");
     steps.series.push_back(one_step_per_query(own));
-    add_plot(page, steps,
+    add_plot(page, steps, "restarts.csv",
              scene +
                  ": steps. No method can stay below the dashed line, one step per query; the steps that a "
                  "multistep method takes in excess of a one-step method are the cost of its restarts.");
     page.begin_details("Force evaluations");
     add_plot(page, restart_plot(own, "force_evaluations", "force evaluations per simulated second"),
-             scene + ": force evaluations.");
+             "restarts.csv", scene + ": force evaluations.");
     page.end_details();
     std::vector<std::vector<std::string>> rows;
     std::vector<RowMark> marks;
@@ -74,7 +75,7 @@ void add_exchange(Page& page, const Table& exchange) {
     const Table own = rows_where(exchange, "scene", scene);
     const std::string where = scenes.size() > 1 ? scene + ": " : "";
     for (const Quantity& q : quantities_of(own, {}))
-      add_plot(page, exchange_plot(own, q.column, q.label),
+      add_plot(page, exchange_plot(own, q.column, q.label), "exchange.csv",
                where + (where.empty() ? capitalised(q.label) : q.label) + " against the exchange period.");
     std::vector<std::vector<std::string>> rows;
     for (std::size_t r = 0; r < own.rows.size(); ++r) {

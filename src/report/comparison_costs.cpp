@@ -3,6 +3,7 @@
 
 #include "comparison_tables.h"
 #include "palpate/core/error.h"
+#include "report/cost_envelope.h"
 
 namespace palpate::report {
 namespace {

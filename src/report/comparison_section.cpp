@@ -3,7 +3,9 @@
 
 #include "comparison_tables.h"
 #include "palpate/core/error.h"
+#include "report/comparison_words.h"
 #include "sections.h"
+#include "work_precision_plots.h"
 
 namespace palpate::report {
 namespace {
@@ -18,7 +20,7 @@ void add_work_precision(Page& page, const Table& compare, const Quantity& q) {
     left_out = fmt::format(
         " Not drawn: {} point{} with an error above {:g}{}.", count, count == 1 ? "" : "s", kLargestDrawn,
         q.unit.empty() ? "" : fmt::format(" times the peak of {} {}", short_number(q.scale), q.unit));
-  add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale),
+  add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale), "compare.csv",
            capitalised(q.label) + " against CPU time; lower left is better. " +
                (many ? "One line per refinement sequence, coloured by family; the dark line is the Pareto "
                        "front, labelled where the best integrator changes. "
@@ -47,11 +49,12 @@ void add_counts_of_work(Page& page, const Table& compare, const Quantity& q) {
   if (families) {
     page.begin_multiples();
     for (const Plot& plot : family_plots(compare, q.column, q.label, q.reference, q.scale))
-      add_plot(page, plot, "");
+      add_plot(page, plot, "compare.csv", "");
     page.end_multiples();
   }
   for (const auto& [column, label] : counted)
     add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale, column, label),
+             "compare.csv",
              fmt::format("{} against {}, independent of timing noise.{}", capitalised(q.label), label,
                          column == "factorisations" ? " Methods that factor no matrix are not shown." : ""));
   page.end_details();

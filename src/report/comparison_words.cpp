@@ -1,9 +1,11 @@
+#include "report/comparison_words.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "palpate/core/error.h"
-#include "report/work_precision.h"
+#include "report/cost_envelope.h"
 
 namespace palpate::report {
 namespace {

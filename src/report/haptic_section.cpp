@@ -84,7 +84,7 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
   if (!period.series.empty())
     add_fit(period, period.series.back(),
             number_at(row_where(orders, "variable", "exchange alone"), (q.name + "_order").c_str()));
-  add_plot(page, period,
+  add_plot(page, period, "haptic.csv",
            fmt::format("Error of the {} against the exchange period: at the settings of the scene, and with "
                        "only the errors of exchange and tick (a tenth of the period) left. Rings mark points "
                        "within 10 times the reference error.",
@@ -94,21 +94,22 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
     Series ticks = series_of(table, q, "tick", "setting", false);
     for (double& x : ticks.x) x = 1.0 / x;
     rate.series.push_back(std::move(ticks));
-    add_plot(page, rate, fmt::format("Error of the {} against the haptic rate.", q.name));
+    add_plot(page, rate, "haptic.csv", fmt::format("Error of the {} against the haptic rate.", q.name));
   }
   for (const char* variable : {"pixels", "element size"}) {
     if (!holds(table, q, variable)) continue;
     Plot plot = frame_of(
         q, std::string(variable) == "pixels" ? "pixels along the image's longer edge" : "element size [m]");
     plot.series.push_back(series_of(table, q, variable, "setting", false));
-    add_plot(page, plot, fmt::format("Error of the {} against the contact's resolution.", q.name));
+    add_plot(page, plot, "haptic.csv",
+             fmt::format("Error of the {} against the contact's resolution.", q.name));
   }
   Plot cost = frame_of(q, "CPU time of the loop [s]");
   cost.height = 520;
   for (const std::string& variable : distinct(table, "variable"))
     if (variable != "exchange alone" && holds(table, q, variable))
       cost.series.push_back(series_of(table, q, variable, "cpu_s_median", true));
-  add_plot(page, cost,
+  add_plot(page, cost, "haptic.csv",
            fmt::format("Error of the {} against CPU time, all variants; lower left is better.", q.name));
 }
 

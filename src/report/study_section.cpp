@@ -8,7 +8,6 @@
 #include "palpate/core/error.h"
 #include "sections.h"
 #include "study_columns.h"
-#include "style.h"
 
 /// Section for study.csv of `palpate study`.
 namespace palpate::report {
@@ -120,7 +119,7 @@ void add_charts(Page& page, const Table& study, const StudyColumns& columns, con
   page.begin_multiples();
   for (const StudyFigure& figure : shown_figures(study)) {
     Plot plot;
-    plot.x_label = name;
+    plot.x_label = parameter_text(name);
     plot.y_label = figure.label;
     plot.log_x = logarithmic;
     for (std::size_t g = 0; g < groups.size(); ++g)
@@ -128,7 +127,7 @@ void add_charts(Page& page, const Table& study, const StudyColumns& columns, con
                  std::string(kPalette[g % kPalette.size()]));
     if (plot.series.empty()) continue;
     add_plot(
-        page, plot,
+        page, plot, "study.csv",
         capitalised(figure.label) + " over " + name +
             (columns.seeds && !drawn ? "; lines are means over the seeds, points are single seeds." : "."));
   }

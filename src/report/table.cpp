@@ -6,8 +6,14 @@
 
 #include "core/csv.h"
 #include "palpate/core/error.h"
+#include "store/csv.h"
 
 namespace palpate::report {
+
+Table read_csv(const std::filesystem::path& path) {
+  store::CsvTable file = store::read_csv(path.string());
+  return {std::move(file.headers), std::move(file.rows), path.string()};
+}
 
 bool Table::has(std::string_view header) const {
   return std::find(headers.begin(), headers.end(), header) != headers.end();

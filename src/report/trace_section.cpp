@@ -38,7 +38,7 @@ Plot step_plot(const Table& trace) {
   const std::size_t outcome = trace.column("outcome");
   Plot plot;
   plot.x_label = "time [s]";
-  plot.y_label = "step [s]";
+  plot.y_label = "step size [s]";
   plot.log_y = true;
   const auto series_of = [&](const std::string& which, Mark mark) {
     Series series{.name = which, .x = {}, .y = {}, .mark = mark};
@@ -50,9 +50,11 @@ Plot step_plot(const Table& trace) {
     return series;
   };
   plot.series.push_back(series_of(kAccepted, Mark::kLine));
-  plot.series[0].colour = "#7a7f8a";
-  const std::map<std::string, std::string> colours = {
-      {"error test", "#d1495b"}, {"Newton", "#b0529e"}, {"not finite", "#d9720a"}, {"event", "#2b7bba"}};
+  plot.series[0].colour = kPalette[10];
+  const std::map<std::string, std::string_view> colours = {{"error test", kPalette[4]},
+                                                           {"Newton", kPalette[3]},
+                                                           {"not finite", kPalette[1]},
+                                                           {"event", kPalette[0]}};
   for (const std::string& which : distinct(trace, "outcome")) {
     if (which == kAccepted) continue;
     plot.series.push_back(series_of(which, Mark::kPoints));
@@ -73,7 +75,7 @@ void add_trace(Page& page, const Table& trace) {
       ++(what == kAccepted ? worst_accepted : worst_rejected)[where];
     if (const std::string& body = trace.rows[i][inverted]; !body.empty()) ++inverted_in[body];
   }
-  add_plot(page, step_plot(trace),
+  add_plot(page, step_plot(trace), "trace.csv",
            "Step size over time: the line shows accepted steps, points show rejected attempts, coloured by "
            "cause (an event ends a step at a root).");
   page.add_table({"outcome", "attempts"}, most_frequent(outcomes, outcomes.size()));

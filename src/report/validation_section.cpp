@@ -39,7 +39,7 @@ std::vector<Ladder> ladders_of(const Json& one) {
 Plot log_plot(const std::string& x_label) {
   Plot plot;
   plot.x_label = x_label;
-  plot.y_label = "error";
+  plot.y_label = "error, relative unless the quantity states otherwise";
   plot.log_x = plot.log_y = true;
   return plot;
 }
@@ -87,10 +87,10 @@ void add_convergence(Page& page, const Json& cases) {
       if (std::find(labels.begin(), labels.end(), ladder.size_label) == labels.end())
         labels.push_back(ladder.size_label);
     for (const std::string& label : labels)
-      add_plot(page, convergence_plot(ladders, label),
+      add_plot(page, convergence_plot(ladders, label), "validation.json",
                fmt::format("{}: error against {}.", text_at(one, "name"), label));
     if (const Plot cost = cost_plot(ladders); !cost.series.empty())
-      add_plot(page, cost, text_at(one, "name") + ": error against run time.");
+      add_plot(page, cost, "validation.json", text_at(one, "name") + ": error against run time.");
   }
   if (any) page.end_details();
 }

@@ -1,12 +1,12 @@
+#include "work_precision_plots.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "log_line.h"
 #include "palpate/core/error.h"
-#include "report/work_precision.h"
 
 namespace palpate::report {
 namespace {
@@ -18,18 +18,11 @@ bool is_drawn(double error, double scale) { return !(error > kLargestDrawn * sca
 constexpr std::size_t kFewLadders = 3;
 /// Most sequences of a family in one plot; larger families are plotted by order.
 constexpr std::size_t kManyInFamily = 6;
-constexpr const char* kFaintColour = "#c3c9d0";
-
-/// Twelve hues of medium lightness for families, in the order of their first line.
-constexpr std::array<const char*, 12> kFamilyColours = {"#2b7bba", "#d9720a", "#2a9461", "#b0529e",
-                                                        "#d1495b", "#0f9aa8", "#8a6d3b", "#6a5acd",
-                                                        "#8fae1b", "#c2185b", "#4c6a7d", "#e0a100"};
 
 std::map<std::string, std::string> family_colours(const std::vector<Ladder>& all) {
   std::map<std::string, std::string> out;
   for (const Ladder& ladder : all)
-    if (!out.contains(ladder.family))
-      out.emplace(ladder.family, kFamilyColours[out.size() % kFamilyColours.size()]);
+    if (!out.contains(ladder.family)) out.emplace(ladder.family, kPalette[out.size() % kPalette.size()]);
   return out;
 }
 
@@ -141,7 +134,6 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
     Plot plot = frame_of(error_label, reference_error, cost_label);
     plot.title = panel;
     plot.floor_label = "";
-    plot.width = 520, plot.height = 400;
     for (const Ladder& ladder : all) {
       if (panel_of(ladder) == panel) continue;
       Series series = line_of(ladder, scale, false);
@@ -150,17 +142,12 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
       series.notes.clear();
       series.mark = Mark::kLine;
       series.hollow.clear();
-      series.colour = kFaintColour;
+      series.colour = "faint";
       series.width = 0.7;
       plot.series.push_back(std::move(series));
     }
-    std::size_t next = 0;
-    for (const Ladder& ladder : all) {
-      if (panel_of(ladder) != panel) continue;
-      Series series = line_of(ladder, scale, false);
-      series.colour = kFamilyColours[next++ % kFamilyColours.size()];
-      plot.series.push_back(std::move(series));
-    }
+    for (const Ladder& ladder : all)
+      if (panel_of(ladder) == panel) plot.series.push_back(line_of(ladder, scale, false));
     out.push_back(std::move(plot));
   }
   return out;
@@ -204,7 +191,6 @@ Plot restart_plot(const Table& restarts, const std::string& count_column, const 
   plot.y_label = count_label;
   plot.log_x = plot.log_y = true;
   plot.height = 400;
-  std::size_t next = 0;
   for (const std::string& name : distinct(restarts, "label")) {
     Series series{.name = name, .x = {}, .y = {}, .mark = Mark::kLinePoints};
     bool many = false;
@@ -216,7 +202,6 @@ Plot restart_plot(const Table& restarts, const std::string& count_column, const 
     }
     series.name += many ? " (multistep)" : " (one-step)";
     if (!many) series.mark = Mark::kDashed;
-    series.colour = kFamilyColours[next++ % kFamilyColours.size()];
     plot.series.push_back(std::move(series));
   }
   return plot;

@@ -1,4 +1,4 @@
-/* made by src/report/page/build.mjs, sources sha256 82f2a4aeac12245e9ecedba39910e05c412c565f03bcf3cc7d1d89fd1529dcb2
+/* made by src/report/page/build.mjs, sources sha256 f5e02fdbd5c3ea7942245038dcc69527a03ea8241c51d731b8b0b30ccdaa45dd
 
 This part of the page holds three 0.170.0
 

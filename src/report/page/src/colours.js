@@ -6,8 +6,11 @@ export const pageColour = (name) =>
 
 export const inkOf = () => pageColour("ink");
 
+/// Colours that a series has by name: those of the style sheet.
+const NAMED = { ink: "ink", faint: "line" };
+
 /// For the canvas.
-export const colourOf = (series) => (series.colour === "ink" ? inkOf() : series.colour);
+export const colourOf = ({ colour }) => (NAMED[colour] ? pageColour(NAMED[colour]) : colour);
 
 /// For an element: it follows the style sheet by itself.
-export const cssColourOf = (series) => (series.colour === "ink" ? "var(--ink)" : series.colour);
+export const cssColourOf = ({ colour }) => (NAMED[colour] ? `var(--${NAMED[colour]})` : colour);

@@ -1,4 +1,4 @@
-// A figure's chart drawn by uPlot from the numbers that stand beside its SVG.  The SVG stays for print.
+// A figure's chart drawn by uPlot from the numbers in the page.
 import uPlot from "uplot";
 import css from "uplot/dist/uPlot.min.css";
 import { axisOf, scaleOf } from "./axes.js";
@@ -6,6 +6,7 @@ import { drawBackground, drawMarks } from "./decoration.js";
 import { makeLegend } from "./legend.js";
 import { attachReading } from "./reading.js";
 import { colourOf, inkOf } from "./colours.js";
+import { addDrawn, drawForPrint } from "./paper.js";
 
 const ascends = (values) => values.every((v, i) => i === 0 || v > values[i - 1]);
 
@@ -39,16 +40,20 @@ function seriesOf(one) {
   return out;
 }
 
-function makeLive(figure) {
-  const data = JSON.parse(figure.querySelector("script.plot-data").textContent);
+/// The empty holder of a chart, in place of the note on where the values are without a script.
+function makeHolder(figure) {
   const holder = document.createElement("div");
   holder.className = "live";
+  figure.querySelector(".values").replaceWith(holder);
+}
+
+function drawChart(figure) {
+  const data = JSON.parse(figure.querySelector("script.plot-data").textContent);
+  const holder = figure.querySelector(".live");
   holder.tabIndex = 0;
   holder.setAttribute("role", "group");
   holder.setAttribute("aria-label", `${data.y_label} against ${data.x_label}: arrow keys read values, plus ` +
     "and minus zoom, 0 shows all");
-  figure.prepend(holder);
-  figure.classList.add("is-live");
 
   const height = () => Math.min(data.height, Math.max(260, Math.round(0.75 * holder.clientWidth)));
   const options = {
@@ -67,6 +72,7 @@ function makeLive(figure) {
     return [order.map((i) => one.x[i]), order.map((i) => one.y[i])];
   }));
   const plot = new uPlot(options, aligned, holder);
+  addDrawn(plot);
   holder.after(makeLegend(plot, data));
   attachReading(plot, data, holder);
   new ResizeObserver(() => {
@@ -76,19 +82,23 @@ function makeLive(figure) {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => plot.redraw());
 }
 
-/// Each is made when it is first seen: one in a closed <details> has no size before.
-export function makePlotsLive() {
-  const figures = document.querySelectorAll("figure.chart");
-  if (figures.length === 0) return;
+/// Each is drawn when it is first seen, or printed: one in a closed <details> has no size before.
+export function drawCharts() {
+  const waiting = new Set(document.querySelectorAll("figure.chart"));
+  if (waiting.size === 0) return;
   const style = document.createElement("style");
   style.textContent = css;
   document.head.prepend(style);
-  const observer = new IntersectionObserver((entries) => {
-    for (const entry of entries) {
-      if (!entry.isIntersecting) continue;
-      observer.unobserve(entry.target);
-      makeLive(entry.target);
-    }
-  }, { rootMargin: "300px" });
-  for (const figure of figures) observer.observe(figure);
+  const draw = (figure) => {
+    observer.unobserve(figure);
+    if (waiting.delete(figure)) drawChart(figure);
+  };
+  const observer = new IntersectionObserver(
+    (entries) => entries.filter((entry) => entry.isIntersecting).forEach((entry) => draw(entry.target)),
+    { rootMargin: "300px" });
+  for (const figure of waiting) {
+    makeHolder(figure);
+    observer.observe(figure);
+  }
+  drawForPrint(() => [...waiting].filter((one) => !one.closest("details:not([open])")).forEach(draw));
 }
