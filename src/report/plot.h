@@ -26,8 +26,8 @@ struct Series {
   bool labels_below = false;
   /// Points drawn as rings (not resolved by the reference); empty: none
   std::vector<bool> hollow = {};
-  /// "#rrggbb", "ink" for the colour of text, or "faint" for the colour of the grid; empty: the next colour
-  /// of the palette
+  /// "#rrggbb", or "ink" (text) or "faint" (background) for that colour of the style sheet; empty: the next
+  /// colour of the palette
   std::string colour = {};
   double width = 0.0;                   ///< Line width; 0: default of the mark
   std::string group = {};               ///< Entry of the key that switches the series; empty: `name`

@@ -5,12 +5,12 @@ namespace palpate::report {
 // The root has the class "on-paper" while the script draws charts for print, which has no dark mode.
 const char* const kStyleSheet = R"css(
 :root { color-scheme: light dark; --page: #ffffff; --ink: #1c2126; --quiet: #5c6670; --line: #d9dee3;
-  --tint: #f4f6f8; --accent: #1f6fae;
+  --faint: #b4bcc4; --tint: #f4f6f8; --accent: #1f6fae;
   --good: #1e7a46; --bad: #b3261e; --good-tint: #e9f5ee; --bad-tint: #fbeae9; }
 :focus-visible { outline: 2px solid var(--accent); outline-offset: 2px; border-radius: 2px; }
 @media screen and (prefers-color-scheme: dark) { :root:not(.on-paper) {
   --page: #15191d; --ink: #e3e7eb; --quiet: #9aa5b0;
-  --line: #353c44; --tint: #1d2329; --accent: #6fb1e6;
+  --line: #353c44; --faint: #56606a; --tint: #1d2329; --accent: #6fb1e6;
   --good: #6fcf97; --bad: #f28b82; --good-tint: #1a2b22; --bad-tint: #331f1f; } }
 * { box-sizing: border-box; }
 html { background: var(--page); color: var(--ink);

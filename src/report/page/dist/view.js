@@ -1,4 +1,4 @@
-/* made by src/report/page/build.mjs, sources sha256 f5e02fdbd5c3ea7942245038dcc69527a03ea8241c51d731b8b0b30ccdaa45dd
+/* made by src/report/page/build.mjs, sources sha256 8d5139e2d2e4bb75410769b0079a3757a51239ba917cbea9bad0ab232fc6ed08
 
 This part of the page holds three 0.170.0
 

@@ -6,11 +6,11 @@ export const pageColour = (name) =>
 
 export const inkOf = () => pageColour("ink");
 
-/// Colours that a series has by name: those of the style sheet.
-const NAMED = { ink: "ink", faint: "line" };
+/// A series has a colour "#rrggbb", or one of the style sheet by its name.
+const isNamed = (colour) => !colour.startsWith("#");
 
 /// For the canvas.
-export const colourOf = ({ colour }) => (NAMED[colour] ? pageColour(NAMED[colour]) : colour);
+export const colourOf = ({ colour }) => (isNamed(colour) ? pageColour(colour) : colour);
 
 /// For an element: it follows the style sheet by itself.
-export const cssColourOf = ({ colour }) => (NAMED[colour] ? `var(--${NAMED[colour]})` : colour);
+export const cssColourOf = ({ colour }) => (isNamed(colour) ? `var(--${colour})` : colour);

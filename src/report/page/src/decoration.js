@@ -13,19 +13,24 @@ function clipped(u, draw) {
   ctx.restore();
 }
 
-/// Shades errors below the reference's own, and draws limits.
-export function drawBackground(u, data) {
+/// Shades errors below the reference's own.
+export function drawFloor(u, data) {
+  if (data.floor_y === null || data.floor_y <= u.scales.y.min) return;
   clipped(u, (ctx, box) => {
-    if (data.floor_y !== null && data.floor_y > u.scales.y.min) {
-      const top = Math.max(box.top, u.valToPos(data.floor_y, "y", true));
-      ctx.fillStyle = pageColour("tint");
-      ctx.fillRect(box.left, top, box.width, box.top + box.height - top);
-    }
+    const top = Math.max(box.top, u.valToPos(data.floor_y, "y", true));
+    ctx.fillStyle = pageColour("tint");
+    ctx.fillRect(box.left, top, box.width, box.top + box.height - top);
+  });
+}
+
+/// Draws limits over the grid, which often has a line there, too.
+export function drawLevels(u, data) {
+  clipped(u, (ctx, box) => {
+    ctx.strokeStyle = LEVEL;
+    ctx.lineWidth = 1.2 * px;
+    ctx.setLineDash([6 * px, 5 * px]);
     for (const level of data.levels) {
       const y = u.valToPos(level.y, "y", true);
-      ctx.strokeStyle = LEVEL;
-      ctx.lineWidth = 1.2 * px;
-      ctx.setLineDash([6 * px, 5 * px]);
       ctx.beginPath();
       ctx.moveTo(box.left, y);
       ctx.lineTo(box.left + box.width, y);

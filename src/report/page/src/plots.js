@@ -2,7 +2,7 @@
 import uPlot from "uplot";
 import css from "uplot/dist/uPlot.min.css";
 import { axisOf, scaleOf } from "./axes.js";
-import { drawBackground, drawMarks } from "./decoration.js";
+import { drawFloor, drawLevels, drawMarks } from "./decoration.js";
 import { makeLegend } from "./legend.js";
 import { attachReading } from "./reading.js";
 import { colourOf, inkOf } from "./colours.js";
@@ -13,13 +13,12 @@ const ascends = (values) => values.every((v, i) => i === 0 || v > values[i - 1])
 /// A line in the order of its points: a ladder may step back in run time, which aligned data cannot say.
 function pathInOrder(x, y) {
   return (u) => {
-    const path = new Path2D();
-    x.forEach((value, i) => {
-      const px = u.valToPos(value, "x", true), py = u.valToPos(y[i], "y", true);
-      if (i === 0) path.moveTo(px, py);
-      else path.lineTo(px, py);
-    });
-    return { stroke: path, fill: null, clip: null, band: null, gaps: null, flags: 0 };
+    const path = new Path2D(), across = (value) => u.valToPos(value, "x", true);
+    x.forEach((value, i) => path.lineTo(across(value), u.valToPos(y[i], "y", true)));
+    const area = new Path2D(path), bottom = u.bbox.top + u.bbox.height;
+    area.lineTo(across(x[x.length - 1]), bottom);
+    area.lineTo(across(x[0]), bottom);
+    return { stroke: path, fill: area, clip: null, band: null, gaps: null, flags: 0 };
   };
 }
 
@@ -65,7 +64,8 @@ function drawChart(figure) {
     scales: { x: scaleOf(data, "x"), y: scaleOf(data, "y") },
     axes: [axisOf(data, "x", inkOf), axisOf(data, "y", inkOf)],
     series: [{}, ...data.series.map((one) => seriesOf(one))],
-    hooks: { drawClear: [(u) => drawBackground(u, data)], draw: [(u) => drawMarks(u, data)] },
+    hooks: { drawClear: [(u) => drawFloor(u, data)], drawAxes: [(u) => drawLevels(u, data)],
+      draw: [(u) => drawMarks(u, data)] },
   };
   const aligned = uPlot.join(data.series.map((one) => {
     const order = one.x.map((_, i) => i).sort((a, b) => one.x[a] - one.x[b]);
