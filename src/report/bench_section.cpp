@@ -49,7 +49,7 @@ void add_list(Page& page, const std::string& name, const Json& list) {
       if (known.insert(header).second) headers.push_back(header);
     lines.emplace_back(cells.begin(), cells.end());
   }
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (const auto& line : lines) {
     rows.emplace_back();
     for (const std::string& header : headers) {
@@ -121,10 +121,7 @@ void add_lists(Page& page, const std::string& path, const Json& value) {
 /// Adds a chart of two figures of a list, with both axes logarithmic and one line for each name.
 void add_chart(Page& page, const std::string& file, const Json& bench, const ListChart& chart) {
   if (!bench.contains(chart.list) || !bench[chart.list].is_array()) return;
-  Plot plot;
-  plot.x_label = chart.x_label;
-  plot.y_label = chart.y_label;
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot(chart.x_label, chart.y_label);
   std::map<std::string, Series> series;
   for (const Json& one : bench[chart.list]) {
     Series& line = series[chart.name_of(one)];

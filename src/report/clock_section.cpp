@@ -44,10 +44,7 @@ LogHistogram log_histogram(const std::vector<double>& values) {
 
 Plot tick_histogram(const std::vector<double>& values_us, const std::string& x_label) {
   const LogHistogram histogram = log_histogram(values_us);
-  Plot plot;
-  plot.x_label = x_label + " [µs]";
-  plot.y_label = "number of ticks";
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot(x_label + " [µs]", "number of ticks");
   plot.height = 320;
   Series bars{.name = "", .x = {histogram.edges.front()}, .y = {kEmpty}, .mark = Mark::kArea};
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {

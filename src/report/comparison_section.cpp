@@ -33,11 +33,8 @@ void add_work_precision(Page& page, const Table& compare, const Quantity& q) {
 /// Adds the charts of error against counts of work, each quantity folded away separately.
 void add_counts_of_work(Page& page, const Table& compare, const Quantity& q) {
   std::vector<std::pair<std::string, std::string>> counted;
-  for (const auto& [column, label] : kCosts) {
-    const std::vector<double> values = compare.numbers(column);
-    if (std::any_of(values.begin(), values.end(), [](double v) { return v > 0.0; }))
-      counted.emplace_back(column, label);
-  }
+  for (const auto& [column, label] : kCosts)
+    if (compare.exceeds(column, 0.0)) counted.emplace_back(column, label);
   const bool families = q.column == kPosition && ladders(compare, q.column, "cpu_s_median").size() > 3;
   if (counted.empty() && !families) return;
   const std::string name = q.label.substr(0, q.label.find(','));

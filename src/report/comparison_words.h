@@ -9,6 +9,10 @@
 /// Results of a comparison as sentences.
 namespace palpate::report {
 
+/// Returns whether the error of the force on the hand can be judged: it is measured, and the peak of the
+/// reference is not rounding.
+bool has_force(const Table& compare, const ReferenceError& reference);
+
 /// Returns sentences on which method is cheapest at each target error, with its margin, for positions and, if
 /// present, for the force on the hand.
 std::vector<Answer> cheapest_in_words(const Table& compare, const ReferenceError& reference);

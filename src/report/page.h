@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "report/answer.h"
+#include "report/table.h"
 
 namespace palpate::report {
 
@@ -24,8 +25,8 @@ class Page {
   /// Adds a table. Columns of numbers are aligned to the right. `marks` colours rows; it is empty or has one
   /// mark per row. The reader can sort the table by any column: as numbers if each cell begins with a number
   /// ("<= 0.12", "1.5 (1 to 2)").
-  Page& add_table(const std::vector<std::string>& headers, const std::vector<std::vector<std::string>>& rows,
-                  const std::string& caption = "", const std::vector<RowMark>& marks = {});
+  Page& add_table(const std::vector<std::string>& headers, const Rows& rows, const std::string& caption = "",
+                  const std::vector<RowMark>& marks = {});
   using Facts = std::vector<std::pair<std::string, std::string>>;
   /// Adds name and value pairs as two columns without a header.
   Page& add_facts(const Facts& facts);

@@ -74,6 +74,10 @@ Json json_of(const Series& series) {
 
 }  // namespace
 
+Plot log_log_plot(const std::string& x_label, const std::string& y_label) {
+  return {.title = "", .x_label = x_label, .y_label = y_label, .log_x = true, .log_y = true, .series = {}};
+}
+
 std::string plot_json(const Plot& plot) {
   Json out = {{"title", plot.title},     {"x_label", plot.x_label},
               {"y_label", plot.y_label}, {"log_x", plot.log_x},

@@ -53,6 +53,9 @@ struct Plot {
   int height = 400;  ///< Height on a wide page, in CSS pixels
 };
 
+/// Returns an empty plot with two logarithmic axes.
+Plot log_log_plot(const std::string& x_label, const std::string& y_label);
+
 /// Returns a plot as JSON, from which the script of the page draws it (src/report/page/src/plots.js): labels
 /// and axes, `series` with name, mark, colour, x, y and texts of points, `levels`, floor. Points that cannot
 /// be drawn and series without remaining points are left out; long curves are thinned, and keep their peaks

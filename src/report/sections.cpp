@@ -152,7 +152,7 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
 }
 
 void add_parts(Page& page, const Json& summary) {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   std::vector<RowMark> marks;
   for (const Json& part : list_of(summary, "parts")) {
     if (!part.is_object()) continue;

@@ -35,6 +35,34 @@ std::vector<double> Table::numbers(std::string_view header) const {
   return out;
 }
 
+const std::string& Table::cell(std::size_t row, std::string_view header) const {
+  return rows[row][column(header)];
+}
+
+bool Table::exceeds(std::string_view header, double limit) const {
+  if (!has(header)) return false;
+  const std::vector<double> values = numbers(header);
+  return std::any_of(values.begin(), values.end(),
+                     [&](double value) { return std::isfinite(value) && value > limit; });
+}
+
+Table rows_where(const Table& table, const std::string& column, const std::string& value) {
+  if (!table.has(column)) return table;
+  Table out{table.headers, {}, table.source};
+  const std::size_t c = table.column(column);
+  std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(out.rows),
+               [&](const auto& row) { return row[c] == value; });
+  return out;
+}
+
+std::vector<std::string> distinct(const Table& table, const std::string& column) {
+  std::vector<std::string> out;
+  const std::size_t c = table.column(column);
+  for (const auto& row : table.rows)
+    if (std::find(out.begin(), out.end(), row[c]) == out.end()) out.push_back(row[c]);
+  return out;
+}
+
 double to_number(std::string_view cell) {
   double value = std::numeric_limits<double>::quiet_NaN();
   if (cell.find(',') == std::string_view::npos) read_csv_number(cell, value);  // decimal points only
@@ -66,7 +94,7 @@ bool is_blank(std::string_view cell) {
   return cell.empty() || cell == "-" || shown_cell(std::string(cell)) == "-";
 }
 
-bool is_numeric_column(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
+bool is_numeric_column(const Rows& rows, std::size_t column) {
   bool any = false;
   for (const auto& row : rows) {
     const std::string& cell = row[column];
@@ -99,8 +127,7 @@ std::string without_trailing_blanks(std::string line) {
 
 }  // namespace
 
-std::string format_table(const std::vector<std::string>& headers,
-                         std::vector<std::vector<std::string>> rows) {
+std::string format_table(const std::vector<std::string>& headers, Rows rows) {
   const std::size_t columns = headers.size();
   std::vector<std::size_t> widths(columns);
   for (std::size_t c = 0; c < columns; ++c) widths[c] = width_of(headers[c]);

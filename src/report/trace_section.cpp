@@ -12,19 +12,18 @@ namespace {
 constexpr const char* kAccepted = "accepted";
 
 /// Returns the most frequent directions with their counts, as table rows.
-std::vector<std::vector<std::string>> most_frequent(const std::map<std::string, long>& counts,
-                                                    std::size_t most) {
+Rows most_frequent(const std::map<std::string, long>& counts, std::size_t most) {
   std::vector<std::pair<std::string, long>> sorted(counts.begin(), counts.end());
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (std::size_t i = 0; i < std::min(most, sorted.size()); ++i)
     rows.push_back({sorted[i].first, std::to_string(sorted[i].second)});
   return rows;
 }
 
 std::string worst_of(const Table& trace, std::size_t row) {
-  const auto cell = [&](const char* column) { return trace.rows[row][trace.column(column)]; };
+  const auto cell = [&](const char* column) { return trace.cell(row, column); };
   if (cell("worst_body").empty()) return "";
   return fmt::format("{}{}, {}", cell("worst_body"),
                      cell("worst_node").empty() ? "" : ", node " + shown_cell(cell("worst_node")),

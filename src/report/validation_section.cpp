@@ -36,17 +36,11 @@ std::vector<Ladder> ladders_of(const Json& one) {
   return out;
 }
 
-Plot log_plot(const std::string& x_label) {
-  Plot plot;
-  plot.x_label = x_label;
-  plot.y_label = "error, relative unless the quantity states otherwise";
-  plot.log_x = plot.log_y = true;
-  return plot;
-}
+constexpr const char* kErrorLabel = "error, relative unless the quantity states otherwise";
 
 /// Plots errors over sizes of one kind, each with its fitted order.
 Plot convergence_plot(const std::vector<Ladder>& ladders, const std::string& size_label) {
-  Plot plot = log_plot(size_label);
+  Plot plot = log_log_plot(size_label, kErrorLabel);
   for (const Ladder& ladder : ladders) {
     if (ladder.size_label != size_label) continue;
     const double order = fit_log_line(ladder.size, ladder.error).slope;
@@ -62,7 +56,7 @@ Plot convergence_plot(const std::vector<Ladder>& ladders, const std::string& siz
 }
 
 Plot cost_plot(const std::vector<Ladder>& ladders) {
-  Plot plot = log_plot("run time of the library [s]");
+  Plot plot = log_log_plot("run time of the library [s]", kErrorLabel);
   for (const Ladder& ladder : ladders)
     if (ladder.seconds.size() == ladder.error.size())
       plot.series.push_back(
@@ -97,7 +91,7 @@ void add_convergence(Page& page, const Json& cases) {
 
 /// Table with one mark per row.
 struct Marked {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   std::vector<RowMark> marks;
   void add(std::vector<std::string> row, bool good) {
     rows.push_back(std::move(row));

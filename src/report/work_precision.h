@@ -13,8 +13,15 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Target errors of every comparison, relative.
 inline const std::vector<double> kTargets = {1e-2, 1e-3, 1e-4, 1e-6};
+/// Returns the targets for a quantity of this size, in its unit.
+std::vector<double> targets_of(double scale);
+/// Peaks of forces and torques below it are rounding [N], [N m].
+inline constexpr double kLeastPeak = 1e-12;
 /// Baseline: the standard interactive method; the cost ratio of slower methods to it is reported.
 inline const std::string kBaseline = "linearly-implicit-euler";
+
+/// Columns of errors.
+inline constexpr const char *kPosition = "position_error_rel_l2", *kForce = "force_error_rms_n";
 
 /// Returns the columns of exchange.csv, in order (a column `scene` may precede them).
 const std::vector<std::string>& exchange_columns();
@@ -29,11 +36,6 @@ struct ReferenceError {
   std::string trouble = {};             ///< Missing part of the reference, and the reason
   std::vector<std::string> notes = {};  ///< Charts that could not be made
 };
-
-/// Returns the lines whose cell in `column` is `value`; all lines if there is no such column.
-Table rows_where(const Table& table, const std::string& column, const std::string& value);
-/// Returns the distinct values of a column, in the order of the lines.
-std::vector<std::string> distinct(const Table& table, const std::string& column);
 
 /// Usable point of a refinement sequence.
 struct LadderPoint {

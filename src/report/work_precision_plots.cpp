@@ -70,10 +70,7 @@ Series best_envelope(const std::vector<Ladder>& all, double scale) {
 }
 
 Plot frame_of(const std::string& error_label, double reference_error, const std::string& cost_label) {
-  Plot plot;
-  plot.x_label = cost_label;
-  plot.y_label = error_label;
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot(cost_label, error_label);
   plot.floor_y = reference_error;
   plot.floor_label = "reference error";
   return plot;
@@ -156,16 +153,13 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
 Plot exchange_plot(const Table& exchange, const std::string& error_column, const std::string& error_label) {
   const std::vector<double> period = exchange.numbers("exchange_period_s"),
                             error = exchange.numbers(error_column);
-  Plot plot;
-  plot.x_label = "exchange period [s]";
-  plot.y_label = error_label;
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot("exchange period [s]", error_label);
   plot.height = 340;
   plot.series.push_back({.name = "measured", .x = period, .y = error, .mark = Mark::kLinePoints});
   std::vector<double> resolved = error;  // the fit ignores NaN
   if (const std::string below = below_column(exchange, error_column); exchange.has(below))
     for (std::size_t i = 0; i < resolved.size(); ++i)
-      if (exchange.rows[i][exchange.column(below)] == "yes") resolved[i] = kUnknown;
+      if (exchange.cell(i, below) == "yes") resolved[i] = kUnknown;
   const LogLine line = fit_log_line(period, resolved);
   if (std::isfinite(line.slope)) {
     const auto [least, greatest] = std::minmax_element(period.begin(), period.end());
@@ -186,10 +180,7 @@ Plot restart_plot(const Table& restarts, const std::string& count_column, const 
                             simulated = restarts.numbers("simulated_s");
   const std::size_t label = restarts.column("label"), multistep = restarts.column("multistep"),
                     status = restarts.column("status");
-  Plot plot;
-  plot.x_label = "contact refreshes per simulated second";
-  plot.y_label = count_label;
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot("contact refreshes per simulated second", count_label);
   plot.height = 400;
   for (const std::string& name : distinct(restarts, "label")) {
     Series series{.name = name, .x = {}, .y = {}, .mark = Mark::kLinePoints};

@@ -41,10 +41,7 @@ Series scene_points(const Json& summary) {
 }  // namespace
 
 void add_z_width(Page& page, const Table& z_width, const Json& summary) {
-  Plot plot;
-  plot.x_label = "damping of the wall [N s/m]";
-  plot.y_label = "largest stiffness of the wall [N/m]";
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot("damping of the wall [N s/m]", "largest stiffness of the wall [N/m]");
   plot.height = 520;
   plot.series = {stiffness_of(z_width, "k_passive_n_m", "passive", Mark::kLine),
                  stiffness_of(z_width, "k_spectral_n_m", "stable, exact", Mark::kLine),

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "page_charts.h"
 #include "palpate/core/error.h"
 #include "report/work_precision.h"
 #include "store/study_columns.h"
@@ -35,17 +36,6 @@ std::string without_scripts(std::string html) {
   for (std::size_t at = html.find("<script>"); at != std::string::npos; at = html.find("<script>", at))
     html.erase(at, html.find("</script>", at) + 9 - at);
   return html;
-}
-
-/// Returns the numbers of the chart with this y axis label.
-nlohmann::json chart_of(const std::string& html, const std::string& y_label) {
-  const std::string begin = "class=\"plot-data\">", end = "</script>";
-  for (std::size_t at = html.find(begin); at != std::string::npos; at = html.find(begin, at + 1)) {
-    const std::size_t from = at + begin.size();
-    nlohmann::json data = nlohmann::json::parse(html.substr(from, html.find(end, from) - from));
-    if (data["y_label"] == y_label) return data;
-  }
-  return nullptr;
 }
 
 /// Writes a small version of every file from which a report is made.
@@ -105,10 +95,6 @@ void fill(const TemporaryFolder& dir) {
         "error": [16e-4, 4e-4, 1e-4], "wall_s": [1e-3, 4e-3, 16e-3]}}]}]})");
   put(dir / "picture-of-it.png", "\x89PNG\r\n\x1a\n");
 }
-
-constexpr const char* kZWidth =
-    "damping_n_s_m,k_passive_n_m,k_spectral_n_m,k_delay_bound_n_m,k_simulated_n_m,coupling_in_contact_n_m\n"
-    "2,200,400,300,390,inf\n4,300,500,400,480,700\n3,250,450,350,nan,650\n";
 
 }  // namespace
 
@@ -191,55 +177,6 @@ TEST(RunReport, EmbedsTheResultsNumbersInItsCharts) {
   EXPECT_EQ(error["series"][0]["y"], (std::vector<double>{1e-3, 1e-4, 1e-5}));
   EXPECT_EQ(error["series"][0]["notes"][2], "1e-5");
   EXPECT_EQ(error["floor_y"], 1e-6);
-}
-
-// Theory and simulation alternate in the file; the curves ascend in damping.
-TEST(RunReport, DrawsTheStiffnessThatAHapticLoopCanRender) {
-  const TemporaryFolder dir;
-  put(dir / "z_width.csv", kZWidth);
-  put(dir / "summary.json", R"({"scene": "x", "figures": {
-    "haptic_stability": {"coupling_damping_n_s_m": 2.5},
-    "operating_points": [
-      {"name": "tool in the air", "motion": "translation", "stiffness_with_coupling_n_m": 0},
-      {"name": "stiffest contact", "motion": "translation", "stiffness_with_coupling_n_m": 120},
-      {"name": "turned", "motion": "rotation", "stiffness_with_coupling_n_m_rad": 9}]}})");
-  const report::RunReport written = report::write_run_report(dir.path());
-  EXPECT_TRUE(written.missing_figures.empty());
-  const nlohmann::json chart = chart_of(read(written.page), "largest stiffness of the wall [N/m]");
-  ASSERT_EQ(chart["series"].size(), 6u);
-  EXPECT_EQ(chart["series"][0]["x"], (std::vector<double>{2, 3, 4}));
-  EXPECT_EQ(chart["series"][0]["y"], (std::vector<double>{200, 250, 300}));
-  EXPECT_EQ(chart["series"][3]["name"], "stable, simulated");
-  EXPECT_EQ(chart["series"][3]["x"], (std::vector<double>{2, 4}));
-  EXPECT_EQ(chart["series"][4]["y"], (std::vector<double>{650, 700})) << "an infinite limit is no point";
-  EXPECT_EQ(chart["series"][5]["x"], (std::vector<double>{2.5}));
-  EXPECT_EQ(chart["series"][5]["y"], (std::vector<double>{120}));
-  EXPECT_EQ(chart["series"][5]["labels"], (std::vector<std::string>{"stiffest contact"}));
-}
-
-TEST(RunReport, DrawsTheBenchmarksOfSteps) {
-  const TemporaryFolder dir;
-  put(dir / "bench-fem.json", R"({"rows": [
-    {"nodes": 800, "youngs_modulus_pa": 1e5, "step_s": 0.01, "linear_rtol": 1e-3, "linear_solver": "pcg",
-      "threads": 2, "step_ms": 9},
-    {"nodes": 100, "youngs_modulus_pa": 1e5, "step_s": 0.01, "linear_rtol": 1e-3, "linear_solver": "pcg",
-      "threads": 1, "step_ms": 3},
-    {"nodes": 800, "youngs_modulus_pa": 1e5, "step_s": 0.01, "linear_rtol": 1e-3, "linear_solver": "pcg",
-      "threads": 1, "step_ms": 15}]})");
-  put(dir / "bench-fem-accuracy.json", R"({"points": [
-    {"program": "palpate", "step_s": 0.01, "ms_of_ten_ms": 4, "error": 1e-2, "quoted": false},
-    {"program": "another", "step_s": 0.01, "ms_of_ten_ms": 7, "error": 2e-2, "quoted": true}]})");
-  const std::string html = read(report::write_run_report(dir.path()).page);
-  const nlohmann::json times = chart_of(html, "time of a step, median [ms]"),
-                       errors = chart_of(html, "error of the final state, relative [-]");
-  ASSERT_EQ(times["series"].size(), 2u);
-  EXPECT_EQ(times["series"][0]["name"], "E 100000 Pa, 10 ms, 0.001, pcg, 1 thread");
-  EXPECT_EQ(times["series"][0]["x"], (std::vector<double>{100, 800}));
-  EXPECT_EQ(times["series"][0]["y"], (std::vector<double>{3, 15}));
-  EXPECT_EQ(times["series"][1]["name"], "E 100000 Pa, 10 ms, 0.001, pcg, 2 threads");
-  ASSERT_EQ(errors["series"].size(), 2u);
-  EXPECT_EQ(errors["series"][0]["name"], "another (quoted)");
-  EXPECT_EQ(errors["series"][1]["name"], "palpate, 10 ms");
 }
 
 // Main results first: words before tables, the first chart open, charts of counts behind a switch.
@@ -339,7 +276,9 @@ TEST(RunReport, HasTheRemarksOfTheCommandInItsHead) {
       R"({"scene": "x", "outcome": "finished", "remarks": ["bodies & contact at 21.7 Hz", "not passive"]})";
   const std::vector<std::pair<const char*, const char*>> kinds = {
       {"force.csv", "time_s,force_x_n,force_y_n,force_z_n\n0,0,0,0\n0.001,0,0,1\n"},
-      {"z_width.csv", kZWidth},
+      {"z_width.csv",
+       "damping_n_s_m,k_passive_n_m,k_spectral_n_m,k_delay_bound_n_m,k_simulated_n_m,"
+       "coupling_in_contact_n_m\n1,200,400,300,390,600\n"},
       {"study.csv", "task,scene,integrator,status,reason,steps\n0,a,bdf2,ok,,3\n"},
       {"stability.json", R"({"cells": []})"},
       {"validation.json", R"({"cases": []})"}};
