@@ -207,7 +207,7 @@ class ReportPage(unittest.TestCase):
         charts = "document.querySelectorAll('figure.chart')"
         open_charts = f"Array.from({charts}).filter((one) => !one.closest('details:not([open])'))"
         drawn = f"{open_charts}.filter((one) => one.querySelector('canvas')).length"
-        self.assertLess(self.tab.value(drawn), self.tab.value(f"{open_charts}.length"), "some wait to be seen")
+        self.assertLess(self.tab.value(drawn), self.tab.value(f"{open_charts}.length"), "some wait")
         self.tab.value("dispatchEvent(new Event('beforeprint'))")
         self.assertEqual(self.tab.value(drawn), self.tab.value(f"{open_charts}.length"))
         ink = "getComputedStyle(document.documentElement).getPropertyValue('--page').trim()"
