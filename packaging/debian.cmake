@@ -107,7 +107,7 @@ if(PALPATE_WITH_GL)
   list(APPEND run_time libegl1 libgl1-mesa-dri)
 endif()
 list(JOIN run_time ", " CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, fonts-dejavu-core")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "fonts-dejavu-core")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "ffmpeg, paraview")
 if(PALPATE_WITH_MODEL)  # opened by name, for the mesh formats that it alone reads
   string(APPEND CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS ", ${PALPATE_GMSH_PACKAGE}")

@@ -13,6 +13,7 @@
 #include "compare_tables.h"
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
+#include "report/comparison_words.h"
 #include "report/run_report.h"
 #include "report/table.h"
 #include "report/work_precision.h"

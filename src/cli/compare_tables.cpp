@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "loop/describe_fallbacks.h"
+#include "report/cost_envelope.h"
 #include "report/work_precision.h"
 
 namespace palpate::cli {

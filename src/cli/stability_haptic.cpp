@@ -15,9 +15,8 @@
 #include "haptic_stability/z_width.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
-#include "report/plot.h"
+#include "report/run_report.h"
 #include "report/table.h"
-#include "store/atomic_file.h"
 #include "store/csv.h"
 #include "store/result_folder.h"
 #include "store/summary.h"
@@ -99,40 +98,6 @@ void write_csv(const ZWidth& z, const std::string& path) {
   csv.close();
 }
 
-report::Series curve(const std::string& name, const std::vector<ZWidthRow>& rows, double ZWidthRow::*value,
-                     report::Mark mark) {
-  report::Series series{.name = name, .x = {}, .y = {}, .mark = mark};
-  for (const ZWidthRow& row : rows) {
-    series.x.push_back(row.damping);
-    series.y.push_back(row.*value);
-  }
-  return series;
-}
-
-report::Plot plot_of(const ZWidth& z, const HapticLoopModel& loop,
-                     const std::vector<OperatingPoint>& points) {
-  report::Plot plot;
-  plot.x_label = "damping B [N s/m]";
-  plot.y_label = "largest stiffness K [N/m]";
-  plot.log_x = plot.log_y = true;
-  plot.width = 860, plot.height = 520;
-  using report::Mark;
-  plot.series = {curve("passive", z.fine, &ZWidthRow::passive, Mark::kLine),
-                 curve("stable, exact", z.fine, &ZWidthRow::spectral, Mark::kLine),
-                 curve("delay bound", z.fine, &ZWidthRow::delay_bound, Mark::kDashed),
-                 curve("stable, simulated", z.rows, &ZWidthRow::simulated, Mark::kPoints),
-                 curve("coupling, tool pressed", z.fine, &ZWidthRow::in_contact, Mark::kDashed)};
-  report::Series scene{.name = "", .x = {}, .y = {}, .mark = Mark::kPoints, .colour = "ink"};
-  for (const OperatingPoint& p : points) {
-    if (p.series <= 0.0) continue;
-    scene.x.push_back(loop.coupling_damping_n_s_m);
-    scene.y.push_back(p.series);
-    scene.labels.push_back(p.name);
-  }
-  plot.series.push_back(scene);
-  return plot;
-}
-
 ToolContactRange range_of(const StabilityArguments& a, const scene::Description& description) {
   if (a.contact_stiffness_n_m.empty()) return contact_range(description);
   ToolContactRange out;
@@ -183,9 +148,9 @@ void add_point(store::Summary& summary, const OperatingPoint& p, const char* mot
 }
 
 void keep_summary(const StabilityArguments& a, const scene::Description& d, const ZWidth& z,
-                  const std::vector<OperatingPoint>& points, const RotationalLoop& rotation,
-                  const std::vector<OperatingPoint>& turning, const std::vector<std::string>& verdicts,
-                  const std::string& folder) {
+                  double coupling_damping_n_s_m, const std::vector<OperatingPoint>& points,
+                  const RotationalLoop& rotation, const std::vector<OperatingPoint>& turning,
+                  const std::vector<std::string>& verdicts, const std::string& folder) {
   store::Summary summary;
   summary.remarks = log::warnings();
   summary.remarks.insert(summary.remarks.end(), verdicts.begin(), verdicts.end());
@@ -196,7 +161,8 @@ void keep_summary(const StabilityArguments& a, const scene::Description& d, cons
   summary.outcome = z.stopped ? "interrupted" : "finished";
   summary.provenance = store::provenance();
   summary.section("haptic_stability").values = {{"passive_within_stable", z.passive_within_stable()},
-                                                {"largest_relative_difference", z.largest_difference()}};
+                                                {"largest_relative_difference", z.largest_difference()},
+                                                {"coupling_damping_n_s_m", coupling_damping_n_s_m}};
   for (const OperatingPoint& p : points) add_point(summary, p, "translation", 1.0, "_n_m");
   const double a2 = rotation.lever_m * rotation.lever_m;
   for (const OperatingPoint& p : turning) add_point(summary, p, "rotation", a2, "_n_m_rad");
@@ -245,14 +211,10 @@ int stability_haptic(const StabilityArguments& a) {
   write_csv(z, (fs::path(folder) / "z_width.csv").string());
   const double scale = rotation.lever_m * rotation.lever_m;
   const std::vector<std::string> verdicts = verdicts_of(z, loop.tick_s, points, turning, scale);
-  keep_summary(a, description, z, points, rotation, turning, verdicts, folder);
-  const std::string svg = (fs::path(folder) / "z_width.svg").string();
-  std::error_code none;
-  fs::remove(svg, none);  // a plot of an earlier run would pass for the plot of this run
-  try {
-    store::write_atomically(svg, report::plot_svg(plot_of(z, loop, points)));
-  } catch (const Error& e) { missing.add("plot " + svg, e.what()); }
-  fmt::print("\nwritten: {}\n", folder);
+  keep_summary(a, description, z, loop.coupling_damping_n_s_m, points, rotation, turning, verdicts, folder);
+  const report::RunReport written = report::write_run_report(folder);
+  missing.add(written);
+  fmt::print("\nwritten: {}\n", written.page.string());
   for (const std::string& verdict : verdicts) fmt::print("{}\n", verdict);
   if (z.stopped) return kExitStopped;
   const bool stable = unstable_points(points, "").empty() && unstable_points(turning, "").empty();

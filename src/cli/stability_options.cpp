@@ -14,9 +14,9 @@ constexpr const char* kStabilityExamples = R"(Examples:
   palpate stability --slow --seeds 100 -o out/stability
   palpate stability --haptic press-ball --device-mass-kg 0.1 --delay-ticks 1
 
-Writes stability.csv, stability.json and report.html with the heat map; haptic: z_width.csv and z_width.svg.
-Exit status 0 if every cell agrees with theory; haptic: if the passive range lies within the stable one; else
-1.)";
+Writes stability.csv, stability.json and report.html with the heat map; haptic: z_width.csv and report.html
+with a chart. Exit status 0 if every cell agrees with theory; haptic: if the passive range lies within the
+stable one; else 1.)";
 
 void add_matrix_options(CLI::App& command, StabilityArguments& arguments) {
   command.add_option("--row", arguments.rows, "only this row; may be given more than once")

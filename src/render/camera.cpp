@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera_axes.h"
 #include "palpate/core/error.h"
 
 namespace palpate::render {

@@ -33,6 +33,12 @@ struct Margins {
 /// @param aspect  width over height
 Camera framed(const Points& points, const View& view, double aspect, const Margins& margins);
 
+/// Returns the axes of a camera; columns: right, up, backwards (from the scene to the eye).
+Mat3 camera_axes(const Vec3& backwards, const Vec3& up);
+
+/// Returns the unit vector from the scene to the eye.
+Vec3 backwards_of(const View& view);
+
 /// Returns the matrix from world to clip coordinates, in OpenGL's convention (z in [-1, 1]).
 Eigen::Matrix4d view_projection(const Camera& camera, double aspect);
 

@@ -17,7 +17,6 @@ class Canvas {
   Canvas& operator=(const Canvas&) = delete;
 
   cairo_t* pen() const { return pen_; }
-  cairo_surface_t* surface() const { return surface_; }
   Picture result() const;
 
   void set_colour(Rgb colour, double opacity = 1.0);

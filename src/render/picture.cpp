@@ -1,8 +1,9 @@
 #include "render/picture.h"
 
+#include <cairo.h>
+
 #include <cmath>
 
-#include "canvas.h"
 #include "palpate/core/error.h"
 
 namespace palpate::render {
@@ -16,8 +17,15 @@ Picture::Picture(int w, int h, Rgb fill) : width(w), height(h) {
 }
 
 void save_png(const Picture& picture, const std::filesystem::path& path) {
-  Canvas canvas(picture);
-  const cairo_status_t status = cairo_surface_write_to_png(canvas.surface(), path.c_str());
+  std::vector<std::uint32_t> words(picture.rgba.size() / 4);  // cairo's pixels: native words, 0xXXRRGGBB
+  for (std::size_t i = 0; i < words.size(); ++i)
+    words[i] = static_cast<std::uint32_t>(picture.rgba[4 * i]) << 16 |
+               static_cast<std::uint32_t>(picture.rgba[4 * i + 1]) << 8 | picture.rgba[4 * i + 2];
+  cairo_surface_t* surface =
+      cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(words.data()), CAIRO_FORMAT_RGB24,
+                                          picture.width, picture.height, 4 * picture.width);
+  const cairo_status_t status = cairo_surface_write_to_png(surface, path.c_str());
+  cairo_surface_destroy(surface);
   if (status != CAIRO_STATUS_SUCCESS)
     fail("{}: the picture cannot be written ({}); check that the folder exists, may be written, and has room",
          path.string(), cairo_status_to_string(status));

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "camera_axes.h"
-
 // Visible share by orthographic depth images: a subject covers some pixels of a small image; where the
 // nearest opaque surface is in front of the nearest point of the subject, it hides that pixel.  Both depths
 // come from triangles sampled at the pixel centres; triangles outside the subjects' rectangle are skipped, so

@@ -5,11 +5,11 @@
 
 #include "core/time_text.h"
 #include "palpate/core/error.h"
+#include "report/comparison_words.h"
+#include "report/cost_envelope.h"
 
 namespace palpate::report {
 namespace {
-
-constexpr double kNothing = 1e-12;  ///< Peaks below it are rounding [N], [N m]
 
 /// Largest magnitude of a vector in force.csv, and its time.
 struct Peak {
@@ -38,10 +38,8 @@ std::string at_time(double time_s) {
 /// Returns the label of the method that is cheapest at every target that any method reaches; empty if there
 /// is none.
 std::string always_cheapest(const Table& compare, const std::string& column, double scale, double own_error) {
-  std::vector<double> targets = kTargets;
-  for (double& target : targets) target *= scale;
   std::string label;
-  for (const Winner& win : winners(compare, column, "cpu_s_median", targets, own_error)) {
+  for (const Winner& win : winners(compare, column, "cpu_s_median", targets_of(scale), own_error)) {
     if (!win.found) continue;
     if (!win.declared() || !std::isfinite(win.cost.high) || (!label.empty() && label != win.label)) return "";
     label = win.label;
@@ -52,13 +50,11 @@ std::string always_cheapest(const Table& compare, const std::string& column, dou
 /// Returns the question of a comparison, or its answer in one sentence if one method is cheapest at all
 /// errors.
 Answer headline(const Table& compare, const ReferenceError& reference) {
-  const std::string positions =
-      always_cheapest(compare, "position_error_rel_l2", 1.0, reference.position_error_rel_l2);
-  const bool felt = compare.has("force_error_rms_n") && std::isfinite(reference.force_error_rms_n) &&
-                    reference.peak_force_n > kNothing;
-  const std::string force = felt ? always_cheapest(compare, "force_error_rms_n", reference.peak_force_n,
-                                                   reference.force_error_rms_n)
-                                 : positions;
+  const std::string positions = always_cheapest(compare, kPosition, 1.0, reference.position_error_rel_l2);
+  const bool felt = has_force(compare, reference);
+  const std::string force =
+      felt ? always_cheapest(compare, kForce, reference.peak_force_n, reference.force_error_rms_n)
+           : positions;
   if (positions.empty() || force != positions)
     return {"Which integrator is the cheapest for a target error?", {}, true};
   return {fmt::format("{} is the cheapest at every target error that is reached and resolved{}.", positions,
@@ -104,12 +100,12 @@ Answer run_answer(const Json& summary, const std::optional<Table>& force) {
   } else {
     return out;
   }
-  if (f.value > kNothing)
+  if (f.value > kLeastPeak)
     out.points.push_back(fmt::format("The peak force on the hand is {} N{}{}.", short_number(f.value),
                                      at_time(f.time_s), of_limit(number_at(hand, "max_force_n"), "N")));
   else
     out.points.push_back("The force on the hand is zero.");
-  if (t.value > kNothing)
+  if (t.value > kLeastPeak)
     out.points.push_back(fmt::format("The peak torque on the hand is {} N m{}{}.", short_number(t.value),
                                      at_time(t.time_s), of_limit(number_at(hand, "max_torque_n_m"), "N m")));
   return out;
@@ -117,7 +113,7 @@ Answer run_answer(const Json& summary, const std::optional<Table>& force) {
 
 double time_of_peak_force(const Table& force) {
   const Peak peak = peak_of(force, "force", "n");
-  return peak.value > kNothing ? peak.time_s : kUnknown;
+  return peak.value > kLeastPeak ? peak.time_s : kUnknown;
 }
 
 std::vector<Answer> comparison_answers(const Table& compare,
@@ -152,13 +148,12 @@ Answer haptic_answer(const Table& haptic, const Json& summary) {
                             costs = haptic.numbers("cpu_s_median");
   std::size_t best = errors.size();
   for (std::size_t i = 0; i < errors.size(); ++i)
-    if (haptic.rows[i][haptic.column("variable")] != "exchange alone" && std::isfinite(errors[i]) &&
+    if (haptic.cell(i, "variable") != "exchange alone" && std::isfinite(errors[i]) &&
         (best == errors.size() || errors[i] < errors[best]))
       best = i;
   if (best < errors.size() && errors[best] < force)
     out.points.push_back(fmt::format("The most accurate variant is {} = {}: error {} %, {} s of CPU time.",
-                                     haptic.rows[best][haptic.column("variable")],
-                                     haptic.rows[best][haptic.column("value")],
+                                     haptic.cell(best, "variable"), haptic.cell(best, "value"),
                                      short_number(100.0 * errors[best]), short_number(costs[best])));
   return out;
 }

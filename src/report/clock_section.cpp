@@ -44,10 +44,7 @@ LogHistogram log_histogram(const std::vector<double>& values) {
 
 Plot tick_histogram(const std::vector<double>& values_us, const std::string& x_label) {
   const LogHistogram histogram = log_histogram(values_us);
-  Plot plot;
-  plot.x_label = x_label + " [µs]";
-  plot.y_label = "ticks";
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot(x_label + " [µs]", "number of ticks");
   plot.height = 320;
   Series bars{.name = "", .x = {histogram.edges.front()}, .y = {kEmpty}, .mark = Mark::kArea};
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
@@ -80,11 +77,11 @@ void add_clock(Page& page, const Table& clock) {
   const std::vector<double> late = finite("late_us"), work = finite("work_us");
   if (late.empty() || work.empty()) return;
   page.add_heading("Ticks in real time");
-  add_plot(page, tick_histogram(late, "tick lateness"),
+  add_plot(page, tick_histogram(late, "tick lateness"), "clock.csv",
            fmt::format("Lateness of {} ticks: start after the due time. Lines mark the median, the 99 % and "
                        "99.9 % quantiles, and the maximum.",
                        late.size()));
-  add_plot(page, tick_histogram(work, "tick work"),
+  add_plot(page, tick_histogram(work, "tick work"), "clock.csv",
            "Time of each tick from its start to the wrench on the device.");
 }
 

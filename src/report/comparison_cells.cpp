@@ -8,7 +8,6 @@
 namespace palpate::report {
 
 std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& reference) {
-  constexpr double kLeastPeak = 1e-12;  // peaks below it are rounding [N], [N m]
   const auto size_of = [](double peak) { return peak > kLeastPeak ? peak : kUnknown; };
   const std::vector<Quantity> all = {
       {"position_error_rel_l2", "position error, relative L2 [-]", reference.position_error_rel_l2, 1.0, ""},
@@ -17,12 +16,8 @@ std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& re
       {"torque_error_rms_n_m", "torque error, RMS [N m]", reference.torque_error_rms_n_m,
        size_of(reference.peak_torque_n_m), "N m"}};
   std::vector<Quantity> present;
-  for (const Quantity& q : all) {
-    if (!table.has(q.column)) continue;
-    const std::vector<double> values = table.numbers(q.column);
-    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v > kRounding; }))
-      present.push_back(q);
-  }
+  for (const Quantity& q : all)
+    if (table.exceeds(q.column, kRounding)) present.push_back(q);
   return present;
 }
 
@@ -33,12 +28,21 @@ std::string capitalised(std::string text) {
 
 std::string cell_text(const Table& table, std::size_t row, const std::string& column) {
   if (!table.has(column)) return "-";
-  const std::string& cell = table.rows[row][table.column(column)];
+  const std::string& cell = table.cell(row, column);
   if (is_blank(cell)) return "-";
   const double value = to_number(cell);
   return std::isnan(value)                                      ? cell
          : value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value)
                                                                 : short_number(value);
+}
+
+Rows cells_of(const Table& table, const std::vector<std::string>& columns, std::size_t most) {
+  Rows rows;
+  for (std::size_t r = 0; r < std::min(most, table.rows.size()); ++r) {
+    rows.emplace_back();
+    for (const std::string& column : columns) rows.back().push_back(cell_text(table, r, column));
+  }
+  return rows;
 }
 
 }  // namespace palpate::report

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -29,5 +30,9 @@ std::string capitalised(std::string text);
 /// Returns the cell of a column as a short number; integers and words are unchanged; "-" if the column is
 /// missing or the cell is empty.
 std::string cell_text(const Table& table, std::size_t row, const std::string& column);
+
+/// Returns these columns of the first `most` rows as cell_text().
+Rows cells_of(const Table& table, const std::vector<std::string>& columns,
+              std::size_t most = std::numeric_limits<std::size_t>::max());
 
 }  // namespace palpate::report

@@ -4,6 +4,7 @@
 #include "comparison_cells.h"
 #include "palpate/core/error.h"
 #include "sections.h"
+#include "work_precision_plots.h"
 
 /// Further charts of a comparison: restarts, exchange periods, methods of contact search.
 namespace palpate::report {
@@ -34,26 +35,25 @@ void add_restarts(Page& page, const Table& restarts) {
     const Table own = rows_where(restarts, "scene", scene);
     Plot steps = restart_plot(own, "steps", "steps per simulated second");
     steps.series.push_back(one_step_per_query(own));
-    add_plot(page, steps,
+    add_plot(page, steps, "restarts.csv",
              scene +
                  ": steps. No method can stay below the dashed line, one step per query; the steps that a "
                  "multistep method takes in excess of a one-step method are the cost of its restarts.");
     page.begin_details("Force evaluations");
     add_plot(page, restart_plot(own, "force_evaluations", "force evaluations per simulated second"),
-             scene + ": force evaluations.");
+             "restarts.csv", scene + ": force evaluations.");
     page.end_details();
-    std::vector<std::vector<std::string>> rows;
+    Rows rows;
     std::vector<RowMark> marks;
     for (std::size_t r = 0; r < own.rows.size(); ++r) {
       const auto rate = [&](const char* column) {
         const double value = own.numbers(column)[r] / own.numbers("simulated_s")[r];
         return std::isfinite(value) ? fmt::format("{:.0f}", value) : std::string("-");
       };
-      const bool ok = own.rows[r][own.column("status")] == "ok";
-      rows.push_back({own.rows[r][own.column("label")], own.rows[r][own.column("multistep")],
-                      cell_text(own, r, "contact_refresh_s"), cell_text(own, r, "reinitialisations"),
-                      rate("steps"), rate("force_evaluations"), rate("factorisations"),
-                      ok ? "ok" : own.rows[r][own.column("reason")]});
+      const bool ok = own.cell(r, "status") == "ok";
+      rows.push_back({own.cell(r, "label"), own.cell(r, "multistep"), cell_text(own, r, "contact_refresh_s"),
+                      cell_text(own, r, "reinitialisations"), rate("steps"), rate("force_evaluations"),
+                      rate("factorisations"), ok ? "ok" : own.cell(r, "reason")});
       marks.push_back(ok ? RowMark::kNone : RowMark::kBad);
     }
     page.add_table({"integrator", "multistep", "contact refresh [s]", "restarts", "steps per s",
@@ -74,16 +74,11 @@ void add_exchange(Page& page, const Table& exchange) {
     const Table own = rows_where(exchange, "scene", scene);
     const std::string where = scenes.size() > 1 ? scene + ": " : "";
     for (const Quantity& q : quantities_of(own, {}))
-      add_plot(page, exchange_plot(own, q.column, q.label),
+      add_plot(page, exchange_plot(own, q.column, q.label), "exchange.csv",
                where + (where.empty() ? capitalised(q.label) : q.label) + " against the exchange period.");
-    std::vector<std::vector<std::string>> rows;
-    for (std::size_t r = 0; r < own.rows.size(); ++r) {
-      rows.emplace_back();
-      for (const std::string& column : exchange_columns()) rows.back().push_back(cell_text(own, r, column));
-    }
     page.add_table({"exchange period [s]", "position error, rel. L2", "force error, RMS [N]",
                     "torque error, RMS [N m]", "CPU [s]"},
-                   rows);
+                   cells_of(own, exchange_columns()));
   }
 }
 
@@ -97,25 +92,12 @@ void add_methods(Page& page, const Table& methods) {
       "or at points between them), so none of them is exact. All converge to the same solution as elements "
       "become smaller: run the scene with half the element size to estimate the discretisation error of this "
       "mesh.");
-  const std::vector<std::string> columns = {"scene",
-                                            "method",
-                                            "position_difference_rel_l2",
-                                            "position_difference_max_m",
-                                            "force_difference_rms_n",
-                                            "force_difference_max_n",
-                                            "peak_force_n",
-                                            "most_samples",
-                                            "query_s",
-                                            "cpu_s"};
-  std::vector<std::vector<std::string>> rows;
-  for (std::size_t r = 0; r < methods.rows.size(); ++r) {
-    rows.emplace_back();
-    for (const std::string& column : columns) rows.back().push_back(cell_text(methods, r, column));
-  }
   page.add_table(
       {"scene", "method", "position difference, rel. L2", "largest [m]", "force difference, RMS [N]",
        "largest [N]", "peak force [N]", "samples at most", "queries [s]", "CPU [s]"},
-      rows);
+      cells_of(methods, {"scene", "method", "position_difference_rel_l2", "position_difference_max_m",
+                         "force_difference_rms_n", "force_difference_max_n", "peak_force_n", "most_samples",
+                         "query_s", "cpu_s"}));
 }
 
 }  // namespace palpate::report

@@ -3,6 +3,7 @@
 
 #include "comparison_tables.h"
 #include "palpate/core/error.h"
+#include "report/cost_envelope.h"
 
 namespace palpate::report {
 namespace {
@@ -28,7 +29,7 @@ std::string winner_text(const Winner& win) {
 
 void add_orders_table(Page& page, const Table& compare, const std::vector<Quantity>& quantities) {
   std::vector<std::string> headers = {"integrator", "variable"};
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (const Quantity& q : quantities) {
     headers.push_back(q.label);
     const std::vector<FittedOrder> orders = fitted_orders(compare, q.column, q.scale);
@@ -48,10 +49,8 @@ void add_orders_table(Page& page, const Table& compare, const std::vector<Quanti
 
 void add_winners_table(Page& page, const Table& compare, const Quantity& q, double scale,
                        const std::string& cost_column, const std::string& cost_label, bool explained) {
-  std::vector<std::vector<std::string>> rows;
-  std::vector<double> targets = kTargets;
-  for (double& target : targets) target *= scale;
-  const std::vector<Winner> all = winners(compare, q.column, cost_column, targets, q.reference);
+  Rows rows;
+  const std::vector<Winner> all = winners(compare, q.column, cost_column, targets_of(scale), q.reference);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Winner& win = all[i];
     const std::string target = fmt::format("{:g}", kTargets[i]);
@@ -86,7 +85,7 @@ void add_costs_table(Page& page, const Table& compare, double reference_error) {
   std::vector<std::string> headers = {"integrator", "family", "theoretical order", "fitted", "variable"};
   for (const double target : kTargets)
     headers.push_back(fmt::format("CPU [s] at {:g}", target)), headers.push_back("ratio");
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   std::vector<RowMark> marks;
   for (std::size_t i = 0; i < all.size(); ++i) {
     rows.push_back({all[i].label, all[i].family, all[i].order > 0 ? std::to_string(all[i].order) : "-",

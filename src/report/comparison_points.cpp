@@ -10,15 +10,14 @@ namespace palpate::report {
 namespace {
 
 std::string point_text(const Table& compare, std::size_t row) {
-  return setting_text(compare.rows[row][compare.column("setting_name")],
-                      to_number(compare.rows[row][compare.column("setting")]));
+  return setting_text(compare.cell(row, "setting_name"), to_number(compare.cell(row, "setting")));
 }
 
 /// Returns the ratio of achieved to requested error of a point controlled by a tolerance.
 std::string achieved_text(const Table& compare, std::size_t row) {
-  if (compare.rows[row][compare.column("setting_name")] != "rtol") return "-";
-  const double error = to_number(compare.rows[row][compare.column("position_error_rel_l2")]),
-               requested = to_number(compare.rows[row][compare.column("setting")]);
+  if (compare.cell(row, "setting_name") != "rtol") return "-";
+  const double error = to_number(compare.cell(row, "position_error_rel_l2")),
+               requested = to_number(compare.cell(row, "setting"));
   return std::isfinite(error) ? short_number(error / requested) : "-";
 }
 
@@ -28,9 +27,9 @@ void add_columns_table(Page& page, const Table& compare,
                        const std::string& caption) {
   std::vector<std::string> headers = {"integrator", "setting"};
   for (const auto& [column, header] : columns) headers.push_back(header);
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (std::size_t r = 0; r < compare.rows.size(); ++r) {
-    rows.push_back({compare.rows[r][compare.column("label")], point_text(compare, r)});
+    rows.push_back({compare.cell(r, "label"), point_text(compare, r)});
     for (const auto& [column, header] : columns) rows.back().push_back(cell_text(compare, r, column));
   }
   page.add_table(headers, rows, caption);
@@ -42,8 +41,7 @@ std::vector<std::pair<std::string, std::string>> further_counts(const Table& com
   std::vector<std::pair<std::string, std::string>> out;
   for (const std::string& column : compare.headers) {
     if (column.ends_with("_s") || std::find(known.begin(), known.end(), column) != known.end()) continue;
-    const std::vector<double> counts = compare.numbers(column);
-    if (std::none_of(counts.begin(), counts.end(), [](double count) { return count > 0.0; })) continue;
+    if (!compare.exceeds(column, 0.0)) continue;
     std::string words = column;
     std::replace(words.begin(), words.end(), '_', ' ');
     out.emplace_back(column, words);
@@ -54,7 +52,7 @@ std::vector<std::pair<std::string, std::string>> further_counts(const Table& com
 }  // namespace
 
 void add_points_table(Page& page, const Table& compare) {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   std::vector<RowMark> marks;
   const std::size_t label = compare.column("label"), status = compare.column("status"),
                     reason = compare.column("reason"), below = compare.column("unresolved");

@@ -3,7 +3,9 @@
 
 #include "comparison_tables.h"
 #include "palpate/core/error.h"
+#include "report/comparison_words.h"
 #include "sections.h"
+#include "work_precision_plots.h"
 
 namespace palpate::report {
 namespace {
@@ -18,7 +20,7 @@ void add_work_precision(Page& page, const Table& compare, const Quantity& q) {
     left_out = fmt::format(
         " Not drawn: {} point{} with an error above {:g}{}.", count, count == 1 ? "" : "s", kLargestDrawn,
         q.unit.empty() ? "" : fmt::format(" times the peak of {} {}", short_number(q.scale), q.unit));
-  add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale),
+  add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale), "compare.csv",
            capitalised(q.label) + " against CPU time; lower left is better. " +
                (many ? "One line per refinement sequence, coloured by family; the dark line is the Pareto "
                        "front, labelled where the best integrator changes. "
@@ -31,11 +33,8 @@ void add_work_precision(Page& page, const Table& compare, const Quantity& q) {
 /// Adds the charts of error against counts of work, each quantity folded away separately.
 void add_counts_of_work(Page& page, const Table& compare, const Quantity& q) {
   std::vector<std::pair<std::string, std::string>> counted;
-  for (const auto& [column, label] : kCosts) {
-    const std::vector<double> values = compare.numbers(column);
-    if (std::any_of(values.begin(), values.end(), [](double v) { return v > 0.0; }))
-      counted.emplace_back(column, label);
-  }
+  for (const auto& [column, label] : kCosts)
+    if (compare.exceeds(column, 0.0)) counted.emplace_back(column, label);
   const bool families = q.column == kPosition && ladders(compare, q.column, "cpu_s_median").size() > 3;
   if (counted.empty() && !families) return;
   const std::string name = q.label.substr(0, q.label.find(','));
@@ -47,11 +46,12 @@ void add_counts_of_work(Page& page, const Table& compare, const Quantity& q) {
   if (families) {
     page.begin_multiples();
     for (const Plot& plot : family_plots(compare, q.column, q.label, q.reference, q.scale))
-      add_plot(page, plot, "");
+      add_plot(page, plot, "compare.csv", "");
     page.end_multiples();
   }
   for (const auto& [column, label] : counted)
     add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference, q.scale, column, label),
+             "compare.csv",
              fmt::format("{} against {}, independent of timing noise.{}", capitalised(q.label), label,
                          column == "factorisations" ? " Methods that factor no matrix are not shown." : ""));
   page.end_details();

@@ -9,9 +9,6 @@
 /// Tables of a comparison, each for one scene.
 namespace palpate::report {
 
-/// Main error column: positions.
-inline constexpr const char* kPosition = "position_error_rel_l2";
-
 /// Adds all points, one row per point.
 void add_points_table(Page& page, const Table& compare);
 /// Adds the counts of work and the largest errors of each point.

@@ -1,16 +1,14 @@
+#include "report/comparison_words.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "palpate/core/error.h"
-#include "report/work_precision.h"
+#include "report/cost_envelope.h"
 
 namespace palpate::report {
 namespace {
-
-constexpr const char* kError = "position_error_rel_l2";
-/// Peaks below it are rounding [N].
-constexpr double kLeastPeak = 1e-12;
 
 std::string list_of(const std::vector<std::string>& names) {
   if (names.size() < 2) return names.empty() ? "" : names[0];
@@ -62,9 +60,8 @@ std::vector<std::string> winners_in_words(const Table& compare, const std::strin
                                           const std::string& what, double scale, double reference_error) {
   std::vector<std::string> out;
   std::vector<std::string> unreached, unresolved;
-  std::vector<double> targets = kTargets;
-  for (double& target : targets) target *= scale;
-  const std::vector<Winner> all = winners(compare, column, "cpu_s_median", targets, reference_error);
+  const std::vector<Winner> all =
+      winners(compare, column, "cpu_s_median", targets_of(scale), reference_error);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string target = fmt::format("{:g}", kTargets[i]);
     if (!all[i].resolved)
@@ -78,13 +75,6 @@ std::vector<std::string> winners_in_words(const Table& compare, const std::strin
   if (!unresolved.empty() && std::isfinite(reference_error))
     out.push_back(fmt::format("The reference does not resolve {}.", list_of(unresolved)));
   return out;
-}
-
-constexpr const char* kForce = "force_error_rms_n";
-
-bool has_force(const Table& compare, const ReferenceError& reference) {
-  return compare.has(kForce) && reference.peak_force_n > kLeastPeak &&
-         std::isfinite(reference.force_error_rms_n);
 }
 
 std::string baseline_in_words(const std::vector<Ladder>& all) {
@@ -140,7 +130,7 @@ std::string failures_in_words(const std::vector<Ladder>& all) {
 /// costs hardly more force evaluations, or a longer fixed step fails or diverges.
 std::string explicit_in_words(const Table& compare) {
   std::vector<std::string> by_tolerance, by_step;
-  for (const Ladder& ladder : ladders(compare, kError, "force_evaluations")) {
+  for (const Ladder& ladder : ladders(compare, kPosition, "force_evaluations")) {
     if (ladder.stability.find("explicit") == std::string::npos) continue;
     double longest = kUnknown;
     bool unstable = ladder.setting_name != "rtol" && !ladder.failures.empty(), flat = false;
@@ -199,11 +189,16 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
 
 }  // namespace
 
+bool has_force(const Table& compare, const ReferenceError& reference) {
+  return compare.has(kForce) && reference.peak_force_n > kLeastPeak &&
+         std::isfinite(reference.force_error_rms_n);
+}
+
 std::vector<Answer> cheapest_in_words(const Table& compare, const ReferenceError& reference) {
   const double reference_error = reference.position_error_rel_l2;
-  const std::vector<Ladder> all = ladders(compare, kError, "cpu_s_median");
+  const std::vector<Ladder> all = ladders(compare, kPosition, "cpu_s_median");
   Answer positions{"Position error relative to the deformation.",
-                   winners_in_words(compare, kError, "an error of ", 1.0, reference_error), true};
+                   winners_in_words(compare, kPosition, "an error of ", 1.0, reference_error), true};
   std::string reach = baseline_in_words(all) + families_in_words(all, kTargets.back(), reference_error);
   reach.erase(reach.find_last_not_of(' ') + 1);
   if (!reach.empty()) positions.points.push_back(std::move(reach));
@@ -219,7 +214,7 @@ std::vector<Answer> cheapest_in_words(const Table& compare, const ReferenceError
 }
 
 std::vector<std::string> remarks_in_words(const Table& compare, const ReferenceError& reference) {
-  const std::vector<Ladder> all = ladders(compare, kError, "cpu_s_median");
+  const std::vector<Ladder> all = ladders(compare, kPosition, "cpu_s_median");
   std::vector<std::string> out;
   for (std::string remark : {explicit_in_words(compare) + failures_in_words(all),
                              reference_in_words(all, reference.position_error_rel_l2)}) {

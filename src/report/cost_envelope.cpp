@@ -1,8 +1,9 @@
+#include "report/cost_envelope.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "palpate/core/error.h"
-#include "report/work_precision.h"
 
 // Cost of an error on a refinement sequence, and the sequence that reaches an error at the least cost.
 //

@@ -62,10 +62,7 @@ void add_fit(Plot& plot, const Series& points, double order) {
 }
 
 Plot frame_of(const Felt& q, const std::string& x_label) {
-  Plot plot;
-  plot.x_label = x_label;
-  plot.y_label = fmt::format("error of the {}, RMS [% of its peak]", q.name);
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot(x_label, fmt::format("error of the {}, RMS [% of its peak]", q.name));
   plot.floor_y = q.peak > 0.0 ? 100.0 * q.own_error / q.peak : kUnknown;
   plot.floor_label = "reference error";
   return plot;
@@ -73,8 +70,7 @@ Plot frame_of(const Felt& q, const std::string& x_label) {
 
 /// Returns whether a variable has a nonzero error to draw.
 bool holds(const Table& table, const Felt& q, const std::string& variable) {
-  const std::vector<double> errors = rows_where(table, "variable", variable).numbers(q.of_peak);
-  return std::any_of(errors.begin(), errors.end(), [](double e) { return e > 0.0; });
+  return rows_where(table, "variable", variable).exceeds(q.of_peak, 0.0);
 }
 
 void add_charts(Page& page, const Table& table, const Felt& q, const Json& orders) {
@@ -84,7 +80,7 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
   if (!period.series.empty())
     add_fit(period, period.series.back(),
             number_at(row_where(orders, "variable", "exchange alone"), (q.name + "_order").c_str()));
-  add_plot(page, period,
+  add_plot(page, period, "haptic.csv",
            fmt::format("Error of the {} against the exchange period: at the settings of the scene, and with "
                        "only the errors of exchange and tick (a tenth of the period) left. Rings mark points "
                        "within 10 times the reference error.",
@@ -94,34 +90,35 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
     Series ticks = series_of(table, q, "tick", "setting", false);
     for (double& x : ticks.x) x = 1.0 / x;
     rate.series.push_back(std::move(ticks));
-    add_plot(page, rate, fmt::format("Error of the {} against the haptic rate.", q.name));
+    add_plot(page, rate, "haptic.csv", fmt::format("Error of the {} against the haptic rate.", q.name));
   }
   for (const char* variable : {"pixels", "element size"}) {
     if (!holds(table, q, variable)) continue;
     Plot plot = frame_of(
         q, std::string(variable) == "pixels" ? "pixels along the image's longer edge" : "element size [m]");
     plot.series.push_back(series_of(table, q, variable, "setting", false));
-    add_plot(page, plot, fmt::format("Error of the {} against the contact's resolution.", q.name));
+    add_plot(page, plot, "haptic.csv",
+             fmt::format("Error of the {} against the contact's resolution.", q.name));
   }
   Plot cost = frame_of(q, "CPU time of the loop [s]");
   cost.height = 520;
   for (const std::string& variable : distinct(table, "variable"))
     if (variable != "exchange alone" && holds(table, q, variable))
       cost.series.push_back(series_of(table, q, variable, "cpu_s_median", true));
-  add_plot(page, cost,
+  add_plot(page, cost, "haptic.csv",
            fmt::format("Error of the {} against CPU time, all variants; lower left is better.", q.name));
 }
 
 std::string percent(const Table& table, std::size_t row, const char* column) {
-  const double value = to_number(table.rows[row][table.column(column)]);
+  const double value = to_number(table.cell(row, column));
   return std::isfinite(value) ? short_number(100.0 * value) : "-";
 }
 
 void add_variables(Page& page, const Table& table) {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   std::vector<RowMark> marks;
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    const auto text = [&](const char* column) { return table.rows[r][table.column(column)]; };
+    const auto text = [&](const char* column) { return table.cell(r, column); };
     const bool ok = text("status") == "ok", ring = is_yes(text("force_unresolved"));
     rows.push_back({text("variable"), text("value") + (is_yes(text("own")) ? " (the scene's)" : ""),
                     cell_text(table, r, "force_error_rms_n"), percent(table, r, "force_error_rms_of_peak"),
@@ -157,11 +154,8 @@ void add_haptic(Page& page, const Table& table, const Json& summary) {
     page.add_paragraph("Reference: " + made_by + ".");
   if (const std::string trouble = text_at(reference, "trouble"); !trouble.empty())
     page.add_paragraph("Note: " + trouble + ".");
-  for (const Felt& q : {felt("force", "n", reference), felt("torque", "n_m", reference)}) {
-    const std::vector<double> errors = table.numbers(q.error);
-    if (std::any_of(errors.begin(), errors.end(), [](double e) { return e > kRounding; }))
-      add_charts(page, table, q, orders);
-  }
+  for (const Felt& q : {felt("force", "n", reference), felt("torque", "n_m", reference)})
+    if (table.exceeds(q.error, kRounding)) add_charts(page, table, q, orders);
   add_variables(page, table);
 }
 

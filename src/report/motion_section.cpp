@@ -2,7 +2,7 @@
 
 #include "core/time_text.h"
 #include "palpate/core/error.h"
-#include "palpate/store/run_file.h"
+#include "palpate/store/run_reader.h"
 #include "sections.h"
 #include "surface_json.h"
 

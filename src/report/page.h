@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "report/answer.h"
+#include "report/table.h"
 
 namespace palpate::report {
 
@@ -12,8 +13,8 @@ namespace palpate::report {
 enum class RowMark { kNone, kGood, kBad, kFaint };
 
 /// Self-contained HTML page without external files. A page with content that can be sorted, zoomed or rotated
-/// includes the script for it (src/report/page); without scripts everything except the rotating view is
-/// shown. The page is also well-formed XML. All text passed to it is escaped here.
+/// includes the script for it (src/report/page); without scripts everything except charts and the rotating
+/// view is shown. The page is also well-formed XML. All text passed to it is escaped here.
 class Page {
  public:
   explicit Page(std::string title);
@@ -24,21 +25,18 @@ class Page {
   /// Adds a table. Columns of numbers are aligned to the right. `marks` colours rows; it is empty or has one
   /// mark per row. The reader can sort the table by any column: as numbers if each cell begins with a number
   /// ("<= 0.12", "1.5 (1 to 2)").
-  Page& add_table(const std::vector<std::string>& headers, const std::vector<std::vector<std::string>>& rows,
-                  const std::string& caption = "", const std::vector<RowMark>& marks = {});
+  Page& add_table(const std::vector<std::string>& headers, const Rows& rows, const std::string& caption = "",
+                  const std::vector<RowMark>& marks = {});
   using Facts = std::vector<std::pair<std::string, std::string>>;
   /// Adds name and value pairs as two columns without a header.
   Page& add_facts(const Facts& facts);
   /// Adds several such tables under small headings, side by side if there is room.
   Page& add_fact_groups(const std::vector<std::pair<std::string, Facts>>& groups);
-  /// Adds a chart: its SVG, for print and for pages without script, and its numbers (plot_json.h), from which
-  /// the script redraws it.
-  Page& add_chart(const std::string& svg, const std::string& json, const std::string& caption);
+  /// Adds a chart from its JSON (plot.h), which the script draws; without script, a note that its values are
+  /// in `file`.
+  Page& add_chart(const std::string& json, const std::string& file, const std::string& caption);
   /// Adds a view that rotates and plays, from its JSON (surface_json.h); hidden without script.
   Page& add_view(const std::string& json, const std::string& caption);
-  /// Adds an SVG document inline; black follows the text colour of the page (dark mode), and ids are made
-  /// unique.
-  Page& add_svg(const std::string& svg, const std::string& caption);
   /// Adds an embedded PNG file.  @throws Error if it cannot be read or is not a PNG
   Page& add_png(const std::filesystem::path& png, const std::string& caption);
   /// Adds a paragraph with the reason in place of a figure that could not be drawn.
@@ -73,7 +71,6 @@ class Page {
  private:
   std::string title_;
   std::string body_;
-  int figures_ = 0;
   int level_ = 0;  ///< Heading offset: 1 within a part, else 0
   bool interacts_ = false, turns_ = false;
   std::vector<MissingFigure> missing_figures_;

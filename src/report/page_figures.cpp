@@ -2,7 +2,6 @@
 #include <iterator>
 
 #include "core/markup.h"
-#include "inline_svg.h"
 #include "palpate/core/error.h"
 #include "report/page.h"
 
@@ -26,9 +25,10 @@ std::string json_element(const std::string& css, const std::string& json) {
 
 }  // namespace
 
-Page& Page::add_chart(const std::string& svg, const std::string& json, const std::string& caption) {
+Page& Page::add_chart(const std::string& json, const std::string& file, const std::string& caption) {
   interacts_ = true;
-  body_ += figure(inline_svg(svg, fmt::format("f{}-", ++figures_)) + "\n" + json_element("plot-data", json),
+  body_ += figure("<p class=\"values\">This chart needs JavaScript. Its values are in " + escape_html(file) +
+                      ".</p>\n" + json_element("plot-data", json),
                   caption, " class=\"chart\"");
   return *this;
 }
@@ -40,11 +40,6 @@ Page& Page::add_view(const std::string& json, const std::string& caption) {
       "<button type=\"button\">Play</button><input type=\"range\" min=\"0\" value=\"0\" "
       "aria-label=\"time\"/><output></output></div>\n" +
       json_element("view-data", json) + "<figcaption>" + escape_html(caption) + "</figcaption>\n</figure>\n";
-  return *this;
-}
-
-Page& Page::add_svg(const std::string& svg, const std::string& caption) {
-  body_ += figure(inline_svg(svg, fmt::format("f{}-", ++figures_)), caption);
   return *this;
 }
 

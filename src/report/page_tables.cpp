@@ -22,7 +22,7 @@ const char* class_of(RowMark mark) {
 }
 
 /// Returns whether a column can be sorted by the number at the beginning of each cell.
-bool sorts_as_numbers(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
+bool sorts_as_numbers(const Rows& rows, std::size_t column) {
   bool any = false;
   for (const auto& row : rows) {
     std::string cell = row[column];
@@ -49,8 +49,7 @@ std::string facts_table(const Page::Facts& facts, bool short_to_the_right) {
 
 }  // namespace
 
-Page& Page::add_table(const std::vector<std::string>& headers,
-                      const std::vector<std::vector<std::string>>& rows, const std::string& caption,
+Page& Page::add_table(const std::vector<std::string>& headers, const Rows& rows, const std::string& caption,
                       const std::vector<RowMark>& marks) {
   PALPATE_CHECK(marks.empty() || marks.size() == rows.size(), "{} marks for {} rows", marks.size(),
                 rows.size());

@@ -1,9 +1,17 @@
 #pragma once
+#include <array>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpate::report {
+
+/// Colours of series, in order. The first eight have a contrast of 3:1 against both the light and the dark
+/// page, and differ in lightness, too, for readers with a colour deficiency.
+inline constexpr std::array<std::string_view, 12> kPalette = {"#2b7bba", "#d9720a", "#2a9461", "#b0529e",
+                                                              "#d1495b", "#0f9aa8", "#8a6d3b", "#6a5acd",
+                                                              "#8fae1b", "#c2185b", "#4c6a7d", "#e0a100"};
 
 /// Drawing style of a series; kArea is a line with the area down to the axis filled.
 enum class Mark { kLine, kPoints, kLinePoints, kDashed, kArea };
@@ -18,11 +26,10 @@ struct Series {
   bool labels_below = false;
   /// Points drawn as rings (not resolved by the reference); empty: none
   std::vector<bool> hollow = {};
-  /// "#rrggbb", or "ink" for the text colour; empty: the next colour of the palette
+  /// "#rrggbb", or "ink" (text) or "faint" (background) for that colour of the style sheet; empty: the next
+  /// colour of the palette
   std::string colour = {};
-  double width = 0.0;  ///< Line width; 0: default of the mark
-
-  // shown by the script of the page
+  double width = 0.0;                   ///< Line width; 0: default of the mark
   std::string group = {};               ///< Entry of the key that switches the series; empty: `name`
   std::string reading = {};             ///< Name shown with a value under the cursor; empty: `name`
   std::vector<std::string> notes = {};  ///< Note per point, shown with its value; empty: none
@@ -43,13 +50,17 @@ struct Plot {
   /// Upper end of the shaded area: the error of the reference; NaN: none
   double floor_y = std::numeric_limits<double>::quiet_NaN();
   std::string floor_label = {};
-  int width = 760, height = 400;
+  int height = 400;  ///< Height on a wide page, in CSS pixels
 };
 
-/// Draws the plot with gnuplot and returns it as one SVG document. Long curves are thinned to the resolution
-/// that the width allows; peaks are kept.
-/// @throws Error if there is nothing to draw, if gnuplot is not installed (with the name of the package), or
-/// with the message of gnuplot
-std::string plot_svg(const Plot& plot);
+/// Returns an empty plot with two logarithmic axes.
+Plot log_log_plot(const std::string& x_label, const std::string& y_label);
+
+/// Returns a plot as JSON, from which the script of the page draws it (src/report/page/src/plots.js): labels
+/// and axes, `series` with name, mark, colour, x, y and texts of points, `levels`, floor. Points that cannot
+/// be drawn and series without remaining points are left out; long curves are thinned, and keep their peaks
+/// (thin.h).
+/// @throws Error if there is nothing to draw
+std::string plot_json(const Plot& plot);
 
 }  // namespace palpate::report

@@ -180,6 +180,7 @@ void add_result(Page& page, const Result& result) {
               result.summary);
   if (has("validation.json")) add_validation(page, read_json(dir / "validation.json"));
   if (has("stability.json")) add_stability(page, read_json(dir / "stability.json"));
+  if (has("z_width.csv")) add_z_width(page, csv("z_width.csv"), result.summary);
   for (const char* file : kinds().back().files)
     if (has(file)) add_bench(page, file, read_json(dir / file));
   add_head(page, result.summary);

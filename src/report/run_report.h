@@ -18,8 +18,8 @@ struct RunReport {
 /// compare.csv, reference.json, restarts.csv, exchange.csv, methods.csv, haptic.csv, validation.json,
 /// stability.json, bench-fem.json, bench-fem-accuracy.json, bench-contact.json and *.png; the source of the
 /// scene comes from summary.json, or else from scene.toml. docs/files.md lists the keys of
-/// summary.json. A missing file has no section. A plot that gnuplot cannot draw is replaced by a paragraph
-/// with the reason, and the page is still written.
+/// summary.json. A missing file has no section. A chart without any value to draw is replaced by a
+/// paragraph with the reason, and the page is still written.
 /// @throws Error if a directory contains none of these files, or one of them is invalid
 /// @pre dirs not empty
 RunReport write_report(const std::vector<std::filesystem::path>& dirs, const std::filesystem::path& path);

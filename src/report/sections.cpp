@@ -6,9 +6,7 @@
 #include <set>
 
 #include "palpate/core/error.h"
-#include "plot_json.h"
 #include "report/force_plot.h"
-#include "store/atomic_file.h"
 
 namespace palpate::report {
 namespace {
@@ -86,9 +84,9 @@ std::string limit_text(double limit, const char* unit) {
 
 }  // namespace
 
-void add_plot(Page& page, const Plot& plot, const std::string& caption) {
+void add_plot(Page& page, const Plot& plot, const std::string& file, const std::string& caption) {
   try {
-    page.add_chart(plot_svg(plot), plot_json(plot), caption);
+    page.add_chart(plot_json(plot), file, caption);
   } catch (const Error& e) { page.add_missing_figure(caption, e.what()); }
 }
 
@@ -121,17 +119,12 @@ void add_figures(Page& page, const Json& summary) {
 void add_pictures(Page& page, const fs::path& dir) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(dir))
-    if (entry.path().extension() == ".png" || entry.path().extension() == ".svg")
-      files.push_back(entry.path());
+    if (entry.path().extension() == ".png") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     // "picture" is no useful caption; that picture contains a title
     const std::string stem = file.stem().string();
-    const std::string caption = stem == "picture" ? "" : sentence_case(stem);
-    if (file.extension() == ".png")
-      page.add_png(file, caption);
-    else
-      page.add_svg(store::read_file(file.string()), caption);
+    page.add_png(file, stem == "picture" ? "" : sentence_case(stem));
   }
 }
 
@@ -143,7 +136,7 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
     return;
   }
   const double max_force = number_at(hand, "max_force_n"), max_torque = number_at(hand, "max_torque_n_m");
-  add_plot(page, force_plot(force, max_force),
+  add_plot(page, force_plot(force, max_force), "force.csv",
            "Force of the device on the hand: world components and magnitude" + limit_text(max_force, "N"));
   constexpr double kRounding = 1e-15;  // [N m]
   const bool has_torque = std::any_of(force.headers.begin(), force.headers.end(), [&](const std::string& h) {
@@ -154,12 +147,12 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
   if (!has_torque) page.add_paragraph("No torque: no moment acts on the tool in this scene.");
   if (has_torque)
     add_plot(
-        page, torque_plot(force, max_torque),
+        page, torque_plot(force, max_torque), "force.csv",
         "Torque of the device on the hand: world components and magnitude" + limit_text(max_torque, "N m"));
 }
 
 void add_parts(Page& page, const Json& summary) {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   std::vector<RowMark> marks;
   for (const Json& part : list_of(summary, "parts")) {
     if (!part.is_object()) continue;

@@ -13,7 +13,8 @@ namespace palpate::report {
 
 /// Adds the plot as a figure or, if it cannot be drawn, a paragraph with the reason: a page without one
 /// figure is better than no page.
-void add_plot(Page& page, const Plot& plot, const std::string& caption);
+/// @param file  name of the file with its values
+void add_plot(Page& page, const Plot& plot, const std::string& file, const std::string& caption);
 
 void add_head(Page& page, const Json& summary);     ///< Adds the description of the run, a few lines
 void add_figures(Page& page, const Json& summary);  ///< Adds all counts and times
@@ -41,6 +42,9 @@ Table with_times(Table study, const Table& times);
 void add_study(Page& page, const Table& study, const std::string& text, const Json& summary);
 void add_validation(Page& page, const Json& validation);
 void add_stability(Page& page, const Json& stability);
+/// Adds the stiffness that a haptic loop can render, from z_width.csv.
+/// @param summary  contains the operating points of the scene
+void add_z_width(Page& page, const Table& z_width, const Json& summary);
 /// Adds a benchmark.
 /// @param file  name of its file
 void add_bench(Page& page, const std::string& file, const Json& bench);

@@ -98,7 +98,7 @@ std::vector<std::vector<const Json*>> parted(const Json& cells) {
 }
 
 void add_unexpected(Page& page, const Json& cells) {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (const Json& cell : cells)
     if (!cell.value("as_expected", false))
       rows.push_back({text_at(cell, "row"), text_at(cell, "sub_case"), text_at(cell, "integrator"),
@@ -111,7 +111,7 @@ void add_unexpected(Page& page, const Json& cells) {
 }
 
 void add_ends(Page& page, const Json& cells) {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (const Json& cell : cells)
     if (text_at(cell, "verdict") == "error" && cell.value("as_expected", false))
       rows.push_back({text_at(cell, "row"), text_at(cell, "sub_case"), text_at(cell, "integrator"),

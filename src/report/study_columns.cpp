@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "json.h"
 #include "report/work_precision.h"
 
 namespace palpate::report {
@@ -26,6 +27,15 @@ StudyColumns columns_of_study(const Table& study) {
     if (!contains(kAlways, name)) (out.seeds ? out.drawn : out.swept).push_back(name);
   }
   return out;
+}
+
+std::string parameter_text(const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos) return key_text(name);
+  std::string owner = name.substr(0, dot);
+  std::replace_if(
+      owner.begin(), owner.end(), [](char c) { return c == '.' || c == '_'; }, ' ');
+  return owner + ": " + key_text(name.substr(dot + 1));
 }
 
 std::vector<StudyFigure> shown_figures(const Table& study) {

@@ -18,6 +18,10 @@ struct StudyColumns {
 /// @throws Error if the table is not the table of a study
 StudyColumns columns_of_study(const Table& study);
 
+/// Returns a parameter as the label of an axis, with its unit: "body.0.youngs_modulus_pa" becomes "body 0:
+/// youngs modulus [Pa]".
+std::string parameter_text(const std::string& name);
+
 /// Figure that the page of a study shows first.
 struct StudyFigure {
   std::string column, label;

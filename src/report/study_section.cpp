@@ -8,7 +8,6 @@
 #include "palpate/core/error.h"
 #include "sections.h"
 #include "study_columns.h"
-#include "style.h"
 
 /// Section for study.csv of `palpate study`.
 namespace palpate::report {
@@ -32,7 +31,7 @@ struct SeedSpread {
   }
 };
 
-bool is_ok(const Table& study, std::size_t row) { return study.rows[row][study.column("status")] == "ok"; }
+bool is_ok(const Table& study, std::size_t row) { return study.cell(row, "status") == "ok"; }
 
 /// Numeric parameter for the x axis of a chart, and the settings that do not define its series.
 struct Abscissa {
@@ -120,7 +119,7 @@ void add_charts(Page& page, const Table& study, const StudyColumns& columns, con
   page.begin_multiples();
   for (const StudyFigure& figure : shown_figures(study)) {
     Plot plot;
-    plot.x_label = name;
+    plot.x_label = parameter_text(name);
     plot.y_label = figure.label;
     plot.log_x = logarithmic;
     for (std::size_t g = 0; g < groups.size(); ++g)
@@ -128,7 +127,7 @@ void add_charts(Page& page, const Table& study, const StudyColumns& columns, con
                  std::string(kPalette[g % kPalette.size()]));
     if (plot.series.empty()) continue;
     add_plot(
-        page, plot,
+        page, plot, "study.csv",
         capitalised(figure.label) + " over " + name +
             (columns.seeds && !drawn ? "; lines are means over the seeds, points are single seeds." : "."));
   }
@@ -152,7 +151,7 @@ void add_spreads(Page& page, const Table& study, const StudyColumns& columns) {
   without.emplace_back("seed");
   const std::vector<StudyFigure> figures = shown_figures(study);
   for (const StudyFigure& figure : figures) headers.push_back(figure.label);
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (const StudyGroup& group : groups_of(study, columns, without)) {
     if (rows.size() == kMostRows) break;
     rows.push_back({group.name.empty() ? "all" : group.name});
@@ -164,15 +163,6 @@ void add_spreads(Page& page, const Table& study, const StudyColumns& columns) {
       "Mean and sample standard deviation of each figure over the seeds. Tasks that did not finish are "
       "excluded.");
   page.add_table(headers, rows);
-}
-
-std::vector<std::vector<std::string>> cells_of(const Table& study, const std::vector<std::string>& columns) {
-  std::vector<std::vector<std::string>> rows;
-  for (std::size_t r = 0; r < std::min(kMostRows, study.rows.size()); ++r) {
-    rows.emplace_back();
-    for (const std::string& column : columns) rows.back().push_back(cell_text(study, r, column));
-  }
-  return rows;
 }
 
 void add_tables(Page& page, const Table& study, const StudyColumns& columns) {
@@ -191,14 +181,14 @@ void add_tables(Page& page, const Table& study, const StudyColumns& columns) {
   std::vector<RowMark> marks;
   for (std::size_t r = 0; r < std::min(kMostRows, study.rows.size()); ++r)
     marks.push_back(is_ok(study, r) ? RowMark::kNone : RowMark::kBad);
-  page.add_table(headers, cells_of(study, first), "", marks);
+  page.add_table(headers, cells_of(study, first, kMostRows), "", marks);
   if (study.rows.size() > kMostRows)
     page.add_paragraph(
         fmt::format("The first {} of {} tasks; study.csv lists all.", kMostRows, study.rows.size()));
   page.begin_details("All figures of all tasks");
   std::vector<std::string> all;
   for (const std::string& column : study.headers) all.push_back(key_text(column));
-  page.add_table(all, cells_of(study, study.headers));
+  page.add_table(all, cells_of(study, study.headers, kMostRows));
   page.end_details();
 }
 
@@ -238,8 +228,8 @@ Answer study_answer(const Table& study) {
   }
   std::map<std::string, bool> explained;  // the first reason of each status
   for (std::size_t r = 0; r < study.rows.size(); ++r) {
-    const std::string status = study.rows[r][study.column("status")],
-                      reason = study.has("reason") ? study.rows[r][study.column("reason")] : "";
+    const std::string status = study.cell(r, "status"),
+                      reason = study.has("reason") ? study.cell(r, "reason") : "";
     if (status == "ok" || reason.empty() || std::exchange(explained[status], true)) continue;
     out.points.push_back(fmt::format("{}, task {}: {}", status, r, reason.substr(0, reason.find('\n'))));
   }

@@ -2,15 +2,15 @@
 
 namespace palpate::report {
 
-// The style sheet selects the fill of the floor and of rings by the colours that the plots give them (see
-// kFloorColour): a figure then follows the page into dark mode without being drawn twice.
+// The root has the class "on-paper" while the script draws charts for print, which has no dark mode.
 const char* const kStyleSheet = R"css(
 :root { color-scheme: light dark; --page: #ffffff; --ink: #1c2126; --quiet: #5c6670; --line: #d9dee3;
-  --tint: #f4f6f8; --accent: #1f6fae;
+  --faint: #b4bcc4; --tint: #f4f6f8; --accent: #1f6fae;
   --good: #1e7a46; --bad: #b3261e; --good-tint: #e9f5ee; --bad-tint: #fbeae9; }
 :focus-visible { outline: 2px solid var(--accent); outline-offset: 2px; border-radius: 2px; }
-@media (prefers-color-scheme: dark) { :root { --page: #15191d; --ink: #e3e7eb; --quiet: #9aa5b0;
-  --line: #353c44; --tint: #1d2329; --accent: #6fb1e6;
+@media screen and (prefers-color-scheme: dark) { :root:not(.on-paper) {
+  --page: #15191d; --ink: #e3e7eb; --quiet: #9aa5b0;
+  --line: #353c44; --faint: #56606a; --tint: #1d2329; --accent: #6fb1e6;
   --good: #6fcf97; --bad: #f28b82; --good-tint: #1a2b22; --bad-tint: #331f1f; } }
 * { box-sizing: border-box; }
 html { background: var(--page); color: var(--ink);
@@ -36,9 +36,8 @@ h2 { font-size: 1.25rem; margin: 2.75rem 0 .75rem; padding-bottom: .3rem;
 h3 { font-size: 1rem; margin: 1.75rem 0 .5rem; }
 p { margin: .5rem 0 .9rem; max-width: 46rem; }
 figure { margin: 1.25rem 0; }
-figure img, figure svg { display: block; width: 100%; height: auto; }
+figure img { display: block; width: 100%; height: auto; }
 figure img { border: 1px solid var(--line); border-radius: 4px; }
-figure svg { max-width: 52rem; overflow: visible; }
 figcaption, caption { color: var(--quiet); font-size: .875rem; text-align: left; padding: .4rem 0;
   max-width: 46rem; }
 caption { caption-side: top; }
@@ -98,9 +97,6 @@ table.heat td:focus { outline: 2px solid var(--accent); outline-offset: 1px; }
 .v6 { background: #6d1b7b; color: #fff; } .v7 { background: #8a9099; color: #101214; }
 .v8 { background: #b5179e; color: #fff; }
 .odd { outline: 3px solid #e5007d; outline-offset: -2px; font-weight: 700; }
-.plot .gridline { stroke: var(--line); }
-.plot [fill^="rgb(236, 239, 242)"] { fill: var(--tint); }
-.plot [color="rgb(255, 255, 255)"], .plot [color="white"] { color: var(--page); }
 th[data-sort] { white-space: normal; min-width: 4.5rem; }
 button { font: inherit; color: inherit; }
 button.sort { background: none; border: 0; padding: 0 1.1em 0 0; margin: 0; position: relative;
@@ -111,8 +107,9 @@ th[aria-sort] { color: var(--accent); }
 th[aria-sort="ascending"] button.sort::after { content: "\2191"; color: var(--accent); }
 th[aria-sort="descending"] button.sort::after { content: "\2193"; color: var(--accent); }
 .chart { position: relative; max-width: 52rem; }
-.is-live > svg { display: none; }
+.values { color: var(--quiet); }
 .live { width: 100%; overflow: hidden; }
+.live:empty { height: 20rem; }
 .live .u-title { font-size: .9rem; font-weight: 600; }
 .live .u-select { background: color-mix(in srgb, var(--accent) 18%, transparent); }
 .live .u-cursor-x, .live .u-cursor-y { border-color: var(--quiet); }
@@ -124,6 +121,7 @@ th[aria-sort="descending"] button.sort::after { content: "\2193"; color: var(--a
 .legend button[aria-pressed="false"] i { opacity: .25; }
 .legend .reset { border-color: var(--accent); color: var(--accent); }
 .legend .reset[hidden] { display: none; }
+.legend .save { color: var(--quiet); }
 .legend i, .reading i { display: inline-block; width: 1.1rem; height: 0;
   border-top: 3px solid var(--swatch); }
 .legend i.dashed { border-top-style: dashed; border-top-width: 2px; }
@@ -153,8 +151,9 @@ th[aria-sort="descending"] button.sort::after { content: "\2193"; color: var(--a
   table.facts th { padding-right: 1rem; }
   table.facts td { white-space: normal; overflow-wrap: anywhere; } td.w { min-width: 12rem; }
   .wide { max-width: 100%; left: 0; transform: none; } }
-@media print { .live, .legend, .player, details:not([open]) { display: none; }
-  .is-live > svg { display: block; } button.sort::after { content: none; }
+@media print { .player, .legend .reset, .legend .save, .reading, .ring, details:not([open]) { display: none; }
+  .live .uplot, .live .u-wrap { width: 100% !important; height: auto !important; }
+  .live canvas { height: auto; } button.sort::after { content: none; }
   .answer { border: 1px solid var(--line); } .part { break-before: page; }
   .v0, .v1, .v2, .v3, .v4, .v5, .v6, .v7, .v8 { print-color-adjust: exact; }
   :root { color-scheme: light; --page: #ffffff; --ink: #000000; --quiet: #444444; --line: #bbbbbb;

@@ -2,7 +2,7 @@
 #include <limits>
 #include <string>
 
-#include "palpate/store/run_file.h"
+#include "palpate/store/run_reader.h"
 
 namespace palpate::report {
 

@@ -6,8 +6,14 @@
 
 #include "core/csv.h"
 #include "palpate/core/error.h"
+#include "store/csv.h"
 
 namespace palpate::report {
+
+Table read_csv(const std::filesystem::path& path) {
+  store::CsvTable file = store::read_csv(path.string());
+  return {std::move(file.headers), std::move(file.rows), path.string()};
+}
 
 bool Table::has(std::string_view header) const {
   return std::find(headers.begin(), headers.end(), header) != headers.end();
@@ -26,6 +32,34 @@ std::vector<double> Table::numbers(std::string_view header) const {
   std::vector<double> out;
   out.reserve(rows.size());
   for (const auto& row : rows) out.push_back(to_number(row[c]));
+  return out;
+}
+
+const std::string& Table::cell(std::size_t row, std::string_view header) const {
+  return rows[row][column(header)];
+}
+
+bool Table::exceeds(std::string_view header, double limit) const {
+  if (!has(header)) return false;
+  const std::vector<double> values = numbers(header);
+  return std::any_of(values.begin(), values.end(),
+                     [&](double value) { return std::isfinite(value) && value > limit; });
+}
+
+Table rows_where(const Table& table, const std::string& column, const std::string& value) {
+  if (!table.has(column)) return table;
+  Table out{table.headers, {}, table.source};
+  const std::size_t c = table.column(column);
+  std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(out.rows),
+               [&](const auto& row) { return row[c] == value; });
+  return out;
+}
+
+std::vector<std::string> distinct(const Table& table, const std::string& column) {
+  std::vector<std::string> out;
+  const std::size_t c = table.column(column);
+  for (const auto& row : table.rows)
+    if (std::find(out.begin(), out.end(), row[c]) == out.end()) out.push_back(row[c]);
   return out;
 }
 
@@ -60,7 +94,7 @@ bool is_blank(std::string_view cell) {
   return cell.empty() || cell == "-" || shown_cell(std::string(cell)) == "-";
 }
 
-bool is_numeric_column(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
+bool is_numeric_column(const Rows& rows, std::size_t column) {
   bool any = false;
   for (const auto& row : rows) {
     const std::string& cell = row[column];
@@ -93,8 +127,7 @@ std::string without_trailing_blanks(std::string line) {
 
 }  // namespace
 
-std::string format_table(const std::vector<std::string>& headers,
-                         std::vector<std::vector<std::string>> rows) {
+std::string format_table(const std::vector<std::string>& headers, Rows rows) {
   const std::size_t columns = headers.size();
   std::vector<std::size_t> widths(columns);
   for (std::size_t c = 0; c < columns; ++c) widths[c] = width_of(headers[c]);

@@ -6,11 +6,13 @@
 
 namespace palpate::report {
 
+using Rows = std::vector<std::vector<std::string>>;
+
 /// Table of text cells with named columns: one CSV file, or one table of the page. Every row has as many
 /// cells as there are headers.
 struct Table {
   std::vector<std::string> headers = {};
-  std::vector<std::vector<std::string>> rows = {};
+  Rows rows = {};
   std::string source = {};  ///< Origin of the table, for messages
 
   /// Returns whether there is a column of that name.
@@ -20,7 +22,16 @@ struct Table {
   std::size_t column(std::string_view header) const;
   /// Returns a column as numbers; an empty or non-numeric cell is NaN.
   std::vector<double> numbers(std::string_view header) const;
+  /// Returns a cell.
+  const std::string& cell(std::size_t row, std::string_view header) const;
+  /// Returns whether a column has a finite number above `limit`; false if there is no such column.
+  bool exceeds(std::string_view header, double limit) const;
 };
+
+/// Returns the lines whose cell in `column` is `value`; all lines if there is no such column.
+Table rows_where(const Table& table, const std::string& column, const std::string& value);
+/// Returns the distinct values of a column, in the order of the lines.
+std::vector<std::string> distinct(const Table& table, const std::string& column);
 
 /// Reads a CSV file that store wrote, or one with the same format.
 /// @throws Error with file and row for a row that is longer or shorter than the header, and for an unclosed
@@ -47,10 +58,10 @@ bool is_blank(std::string_view cell);
 /// Returns aligned text for the terminal: two blanks between columns, a rule under the headers, numbers
 /// aligned to the right, words to the left. Width is counted in code points, so that Greek letters and dashes
 /// do not shift the columns. Cells are formatted by shown_cell().
-std::string format_table(const std::vector<std::string>& headers, std::vector<std::vector<std::string>> rows);
+std::string format_table(const std::vector<std::string>& headers, Rows rows);
 
 /// Returns whether every cell that is neither empty nor "-" is a number, and there is at least one number:
 /// such a column is aligned to the right.
-bool is_numeric_column(const std::vector<std::vector<std::string>>& rows, std::size_t column);
+bool is_numeric_column(const Rows& rows, std::size_t column);
 
 }  // namespace palpate::report

@@ -12,19 +12,18 @@ namespace {
 constexpr const char* kAccepted = "accepted";
 
 /// Returns the most frequent directions with their counts, as table rows.
-std::vector<std::vector<std::string>> most_frequent(const std::map<std::string, long>& counts,
-                                                    std::size_t most) {
+Rows most_frequent(const std::map<std::string, long>& counts, std::size_t most) {
   std::vector<std::pair<std::string, long>> sorted(counts.begin(), counts.end());
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   for (std::size_t i = 0; i < std::min(most, sorted.size()); ++i)
     rows.push_back({sorted[i].first, std::to_string(sorted[i].second)});
   return rows;
 }
 
 std::string worst_of(const Table& trace, std::size_t row) {
-  const auto cell = [&](const char* column) { return trace.rows[row][trace.column(column)]; };
+  const auto cell = [&](const char* column) { return trace.cell(row, column); };
   if (cell("worst_body").empty()) return "";
   return fmt::format("{}{}, {}", cell("worst_body"),
                      cell("worst_node").empty() ? "" : ", node " + shown_cell(cell("worst_node")),
@@ -38,7 +37,7 @@ Plot step_plot(const Table& trace) {
   const std::size_t outcome = trace.column("outcome");
   Plot plot;
   plot.x_label = "time [s]";
-  plot.y_label = "step [s]";
+  plot.y_label = "step size [s]";
   plot.log_y = true;
   const auto series_of = [&](const std::string& which, Mark mark) {
     Series series{.name = which, .x = {}, .y = {}, .mark = mark};
@@ -50,9 +49,11 @@ Plot step_plot(const Table& trace) {
     return series;
   };
   plot.series.push_back(series_of(kAccepted, Mark::kLine));
-  plot.series[0].colour = "#7a7f8a";
-  const std::map<std::string, std::string> colours = {
-      {"error test", "#d1495b"}, {"Newton", "#b0529e"}, {"not finite", "#d9720a"}, {"event", "#2b7bba"}};
+  plot.series[0].colour = kPalette[10];
+  const std::map<std::string, std::string_view> colours = {{"error test", kPalette[4]},
+                                                           {"Newton", kPalette[3]},
+                                                           {"not finite", kPalette[1]},
+                                                           {"event", kPalette[0]}};
   for (const std::string& which : distinct(trace, "outcome")) {
     if (which == kAccepted) continue;
     plot.series.push_back(series_of(which, Mark::kPoints));
@@ -73,7 +74,7 @@ void add_trace(Page& page, const Table& trace) {
       ++(what == kAccepted ? worst_accepted : worst_rejected)[where];
     if (const std::string& body = trace.rows[i][inverted]; !body.empty()) ++inverted_in[body];
   }
-  add_plot(page, step_plot(trace),
+  add_plot(page, step_plot(trace), "trace.csv",
            "Step size over time: the line shows accepted steps, points show rejected attempts, coloured by "
            "cause (an event ends a step at a root).");
   page.add_table({"outcome", "attempts"}, most_frequent(outcomes, outcomes.size()));

@@ -36,17 +36,11 @@ std::vector<Ladder> ladders_of(const Json& one) {
   return out;
 }
 
-Plot log_plot(const std::string& x_label) {
-  Plot plot;
-  plot.x_label = x_label;
-  plot.y_label = "error";
-  plot.log_x = plot.log_y = true;
-  return plot;
-}
+constexpr const char* kErrorLabel = "error, relative unless the quantity states otherwise";
 
 /// Plots errors over sizes of one kind, each with its fitted order.
 Plot convergence_plot(const std::vector<Ladder>& ladders, const std::string& size_label) {
-  Plot plot = log_plot(size_label);
+  Plot plot = log_log_plot(size_label, kErrorLabel);
   for (const Ladder& ladder : ladders) {
     if (ladder.size_label != size_label) continue;
     const double order = fit_log_line(ladder.size, ladder.error).slope;
@@ -62,7 +56,7 @@ Plot convergence_plot(const std::vector<Ladder>& ladders, const std::string& siz
 }
 
 Plot cost_plot(const std::vector<Ladder>& ladders) {
-  Plot plot = log_plot("run time of the library [s]");
+  Plot plot = log_log_plot("run time of the library [s]", kErrorLabel);
   for (const Ladder& ladder : ladders)
     if (ladder.seconds.size() == ladder.error.size())
       plot.series.push_back(
@@ -87,17 +81,17 @@ void add_convergence(Page& page, const Json& cases) {
       if (std::find(labels.begin(), labels.end(), ladder.size_label) == labels.end())
         labels.push_back(ladder.size_label);
     for (const std::string& label : labels)
-      add_plot(page, convergence_plot(ladders, label),
+      add_plot(page, convergence_plot(ladders, label), "validation.json",
                fmt::format("{}: error against {}.", text_at(one, "name"), label));
     if (const Plot cost = cost_plot(ladders); !cost.series.empty())
-      add_plot(page, cost, text_at(one, "name") + ": error against run time.");
+      add_plot(page, cost, "validation.json", text_at(one, "name") + ": error against run time.");
   }
   if (any) page.end_details();
 }
 
 /// Table with one mark per row.
 struct Marked {
-  std::vector<std::vector<std::string>> rows;
+  Rows rows;
   std::vector<RowMark> marks;
   void add(std::vector<std::string> row, bool good) {
     rows.push_back(std::move(row));

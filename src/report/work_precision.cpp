@@ -61,6 +61,12 @@ LogLine fit_log_line(const std::vector<double>& x, const std::vector<double>& y)
   return line;
 }
 
+std::vector<double> targets_of(double scale) {
+  std::vector<double> targets = kTargets;
+  for (double& target : targets) target *= scale;
+  return targets;
+}
+
 const std::vector<std::string>& exchange_columns() {
   static const std::vector<std::string> columns = {"exchange_period_s", "position_error_rel_l2",
                                                    "force_error_rms_n", "torque_error_rms_n_m", "cpu_s"};
@@ -78,50 +84,30 @@ std::string setting_text(const std::string& setting_name, double setting) {
   return setting_name == "rtol" ? text : setting_name + " " + text;
 }
 
-Table rows_where(const Table& table, const std::string& column, const std::string& value) {
-  if (!table.has(column)) return table;
-  Table out{table.headers, {}, table.source};
-  const std::size_t c = table.column(column);
-  std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(out.rows),
-               [&](const auto& row) { return row[c] == value; });
-  return out;
-}
-
-std::vector<std::string> distinct(const Table& table, const std::string& column) {
-  std::vector<std::string> out;
-  const std::size_t c = table.column(column);
-  for (const auto& row : table.rows)
-    if (std::find(out.begin(), out.end(), row[c]) == out.end()) out.push_back(row[c]);
-  return out;
-}
-
 std::vector<Ladder> ladders(const Table& compare, const std::string& error_column,
                             const std::string& cost_column) {
   const std::vector<double> setting = compare.numbers("setting"), error = compare.numbers(error_column),
                             cost = compare.numbers(cost_column), order = compare.numbers("order");
-  const auto text = [&](std::size_t row, const char* column) {
-    return compare.rows[row][compare.column(column)];
-  };
   const std::size_t below = compare.column(below_column(compare, error_column));
   const Spread spread(compare, cost_column);
   std::vector<Ladder> out;
   for (std::size_t i = 0; i < compare.rows.size(); ++i) {
-    const std::string label = text(i, "label");
+    const std::string label = compare.cell(i, "label");
     auto ladder = std::find_if(out.begin(), out.end(), [&](const Ladder& l) { return l.label == label; });
     if (ladder == out.end()) {
       out.push_back({label,
-                     text(i, "integrator"),
-                     text(i, "family"),
-                     text(i, "stability"),
-                     text(i, "setting_name"),
+                     compare.cell(i, "integrator"),
+                     compare.cell(i, "family"),
+                     compare.cell(i, "stability"),
+                     compare.cell(i, "setting_name"),
                      0,
                      false,
                      {}});
       ladder = out.end() - 1;
       ladder->order = std::isfinite(order[i]) ? static_cast<int>(order[i]) : 0;
-      ladder->coarsest_tried = is_yes(text(i, "coarsest"));
+      ladder->coarsest_tried = is_yes(compare.cell(i, "coarsest"));
     }
-    if (text(i, "status") == "ok" && std::isfinite(error[i])) {
+    if (compare.cell(i, "status") == "ok" && std::isfinite(error[i])) {
       const auto [low, high] = spread.of(i, cost[i]);
       LadderPoint point{setting[i], error[i], cost[i], low, high, is_yes(compare.rows[i][below])};
       const std::vector<double>& failed = ladder->failed_settings;
@@ -129,8 +115,8 @@ std::vector<Ladder> ladders(const Table& compare, const std::string& error_colum
       point.behind_failure = !failed.empty() && !(failed.back() >= before);
       if (point.behind_failure) point.failed_before = failed.back();
       ladder->points.push_back(point);
-    } else if (text(i, "status") != "ok") {
-      ladder->failures.emplace_back(text(i, "status"), text(i, "reason"));
+    } else if (compare.cell(i, "status") != "ok") {
+      ladder->failures.emplace_back(compare.cell(i, "status"), compare.cell(i, "reason"));
       ladder->failed_settings.push_back(setting[i]);
     }
   }

@@ -1,12 +1,12 @@
+#include "work_precision_plots.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "log_line.h"
 #include "palpate/core/error.h"
-#include "report/work_precision.h"
 
 namespace palpate::report {
 namespace {
@@ -18,18 +18,11 @@ bool is_drawn(double error, double scale) { return !(error > kLargestDrawn * sca
 constexpr std::size_t kFewLadders = 3;
 /// Most sequences of a family in one plot; larger families are plotted by order.
 constexpr std::size_t kManyInFamily = 6;
-constexpr const char* kFaintColour = "#c3c9d0";
-
-/// Twelve hues of medium lightness for families, in the order of their first line.
-constexpr std::array<const char*, 12> kFamilyColours = {"#2b7bba", "#d9720a", "#2a9461", "#b0529e",
-                                                        "#d1495b", "#0f9aa8", "#8a6d3b", "#6a5acd",
-                                                        "#8fae1b", "#c2185b", "#4c6a7d", "#e0a100"};
 
 std::map<std::string, std::string> family_colours(const std::vector<Ladder>& all) {
   std::map<std::string, std::string> out;
   for (const Ladder& ladder : all)
-    if (!out.contains(ladder.family))
-      out.emplace(ladder.family, kFamilyColours[out.size() % kFamilyColours.size()]);
+    if (!out.contains(ladder.family)) out.emplace(ladder.family, kPalette[out.size() % kPalette.size()]);
   return out;
 }
 
@@ -77,10 +70,7 @@ Series best_envelope(const std::vector<Ladder>& all, double scale) {
 }
 
 Plot frame_of(const std::string& error_label, double reference_error, const std::string& cost_label) {
-  Plot plot;
-  plot.x_label = cost_label;
-  plot.y_label = error_label;
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot(cost_label, error_label);
   plot.floor_y = reference_error;
   plot.floor_label = "reference error";
   return plot;
@@ -141,7 +131,6 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
     Plot plot = frame_of(error_label, reference_error, cost_label);
     plot.title = panel;
     plot.floor_label = "";
-    plot.width = 520, plot.height = 400;
     for (const Ladder& ladder : all) {
       if (panel_of(ladder) == panel) continue;
       Series series = line_of(ladder, scale, false);
@@ -150,17 +139,12 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
       series.notes.clear();
       series.mark = Mark::kLine;
       series.hollow.clear();
-      series.colour = kFaintColour;
+      series.colour = "faint";
       series.width = 0.7;
       plot.series.push_back(std::move(series));
     }
-    std::size_t next = 0;
-    for (const Ladder& ladder : all) {
-      if (panel_of(ladder) != panel) continue;
-      Series series = line_of(ladder, scale, false);
-      series.colour = kFamilyColours[next++ % kFamilyColours.size()];
-      plot.series.push_back(std::move(series));
-    }
+    for (const Ladder& ladder : all)
+      if (panel_of(ladder) == panel) plot.series.push_back(line_of(ladder, scale, false));
     out.push_back(std::move(plot));
   }
   return out;
@@ -169,16 +153,13 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
 Plot exchange_plot(const Table& exchange, const std::string& error_column, const std::string& error_label) {
   const std::vector<double> period = exchange.numbers("exchange_period_s"),
                             error = exchange.numbers(error_column);
-  Plot plot;
-  plot.x_label = "exchange period [s]";
-  plot.y_label = error_label;
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot("exchange period [s]", error_label);
   plot.height = 340;
   plot.series.push_back({.name = "measured", .x = period, .y = error, .mark = Mark::kLinePoints});
   std::vector<double> resolved = error;  // the fit ignores NaN
   if (const std::string below = below_column(exchange, error_column); exchange.has(below))
     for (std::size_t i = 0; i < resolved.size(); ++i)
-      if (exchange.rows[i][exchange.column(below)] == "yes") resolved[i] = kUnknown;
+      if (exchange.cell(i, below) == "yes") resolved[i] = kUnknown;
   const LogLine line = fit_log_line(period, resolved);
   if (std::isfinite(line.slope)) {
     const auto [least, greatest] = std::minmax_element(period.begin(), period.end());
@@ -199,12 +180,8 @@ Plot restart_plot(const Table& restarts, const std::string& count_column, const 
                             simulated = restarts.numbers("simulated_s");
   const std::size_t label = restarts.column("label"), multistep = restarts.column("multistep"),
                     status = restarts.column("status");
-  Plot plot;
-  plot.x_label = "contact refreshes per simulated second";
-  plot.y_label = count_label;
-  plot.log_x = plot.log_y = true;
+  Plot plot = log_log_plot("contact refreshes per simulated second", count_label);
   plot.height = 400;
-  std::size_t next = 0;
   for (const std::string& name : distinct(restarts, "label")) {
     Series series{.name = name, .x = {}, .y = {}, .mark = Mark::kLinePoints};
     bool many = false;
@@ -216,7 +193,6 @@ Plot restart_plot(const Table& restarts, const std::string& count_column, const 
     }
     series.name += many ? " (multistep)" : " (one-step)";
     if (!many) series.mark = Mark::kDashed;
-    series.colour = kFamilyColours[next++ % kFamilyColours.size()];
     plot.series.push_back(std::move(series));
   }
   return plot;

@@ -1,8 +1,9 @@
+#include "palpate/store/run_reader.h"
+
 #include <algorithm>
 
 #include "core/sandbox.h"
 #include "palpate/core/error.h"
-#include "palpate/store/run_file.h"
 #include "store/h5.h"
 
 namespace palpate::store {

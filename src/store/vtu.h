@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "palpate/store/run_file.h"
+#include "palpate/store/run_reader.h"
 
 /// VTK XML files, which every ParaView opens: one .vtu per recorded state, and a .pvd that combines them into
 /// a time series.

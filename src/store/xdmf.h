@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "palpate/store/run_file.h"
+#include "palpate/store/run_reader.h"
 
 /// XDMF sidecars: small XML files next to a run file that specify where in it the meshes and fields of each
 /// step are stored.  ParaView before 5.12, which opens no time series of VTKHDF, opens these, and so do other

@@ -14,7 +14,6 @@ QUICK_COMPARISON = ["--limit-s", "1", "--duration-s", "0.05", "--repeats", "1",
                     "--set", "body.0.mesh.element_size_m=0.05"]
 LONG = ["run", "one-tet", "--duration-s", "1e6"]  # ends only when it is stopped
 NO_EGL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nowhere.json"}  # libglvnd then finds no driver
-NO_GNUPLOT = {"PATH": "/nowhere"}
 
 
 def open_terminal():

@@ -80,7 +80,7 @@ class Readme(Page, unittest.TestCase):
         page = (folder / "report.html").read_text()
         xml.dom.minidom.parseString(page)
         self.assertIn("data:image/png;base64,", page)
-        self.assertGreaterEqual(page.count("<svg"), 3)
+        self.assertGreaterEqual(page.count('class="plot-data"'), 3)
         for word in ("Force on the hand", "Error against run time", "Error due to the exchange period",
                      "Contact methods"):
             self.assertIn(word, page)

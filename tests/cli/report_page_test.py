@@ -89,24 +89,24 @@ class ReportPage(unittest.TestCase):
 
     def test_a_series_can_be_switched_and_values_read(self):
         self.seen("figure.chart")
-        self.tab.wait_for("document.querySelector('figure.is-live .legend button') !== null")
-        ink = ("(() => { const c = document.querySelector('figure.is-live canvas'); "
+        self.tab.wait_for("document.querySelector('figure.chart .legend button') !== null")
+        ink = ("(() => { const c = document.querySelector('figure.chart canvas'); "
                "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; "
                "let n = 0; for (let i = 3; i < d.length; i += 4) n += d[i] > 0; return n; })()")
         self.tab.wait_for(f"{ink} > 1000")
         before = self.tab.value(ink)
-        pressed = "figure.is-live .legend button[aria-pressed]"
+        pressed = "figure.chart .legend button[aria-pressed]"
         count = self.tab.value(f"document.querySelectorAll('{pressed}').length")
         self.assertGreaterEqual(count, 3)
-        self.tab.value("document.querySelectorAll('figure.is-live .legend button')[3].click()")
+        self.tab.value("document.querySelectorAll('figure.chart .legend button')[3].click()")
         self.tab.wait_for(f"{ink} !== {before}")
         self.assertLess(self.tab.value(ink), before, "a line is gone")
-        self.tab.value("document.querySelector('figure.is-live .live').focus()")
+        self.tab.value("document.querySelector('figure.chart .live').focus()")
         self.tab.key("ArrowRight")
-        self.tab.wait_for("!document.querySelector('figure.is-live .reading').hidden")
-        self.assertRegex(self.tab.value("document.querySelector('figure.is-live .reading').textContent"),
+        self.tab.wait_for("!document.querySelector('figure.chart .reading').hidden")
+        self.assertRegex(self.tab.value("document.querySelector('figure.chart .reading').textContent"),
                          r"time \[s\]: .*x: ")
-        reset = "document.querySelector('figure.is-live .reset').hidden"
+        reset = "document.querySelector('figure.chart .reset').hidden"
         self.assertTrue(self.tab.value(reset))
         self.tab.key("+", text="+")
         self.tab.wait_for(f"!{reset}")
@@ -138,9 +138,9 @@ class ReportPage(unittest.TestCase):
     def test_charts_of_counts_are_folded_away_and_drawn_when_opened(self):
         self.assertEqual(self.tab.value("document.querySelectorAll('details[open]').length"), 0)
         self.assertGreater(self.tab.value("document.querySelectorAll('details figure.chart').length"), 0)
-        self.assertEqual(self.tab.value("document.querySelectorAll('details figure.is-live').length"), 0)
+        self.assertEqual(self.tab.value("document.querySelectorAll('details figure.chart').length"), 0)
         self.seen("details figure.chart")
-        self.tab.wait_for("document.querySelectorAll('details figure.is-live canvas').length > 0")
+        self.tab.wait_for("document.querySelectorAll('details figure.chart canvas').length > 0")
 
     def test_the_view_turns_and_plays(self):
         self.seen(".view")
@@ -170,28 +170,67 @@ class ReportPage(unittest.TestCase):
                 self.tab.size(width, dark=dark)
                 self.tab.value("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
                 self.seen("figure.chart")
-                self.tab.wait_for("document.querySelector('figure.is-live canvas') !== null")
+                self.tab.wait_for("document.querySelector('figure.chart canvas') !== null")
                 self.assertEqual(self.tab.value("document.documentElement.clientWidth"), width)
                 # charts adapt to a new width after the browser has reported it
                 self.tab.wait_for("document.documentElement.scrollWidth <= "
                                   "document.documentElement.clientWidth", patience_s=10.0)
 
-    def test_print_shows_the_svg(self):
+    def test_a_chart_is_saved_as_a_picture_with_its_legend(self):
+        self.tab.size(1280, dark=True)
         self.seen("figure.chart")
-        self.tab.wait_for("document.querySelector('figure.is-live canvas') !== null")
-        shown = ("['figure.is-live > svg', 'figure.is-live .live'].map((s) => "
+        self.tab.wait_for("document.querySelector('figure.chart .save') !== null")
+        self.tab.value("HTMLAnchorElement.prototype.click = function () { window.saved = [this.download, "
+                       "this.href]; }; document.querySelector('figure.chart .save').click()")
+        self.tab.wait_for("window.saved !== undefined")
+        self.assertEqual(self.tab.value("saved[0]"), "force-on-the-hand-N.png")
+        self.tab.value("(async () => { window.picture = new Image(); picture.src = saved[1]; "
+                       "await picture.decode(); return 0; })()")
+        chart = self.tab.value("(() => { const c = document.querySelector('figure.chart canvas'); "
+                               "return [c.width, c.height]; })()")
+        width, height = self.tab.value("[picture.width, picture.height]")
+        self.assertGreaterEqual(width, 1600, "two pixels per CSS pixel")
+        self.assertEqual(width, chart[0])
+        self.assertGreater(height, chart[1], "the legend")
+        colours = self.tab.value(
+            "(() => { const c = document.createElement('canvas'); c.width = picture.width; "
+            "c.height = picture.height; const x = c.getContext('2d'); x.drawImage(picture, 0, 0); "
+            f"const legend = x.getImageData(0, {chart[1]}, c.width, c.height - {chart[1]}).data; "
+            "let written = 0; for (let i = 0; i < legend.length; i += 4) written += legend[i] < 250; "
+            "return [Array.from(x.getImageData(0, 0, 1, 1).data), written]; })()")
+        self.assertEqual(colours[0], [255, 255, 255, 255], "a light picture of a dark page")
+        self.assertGreater(colours[1], 500)
+        self.assertFalse(self.tab.value("document.documentElement.classList.contains('on-paper')"))
+
+    def test_print_draws_every_chart_in_light_colours(self):
+        self.tab.size(1280, dark=True)
+        charts = "document.querySelectorAll('figure.chart')"
+        open_charts = f"Array.from({charts}).filter((one) => !one.closest('details:not([open])'))"
+        drawn = f"{open_charts}.filter((one) => one.querySelector('canvas')).length"
+        self.assertLess(self.tab.value(drawn), self.tab.value(f"{open_charts}.length"), "some wait")
+        self.tab.value("dispatchEvent(new Event('beforeprint'))")
+        self.assertEqual(self.tab.value(drawn), self.tab.value(f"{open_charts}.length"))
+        ink = "getComputedStyle(document.documentElement).getPropertyValue('--page').trim()"
+        self.assertEqual(self.tab.value(ink), "#ffffff")
+        self.tab.value("dispatchEvent(new Event('afterprint'))")
+        self.assertNotEqual(self.tab.value(ink), "#ffffff")
+        shown = ("['.live', '.legend .save'].map((s) => "
                  "getComputedStyle(document.querySelector(s)).display !== 'none')")
-        self.assertEqual(self.tab.value(shown), [False, True])
+        self.assertEqual(self.tab.value(shown), [True, True])
         self.tab.call("Emulation.setEmulatedMedia", media="print")
         self.assertEqual(self.tab.value(shown), [True, False])
         self.tab.call("Emulation.setEmulatedMedia", media="")
 
-    def test_without_script_the_svg_stands_and_nothing_is_empty(self):
+    def test_without_script_a_note_names_the_values_and_nothing_is_empty(self):
+        notes = "Array.from(document.querySelectorAll('figure.chart .values'), (one) => one.innerText)"
+        self.assertEqual(self.tab.value(notes), [], "the script draws")
         self.tab.call("Emulation.setScriptExecutionDisabled", value=True)
         self.tab.open(self.page)
         self.tab.call("Emulation.setScriptExecutionDisabled", value=False)
         self.assertEqual(self.tab.value("document.querySelectorAll('.live, .legend, button.sort').length"), 0)
-        self.assertGreater(self.tab.value("document.querySelector('figure.chart > svg').clientHeight"), 100)
+        self.assertIn("This chart needs JavaScript. Its values are in force.csv.", self.tab.value(notes))
+        self.assertEqual(len(self.tab.value(notes)),
+                         self.tab.value("document.querySelectorAll('figure.chart').length"))
         self.assertEqual(self.tab.value("document.querySelector('.view').clientHeight"), 0)
         self.assertIn("is the cheapest", self.tab.value("document.querySelector('nav').innerText"))
 

@@ -147,6 +147,11 @@ std::vector<Kind> kinds() {
          "peak_force_n,steps,end_state\n0,a,cvode-bdf,0.001,1e3,1,900,ok,,1,10,aa\n"
          "1,a,cvode-bdf,0.001,1e3,2,1100,ok,,3,11,ab\n2,a,cvode-bdf,0.001,1e5,1,900,ok,,5,12,ac\n"},
         {"study-times.csv", "task,status,loop_cpu_s\n0,ok,1\n1,ok,2\n2,ok,3\n"}}},
+      {"z-width",
+       {{"z_width.csv",
+         "damping_n_s_m,k_passive_n_m,k_spectral_n_m,k_delay_bound_n_m,k_simulated_n_m,"
+         "coupling_in_contact_n_m\n1,200,400,300,390,600\n2,300,500,400,480,700\n"},
+        summary}},
       {"validation",
        {{"validation.json", R"({"cases": [{"name": "patch", "summary": "s", "wall_s": 2.5, "measurements": [
            {"quantity": "q", "computed": 1.5, "exact": 1, "error": 1e-4, "bar": 1e-3, "order": 0.83,
@@ -161,6 +166,8 @@ std::vector<Kind> kinds() {
       {"bench-fem", {{"bench-fem.json", R"({"rows": [
            {"nodes": 100, "step_s": 0.01, "linear_solver": "pcg", "threads": 1, "step_ms": 9},
            {"nodes": 100, "step_s": 0.01, "linear_solver": "cg", "threads": 2, "step_ms": 7}]})"}}},
+      {"bench-fem-accuracy", {{"bench-fem-accuracy.json", R"({"points": [
+           {"program": "palpate", "step_s": 0.01, "ms_of_ten_ms": 4, "error": 1e-2, "quoted": false}]})"}}},
       {"bench-contact", {{"bench-contact.json", R"({"scenes": [{"scene": "gears", "rows": [
            {"method": "cpu", "query_ms": {"least": 1, "median": 2.5}}]}],
            "bars": [{"scene": "gears", "what": "query", "value": 3, "at_most": 2, "met": false}]})"}}}};

@@ -52,20 +52,16 @@ TEST(Page, SetsColumnsOfNumbersToTheRight) {
   EXPECT_NE(page.html().find("<td>a</td><td class=\"n\">1.5</td>"), std::string::npos);
 }
 
-TEST(Page, MakesIdsUniqueAndTakesBlackFromThePage) {
-  const std::string svg =
-      "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
-      "xmlns:xlink=\"http://www.w3.org/1999/xlink\">"
-      "<path id='p' fill=\"black\"/><use xlink:href='#p'/></svg>";
+TEST(Page, SaysWhereTheValuesOfAChartAreAndKeepsItsNumbersInside) {
   report::Page page("t");
-  page.add_svg(svg, "one").add_svg(svg, "two");
+  page.add_chart("{\"title\": \"</script><b> & c\"}", "values <of>.csv", kNasty);
   const std::string html = page.html();
-  EXPECT_EQ(count(html, "id='f1-p'"), 1u);
-  EXPECT_EQ(count(html, "href='#f2-p'"), 1u);
-  EXPECT_EQ(html.find("http"), std::string::npos);
-  EXPECT_EQ(count(html, "fill=\"currentColor\""), 2u);
   EXPECT_EQ(well_formed_problem(html), "");
-  EXPECT_THROW(page.add_svg("no svg", ""), Error);
+  EXPECT_NE(html.find("This chart needs JavaScript. Its values are in values &lt;of&gt;.csv."),
+            std::string::npos);
+  EXPECT_EQ(count(html, kNastyEscaped), 1u) << "the caption";
+  EXPECT_NE(html.find("{\"title\": \"\\u003c/script>\\u003cb> \\u0026 c\"}"), std::string::npos)
+      << "no text ends the element that contains the numbers";
 }
 
 TEST(Page, EmbedsAPngAndRefusesWhatIsNone) {

@@ -4,117 +4,118 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "palpate/core/error.h"
 #include "report/force_plot.h"
-#include "report/page.h"
 #include "report/thin.h"
-#include "temporary_folder.h"
-#include "well_formed.h"
 
 using namespace palpate;
+using nlohmann::json;
+using report::Mark;
+using report::Plot;
 
 namespace {
 
-report::Plot small_plot() {
-  report::Plot plot;
+Plot small_plot() {
+  Plot plot;
   plot.title = "A title";
-  plot.x_label = "time [s]";
-  plot.y_label = "force_x [N]";
-  plot.series.push_back({.name = "first_series <a&b>",
-                         .x = {0, 1, 2},
-                         .y = {0, 1, 4},
-                         .mark = report::Mark::kLinePoints,
-                         .labels = {"p0", "p\"1", "p2"}});
-  plot.series.push_back(
-      {.name = "second", .x = {0, 2}, .y = {4, 0}, .mark = report::Mark::kDashed, .colour = "ink"});
-  plot.levels.push_back({3.0, "limit 3 N"});
+  plot.x_label = "CPU time [s]";
+  plot.y_label = "error";
+  plot.log_y = true;
+  plot.levels = {{0.5, "a limit"}};
+  plot.floor_y = 1e-6;
+  plot.series.push_back({.name = "first",
+                         .x = {1.0 / 3.0, 2.0, 3.0},
+                         .y = {0.1, -1.0, 1e-300},
+                         .mark = Mark::kLinePoints,
+                         .labels = {"p0", "p1", "p2"},
+                         .hollow = {true, false, false},
+                         .group = "family",
+                         .notes = {"a", "b", "c"}});
+  plot.series.push_back({.name = "second", .x = {1.0}, .y = {1.0}, .mark = Mark::kDashed, .colour = "ink"});
   return plot;
 }
 
-std::string message_of(const report::Plot& plot) {
+std::string message_of(const Plot& plot) {
   try {
-    report::plot_svg(plot);
+    report::plot_json(plot);
   } catch (const Error& e) { return e.what(); }
   return "no error";
 }
 
-/// Sets an environment variable and restores it at the end of the scope.
-class ScopedVariable {
- public:
-  ScopedVariable(const char* name, const char* value) : name_(name), old_(std::getenv(name)) {
-    setenv(name, value, 1);
-  }
-  ~ScopedVariable() { setenv(name_, old_.c_str(), 1); }
-
- private:
-  const char* name_;
-  std::string old_;
-};
-
 }  // namespace
 
-TEST(Plot, ShowsNamesLabelsAndLevels) {
-  const std::string svg = report::plot_svg(small_plot());
-  for (const char* text : {"A title", "time [s]", "force_x [N]", "first_series &lt;a&amp;b>", "second",
-                           ">p0<", "p2", "limit 3 N"})
-    EXPECT_NE(svg.find(text), std::string::npos) << text;
-  EXPECT_EQ(well_formed_problem(svg.substr(svg.find("<svg"))), "");
+// Exact equality: the numbers on the page are those of the result.
+TEST(Plot, HoldsTheNumbersThemselvesWithoutThoseThatCannotBeDrawn) {
+  const json data = json::parse(report::plot_json(small_plot()));
+  const json& first = data["series"][0];
+  EXPECT_EQ(first["x"], (std::vector<double>{1.0 / 3.0, 3.0}));
+  EXPECT_EQ(first["y"], (std::vector<double>{0.1, 1e-300})) << "-1 has no logarithm";
+  EXPECT_EQ(first["labels"], (std::vector<std::string>{"p0", "p2"})) << "they stay beside their points";
+  EXPECT_EQ(first["notes"], (std::vector<std::string>{"a", "c"}));
+  EXPECT_EQ(first["hollow"], (std::vector<bool>{true, false}));
+  EXPECT_EQ(first["mark"], "line-points");
+  EXPECT_EQ(first["group"], "family");
+  EXPECT_EQ(data["series"][1]["mark"], "dashed");
+  EXPECT_EQ(data["title"], "A title");
+  EXPECT_EQ(data["x_label"], "CPU time [s]");
+  EXPECT_EQ(data["levels"][0]["y"], 0.5);
+  EXPECT_EQ(data["levels"][0]["label"], "a limit");
+  EXPECT_EQ(data["floor_y"], 1e-6);
+  EXPECT_EQ(data["log_x"], false);
+  EXPECT_EQ(data["log_y"], true);
 }
 
-TEST(Plot, RunsNoCommandHiddenInAName) {
-  const TemporaryFolder folder;
-  const auto trace = folder / "must_not_exist";
-  report::Plot plot = small_plot();
-  const std::string command = "`touch " + trace.string() + "` '; system 'touch " + trace.string() + "'";
-  plot.title = plot.x_label = plot.series[0].name = plot.series[0].labels[0] = plot.levels[0].label = command;
-  report::plot_svg(plot);
-  EXPECT_FALSE(std::filesystem::exists(trace));
+TEST(Plot, LeavesOutAnEmptySeriesWithoutAColourForIt) {
+  Plot plot = small_plot();
+  plot.series[0].y = {-1.0, -2.0, -3.0};
+  plot.series.push_back({.name = "third", .x = {1.0}, .y = {1.0}});
+  plot.series.push_back({.name = "fourth", .x = {1.0}, .y = {1.0}});
+  const json series = json::parse(report::plot_json(plot))["series"];
+  ASSERT_EQ(series.size(), 3u);
+  EXPECT_EQ(series[0]["colour"], "ink");
+  EXPECT_EQ(series[1]["colour"], report::kPalette[0]);
+  EXPECT_EQ(series[2]["colour"], report::kPalette[1]);
 }
 
-TEST(Plot, LeavesNoBlackInAPage) {
-  // A curve in the text colour must follow the page's text into dark mode.
-  const std::string html = report::Page("t").add_svg(report::plot_svg(small_plot()), "").html();
-  const std::string svg = html.substr(html.find("<svg"));
-  for (const char* black : {"black", "rgb(  0,   0,   0)", "rgb(0,0,0)"})
-    EXPECT_EQ(svg.find(black), std::string::npos) << black;
+TEST(Plot, WritesAFloorThatIsNotThereAsNull) {
+  Plot plot = small_plot();
+  plot.floor_y = std::nan("");
+  EXPECT_TRUE(json::parse(report::plot_json(plot))["floor_y"].is_null());
 }
 
-TEST(Plot, IsTheSameTwice) { EXPECT_EQ(report::plot_svg(small_plot()), report::plot_svg(small_plot())); }
-
-TEST(Plot, LeavesOutWhatAnAxisCannotShow) {
-  report::Plot plot = small_plot();
-  plot.log_x = plot.log_y = true;
-  // (0, 0) does not exist on logarithmic axes
-  EXPECT_EQ(report::plot_svg(plot).find(">p0<"), std::string::npos);
+TEST(Plot, KeepsThePeakOfACurveThatIsThinned) {
+  Plot plot;
+  plot.series.push_back({.name = "long", .x = {}, .y = {}});
+  for (int i = 0; i < 100'000; ++i) {
+    plot.series[0].x.push_back(i);
+    plot.series[0].y.push_back(i == 77'777 ? 5.0 : std::sin(i));
+  }
+  const std::vector<double> y = json::parse(report::plot_json(plot))["series"][0]["y"];
+  EXPECT_LT(y.size(), 6100u);
+  EXPECT_GT(y.size(), 1500u);
+  EXPECT_EQ(*std::max_element(y.begin(), y.end()), 5.0);
 }
 
 TEST(Plot, SaysWhenThereIsNothingToDraw) {
-  report::Plot plot = small_plot();
+  Plot plot = small_plot();
+  plot.log_y = false;
   for (auto& s : plot.series) std::fill(s.y.begin(), s.y.end(), std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(message_of(plot), "plot \"A title\": there is nothing to draw: no point is finite");
+  plot.log_x = true;
+  EXPECT_NE(message_of(plot).find("and positive, as a logarithmic axis needs"), std::string::npos);
+  EXPECT_NE(message_of(Plot{}).find("nothing to draw"), std::string::npos);
 }
 
 TEST(Plot, RefusesSeriesOfUnequalLengths) {
-  report::Plot plot = small_plot();
+  Plot plot = small_plot();
   plot.series[0].y.pop_back();
-  EXPECT_THROW(report::plot_svg(plot), InternalError);
-}
-
-TEST(Plot, NamesThePackageWhenGnuplotIsMissing) {
-  const ScopedVariable path("PATH", "/nowhere");
-  EXPECT_NE(message_of(small_plot()).find("install the package gnuplot-nox"), std::string::npos);
-}
-
-TEST(Plot, PassesOnWhatGnuplotComplainsAbout) {
-  report::Plot plot = small_plot();
-  plot.series[0].colour = "no-such-colour";
-  const std::string message = message_of(plot);
-  EXPECT_NE(message.find("gnuplot drew no plot"), std::string::npos) << message;
-  EXPECT_NE(message.find("color"), std::string::npos) << message;
+  EXPECT_THROW(report::plot_json(plot), InternalError);
+  plot = small_plot();
+  plot.series[0].labels.pop_back();
+  EXPECT_THROW(report::plot_json(plot), InternalError);
 }
 
 TEST(Thin, KeepsPeaksAndEnds) {

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "page_charts.h"
 #include "palpate/core/error.h"
 #include "report/work_precision.h"
 #include "store/study_columns.h"
@@ -35,17 +36,6 @@ std::string without_scripts(std::string html) {
   for (std::size_t at = html.find("<script>"); at != std::string::npos; at = html.find("<script>", at))
     html.erase(at, html.find("</script>", at) + 9 - at);
   return html;
-}
-
-/// Returns the numbers of the chart with this y axis label.
-nlohmann::json chart_of(const std::string& html, const std::string& y_label) {
-  const std::string begin = "class=\"plot-data\">", end = "</script>";
-  for (std::size_t at = html.find(begin); at != std::string::npos; at = html.find(begin, at + 1)) {
-    const std::size_t from = at + begin.size();
-    nlohmann::json data = nlohmann::json::parse(html.substr(from, html.find(end, from) - from));
-    if (data["y_label"] == y_label) return data;
-  }
-  return nullptr;
 }
 
 /// Writes a small version of every file from which a report is made.
@@ -286,7 +276,9 @@ TEST(RunReport, HasTheRemarksOfTheCommandInItsHead) {
       R"({"scene": "x", "outcome": "finished", "remarks": ["bodies & contact at 21.7 Hz", "not passive"]})";
   const std::vector<std::pair<const char*, const char*>> kinds = {
       {"force.csv", "time_s,force_x_n,force_y_n,force_z_n\n0,0,0,0\n0.001,0,0,1\n"},
-      {"z_width.csv", "damping_n_s_m\n1\n"},
+      {"z_width.csv",
+       "damping_n_s_m,k_passive_n_m,k_spectral_n_m,k_delay_bound_n_m,k_simulated_n_m,"
+       "coupling_in_contact_n_m\n1,200,400,300,390,600\n"},
       {"study.csv", "task,scene,integrator,status,reason,steps\n0,a,bdf2,ok,,3\n"},
       {"stability.json", R"({"cells": []})"},
       {"validation.json", R"({"cases": []})"}};

@@ -81,9 +81,10 @@ TEST(StudySection, DrawsTheSweepAndTheSeeds) {
   EXPECT_TRUE(written.missing_figures.empty());
   const std::string html = read(written.page);
   EXPECT_EQ(well_formed_problem(html), "");
-  for (const char* text : {"<h1>Study</h1>", "Peak force on the hand [N] over body.0.youngs_modulus_pa",
-                           "CPU [s] over ", "lines are means over the seeds", "Spread over the seeds",
-                           "too many &lt;steps&gt;", "[study] # a &lt; b", "All figures of all tasks"})
+  for (const char* text :
+       {"<h1>Study</h1>", "Peak force on the hand [N] over body.0.youngs_modulus_pa", "CPU [s] over ",
+        "\"x_label\":\"body 0: youngs modulus [Pa]\"", "lines are means over the seeds",
+        "Spread over the seeds", "too many &lt;steps&gt;", "[study] # a &lt; b", "All figures of all tasks"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
   EXPECT_EQ(count_of(html, "class=\"plot-data\""), 3u) << "force, steps, CPU";
   // mean and deviation of 1 and 3

@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
+#include "report/comparison_words.h"
+#include "report/cost_envelope.h"
+#include "report/work_precision_plots.h"
 #include "store/study_columns.h"
 
 using namespace palpate;
@@ -324,9 +327,9 @@ TEST(WorkPrecisionPlot, HasOneLineALadderWithoutFailedPoints) {
   EXPECT_EQ(plot.series[0].x.size(), 4u);
   EXPECT_EQ(plot.series[1].labels[0], "100 ms");
   EXPECT_TRUE(plot.series[1].hollow.back());
-  const std::string svg = report::plot_svg(plot);
+  const std::string json = report::plot_json(plot);
   for (const char* text : {"fast", "good", "100 ms", "reference error"})
-    EXPECT_NE(svg.find(text), std::string::npos) << text;
+    EXPECT_NE(json.find(text), std::string::npos) << text;
 }
 
 // Forty lines are distinguished by family; the non-dominated points are joined by one dark line, and named.
@@ -356,35 +359,8 @@ TEST(WorkPrecisionPlot, OfManyIsColouredByFamilyAndShowsTheEnvelope) {
   ASSERT_EQ(panels.size(), 2u);
   EXPECT_EQ(panels[0].title, "fast family");
   EXPECT_EQ(panels[0].series.size(), 8u);
-  EXPECT_NE(report::plot_svg(panels[0]).find("fast2"), std::string::npos);
-}
-
-TEST(RestartPlot, ShowsRatesAgainstRefreshes) {
-  report::Table table;
-  table.headers = store::restart_columns();
-  const auto add = [&](const char* label, const char* multistep, double refresh, double steps) {
-    table.rows.push_back({"s", label, label, multistep, fmt::format("{}", refresh), "0.5", "3",
-                          fmt::format("{}", steps), "9", "9", "1", "ok", ""});
-  };
-  add("bdf", "yes", 0.01, 100), add("bdf", "yes", 0.001, 400), add("euler", "no", 0.01, 50),
-      add("euler", "no", 0.001, 50);
-  const report::Plot plot = report::restart_plot(table, "steps", "steps per second");
-  ASSERT_EQ(plot.series.size(), 2u);
-  EXPECT_EQ(plot.series[0].name, "bdf (multistep)");
-  EXPECT_EQ(plot.series[0].x, (std::vector<double>{100, 1000}));
-  EXPECT_EQ(plot.series[0].y, (std::vector<double>{200, 800}));
-  EXPECT_EQ(plot.series[1].name, "euler (one-step)");
-}
-
-TEST(ExchangePlot, DrawsTheFittedOrder) {
-  report::Table table;
-  table.headers = report::exchange_columns();
-  for (const double h : {0.02, 0.01, 0.005})
-    table.rows.push_back({fmt::format("{}", h), fmt::format("{}", 3.0 * h * h), "", "", "1"});
-  const report::Plot plot = report::exchange_plot(table, "position_error_rel_l2", "error");
-  ASSERT_EQ(plot.series.size(), 2u);
-  EXPECT_EQ(plot.series[1].name, "fitted order 2.00");
-  EXPECT_NEAR(plot.series[1].y[0], 3.0 * 0.005 * 0.005, 1e-15);
+  EXPECT_NE(report::plot_json(panels[0]).find("fast2"), std::string::npos);
+  EXPECT_EQ(panels[0].series[0].colour, "faint") << "the other family, behind";
 }
 
 TEST(SettingText, IsShort) {

@@ -10,13 +10,13 @@
 #include "cli/stop.h"
 #include "palpate/core/error.h"
 #include "product/fem.h"
-#include "report/plot.h"
 #include "report/table.h"
 #include "store/atomic_file.h"
 
 namespace palpate::cli {
 namespace {
 
+namespace fs = std::filesystem;
 using bench::FemBenchReport;
 using bench::FemBenchRow;
 using Rows = std::vector<std::vector<std::string>>;
@@ -228,30 +228,11 @@ void print_published(const FemBenchReport& report, const bench::PublishedTimings
         report::format_table({"program", "size", "10 ms step [ms]", "1 ms step [ms]", "tolerance"}, rows));
 }
 
-void write_accuracy(const std::vector<bench::AccuracyPoint>& points, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  report::Plot plot;
-  plot.title = "Fall of the beam: error against run time";
-  plot.x_label = "run time of 10 ms of motion, one thread [ms]";
-  plot.y_label = "error of the final state";
-  plot.log_x = plot.log_y = true;
-  std::map<std::string, report::Series> kinds;
-  for (const bench::AccuracyPoint& p : points) {
-    report::Series& series =
-        kinds[p.step_s > 0.0 && !p.quoted ? fmt::format("{}, {:g} ms", p.program, 1e3 * p.step_s)
-                                          : p.program + (p.quoted ? " (quoted)" : "")];
-    series.mark = report::Mark::kLinePoints;
-    series.x.push_back(p.ms_of_ten_ms);
-    series.y.push_back(p.error);
-  }
-  for (auto& [name, series] : kinds) {
-    series.name = name;
-    plot.series.push_back(series);
-  }
-  store::write_atomically(folder / "bench-fem-accuracy.json", bench::to_json(points));
-  store::write_atomically(folder / "bench-fem-accuracy.svg", report::plot_svg(plot));
-  fmt::print("written: {} and {}\n", (folder / "bench-fem-accuracy.json").string(),
-             (folder / "bench-fem-accuracy.svg").string());
+void write_json(const std::string& json, const fs::path& file) {
+  fs::create_directories(file.parent_path());
+  store::write_atomically(file, json);
+  fmt::print("written: {}; `palpate report {}` makes a page of it\n", file.string(),
+             file.parent_path().string());
 }
 
 void bench_accuracy(const BenchArguments& arguments) {
@@ -275,30 +256,8 @@ void bench_accuracy(const BenchArguments& arguments) {
       size,
       report::format_table({"program", "h [ms]", "tolerance", "ms of 10 ms", "error", "set-up [ms]", ""},
                            rows));
-  if (!arguments.folder.empty()) write_accuracy(points, arguments.folder);
-}
-
-void write_files(const FemBenchReport& report, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  store::write_atomically(folder / "bench-fem.json", bench::to_json(report));
-  report::Plot plot;
-  plot.title = "One linearly implicit step";
-  plot.x_label = "nodes";
-  plot.y_label = "ms";
-  plot.log_x = plot.log_y = true;
-  for (const auto& [kind, members] : by_kind(report)) {
-    report::Series series;
-    series.name = kind;
-    series.mark = report::Mark::kLinePoints;
-    for (const FemBenchRow* r : members) {
-      series.x.push_back(r->nodes);
-      series.y.push_back(r->step_ms);
-    }
-    plot.series.push_back(series);
-  }
-  store::write_atomically(folder / "bench-fem.svg", report::plot_svg(plot));
-  fmt::print("written: {} and {}\n", (folder / "bench-fem.json").string(),
-             (folder / "bench-fem.svg").string());
+  if (!arguments.folder.empty())
+    write_json(bench::to_json(points), fs::path(arguments.folder) / "bench-fem-accuracy.json");
 }
 
 }  // namespace
@@ -321,7 +280,8 @@ void bench_fem_sizes(const BenchArguments& arguments) {
   print_exponents(report);
   print_memory(report);
   print_published(report, options.published);
-  if (!arguments.folder.empty() && !report.rows.empty()) write_files(report, arguments.folder);
+  if (!arguments.folder.empty() && !report.rows.empty())
+    write_json(bench::to_json(report), fs::path(arguments.folder) / "bench-fem.json");
 }
 
 }  // namespace palpate::cli

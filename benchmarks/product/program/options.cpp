@@ -60,7 +60,7 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   command->add_flag("--accuracy", arguments->accuracy, "fem: instead, error against run time of one motion");
   command
       ->add_option("-o,--output", arguments->folder,
-                   "fem: folder for bench-fem.json and bench-fem.svg; contact: for bench-contact.json")
+                   "fem: folder for bench-fem.json; contact: for bench-contact.json")
       ->type_name("DIR");
   command
       ->add_option("--cells", arguments->cells,

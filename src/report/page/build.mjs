@@ -22,6 +22,7 @@ for (const [name, libraries] of Object.entries(bundled)) {
     bundle: true, minify: true, format: "iife", target: "es2020", charset: "ascii",
     legalComments: "none",  // the banner holds the licences whole
     loader: { ".css": "text" },
+    inject: name === "page" ? ["src/pixel_ratio.js"] : [],
     banner: { js: `/* ${made}\n\nThis part of the page holds ${notices}\n*/` },
   });
 }

@@ -1,4 +1,4 @@
-/* made by src/report/page/build.mjs, sources sha256 82f2a4aeac12245e9ecedba39910e05c412c565f03bcf3cc7d1d89fd1529dcb2
+/* made by src/report/page/build.mjs, sources sha256 8d5139e2d2e4bb75410769b0079a3757a51239ba917cbea9bad0ab232fc6ed08
 
 This part of the page holds three 0.170.0
 

@@ -5,7 +5,7 @@ import { shortNumber } from "./numbers.js";
 /// Room around the data, as a share of its range (of its logarithm on a logarithmic axis).
 const ROOM = { x: 0.04, y: 0.07 };
 
-/// The shaded floor is shown where it is not far below the data, as in the SVG.
+/// The shaded floor is shown where it is not far below the data.
 function withFloor(data, name, low) {
   return name === "y" && data.log_y && data.floor_y > low / 30 ? Math.min(low, data.floor_y / 2.5) : low;
 }

@@ -6,8 +6,11 @@ export const pageColour = (name) =>
 
 export const inkOf = () => pageColour("ink");
 
+/// A series has a colour "#rrggbb", or one of the style sheet by its name.
+const isNamed = (colour) => !colour.startsWith("#");
+
 /// For the canvas.
-export const colourOf = (series) => (series.colour === "ink" ? inkOf() : series.colour);
+export const colourOf = ({ colour }) => (isNamed(colour) ? pageColour(colour) : colour);
 
 /// For an element: it follows the style sheet by itself.
-export const cssColourOf = (series) => (series.colour === "ink" ? "var(--ink)" : series.colour);
+export const cssColourOf = ({ colour }) => (isNamed(colour) ? `var(--${colour})` : colour);

@@ -1,18 +1,8 @@
 // The key of a plot as buttons: one switches all series of its name.
 import { fullRange } from "./axes.js";
 import { cssColourOf } from "./colours.js";
-
-/// Series by what they are called in the key: a family's ladders share one entry.
-function groupsOf(data) {
-  const groups = new Map();
-  data.series.forEach((one, s) => {
-    const key = one.group || one.name;
-    if (!key) return;
-    if (!groups.has(key)) groups.set(key, []);
-    groups.get(key).push(s);
-  });
-  return groups;
-}
+import { keyOf } from "./key.js";
+import { savePicture } from "./paper.js";
 
 function resetButton(plot, data) {
   const button = document.createElement("button");
@@ -34,10 +24,20 @@ function resetButton(plot, data) {
   return button;
 }
 
+function saveButton(plot, data) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = "save";
+  button.textContent = "save PNG";
+  button.title = "save this chart, as it is zoomed, as a picture";
+  button.addEventListener("click", () => savePicture(plot, data));
+  return button;
+}
+
 export function makeLegend(plot, data) {
   const legend = document.createElement("div");
   legend.className = "legend";
-  for (const [name, members] of groupsOf(data)) {
+  for (const [name, members] of keyOf(data)) {
     const button = document.createElement("button"), swatch = document.createElement("i");
     button.type = "button";
     button.setAttribute("aria-pressed", "true");
@@ -53,6 +53,6 @@ export function makeLegend(plot, data) {
     });
     legend.append(button);
   }
-  legend.append(resetButton(plot, data));
+  legend.append(resetButton(plot, data), saveButton(plot, data));
   return legend;
 }

@@ -1,7 +1,7 @@
 import { makeHeatMapsReadable } from "./heat.js";
 import { makeTablesSortable } from "./tables.js";
-import { makePlotsLive } from "./plots.js";
+import { drawCharts } from "./plots.js";
 
 makeTablesSortable();
-makePlotsLive();
+drawCharts();
 makeHeatMapsReadable();
