@@ -3,7 +3,6 @@
 
 #include "palpate/core/archive.h"
 #include "palpate/core/types.h"
-#include "proxy/least_width.h"
 
 namespace palpate::proxy {
 
