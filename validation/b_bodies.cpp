@@ -48,8 +48,7 @@ namespace {
 class PunchSource final : public contact::SampleSource {
  public:
   PunchSource(int node, double area, int across, int frame)
-      : node_(node), area_(area), across_(across), frame_(frame) {}
-  std::string_view name() const override { return "punch"; }
+      : SampleSource({.name = "punch"}), node_(node), area_(area), across_(across), frame_(frame) {}
   void add_pattern(dynamics::PatternBuilder&) const override {}
 
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {

@@ -55,13 +55,12 @@ class PathFrame final : public contact::MovingFrame {
 /// following.
 class StaleSource final : public contact::SampleSource {
  public:
-  explicit StaleSource(std::unique_ptr<contact::SampleSource> source) : source_(std::move(source)) {}
-  std::string_view name() const override { return source_->name(); }
+  explicit StaleSource(std::unique_ptr<contact::SampleSource> source)
+      : SampleSource({.name = source->traits().name, .follows = true}), source_(std::move(source)) {}
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {
     source_->query(state, samples);
   }
   void add_pattern(dynamics::PatternBuilder& pattern) const override { source_->add_pattern(pattern); }
-  bool follows() const override { return true; }
 
  private:
   std::unique_ptr<contact::SampleSource> source_;
@@ -70,14 +69,14 @@ class StaleSource final : public contact::SampleSource {
 /// Source that returns the samples of its first query at every later query.
 class OnceSource final : public contact::SampleSource {
  public:
-  explicit OnceSource(std::unique_ptr<contact::SampleSource> source) : source_(std::move(source)) {}
-  std::string_view name() const override { return source_->name(); }
+  explicit OnceSource(std::unique_ptr<contact::SampleSource> source)
+      : SampleSource({.name = source->traits().name, .follows = source->traits().follows}),
+        source_(std::move(source)) {}
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {
     if (first_.empty()) source_->query(state, first_);
     samples.insert(samples.end(), first_.begin(), first_.end());
   }
   void add_pattern(dynamics::PatternBuilder& pattern) const override { source_->add_pattern(pattern); }
-  bool follows() const override { return source_->follows(); }
   void follow(const dynamics::StateView& state, std::span<contact::ContactSample> samples) override {
     source_->follow(state, samples);
   }

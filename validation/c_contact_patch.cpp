@@ -87,6 +87,63 @@ double largest_deviation(const TetMesh& rest, const double* q, const fem::Materi
   return largest;
 }
 
+/// Adds a block to the system, and its held directions to `held`; the upper one is displaced by the push.
+Block add_block(bool is_upper, const fem::Material& material, dynamics::State& state,
+                dynamics::System& system, std::vector<int>& held) {
+  Block block;
+  const Vec3& size = is_upper ? kUpper : kLower;
+  block.rest = is_upper ? bent_box(kUpper, kUpperCells, -0.04) : bent_box(kLower, kLowerCells, 0.03);
+  block.rest.nodes.row(2).array() += is_upper ? 0.5 * size.z() : -0.5 * size.z();
+  VecX q = block.rest.nodes.reshaped();
+  const int first = state.layout().u_size;
+  for (int i = 0; i < block.rest.nodes.cols(); ++i) {
+    const Vec3 x = block.rest.nodes.col(i);
+    for (int axis : {0, 1})
+      if (std::abs(std::abs(x[axis]) - 0.5 * size[axis]) < 1e-9) held.push_back(first + 3 * i + axis);
+    if (is_upper) q[3 * i + 2] -= kPush;
+    if (is_upper ? x.z() > size.z() - 1e-9 : x.z() < 1e-9 - size.z()) held.push_back(first + 3 * i + 2);
+  }
+  dynamics::BlockSpec nodes;
+  nodes.name = is_upper ? "upper" : "lower";
+  nodes.q_size = nodes.u_size = static_cast<int>(q.size());
+  block.block_id = state.insert(nodes, q, VecX::Zero(q.size()));
+  system.add(std::make_shared<fem::SoftBody>(nodes.name, block.rest, material, fem::SoftBodyOptions{},
+                                             block.block_id));
+  system.add(fem::make_lumped_mass(block.rest, material, block.block_id));
+  const mesh::Boundary boundary = mesh::boundary(block.rest);
+  block.surface = {block.block_id, boundary.node_of_vertex, boundary.surface.faces};
+  return block;
+}
+
+/// Makes the contact of the blocks, with a fault.
+std::unique_ptr<contact::SampleSource> make_source(const Block& lower, const Block& upper, double spacing,
+                                                   const std::string& fault) {
+  const auto at_rest = [](const Block& block) { return mesh::boundary(block.rest).surface.vertices; };
+  auto source = spacing > 0.0 ? contact::make_distance_source(
+                                    upper.surface, at_rest(upper), lower.surface, at_rest(lower),
+                                    {.candidate_gap = 0.1 * kPush, .spacing = spacing})
+                              : contact::make_image_source(upper.surface, lower.surface,
+                                                           {.pixels = 256, .candidate_gap = 0.1 * kPush});
+  // The nearest corner would not show as a fault: each corner has a third of its triangle.
+  if (fault == "force-on-first-corner")
+    return spoiled(std::move(source), [](auto& all) {
+      for (auto& s : all) {
+        s.b.weight = {1.0, 0.0, 0.0, 0.0};
+        s.b.count = 1;
+      }
+    });
+  if (fault == "samples-lost")
+    return spoiled(std::move(source), [](auto& all) {
+      std::size_t i = 0;
+      std::erase_if(all, [&](const auto&) { return ++i % 5 == 0; });
+    });
+  if (fault == "half-area")
+    return spoiled(std::move(source), [](auto& all) {
+      for (auto& s : all) s.area *= 0.5;
+    });
+  return source;
+}
+
 /// Presses the blocks together and solves for equilibrium.
 /// @param spacing of nearest points [m]; 0: contact by an image
 Pressed press(double spacing, const std::string& fault) {
@@ -95,64 +152,15 @@ Pressed press(double spacing, const std::string& fault) {
                exact = kPush / ((kLower.z() + kUpper.z()) / modulus + 1.0 / stiffness);
   dynamics::State state;
   dynamics::System system;
-  std::vector<Block> blocks(2);
-  blocks[0].rest = bent_box(kLower, kLowerCells, 0.03);
-  blocks[1].rest = bent_box(kUpper, kUpperCells, -0.04);
-  blocks[0].rest.nodes.row(2).array() -= 0.5 * kLower.z();
-  blocks[1].rest.nodes.row(2).array() += 0.5 * kUpper.z();
   std::vector<int> held;
-  for (int b = 0; b < 2; ++b) {
-    Block& block = blocks[static_cast<std::size_t>(b)];
-    const Vec3& size = b == 0 ? kLower : kUpper;
-    VecX q = block.rest.nodes.reshaped();
-    const int first = state.layout().u_size;
-    for (int i = 0; i < block.rest.nodes.cols(); ++i) {
-      const Vec3 x = block.rest.nodes.col(i);
-      for (int axis : {0, 1})
-        if (std::abs(std::abs(x[axis]) - 0.5 * size[axis]) < 1e-9) held.push_back(first + 3 * i + axis);
-      if (b == 1) q[3 * i + 2] -= kPush;
-      if (b == 0 ? x.z() < 1e-9 - size.z() : x.z() > size.z() - 1e-9) held.push_back(first + 3 * i + 2);
-    }
-    dynamics::BlockSpec nodes;
-    nodes.name = b == 0 ? "lower" : "upper";
-    nodes.q_size = nodes.u_size = static_cast<int>(q.size());
-    block.block_id = state.insert(nodes, q, VecX::Zero(q.size()));
-    system.add(std::make_shared<fem::SoftBody>(nodes.name, block.rest, material, fem::SoftBodyOptions{},
-                                               block.block_id));
-    system.add(fem::make_lumped_mass(block.rest, material, block.block_id));
-    const mesh::Boundary boundary = mesh::boundary(block.rest);
-    block.surface = {block.block_id, boundary.node_of_vertex, boundary.surface.faces};
-  }
+  const Block lower = add_block(false, material, state, system, held),
+              upper = add_block(true, material, state, system, held);
   std::sort(held.begin(), held.end());
   system.add(fem::make_fixed(held, VecX(state.q()(held))));
-
-  const auto at_rest = [](const Block& block) { return mesh::boundary(block.rest).surface.vertices; };
-  auto source = spacing > 0.0 ? contact::make_distance_source(
-                                    blocks[1].surface, at_rest(blocks[1]), blocks[0].surface,
-                                    at_rest(blocks[0]), {.candidate_gap = 0.1 * kPush, .spacing = spacing})
-                              : contact::make_image_source(blocks[1].surface, blocks[0].surface,
-                                                           {.pixels = 256, .candidate_gap = 0.1 * kPush});
-  // The nearest corner would not show as a fault: each corner has a third of its triangle.
-  if (fault == "force-on-first-corner")
-    source = spoiled(std::move(source), [](auto& all) {
-      for (auto& s : all) {
-        s.b.weight = {1.0, 0.0, 0.0, 0.0};
-        s.b.count = 1;
-      }
-    });
-  if (fault == "samples-lost")
-    source = spoiled(std::move(source), [](auto& all) {
-      std::size_t i = 0;
-      std::erase_if(all, [&](const auto&) { return ++i % 5 == 0; });
-    });
-  if (fault == "half-area")
-    source = spoiled(std::move(source), [](auto& all) {
-      for (auto& s : all) s.area *= 0.5;
-    });
   const auto contact = std::make_shared<contact::ContactForce>();
   ContactSpec law;
   law.stiffness_pa_m = stiffness;
-  contact->add_pair(std::move(source), law);
+  contact->add_pair(make_source(lower, upper, spacing, fault), law);
   system.add(std::static_pointer_cast<dynamics::ForceTerm>(contact));
   IntegratorSpec spec;
   spec.name = "kinsol-static";
@@ -165,15 +173,15 @@ Pressed press(double spacing, const std::string& fault) {
   Pressed out;
   VecX f = VecX::Zero(state.layout().u_size);
   contact->add_force(state.view(), f);
-  const dynamics::Block& upper = *state.layout().find(blocks[1].block_id);
+  const dynamics::Block& nodes = *state.layout().find(upper.block_id);
   double force = 0.0;
-  for (int i = 0; i < upper.u_size; i += 3) force += f[upper.u_offset + i + 2];
+  for (int i = 0; i < nodes.u_size; i += 3) force += f[nodes.u_offset + i + 2];
   out.pressure = force / (kUpper.x() * kUpper.y());
   out.deviation = out.inside = 0.0;
-  for (const Block& block : blocks) {
-    const double* q = state.q().data() + state.layout().find(block.block_id)->q_offset;
-    out.deviation = std::max(out.deviation, largest_deviation(block.rest, q, material, exact, false));
-    out.inside = std::max(out.inside, largest_deviation(block.rest, q, material, exact, true));
+  for (const Block* block : {&lower, &upper}) {
+    const double* q = state.q().data() + state.layout().find(block->block_id)->q_offset;
+    out.deviation = std::max(out.deviation, largest_deviation(block->rest, q, material, exact, false));
+    out.inside = std::max(out.inside, largest_deviation(block->rest, q, material, exact, true));
   }
   return out;
 }

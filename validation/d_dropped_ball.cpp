@@ -53,7 +53,8 @@ constexpr std::array<std::string_view, 3> kBlindToKinks = {"ark-dirk-sdirk534", 
 /// Source for the vertices of a sphere carried by one node, over the plane z = 0 of frame 0.
 class BallSource final : public contact::SampleSource {
  public:
-  explicit BallSource(int node) : node_(node), sphere_(mesh::sphere(kRadius, 12)) {
+  explicit BallSource(int node)
+      : SampleSource({.name = "ball"}), node_(node), sphere_(mesh::sphere(kRadius, 12)) {
     areas_.setZero(sphere_.vertices.cols());
     for (const auto& face : sphere_.faces.colwise()) {
       const Vec3 a = sphere_.vertices.col(face[0]), b = sphere_.vertices.col(face[1]),
@@ -61,7 +62,6 @@ class BallSource final : public contact::SampleSource {
       for (int corner : face) areas_[corner] -= (b - a).cross(c - a).z() / 6.0;
     }
   }
-  std::string_view name() const override { return "ball"; }
   void add_pattern(dynamics::PatternBuilder&) const override {}
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {
     const Vec3 x = state.position(node_);
@@ -128,7 +128,7 @@ struct Fall {
       if (contact->refresh(state.view())) stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
       out.gain = std::max(out.gain, (energy() - start) / fall_energy);
     }
-    out.queries = contact->queries();
+    out.queries = contact->statistics().queries;
     return out;
   }
 };

@@ -26,8 +26,9 @@ const std::string& image_error() {
 class SpoiledSource final : public contact::SampleSource {
  public:
   SpoiledSource(std::unique_ptr<contact::SampleSource> source, Spoil seed_defect)
-      : source_(std::move(source)), spoil_(std::move(seed_defect)) {}
-  std::string_view name() const override { return source_->name(); }
+      : SampleSource({.name = source->traits().name}),
+        source_(std::move(source)),
+        spoil_(std::move(seed_defect)) {}
   void add_pattern(dynamics::PatternBuilder& pattern) const override { source_->add_pattern(pattern); }
   std::uint64_t pattern_version() const override { return source_->pattern_version(); }
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {
@@ -61,7 +62,7 @@ std::vector<contact::ContactSample> pixels_of(contact::SampleSource& source,
   std::vector<contact::ContactSample> samples;
   source.query(state, samples);
   samples.clear();
-  for (const contact::RegionView& region : source.view()->regions)
+  for (const contact::RegionView& region : source.report().view->regions)
     for (int row = 0; row < region.height; ++row)
       for (int column = 0; column < region.width; ++column) {
         const auto at = static_cast<std::size_t>(row * region.width + column);

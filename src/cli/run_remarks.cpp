@@ -94,10 +94,10 @@ void add_port(const loop::PortEnergy& port, Remarks& out) {
 // The thickness of objects is computed only when an overlap grows.
 void OverlapWatch::look(const loop::World& world, double t) {
   if (!world.contact) return;
-  const std::vector<double> deepest = world.contact->deepest();
-  if (most_.empty()) most_.assign(deepest.size(), 0.0);
-  for (std::size_t i = 0; i < deepest.size(); ++i) {
-    if (!(deepest[i] > most_[i])) continue;
+  const std::vector<contact::PairReport> pairs = world.contact->pairs();
+  if (most_.empty()) most_.assign(pairs.size(), 0.0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!(pairs[i].deepest > most_[i])) continue;
     const loop::Overlap o = loop::overlaps_of(world)[i];
     most_[i] = o.half_width_m;
     if (!o.too_deep()) continue;

@@ -19,7 +19,7 @@ scene::Description with_method(scene::Description d, const std::string& method) 
 class SampleCount : public loop::Observer {
  public:
   void period(loop::World& world, double) override {
-    most = std::max(most, static_cast<long>(world.contact->sample_count()));
+    most = std::max(most, static_cast<long>(world.contact->samples().size()));
   }
   long most = 0;
 };

@@ -8,7 +8,6 @@
 #include "contact/material_gaps.h"
 #include "contact/material_points.h"
 #include "contact/safe_time.h"
-#include "contact/sources.h"
 #include "contact/surface_state.h"
 #include "core/counters.h"
 #include "palpate/contact/obstacle.h"
@@ -40,7 +39,10 @@ class AnalyticSource final : public SampleSource {
  public:
   AnalyticSource(Surface surface, int frame, std::shared_ptr<MovingFrame> motion, Shape shape,
                  double candidate_gap, double look_ahead)
-      : surface_(std::move(surface)),
+      // Vertex samples do not follow: their areas are those of the query, so that at another state the force
+      // would not be a gradient.
+      : SampleSource({.name = Shape::kName, .follows = kMaterial}),
+        surface_(std::move(surface)),
         frame_(frame),
         motion_(std::move(motion)),
         shape_(shape),
@@ -50,17 +52,18 @@ class AnalyticSource final : public SampleSource {
     if constexpr (kMaterial) gaps_.emplace(surface_.points(), shape_.curvature());
   }
 
-  std::string_view name() const override { return Shape::kName; }
-  long tunnelled() const override { return tunnelled_; }
-  double safe_time() const override { return safe_time_; }
-  long fast_regions() const override { return fast_; }
+  SourceReport report() const override {
+    return {.tunnelled = tunnelled_,
+            .safe_time = safe_time_,
+            .fast_regions = fast_,
+            .sum_error = kMaterial ? &sum_error_ : nullptr};
+  }
   void archive(Archive& a) override {
     a("tunnelled", tunnelled_);
     a("fast", fast_);
     a("warned", warned_);
     if constexpr (kMaterial) a("sum_error", sum_error_);
   }
-  const SumError* sum_error() const override { return kMaterial ? &sum_error_ : nullptr; }
   void add_pattern(dynamics::PatternBuilder& pattern) const override { surface_.add_vertex_pattern(pattern); }
   std::uint64_t pattern_version() const override { return surface_.vertex_pattern_version(); }
 
@@ -86,9 +89,6 @@ class AnalyticSource final : public SampleSource {
     if constexpr (kMaterial) return kept_;
     return {};
   }
-  /// Vertex samples do not follow: their areas are those of the query, so that at another state the force
-  /// would not be a gradient.
-  bool follows() const override { return kMaterial; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     if constexpr (kMaterial) {
       PALPATE_CHECK(samples.size() == kept_.size(),
@@ -282,11 +282,24 @@ class AnalyticSource final : public SampleSource {
   std::vector<Nearest> nearest_;
   bool seen_before_ = false, warned_ = false;
   long tunnelled_ = 0, fast_ = 0;
-  double safe_time_ = HUGE_VAL;  ///< As SampleSource::safe_time.
+  double safe_time_ = HUGE_VAL;  ///< As SourceReport::safe_time.
   SumError sum_error_;
 };
 
-/// Makes the source of one side, soft or rigid, with a shape.
+/// Makes the contact of a soft or rigid surface, or of a ball, with an exact shape in a frame.
+///
+/// For a surface each vertex is one sample: gap = signed distance, normal = outward normal of the shape at
+/// the closest point, area = area vector of the vertex projected on that normal (one third of each adjacent
+/// triangle, deformed). Vertices that face away from the shape, where pressure would pull, make no sample.
+/// Outside a shape the normal points from the nearest point of the surface (at edges and corners a direction
+/// between the faces' normals); inside, the nearest face is used.
+/// For a ball the samples are rings around the shape's normal at the point nearest to the centre
+/// (ball_source.h): force = k x overlap volume, without moment about the centre unless there is friction.
+/// @param candidate_gap  vertices nearer than this are kept as candidates [m]; 0: the surface's mean edge at
+///   the first query, for a ball an eighth of its radius
+/// @param look_ahead     time to the next query [s]: vertices that come nearer than candidate_gap in this
+///   time, at their present speed, are kept as well. Without it a fast body penetrates undetected and is
+///   thrown back with spurious energy.
 template <class Shape>
 std::unique_ptr<SampleSource> make_analytic_source(ContactSide side, int frame,
                                                    std::shared_ptr<MovingFrame> motion, const Shape& shape,

@@ -67,7 +67,9 @@ class BallSource final : public SampleSource {
  public:
   BallSource(FrameBall ball, int frame, std::shared_ptr<MovingFrame> motion, Shape shape,
              double candidate_gap, double look_ahead)
-      : ball_(std::move(ball)),
+      // Force and stiffness set in continuously from zero: no events.
+      : SampleSource({.name = Shape::kName, .follows = true, .has_events = false}),
+        ball_(std::move(ball)),
         frame_(frame),
         motion_(std::move(motion)),
         shape_(shape),
@@ -77,16 +79,14 @@ class BallSource final : public SampleSource {
     PALPATE_CHECK(ball_.radius > 0.0, "ball in contact: radius {} must be positive", ball_.radius);
   }
 
-  std::string_view name() const override { return Shape::kName; }
-  long tunnelled() const override { return tunnelled_; }
-  double safe_time() const override { return safe_time_; }
-  long fast_regions() const override { return fast_; }
+  SourceReport report() const override {
+    return {.tunnelled = tunnelled_, .safe_time = safe_time_, .fast_regions = fast_};
+  }
   void archive(Archive& a) override {
     a("tunnelled", tunnelled_);
     a("fast", fast_);
   }
   void add_pattern(dynamics::PatternBuilder&) const override {}
-  bool has_events() const override { return false; }  // Force and stiffness set in continuously from zero.
 
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     const double rate = place(state);
@@ -98,7 +98,6 @@ class BallSource final : public SampleSource {
     if (gap < margin) sample(gap, samples);
   }
 
-  bool follows() const override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     if (samples.empty()) return;
     place(state);
@@ -204,7 +203,7 @@ class BallSource final : public SampleSource {
   Vec3 seen_ = Vec3::Zero();             ///< Centre at the last query, in the shape's frame.
   bool seen_before_ = false;
   long tunnelled_ = 0, fast_ = 0;
-  double safe_time_ = HUGE_VAL;  ///< As SampleSource::safe_time.
+  double safe_time_ = HUGE_VAL;  ///< As SourceReport::safe_time.
 };
 
 }  // namespace palpate::contact

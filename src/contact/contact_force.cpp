@@ -1,12 +1,10 @@
 #include "palpate/contact/contact_force.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "contact/contact_force_impl.h"
 #include "core/counters.h"
 #include "palpate/core/error.h"
-#include "proxy/pruner.h"
 
 namespace palpate::contact {
 
@@ -33,7 +31,7 @@ void ContactForce::Impl::follow(const dynamics::StateView& state) {
   if (!has_followers()) return;
   // A failed trial of an integrator: the resulting force is not finite either.
   if (!state.q.allFinite()) return;
-  bool same = followed.query == queries && followed.time == state.time &&
+  bool same = followed.query == statistics.queries && followed.time == state.time &&
               followed.q.size() == state.q.size() && followed.q == state.q &&
               followed.poses.size() == frames.size();
   for (std::size_t i = 0; same && i < frames.size(); ++i)
@@ -56,7 +54,7 @@ bool ContactForce::Impl::has_followers() const {
 }
 
 void ContactForce::Impl::note_followed(const dynamics::StateView& state) {
-  followed.query = queries;
+  followed.query = statistics.queries;
   followed.time = state.time;
   followed.q = state.q;
   followed.poses.clear();
@@ -122,7 +120,7 @@ int ContactForce::add_frame(std::shared_ptr<MovingFrame> frame) {
 
 int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSpec& law) {
   PALPATE_CHECK(source, "contact \"{}\" with \"{}\" has no source", law.first, law.second);
-  const bool follows = source->follows();
+  const bool follows = source->traits().follows;
   Impl::Pair pair{.source = std::move(source), .law = pressure_law(law), .follows = follows};
   if (!follows) pair.law.retardation = 0.0;  // Anchors need material points.
   if (follows && law.friction > 0.0)
@@ -213,17 +211,20 @@ double ContactForce::dissipated_power(const dynamics::StateView& state) {
   return sum;
 }
 
-SecantTangents::SecantTangents(ContactForce& contact) : contact_(*contact.impl_) {
-  PALPATE_CHECK(contact_.laws_kept.empty(), "two SecantTangents exist at the same time");
-  for (auto& pair : contact_.pairs) {
-    contact_.laws_kept.push_back(pair.law);
-    pair.law.symmetric_tangent = pair.law.secant_friction = true;
+void ContactForce::use_secant_tangents(bool on) {
+  Impl& m = *impl_;
+  PALPATE_CHECK(on == m.laws_kept.empty() || m.pairs.empty(), "secant tangents are already {}",
+                on ? "in use" : "out of use");
+  for (std::size_t i = 0; i < m.pairs.size(); ++i) {
+    PressureLaw& law = m.pairs[i].law;
+    if (on) {
+      m.laws_kept.push_back(law);
+      law.symmetric_tangent = law.secant_friction = true;
+    } else {
+      law = m.laws_kept[i];
+    }
   }
-}
-
-SecantTangents::~SecantTangents() {
-  for (std::size_t i = 0; i < contact_.pairs.size(); ++i) contact_.pairs[i].law = contact_.laws_kept[i];
-  contact_.laws_kept.clear();
+  if (!on) m.laws_kept.clear();
 }
 
 // With a symmetric tangent the step uses the friction of the pressure p0 at its start:
@@ -246,7 +247,7 @@ void ContactForce::Impl::linearise_friction(const dynamics::StateView& state) {
                             friction_per_pressure(samples[s], motion, pair.law)});
       sum += linearised.back().pressure * linearised.back().per_pressure;
     }
-    largest_friction = std::max(largest_friction, sum.norm());
+    statistics.largest_lagged_friction = std::max(statistics.largest_lagged_friction, sum.norm());
   }
 }
 
@@ -258,7 +259,7 @@ void ContactForce::Impl::measure_friction_lag(const dynamics::StateView& state) 
     const double now = motion.gap < 0.0 ? pressure(pairs[at.pair].law, motion.gap, motion.rate).p : 0.0;
     sum += (now - at.pressure) * at.per_pressure;
     if (i + 1 == linearised.size() || linearised[i + 1].pair != at.pair) {
-      largest_friction_lag = std::max(largest_friction_lag, sum.norm());
+      statistics.largest_friction_lag = std::max(statistics.largest_friction_lag, sum.norm());
       sum.setZero();
     }
   }
@@ -278,7 +279,7 @@ bool ContactForce::refresh(const dynamics::StateView& state) {
   const bool grasped = m.take_grasps(state);
   m.all_forces(state, m.force_after, m.resultants.after);
   // next_samples holds the previous samples.
-  m.resultants.compare(m.next_samples, m.samples, state, m.frames);
+  m.resultants.compare(m.next_samples, m.samples, state, m.frames, m.statistics);
   return grasped || m.force_after != m.force_before;
 }
 
@@ -307,62 +308,15 @@ void ContactForce::events(const dynamics::StateView& state, double* g) {
   }
 }
 
-std::vector<long> ContactForce::tunnelled() const {
-  std::vector<long> out;
-  for (const auto& pair : impl_->pairs) out.push_back(pair.source->tunnelled());
-  return out;
-}
-
-double ContactForce::safe_time() const {
-  double least = HUGE_VAL;
-  for (const auto& pair : impl_->pairs) least = std::min(least, pair.source->safe_time());
-  return least;
-}
-
-std::vector<long> ContactForce::fast_regions() const {
-  std::vector<long> out;
-  for (const auto& pair : impl_->pairs) out.push_back(pair.source->fast_regions());
-  return out;
-}
-
-std::vector<long> ContactForce::normals_kept() const {
-  std::vector<long> out;
-  for (const auto& pair : impl_->pairs) out.push_back(pair.source->normals_kept());
-  return out;
-}
-
-std::vector<double> ContactForce::deepest() const {
-  std::vector<double> out;
-  for (const auto& pair : impl_->pairs) out.push_back(pair.deepest);
-  return out;
-}
-
-std::vector<const proxy::PruneCounts*> ContactForce::pruning() const {
-  std::vector<const proxy::PruneCounts*> out;
-  for (const auto& pair : impl_->pairs) out.push_back(pair.source->pruning());
-  return out;
-}
-
-std::vector<const SumError*> ContactForce::sum_errors() const {
-  std::vector<const SumError*> out;
-  for (const auto& pair : impl_->pairs) out.push_back(pair.source->sum_error());
-  return out;
-}
-
-std::vector<const QueryStages*> ContactForce::stages() const {
-  std::vector<const QueryStages*> out;
-  for (const auto& pair : impl_->pairs) out.push_back(pair.source->stages());
+std::vector<PairReport> ContactForce::pairs() const {
+  std::vector<PairReport> out;
+  for (const auto& pair : impl_->pairs)
+    out.push_back({pair.source->report(), pair.source->traits().name, pair.deepest});
   return out;
 }
 
 void ContactForce::keep_views() {
   for (const auto& pair : impl_->pairs) pair.source->keep_view();
-}
-
-std::vector<const QueryView*> ContactForce::views() const {
-  std::vector<const QueryView*> out;
-  for (const auto& pair : impl_->pairs) out.push_back(pair.source->view());
-  return out;
 }
 
 std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state) const {
@@ -381,20 +335,6 @@ std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state)
 }
 
 const std::vector<ContactSample>& ContactForce::samples() const { return impl_->samples; }
-int ContactForce::sample_count() const { return static_cast<int>(impl_->samples.size()); }
-
-std::vector<std::string> ContactForce::methods() const {
-  std::vector<std::string> out;
-  for (const auto& pair : impl_->pairs) out.emplace_back(pair.source->name());
-  return out;
-}
-
-long ContactForce::queries() const { return impl_->queries; }
-double ContactForce::query_seconds() const { return impl_->query_seconds; }
-ResultantSize ContactForce::refresh_jump() const { return impl_->resultants.jump; }
-ResultantSize ContactForce::largest_jump() const { return impl_->resultants.largest_jump; }
-ResultantSize ContactForce::largest_resultant() const { return impl_->resultants.largest_after; }
-double ContactForce::largest_friction_lag() const { return impl_->largest_friction_lag; }
-double ContactForce::largest_lagged_friction() const { return impl_->largest_friction; }
+const ContactStatistics& ContactForce::statistics() const { return impl_->statistics; }
 
 }  // namespace palpate::contact

@@ -18,7 +18,7 @@ struct ContactForce::Impl {
     std::unique_ptr<SampleSource> source;
     PressureLaw law;
     std::size_t begin = 0, end = 0;  ///< Range of its samples.
-    bool follows = false;            ///< Samples are re-evaluated at every state (SampleSource::follows).
+    bool follows = false;            ///< Samples are re-evaluated at every state (SourceTraits::follows).
     double deepest = 0.0;            ///< Largest overlap found by a query [m].
     FrictionAnchors anchors{};       ///< Anchors of sticking contacts.
     bool given = false;              ///< Prescribed frames on both sides: no effect on the State.
@@ -26,18 +26,17 @@ struct ContactForce::Impl {
 
   std::vector<std::shared_ptr<MovingFrame>> frames;
   std::vector<Pair> pairs;
-  std::vector<PressureLaw> laws_kept;  ///< Laws of the pairs, saved during the lifetime of SecantTangents.
+  std::vector<PressureLaw> laws_kept;  ///< Laws of the pairs, saved during use_secant_tangents().
   std::vector<ContactSample> samples, next_samples;
   std::vector<FrameState> frame_states;  ///< Frames at the state of the present evaluation.
   std::vector<int> frame_rows;           ///< Scratch.
   VecX force_before, force_after;        ///< Scratch of refresh().
-  long queries = 0;
   std::uint64_t events_version = 1;  ///< Increases when a query finds other samples than the previous one.
   /// True: the samples of the last query were not compared yet with the previous ones, which are in
   /// next_samples.
   bool events_to_compare = false;
   void compare_events();
-  double query_seconds = 0.0;
+  ContactStatistics statistics;
   Resultants resultants;
 
   /// Requested and actual state of a frame's grasp; the actual state changes at a refresh.
@@ -47,7 +46,6 @@ struct ContactForce::Impl {
   };
   std::vector<Grasp> grasps;
   Bonds bonds;
-  GraspCounts grasp_counts;
   /// Applies grasp commands. Returns true where points were held or released. @pre frames are placed
   bool take_grasps(const dynamics::StateView& state);
 
@@ -59,7 +57,6 @@ struct ContactForce::Impl {
     Vec3 per_pressure;  ///< Friction per pressure [m^2].
   };
   std::vector<Linearised> linearised;
-  double largest_friction_lag = 0.0, largest_friction = 0.0;  ///< [N]
   void linearise_friction(const dynamics::StateView& state);
   void measure_friction_lag(const dynamics::StateView& state);
   /// State of friction within a step for which it is evaluated at the step's end.
@@ -120,7 +117,7 @@ struct ContactForce::Impl {
 
   /// Returns whether the samples of a pair open and close with a kink that affects the State.
   static bool has_events(const Pair& pair) {
-    return pair.law.onset == 0.0 && !pair.given && pair.source->has_events();
+    return pair.law.onset == 0.0 && !pair.given && pair.source->traits().has_events;
   }
   enum class Which {
     kEvery,

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/fit_window.h"
-
 namespace palpate::contact {
 namespace {
 
@@ -65,10 +63,29 @@ ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin
 }
 
 ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap) {
-  const Box box_a = see_all(a), box_b = see_all(b);
-  return cut_to_window(
-      box_a, box_b, candidate_gap, [&](const Box& window) { return cut(a, window); },
-      [&](const Box& window) { return cut(b, window); });
+  Box box_a = see_all(a), box_b = see_all(b);
+  constexpr int kCuts = 3;
+  for (int i = 0; i < kCuts; ++i) {
+    Box window_a, window_b;
+    window_a.low = window_b.low = box_a.low.cwiseMax(box_b.low);
+    window_a.high = window_b.high = box_a.high.cwiseMin(box_b.high);
+    window_a.low.z() = -kInfinity;
+    window_a.high.z() = box_b.high.z() + candidate_gap;
+    window_b.low.z() = box_a.low.z() - candidate_gap;
+    window_b.high.z() = kInfinity;
+    box_a = cut(a, window_a);
+    box_b = cut(b, window_b);
+    if (!(box_a.low.x() <= box_a.high.x()) || !(box_b.low.x() <= box_b.high.x())) return {};
+  }
+  ContactWindow out;
+  out.low = box_a.low.cwiseMax(box_b.low).head<2>();
+  out.high = box_a.high.cwiseMin(box_b.high).head<2>();
+  out.near = box_a.low.z() - candidate_gap;
+  out.far = box_b.high.z() + candidate_gap;
+  const double room = 1e-3 * (out.far - out.near);  // Margin at both ends of the depth range.
+  out.near -= room;
+  out.far += room;
+  return out;
 }
 
 ContactCamera camera_of(const ContactWindow& window, double pixel, const Eigen::Vector2d& shift) {

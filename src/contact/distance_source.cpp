@@ -12,22 +12,24 @@
 // A source with points on an exact shape (ShapePoints) has points on that side only, and those of a ball have
 // no moment about its centre: see on_ball(). Samples follow the state: the query determines only which points
 // can be near.
+#include "contact/distance_source.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <span>
 
-#include "contact/coupled_nodes.h"
+#include "contact/coupled_sides.h"
+#include "contact/material_points.h"
 #include "contact/safe_time.h"
 #include "contact/self_contact_filter.h"
-#include "contact/sources.h"
 #include "contact/tunnelling_monitor.h"
 #include "core/counters.h"
 #include "distance/skin_contact.h"
 #include "palpate/core/error.h"
+#include "proxy/least_width.h"
 #include "proxy/reach.h"
-#include "proxy/region.h"
 
 namespace palpate::contact {
 namespace {
@@ -45,21 +47,24 @@ class DistanceSource final : public SampleSource {
  public:
   DistanceSource(SkinSide a, SkinSide b, std::array<distance::ContactMesh, 2> meshes, double thickness,
                  const DistanceOptions& options, const std::optional<SurfacePoint>& centre = {})
-      : a_(std::move(a.surface)),
+      : SampleSource(kTraits),
+        a_(std::move(a.surface)),
         b_(std::move(b.surface)),
         skins_{std::move(a.skin), std::move(b.skin)},
         corners_{std::move(a.corners), std::move(b.corners)},
         contact_(skins_[0], skins_[1], 1.0, std::move(meshes)),
         options_(options),
         thickness_(thickness),
-        centre_(centre) {
+        centre_(centre),
+        coupled_(*a_, *b_) {
     if (options_.candidate_gap == 0.0) options_.candidate_gap = std::min(mean_edge(0), mean_edge(1));
     counters::count("contact.distance_source");
   }
   /// Creates self-contact of a skin.
   DistanceSource(SkinSide side, distance::ContactMesh mesh, double radius, const Points& rest_nodes,
                  const DistanceOptions& options)
-      : a_(std::move(side.surface)),
+      : SampleSource(kTraits),
+        a_(std::move(side.surface)),
         skins_{std::move(side.skin), {}},
         own_(std::make_unique<SelfContactFilter>(*a_->soft(), rest_nodes)),
         contact_(skins_[0], 1.0, std::move(mesh),
@@ -69,12 +74,11 @@ class DistanceSource final : public SampleSource {
                                             skin_point(foot.face, foot.at.weights, x - foot.at.away));
                   }}),
         options_(options),
-        thickness_(radius) {
+        thickness_(radius),
+        coupled_(*a_, *a_) {
     if (options_.candidate_gap == 0.0) options_.candidate_gap = mean_edge(0);
     counters::count("contact.distance_source");
   }
-
-  std::string_view name() const override { return "distance"; }
 
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     update(state);
@@ -108,17 +112,14 @@ class DistanceSource final : public SampleSource {
       samples.push_back(sample_of(spring, pair));
       points_.push_back(spring.side == 0 ? spring.point
                                          : spring.point + static_cast<int>(contact_.points(0).size()));
-      if (is_coupled()) joints_.push_back(CoupledNodes::joint_of(pair.a, pair.b));
+      if (coupled_.are_soft()) joints_.push_back(CoupledNodes::joint_of(pair.a, pair.b));
       if (spring.is_placed) safe_time_ = std::min(safe_time_, time_to_middle(spring.gap, -speed, thickness_));
     }
-    if (is_coupled()) couple();
+    if (coupled_.are_soft()) coupled_.take(joints_);
     fast_ += safe_time_ < options_.look_ahead;
     sum_error_.take({contact_.force_sum(), contact_.quadrature_error(), contact_.largest_force()});
   }
-  const SumError* sum_error() const override { return &sum_error_; }
-
   std::span<const int> material_points() const override { return points_; }
-  bool follows() const override { return true; }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     const std::vector<distance::Spring>& springs = contact_.springs();
     PALPATE_CHECK(samples.size() == springs.size(),
@@ -133,27 +134,21 @@ class DistanceSource final : public SampleSource {
         continue;
       }
       Pair pair = pair_of(springs[i]);
-      if (is_coupled()) keep_in_pattern(joints_[i], pair);
+      if (coupled_.are_soft()) keep_in_pattern(joints_[i], pair);
       const int source = samples[i].source;
       samples[i] = sample_of(springs[i], pair);
       samples[i].source = source;
     }
   }
 
-  void add_pattern(dynamics::PatternBuilder& pattern) const override {
-    for (const ImageSide* side : {a_.get(), b_.get()})
-      if (side && side->soft()) side->soft()->add_face_pattern(pattern);
-    coupled_.add_pattern(pattern);
+  void add_pattern(dynamics::PatternBuilder& pattern) const override { coupled_.add_pattern(pattern); }
+  std::uint64_t pattern_version() const override { return coupled_.version(); }
+  SourceReport report() const override {
+    return {.tunnelled = tunnelling_.count(),
+            .safe_time = safe_time_,
+            .fast_regions = fast_,
+            .sum_error = &sum_error_};
   }
-  std::uint64_t pattern_version() const override {
-    std::uint64_t sum = coupled_.version();
-    for (const ImageSide* side : {a_.get(), b_.get()})
-      if (side && side->soft()) sum += side->soft()->pattern_version();
-    return sum;
-  }
-  double safe_time() const override { return safe_time_; }
-  long fast_regions() const override { return fast_; }
-  long tunnelled() const override { return tunnelling_.count(); }
   void archive(Archive& a) override {
     tunnelling_.archive(a);
     a("fast", fast_);
@@ -161,6 +156,7 @@ class DistanceSource final : public SampleSource {
   }
 
  private:
+  inline static const SourceTraits kTraits = {.name = "distance", .follows = true};
   /// Returns whether a vertex and a face of a skin in self-contact, in the original numbering, are not
   /// neighbours.
   bool may_collide(int vertex, int face) const {
@@ -260,17 +256,6 @@ class DistanceSource final : public SampleSource {
     return point;
   }
 
-  /// Returns whether the tangent has blocks between the nodes of two soft sides.
-  bool is_coupled() const { return a_->soft() && b().soft(); }
-  void couple() {
-    const std::uint64_t layout = a_->soft()->pattern_version() + b().soft()->pattern_version();
-    if (!neighbours_ || layout != counted_in_) {
-      neighbours_ = {a_->soft()->neighbours(), b().soft()->neighbours()};
-      coupled_.start((*neighbours_)[0], (*neighbours_)[1]);
-      counted_in_ = layout;
-    }
-    coupled_.take(joints_);
-  }
   /// Keeps one sample within the pattern, which has the blocks of the query's carriers and of all carriers
   /// that share nodes with these (CoupledNodes). A point that has moved farther stays attached to its carrier
   /// at the query.
@@ -303,9 +288,7 @@ class DistanceSource final : public SampleSource {
   std::optional<SurfacePoint> centre_;  ///< Centre of a ball, side b, in its frame.
   std::vector<int> points_;  ///< Indices of the last query's samples; those of b follow those of a.
   std::vector<CoupledNodes::Joint> joints_;  ///< Two soft bodies: carriers of the samples at the query.
-  mutable CoupledNodes coupled_;
-  std::optional<std::array<NodeNeighbours, 2>> neighbours_;
-  std::uint64_t counted_in_ = 0;
+  CoupledSides coupled_;
   double safe_time_ = HUGE_VAL;
   long fast_ = 0;
   TunnellingMonitor tunnelling_;

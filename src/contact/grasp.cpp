@@ -1,5 +1,7 @@
 #include "contact/grasp.h"
 
+#include <algorithm>
+
 #include "palpate/core/error.h"
 
 namespace palpate::contact {
@@ -311,6 +313,43 @@ void Bonds::append_reduced_samples(const dynamics::StateView& state, const std::
                    .damping = bond.damping});
     if (tangents) tangents->push_back({b.K, b.D});
   }
+}
+
+namespace {
+
+void archive_point(Archive& a, SurfacePoint& point) {
+  a("frame", point.frame);
+  a("count", point.count);
+  a.each("node", point.node, [&](int& node) { a("n", node); });
+  a.numbers("weight", point.weight);
+  a("offset", point.offset);
+  a("slide", point.slide);
+}
+
+}  // namespace
+
+/// Saves or restores the held points. Ties come from the scene: they precede held points in the list and are
+/// kept.
+void Bonds::archive(Archive& a) {
+  const auto first =
+      std::find_if(bonds_.begin(), bonds_.end(), [](const Bond& bond) { return bond.pair != Bond::kTied; });
+  std::vector<Bond> grasped(first, bonds_.end());
+  a.list("bond", grasped, [&](Bond& bond) {
+    {
+      const Archive::Group group(a, "held");
+      archive_point(a, bond.held);
+    }
+    a("frame", bond.frame);
+    a("anchor", bond.anchor);
+    a("normal", bond.normal);
+    a("stiffness", bond.stiffness);
+    a("damping", bond.damping);
+    a("area", bond.area);
+    a("pair", bond.pair);
+    a("frame_is_a", bond.frame_is_a);
+  });
+  bonds_.erase(first, bonds_.end());
+  bonds_.insert(bonds_.end(), grasped.begin(), grasped.end());
 }
 
 }  // namespace palpate::contact

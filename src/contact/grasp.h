@@ -1,9 +1,11 @@
 #pragma once
 #include <vector>
 
-#include "contact/pressure.h"
 #include "contact/reduced_contact_model.h"
 #include "contact/tangent.h"
+#include "palpate/contact/frame_linearisation.h"
+#include "palpate/contact/pressure.h"
+#include "palpate/contact/tie.h"
 #include "palpate/core/archive.h"
 #include "palpate/dynamics/point_stiffness.h"
 

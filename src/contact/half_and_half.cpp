@@ -1,7 +1,8 @@
 // Two quadratures of one contact, over the points of either surface, each with half of the weight.
+#include "contact/half_and_half.h"
+
 #include <algorithm>
 
-#include "contact/sources.h"
 #include "palpate/core/error.h"
 
 namespace palpate::contact {
@@ -10,9 +11,8 @@ namespace {
 class TwoPassSource final : public SampleSource {
  public:
   TwoPassSource(std::unique_ptr<SampleSource> first, std::unique_ptr<SampleSource> second)
-      : first_(std::move(first)), second_(std::move(second)) {}
+      : SampleSource(common_traits(*first, *second)), first_(std::move(first)), second_(std::move(second)) {}
 
-  std::string_view name() const override { return first_->name(); }
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     const std::size_t begin = samples.size();
     first_->query(state, samples);
@@ -22,12 +22,11 @@ class TwoPassSource final : public SampleSource {
     points_.assign(a_points.begin(), a_points.end());
     for (const int point : b_points) points_.push_back(kSecond + point);
     halve({samples.data() + begin, samples.size() - begin});
-    const SumError::Query a = first_->sum_error()->last(), b = second_->sum_error()->last();
+    const SumError::Query a = first_->report().sum_error->last(), b = second_->report().sum_error->last();
     sum_error_.take(
         {0.5 * (a.sum + b.sum), 0.5 * (a.error + b.error), 0.5 * std::max(a.largest_term, b.largest_term)});
   }
   std::span<const int> material_points() const override { return points_; }
-  bool follows() const override { return first_->follows() && second_->follows(); }
   void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
     first_->follow(state, samples.first(count_));
     second_->follow(state, samples.subspan(count_));
@@ -40,11 +39,13 @@ class TwoPassSource final : public SampleSource {
   std::uint64_t pattern_version() const override {
     return first_->pattern_version() + second_->pattern_version();
   }
-  bool has_events() const override { return first_->has_events() || second_->has_events(); }
-  long tunnelled() const override { return first_->tunnelled() + second_->tunnelled(); }
-  double safe_time() const override { return std::min(first_->safe_time(), second_->safe_time()); }
-  long fast_regions() const override { return first_->fast_regions() + second_->fast_regions(); }
-  const SumError* sum_error() const override { return &sum_error_; }
+  SourceReport report() const override {
+    const SourceReport a = first_->report(), b = second_->report();
+    return {.tunnelled = a.tunnelled + b.tunnelled,
+            .safe_time = std::min(a.safe_time, b.safe_time),
+            .fast_regions = a.fast_regions + b.fast_regions,
+            .sum_error = &sum_error_};
+  }
   void archive(Archive& a) override {
     {
       const Archive::Group group(a, "first");
@@ -58,6 +59,10 @@ class TwoPassSource final : public SampleSource {
   }
 
  private:
+  static SourceTraits common_traits(const SampleSource& a, const SampleSource& b) {
+    return {a.traits().name, a.traits().follows && b.traits().follows,
+            a.traits().has_events || b.traits().has_events};
+  }
   static void halve(std::span<ContactSample> samples) {
     for (ContactSample& sample : samples) sample.area *= 0.5;
   }
@@ -74,8 +79,8 @@ class TwoPassSource final : public SampleSource {
 
 std::unique_ptr<SampleSource> make_half_and_half(std::unique_ptr<SampleSource> first,
                                                  std::unique_ptr<SampleSource> second) {
-  PALPATE_CHECK(first->sum_error() && second->sum_error(), "{}: one half has no quadrature error",
-                first->name());
+  PALPATE_CHECK(first->report().sum_error && second->report().sum_error,
+                "{}: one half has no quadrature error", first->traits().name);
   return std::make_unique<TwoPassSource>(std::move(first), std::move(second));
 }
 

@@ -5,10 +5,12 @@
 
 #include "contact/coupled_nodes.h"
 #include "contact/depth_image.h"
+#include "contact/image_options.h"
 #include "contact/region_mesh.h"
-#include "contact/sources.h"
 #include "contact/triangle_pair_gap.h"
 #include "contact/vertex_rule.h"
+#include "palpate/contact/query_stages.h"
+#include "palpate/contact/query_view.h"
 
 namespace palpate::contact {
 
@@ -16,13 +18,13 @@ namespace palpate::contact {
 struct RegionContext {
   std::shared_ptr<ImageSide> a, b;
   ImageOptions options;
-  QueryStages stages;
+  QueryStages stages = {};
   std::optional<QueryView> view = {};  ///< Picture data of the last query, if requested.
-  double safe_time = 0.0;              ///< As SampleSource::safe_time, for the present query.
-  long fast_regions = 0;               ///< As SampleSource::fast_regions.
+  double safe_time = 0.0;              ///< As SourceReport::safe_time, for the present query.
+  long fast_regions = 0;               ///< As SourceReport::fast_regions.
 
-  VertexRule vertices;
-  std::vector<int> local_a, local_b;  ///< Scratch of RegionMesh.
+  VertexRule vertices = {};
+  std::vector<int> local_a = {}, local_b = {};  ///< Scratch of RegionMesh.
 
   /// Updates `safe_time` and `fast_regions` with one region.
   /// @param apart  gap [m]  @param approach  rate of decrease of the gap [m/s]  @param thickness of  the

@@ -57,7 +57,7 @@ class SoftSide final : public ImageSide {
   }
 
  private:
-  /// Mean and spread as derived in proxy_motion.cpp, for the whole surface.
+  /// Mean and spread as derived in proxy_set_motion.cpp, for the whole surface.
   proxy::ProxyMotion around_mean(const Eigen::Ref<const Points>& v) const {
     const Vec3 mean = v.rowwise().mean();
     return {mean, state_.weight_sum() * std::sqrt((v.colwise() - mean).colwise().squaredNorm().maxCoeff())};

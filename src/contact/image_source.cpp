@@ -6,52 +6,26 @@
 namespace palpate::contact {
 
 ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b,
-                         const ImageOptions& options) {
-  context_.a = std::move(a);
-  context_.b = std::move(b);
-  context_.options = options;
+                         const ImageOptions& options)
+    : SampleSource({.name = "image"}),
+      context_{.a = std::move(a), .b = std::move(b), .options = options},
+      coupled_(*context_.a, *context_.b) {
   counters::count("contact.image_source");
 }
 
-void ImageSource::add_pattern(dynamics::PatternBuilder& pattern) const {
-  for (const ImageSide* side : {context_.a.get(), context_.b.get()})
-    if (side->soft()) side->soft()->add_face_pattern(pattern);
-  coupled_.add_pattern(pattern);
+SourceReport ImageSource::report() const {
+  return {.tunnelled = tunnelling_.count(),
+          .safe_time = context_.safe_time,
+          .fast_regions = context_.fast_regions,
+          .stages = &context_.stages,
+          .view = context_.view ? &*context_.view : nullptr};
 }
-
-std::uint64_t ImageSource::sides_version() const {
-  std::uint64_t sum = 0;
-  for (const ImageSide* side : {context_.a.get(), context_.b.get()})
-    if (side->soft()) sum += side->soft()->pattern_version();
-  return sum;
-}
-
-// Both counters increase only.
-std::uint64_t ImageSource::pattern_version() const { return sides_version() + coupled_.version(); }
 
 void ImageSource::archive(Archive& a) {
   tunnelling_.archive(a);
   a("fast", context_.fast_regions);
   a("near", context_.options.candidate_gap);  // Chosen from the skin at the first query.
-  QueryStages& s = context_.stages;
-  for (auto& [name, seconds] :
-       std::initializer_list<std::pair<const char*, double&>>{{"positions_s", s.positions_s},
-                                                              {"regions_s", s.regions_s},
-                                                              {"patches_s", s.patches_s},
-                                                              {"images_s", s.images_s},
-                                                              {"upload_s", s.upload_s},
-                                                              {"passes_s", s.passes_s},
-                                                              {"gather_s", s.gather_s},
-                                                              {"readback_s", s.readback_s},
-                                                              {"gaps_s", s.gaps_s}})
-    a(name, seconds);
-  for (auto& [name, count] : std::initializer_list<std::pair<const char*, long&>>{{"images", s.images},
-                                                                                  {"pairs", s.pairs},
-                                                                                  {"pixels", s.pixels},
-                                                                                  {"vertices", s.vertices},
-                                                                                  {"faces", s.faces},
-                                                                                  {"hits", s.hits}})
-    a(name, count);
+  visit_counters([&](const char* name, auto& value) { a(name, value); }, context_.stages);
 }
 
 void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSample>& samples) {
@@ -76,7 +50,7 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
   for (std::size_t i = 0; i < planes_.size(); ++i) regions_[i]->start(planes_[i]);
   answer();
   joints_.clear();
-  const bool is_coupled = b.soft() != nullptr;
+  const bool is_coupled = coupled_.are_soft();
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     ImageRegion& region = *regions_[i];
     if (!region.requested()) continue;
@@ -84,7 +58,7 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
     region.append_samples(samples, is_coupled ? &joints_ : nullptr);
     if (region.presses()) take_pressing(i);
   }
-  if (is_coupled) couple();
+  if (is_coupled) coupled_.take(joints_);
 }
 
 void ImageSource::answer() {
@@ -105,17 +79,6 @@ void ImageSource::answer() {
   stages.passes_s += image_->times().passes;
   stages.gather_s += image_->times().gather;
   stages.readback_s += image_->times().readback;
-}
-
-void ImageSource::couple() {
-  const SurfaceState &a = *context_.a->soft(), &b = *context_.b->soft();
-  if (const std::uint64_t now = sides_version(); now != counted_ || neighbours_a_.empty()) {
-    neighbours_a_ = a.neighbours();
-    neighbours_b_ = b.neighbours();
-    coupled_.start(neighbours_a_, neighbours_b_);
-    counted_ = now;
-  }
-  coupled_.take(joints_);
 }
 
 }  // namespace palpate::contact

@@ -3,9 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "contact/coupled_nodes.h"
+#include "contact/coupled_sides.h"
 #include "contact/image_region.h"
 #include "contact/tunnelling_monitor.h"
+#include "palpate/contact/sample_source.h"
 
 namespace palpate::contact {
 
@@ -17,16 +18,11 @@ namespace palpate::contact {
 class ImageSource : public SampleSource {
  public:
   ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const ImageOptions& options);
-  std::string_view name() const override { return "image"; }
-  void add_pattern(dynamics::PatternBuilder& pattern) const override;
-  std::uint64_t pattern_version() const override;
+  void add_pattern(dynamics::PatternBuilder& pattern) const override { coupled_.add_pattern(pattern); }
+  std::uint64_t pattern_version() const override { return coupled_.version(); }
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) final;
-  const QueryStages* stages() const final { return &context_.stages; }
+  SourceReport report() const override;
   void keep_view() final { context_.view.emplace(); }
-  const QueryView* view() const final { return context_.view ? &*context_.view : nullptr; }
-  long tunnelled() const final { return tunnelling_.count(); }
-  double safe_time() const final { return context_.safe_time; }
-  long fast_regions() const final { return context_.fast_regions; }
   void archive(Archive& a) override;
 
  protected:
@@ -42,8 +38,6 @@ class ImageSource : public SampleSource {
 
  private:
   void answer();
-  std::uint64_t sides_version() const;  // Increases with the pairs that either side couples alone.
-  void couple();
 
   TunnellingMonitor tunnelling_;
   std::unique_ptr<DepthImage> image_;  ///< Created in the first query.
@@ -51,9 +45,7 @@ class ImageSource : public SampleSource {
   std::vector<std::unique_ptr<ImageRegion>> regions_;  ///< The first planes_.size() belong to the last query.
   std::vector<DepthRequest*> requests_;                ///< Scratch.
   std::vector<CoupledNodes::Joint> joints_;            // Two soft sides only.
-  mutable CoupledNodes coupled_;                       // The pattern is built on request.
-  NodeNeighbours neighbours_a_, neighbours_b_;
-  std::uint64_t counted_ = 0;  // Value of sides_version() for which `coupled_` was made.
+  CoupledSides coupled_;
 };
 
 /// Makes a source with one region that contains both surfaces entirely.

@@ -1,4 +1,7 @@
+#include "contact/make_image_source.h"
+
 #include "contact/image_source.h"
+#include "palpate/contact/spec.h"
 #include "palpate/core/error.h"
 
 namespace palpate::contact {

@@ -6,11 +6,10 @@
 #include <numbers>
 #include <vector>
 
-#include "contact/sources.h"
 #include "distance/points.h"
 #include "mesh/curvature.h"
 #include "palpate/core/error.h"
-#include "proxy/region.h"
+#include "proxy/least_width.h"
 
 // Spacing of contact points. Two bodies of radii r and s touch like a ball of radius R = r s/(r + s) and a
 // plane (Hertz). Pressed in by d, they touch in a circle of radius a, a^2 = 2 R d, with the mean depth d/2.

@@ -1,9 +1,32 @@
 #pragma once
 #include <vector>
 
+#include "palpate/contact/obstacle.h"
 #include "palpate/contact/side.h"
+#include "palpate/mesh/mesh.h"
 
 namespace palpate::contact {
+
+/// Returns the characteristic lengths of a closed surface.
+CharacteristicLengths lengths_of(const TriMesh& closed);
+/// Returns the spacing of a body's contact points against another body: the longest edge of the triangles
+/// between them [m] (src/contact/material_points.cpp).
+/// @param wanted_error  target relative error of the force, for a contact whose depth is an eighth of its
+///   radius
+double point_spacing(const CharacteristicLengths& own, const CharacteristicLengths& other,
+                     double wanted_error);
+/// Returns material points of a soft surface, for contact with an exact shape.
+/// @param rest  vertices of the surface at rest [m]  @param body  tetrahedral mesh at rest; used for embedded
+///   skins only
+/// @param spacing  from point_spacing() [m]
+/// @throws Error where the surface is not closed, or a face of it has no area
+MaterialPoints material_points(const NodeSurface& surface, const Points& rest, const TetMesh& body,
+                               double spacing);
+/// Returns material points of a rigid surface. Throws like the overload for soft surfaces.
+MaterialPoints material_points(const FrameSurface& surface, double spacing);
+/// Returns the spacing of contact points on the surface of a shape against a body, as point_spacing() [m].
+double shape_spacing(const CharacteristicLengths& shape, const CharacteristicLengths& body,
+                     double wanted_error);
 
 /// MaterialPoints at a state: counterpart of SurfaceState and FrameVertices, with the same member names, so
 /// that AnalyticSource accepts each of the three.

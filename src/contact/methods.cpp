@@ -41,4 +41,23 @@ void check_method(const std::string& method, const std::string& where) {
   fail("{}: method = \"{}\" is not known{}", where, method, suggestion(method, known));
 }
 
+const std::vector<SpringEntry>& spring_registry() {
+  static const std::vector<SpringEntry> registry = {
+      {"per_area", "pressure as a function of depth: the force does not depend on the mesh",
+       part_keys({"stiffness_pa_m", "damping_pa_s_m"})},
+      {"per_point",
+       "one spring per colliding vertex (Galoppo et al. 2007): the force grows with their number",
+       part_keys({"stiffness_n_m", "damping_n_s_m"})},
+  };
+  return registry;
+}
+
+const std::vector<LawEntry>& law_registry() {
+  static const std::vector<LawEntry> registry = {
+      {"kelvin_voigt", "spring and damper in parallel", part_keys({"damping_pa_s_m", "damping_n_s_m"})},
+      {"hunt_crossley", "damping proportional to the elastic pressure", part_keys({"hunt_crossley_s_m"})},
+  };
+  return registry;
+}
+
 }  // namespace palpate::contact

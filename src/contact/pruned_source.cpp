@@ -23,8 +23,12 @@ class PrunedSource final : public ImageSource {
     context_.b->set_face_order(patch_by_patch(*proxies_b_));
   }
 
-  long normals_kept() const override { return pruner_.counts().normals_kept; }
-  const proxy::PruneCounts* pruning() const override { return &pruner_.counts(); }
+  SourceReport report() const override {
+    SourceReport out = ImageSource::report();
+    out.normals_kept = pruner_.counts().normals_kept;
+    out.pruning = &pruner_.counts();
+    return out;
+  }
   void archive(Archive& a) override {
     ImageSource::archive(a);
     a("pruner", pruner_);

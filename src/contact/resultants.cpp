@@ -50,13 +50,14 @@ void Resultants::find_bodies(const Samples& samples, const dynamics::StateView& 
 // both.
 void Resultants::compare(const Samples& samples_before, const Samples& samples_after,
                          const dynamics::StateView& state,
-                         const std::vector<std::shared_ptr<MovingFrame>>& frames) {
+                         const std::vector<std::shared_ptr<MovingFrame>>& frames, ContactStatistics& out) {
   for (Bodies& bodies : bodies_) {
     bodies.known = false;
     bodies.centres.clear();
   }
   find_bodies(samples_after, state, frames);
   find_bodies(samples_before, state, frames);
+  ResultantSize& jump = out.refresh_jump;
   jump = {};
   const auto grow = [](ResultantSize& size, const Vec3& force, const Vec3& moment, const Bodies& bodies) {
     size.force = std::max(size.force, force.norm());
@@ -65,10 +66,10 @@ void Resultants::compare(const Samples& samples_before, const Samples& samples_a
   };
   for (std::size_t i = 0; i < before.size(); ++i) {
     grow(jump, after[i].force - before[i].force, after[i].moment - before[i].moment, bodies_[i]);
-    grow(largest_after, after[i].force, after[i].moment, bodies_[i]);
+    grow(out.largest_resultant, after[i].force, after[i].moment, bodies_[i]);
   }
-  largest_jump.force = std::max(largest_jump.force, jump.force);
-  largest_jump.moment = std::max(largest_jump.moment, jump.moment);
+  out.largest_jump.force = std::max(out.largest_jump.force, jump.force);
+  out.largest_jump.moment = std::max(out.largest_jump.moment, jump.moment);
 }
 
 }  // namespace palpate::contact

@@ -1,7 +1,9 @@
 #pragma once
 #include <vector>
 
-#include "palpate/contact/contact_force.h"
+#include "palpate/contact/frame.h"
+#include "palpate/contact/sample.h"
+#include "palpate/contact/statistics.h"
 
 namespace palpate::contact {
 
@@ -21,13 +23,10 @@ class Resultants {
   /// about each body of the pair: about the mean of its nodes, or the origin of its frame. Bodies that do not
   /// move are ignored.
   /// @param samples_before, samples_after  samples of the two queries, which identify the pairs' bodies
+  /// @param out  receives refresh_jump, and the largest jump and resultant so far
   using Samples = std::vector<ContactSample>;
   void compare(const Samples& samples_before, const Samples& samples_after, const dynamics::StateView& state,
-               const std::vector<std::shared_ptr<MovingFrame>>& frames);
-
-  ResultantSize jump;           ///< Change at the last refresh.
-  ResultantSize largest_jump;   ///< Largest change of all refreshes.
-  ResultantSize largest_after;  ///< Largest resultants after a refresh, of all refreshes.
+               const std::vector<std::shared_ptr<MovingFrame>>& frames, ContactStatistics& out);
 
  private:
   struct Bodies {

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "contact/friction.h"
-#include "contact/pressure.h"
 #include "palpate/contact/frame.h"
+#include "palpate/contact/pressure.h"
 #include "palpate/contact/sample.h"
 
 namespace palpate::contact {

@@ -5,7 +5,7 @@
 #include "contact/carrier.h"
 #include "contact/contact_view.h"
 #include "contact/coupled_nodes.h"
-#include "palpate/contact/contact_force.h"
+#include "palpate/contact/side.h"
 
 namespace palpate::contact {
 

@@ -5,6 +5,7 @@
 
 #include "contact/image_side.h"
 #include "contact/tunnelling_check.h"
+#include "palpate/core/archive.h"
 
 namespace palpate::contact {
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "contact/image_source.h"
+#include "proxy/least_width.h"
 #include "proxy/reach.h"
 #include "proxy/region.h"
 
@@ -28,7 +29,11 @@ class WholeSource final : public ImageSource {
         faces_a_(all_faces(*context_.a)),
         faces_b_(all_faces(*context_.b)) {}
 
-  long normals_kept() const override { return normals_kept_; }
+  SourceReport report() const override {
+    SourceReport out = ImageSource::report();
+    out.normals_kept = normals_kept_;
+    return out;
+  }
   /// Saves or restores also the side that the bodies came from, known from the last query.
   void archive(Archive& a) override {
     ImageSource::archive(a);

@@ -184,46 +184,98 @@ PALPATE_INLINE unsigned near_triangles(const float* plane, const float c[3], con
 
 constexpr int kQuarters = 4;
 
+/// Boxes of four points each, and of all sixteen: fewer triangles are near one of the small boxes than near
+/// the large one.
+struct QuarterBoxes {
+  float c[kQuarters][3], h[kQuarters][3];  // Centres and half edges.
+  float low[3], high[3];
+};
+PALPATE_INLINE void bound_quarters(const Packet& packet, QuarterBoxes& out) {
+  for (int d = 0; d < 3; ++d) {
+    for (int q = 0; q < kQuarters; ++q) {
+      const float* p = packet.x[d] + 4 * q;
+      float least_x = p[0], most_x = p[0];
+      for (int i = 1; i < 4; ++i) {
+        least_x = p[i] < least_x ? p[i] : least_x;
+        most_x = p[i] > most_x ? p[i] : most_x;
+      }
+      out.c[q][d] = 0.5f * (least_x + most_x);
+      out.h[q][d] = 0.5f * (most_x - least_x);
+      out.low[d] = q && out.low[d] < least_x ? out.low[d] : least_x;
+      out.high[d] = q && out.high[d] > most_x ? out.high[d] : most_x;
+    }
+  }
+}
+
+/// Clusters of the nearest faces so far.
+struct FirstClusters {
+  int cluster[kQuarters], count = 0;
+};
+PALPATE_INLINE bool contains(const FirstClusters& first, int cluster) {
+  bool known = false;
+  for (int i = 0; i < first.count; ++i) known |= first.cluster[i] == cluster;
+  return known;
+}
+PALPATE_INLINE void collect(const Packet& packet, FirstClusters& first) {
+  for (int q = 0; q < kQuarters; ++q) {
+    if (packet.face[4 * q] < 0) continue;
+    const int cluster = packet.face[4 * q] >> 5;
+    if (!contains(first, cluster)) first.cluster[first.count++] = cluster;
+  }
+}
+
+/// Returns which of the kLanes clusters from `group` on may be nearer than the bound.
+PALPATE_INLINE unsigned open_clusters(const Targets& targets, int group, const QuarterBoxes& boxes,
+                                      Floats bound) {
+  Floats away2 = {};
+  for (int d = 0; d < 3; ++d) {
+    const float* row = targets.boxes + d * targets.box_stride + group;
+    const Floats gap = most(
+        Floats{}, most(floats(row) - boxes.high[d], boxes.low[d] - floats(row + 3 * targets.box_stride)));
+    away2 += gap * gap;
+  }
+  unsigned open = bits(away2 <= loosened(all(largest(bound)), targets.slack2));
+  if (targets.cluster_count - group < kLanes) open &= (1u << (targets.cluster_count - group)) - 1;
+  return open;
+}
+
+/// Lists the faces of a cluster that may be nearer than the bound. Returns their number.
+PALPATE_INLINE int list_near_faces(const Targets& targets, int cluster, const QuarterBoxes& boxes,
+                                   Floats bound, int* faces) {
+  const float* plane = targets.planes + static_cast<std::ptrdiff_t>(cluster) * kPlaneFloats;
+  float quarter[kQuarters];
+  for (int q = 0; q < kQuarters; ++q) {
+    quarter[q] = bound[4 * q];
+    for (int i = 1; i < 4; ++i) quarter[q] = bound[4 * q + i] > quarter[q] ? bound[4 * q + i] : quarter[q];
+    quarter[q] = quarter[q] * (1.0f + 1.0f / 128) + 129.0f * targets.slack2;
+  }
+  int count = 0;
+  for (int half = 0; half < 2; ++half) {
+    unsigned near = 0;
+    for (int q = 0; q < kQuarters; ++q)
+      near |= near_triangles(plane + 16 * half, boxes.c[q], boxes.h[q], quarter[q]);
+    for (; near; near &= near - 1) faces[count++] = 32 * cluster + 16 * half + __builtin_ctz(near);
+  }
+  return count;
+}
+
+// The search order is: single faces, then the clusters of the nearest faces so far, which tighten the bound,
+// then all other clusters. They share one copy of test(), so that a distance has the same bits wherever it is
+// computed.
 long search(Packet& packet, const Targets& targets) {
   const Vectors x = {floats(packet.x[0]), floats(packet.x[1]), floats(packet.x[2])};
   Best best = {floats(packet.distance2), floats(packet.height), ints(packet.face)};
   long tested = 0;
-  // Boxes of four points each: fewer triangles are near one of these than near the box of all sixteen points.
-  float c[kQuarters][3], h[kQuarters][3], low[3], high[3];
-  if (targets.cluster_count > 0)
-    for (int d = 0; d < 3; ++d) {
-      for (int q = 0; q < kQuarters; ++q) {
-        const float* p = packet.x[d] + 4 * q;
-        float least_x = p[0], most_x = p[0];
-        for (int i = 1; i < 4; ++i) {
-          least_x = p[i] < least_x ? p[i] : least_x;
-          most_x = p[i] > most_x ? p[i] : most_x;
-        }
-        c[q][d] = 0.5f * (least_x + most_x);
-        h[q][d] = 0.5f * (most_x - least_x);
-        low[d] = q && low[d] < least_x ? low[d] : least_x;
-        high[d] = q && high[d] > most_x ? high[d] : most_x;
-      }
-    }
-  // The search order is: single faces, then the clusters of the nearest faces so far, which tighten the
-  // bound, then all other clusters. They share one copy of test(), so that a distance has the same bits
-  // wherever it is computed.
+  QuarterBoxes boxes;
+  FirstClusters first;
+  if (targets.cluster_count > 0) {
+    bound_quarters(packet, boxes);
+    collect(packet, first);
+  }
   const int* list = targets.faces;
-  int count = targets.face_count, group = -kLanes;
+  int count = targets.face_count, group = -kLanes, next = 0;
   unsigned open = 0;
   int near_faces[32];
-  int first[kQuarters], first_count = 0, next = 0;
-  const auto is_first = [&](int cluster) {
-    bool known = false;
-    for (int i = 0; i < first_count; ++i) known |= first[i] == cluster;
-    return known;
-  };
-  if (targets.cluster_count > 0)
-    for (int q = 0; q < kQuarters; ++q) {
-      if (packet.face[4 * q] < 0) continue;
-      const int cluster = packet.face[4 * q] >> 5;
-      if (!is_first(cluster)) first[first_count++] = cluster;
-    }
   for (;;) {
     for (int i = 0; i < count; ++i) {
       const int face = list[i];
@@ -232,7 +284,7 @@ long search(Packet& packet, const Targets& targets) {
     }
     tested += count;
     const Floats bound = loosened(best.distance2, targets.slack2);
-    while (!open && next == first_count) {
+    while (!open && next == first.count) {
       group += kLanes;
       if (group >= targets.cluster_count) {
         floats(packet.distance2) = best.distance2;
@@ -240,41 +292,19 @@ long search(Packet& packet, const Targets& targets) {
         ints(packet.face) = best.face;
         return tested;
       }
-      Floats away2 = {};
-      for (int d = 0; d < 3; ++d) {
-        const float* row = targets.boxes + d * targets.box_stride + group;
-        const Floats gap =
-            most(Floats{}, most(floats(row) - high[d], low[d] - floats(row + 3 * targets.box_stride)));
-        away2 += gap * gap;
-      }
-      open = bits(away2 <= loosened(all(largest(bound)), targets.slack2));
-      if (targets.cluster_count - group < kLanes) open &= (1u << (targets.cluster_count - group)) - 1;
-    }
-    int cluster = 0;
-    if (next < first_count) {
-      cluster = first[next++];
-    } else {
-      cluster = targets.clusters[group + __builtin_ctz(open)];
-      open &= open - 1;
-      if (is_first(cluster)) {
-        count = 0;
-        continue;
-      }
-    }
-    const float* plane = targets.planes + static_cast<std::ptrdiff_t>(cluster) * kPlaneFloats;
-    float quarter[kQuarters];
-    for (int q = 0; q < kQuarters; ++q) {
-      quarter[q] = bound[4 * q];
-      for (int i = 1; i < 4; ++i) quarter[q] = bound[4 * q + i] > quarter[q] ? bound[4 * q + i] : quarter[q];
-      quarter[q] = quarter[q] * (1.0f + 1.0f / 128) + 129.0f * targets.slack2;
+      open = open_clusters(targets, group, boxes, bound);
     }
     count = 0;
     list = near_faces;
-    for (int half = 0; half < 2; ++half) {
-      unsigned near = 0;
-      for (int q = 0; q < kQuarters; ++q) near |= near_triangles(plane + 16 * half, c[q], h[q], quarter[q]);
-      for (; near; near &= near - 1) near_faces[count++] = 32 * cluster + 16 * half + __builtin_ctz(near);
+    int cluster = 0;
+    if (next < first.count) {
+      cluster = first.cluster[next++];
+    } else {
+      cluster = targets.clusters[group + __builtin_ctz(open)];
+      open &= open - 1;
+      if (contains(first, cluster)) continue;
     }
+    count = list_near_faces(targets, cluster, boxes, bound, near_faces);
   }
 }
 

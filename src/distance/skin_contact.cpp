@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "distance/contact_scratch.h"
 #include "distance/linear_gap.h"
+#include "distance/skin_contact_impl.h"
 #include "palpate/core/error.h"
 
 namespace palpate::distance {

@@ -100,7 +100,7 @@ void BodyLoop::record_tick(std::size_t hand, const TickRecord& tick) {
 double BodyLoop::next_query(double t0, double t1) {
   const scene::CosimulationSpec& exchange = world_.description.exchange;
   if (!world_.contact || exchange.tunnelling != "substep") return t1;
-  const double safe = world_.contact->safe_time(), rest = t1 - t0;
+  const double safe = world_.contact->statistics().safe_time, rest = t1 - t0;
   const double requested = std::ceil(rest / safe - 1e-9),
                most = std::max(1.0, std::floor(rest / exchange.shortest_refresh_s + 1e-9));
   if (!(requested > 1.0) || most <= 1.0) return t1;
@@ -194,8 +194,10 @@ void BodyLoop::sum_up() {
   result_.more_hands.clear();
   if (world_.stepper) result_.counters = counted_before_ + world_.stepper->counters();
   if (world_.contact) {
-    result_.contact_queries = world_.contact->queries();
-    result_.tunnelled = world_.contact->tunnelled();
+    result_.contact_queries = world_.contact->statistics().queries;
+    result_.tunnelled.clear();
+    for (const contact::PairReport& pair : world_.contact->pairs())
+      result_.tunnelled.push_back(pair.tunnelled);
   }
   for (std::size_t i = 0; i < hand_ticks_.size(); ++i) {
     const ToolInstance& side = ToolInstance::of(world_, i);

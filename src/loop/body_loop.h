@@ -38,7 +38,7 @@ class BodyLoop {
   /// Records one tick of that hand, and passes it to the observers.
   void record_tick(std::size_t hand, const TickRecord& tick);
   /// Returns the time of the next contact query: t1, or, with tunnelling = "substep", early enough that no
-  /// skin penetrates by more than half of the other side's thickness until then (SampleSource::safe_time).
+  /// skin penetrates by more than half of the other side's thickness until then (SourceReport::safe_time).
   double next_query(double t0, double t1);
   /// Advances the bodies to t1; contact is refreshed at equal fractions, about `refresh_s` apart, not at t0.
   void advance(double t0, double t1, double refresh_s);

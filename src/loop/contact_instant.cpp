@@ -93,10 +93,10 @@ ContactInstant contact_instant(const World& world) {
   const auto points = world.contact->points(world.state.view());
   for (const contact::ContactPoint& p : points) out.force_n += p.pressure * p.area;
 
-  const auto views = world.contact->views();
-  for (std::size_t pair = 0; pair < views.size(); ++pair) {
+  const std::vector<contact::PairReport> pairs = world.contact->pairs();
+  for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
     const ContactSpec& spec = world.description.contacts[pair];
-    const contact::QueryView* view = views[pair];
+    const contact::QueryView* view = pairs[pair].view;
     if (view) {
       out.regions.insert(out.regions.end(), view->regions.begin(), view->regions.end());
       for (const Points& hull : view->proxies_a) out.proxies.push_back({proxy::hull_surface(hull), true});

@@ -91,16 +91,15 @@ void add_models(store::Summary& summary, const scene::Description& d) {
 /// hold until the next.
 void add_resultants(store::Summary& summary, const World& world) {
   if (!world.contact) return;
-  const contact::ResultantSize jump = world.contact->largest_jump(),
-                               after = world.contact->largest_resultant();
+  const contact::ContactStatistics& all = world.contact->statistics();
   store::SummaryFields& values = summary.section("contact_resultants").values;
-  values = {{"largest_force_jump_n", jump.force},
-            {"largest_moment_jump_n_m", jump.moment},
-            {"largest_force_n", after.force},
-            {"largest_moment_n_m", after.moment}};
-  if (const double friction = world.contact->largest_lagged_friction(); friction > 0.0) {
-    values.emplace_back("largest_lagged_friction_n", friction);
-    values.emplace_back("largest_friction_lag_n", world.contact->largest_friction_lag());
+  values = {{"largest_force_jump_n", all.largest_jump.force},
+            {"largest_moment_jump_n_m", all.largest_jump.moment},
+            {"largest_force_n", all.largest_resultant.force},
+            {"largest_moment_n_m", all.largest_resultant.moment}};
+  if (all.largest_lagged_friction > 0.0) {
+    values.emplace_back("largest_lagged_friction_n", all.largest_lagged_friction);
+    values.emplace_back("largest_friction_lag_n", all.largest_friction_lag);
   }
 }
 
@@ -129,28 +128,26 @@ void add_pruning(store::SummaryFields& row, const proxy::PruneCounts& c, const W
 void add_contacts(store::Summary& summary, const World& world, const RunResult& result) {
   if (!world.contact) return;
   const std::vector<Overlap> overlaps = overlaps_of(world);
-  const std::vector<std::string> methods = world.contact->methods();
-  const std::vector<long> fast = world.contact->fast_regions(), kept = world.contact->normals_kept();
-  const auto stages = world.contact->stages();
-  const auto pruning = world.contact->pruning();
+  const std::vector<contact::PairReport> pairs = world.contact->pairs();
   for (std::size_t i = 0; i < overlaps.size(); ++i) {
     const ContactSpec& contact = world.description.contacts[i];
     const Overlap& overlap = overlaps[i];
+    const contact::PairReport& pair = pairs[i];
     store::SummaryFields row = {{"between", std::vector<std::string>{contact.first, contact.second}},
-                                {"method", methods[i]}};
+                                {"method", pair.method}};
     if (i < result.tunnelled.size())
       row.emplace_back("tunnelled", static_cast<long long>(result.tunnelled[i]));
     row.emplace_back("deepest_overlap_m", overlap.deepest_m);
     if (overlap.quadrature_error > 0.0)
       row.emplace_back("largest_quadrature_error", overlap.quadrature_error);
     if (overlap.largest_share > 0.0) row.emplace_back("largest_share_of_a_point", overlap.largest_share);
-    row.emplace_back("fast_regions", static_cast<long long>(fast[i]));
-    if (stages[i]) {
-      row.emplace_back("normals_kept", static_cast<long long>(kept[i]));
-      row.emplace_back("images", static_cast<long long>(stages[i]->images));
-      row.emplace_back("triangle_pairs", static_cast<long long>(stages[i]->pairs));
+    row.emplace_back("fast_regions", static_cast<long long>(pair.fast_regions));
+    if (pair.stages) {
+      row.emplace_back("normals_kept", static_cast<long long>(pair.normals_kept));
+      row.emplace_back("images", static_cast<long long>(pair.stages->images));
+      row.emplace_back("triangle_pairs", static_cast<long long>(pair.stages->pairs));
     }
-    if (pruning[i]) add_pruning(row, *pruning[i], world, contact);
+    if (pair.pruning) add_pruning(row, *pair.pruning, world, contact);
     summary.list("contacts").push_back(std::move(row));
   }
 }
@@ -171,7 +168,7 @@ void add_reductions(store::Summary& summary, const World& world) {
 /// Adds the grasps of the tools.
 void add_grasps(store::Summary& summary, const World& world) {
   if (!world.contact) return;
-  const contact::GraspCounts counts = world.contact->grasp_counts();
+  const contact::GraspCounts& counts = world.contact->statistics().grasps;
   if (counts.closed + counts.empty == 0) return;
   summary.section("grasps").values = {{"closed", static_cast<long long>(counts.closed)},
                                       {"closed_on_nothing", static_cast<long long>(counts.empty)},
@@ -182,8 +179,8 @@ void add_grasps(store::Summary& summary, const World& world) {
 /// Adds the OpenGL device of contact in image space.
 void add_renderer(store::Summary& summary, const World& world) {
   if (!world.contact) return;
-  const auto stages = world.contact->stages();
-  const bool images = std::any_of(stages.begin(), stages.end(), [](auto* s) { return s != nullptr; });
+  const auto pairs = world.contact->pairs();
+  const bool images = std::any_of(pairs.begin(), pairs.end(), [](const auto& pair) { return pair.stages; });
   if (const contact::GpuDevice device = contact::gpu_device(); images && !device.name.empty())
     summary.section("renderer").values = {
         {"device", device.name}, {"driver", device.driver}, {"is_software", device.software}};
@@ -290,15 +287,14 @@ std::vector<AnswerError> answer_errors_of(const World& world) {
 std::vector<Overlap> overlaps_of(const World& world) {
   std::vector<Overlap> out;
   if (!world.contact) return out;
-  const std::vector<double> deepest = world.contact->deepest();
-  const std::vector<const contact::SumError*> errors = world.contact->sum_errors();
-  for (std::size_t i = 0; i < deepest.size(); ++i) {
+  const std::vector<contact::PairReport> pairs = world.contact->pairs();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
     const ContactSpec& contact = world.description.contacts[i];
-    Overlap one{fmt::format("{} - {}", contact.first, contact.second), deepest[i], HUGE_VAL,
+    Overlap one{fmt::format("{} - {}", contact.first, contact.second), pairs[i].deepest, HUGE_VAL,
                 contact.first == contact.second};
-    if (errors[i]) {
-      one.quadrature_error = errors[i]->largest();
-      one.largest_share = errors[i]->largest_share();
+    if (const contact::SumError* error = pairs[i].sum_error) {
+      one.quadrature_error = error->largest();
+      one.largest_share = error->largest_share();
     }
     if (one.deepest_m > 0.0 && one.of_itself)
       one.half_width_m = Overlap::kOwnShare * depth_within_itself(*world.find_body(contact.first));

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "mesh/layered_model.h"
+#include "proxy/hull_quality.h"
 
 namespace palpate::proxy {
 
@@ -14,25 +15,6 @@ struct DecomposeOptions {
   double normal_weight = 0.5;
   /// A hull takes no more corners once its points lie outside by less than this [skin sizes].
   double tolerance = 1e-4;
-};
-
-/// Quality of one hull as an approximation of its skin, at rest.
-struct HullQuality {
-  double volume = 0.0;   ///< [m^3]
-  double outside = 0.0;  ///< convexity: largest distance of a member outside the hull [m]
-  /// Tightness: mean distance of the hull's surface from its members along their normals, weighted by area
-  /// [m].
-  double mean_gap = 0.0;
-  double largest_gap = 0.0;  ///< largest of these distances [m]
-};
-
-/// Quality of a decomposition.
-struct DecomposeReport {
-  std::vector<HullQuality> hulls;
-  double skin_size = 0.0;    ///< diagonal of the skin's box [m]
-  double skin_volume = 0.0;  ///< [m^3]
-  double hull_volume = 0.0;  ///< sum over the hulls; neighbours overlap, so more than skin_volume [m^3]
-  double largest_outside = 0.0, largest_gap = 0.0;  ///< over all hulls [m]
 };
 
 /// Decomposes one body into convex proxies (docs/theory/proxies.md).  The skin is clustered by bone, then by

@@ -1,9 +1,8 @@
-#include <Eigen/Geometry>
+#include "proxy/least_width.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
-
-#include "proxy/region.h"
 
 namespace palpate::proxy {
 namespace {

@@ -6,6 +6,7 @@
 #include "mesh/layered_model.h"
 #include "palpate/core/pose.h"
 #include "proxy/reach.h"
+#include "proxy/skin_patches.h"
 
 namespace palpate::proxy {
 
@@ -37,31 +38,6 @@ struct ProxyState {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< box around the inflated hull [m]
 };
 
-/// Patch of neighbouring faces of one proxy's skin, enclosed by a ball at rest.
-struct SkinPatch {
-  int proxy = 0;
-  int first_face = 0, face_count = 0;  ///< in ProxySet::faces
-  int first_slot = 0, slot_count = 0;  ///< its nodes, among the proxy's nodes
-  double weight_sum = 1.0;             ///< largest sum |w| of its vertices
-  Vec3 centre = Vec3::Zero();          ///< [m]
-  double radius = 0.0;                 ///< [m]
-  Vec3 area = Vec3::Zero();            ///< sum of the faces' area vectors, outward [m^2]
-};
-/// Ball in world coordinates [m].
-struct Ball {
-  Vec3 centre;
-  double radius;
-};
-
-/// Branch of the tree over a body's proxies, in preorder: its first child follows it, and `after` is the next
-/// branch outside its subtree.  Its box contains all skin and tetrahedra of its proxies and is not tight
-/// (proxy_set.cpp).
-struct ProxyBranch {
-  int parent = -1, after = 0;
-  int proxy = -1;  ///< proxy of a leaf; -1 for an inner branch
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
-};
-
 /// The convex proxies of one body at its present positions (docs/theory/proxies.md). The bounds are derived
 /// in proxy_set.cpp.
 ///
@@ -84,7 +60,7 @@ class ProxySet {
   void update(const Pose& pose);  ///< moves a rigid body's proxies to a pose
 
   /// Sets the motion of a soft body from here on; an update resets it to rest.  The bounds are derived in
-  /// proxy_motion.cpp.
+  /// proxy_set_motion.cpp.
   /// @param velocities  per node [m/s], or displacements within a given time [m]
   void set_motion(const Eigen::Ref<const Points>& velocities);
   void set_motion(const Twist& twist);         ///< rigid: velocity of its frame

@@ -3,10 +3,10 @@
 
 #include "proxy/body_motion.h"
 #include "proxy/proxy_set.h"
-#include "proxy/skin_patches.h"
+#include "proxy/table.h"
 
-/// Data shared by proxy_set_build.cpp (once), proxy_set.cpp (every update), proxy_motion.cpp (motion) and
-/// proxy_patches.cpp (patch queries).  The bounds are derived in proxy_set.cpp.
+/// Data shared by proxy_set_build.cpp (once), proxy_set.cpp (every update), proxy_set_motion.cpp (motion)
+/// and proxy_set_patches.cpp (patch queries).  The bounds are derived in proxy_set.cpp.
 namespace palpate::proxy {
 
 /// Set of nodes whose motion is fitted or bounded.
@@ -46,7 +46,7 @@ struct ProxySet::Impl {
   std::vector<int> near_patch;
   std::vector<ProxyBranch> tree;
 
-  // Motion (proxy_motion.cpp): the nodes' velocities, or the rigid field linear X + offset.
+  // Motion (proxy_set_motion.cpp): the nodes' velocities, or the rigid field linear X + offset.
   Points velocities;
   Mat3 rate = Mat3::Zero();
   Vec3 rate_offset = Vec3::Zero();

@@ -1,9 +1,34 @@
 #pragma once
 #include <vector>
 
-#include "proxy/proxy_set.h"
+#include "mesh/layered_model.h"
 
 namespace palpate::proxy {
+
+/// Patch of neighbouring faces of one proxy's skin, enclosed by a ball at rest.
+struct SkinPatch {
+  int proxy = 0;
+  int first_face = 0, face_count = 0;  ///< in ProxySet::faces
+  int first_slot = 0, slot_count = 0;  ///< its nodes, among the proxy's nodes
+  double weight_sum = 1.0;             ///< largest sum |w| of its vertices
+  Vec3 centre = Vec3::Zero();          ///< [m]
+  double radius = 0.0;                 ///< [m]
+  Vec3 area = Vec3::Zero();            ///< sum of the faces' area vectors, outward [m^2]
+};
+/// Ball in world coordinates [m].
+struct Ball {
+  Vec3 centre;
+  double radius;
+};
+
+/// Branch of the tree over a body's proxies, in preorder: its first child follows it, and `after` is the next
+/// branch outside its subtree.  Its box contains all skin and tetrahedra of its proxies and is not tight
+/// (proxy_set.cpp).
+struct ProxyBranch {
+  int parent = -1, after = 0;
+  int proxy = -1;  ///< proxy of a leaf; -1 for an inner branch
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+};
 
 /// Patches of skin: the faces of each proxy, bisected along their longest extent until a piece has at most
 /// `patch_faces` faces.

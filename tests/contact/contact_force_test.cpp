@@ -1,6 +1,7 @@
 #include "fixture.h"
 
 #include "core/counters.h"
+#include "palpate/contact/pressure.h"
 
 using namespace contact_tests;
 
@@ -134,8 +135,8 @@ TEST(ContactForce, RefreshReportsWhetherTheForceChanged) {
   term.add_pair(std::make_unique<ListSource>(std::vector{pressed}), undamped);
   EXPECT_TRUE(term.refresh(world.state.view()));
   EXPECT_FALSE(term.refresh(world.state.view()));
-  EXPECT_EQ(term.queries(), 2);
-  EXPECT_GE(term.query_seconds(), 0.0);
+  EXPECT_EQ(term.statistics().queries, 2);
+  EXPECT_GE(term.statistics().query_seconds, 0.0);
 }
 
 // One root function per sample: its sign tells whether the sample presses, for any gap and rate, also where

@@ -26,7 +26,7 @@ TEST(DeepPose, ADeepPoseKeepsItsNormal) {
     }
     EXPECT_TRUE(flips) << "the case is one";
     EXPECT_GT(pressed, 15);
-    EXPECT_GT(source->normals_kept(), 3);
+    EXPECT_GT(source->report().normals_kept, 3);
     // leaves on the far side and returns: now it enters from there
     pair.query(*source, Vec3(0.01, 0.02, -0.1));
     for (const auto& s : pair.query(*source, Vec3(0.01, 0.02, -0.053))) EXPECT_LT(s.normal.z(), -0.5);

@@ -160,7 +160,7 @@ TEST(DistanceSource, FollowsAsAQueryFinds) {
     const VecX requested = force(fresh.term, fresh.a.state);
     EXPECT_LT((force(exact.term, exact.a.state) - requested).norm(), 1e-9 * requested.norm());
     EXPECT_GT((before - requested).norm(), 0.1 * requested.norm()) << "else there is nothing to follow";
-    EXPECT_EQ(exact.term.queries(), 1);
+    EXPECT_EQ(exact.term.statistics().queries, 1);
   }
 }
 

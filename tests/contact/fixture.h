@@ -23,8 +23,8 @@ inline Quat rotation(std::mt19937& random) { return quaternion_of(2.0 * vector(r
 /// Returns the same samples at every query.
 class ListSource final : public contact::SampleSource {
  public:
-  explicit ListSource(std::vector<contact::ContactSample> samples) : samples_(std::move(samples)) {}
-  std::string_view name() const override { return "list"; }
+  explicit ListSource(std::vector<contact::ContactSample> samples)
+      : SampleSource({.name = "list"}), samples_(std::move(samples)) {}
   void query(const dynamics::StateView&, std::vector<contact::ContactSample>& out) override {
     out.insert(out.end(), samples_.begin(), samples_.end());
   }
@@ -45,8 +45,8 @@ class ListSource final : public contact::SampleSource {
 /// A source whose samples do not follow the state between queries, as in an image: their tangent is exact.
 class HeldSource final : public contact::SampleSource {
  public:
-  explicit HeldSource(std::unique_ptr<contact::SampleSource> source) : source_(std::move(source)) {}
-  std::string_view name() const override { return source_->name(); }
+  explicit HeldSource(std::unique_ptr<contact::SampleSource> source)
+      : SampleSource({.name = source->traits().name}), source_(std::move(source)) {}
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& out) override {
     source_->query(state, out);
   }

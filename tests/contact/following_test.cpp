@@ -59,7 +59,7 @@ TEST(Following, AForceBetweenQueriesIsThatOfAQueryThere) {
   ASSERT_GT(requested.norm(), 0.0);
   EXPECT_LT((exact.force() - requested).norm(), 1e-13 * requested.norm());
   EXPECT_GT((before - requested).norm(), 0.1 * requested.norm()) << "else there is nothing to follow";
-  EXPECT_EQ(exact.term.queries(), 1);
+  EXPECT_EQ(exact.term.statistics().queries, 1);
 }
 
 TEST(Following, EnergyWrenchEventsAndProductsAreOfTheSameState) {
@@ -120,7 +120,7 @@ TEST(Following, ARefreshChangesNoForceSoThatNoMethodRestarts) {
   exact.term.refresh(exact.world.state.view());
   exact.deform();
   EXPECT_FALSE(exact.term.refresh(exact.world.state.view()));
-  EXPECT_EQ(exact.term.refresh_jump().force, 0.0);
+  EXPECT_EQ(exact.term.statistics().refresh_jump.force, 0.0);
 }
 
 TEST(Following, AFailedTrialOfAnIntegratorIsNoError) {

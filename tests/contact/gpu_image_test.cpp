@@ -86,13 +86,13 @@ TEST(GpuImages, TheFirstQueryMakesAllThatFirstTouchNeeds) {
   const auto source = balls.source(true);
   std::vector<contact::ContactSample> samples;
   source->query(balls.state.view(), samples);
-  EXPECT_EQ(source->stages()->images, 0);
-  const double prepared = source->stages()->images_s;
+  EXPECT_EQ(source->report().stages->images, 0);
+  const double prepared = source->report().stages->images_s;
   EXPECT_GT(prepared, 0.0);
   EXPECT_FALSE(contact::gpu_device().name.empty());
   balls.state.q() = touching;
   source->query(balls.state.view(), samples);
-  EXPECT_GT(source->stages()->images, 0);
+  EXPECT_GT(source->report().stages->images, 0);
   EXPECT_GT(samples.size(), 40u);
 }
 

@@ -101,8 +101,8 @@ TEST(Grasp, NothingJumpsWhereItCloses) {
     const VecX before = force(scene.term, scene.world.state);
     const double energy = scene.term.energy(scene.world.state.view());
     EXPECT_TRUE(scene.grasp());
-    EXPECT_EQ(scene.term.grasp_counts().points, 3) << "what is apart is not held";
-    EXPECT_NEAR(scene.term.grasp_counts().area, 1.8, 1e-12);
+    EXPECT_EQ(scene.term.statistics().grasps.points, 3) << "what is apart is not held";
+    EXPECT_NEAR(scene.term.statistics().grasps.area, 1.8, 1e-12);
     ASSERT_GT(before.norm(), 1.0);
     EXPECT_LE((force(scene.term, scene.world.state) - before).norm(), 1e-13 * before.norm());
     // the damping force at closing is kept as a small deflection along the surface
@@ -123,9 +123,9 @@ TEST(Grasp, HoldsWhatIsPulledAndLetsGo) {
   EXPECT_LT(on_node.dot(s.normal), -20.0 * 0.6 * kDepth) << "it is pulled along";
   EXPECT_TRUE(scene.grasp(false));
   EXPECT_EQ(force(scene.term, pulled).norm(), 0.0);
-  EXPECT_EQ(scene.term.grasp_counts().points, 0);
-  EXPECT_EQ(scene.term.grasp_counts().closed, 1);
-  EXPECT_GT(scene.term.grasp_counts().largest_area, 1.7);
+  EXPECT_EQ(scene.term.statistics().grasps.points, 0);
+  EXPECT_EQ(scene.term.statistics().grasps.closed, 1);
+  EXPECT_GT(scene.term.statistics().grasps.largest_area, 1.7);
 }
 
 // Samples that start to press after closing are not held until the grasp closes again; closing where nothing
@@ -135,13 +135,13 @@ TEST(Grasp, ClosesOnWhatPressesThen) {
   const dynamics::State pressed = scene.world.state;
   scene.world.state = scene.pulled(3.0 * kDepth);
   EXPECT_FALSE(scene.grasp());
-  EXPECT_EQ(scene.term.grasp_counts().empty, 1);
+  EXPECT_EQ(scene.term.statistics().grasps.empty, 1);
   scene.world.state = pressed;
   scene.grasp();
-  EXPECT_EQ(scene.term.grasp_counts().points, 0);
+  EXPECT_EQ(scene.term.statistics().grasps.points, 0);
   scene.grasp(false);
   scene.grasp();
-  EXPECT_EQ(scene.term.grasp_counts().points, 3);
+  EXPECT_EQ(scene.term.statistics().grasps.points, 3);
 }
 
 TEST(Grasp, BalancesForceAndMoment) {
@@ -288,8 +288,8 @@ TEST(Grasp, LettingGoIsAJumpOfTheResultant) {
   scene.grasp();
   scene.world.state = at_rest(scene.pulled(3.0 * kDepth));
   scene.grasp();
-  EXPECT_LE(scene.term.refresh_jump().force, 1e-13);
+  EXPECT_LE(scene.term.statistics().refresh_jump.force, 1e-13);
   const double pull = scene.term.frame_wrench(scene.world.state.view(), scene.frame).force.norm();
   scene.grasp(false);
-  EXPECT_NEAR(scene.term.refresh_jump().force, pull, 1e-12 * pull);
+  EXPECT_NEAR(scene.term.statistics().refresh_jump.force, pull, 1e-12 * pull);
 }

@@ -70,7 +70,7 @@ Errors errors_at(double spacing) {
     on.place(ball, turn(random));
     const double error = (on.force() - exact).norm() / exact.norm();
     squares += error * error;
-    out.bounded += error <= on.source->sum_error()->last_relative();
+    out.bounded += error <= on.source->report().sum_error->last_relative();
   }
   out.standard = std::sqrt(squares / 100.0);
   return out;
@@ -213,7 +213,7 @@ TEST(MaterialPoints, ABoxOnAPlaneIsExact) {
       source->query(state.view(), samples);
       double sum = 0.0;
       for (const auto& s : samples) sum += s.area * std::max(0.0, -s.gap);
-      EXPECT_EQ(source->sum_error()->last_relative(), 0.0) << turn.transpose();
+      EXPECT_EQ(source->report().sum_error->last_relative(), 0.0) << turn.transpose();
       return sum;
     };
     const double coarse = force({1, 1, 1}, HUGE_VAL);
@@ -302,7 +302,8 @@ TEST(MaterialPoints, AQueryIsTheSameWhateverWasAskedBefore) {
       EXPECT_EQ(of_used[s].gap, of_fresh[s].gap);
       EXPECT_EQ(of_used[s].a.node, of_fresh[s].a.node);
     }
-    EXPECT_EQ(std::min(used->safe_time(), kLookAhead), std::min(fresh->safe_time(), kLookAhead)) << i;
+    EXPECT_EQ(std::min(used->report().safe_time, kLookAhead), std::min(fresh->report().safe_time, kLookAhead))
+        << i;
     touched += of_used.size() > 3;
   }
   EXPECT_GT(touched, 30);

@@ -38,7 +38,7 @@ Work work(int rings, int cells) {
   source->query(state.view(), samples);
   EXPECT_GT(samples.size(), 5u) << rings;
   EXPECT_EQ(soft->soft()->evaluations(), 2 * first) << "every query the same";
-  return {skin.vertices.cols(), first, skin.faces.cols(), source->pruning()->faces_a / 2};
+  return {skin.vertices.cols(), first, skin.faces.cols(), source->report().pruning->faces_a / 2};
 }
 
 }  // namespace

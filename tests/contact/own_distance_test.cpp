@@ -132,12 +132,13 @@ TEST(OwnDistance, WhatGoesThroughAnotherPartIsCounted) {
                   law());
   const int n = static_cast<int>(a.tets.nodes.size());
   const auto counted = [&](const Vec3& way, bool of_all) {
-    const long before[] = {between.tunnelled()[0], within.tunnelled()[0]};
+    const long before[] = {between.pairs()[0].tunnelled, within.pairs()[0].tunnelled};
     for (dynamics::State* state : {&two, &one})
       for (int i = 0; i < (of_all ? state->q().size() : n); ++i) state->q()[i] += way[i % 3];
     between.refresh(two.view());
     within.refresh(one.view());
-    const long of_two = between.tunnelled()[0] - before[0], of_one = within.tunnelled()[0] - before[1];
+    const long of_two = between.pairs()[0].tunnelled - before[0],
+               of_one = within.pairs()[0].tunnelled - before[1];
     // grazing is measured by the thickness of the thinner body, and for one body by its self-contact depth
     EXPECT_NEAR(static_cast<double>(of_one), static_cast<double>(of_two), 0.03 * static_cast<double>(of_two));
     return of_one;
@@ -154,7 +155,7 @@ TEST(OwnDistance, WhatGoesThroughAnotherPartIsCounted) {
   for (const double angle : {0.0, 1.5, 0.0}) {
     bar.bend(angle);
     of_bar.refresh(bar.state.view());
-    EXPECT_EQ(of_bar.tunnelled()[0], 0) << "bends";
+    EXPECT_EQ(of_bar.pairs()[0].tunnelled, 0) << "bends";
   }
 }
 

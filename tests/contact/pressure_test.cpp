@@ -1,3 +1,5 @@
+#include "palpate/contact/pressure.h"
+
 #include "fixture.h"
 
 using namespace contact_tests;

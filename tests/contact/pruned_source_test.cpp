@@ -26,9 +26,9 @@ TEST(PrunedImageSource, SizeOfTheForceDoesNotDependOnTheCut) {
     const Total cut = total(samples, skin.state.view());
     EXPECT_NEAR(cut.force.norm() / whole.force.norm(), 1.0, 0.01) << cells;
     EXPECT_LT(cut.force.normalized().cross(whole.force.normalized()).norm(), 0.1) << cells;
-    ASSERT_NE(source->pruning(), nullptr);
-    EXPECT_EQ(source->pruning()->queries, 1);
-    EXPECT_LT(source->pruning()->faces_a, skin.skin.faces.cols() / 2);
+    ASSERT_NE(source->report().pruning, nullptr);
+    EXPECT_EQ(source->report().pruning->queries, 1);
+    EXPECT_LT(source->report().pruning->faces_a, skin.skin.faces.cols() / 2);
   }
 }
 
@@ -76,7 +76,7 @@ TEST(PrunedImageSource, FindsContactOnBothSides) {
   EXPECT_NEAR(right.x() / volume, 1.0, 0.05);
   EXPECT_LT((left + right).norm(), 0.01 * volume)
       << left.transpose() << " and " << right.transpose() << " of " << volume;
-  EXPECT_GE(source->pruning()->regions, 2);
+  EXPECT_GE(source->report().pruning->regions, 2);
 }
 
 TEST(PrunedImageSource, RefusesWhatDoesNotBelongTogether) {

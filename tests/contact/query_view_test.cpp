@@ -32,16 +32,16 @@ TEST(QueryView, IsKeptOnlyWhereItWasAskedFor) {
                                                  image_options(64, 0.05));
   std::vector<contact::ContactSample> samples;
   source->query(lens.soft.state.view(), samples);
-  EXPECT_EQ(source->view(), nullptr);
+  EXPECT_EQ(source->report().view, nullptr);
   source->keep_view();
   for (int i = 0; i < 2; ++i) {  // the view shows the last query only
     source->query(lens.soft.state.view(), samples);
-    ASSERT_NE(source->view(), nullptr);
-    EXPECT_EQ(source->view()->regions.size(), 1u);
+    ASSERT_NE(source->report().view, nullptr);
+    EXPECT_EQ(source->report().view->regions.size(), 1u);
   }
   lens.soft.state.q().array() += 50.0;
   source->query(lens.soft.state.view(), samples);
-  EXPECT_TRUE(source->view()->regions.empty());
+  EXPECT_TRUE(source->report().view->regions.empty());
 }
 
 // A pixel of the grid lies on both spheres at its stored heights; the volume of the grid is the lens's, and
@@ -53,7 +53,7 @@ TEST(QueryView, PixelsLieOnTheSurfaces) {
   source->keep_view();
   std::vector<contact::ContactSample> samples;
   source->query(lens.soft.state.view(), samples);
-  const contact::RegionView& region = source->view()->regions.at(0);
+  const contact::RegionView& region = source->report().view->regions.at(0);
   ASSERT_EQ(region.gap.size(),
             static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height));
   EXPECT_GT(region.axes.col(2).dot(lens.axis), 0.99);
@@ -92,7 +92,7 @@ TEST(QueryView, HullsAreThoseOfProxiesThatPress) {
   source->keep_view();
   std::vector<contact::ContactSample> samples;
   source->query(skin.state.view(), samples);
-  const contact::QueryView& view = *source->view();
+  const contact::QueryView& view = *source->report().view;
   EXPECT_FALSE(view.regions.empty());
   ASSERT_EQ(view.proxies_b.size(), 1u);  // a ball is a single hull
   for (const auto corner : view.proxies_b[0].colwise()) EXPECT_NEAR((corner - centre).norm(), 0.5, 1e-9);

@@ -11,7 +11,8 @@ TEST(QueryWork, TheTimeOfImagesIsThatOfTheirStages) {
   term.add_pair(balls.source(true), ContactSpec{});
   term.add_pair(balls.source(false), ContactSpec{});
   term.refresh(balls.state.view());
-  for (const contact::QueryStages* s : term.stages()) {
+  for (const contact::PairReport& pair : term.pairs()) {
+    const contact::QueryStages* s = pair.stages;
     ASSERT_TRUE(s);
     const auto parts = [s] { return s->upload_s + s->passes_s + s->gather_s + s->readback_s; };
     double share = parts() / s->images_s;
@@ -36,8 +37,8 @@ TEST(QueryWork, SkinsAreTimedWithThePositions) {
   const auto source = balls.source(true);
   std::vector<contact::ContactSample> samples;
   source->query(balls.state.view(), samples);
-  EXPECT_GT(source->stages()->positions_s, 0.0);
-  EXPECT_GT(source->stages()->patches_s, 0.0);
+  EXPECT_GT(source->report().stages->positions_s, 0.0);
+  EXPECT_GT(source->report().stages->patches_s, 0.0);
 }
 
 // One image of both whole skins: all of their vertices are transformed to its axes, and each hit is a sample.
@@ -46,7 +47,7 @@ TEST(QueryWork, OneImageIsCounted) {
   const auto source = balls.source(false);
   std::vector<contact::ContactSample> samples;
   source->query(balls.state.view(), samples);
-  const contact::QueryStages& s = *source->stages();
+  const contact::QueryStages& s = *source->report().stages;
   ASSERT_EQ(s.images, 1);
   EXPECT_EQ(s.vertices, balls.a.model.skin.vertices.cols() + balls.b.model.skin.vertices.cols());
   const auto faces = balls.a.model.skin.faces.cols() + balls.b.model.skin.faces.cols();

@@ -8,8 +8,8 @@ namespace {
 /// Returns another list of samples at every query, and the last one repeatedly.
 class ListsSource final : public contact::SampleSource {
  public:
-  explicit ListsSource(std::vector<std::vector<contact::ContactSample>> lists) : lists_(std::move(lists)) {}
-  std::string_view name() const override { return "lists"; }
+  explicit ListsSource(std::vector<std::vector<contact::ContactSample>> lists)
+      : SampleSource({.name = "lists"}), lists_(std::move(lists)) {}
   void query(const dynamics::StateView&, std::vector<contact::ContactSample>& out) override {
     out.insert(out.end(), lists_[at_].begin(), lists_[at_].end());
     at_ = std::min(at_ + 1, lists_.size() - 1);
@@ -57,15 +57,15 @@ TEST(Resultants, ForceAndMomentOfOneNodeByHand) {
           std::make_unique<ListSource>(std::vector{above(node_point({1}, {1.0}), 0, Pose{}, world)}),
           spring(friction));
       EXPECT_TRUE(term.refresh(world.state.view()));
-      EXPECT_NEAR(term.refresh_jump().force, kForce, 1e-6);
-      EXPECT_NEAR(term.refresh_jump().moment, std::sqrt(2.0) * kForce, 1e-5);
+      EXPECT_NEAR(term.statistics().refresh_jump.force, kForce, 1e-6);
+      EXPECT_NEAR(term.statistics().refresh_jump.moment, std::sqrt(2.0) * kForce, 1e-5);
       EXPECT_FALSE(term.refresh(world.state.view()));
-      EXPECT_EQ(term.refresh_jump().force, 0.0);
-      EXPECT_EQ(term.refresh_jump().moment, 0.0);
-      EXPECT_NEAR(term.largest_jump().force, kForce, 1e-6) << "of all refreshes";
-      EXPECT_NEAR(term.largest_jump().moment, std::sqrt(2.0) * kForce, 1e-5);
-      EXPECT_NEAR(term.largest_resultant().force, kForce, 1e-6) << "from nothing to all";
-      EXPECT_NEAR(term.largest_resultant().moment, std::sqrt(2.0) * kForce, 1e-5);
+      EXPECT_EQ(term.statistics().refresh_jump.force, 0.0);
+      EXPECT_EQ(term.statistics().refresh_jump.moment, 0.0);
+      EXPECT_NEAR(term.statistics().largest_jump.force, kForce, 1e-6) << "of all refreshes";
+      EXPECT_NEAR(term.statistics().largest_jump.moment, std::sqrt(2.0) * kForce, 1e-5);
+      EXPECT_NEAR(term.statistics().largest_resultant.force, kForce, 1e-6) << "from nothing to all";
+      EXPECT_NEAR(term.statistics().largest_resultant.moment, std::sqrt(2.0) * kForce, 1e-5);
     }
 }
 
@@ -90,8 +90,8 @@ TEST(Resultants, TheSameLoadOnOtherNodesIsNoJump) {
     bool nodes_changed = false;
     for (int i = 0; i < 2; ++i) {
       term.refresh(world.state.view());
-      EXPECT_LT(term.refresh_jump().force, 1e-10 * kForce);
-      EXPECT_LT(term.refresh_jump().moment, 1e-10 * kForce);
+      EXPECT_LT(term.statistics().refresh_jump.force, 1e-10 * kForce);
+      EXPECT_LT(term.statistics().refresh_jump.moment, 1e-10 * kForce);
       const VecX after = force(term, world.state);
       nodes_changed = nodes_changed || (after - before).norm() > 0.1 * kForce;
       before = after;
@@ -112,8 +112,8 @@ TEST(Resultants, ALoadThatMovesIsAMoment) {
                 spring());
   term.refresh(world.state.view());
   EXPECT_TRUE(term.refresh(world.state.view())) << "the forces on the nodes have changed";
-  EXPECT_LT(term.refresh_jump().force, 1e-10);
-  EXPECT_NEAR(term.refresh_jump().moment, 2.0 * kForce, 1e-9);
+  EXPECT_LT(term.statistics().refresh_jump.force, 1e-10);
+  EXPECT_NEAR(term.statistics().refresh_jump.moment, 2.0 * kForce, 1e-9);
 }
 
 // Both bodies of a pair have a moment, each about its centre: the larger one counts. Pairs count separately,
@@ -140,10 +140,10 @@ TEST(Resultants, EveryBodyOfEveryPairCounts) {
                       std::vector{on_frame(node, given, Pose{}, {0, 0, -1}, 0.01, 0.3, world.state)}),
                   spring());
     term.refresh(world.state.view());
-    EXPECT_NEAR(term.refresh_jump().force, kForce, 1e-9) << "on the node both cancel";
+    EXPECT_NEAR(term.statistics().refresh_jump.force, kForce, 1e-9) << "on the node both cancel";
     const double arm_of_nodes = std::sqrt(2.0), arm_of_body = arm(farthest);
     ASSERT_GT(arm_of_body, arm_of_nodes + 0.05) << "else the body's is not seen";
-    EXPECT_NEAR(term.refresh_jump().moment, (on_body ? arm_of_body : arm_of_nodes) * kForce, 1e-9)
+    EXPECT_NEAR(term.statistics().refresh_jump.moment, (on_body ? arm_of_body : arm_of_nodes) * kForce, 1e-9)
         << "an obstacle feels nothing";
   }
 }

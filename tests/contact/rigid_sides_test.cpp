@@ -188,7 +188,7 @@ TEST(RigidSurface, CrossingsAreCounted) {
       motion->append(0.0, {Quat::Identity(), Vec3(0, 0, z)}, {});
       query(*source, state);
     }
-    EXPECT_EQ(source->tunnelled(), ball ? 1 : mesh.vertices.cols());
+    EXPECT_EQ(source->report().tunnelled, ball ? 1 : mesh.vertices.cols());
   }
 }
 
@@ -320,7 +320,7 @@ TEST(RigidSides, ABallFollowsTheState) {
     exact.place(there);
     EXPECT_LT((force(exact.term, exact.world.state) - requested).norm(), 1e-10 * requested.norm())
         << entry.name;
-    EXPECT_EQ(exact.term.queries(), 1);
+    EXPECT_EQ(exact.term.statistics().queries, 1);
   }
 }
 
@@ -335,7 +335,7 @@ TEST(RigidSides, ABallSaysWhenTheNextQueryIsDue) {
         contact::make_box_source(contact::FrameBall{kR, Vec3::Zero(), 0, motion}, 1, contact::fixed_frame(),
                                  {}, Vec3(2, 2, 0.02), 0.01, look_ahead);
     query(*source, state);
-    return std::pair(source->safe_time(), source->fast_regions());
+    return std::pair(source->report().safe_time, source->report().fast_regions);
   };
   EXPECT_NEAR(asked(0.5, -50.0, 0.01).first, (0.5 + 0.01) / 50.0, 1e-12);
   EXPECT_EQ(asked(0.5, -50.0, 0.01).second, 0);

@@ -251,9 +251,9 @@ long counted(contact::SampleSource& source, SurfaceWorld& world, const Vec3& fro
     source.query(world.state.view(), samples);
   };
   at(from);
-  const long before = source.tunnelled();
+  const long before = source.report().tunnelled;
   at(to);
-  return source.tunnelled() - before;
+  return source.report().tunnelled - before;
 }
 
 }  // namespace
@@ -298,14 +298,15 @@ TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
        {0.0475, 0.2, 0.0175},
        {0.0475, 0.2, -0.0175}});
   for (Shape& s : shapes) {
-    EXPECT_EQ(counted(*s.source, world, s.above, s.below), 3) << s.source->name();
-    EXPECT_EQ(counted(*s.source, world, s.below, s.above), 3) << s.source->name() << ", back again";
-    EXPECT_EQ(counted(*s.source, world, s.above, s.inside), 0) << s.source->name() << ": seen, it is inside";
-    EXPECT_EQ(counted(*s.source, world, s.inside, s.below), 0) << s.source->name() << ": it was seen inside";
-    EXPECT_EQ(counted(*s.source, world, s.above, s.beside), 0) << s.source->name() << ": it passes by";
-    EXPECT_EQ(counted(*s.source, world, s.rim, s.past_rim), 0) << s.source->name() << ": it grazes a rim";
-    EXPECT_EQ(counted(*s.source, world, s.corner, s.past_corner), 3) << s.source->name() << ", by a corner";
-    EXPECT_EQ(counted(*s.source, world, s.above, s.above), 0) << s.source->name() << ": it stands still";
+    const std::string& name = s.source->traits().name;
+    EXPECT_EQ(counted(*s.source, world, s.above, s.below), 3) << name;
+    EXPECT_EQ(counted(*s.source, world, s.below, s.above), 3) << name << ", back again";
+    EXPECT_EQ(counted(*s.source, world, s.above, s.inside), 0) << name << ": seen, it is inside";
+    EXPECT_EQ(counted(*s.source, world, s.inside, s.below), 0) << name << ": it was seen inside";
+    EXPECT_EQ(counted(*s.source, world, s.above, s.beside), 0) << name << ": it passes by";
+    EXPECT_EQ(counted(*s.source, world, s.rim, s.past_rim), 0) << name << ": it grazes a rim";
+    EXPECT_EQ(counted(*s.source, world, s.corner, s.past_corner), 3) << name << ", by a corner";
+    EXPECT_EQ(counted(*s.source, world, s.above, s.above), 0) << name << ": it stands still";
   }
   auto plane = contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.01);
   EXPECT_EQ(counted(*plane, world, {0, 0, 1}, {0, 0, -1}), 0) << "behind a plane is inside";
@@ -325,7 +326,7 @@ TEST(Tunnelling, IsSeenFromTheFrameThatMoves) {
   source->query(world.state.view(), samples);
   world.state.set_time(1.0);
   source->query(world.state.view(), samples);
-  EXPECT_EQ(source->tunnelled(), 3);
+  EXPECT_EQ(source->report().tunnelled, 3);
 }
 
 // Three vertices of a block fly at a plate: the next query is due when they have penetrated half of its
@@ -343,15 +344,15 @@ TEST(Tunnelling, SaysWhenTheNextQueryIsDue) {
   const auto asked = [&](contact::SampleSource& source) {
     std::vector<contact::ContactSample> samples;
     source.query(world.state.view(), samples);
-    return source.safe_time();
+    return source.report().safe_time;
   };
   const auto frame = contact::fixed_frame();
   const auto box = contact::make_box_source(world.surface, 0, frame, {}, Vec3(2, 2, 0.02), 0.01, 0.01);
   EXPECT_NEAR(asked(*box), (0.5 + 0.01) / 50.0, 1e-12);
-  EXPECT_EQ(box->fast_regions(), 0) << "the next query comes before they are through";
+  EXPECT_EQ(box->report().fast_regions, 0) << "the next query comes before they are through";
   const auto late = contact::make_box_source(world.surface, 0, frame, {}, Vec3(2, 2, 0.02), 0.01, 0.02);
   asked(*late);
-  EXPECT_EQ(late->fast_regions(), 1);
+  EXPECT_EQ(late->report().fast_regions, 1);
   const auto sphere = contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), 0.01, 0.01, 0.01);
   EXPECT_NEAR(asked(*sphere), (0.5 + 0.01) / 50.0, 1e-6);
   const auto plane = contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.01);

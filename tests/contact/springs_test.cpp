@@ -1,5 +1,6 @@
 // Stiffness per area or per point.
 #include "images.h"
+#include "palpate/contact/pressure.h"
 #include "surfaces.h"
 
 using namespace contact_tests;

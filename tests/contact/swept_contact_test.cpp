@@ -34,9 +34,9 @@ TEST(SweptContact, ABallIsSeenBeforeItTouchesIffItGetsThere) {
         EXPECT_EQ(!samples.empty(), part < 1.0) << speed << " m/s";
         for (const auto& s : samples) EXPECT_GT(s.gap, 0.9 * gap);
         if (part > 1.0) continue;
-        EXPECT_GE(source->safe_time(), 0.4 * kThickness / speed);
-        EXPECT_LT(source->safe_time(), 1.1 * (gap + 0.5 * kThickness) / speed);
-        if (speed != 1.0) { EXPECT_EQ(source->fast_regions(), speed > 1.0 ? 1 : 0) << speed; }
+        EXPECT_GE(source->report().safe_time, 0.4 * kThickness / speed);
+        EXPECT_LT(source->report().safe_time, 1.1 * (gap + 0.5 * kThickness) / speed);
+        if (speed != 1.0) { EXPECT_EQ(source->report().fast_regions, speed > 1.0 ? 1 : 0) << speed; }
         pair.thrown.move(pair.state, Vec3(0, 0, speed));
         if (way > 5e-3) {
           EXPECT_TRUE(pair.query(*pair.source(soft, pruned, time), at).empty()) << "it flies away";
@@ -53,9 +53,9 @@ TEST(SweptContact, WhatWentThroughIsCountedAndNothingElse) {
     const auto source = pair.source(soft, pruned, 0.01);
     const auto counted = [&](const Vec3& from, const Vec3& to) {
       pair.query(*source, from);
-      const long before = source->tunnelled();
+      const long before = source->report().tunnelled;
       pair.query(*source, to);
-      return source->tunnelled() - before;
+      return source->report().tunnelled - before;
     };
     const Vec3 above(0.025, 0.025, 0.2), below(0.025, 0.025, -0.2);
     const long vertices = pair.thrown.model.skin.vertices.cols();
@@ -85,7 +85,7 @@ TEST(SweptContact, ARigidBodyMayBeTheOneThatGoesThrough) {
     pair.query(*source, Vec3(0.025, 0.025, 0));
     pair.state.set_time(0.01);
     pair.query(*source, Vec3(0.025, 0.025, 0));
-    EXPECT_EQ(source->tunnelled(), pair.thrown.model.skin.vertices.cols() + 8);
+    EXPECT_EQ(source->report().tunnelled, pair.thrown.model.skin.vertices.cols() + 8);
   }
 }
 
@@ -101,7 +101,7 @@ TEST(SweptContact, ARigidBodyMayTurnOver) {
       pair.frame->append(0.0, {quaternion_of(Vec3(0, angle, 0)), Vec3::Zero()}, {});
       pair.query(*source, at);
     }
-    EXPECT_GE(source->tunnelled(), pair.thrown.model.skin.vertices.cols()) << pruned;
+    EXPECT_GE(source->report().tunnelled, pair.thrown.model.skin.vertices.cols()) << pruned;
   }
 }
 

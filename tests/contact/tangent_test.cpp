@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "fixture.h"
+#include "palpate/core/error.h"
 
 using namespace contact_tests;
 
@@ -172,11 +173,36 @@ TEST(ContactTangent, TheFrictionLeftOutIsMeasured) {
   const double pressing = area * 2e3 * depth;
   EXPECT_LT((A - MatX(Vec3(0.0, 0.3 * pressing / 0.5, area * 2e3).asDiagonal())).norm(), 1e-12 * A.norm())
       << A;
-  EXPECT_NEAR(term.largest_lagged_friction(), 0.3 * area * 2e3 * depth, 1e-12);
-  EXPECT_EQ(term.largest_friction_lag(), 0.0);
+  EXPECT_NEAR(term.statistics().largest_lagged_friction, 0.3 * area * 2e3 * depth, 1e-12);
+  EXPECT_EQ(term.statistics().largest_friction_lag, 0.0);
   world.state.q()[2] -= deeper;
   term.refresh(world.state.view());
-  EXPECT_NEAR(term.largest_friction_lag(), 0.3 * area * 2e3 * deeper, 1e-12);
+  EXPECT_NEAR(term.statistics().largest_friction_lag, 0.3 * area * 2e3 * deeper, 1e-12);
+}
+
+TEST(ContactTangent, SecantTangentsEndWithTheirGuardAndAreNotMeasured) {
+  World world(2, false, 3);
+  world.state.u().head<3>() = Vec3(0.5, 0, 0);
+  contact::ContactForce term;
+  const int frame = term.add_frame(contact::fixed_frame());
+  ContactSpec spec;
+  spec.friction = 0.3;
+  spec.friction_tangent = "full";
+  term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{
+                    on_frame(node_point({0}, {1.0}), frame, Pose{}, {0, 0, 1}, 0.02, 0.7, world.state)}),
+                spec);
+  term.refresh(world.state.view());
+  EXPECT_FALSE(term.traits().symmetric_tangent);
+  {
+    const contact::SecantTangents guard(term);
+    EXPECT_TRUE(term.traits().symmetric_tangent);
+    const MatX A = step_matrix(term, world.state, 1.0, 1.0).to_dense();
+    EXPECT_EQ(A, A.transpose());
+    EXPECT_EQ(term.statistics().largest_lagged_friction, 0.0);
+    EXPECT_THROW(term.use_secant_tangents(true), InternalError);
+  }
+  EXPECT_FALSE(term.traits().symmetric_tangent);
+  EXPECT_THROW(term.use_secant_tangents(false), InternalError);
 }
 
 // Secant through zero: with force and matrix of one state, F0 - D (v - v0), friction at any other velocity v

@@ -16,8 +16,7 @@ class KeptSource final : public contact::SampleSource {
  public:
   KeptSource(std::unique_ptr<contact::SampleSource> source,
              std::function<bool(const contact::ContactSample&)> keep)
-      : source_(std::move(source)), keep_(std::move(keep)) {}
-  std::string_view name() const override { return "kept"; }
+      : SampleSource({.name = "kept"}), source_(std::move(source)), keep_(std::move(keep)) {}
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& out) override {
     std::vector<contact::ContactSample> all;
     source_->query(state, all);

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "contact/pressure.h"
 #include "contact/sample_math.h"
 #include "together.h"
 #include "two_balls.h"

@@ -92,33 +92,31 @@ Outcome outcome_of(const loop::World& world, const loop::RunResult& result, cons
   const std::vector<double> feel = feel_of(result);
   for (std::size_t i = 0; i < feel.size(); ++i) out.counts["feel " + std::to_string(i)] = feel[i];
   if (world.contact) {
-    const auto& c = *world.contact;
-    out.counts["largest jump"] = c.largest_jump().force;
-    out.counts["largest moment jump"] = c.largest_jump().moment;
-    out.counts["largest after"] = c.largest_resultant().force;
-    out.counts["largest moment after"] = c.largest_resultant().moment;
-    out.counts["friction lag"] = c.largest_friction_lag();
-    out.counts["friction"] = c.largest_lagged_friction();
-    const contact::GraspCounts grasps = c.grasp_counts();
+    const contact::ContactStatistics& all = world.contact->statistics();
+    out.counts["largest jump"] = all.largest_jump.force;
+    out.counts["largest moment jump"] = all.largest_jump.moment;
+    out.counts["largest after"] = all.largest_resultant.force;
+    out.counts["largest moment after"] = all.largest_resultant.moment;
+    out.counts["friction lag"] = all.largest_friction_lag;
+    out.counts["friction"] = all.largest_lagged_friction;
+    const contact::GraspCounts& grasps = all.grasps;
     out.counts["grasps"] = static_cast<double>(grasps.closed);
     out.counts["empty grasps"] = static_cast<double>(grasps.empty);
     out.counts["grasped points"] = grasps.points;
     out.counts["grasped area"] = grasps.area;
     out.counts["largest grasped area"] = grasps.largest_area;
-    for (const long count : c.tunnelled()) out.counts["tunnelled"] += static_cast<double>(count);
-    for (const long count : c.fast_regions()) out.counts["fast"] += static_cast<double>(count);
-    for (const long count : c.normals_kept()) out.counts["kept"] += static_cast<double>(count);
-    for (const double depth : c.deepest()) out.counts["deepest"] += depth;
-    for (const contact::QueryStages* s : c.stages())
-      if (s) {
-        out.counts["images"] += static_cast<double>(s->images);
-        out.counts["pairs"] += static_cast<double>(s->pairs);
+    for (const contact::PairReport& pair : world.contact->pairs()) {
+      out.counts["tunnelled"] += static_cast<double>(pair.tunnelled);
+      out.counts["fast"] += static_cast<double>(pair.fast_regions);
+      out.counts["kept"] += static_cast<double>(pair.normals_kept);
+      out.counts["deepest"] += pair.deepest;
+      if (pair.stages) out.counts["images"] += static_cast<double>(pair.stages->images);
+      if (pair.stages) out.counts["pairs"] += static_cast<double>(pair.stages->pairs);
+      if (pair.sum_error) {
+        out.counts["quadrature"] += pair.sum_error->largest();
+        out.counts["largest share"] += pair.sum_error->largest_share();
       }
-    for (const contact::SumError* e : c.sum_errors())
-      if (e) {
-        out.counts["quadrature"] += e->largest();
-        out.counts["largest share"] += e->largest_share();
-      }
+    }
   }
   for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
     out.counts["answers"] += static_cast<double>(e.exchanges);
@@ -235,12 +233,15 @@ TEST(CheckpointsOfIntegrators, GoOnBitForBit) {
 /// counted.
 bool is_time_of_day(const std::string& name) {
   for (const char* end :
-       {"loop_cpu_s",    "loop_wall_s", "contact_query_s", "linearise_s", "tool_ticks_s", "force_s",
-        "tangent_s",     "symbolic_s",  "factor_s",        "solve_s",     "keep_s",       "assemble_s",
-        "query_seconds", "positions_s", "regions_s",       "patches_s",   "images_s",     "upload_s",
-        "passes_s",      "gather_s",    "readback_s",      "gaps_s"})
+       {"loop_cpu_s", "loop_wall_s", "contact_query_s", "linearise_s", "tool_ticks_s", "force_s", "tangent_s",
+        "symbolic_s", "factor_s", "solve_s", "keep_s", "assemble_s", "query_seconds"})
     if (name.ends_with(end)) return true;
-  return name.starts_with("process.") || name == "bodies.counts.simulated_s";
+  bool is_time = name.starts_with("process.") || name == "bodies.counts.simulated_s";
+  const contact::QueryStages stages;
+  contact::visit_counters(
+      [&](const std::string& stage, auto) { is_time |= stage.ends_with("_s") && name.ends_with(stage); },
+      stages);
+  return is_time;
 }
 
 /// Replaces a value by another one of its kind; false if there is no other that a run could have.

@@ -120,5 +120,5 @@ TEST(ContactInstant, ObserversSeeEachQueryAtItsState) {
   ASSERT_EQ(watch.periods.size(), 4u);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(watch.queries[i], watch.periods[i], 1e-15);
   EXPECT_TRUE(watch.at_state);
-  EXPECT_EQ(world->contact->views()[0], nullptr);  // no observer requests pictures
+  EXPECT_EQ(world->contact->pairs()[0].view, nullptr);  // no observer requests pictures
 }

@@ -224,8 +224,8 @@ TEST(FixedStepContact, FrictionNeedsNoLuWhereAStepIsOneSolve) {
     ASSERT_TRUE(result.status.ok()) << integrator << ", " << tangent << ": " << result.status.message;
     const Points v = Eigen::Map<const Points>(world->state.u().data(), 3, world->state.u().size() / 3);
     EXPECT_NEAR(v.row(0).mean(), 0.02, 2e-4) << integrator << ", " << tangent;
-    const double friction = world->contact->largest_lagged_friction(),
-                 left_out = world->contact->largest_friction_lag();
+    const double friction = world->contact->statistics().largest_lagged_friction,
+                 left_out = world->contact->statistics().largest_friction_lag;
     EXPECT_EQ(friction > 0.0, symmetric) << integrator << ", " << tangent;
     EXPECT_EQ(left_out > 0.0, symmetric) << integrator << ", " << tangent;
   }

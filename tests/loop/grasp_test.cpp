@@ -63,9 +63,9 @@ TEST(Grasp, WhatHangsHasItsWeight) {
     EXPECT_NEAR(still.contact.force.z(), -weight, 1e-4 * weight) << linearisation;
     EXPECT_LE(still.contact.force.head<2>().norm(), 1e-3 * weight) << linearisation;
     EXPECT_NEAR(still.device.force.z(), -weight, 1e-3 * weight) << linearisation;
-    EXPECT_EQ(world->contact->grasp_counts().closed, 1);
-    EXPECT_EQ(world->contact->grasp_counts().empty, 0);
-    EXPECT_EQ(world->contact->grasp_counts().points, 0);
+    EXPECT_EQ(world->contact->statistics().grasps.closed, 1);
+    EXPECT_EQ(world->contact->statistics().grasps.empty, 0);
+    EXPECT_EQ(world->contact->statistics().grasps.points, 0);
     // no later than two periods after the switch
     EXPECT_EQ(at(ticks, 1.225).contact.force.norm(), 0.0) << linearisation;
     const Points now = world->positions(world->bodies[0]);
@@ -115,8 +115,8 @@ TEST(Grasp, PullsWithTheSwitchAlone) {
   d.device->presses = {{2, 0.0, 0.0}};
   const auto world = loop::assemble(d);
   EXPECT_EQ(pull(ticks_of(*world)), 0.0);
-  EXPECT_EQ(world->contact->grasp_counts().empty, 1);
-  EXPECT_EQ(world->contact->grasp_counts().closed, 0);
+  EXPECT_EQ(world->contact->statistics().grasps.empty, 1);
+  EXPECT_EQ(world->contact->statistics().grasps.closed, 0);
 }
 
 struct Errors {
@@ -191,7 +191,8 @@ TEST(Grasp, InRealTime) {
   options.real_time = true;
   options.observers = {&ticks};
   ASSERT_TRUE(loop::run(*world, options).status.ok());
-  if (world->contact->grasp_counts().closed == 0) GTEST_SKIP() << "the bodies missed the time of pressing";
+  if (world->contact->statistics().grasps.closed == 0)
+    GTEST_SKIP() << "the bodies missed the time of pressing";
   EXPECT_NEAR(pull(ticks.all), pull(ticks_of(d)), 0.1);
 }
 
@@ -211,7 +212,7 @@ TEST(Grasp, ModesAnswerWhatIsHeld) {
     side.trajectory->append(0.0, side.tool->pose(), {});
     world->contact->set_grasp(side.frame_index, true);
     world->contact->refresh(world->state.view());
-    EXPECT_GT(world->contact->grasp_counts().points, 3);
+    EXPECT_GT(world->contact->statistics().grasps.points, 3);
     Pose away = side.tool->pose();
     away.translation += Vec3(1e-4, 0.0, pull);
     side.trajectory->clear();

@@ -36,7 +36,7 @@ std::unique_ptr<loop::World> after_a_period(const std::string& method) {
 
 TEST(MethodChoice, AutoTakesNearestPoints) {
   const long before = counters::counter("gl.context").load();
-  EXPECT_EQ(after_a_period("auto")->contact->methods().at(0), "distance");
+  EXPECT_EQ(after_a_period("auto")->contact->pairs().at(0).method, "distance");
   EXPECT_EQ(counters::counter("gl.context").load(), before);
 }
 
@@ -45,6 +45,6 @@ TEST(MethodChoice, AnImageIsMadeByOpenGl) {
     EXPECT_THROW(after_a_period("image"), Error);
     return;
   }
-  EXPECT_EQ(after_a_period("image")->contact->methods().at(0), "image");
+  EXPECT_EQ(after_a_period("image")->contact->pairs().at(0).method, "image");
   EXPECT_FALSE(contact::gpu_device().name.empty());
 }

@@ -119,7 +119,7 @@ TEST(Monolithic, LeavesFrictionOutWhereAStepIsOneSolve) {
       d.device->keyframes.back().position_m.x() += 0.01;  // it slides
       const auto world = loop::assemble(d);
       ASSERT_TRUE(loop::run(*world, {}).status.ok());
-      EXPECT_EQ(world->contact->largest_lagged_friction() > 0.0,
+      EXPECT_EQ(world->contact->statistics().largest_lagged_friction > 0.0,
                 std::string(integrator) == "linearly-implicit-euler")
           << integrator << monolithic;
     }

@@ -269,7 +269,7 @@ TEST(ImageScene, TheSummarySpeaksOfBothSkins) {
   store::Summary summary = loop::summarise(*world, result, 0.0);
   const store::SummaryFields& row = summary.list("contacts").at(0);
   EXPECT_EQ(std::get<std::string>(*summary_rows::find(row, "method")), "image");
-  const auto of_two = world->contact->pruning()[0][0];
+  const auto of_two = *world->contact->pairs()[0].pruning;
   const auto* triangles = summary_rows::find(row, "rasterised_triangles");
   const auto* shares = summary_rows::find(row, "mean_rasterised_share");
   ASSERT_TRUE(triangles && shares);
@@ -282,6 +282,6 @@ TEST(ImageScene, TheSummarySpeaksOfBothSkins) {
     EXPECT_DOUBLE_EQ(std::get<std::vector<double>>(*shares)[side],
                      static_cast<double>(rasterised) / static_cast<double>(of_two.queries * skin));
   }
-  EXPECT_EQ(summary_rows::count(row, "normals_kept"), world->contact->normals_kept()[0]);
+  EXPECT_EQ(summary_rows::count(row, "normals_kept"), world->contact->pairs()[0].normals_kept);
 }
 #endif

@@ -122,8 +122,8 @@ TEST(SoftTool, AGraspDoesNotLetItGo) {
   d.device->presses = {{2, 0.05, 0.1}};
   const auto world = loop::assemble(d);
   const auto ticks = ticks_of(*world);
-  EXPECT_EQ(world->contact->grasp_counts().points, 0);
-  EXPECT_EQ(world->contact->grasp_counts().area, 0.0);
+  EXPECT_EQ(world->contact->statistics().grasps.points, 0);
+  EXPECT_EQ(world->contact->statistics().grasps.area, 0.0);
   EXPECT_NEAR(world->positions(world->bodies[0]).row(2).mean(), 0.01, 5e-3) << "it hangs where it did";
 }
 

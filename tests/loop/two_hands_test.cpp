@@ -287,7 +287,7 @@ TEST(TwoHands, GraspByThemselves) {
   loop::RunOptions options;
   options.observers = {&both};
   ASSERT_TRUE(loop::run(*world, options).status.ok());
-  EXPECT_EQ(world->contact->grasp_counts().closed, 2);
+  EXPECT_EQ(world->contact->statistics().grasps.closed, 2);
   const Vec3 block = world->positions(world->bodies[0]).rowwise().mean();
   EXPECT_NEAR(block.x(), 0.02 - kPress, 0.006) << "it went with the right hand";
   EXPECT_LT(both.of[1].back().device.force.norm(), 0.05) << "the left one is free";

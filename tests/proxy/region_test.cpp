@@ -6,6 +6,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/pose.h"
+#include "proxy/least_width.h"
 #include "proxy/region.h"
 
 using namespace palpate;

@@ -44,7 +44,7 @@ class Crossings {
   void probe(const loop::World& world) {
     if (!misses_.empty()) return;
     // Up to the last query, one probe ago.
-    if (!world.contact->tunnelled().empty()) reported_ = world.contact->tunnelled()[0];
+    if (const auto pairs = world.contact->pairs(); !pairs.empty()) reported_ = pairs[0].tunnelled;
     if (reported_ != counted_)
       misses_ = fmt::format("{} vertices tunnelled through the plate, {} were reported", counted_, reported_);
     const loop::Body& slab = world.bodies[0];

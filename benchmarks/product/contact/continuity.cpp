@@ -40,7 +40,7 @@ class Probe {
 
   Vec3 middle() const { return placed_.rowwise().mean(); }
   const Vec3& partner() const { return partner_; }
-  long queries() const { return world_->contact->queries(); }
+  long queries() const { return world_->contact->statistics().queries; }
 
   Contact at(const Pose& pose, const Vec3& pivot) {
     const dynamics::Block& block = *world_->state.layout().find(world_->bodies.back().block_id);

@@ -99,7 +99,7 @@ ContactGrowthRow touch(Touched& ball, double region) {
     for (const contact::ContactSample& s : contact.samples())
       if (s.gap < 0.0) area += s.area;
     areas.push_back(area);
-    samples.push_back(static_cast<double>(contact.sample_count()));
+    samples.push_back(static_cast<double>(contact.samples().size()));
   }
   out.query = spread_of(ms);
   out.area_m2 = median(areas);

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <type_traits>
 
 #include "core/clock.h"
 #include "palpate/contact/contact_force.h"
@@ -61,24 +63,21 @@ class Watch : public loop::Observer {
   Times times_of(loop::World& world) const {
     Times t;
     t.wall = wall_seconds();
-    t.query = world.contact->query_seconds();
+    t.query = world.contact->statistics().query_seconds;
     const auto add = [&](ContactStage stage, double seconds) {
       t.stages[static_cast<std::size_t>(stage)] += seconds;
     };
-    for (const contact::QueryStages* s : world.contact->stages()) {
-      if (!s) continue;
-      add(ContactStage::kSkins, s->positions_s);
-      add(ContactStage::kRegions, s->regions_s);
-      add(ContactStage::kFaces, s->patches_s);
-      add(ContactStage::kUpload, s->upload_s);
-      add(ContactStage::kPasses, s->passes_s);
-      add(ContactStage::kGather, s->gather_s);
-      add(ContactStage::kReadback, s->readback_s);
-      add(ContactStage::kGaps, s->gaps_s);
-      t.images += s->images;
+    for (const contact::PairReport& pair : world.contact->pairs()) {
+      if (pair.pruning) t.regions += pair.pruning->regions;
+      if (!pair.stages) continue;
+      t.images += pair.stages->images;
+      // The times are visited in the order of ContactStage, and images_s is the sum of the four after it.
+      auto add_time = [&, stage = 0]<class T>(std::string_view name, const T& value) mutable {
+        if constexpr (std::is_same_v<T, double>)
+          if (name != "images_s") add(static_cast<ContactStage>(stage++), value);
+      };
+      contact::visit_counters(add_time, *pair.stages);
     }
-    for (const proxy::PruneCounts* p : world.contact->pruning())
-      if (p) t.regions += p->regions;
     double known = 0.0;
     for (const double seconds : t.stages) known += seconds;
     add(ContactStage::kRest, t.query - known);
@@ -97,7 +96,7 @@ class Watch : public loop::Observer {
     for (std::size_t s = 0; s < kQueryStages; ++s)
       to.stages[s].push_back(1e3 * (now.stages[s] - before_.stages[s]));
     to.stages[static_cast<std::size_t>(ContactStage::kForces)].push_back(1e3 * force_s);
-    to.samples.push_back(static_cast<double>(world.contact->sample_count()));
+    to.samples.push_back(static_cast<double>(world.contact->samples().size()));
     to.images.push_back(static_cast<double>(now.images - before_.images));
     to.regions.push_back(static_cast<double>(now.regions - before_.regions));
     to.assembly.push_back(assembly_.contact_ms());
@@ -179,8 +178,8 @@ ContactBenchRow bench_contact(scene::Description d, const ContactBenchVariant& v
   out.device_is_software = device.software;
   out.touches = !watch.touching.whole.empty();
   fill(out, out.touches ? watch.touching : watch.apart);
-  out.left_out_n = world->contact->largest_friction_lag();
-  out.friction_n = world->contact->largest_lagged_friction();
+  out.left_out_n = world->contact->statistics().largest_friction_lag;
+  out.friction_n = world->contact->statistics().largest_lagged_friction;
   out.forces = std::move(watch.forces);
   out.linearise_ms = 1e3 * result.linearise_s / static_cast<double>(std::max(1L, result.periods));
   return out;

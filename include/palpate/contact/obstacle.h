@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/contact/contact_force.h"
+#include "palpate/contact/sample_source.h"
 #include "palpate/contact/side.h"
 #include "palpate/contact/spec.h"
 #include "palpate/core/registry.h"
@@ -12,7 +12,7 @@
 
 /// Rigid shapes with exact gaps. As obstacles they are fixed in the world; a tool reuses the sphere. Each is
 /// implemented in one file of src/contact/obstacles: its gap, its keys, its picture. A new obstacle needs
-/// that file, its name in PALPATE_OBSTACLES (obstacles/registry.cpp) and its file name in CONTACT_OBSTACLES
+/// that file, its name in PALPATE_OBSTACLES (obstacle.cpp) and its file name in CONTACT_OBSTACLES
 /// (CMakeLists.txt); tests/contact/obstacle_conformance_test.cpp runs over all obstacles.
 namespace palpate::contact {
 

@@ -3,11 +3,24 @@
 #include <variant>
 #include <vector>
 
-#include "palpate/contact/contact_force.h"
+#include "palpate/contact/frame.h"
+#include "palpate/contact/sample.h"
+#include "palpate/mesh/embedding.h"
 #include "palpate/mesh/mesh.h"
 
 /// Sides of a contact with an exact shape; each is soft or rigid.
 namespace palpate::contact {
+
+/// Surface carried by nodes of the State. Its vertices are either nodes (vertex i is node
+/// `node_of_vertex[i]`, counted within the block) or points of an embedded skin (vertex i is interpolated
+/// from the nodes of the tetrahedron `tets.col(embedding.tet[i])` with four weights; docs/theory/proxies.md).
+struct NodeSurface {
+  int block_id = -1;                ///< Node block that carries the surface.
+  std::vector<int> node_of_vertex;  ///< Node of each vertex; empty for a skin.
+  Faces faces;                      ///< Vertex indices per face, oriented outwards.
+  mesh::Embedding embedding{};      ///< Skin only: tetrahedron and weights per vertex.
+  Tets tets{};                      ///< Skin only: the body's tetrahedra, nodes counted within the block.
+};
 
 /// Closed surface carried by a frame.
 struct FrameSurface {

@@ -1,3 +1,5 @@
+#include "contact/obstacles/box.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,5 @@
+#include "contact/obstacles/cylinder.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

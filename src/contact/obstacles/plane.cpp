@@ -1,3 +1,5 @@
+#include "contact/obstacles/plane.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

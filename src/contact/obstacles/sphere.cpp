@@ -1,3 +1,5 @@
+#include "contact/obstacles/sphere.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -128,8 +128,9 @@ void ContactForce::end_step() {
   Impl& m = *impl_;
   m.step_friction.on = false;
   if (!m.laws_kept.empty()) return;
-  m.largest_friction = std::max(m.largest_friction, m.step_friction.largest);
-  m.largest_friction_lag = std::max(m.largest_friction_lag, m.step_friction.left_out);
+  ContactStatistics& all = m.statistics;
+  all.largest_lagged_friction = std::max(all.largest_lagged_friction, m.step_friction.largest);
+  all.largest_friction_lag = std::max(all.largest_friction_lag, m.step_friction.left_out);
 }
 
 }  // namespace palpate::contact

@@ -20,8 +20,8 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
+#include "proxy/least_width.h"
 #include "proxy/proxy_set_impl.h"
-#include "proxy/region.h"
 
 namespace palpate::proxy {
 namespace {

@@ -1,5 +1,6 @@
-// Query of all pairs.
+// Query of all pairs, and the state of contact in a checkpoint.
 #include <algorithm>
+#include <cmath>
 
 #include "contact/contact_force_impl.h"
 #include "core/clock.h"
@@ -19,6 +20,12 @@ bool is_same_pair(const ContactSample& s, const ContactSample& t) {
   return s.source == t.source && is_same(s.a, t.a) && is_same(s.b, t.b);
 }
 
+void archive_size(Archive& a, std::string_view name, ResultantSize& size) {
+  const Archive::Group group(a, name);
+  a("force", size.force);
+  a("moment", size.moment);
+}
+
 }  // namespace
 
 void ContactForce::Impl::measure_depth(Pair& pair) const {
@@ -29,15 +36,17 @@ void ContactForce::Impl::measure_depth(Pair& pair) const {
 }
 
 void ContactForce::Impl::query(const dynamics::StateView& state) {
-  const ScopedTimer timer(query_seconds);
+  const ScopedTimer timer(statistics.query_seconds);
   if (std::any_of(pairs.begin(), pairs.end(), [](const Pair& pair) { return pair.anchors.on(); }))
     place_frames_alone(state);
   next_samples.clear();
+  statistics.safe_time = HUGE_VAL;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     Pair& pair = pairs[i];
     pair.begin = next_samples.size();
     pair.source->query(state, next_samples);
     pair.end = next_samples.size();
+    statistics.safe_time = std::min(statistics.safe_time, pair.source->report().safe_time);
     if (pair.anchors.on())
       pair.anchors.renew(std::span(next_samples).subspan(pair.begin), pair.source->material_points(), state,
                          frame_states);
@@ -47,7 +56,7 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
       if (pair.law.per_point) count_as_point(next_samples[s]);
     }
   }
-  ++queries;
+  ++statistics.queries;
   counters::count("contact.query");
   std::swap(samples, next_samples);
   if (has_followers()) note_followed(state);  // The samples are up to date for this state.
@@ -59,6 +68,7 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
 
 // The contact at the state of the grasp command is found first: what presses there is held.
 bool ContactForce::Impl::take_grasps(const dynamics::StateView& state) {
+  GraspCounts& counts = statistics.grasps;
   bool changed = false;
   for (Grasp& grasp : grasps) {
     if (grasp.requested == grasp.closed) continue;
@@ -73,11 +83,11 @@ bool ContactForce::Impl::take_grasps(const dynamics::StateView& state) {
     place_frames(state);
     const bool holds = bonds.take(samples, grasp.frame, laws, state, frame_states) > 0;
     changed = changed || holds;
-    ++(holds ? grasp_counts.closed : grasp_counts.empty);
+    ++(holds ? counts.closed : counts.empty);
   }
-  grasp_counts.points = bonds.count();
-  grasp_counts.area = bonds.area();
-  grasp_counts.largest_area = std::max(grasp_counts.largest_area, grasp_counts.area);
+  counts.points = bonds.count();
+  counts.area = bonds.area();
+  counts.largest_area = std::max(counts.largest_area, counts.area);
   return changed;
 }
 
@@ -98,8 +108,6 @@ void ContactForce::tie(int frame, const std::vector<Tie>& ties) {
                 impl_->frames.size());
   impl_->bonds.tie(frame, ties);
 }
-
-GraspCounts ContactForce::grasp_counts() const { return impl_->grasp_counts; }
 
 void ContactForce::Impl::compare_events() {
   if (!events_to_compare) return;
@@ -134,6 +142,38 @@ void ContactForce::Impl::check_samples(const dynamics::StateView& state) const {
     check(s.b);
     PALPATE_CHECK(s.area >= 0.0 && s.normal.allFinite(), "contact sample: area {}", s.area);
   }
+}
+
+// The query comes last, because it uses the restored state of earlier queries.
+void ContactForce::archive(Archive& a, const dynamics::StateView& state) {
+  Impl& m = *impl_;
+  a.each("pair", m.pairs, [&](Impl::Pair& pair) {
+    pair.source->archive(a);
+    a("deepest", pair.deepest);
+    if (pair.anchors.on()) pair.anchors.archive(a);
+  });
+  a("bonds", m.bonds);
+  a.list("grasp", m.grasps, [&](Impl::Grasp& grasp) {
+    a("frame", grasp.frame);
+    a("wanted", grasp.requested);
+    a("closed", grasp.closed);
+  });
+  ContactStatistics& all = m.statistics;
+  GraspCounts& grasped = all.grasps;
+  a("grasps_closed", grasped.closed);
+  a("grasps_empty", grasped.empty);
+  a("grasped_points", grasped.points);
+  a("grasped_area", grasped.area);
+  a("largest_grasped_area", grasped.largest_area);
+  a("queries", all.queries);
+  a("query_seconds", all.query_seconds);
+  archive_size(a, "largest_jump", all.largest_jump);
+  archive_size(a, "largest_after", all.largest_resultant);
+  a("largest_friction_lag", all.largest_friction_lag);
+  a("largest_friction", all.largest_lagged_friction);
+  if (!a.is_restoring()) return;
+  m.query(state);
+  m.check_samples(state);
 }
 
 }  // namespace palpate::contact

@@ -1,9 +1,22 @@
 #pragma once
-#include <algorithm>
-
-#include "palpate/contact/contact_force.h"
+#include "palpate/contact/spec.h"
 
 namespace palpate::contact {
+
+/// Pressure p(gap, gap_rate) [Pa] and its derivatives. p >= 0 always (no adhesion), and p = 0 for gap >= 0.
+/// With the depth delta = -gap > 0, its rate delta' = -gap_rate, and the onset function s(delta) =
+/// delta^2/(2w) for delta < w and delta - w/2 beyond (s = delta for w = 0):
+///   kelvin_voigt   p = max(0, k s + d s' delta')
+///   hunt_crossley  p = max(0, k s (1 + 3/2 c delta'))      (Hunt and Crossley 1975)
+/// With w > 0 the spring, and all of hunt_crossley, is C1 in depth and rate. The damper of kelvin_voigt then
+/// sets in without a jump, but with a kink: its slope with respect to depth at first touch is d delta'/w.
+/// Where the pressure is cut off during separation it is continuous, with a kink. `energy_density` is the
+/// energy of the spring, k times the integral of s [J/m^2].
+struct Pressure {
+  /// p [Pa], its derivatives with respect to gap [Pa/m] and gap rate [Pa s/m], and the spring's energy
+  /// density [J/m^2].
+  double p, dp_dgap, dp_drate, energy_density;
+};
 
 /// Pressure law of a ContactSpec, with its names resolved.
 struct PressureLaw {
@@ -64,6 +77,10 @@ inline Pressure pressure(const PressureLaw& law, double gap, double gap_rate) {
                                  -1.5 * law.k * law.d * s.value, energy}
                       : Pressure{0.0, 0.0, 0.0, energy};
 }
+
+/// Evaluates the pressure law. Resolves the names in `law` at each call. @throws Error for invalid parameters
+/// @param law  stiffness, damping and onset  @param gap  [m], negative inside  @param gap_rate  [m/s]
+Pressure pressure(const ContactSpec& law, double gap, double gap_rate);
 
 /// Returns the root function of opening and closing [m]: negative while the law presses, positive while it
 /// does not, and zero exactly where that changes. Continuous in gap and rate.

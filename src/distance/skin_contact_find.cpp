@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "distance/contact_scratch.h"
+#include "distance/skin_contact_impl.h"
 
 namespace palpate::distance {
 namespace {
