@@ -5,6 +5,7 @@
 #include "assemble_parts.h"
 #include "bones/shape.h"
 #include "palpate/core/error.h"
+#include "palpate/device/keyframes.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "tool_instance.h"
 

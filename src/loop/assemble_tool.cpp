@@ -6,6 +6,8 @@
 #include "loop/replay.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/device/profile.h"
+#include "palpate/device/registry.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/tool/tool.h"
 #include "pose_bounds.h"

@@ -9,6 +9,7 @@
 #include "device/monotone_slope.h"
 #include "loop/contact_record.h"
 #include "palpate/core/error.h"
+#include "palpate/device/registry.h"
 #include "palpate/dynamics/path.h"
 #include "palpate/scene/hands.h"
 #include "tick_group.h"
@@ -140,6 +141,13 @@ void set_clock(HapticRecord& record, const device::RecordingClock& clock) {
 
 std::unique_ptr<device::Device> recorded_hand(HapticRecord record) {
   return std::make_unique<RecordedHand>(std::move(record));
+}
+
+bool all_paths_known(const World& world) {
+  const std::vector<scene::Hand> hands = scene::hands_of(world.description);
+  return std::all_of(hands.begin(), hands.end(), [&](const scene::Hand& hand) {
+    return static_cast<bool>(device::make_device(*hand.device, world.folder)->path());
+  });
 }
 
 std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<HapticRecord>& records) {

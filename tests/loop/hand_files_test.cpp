@@ -8,6 +8,7 @@
 #include "loop/tool_instance.h"
 #include "messages.h"
 #include "palpate/core/error.h"
+#include "palpate/device/keyframes.h"
 #include "palpate/device/profile.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
