@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "loop/contact_record.h"
-#include "palpate/loop/run.h"
+#include "palpate/loop/observer.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {

@@ -56,4 +56,7 @@ class VirtualTime {
   std::optional<MonolithicTicks> dense_;  ///< Monolithic scheme only.
 };
 
+/// Runs both sides to the end in virtual time.
+void run_in_virtual_time(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result);
+
 }  // namespace palpate::loop
