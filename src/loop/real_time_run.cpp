@@ -70,7 +70,7 @@ class RealTime {
         tick_ns_(std::llround(1e9 * tick_s_)),
         count_(static_cast<long>(per_period_) * bodies.periods()),
         queue_(kQueue) {
-    for (const auto& side : ToolInstance::all(world)) hands_.emplace_back(world.description, *side);
+    for (ToolInstance& tool : world.tools) hands_.emplace_back(world.description, tool);
     groups_ = TickGroup::all(hands_);
     contact_of_.resize(hands_.size());
     for (const TickGroup& group : groups_)
@@ -99,8 +99,9 @@ class RealTime {
     bodies_.query();
     publish();
     if (world_.stepper) world_.stepper->prepare(bodies_.period());
-    for (const auto& side : ToolInstance::all(world_))
-      if (side->touch) side->touch->prepare(world_, bodies_.period());
+    for (ToolInstance& tool : world_.tools)
+      if (const auto& reduction = tool.with_ticks()->reduction)
+        reduction->prepare(world_.state, bodies_.period());
     std::thread thread([this] { tick_to_the_end(); });
     ready_.wait();
     try {
@@ -124,12 +125,12 @@ class RealTime {
  private:
   /// Returns false if the run was stopped before it began.
   bool await_devices() {
-    for (const auto& side : ToolInstance::all(world_)) {
-      side->handle->open();
-      const std::string awaited = side->handle->awaited();
+    for (ToolInstance& tool : world_.tools) {
+      tool.device->open();
+      const std::string awaited = tool.device->awaited();
       if (awaited.empty()) continue;
       if (options_.waiting) options_.waiting(awaited);
-      side->handle->await(0.0, options_.stop);
+      tool.device->await(0.0, options_.stop);
       if (stop_requested()) return false;
     }
     return true;
@@ -283,7 +284,7 @@ class RealTime {
   }
 
   struct Hand {
-    Hand(const scene::Description& d, ToolInstance& side) : ticks(d, side) {}
+    Hand(const scene::Description& d, ToolInstance& tool) : ticks(d, tool) {}
     HapticLoop ticks;
     dynamics::Exchange<ContactRecord> records;
   };

@@ -160,11 +160,11 @@ namespace {
 
 /// Hand that repeats its recorded motion.
 struct Retraced {
-  Retraced(const scene::Description& recorded, const World& world, const HapticRecord& of, ToolInstance& side)
+  Retraced(const scene::Description& recorded, const World& world, const HapticRecord& of, ToolInstance& tool)
       : record(of),
-        laws(laws_of(recorded, world, *side.spec)),
-        ticks(*side.spec, side, of.models.empty() ? nullptr : &laws) {
-    side.passivity = device::make_passivity_controller(of.passivity, *side.device_spec, side.spec->tick_s);
+        laws(laws_of(recorded, world, tool.spec)),
+        ticks(tool, of.models.empty() ? nullptr : &laws) {
+    tool.passivity = device::make_passivity_controller(of.passivity, tool.device_spec, tool.spec.tick_s);
   }
   static std::vector<ContactSpec> laws_of(const scene::Description& recorded, const World& world,
                                           const ToolSpec& tool) {
@@ -212,7 +212,7 @@ std::vector<TickRecord> retrace(const scene::Description& description,
   const auto world = assemble(alone, std::move(devices));
   std::deque<Retraced> retraced;
   for (std::size_t i = 0; i < hands.size(); ++i) {
-    retraced.emplace_back(description, *world, records[hands[i]], ToolInstance::of(*world, i));
+    retraced.emplace_back(description, *world, records[hands[i]], world->tools[i]);
     retraced.back().ticks.start(0.0);
   }
   std::vector<TickGroup> group = TickGroup::all(retraced);

@@ -15,12 +15,12 @@ double period_of(const scene::Description& d) {
 void check_clock(const World& world, bool real_time) {
   const scene::Description& d = world.description;
   if (!real_time) {
-    for (const auto& side : ToolInstance::all(world))
-      if (side->handle && side->handle->is_live())
+    for (const ToolInstance& tool : world.tools)
+      if (tool.device->is_live())
         fail(
             "device: type = \"{}\" is driven from outside, by the wall clock; run in real time (palpate run "
             "--realtime)",
-            side->device_spec ? side->device_spec->type : "");
+            tool.device_spec.type);
     return;
   }
   if (!d.tool) fail("real time: the scene has no [tool], so there is no force for a hand to feel");

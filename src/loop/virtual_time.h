@@ -30,7 +30,7 @@ class VirtualTime {
     ContactRecord record;
   };
   struct Hand {
-    Hand(const scene::Description& d, ToolInstance& side) : tick_s(side.spec->tick_s), ticks(d, side) {}
+    Hand(const scene::Description& d, ToolInstance& tool) : tick_s(tool.spec.tick_s), ticks(d, tool) {}
     double tick_s;
     HapticLoop ticks;
     ContactRecord in_force;

@@ -110,7 +110,7 @@ TEST(RecordedTimes, OfARunsRecordAreShiftedAndScaled) {
   slow.device->time_scale = 2.0;
   slow.device->time_offset_s = 0.03;
   const auto world = loop::assemble(slow);
-  const auto path = loop::ToolInstance::of(*world).handle->path();
+  const auto path = world->tools[0].device->path();
   const auto truth = [&](double t) { return device::sample_keyframes(d.device->keyframes, t); };
   for (const double t : {0.01, 0.04, 0.055}) {
     EXPECT_LT((path(0.03 + 2.0 * t).pose.translation - truth(t).pose.translation).norm(), 1e-9) << t;
