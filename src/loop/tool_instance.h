@@ -34,7 +34,7 @@
 namespace palpate::loop {
 
 /// Tool of the partitioned scheme, which advances by ticks. During a run `tool` and `rigid_contact` belong to
-/// the ticks, in real time another thread; bodies and observers may read only the other members.
+/// the ticks, in real time another thread; the bodies and observers may use only the other members.
 struct TickTool {
   tool::Tool tool;
   /// Its motion since the last exchange, and its frame in contact with bodies.
@@ -67,7 +67,8 @@ struct MonolithicTool {
   }
 };
 
-/// One tool of a World, and the device that moves it.
+/// One tool of a World, and the device that moves it. During a run device, limiter, motors and passivity
+/// controller belong to the ticks.
 struct ToolInstance {
   std::string name;               ///< Name in [[contact]]: "tool" for the first.
   const ToolSpec& spec;           ///< Part of the World's description.
