@@ -33,7 +33,7 @@ ContactRecord linearise_contact(World& world, std::uint64_t version, double peri
   set_reference(record, record.time, now.pose, now.twist);
   const CoupledTool coupled = coupled_tool(world, tool, now);
   if (ticks.reduction) {
-    frozen_fallbacks += !ticks.reduction->reduce(coupled, ticks.step_factor, period_s, out.touch);
+    frozen_fallbacks += !ticks.reduction->reduce(coupled, period_s, out.touch);
     record.source = Source::kPoints;
     record.samples = out.touch.samples;
     return out;

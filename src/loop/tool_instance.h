@@ -44,7 +44,7 @@ struct TickTool {
   std::shared_ptr<RigidContactSolver> rigid_contact = {};
   int number_in_rigid_contact = -1;
   std::unique_ptr<ModelReduction> reduction = {};  ///< For linearisation = "points"; else null.
-  StepFactor step_factor = {};                     ///< For `condensed`, and if `reduction` cannot iterate.
+  StepFactor step_factor = {};                     ///< For linearisation = "condensed".
 };
 
 /// Tool of the monolithic scheme: a block of the State.

@@ -207,9 +207,9 @@ bool ModelReduction::iterate(const CoupledTool& tool, double H, StepResponses& o
 }
 
 /// Computes X by factorisation. Returns false if the step matrix has no factor.
-bool ModelReduction::factor(const CoupledTool& tool, StepFactor& factor, double H, StepResponses& out) {
+bool ModelReduction::factorise(const CoupledTool& tool, double H, StepResponses& out) {
   const dynamics::StateView view = tool.state.view();
-  dynamics::LinearSolver* solver = factor.of(tool.system, view, H);
+  dynamics::LinearSolver* solver = factor_.of(tool.system, view, H);
   if (!solver) return false;
   counters::count("loop.touch_factored");
   out.stiff =
@@ -288,8 +288,7 @@ bool ModelReduction::update_friction(const CoupledTool& tool, double H,
 
 /// Computes X.  @param samples  renumbers their nodes and sets their velocities  @return false if there is no
 /// X
-bool ModelReduction::answer(const CoupledTool& tool, StepFactor& factor, double H,
-                            std::vector<ReducedSample>& samples,
+bool ModelReduction::answer(const CoupledTool& tool, double H, std::vector<ReducedSample>& samples,
                             const std::vector<ReducedTangent>& tangents) {
   StepResponses& x = *responses_;
   x.nodes = number_nodes(samples);
@@ -300,10 +299,10 @@ bool ModelReduction::answer(const CoupledTool& tool, StepFactor& factor, double 
   x.patterns =
       load_patterns(tool.motion, options_.has_friction, samples, tangents, x.nodes.size(), H, kModes - 1);
   x.error_bound = 0.0;
-  return iterate(tool, H, x) || this->factor(tool, factor, H, x);
+  return iterate(tool, H, x) || factorise(tool, H, x);
 }
 
-bool ModelReduction::reduce(const CoupledTool& tool, StepFactor& factor, double H, ReducedContactModel& out) {
+bool ModelReduction::reduce(const CoupledTool& tool, double H, ReducedContactModel& out) {
   const dynamics::StateView view = tool.state.view();
   out = {};
   out.time = tool.state.time();
@@ -318,11 +317,11 @@ bool ModelReduction::reduce(const CoupledTool& tool, StepFactor& factor, double 
   x.rate = rate_by_other_tools(tool);
   const FrictionOfPeriod friction(tool.contact, view);
   if (friction.has_friction) samples = tool.contact.reduced_samples(view, tool.frame, &tangents);
-  bool exchanged = answer(tool, factor, H, samples, tangents);
+  bool exchanged = answer(tool, H, samples, tangents);
   while (exchanged && friction.has_friction && !update_friction(tool, H, samples, tangents)) {
     counters::count("loop.touch_bases_anew");
     samples = tool.contact.reduced_samples(view, tool.frame, &tangents);
-    exchanged = answer(tool, factor, H, samples, tangents);
+    exchanged = answer(tool, H, samples, tangents);
   }
   if (exchanged && x.exact)
     error_bound_.take_factored();

@@ -45,11 +45,9 @@ class ModelReduction {
 
   /// Builds the reduced model of the bodies in contact with this tool at the current state, valid for about
   /// `period_s`.
-  /// @param factor  factors the step matrix if the iteration cannot be used
   /// @return false if the step matrix has no factor: `out` then has points without modes (bodies without
   /// response)
-  bool reduce(const CoupledTool& tool, StepFactor& factor, double period_s,
-              contact::ReducedContactModel& out);
+  bool reduce(const CoupledTool& tool, double period_s, contact::ReducedContactModel& out);
   const ReductionError& error_bound() const { return error_bound_; }
   void archive(Archive& a) { error_bound_.archive(a); }
   /// Performs one-time work (orderings, maps, allocation) ahead of the first contact.
@@ -58,19 +56,19 @@ class ModelReduction {
  private:
   struct StepResponses;
   static Eigen::Index spread_patterns(StepResponses& x, Eigen::Index size);
-  bool answer(const CoupledTool& tool, StepFactor& factor, double H,
-              std::vector<contact::ReducedSample>& samples,
+  bool answer(const CoupledTool& tool, double H, std::vector<contact::ReducedSample>& samples,
               const std::vector<contact::ReducedTangent>& tangents);
   bool update_friction(const CoupledTool& tool, double H, const std::vector<contact::ReducedSample>& samples,
                        const std::vector<contact::ReducedTangent>& tangents);
   bool iterate(const CoupledTool& tool, double H, StepResponses& out);
-  bool factor(const CoupledTool& tool, StepFactor& factor, double H, StepResponses& out);
+  bool factorise(const CoupledTool& tool, double H, StepResponses& out);
 
   ReductionError error_bound_;
   ReductionOptions options_;
   dynamics::StepAssembly assembly_;
-  std::unique_ptr<linear::StepResponse> response_;
-  std::unique_ptr<StepResponses> responses_;  ///< Memory is reused from exchange to exchange.
+  std::unique_ptr<linear::StepResponse> response_;  ///< null: factorise
+  StepFactor factor_;                               ///< Used if the iteration cannot be.
+  std::unique_ptr<StepResponses> responses_;        ///< Memory is reused from exchange to exchange.
 };
 
 }  // namespace palpate::loop
