@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "palpate/device/device.h"
+#include "palpate/device/keyframes.h"
 
 namespace palpate::bones {
 

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "compare/haptic.h"
 #include "loop/replay.h"
 #include "loop/run_figures.h"
@@ -35,13 +33,6 @@ HandError hand_error(const Trajectory& felt, const Trajectory& reference) {
   return out;
 }
 
-bool all_paths_known(const loop::World& run) {
-  const std::vector<scene::Hand> hands = scene::hands_of(run.description);
-  return std::all_of(hands.begin(), hands.end(), [&](const scene::Hand& hand) {
-    return static_cast<bool>(device::make_device(*hand.device, run.folder)->path());
-  });
-}
-
 }  // namespace
 
 void refuse_against_monolithic(const scene::Description& d) {
@@ -61,7 +52,7 @@ AgainstMonolithic against_monolithic(const loop::World& run, const std::vector<l
   const MonolithicScene whole = monolithic_scene(d);
   AgainstMonolithic out;
   out.made_by = whole.made_by;
-  out.recorded_hand = real_time || !all_paths_known(run);
+  out.recorded_hand = real_time || !loop::all_paths_known(run);
   try {
     if (records.empty() || records.front().ticks.empty()) fail("the run has no ticks");
     const auto world = out.recorded_hand ? loop::assemble(whole.description, loop::recorded_hands(records))

@@ -79,6 +79,15 @@ std::shared_ptr<MovingFrame> block_frame(int block_id) { return std::make_shared
 
 void TrajectoryFrame::clear() { knots_.clear(); }
 
+void TrajectoryFrame::restart() {
+  if (knots_.size() > 1) knots_.erase(knots_.begin(), knots_.end() - 1);
+}
+
+const TrajectoryFrame::Knot& TrajectoryFrame::last() const {
+  PALPATE_CHECK(!knots_.empty(), "last knot of a trajectory frame without knots requested");
+  return knots_.back();
+}
+
 void TrajectoryFrame::append(double t, const Pose& pose, const Twist& twist) {
   PALPATE_CHECK(knots_.empty() || t > knots_.back().t,
                 "knot at t = {} must be later than the previous knot at t = {}", t, knots_.back().t);

@@ -1,13 +1,9 @@
 #include "palpate/device/device.h"
 
-#include "device/make.h"
+#include "device/check_range.h"
 #include "palpate/core/error.h"
 
 namespace palpate::device {
-
-void check_range(const char* key, double value, const Range& range) {
-  if (!range.holds(value)) fail("device: {} = {} {}", key, value, range.demand());
-}
 
 void Device::open() {
   if (open_) return;

@@ -3,11 +3,13 @@
 #include <numbers>
 
 #include "core/so3.h"
+#include "device/check_range.h"
 #include "device/hand_model.h"
 #include "device/make.h"
 #include "device/motions.h"
 #include "palpate/core/error.h"
 #include "palpate/device/motors.h"
+#include "palpate/device/profile.h"
 
 // A simulated device in the hand of a simulated arm. The scene's path is the target motion x_d(t) of the arm
 // (the equilibrium point of Hogan 1985); a spring k and a damper b pull arm and device towards it. The grip

@@ -2,7 +2,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "palpate/device/device.h"
+#include "palpate/core/error.h"
+#include "palpate/core/registry.h"
+#include "palpate/device/keyframes.h"
 
 namespace palpate::device {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "device/make.h"
+#include "device/check_range.h"
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
 #include "palpate/device/spec.h"

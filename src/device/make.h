@@ -9,9 +9,6 @@ inline Vec3 to_step(const Vec3& value, double step) {
   return step > 0.0 ? Vec3((value / step).array().round() * step) : value;
 }
 
-/// Checks one parameter.  @throws Error `device: KEY = VALUE ...` for a value out of range
-void check_range(const char* key, double value, const Range& range);
-
 std::unique_ptr<Device> make_script(const DeviceSpec& spec, const std::string& folder);
 std::unique_ptr<Device> make_hand(const DeviceSpec& spec, const std::string& folder);
 std::unique_ptr<Device> make_recording(const DeviceSpec& spec, const std::string& folder);

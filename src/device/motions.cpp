@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "palpate/core/error.h"
+#include "palpate/device/keyframes.h"
 
 namespace palpate::device {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "device/check_range.h"
 #include "device/make.h"
 #include "palpate/device/profile.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "device/make.h"
+#include "device/check_range.h"
 #include "palpate/core/registry.h"
 #include "palpate/device/limiter.h"
 

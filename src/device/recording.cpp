@@ -10,6 +10,7 @@
 #include "device/monotone_slope.h"
 #include "device/recorded_path.h"
 #include "palpate/core/error.h"
+#include "palpate/device/profile.h"
 
 namespace palpate::device {
 namespace {

@@ -1,3 +1,5 @@
+#include "palpate/device/registry.h"
+
 #include "device/make.h"
 
 namespace palpate::device {

@@ -1,5 +1,6 @@
 #include "device/make.h"
 #include "device/motions.h"
+#include "palpate/device/profile.h"
 
 namespace palpate::device {
 namespace {

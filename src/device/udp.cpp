@@ -11,9 +11,11 @@
 #include <chrono>
 #include <cstring>
 
+#include "device/check_range.h"
 #include "device/make.h"
 #include "palpate/core/error.h"
 #include "palpate/device/limiter.h"
+#include "palpate/device/profile.h"
 
 namespace palpate::device {
 namespace {

@@ -2,6 +2,14 @@
 
 namespace palpate::dynamics {
 
+void set_reference(LinearisedContact& record, double t, const Pose& pose, const Twist& twist) {
+  const Quat& r = pose.rotation;
+  const Vec3& p = pose.translation;
+  record.time = t;
+  record.x0 = {r.w(), r.x(), r.y(), r.z(), p.x(), p.y(), p.z()};
+  Eigen::Map<Vec6>(record.v0.data()) << twist.angular, twist.linear;
+}
+
 Vec6 contact_wrench(const LinearisedContact& record, double t, const Pose& pose, const Twist& twist) {
   if (record.source == LinearisedContact::Source::kNone) return Vec6::Zero();
   using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;

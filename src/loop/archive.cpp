@@ -36,27 +36,34 @@ void archive_tool(Archive& a, tool::Tool& tool) {
   if (a.is_restoring()) tool.set_state(time, pose, twist);
 }
 
-void archive_side(Archive& a, ToolInstance& side) {
-  a("known_time", side.exchanged.time);
-  a("known_pose", side.exchanged.pose);
-  a("known_twist", side.exchanged.twist);
-  a("handle_now", side.handle_now);
-  if (side.handle) {
-    const Archive::Group group(a, "device");
-    side.handle->archive(a);
+void archive_ticks(Archive& a, TickTool& ticks) {
+  contact::TrajectoryFrame::Knot exchanged = ticks.path->last();
+  a("known_time", exchanged.t);
+  a("known_pose", exchanged.pose);
+  a("known_twist", exchanged.twist);
+  if (a.is_restoring()) {
+    ticks.path->clear();
+    ticks.path->append(exchanged.t, exchanged.pose, exchanged.twist);
   }
-  if (side.limiter) a("limiter", *side.limiter);
-  a("motors", side.motors);
-  if (side.passivity) a("passivity", *side.passivity);
-  if (side.touch) {
+  if (ticks.reduction) {
     const Archive::Group group(a, "answers");
-    side.touch->archive(a);
+    ticks.reduction->archive(a);
   }
-  if (side.tool) {
-    const Archive::Group group(a, "tool");
-    archive_tool(a, *side.tool);
+  const Archive::Group group(a, "tool");
+  archive_tool(a, ticks.tool);
+  if (ticks.rigid_contact) ticks.rigid_contact->query_next();
+}
+
+void archive_hand(Archive& a, ToolInstance& tool) {
+  if (TickTool* ticks = tool.with_ticks()) archive_ticks(a, *ticks);
+  a("handle_now", tool.handle);
+  {
+    const Archive::Group group(a, "device");
+    tool.device->archive(a);
   }
-  if (side.rigid) side.rigid->query_next();
+  a("limiter", tool.limiter);
+  a("motors", tool.motors);
+  if (tool.passivity) a("passivity", *tool.passivity);
 }
 
 }  // namespace
@@ -101,8 +108,7 @@ void BodyLoop::archive(Archive& a) {
   }
   a("changed", changed_);
   if (a.is_restoring()) change_materials_so_far();
-  const auto& sides = ToolInstance::all(world_);
-  a.each("hand", sides, [&](const auto& side) { archive_side(a, *side); });
+  a.each("hand", world_.tools, [&](ToolInstance& tool) { archive_hand(a, tool); });
   a.each("felt", hand_ticks_, [&](HandTicks& felt) {
     a("version", felt.version);
     a("ticks", felt.ticks);

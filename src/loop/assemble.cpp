@@ -292,17 +292,16 @@ std::unique_ptr<World> assemble(const scene::Description& description,
   assemble_bodies(*world);
   if (!description.bones.empty()) at_place(*world, "bone", "", [&] { assemble_bones(*world); });
   assemble_skeletons(*world);
-  ToolInstance::make(*world);
-  for (std::size_t i = 0; i < ToolInstance::all(*world).size(); ++i) {
-    ToolInstance& side = ToolInstance::of(*world, i);
-    if (i < hands.size()) side.handle = std::move(hands[i]);
-    if (side.spec)
-      at_place(*world, scene::hands_of(description)[i].tool_key, "", [&] { assemble_tool(*world, i); });
-  }
+  const std::vector<scene::Hand> tools = scene::hands_of(world->description);
+  hands.resize(tools.size());
+  for (std::size_t i = 0; i < tools.size(); ++i)
+    at_place(*world, tools[i].tool_key, "",
+             [&] { world->tools.push_back(assemble_tool(*world, tools[i], std::move(hands[i]))); });
   assemble_attachments(*world);
-  const auto& sides = ToolInstance::all(*world);
-  const bool carries =
-      std::any_of(sides.begin(), sides.end(), [](const auto& side) { return !side->ties.empty(); });
+  const bool carries = std::any_of(world->tools.begin(), world->tools.end(), [](const ToolInstance& tool) {
+    const TickTool* const ticks = tool.with_ticks();
+    return ticks && !ticks->ties.empty();
+  });
   if (carries || !description.contacts.empty()) assemble_contact(*world);
   if (world->state.layout().blocks.empty()) return world;  // only a tool with separate ticks
   world->system.prepare(world->state.view());

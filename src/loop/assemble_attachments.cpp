@@ -5,6 +5,7 @@
 #include "assemble_parts.h"
 #include "bones/shape.h"
 #include "palpate/core/error.h"
+#include "palpate/device/keyframes.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "tool_instance.h"
 
@@ -82,9 +83,9 @@ Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
               {quaternion_of(placed.rotation_vector_rad), placed.position_m},
               &bone.dofs};
     }
-  const ToolInstance* const tool = ToolInstance::named(world, spec.to);
+  const ToolInstance* const tool = world.find_tool(spec.to);
   if (!tool) fail("body \"{}\": attachment to = \"{}\" is neither a bone nor a tool", body.name, spec.to);
-  return {tool->block_id, {}, start_of(*tool->spec), nullptr};
+  return {tool->in_state()->block_id, {}, start_of(tool->spec), nullptr};
 }
 
 /// Stiffness ratio of the spring of a node carried by a tool with ticks to the tissue around the node.
@@ -97,12 +98,12 @@ constexpr double kStiffer = 100.0;
 // kStiffer E a (R/a)^2: relative to the body, the springs deflect by a/(kStiffer R).
 void tie(const Body& body, const SoftBodySpec& tissue, const std::vector<int>& nodes, int first,
          ToolInstance& tool) {
-  const Pose from_world = start_of(*tool.spec).inverse();
+  const Pose from_world = start_of(tool.spec).inverse();
   for (const int node : nodes) {
     const double length = std::cbrt(body.masses[node] / tissue.density_kg_m3),
                  stiffness = kStiffer * tissue.youngs_modulus_pa * length;
-    tool.ties.push_back({first + node, from_world * Vec3(body.placed.col(node)), stiffness,
-                         stiffness * tissue.stiffness_damping_s});
+    tool.with_ticks()->ties.push_back({first + node, from_world * Vec3(body.placed.col(node)), stiffness,
+                                       stiffness * tissue.stiffness_damping_s});
   }
 }
 
@@ -130,7 +131,7 @@ void attach(World& world, const Body& body, const SoftBodySpec& tissue, std::siz
   const std::vector<int> nodes = nodes_inside(world, body, spec);
   check_nodes(body, spec, nodes);
   const int first = world.state.layout().find(body.block_id)->u_offset / 3;
-  ToolInstance* const tool = spec_of(world, spec.to) ? nullptr : ToolInstance::named(world, spec.to);
+  ToolInstance* const tool = spec_of(world, spec.to) ? nullptr : world.find_tool(spec.to);
   if (tool && !world.monolithic()) return tie(body, tissue, nodes, first, *tool);
   const Carrier carrier = carrier_of(world, body, spec);
   const std::vector<int> dofs = fem::dofs_of_nodes(nodes, first, spec.axes);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "assemble_parts.h"
 #include "contact/gpu_device.h"
@@ -28,6 +29,9 @@ double mean_edge(const TriMesh& surface) {
                  .norm();
   return sum / static_cast<double>(3 * surface.faces.cols());
 }
+
+/// Proxies of the tools, by name: created by the first contact that needs them.
+using ToolProxies = std::map<std::string, std::shared_ptr<proxy::ProxySet>>;
 
 struct Pair {
   const ContactSpec& spec;
@@ -161,29 +165,30 @@ std::unique_ptr<contact::SampleSource> image_source(Pair pair, TriMesh rigid,
                                     rigid_proxies, frame, std::move(motion), options);
 }
 
-std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolInstance& side, Pair pair) {
-  const ToolSpec& tool = *side.spec;
-  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
+std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolInstance& instance, Pair pair,
+                                                   ToolProxies& proxies) {
+  const ToolSpec& tool = instance.spec;
+  const std::shared_ptr<contact::MovingFrame> motion = frame_in_contact(world, instance);
   const bool sphere = tool.shape == "sphere";
   if (pair.spec.method == "distance" && sphere) {
-    const Shape shape = round_tool(tool.radius_m, side.frame_index, motion);
+    const Shape shape = round_tool(tool.radius_m, instance.frame, motion);
     return with_own_points(
-        contact::make_sphere_source(points_on(pair, shape.lengths), side.frame_index, motion, Vec3::Zero(),
+        contact::make_sphere_source(points_on(pair, shape.lengths), instance.frame, motion, Vec3::Zero(),
                                     tool.radius_m, pair.spec.candidate_gap_m, pair.look_ahead),
         pair, shape);
   }
   if (pair.spec.method == "distance")
     return distance_source(std::move(pair),
-                           contact::FrameSurface{tool_surface(tool, world.folder), side.frame_index, motion});
+                           contact::FrameSurface{tool_surface(tool, world.folder), instance.frame, motion});
   if (pair.spec.method != "analytic")
-    return image_source(std::move(pair), tool_surface(tool, world.folder), side.proxies, side.frame_index,
-                        motion);
+    return image_source(std::move(pair), tool_surface(tool, world.folder), proxies[instance.name],
+                        instance.frame, motion);
   if (!sphere)
     fail(
         "contact {} - {}: method = \"analytic\" needs a tool with shape = \"sphere\", not \"{}\"; use method "
         "= \"auto\"",
         pair.spec.first, pair.spec.second, tool.shape);
-  return contact::make_sphere_source(std::move(pair.surface), side.frame_index, motion, Vec3::Zero(),
+  return contact::make_sphere_source(std::move(pair.surface), instance.frame, motion, Vec3::Zero(),
                                      tool.radius_m, pair.candidate_gap, pair.look_ahead);
 }
 
@@ -207,15 +212,26 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
 }
 
 /// Creates the model reduction for a tool with ticks that contacts or carries bodies, unless it exists.
-void make_touch(World& world, ToolInstance& side) {
-  if (!side.trajectory || side.touch || world.description.exchange.linearisation != "points") return;
-  const bool others_ask = steps_are_linearised(world) || ToolInstance::all(world).size() > 1;
-  side.touch =
-      std::make_unique<ModelReduction>(world, world.description.exchange.linearisation_error, others_ask);
+void make_reduction(World& world, const ToolInstance& tool, TickTool& ticks) {
+  const scene::Description& d = world.description;
+  if (ticks.reduction || d.exchange.linearisation != "points") return;
+  ReductionOptions options{.error = d.exchange.linearisation_error,
+                           .keep = steps_are_linearised(world) || world.tools.size() > 1,
+                           .threads = d.integrator.threads};
+  for (const ContactSpec& contact : d.contacts) {
+    const bool own = contact.first == tool.name || contact.second == tool.name;
+    options.has_friction = options.has_friction || (own && contact.friction > 0.0);
+    options.others_touch = options.others_touch || !own;
+  }
+  for (std::size_t i = 0; i < world.bodies.size(); ++i)
+    options.damping.push_back(
+        {world.bodies[i].block_id, d.bodies[i].mass_damping_per_s, d.bodies[i].stiffness_damping_s});
+  ticks.reduction = std::make_unique<ModelReduction>(world.system, std::move(options));
 }
 
 /// @pre the names are in canonical order (scene::order_sides)
-std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec& spec) {
+std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec& spec,
+                                                 ToolProxies& proxies) {
   contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
   if (auto source = rigid_source(world, spec)) return source;
   if (!world.find_body(spec.first))
@@ -224,8 +240,8 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
         "tool",
         spec.first, spec.second);
   Pair pair = pair_of(world, spec, spec.first);
-  if (ToolInstance* const tool = ToolInstance::named(world, spec.second))
-    return tool_source(world, *tool, std::move(pair));
+  if (ToolInstance* const tool = world.find_tool(spec.second))
+    return tool_source(world, *tool, std::move(pair), proxies);
   for (const ObstacleSpec& obstacle : world.description.obstacles)
     if (obstacle.name == spec.second) return obstacle_source(world, std::move(pair), obstacle);
   if (spec.second == spec.first) return own_source(std::move(pair));
@@ -234,7 +250,7 @@ std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec
        spec.first, spec.second, spec.second);
 }
 
-void add_contact(World& world, ContactSpec& given) {
+void add_contact(World& world, ContactSpec& given, ToolProxies& proxies) {
   scene::order_sides(world.description, given);
   if (given.method == "auto") given.method = scene::contact_method(world.description, given);
   set_friction_speed(world, given);
@@ -246,10 +262,11 @@ void add_contact(World& world, ContactSpec& given) {
   if (spec.friction_tangent == "auto")
     spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
   // No step matrix contains tools with separate ticks; their ticks are a single solve each.
-  if (ToolInstance::named(world, spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
-  world.contact->add_pair(source_of(world, spec), spec);
-  ToolInstance* const side = ToolInstance::named(world, spec.second);
-  if (side && world.find_body(spec.first)) make_touch(world, *side);
+  if (world.find_tool(spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
+  world.contact->add_pair(source_of(world, spec, proxies), spec);
+  ToolInstance* const tool = world.find_tool(spec.second);
+  if (tool && tool->with_ticks() && world.find_body(spec.first))
+    make_reduction(world, *tool, *tool->with_ticks());
 }
 
 }  // namespace
@@ -258,13 +275,15 @@ void assemble_contact(World& world) {
   world.contact = std::make_shared<contact::ContactForce>();
   make_rigid_contact_solver(world);
   std::vector<ContactSpec>& contacts = world.description.contacts;
+  ToolProxies proxies;
   for (std::size_t i = 0; i < contacts.size(); ++i)
-    at_place(world, fmt::format("contact[{}]", i), "", [&] { add_contact(world, contacts[i]); });
-  for (const auto& side : ToolInstance::all(world)) {
-    if (side->ties.empty()) continue;
-    tool_motion(world, *side);
-    world.contact->tie(side->frame_index, side->ties);
-    make_touch(world, *side);
+    at_place(world, fmt::format("contact[{}]", i), "", [&] { add_contact(world, contacts[i], proxies); });
+  for (ToolInstance& tool : world.tools) {
+    TickTool* const ticks = tool.with_ticks();
+    if (!ticks || ticks->ties.empty()) continue;
+    frame_in_contact(world, tool);
+    world.contact->tie(tool.frame, ticks->ties);
+    make_reduction(world, tool, *ticks);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
 }

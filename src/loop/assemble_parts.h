@@ -2,7 +2,9 @@
 #include <functional>
 #include <string>
 
+#include "palpate/device/device.h"
 #include "palpate/loop/world.h"
+#include "palpate/scene/hands.h"
 
 /// Steps of assemble(), one file each.
 namespace palpate::loop {
@@ -21,8 +23,10 @@ void assemble_bodies(World& world);
 fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<MaterialRegion> in_file, Body& body);
 void assemble_bones(World& world);      ///< For [[bone]].
 void assemble_skeletons(World& world);  ///< Bones of model files, if [body.skeleton] enables them.
-void assemble_tool(World& world, std::size_t hand);  ///< Once per hand of scene::hands_of().
-void assemble_attachments(World& world);             ///< After all parts that nodes may be attached to.
+/// Assembles the tool of one hand; tools of the monolithic scheme become blocks of the State.
+/// @param device  replaces the scene's device; null: the scene's
+ToolInstance assemble_tool(World& world, const scene::Hand& hand, std::unique_ptr<device::Device> device);
+void assemble_attachments(World& world);  ///< After all parts that nodes may be attached to.
 /// Returns the default speed below which friction of a tool is viscous, if the scene specifies none [m/s].
 double tool_friction_speed(const World& world, const ToolSpec& tool);
 /// Sets the default of a contact's regularisation speed, if the scene specifies none.

@@ -6,6 +6,8 @@
 #include "loop/replay.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/device/profile.h"
+#include "palpate/device/registry.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/tool/tool.h"
 #include "pose_bounds.h"
@@ -45,42 +47,49 @@ tool::HandBlock hand_of(const device::HandModel& model) {
 }
 
 /// Adds the hand to the State, as one block coupled to the tool.
-void assemble_hand(World& world, ToolInstance& side, const dynamics::BlockSpec& tool_spec) {
+MonolithicTool::Hand assemble_hand(World& world, const scene::Hand& hand, int tool_block,
+                                   const dynamics::BlockSpec& tool_spec) {
   const scene::Description& d = world.description;
   if (d.record && d.record->energy)
     fail(
         "exchange: scheme = \"monolithic\" with a simulated hand: record.energy = true records the work of "
         "an external hand, but a simulated hand is part of the system; set it to false");
-  ToolInstance::HandInState& hand = side.hand_in_state.emplace();
-  hand.model = device::hand_model(*side.device_spec);
-  hand.hand = hand_of(hand.model);
-  hand.block_id = world.state.insert(tool::hand_block(tool_spec.q_scale, tool_spec.u_scale),
-                                     tool::hand_at_start(hand.hand), VecX::Zero(6));
-  const tool::HandTerms terms = tool::make_hand_terms(hand.block_id, side.block_id, *side.spec, hand.hand);
+  MonolithicTool::Hand out;
+  out.model = device::hand_model(*hand.device);
+  out.block = hand_of(out.model);
+  out.block_id = world.state.insert(tool::hand_block(tool_spec.q_scale, tool_spec.u_scale),
+                                    tool::hand_at_start(out.block), VecX::Zero(6));
+  const tool::HandTerms terms = tool::make_hand_terms(out.block_id, tool_block, *hand.tool, out.block);
   world.system.add(terms.inertia);
   world.system.add(terms.arm);
   world.system.add(terms.coupling);
+  return out;
 }
 
 /// Adds the tool to the State, as one block coupled to the bodies.
 /// @param own_device  whether the device is the scene's, not a replacement
-void assemble_block(World& world, ToolInstance& side, bool own_device) {
-  const ToolSpec& spec = *side.spec;
+MonolithicTool assemble_block(World& world, const scene::Hand& hand, const device::Device& device,
+                              bool own_device) {
+  const ToolSpec& spec = *hand.tool;
   if (spec.tick_s != world.description.tool->tick_s)
     fail(
         "exchange: scheme = \"monolithic\" samples all tools at the same ticks, but hand \"{}\" has tick_s = "
         "{}, the first hand {}; make them equal",
-        side.name, spec.tick_s, world.description.tool->tick_s);
+        hand.name, spec.tick_s, world.description.tool->tick_s);
   const Quat r = quaternion_of(spec.rotation_vector_rad);
   VecX q(7);
   q << r.w(), r.vec(), spec.position_m;
   const dynamics::BlockSpec tool_spec = tool::tool_block(spec);
-  const int block_id = side.block_id = world.state.insert(tool_spec, q, VecX::Zero(6));
-  const tool::SimbodyTerms terms = tool::make_simbody_terms(block_id, spec, world.description.gravity_m_s2);
+  MonolithicTool out{.block_id = world.state.insert(tool_spec, q, VecX::Zero(6))};
+  const tool::SimbodyTerms terms =
+      tool::make_simbody_terms(out.block_id, spec, world.description.gravity_m_s2);
   world.system.add(terms.inertia);
   world.system.add(terms.force);
-  if (own_device && side.device_spec->type == "hand") return assemble_hand(world, side, tool_spec);
-  world.system.add(tool::make_coupling_term(block_id, spec, path_of(*side.handle, *side.device_spec)));
+  if (own_device && hand.device->type == "hand")
+    out.hand = assemble_hand(world, hand, out.block_id, tool_spec);
+  else
+    world.system.add(tool::make_coupling_term(out.block_id, spec, path_of(device, *hand.device)));
+  return out;
 }
 
 /// Builds the device. A recording in HDF5 is the record of another run's hand, which `device` cannot read.
@@ -94,10 +103,10 @@ std::unique_ptr<device::Device> own_device_of(const DeviceSpec& spec, const std:
 
 /// Warns if semi-implicit Euler diverges in the coupling alone, beyond k = 4 m/h^2 - 2 b/h
 /// (tool/fixed_tick.cpp), in translation or about the axis of the smallest moment of inertia.
-void warn_of_limit(const ToolInstance& side) {
-  const ToolSpec& spec = *side.spec;
+void warn_of_limit(const scene::Hand& hand, const tool::Tool& tool) {
+  const ToolSpec& spec = *hand.tool;
   if (spec.integrator != "semi-implicit-euler") return;
-  const Mat6 M = side.tool->mass_matrix();
+  const Mat6 M = tool.mass_matrix();
   const double h = spec.tick_s,
                inertia =
                    Eigen::SelfAdjointEigenSolver<Mat3>(M.topLeftCorner<3, 3>()).eigenvalues().minCoeff();
@@ -107,7 +116,7 @@ void warn_of_limit(const ToolInstance& side) {
     log::warn(
         "{}: semi-implicit-euler diverges with ticks of {:g} s: {} = {:g} {} is not below its stability "
         "limit of {:g} {}; use tool.integrator = \"linearly-implicit-euler\", which has none",
-        side.name, h, what, stiffness, unit, std::max(0.0, most), unit);
+        hand.name, h, what, stiffness, unit, std::max(0.0, most), unit);
   };
   const auto& c = spec.coupling;
   warn("coupling.stiffness_n_m", "N/m", c.stiffness_n_m, c.damping_n_s_m, spec.mass_kg);
@@ -117,30 +126,39 @@ void warn_of_limit(const ToolInstance& side) {
 
 }  // namespace
 
-void assemble_tool(World& world, std::size_t hand) {
+ToolInstance assemble_tool(World& world, const scene::Hand& hand, std::unique_ptr<device::Device> device) {
   const scene::Description& d = world.description;
-  ToolInstance& side = ToolInstance::of(world, hand);
-  const bool own_device = !side.handle;
+  const DeviceSpec& spec = *hand.device;
+  const bool own_device = !device;
   if (own_device) {
-    side.handle = own_device_of(*side.device_spec, world.folder);
-    check_recorded_times(*side.handle, *side.device_spec, d.duration_s);
+    device = own_device_of(spec, world.folder);
+    check_recorded_times(*device, spec, d.duration_s);
   }
-  const device::DeviceFigures figures = device::figures_of(*side.device_spec);
-  side.limiter = std::make_unique<device::WrenchLimiter>(figures.max_force, figures.max_torque, figures.ramp,
-                                                         figures.max_force_slew, figures.max_torque_slew);
-  side.limiter->confine(figures.workspace, *side.handle);
-  if (d.exchange.scheme == "partitioned")
-    side.motors = device::Motors(device::motor_figures(*side.device_spec));
-  side.handle->bound(pose_bounds(world, figures.workspace));
-  if (d.exchange.scheme == "monolithic")
-    assemble_block(world, side, own_device);
-  else if (d.exchange.scheme == "partitioned") {
-    side.tool = side.another_tool(d.gravity_m_s2);
-    side.exchanged = {side.tool->time(), side.tool->pose(), side.tool->twist()};
-    warn_of_limit(side);
-  } else
+  const device::DeviceFigures figures = device::figures_of(spec);
+  device::WrenchLimiter limiter(figures.max_force, figures.max_torque, figures.ramp, figures.max_force_slew,
+                                figures.max_torque_slew);
+  limiter.confine(figures.workspace, *device);
+  const bool ticks = d.exchange.scheme == "partitioned";
+  device::Motors motors = ticks ? device::Motors(device::motor_figures(spec)) : device::Motors();
+  device->bound(pose_bounds(world, figures.workspace));
+  const auto instance = [&](auto scheme) {
+    return ToolInstance{.name = hand.name,
+                        .spec = *hand.tool,
+                        .device_spec = spec,
+                        .device = std::move(device),
+                        .limiter = limiter,
+                        .scheme = std::move(scheme),
+                        .motors = motors};
+  };
+  if (d.exchange.scheme == "monolithic") return instance(assemble_block(world, hand, *device, own_device));
+  if (!ticks)
     fail("exchange: unknown scheme \"{}\"{}", d.exchange.scheme,
          suggestion(d.exchange.scheme, {"partitioned", "monolithic"}));
+  tool::Tool tool(*hand.tool, d.gravity_m_s2);
+  warn_of_limit(hand, tool);
+  auto path = std::make_shared<contact::TrajectoryFrame>();
+  path->append(tool.time(), tool.pose(), tool.twist());
+  return instance(TickTool{.tool = std::move(tool), .path = std::move(path)});
 }
 
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "carried_bodies.h"
 #include "core/clock.h"
+#include "coupling/carried_bodies.h"
 #include "linearise.h"
 #include "palpate/core/error.h"
 
@@ -15,13 +15,11 @@ int whole_number(double ratio) { return std::max(1, static_cast<int>(std::lround
 BodyLoop::BodyLoop(World& world, const RunOptions& options, RunResult& result)
     : world_(world), options_(options), result_(result) {
   const scene::Description& d = world.description;
-  for (const auto& side : ToolInstance::all(world)) {
+  for (ToolInstance& tool : world.tools) {
+    const double tick_s = tool.spec.tick_s;
     HandTicks& record_tick = hand_ticks_.emplace_back();
-    side->passivity = side->device_spec ? device::make_passivity_controller(
-                                              options.passivity, *side->device_spec, side->spec->tick_s)
-                                        : nullptr;
-    if (side->spec && side->spec->tick_s * device::kBuzzFrequency < 0.25)
-      record_tick.vibration.emplace(side->spec->tick_s);
+    tool.passivity = device::make_passivity_controller(options.passivity, tool.device_spec, tick_s);
+    if (tick_s * device::kBuzzFrequency < 0.25) record_tick.vibration.emplace(tick_s);
   }
   duration_ = options.duration_s > 0.0 ? options.duration_s : d.duration_s;
   period_ = period_of(d);
@@ -43,10 +41,9 @@ void BodyLoop::start() {
 
 // Uses the switch at the last tick. Within a period the ticks are ahead of the bodies.
 void BodyLoop::query() {
-  for (const auto& side : ToolInstance::all(world_))
-    if (world_.contact && side->spec && side->spec->grasp_switch >= 0 && side->frame_index >= 0)
-      world_.contact->set_grasp(side->frame_index,
-                                (side->handle_now.switches >> side->spec->grasp_switch) & 1U);
+  for (const ToolInstance& tool : world_.tools)
+    if (tool.spec.grasp_switch >= 0 && tool.frame >= 0)
+      world_.contact->set_grasp(tool.frame, (tool.handle.switches >> tool.spec.grasp_switch) & 1U);
   query_contact();
 }
 
@@ -72,21 +69,16 @@ ContactRecord BodyLoop::linearise(std::size_t hand, double period_s) {
 }
 
 void BodyLoop::follow(std::size_t hand, double t, const Pose& pose, const Twist& twist) {
-  ToolInstance& side = ToolInstance::of(world_, hand);
-  side.exchanged = {t, pose, twist};
-  if (side.trajectory) side.trajectory->append(t, pose, twist);
+  world_.tools[hand].with_ticks()->path->append(t, pose, twist);
 }
 
 void BodyLoop::restart_path() {
-  for (const auto& side : ToolInstance::all(world_)) {
-    if (!side->trajectory) continue;
-    side->trajectory->clear();
-    side->trajectory->append(side->exchanged.time, side->exchanged.pose, side->exchanged.twist);
-  }
+  for (ToolInstance& tool : world_.tools)
+    if (TickTool* ticks = tool.with_ticks()) ticks->path->restart();
 }
 
 void BodyLoop::record_tick(std::size_t hand, const TickRecord& tick) {
-  device::HandleSample& handle = ToolInstance::of(world_, hand).handle_now;
+  device::HandleSample& handle = world_.tools[hand].handle;
   handle.pose = tick.handle;
   handle.twist = tick.handle_twist;
   handle.valid = tick.handle_valid;
@@ -141,9 +133,13 @@ void BodyLoop::advance_over_changes(double t) {
 void BodyLoop::hold_bodies(double t1) {
   for (double stop = next_change(); stop <= t1; stop = next_change()) change_materials(stop);
   const dynamics::StateView then = world_.state.view();
-  for (const auto& side : ToolInstance::all(world_))
-    if (!side->ties.empty())
-      carry_along(world_, *side, side->trajectory->pose(then), side->trajectory->twist(then));
+  for (const ToolInstance& tool : world_.tools) {
+    const TickTool* ticks = tool.with_ticks();
+    if (!ticks || ticks->ties.empty()) continue;
+    const auto& path = *ticks->path;
+    carry_along(world_.state, ticks->ties, {path.pose(then), path.twist(then)},
+                {path.last().pose, path.last().twist});
+  }
   world_.state.set_time(t1);
   if (world_.stepper) world_.stepper->reinit(dynamics::ReinitReason::kStateChanged);
 }
@@ -200,19 +196,17 @@ void BodyLoop::sum_up() {
       result_.tunnelled.push_back(pair.tunnelled);
   }
   for (std::size_t i = 0; i < hand_ticks_.size(); ++i) {
-    const ToolInstance& side = ToolInstance::of(world_, i);
+    const ToolInstance& tool = world_.tools[i];
     HandResult hand;
     hand.ticks = hand_ticks_[i].ticks;
-    if (side.limiter) {
-      hand.limited_ticks = side.limiter->limited_ticks();
-      hand.outside_ticks = side.limiter->outside_ticks();
-      hand.rejected_ticks = side.limiter->rejected_ticks();
-    }
+    hand.limited_ticks = tool.limiter.limited_ticks();
+    hand.outside_ticks = tool.limiter.outside_ticks();
+    hand.rejected_ticks = tool.limiter.rejected_ticks();
     if (hand_ticks_[i].vibration) hand.buzz_n = hand_ticks_[i].vibration->rms();
-    if (side.passivity) {
-      const device::PassivityObserver& port = side.passivity->observer();
-      hand.port = {port.energy(), port.least_energy(), port.work(), side.passivity->dissipated(),
-                   side.passivity->active_ticks()};
+    if (tool.passivity) {
+      const device::PassivityObserver& port = tool.passivity->observer();
+      hand.port = {port.energy(), port.least_energy(), port.work(), tool.passivity->dissipated(),
+                   tool.passivity->active_ticks()};
     }
     if (i > 0) {
       result_.more_hands.push_back(hand);

@@ -5,7 +5,10 @@
 #include "loop/contact_record.h"
 #include "loop/energy.h"
 #include "monolithic_ticks.h"
-#include "palpate/loop/run.h"
+#include "palpate/loop/observer.h"
+#include "palpate/loop/run_options.h"
+#include "palpate/loop/run_result.h"
+#include "palpate/loop/world.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {
@@ -87,10 +90,6 @@ class BodyLoop {
   std::optional<EnergyLedger> ledger_;  ///< Only if an observer requests it.
   MonolithicTicks* ticks_ = nullptr;
 };
-
-/// Run both sides to the end, in virtual or in real time.
-void run_in_virtual_time(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result);
-void run_in_real_time(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result);
 
 /// Returns the whole number of ticks, steps or periods nearest to a ratio, at least one.
 int whole_number(double ratio);

@@ -84,11 +84,11 @@ std::string fingerprint(const World& world) {
 
 std::string why_no_checkpoints(const World& world, const RunOptions& options) {
   if (options.real_time) return "a run in real time follows the clock and the hand, which cannot be restored";
-  for (const auto& side : ToolInstance::all(world))
-    if (side->handle && !side->handle->can_be_archived())
+  for (const ToolInstance& tool : world.tools)
+    if (!tool.device->can_be_archived())
       return fmt::format(
           "the device \"{}\" is moved from outside this program, and its motion cannot be restored",
-          side->device_spec->type);
+          tool.device_spec.type);
   return {};
 }
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/counters.h"
-#include "palpate/tool/tool.h"
 #include "tool/rigid_block.h"
 #include "tool_instance.h"
 
@@ -69,12 +68,10 @@ EnergyLedger::Dissipation EnergyLedger::dissipation() const {
   const dynamics::StateView view = world_.state.view();
   for (const auto& term : world_.system.terms())
     (term == world_.contact ? out.contact : out.bodies) += term->dissipated_power(view);
-  const auto& sides = ToolInstance::all(world_);
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (!sides[i]->spec) continue;
-    const VirtualCouplingSpec& c = sides[i]->spec->coupling;
+  for (std::size_t i = 0; i < world_.tools.size(); ++i) {
+    const VirtualCouplingSpec& c = world_.tools[i].spec.coupling;
     const Twist tool = world_.tool_twist(i);
-    const Twist& hand = sides[i]->handle_now.twist;
+    const Twist& hand = world_.tools[i].handle.twist;
     out.coupling += c.damping_n_s_m * (hand.linear - tool.linear).squaredNorm() +
                     c.rotational_damping_n_m_s_rad * (hand.angular - tool.angular).squaredNorm();
   }
@@ -90,29 +87,28 @@ void EnergyLedger::take_stored() {
   balance_.other =
       world_.system.potential_energy(view) - balance_.elastic - balance_.contact - other_at_start_;
   balance_.kinetic_of_tools = balance_.coupling = 0.0;
-  const auto& sides = ToolInstance::all(world_);
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (!sides[i]->energy_probe) continue;
-    tool::Tool& exchanged = *sides[i]->energy_probe;
-    exchanged.set_state(world_.state.time(), world_.tool_pose(i), world_.tool_twist(i));
-    const Pose& handle = sides[i]->handle_now.pose;
-    balance_.kinetic_of_tools += exchanged.kinetic_energy();
-    balance_.coupling += exchanged.coupling_energy(handle);
-    if (!sides[i]->tool) continue;  // terms of the System
-    balance_.kinetic += exchanged.kinetic_energy();
-    balance_.other += exchanged.potential_energy(handle);
+  for (std::size_t i = 0; i < world_.tools.size(); ++i) {
+    tool::Tool& probe = probes_[i];
+    probe.set_state(world_.state.time(), world_.tool_pose(i), world_.tool_twist(i));
+    const Pose& handle = world_.tools[i].handle.pose;
+    balance_.kinetic_of_tools += probe.kinetic_energy();
+    balance_.coupling += probe.coupling_energy(handle);
+    if (world_.tools[i].in_state()) continue;  // terms of the System
+    balance_.kinetic += probe.kinetic_energy();
+    balance_.other += probe.potential_energy(handle);
   }
 }
 
-void EnergyLedger::make_tools() {
-  for (const auto& side : ToolInstance::all(world_))
-    if (side->spec) side->energy_probe = side->another_tool(world_.description.gravity_m_s2);
+void EnergyLedger::make_probes() {
+  probes_.clear();
+  for (const ToolInstance& tool : world_.tools)
+    probes_.emplace_back(tool.spec, world_.description.gravity_m_s2);
 }
 
 void EnergyLedger::archive(Archive& a) {
   if (a.is_restoring()) {
-    make_tools();
-    hands_.resize(ToolInstance::all(world_).size());
+    make_probes();
+    hands_.resize(world_.tools.size());
   }
   a("time", balance_.time);
   visit_energies([&](const char* name, double& value) { a(name, value); }, balance_);
@@ -129,21 +125,17 @@ void EnergyLedger::start() {
   const double t = world_.state.time();
   balance_ = {};
   other_at_start_ = 0.0;
-  make_tools();
+  make_probes();
   take_stored();
   other_at_start_ = balance_.other;
   balance_.other = 0.0;
   stored_at_start_ = balance_.stored();
   hands_.clear();
-  for (std::size_t i = 0; i < ToolInstance::all(world_).size(); ++i) {
-    const ToolInstance& side = ToolInstance::of(world_, i);
-    const device::HandleSample& handle = side.handle_now;
-    double power = 0.0;
-    if (side.spec)
-      power = -power_on(tool::coupling_on_hand(*side.spec, {world_.tool_pose(i), world_.tool_twist(i)},
-                                               {handle.pose, handle.twist}),
-                        handle.twist);
-    hands_.emplace_back().start(t, power);
+  for (std::size_t i = 0; i < world_.tools.size(); ++i) {
+    const device::HandleSample& handle = world_.tools[i].handle;
+    const Wrench on_hand = tool::coupling_on_hand(
+        world_.tools[i].spec, {world_.tool_pose(i), world_.tool_twist(i)}, {handle.pose, handle.twist});
+    hands_.emplace_back().start(t, -power_on(on_hand, handle.twist));
   }
   supports_.start(t, world_.system.support_power(world_.state.view()));
   const Dissipation now = dissipation();

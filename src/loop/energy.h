@@ -4,6 +4,7 @@
 #include "palpate/core/archive.h"
 #include "palpate/loop/energy_balance.h"
 #include "palpate/loop/world.h"
+#include "palpate/tool/tool.h"
 
 namespace palpate::loop {
 
@@ -51,12 +52,13 @@ class EnergyLedger {
     double bodies = 0.0, contact = 0.0, coupling = 0.0;
   };
   Dissipation dissipation() const;
-  void make_tools();
+  void make_probes();
   void take_stored();
 
   World& world_;
   EnergyBalance balance_;
   double stored_at_start_ = 0.0, other_at_start_ = 0.0, contact_before_ = 0.0, elastic_before_ = 0.0;
+  std::vector<tool::Tool> probes_;  ///< One per tool, for its energies at the State.
   std::vector<PowerIntegral> hands_;
   PowerIntegral supports_, in_bodies_, in_contact_, in_coupling_;
 };

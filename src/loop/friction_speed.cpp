@@ -38,8 +38,8 @@ void set_friction_speed(World& world, ContactSpec& contact) {
   if (contact.friction == 0.0 || contact.friction_regularisation_m_s > 0.0) return;
   double length = HUGE_VAL;
   for (const std::string& name : {contact.first, contact.second}) {
-    if (const ToolInstance* const side = ToolInstance::named(world, name)) {
-      contact.friction_regularisation_m_s = tool_friction_speed(world, *side->spec);
+    if (const ToolInstance* const tool = world.find_tool(name)) {
+      contact.friction_regularisation_m_s = tool_friction_speed(world, tool->spec);
       return;
     }
     if (const Body* const body = world.find_body(name))

@@ -7,14 +7,13 @@
 
 namespace palpate::loop {
 
-HapticLoop::HapticLoop(const ToolSpec& spec, ToolInstance& side, const std::vector<ContactSpec>* laws)
-    : spec_(spec), side_(side) {
+HapticLoop::HapticLoop(ToolInstance& tool, const std::vector<ContactSpec>* laws)
+    : tool_(tool), ticks_(tool.with_ticks()) {
   if (laws) touch_.emplace(*laws);
 }
 
-HapticLoop::HapticLoop(const scene::Description& description, ToolInstance& side)
-    : HapticLoop(*side.spec, side,
-                 description.exchange.linearisation == "points" ? &description.contacts : nullptr) {}
+HapticLoop::HapticLoop(const scene::Description& description, ToolInstance& tool)
+    : HapticLoop(tool, description.exchange.linearisation == "points" ? &description.contacts : nullptr) {}
 
 HapticLoop::~HapticLoop() {
   try {
@@ -22,7 +21,7 @@ HapticLoop::~HapticLoop() {
   } catch (...) {}  // the device failed, which the run reports
 }
 
-void HapticLoop::start(double t) { side_.handle_now = handle_ = side_.handle->sample(t); }
+void HapticLoop::start(double t) { tool_.handle = handle_ = tool_.device->sample(t); }
 
 void HapticLoop::archive(Archive& a) {
   a("handle", handle_);
@@ -31,7 +30,7 @@ void HapticLoop::archive(Archive& a) {
   if (!touch_) return;
   a("touch", *touch_);
   a("taken_up", active_version_);
-  a("ticks", ticks_);
+  a("ticks", count_);
   a.rows("past", past_, [](auto&& f, Past& past) {
     f(past.time);
     f(past.length);
@@ -49,11 +48,11 @@ void HapticLoop::adopt_model(const ContactRecord& record) {
   active_version_ = record.linear.version;
   touch_->adopt(record.touch);
   const auto past = [&](std::size_t i) -> const Past& { return past_[i % past_.size()]; };
-  std::size_t first = ticks_ - std::min(ticks_, past_.size());
-  while (first < ticks_ && past(first).time - 0.5 * past(first).length < record.touch.time) ++first;
-  const std::size_t stride = (ticks_ - first + kMostStrides - 1) / kMostStrides;
-  for (std::size_t last; first < ticks_; first = last + 1) {
-    last = std::min(first + stride, ticks_) - 1;
+  std::size_t first = count_ - std::min(count_, past_.size());
+  while (first < count_ && past(first).time - 0.5 * past(first).length < record.touch.time) ++first;
+  const std::size_t stride = (count_ - first + kMostStrides - 1) / kMostStrides;
+  for (std::size_t last; first < count_; first = last + 1) {
+    last = std::min(first + stride, count_) - 1;
     double length = 0.0;
     for (std::size_t i = first; i <= last; ++i) length += past(i).length;
     const dynamics::RigidMotion& tool = past(last).tool;
@@ -70,11 +69,11 @@ tool::HandleMotion HapticLoop::handle_motion() const {
 }
 
 void HapticLoop::begin_tick(double t, double h, const ContactRecord& record) {
-  next_ = side_.handle->sample(t);
+  next_ = tool_.device->sample(t);
   of_bodies_ = record.linear;
   if (record.linear.source != dynamics::LinearisedContact::Source::kPoints) return;
   if (record.linear.version != active_version_) adopt_model(record);
-  of_bodies_ = touch_->linearise(t, h, {side_.tool->pose(), side_.tool->twist()});
+  of_bodies_ = touch_->linearise(t, h, {ticks_->tool.pose(), ticks_->tool.twist()});
   of_bodies_.version = record.linear.version;
 }
 
@@ -83,11 +82,11 @@ bool HapticLoop::has_friction() const {
 }
 
 tool::StepEquation HapticLoop::equation(double h, const dynamics::LinearisedContact& contact) const {
-  return side_.tool->step_equation(h, handle_motion(), contact);
+  return ticks_->tool.step_equation(h, handle_motion(), contact);
 }
 
 bool HapticLoop::update_friction(double h, const Vec6& change) {
-  return !has_friction() || touch_->update_friction(side_.tool->after(h, change));
+  return !has_friction() || touch_->update_friction(ticks_->tool.after(h, change));
 }
 
 void HapticLoop::relinearise() {
@@ -99,19 +98,19 @@ void HapticLoop::relinearise() {
 
 dynamics::StepResult HapticLoop::tick(double t, double h, const dynamics::LinearisedContact& contact,
                                       TickRecord& out) {
-  if (!next_) next_ = side_.handle->sample(t);
+  if (!next_) next_ = tool_.device->sample(t);
   const device::HandleSample now = *next_;
-  dynamics::StepResult status = side_.tool->advance(h, handle_motion(), contact);
+  dynamics::StepResult status = ticks_->tool.advance(h, handle_motion(), contact);
   next_.reset();
   if (!status.ok()) return status;
   out = {};
   out.time = t;
   out.length = h;
-  out.tool = side_.tool->pose();
-  out.tool_twist = side_.tool->twist();
+  out.tool = ticks_->tool.pose();
+  out.tool_twist = ticks_->tool.twist();
   out.record_version = contact.version;
   if (touch_) {
-    past_[ticks_++ % past_.size()] = {t, h, {out.tool, out.tool_twist}};
+    past_[count_++ % past_.size()] = {t, h, {out.tool, out.tool_twist}};
     if (contact.source == dynamics::LinearisedContact::Source::kPoints)
       touch_->follow({out.tool, out.tool_twist});
   }
@@ -122,11 +121,16 @@ dynamics::StepResult HapticLoop::tick(double t, double h, const dynamics::Linear
   return status;
 }
 
+bool HapticLoop::hand_in_state() const {
+  const MonolithicTool* const tool = tool_.in_state();
+  return tool && tool->hand;
+}
+
 void HapticLoop::render_force(TickRecord& tick) {
-  if (side_.hand_in_state)
+  if (hand_in_state())
     handle_ = {tick.handle, tick.handle_twist, {}, true, tick.switches};
   else
-    handle_ = side_.handle->sample(tick.time);
+    handle_ = tool_.device->sample(tick.time);
   send_wrench(tick);
 }
 
@@ -135,26 +139,27 @@ void HapticLoop::send_wrench(TickRecord& tick) {
   tick.handle_twist = handle_.twist;
   tick.handle_valid = handle_.valid;
   tick.switches = handle_.switches;
-  tick.requested = tool::coupling_on_hand(spec_, {tick.tool, tick.tool_twist}, {handle_.pose, handle_.twist});
-  side_.motors.advance(tick.time);
-  tick.motors = side_.motors.mean();
+  tick.requested =
+      tool::coupling_on_hand(tool_.spec, {tick.tool, tick.tool_twist}, {handle_.pose, handle_.twist});
+  tool_.motors.advance(tick.time);
+  tick.motors = tool_.motors.mean();
   tick.ramps_in = std::exchange(ramps_in_, false);
-  if (tick.ramps_in) side_.limiter->restart();
-  const long limited_before = side_.limiter->limited_ticks();
-  tick.device = side_.limiter->limit(tick.time, tick.requested, handle_.valid);
-  tick.limited = side_.limiter->limited_ticks() > limited_before;
-  if (side_.passivity)
-    tick.device = side_.passivity->apply(tick.time, tick.handle, side_.motors, tick.device, handle_.valid);
-  side_.motors.send(tick.time, tick.device);
+  if (tick.ramps_in) tool_.limiter.restart();
+  const long limited_before = tool_.limiter.limited_ticks();
+  tick.device = tool_.limiter.limit(tick.time, tick.requested, handle_.valid);
+  tick.limited = tool_.limiter.limited_ticks() > limited_before;
+  if (tool_.passivity)
+    tick.device = tool_.passivity->apply(tick.time, tick.handle, tool_.motors, tick.device, handle_.valid);
+  tool_.motors.send(tick.time, tick.device);
   live_ = true;
   time_ = tick.time;
-  if (!side_.hand_in_state) side_.handle->feedback(tick.time, tick.device);
+  if (!hand_in_state()) tool_.device->feedback(tick.time, tick.device);
 }
 
 void HapticLoop::end() {
   if (!live_) return;
   live_ = false;
-  side_.handle->feedback(time_, {});
+  tool_.device->feedback(time_, {});
 }
 
 }  // namespace palpate::loop

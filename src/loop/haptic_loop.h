@@ -3,7 +3,8 @@
 #include <optional>
 
 #include "loop/contact_record.h"
-#include "palpate/loop/run.h"
+#include "palpate/loop/observer.h"
+#include "palpate/scene/description.h"
 #include "tool_instance.h"
 
 namespace palpate::loop {
@@ -13,11 +14,11 @@ namespace palpate::loop {
 /// that it may run in a separate thread.
 class HapticLoop {
  public:
-  /// @param side  its tool, device and limiter are used by this object alone during a run
+  /// @param tool  its TickTool::tool, device and limiter are used by this object alone during a run
   /// @param laws  contact laws for contact points; null: records have no points
-  HapticLoop(const ToolSpec& spec, ToolInstance& side, const std::vector<ContactSpec>* laws = nullptr);
+  explicit HapticLoop(ToolInstance& tool, const std::vector<ContactSpec>* laws = nullptr);
   /// Builds the tick side of a scene's tool.
-  HapticLoop(const scene::Description& description, ToolInstance& side);
+  HapticLoop(const scene::Description& description, ToolInstance& tool);
   /// Sets the wrench on the hand to zero, however the run ended.
   ~HapticLoop();
   HapticLoop(const HapticLoop&) = delete;
@@ -38,7 +39,8 @@ class HapticLoop {
   bool update_friction(double h, const Vec6& change);
   /// Linearises contact with bodies with the updated friction.
   void relinearise();
-  const ToolInstance& side() const { return side_; }
+  /// Returns the tool. @pre it has ticks
+  const TickTool& ticks() const { return *ticks_; }
   /// Makes the wrench of the next tick ramp in from zero, after too long a gap without a wrench.
   void ramp_in() { ramps_in_ = true; }
   /// Advances the tool by h to t under coupling and that contact, and sends the wrench to the device.
@@ -54,6 +56,7 @@ class HapticLoop {
 
  private:
   tool::HandleMotion handle_motion() const;
+  bool hand_in_state() const;
   /// Computes and sends the wrench for the current handle sample.
   void send_wrench(TickRecord& tick);
 
@@ -66,8 +69,8 @@ class HapticLoop {
   /// tool's path since then.
   void adopt_model(const ContactRecord& record);
 
-  const ToolSpec& spec_;
-  ToolInstance& side_;
+  ToolInstance& tool_;
+  TickTool* const ticks_;  ///< Its part with ticks; null for the monolithic scheme.
   device::HandleSample handle_;
   std::optional<device::HandleSample> next_;             ///< Sample of the current tick.
   dynamics::LinearisedContact of_bodies_;                ///< In the current tick.
@@ -77,7 +80,7 @@ class HapticLoop {
   std::optional<contact::ReducedContactStepper> touch_;  ///< Only if records have points.
   std::uint64_t active_version_ = 0;                     ///< Version of the record in `touch_`
   std::array<Past, 256> past_{};  ///< Ring buffer; bounds the latency of a record in ticks.
-  std::size_t ticks_ = 0;
+  std::size_t count_ = 0;         ///< Number of ticks.
 };
 
 }  // namespace palpate::loop

@@ -7,8 +7,8 @@ namespace palpate::loop {
 void HapticMemory::period(World& world, double t) {
   if (t > 0.0) return;
   records_.clear();
-  for (const auto& side : ToolInstance::all(world)) {
-    const device::HandleSample& handle = side->handle_now;
+  for (const ToolInstance& tool : world.tools) {
+    const device::HandleSample& handle = tool.handle;
     TickRecord& start = records_.emplace_back().start;
     start.handle = handle.pose;
     start.handle_twist = handle.twist;

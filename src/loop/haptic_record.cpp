@@ -218,13 +218,13 @@ store::TableFile::Journal HapticRecorder::place() { return impl_->file.place(); 
 
 void HapticRecorder::period(World& world, double t) {
   if (t == 0.0) {
-    const ToolInstance& side = ToolInstance::of(world, impl_->hand);
+    const ToolInstance& tool = world.tools.at(impl_->hand);
     StartRow start;
-    start.tick.handle = side.handle_now.pose;
-    start.tick.handle_twist = side.handle_now.twist;
-    start.tick.handle_valid = side.handle_now.valid;
-    start.tick.switches = side.handle_now.switches;
-    if (side.passivity) start.passivity = side.passivity->mode();
+    start.tick.handle = tool.handle.pose;
+    start.tick.handle_twist = tool.handle.twist;
+    start.tick.handle_valid = tool.handle.valid;
+    start.tick.switches = tool.handle.switches;
+    if (tool.passivity) start.passivity = tool.passivity->mode();
     flatten(kVisitStart, start, impl_->row);
     impl_->file.append(kStart, impl_->row);
   }

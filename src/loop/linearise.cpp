@@ -1,233 +1,54 @@
 #include "linearise.h"
 
 #include "core/counters.h"
-#include "core/finite.h"
-#include "flat_pose.h"
-#include "palpate/contact/contact_force.h"
-#include "palpate/core/error.h"
-#include "palpate/integrate/integrators.h"
-#include "palpate/linear/solvers.h"
-#include "palpate/tool/tool.h"
-#include "reduced_step.h"
+#include "coupling/condensation.h"
+#include "tool_instance.h"
 
 namespace palpate::loop {
-
 namespace {
 
-using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-
-// Wrench of the contact on the tool after a time H, with the bodies advanced by one linearly implicit Euler
-// step from (x0, u0), while the tool is displaced by dx and its twist changes by dv. Indices: n all nodes, f
-// free, t tool; c = -df/d(tool), -dF/d(node) from ContactForce::linearise; M, D, K include the contact.
-// Driven nodes move to x(t0 + H), v(t0 + H), carried nodes with their bone (rows and columns are reduced to
-// the bone by System). s and w are the prescribed displacements and velocity changes,
-//     s = H u0 on free directions,  x(t0 + H) - x0 on driven ones,
-//     w = 0    on free directions,  v(t0 + H) - u0 on driven ones.
-// With u1 = u0 + w + du, du = 0 on driven directions, the nodes end at x0 + s + H du, and the force there is,
-// to first order,
-//     f1 = f_n - K_nn (s + H du) - D_nn (w + du) - K_nt dx - B_nt dv.
-// M (u1 - u0) = H f1 on free directions is
-//     A du = H (f_n - K_nn s - D_nn w) - M w - H (K_nt dx + B_nt dv),      A = M + H D + H^2 K,
-// and the wrench on the tool, linearised about the same state, is
-//     F = F_t - K_tt dx - B_tt dv - K_tn (s + H du) - B_tn (w + du)
-//       = [F_t - K_tn s - B_tn w - C g] + J dx + B dv,
-//     C = H K_tn + B_tn,  A g = H (f_n - K_nn s - D_nn w) - M w,
-//     J = -K_tt + H C A^-1 K_nt,  B = -B_tt + H C A^-1 B_nt,
-// the Schur complement of the step matrix for the tool. One part of K_tt is geometric and depends on the
-// contact force, not on its stiffness: the rotation of its lever arms. It is computed from the forces after
-// the step, at x0 + s + H g, u0 + w + g. To first order this makes no difference, but it does if the forces
-// are far from balance: an overlap that arose undetected may press with 1e4 N now and with 0.1 N after the
-// step, and a tool that rotates under the former would spin up without bound.
-//
-// H -> 0 gives `frozen`, H -> infinity the quasi-static response K_tt - K_tn K^-1 K_nt. (Forces that depend
-// on time alone are evaluated at t0.)
-struct Answer {
-  Vec6 wrench;  ///< [F_t - K_tn s - B_tn w - C g]
-  Mat6 J, B;
-};
-
-/// Returns q0 moved by a displacement along u-directions.
-VecX moved(const World& world, const VecX& displacement) {
-  VecX rate(world.state.q().size());
-  dynamics::q_dot(world.state.layout(), world.state.q().data(), displacement.data(), rate.data());
-  VecX q = world.state.q() + rate;
-  dynamics::project(world.state.layout(), q.data());
-  return q;
-}
-
-}  // namespace
-
-void known_motion(World& world, double H, VecX& s, VecX& w) {
-  const VecX q0 = world.state.q(), u0 = world.state.u();
-  VecX q = moved(world, H * u0), u = u0;
-  s = H * u0;
-  w = VecX::Zero(u0.size());
-  world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
-  for (int dof : world.system.driven_dofs()) {
-    s[dof] = q[dof] - q0[dof];
-    w[dof] = u[dof] - u0[dof];
-  }
-}
-
-// Another tool continues with its twist v, and the implicit step uses its position at the end, H later:
-//     f1 = ... - K_no H v,     so that H f gains H^2 rate with rate = -K_no v.
-VecX rate_by_other_tools(const World& world, const ToolInstance& mine) {
-  VecX rate;
-  for (const auto& other : ToolInstance::all(world)) {
-    if (other.get() == &mine || other->frame_index < 0) continue;
-    contact::FrameLinearisation c;
-    world.contact->linearise(world.state.view(), other->frame_index, c, contact::Partners::kNodes);
-    if (c.active == 0) continue;
-    Vec6 v;
-    v << other->exchanged.twist.angular, other->exchanged.twist.linear;
-    if (rate.size() == 0) rate = VecX::Zero(world.state.layout().u_size);
-    rate.head(c.K_body.rows()) -= c.K_body * v;
-  }
-  return rate;
-}
-
-VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w, const VecX& rate) {
-  const dynamics::StateView view = world.state.view();
-  VecX f, inertia, stiff = VecX::Zero(s.size());
-  world.system.force(view, f);
-  if (rate.size() > 0) f += H * rate;
-  for (const auto& term : world.system.terms()) {
-    if (!term->traits().has_tangent) continue;
-    term->apply_tangent(view, 1.0, 0.0, s, stiff);
-    term->apply_tangent(view, 0.0, 1.0, w, stiff);
-  }
-  world.system.apply_mass(view, w, inertia);
-  VecX r = H * (f - stiff) - inertia;
-  world.system.reduce(view, r);
-  stiff.setZero();
-  world.system.apply_carried_stiffness(view, s, stiff);
-  return r - H * stiff;
-}
-
-dynamics::LinearSolver* factored(const dynamics::System& system, ToolInstance& side) {
-  if (!side.condenser) {
-    counters::count("loop.condenser");
-    side.condenser = linear::make_linear_solver(system.symmetric() ? "cholmod" : "umfpack");
-  }
-  const dynamics::SolveStatus status = side.condenser->factor(side.condensed_matrix);
-  if (status == dynamics::SolveStatus::kOk) return side.condenser.get();
-  if (status != dynamics::SolveStatus::kIndefinite) return nullptr;
-  counters::count("loop.condensed_by_lu");
-  if (!side.condenser_lu) side.condenser_lu = linear::make_linear_solver("umfpack");
-  return side.condenser_lu->factor(side.condensed_matrix) == dynamics::SolveStatus::kOk
-             ? side.condenser_lu.get()
-             : nullptr;
-}
-
-namespace {
-
-/// Computes the response after a time H. Returns false if the step matrix has no factor.
-bool answer_after(World& world, ToolInstance& side, double H, const contact::FrameLinearisation& c,
-                  Answer& out) {
-  world.system.step_matrix(world.state.view(), 1.0, H, H * H, side.condensed_matrix);
-  dynamics::LinearSolver* solver = factored(world.system, side);
-  if (!solver) return false;
-  VecX s, w;
-  known_motion(world, H, s, w);
-  const Eigen::Index n = c.K_body.rows();
-  MatX rhs = MatX::Zero(world.state.layout().u_size, 13);
-  rhs.topLeftCorner(n, 6) = c.K_body;
-  rhs.block(0, 6, n, 6) = c.B_body;
-  rhs.col(12) = right_hand_side(world, H, s, w, rate_by_other_tools(world, side));
-  VecX column;
-  for (Eigen::Index i = 0; i < 12; ++i) {
-    column = rhs.col(i);
-    world.system.reduce(world.state.view(), column);
-    rhs.col(i) = column;
-  }
-  MatX solved(rhs.rows(), rhs.cols());
-  if (solver->solve(rhs, solved) != dynamics::SolveStatus::kOk || !all_finite(solved)) return false;
-  for (Eigen::Index i = 0; i < solved.cols(); ++i) {
-    column = solved.col(i);
-    world.system.expand(world.state.view(), column);
-    solved.col(i) = column;
-  }
-  const MatX C = H * c.K_frame + c.B_frame;
-  out.J = -c.K + H * C * solved.topLeftCorner(n, 6);
-  out.B = -c.B + H * C * solved.block(0, 6, n, 6);
-  const VecX g = solved.col(12);
-  out.wrench << c.wrench.moment, c.wrench.force;
-  out.wrench -= c.K_frame * s.head(n) + c.B_frame * w.head(n) + C * g.head(n);
-
-  VecX q = moved(world, s + H * g), u = world.state.u() + w + g;
-  world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
-  contact::FrameLinearisation after;
-  world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()), side.frame_index, after,
-                           contact::Partners::kNodes);
-  out.J.topLeftCorner<3, 3>() += after.geometric - c.geometric;
-  return true;
-}
-
-// The wrench on the tool over the period has two parts. While the tool continues with its velocity v0, the
-// wrench is linear in time, through the results of one implicit step after one tick and after the period; J
-// and B of the period give the response to any deviation from that motion. After a time s (tick or period)
-// the first part is w(s) + s J(s) v0:
-//     line(s) = W0 + s S,
-//     F = line + J (dx - s v0) + B (v - v0) = W0 + s (S - J v0) + J dx + B (v - v0).
-// A contact whose nodes respond within a tick is stiffer over a tick than over the period, which matters most
-// along the motion of the tool: with J of the period for all of dx, the error did not decrease between
-// periods of 5 and 2.5 ms. A stiff contact that the last period has left out of balance is relaxed within the
-// first tick, as in the implicit step of the bodies; a line that began at the present wrench would press with
-// it for half the period. Without stiffness, the line begins at the present wrench to O(tick^2).
-bool condense(World& world, ToolInstance& side, double period, const contact::FrameLinearisation& c,
-              dynamics::LinearisedContact& record) {
-  const double tick = side.spec->tick_s;
-  Answer last, first;
-  if (!answer_after(world, side, period, c, last)) return false;
-  Vec6 F0 = last.wrench, F1 = Vec6::Zero();
-  if (tick < period * (1.0 - 1e-9)) {
-    if (!answer_after(world, side, tick, c, first)) return false;
-    const Twist twist = side.exchanged.twist;
-    Vec6 v0;
-    v0 << twist.angular, twist.linear;
-    const Vec6 after_tick = first.wrench + tick * (first.J * v0),
-               after_period = last.wrench + period * (last.J * v0);
-    const Vec6 slope = (after_period - after_tick) / (period - tick);
-    F0 = after_tick - tick * slope;
-    F1 = slope - last.J * v0;
-  }
-  Eigen::Map<Vec6>(record.F0.data()) = F0;
-  Eigen::Map<Vec6>(record.F1.data()) = F1;
-  Eigen::Map<RowMajor6>(record.J.data()) = last.J;
-  Eigen::Map<RowMajor6>(record.B.data()) = last.B;
-  record.source = dynamics::LinearisedContact::Source::kCondensed;
-  return true;
+CoupledTool coupled_tool(World& world, const ToolInstance& tool, const contact::TrajectoryFrame::Knot& now) {
+  CoupledTool out{world.system, world.state, *world.contact, tool.frame, {now.pose, now.twist}};
+  for (const ToolInstance& other : world.tools)
+    if (&other != &tool && other.frame >= 0)
+      out.others.push_back({other.frame, other.with_ticks()->path->last().twist});
+  return out;
 }
 
 }  // namespace
 
 ContactRecord linearise_contact(World& world, std::uint64_t version, double period_s, long& frozen_fallbacks,
                                 std::size_t hand) {
+  using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  using Source = dynamics::LinearisedContact::Source;
   counters::count("loop.exchange_record");
-  ToolInstance& side = ToolInstance::of(world, hand);
+  ToolInstance& tool = world.tools.at(hand);
+  TickTool& ticks = *tool.with_ticks();
   ContactRecord out;
   dynamics::LinearisedContact& record = out.linear;
   record.version = version;
   record.time = world.state.time();
-  if (!side.trajectory) return out;
-  const Twist v0 = side.exchanged.twist;
-  record.x0 = flat(side.exchanged.pose);
-  Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
-  if (side.touch) {
-    frozen_fallbacks += !side.touch->reduce(world, side, period_s, out.touch);
-    record.source = dynamics::LinearisedContact::Source::kPoints;
+  if (tool.frame < 0) return out;
+  const contact::TrajectoryFrame::Knot& now = ticks.path->last();
+  set_reference(record, record.time, now.pose, now.twist);
+  const CoupledTool coupled = coupled_tool(world, tool, now);
+  if (ticks.reduction) {
+    frozen_fallbacks += !ticks.reduction->reduce(coupled, period_s, out.touch);
+    record.source = Source::kPoints;
     record.samples = out.touch.samples;
     return out;
   }
   contact::FrameLinearisation c;
-  world.contact->linearise(world.state.view(), side.frame_index, c, contact::Partners::kNodes);
+  world.contact->linearise(world.state.view(), tool.frame, c, contact::Partners::kNodes);
   record.samples = c.active;
   Eigen::Map<Vec6>(record.F0.data()) << c.wrench.moment, c.wrench.force;
   Eigen::Map<RowMajor6>(record.J.data()) = -c.K;
   Eigen::Map<RowMajor6>(record.B.data()) = -c.B;
-  record.source = dynamics::LinearisedContact::Source::kFrozen;
+  record.source = Source::kFrozen;
   const bool condensed = world.description.exchange.linearisation == "condensed";
-  if (condensed && c.active > 0 && !condense(world, side, period_s, c, record)) ++frozen_fallbacks;
+  if (condensed && c.active > 0 &&
+      !condense(coupled, ticks.step_factor, period_s, tool.spec.tick_s, c, record))
+    ++frozen_fallbacks;
   return out;
 }
 

@@ -10,21 +10,20 @@ namespace {
 /// numbers.
 constexpr double kSameTick = 1e-6;
 
-TickRecord tick_of(const World& world, const ToolInstance& side, double t, const dynamics::StateView& state) {
-  const dynamics::Block& block = *state.layout->find(side.block_id);
-  const auto q = state.q.segment<7>(block.q_offset);
-  const auto u = state.u.segment<6>(block.u_offset);
+TickRecord tick_of(const World& world, const ToolInstance& tool, double t, const dynamics::StateView& state) {
+  const MonolithicTool& in_state = *tool.in_state();
+  const dynamics::RigidMotion motion = in_state.motion(state);
   TickRecord tick;
   tick.time = t;
-  tick.tool = {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
-  tick.tool_twist = {u.head<3>(), u.tail<3>()};
-  if (const auto& hand = side.hand_in_state) {
-    const tool::HandleState handle = tool::hand_motion(state, hand->block_id, hand->hand);
+  tick.tool = motion.pose;
+  tick.tool_twist = motion.twist;
+  if (const auto& hand = in_state.hand) {
+    const tool::HandleState handle = tool::hand_motion(state, hand->block_id, hand->block);
     tick.handle = handle.pose;
     tick.handle_twist = handle.twist;
     tick.switches = hand->model.requested(t).switches;
   }
-  if (side.frame_index >= 0) tick.contact = world.contact->frame_wrench(state, side.frame_index);
+  if (tool.frame >= 0) tick.contact = world.contact->frame_wrench(state, tool.frame);
   return tick;
 }
 
@@ -67,8 +66,7 @@ void MonolithicTicks::stepped(const dynamics::Stepper& stepper, double t0, doubl
 
 void MonolithicTicks::emit_at(double t, const dynamics::StateView& state) {
   ++count_;
-  for (std::size_t i = 0; i < ToolInstance::all(world_).size(); ++i)
-    emit_(i, tick_of(world_, ToolInstance::of(world_, i), t, state));
+  for (std::size_t i = 0; i < world_.tools.size(); ++i) emit_(i, tick_of(world_, world_.tools[i], t, state));
 }
 
 }  // namespace palpate::loop

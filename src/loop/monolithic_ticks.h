@@ -1,7 +1,8 @@
 #pragma once
 #include <functional>
 
-#include "palpate/loop/run.h"
+#include "palpate/loop/observer.h"
+#include "palpate/loop/world.h"
 
 namespace palpate::loop {
 

@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/device/device.h"
+#include "palpate/device/workspace.h"
 #include "palpate/loop/world.h"
 
 namespace palpate::loop {

@@ -6,10 +6,8 @@
 #include <sys/mman.h>
 #include <time.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 
 namespace palpate::loop {
@@ -82,14 +80,5 @@ void claim_real_time(RealTimeResult& out) {
 }
 
 void release_memory() { munlockall(); }
-
-double quantile(std::vector<float> values, double q) {
-  if (values.empty()) return 0.0;
-  const double rank = std::ceil(q * static_cast<double>(values.size())) - 1.0;
-  const auto at = values.begin() +
-                  std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank), 0, std::ssize(values) - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 }  // namespace palpate::loop

@@ -8,6 +8,8 @@
 #include "palpate/contact/obstacle.h"
 #include "palpate/device/device.h"
 #include "palpate/device/motions.h"
+#include "palpate/device/profile.h"
+#include "palpate/device/registry.h"
 #include "palpate/fem/laws.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/mesh/generators.h"

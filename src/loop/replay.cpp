@@ -9,6 +9,7 @@
 #include "device/monotone_slope.h"
 #include "loop/contact_record.h"
 #include "palpate/core/error.h"
+#include "palpate/device/registry.h"
 #include "palpate/dynamics/path.h"
 #include "palpate/scene/hands.h"
 #include "tick_group.h"
@@ -142,6 +143,13 @@ std::unique_ptr<device::Device> recorded_hand(HapticRecord record) {
   return std::make_unique<RecordedHand>(std::move(record));
 }
 
+bool all_paths_known(const World& world) {
+  const std::vector<scene::Hand> hands = scene::hands_of(world.description);
+  return std::all_of(hands.begin(), hands.end(), [&](const scene::Hand& hand) {
+    return static_cast<bool>(device::make_device(*hand.device, world.folder)->path());
+  });
+}
+
 std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<HapticRecord>& records) {
   std::vector<std::unique_ptr<device::Device>> out;
   for (const HapticRecord& record : records) out.push_back(recorded_hand(record));
@@ -152,11 +160,11 @@ namespace {
 
 /// Hand that repeats its recorded motion.
 struct Retraced {
-  Retraced(const scene::Description& recorded, const World& world, const HapticRecord& of, ToolInstance& side)
+  Retraced(const scene::Description& recorded, const World& world, const HapticRecord& of, ToolInstance& tool)
       : record(of),
-        laws(laws_of(recorded, world, *side.spec)),
-        ticks(*side.spec, side, of.models.empty() ? nullptr : &laws) {
-    side.passivity = device::make_passivity_controller(of.passivity, *side.device_spec, side.spec->tick_s);
+        laws(laws_of(recorded, world, tool.spec)),
+        ticks(tool, of.models.empty() ? nullptr : &laws) {
+    tool.passivity = device::make_passivity_controller(of.passivity, tool.device_spec, tool.spec.tick_s);
   }
   static std::vector<ContactSpec> laws_of(const scene::Description& recorded, const World& world,
                                           const ToolSpec& tool) {
@@ -204,7 +212,7 @@ std::vector<TickRecord> retrace(const scene::Description& description,
   const auto world = assemble(alone, std::move(devices));
   std::deque<Retraced> retraced;
   for (std::size_t i = 0; i < hands.size(); ++i) {
-    retraced.emplace_back(description, *world, records[hands[i]], ToolInstance::of(*world, i));
+    retraced.emplace_back(description, *world, records[hands[i]], world->tools[i]);
     retraced.back().ticks.start(0.0);
   }
   std::vector<TickGroup> group = TickGroup::all(retraced);

@@ -16,6 +16,9 @@ std::unique_ptr<device::Device> recorded_hand(HapticRecord record);
 /// Returns one such device per hand.
 std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<HapticRecord>& records);
 
+/// Returns whether the scene's devices all have a path that is known in advance (device::Device::path).
+bool all_paths_known(const World& world);
+
 /// Recomputes the ticks of a hand's record, each from its recorded input and contact record. No body is
 /// simulated, and of the other hands only those whose tools meet this hand's tool. Ticks of a run in real
 /// time are reproduced bitwise in virtual time.

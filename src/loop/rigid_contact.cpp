@@ -9,14 +9,14 @@
 
 namespace palpate::loop {
 
-std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolInstance& side) {
-  if (side.motion) return side.motion;
-  if (world.monolithic())
-    side.motion = contact::block_frame(side.block_id);
+std::shared_ptr<contact::MovingFrame> frame_in_contact(World& world, ToolInstance& tool) {
+  std::shared_ptr<contact::MovingFrame> frame;
+  if (const TickTool* ticks = tool.with_ticks())
+    frame = ticks->path;
   else
-    side.motion = side.trajectory = std::make_shared<contact::TrajectoryFrame>();
-  side.frame_index = world.contact->add_frame(side.motion);
-  return side.motion;
+    frame = contact::block_frame(tool.in_state()->block_id);
+  if (tool.frame < 0) tool.frame = world.contact->add_frame(frame);
+  return frame;
 }
 
 namespace {
@@ -97,21 +97,22 @@ std::unique_ptr<contact::SampleSource> tool_on_tool(const World& world, const Ri
 /// @param make  make(tools in order, contact)
 template <class Make>
 std::unique_ptr<contact::SampleSource> make_for_ticks_and_world(World& world,
-                                                                const std::vector<ToolInstance*>& sides,
+                                                                const std::vector<ToolInstance*>& meeting,
                                                                 const ContactSpec& spec, const Make& make) {
   std::vector<RigidSide> in_ticks, in_world;
   const scene::CosimulationSpec& exchange = world.description.exchange;
-  for (ToolInstance* side : sides) {
-    const auto motion = tool_motion(world, *side);
-    const double look_ahead = side->trajectory ? exchange.exchange_period_s : exchange.contact_refresh_s;
-    in_world.push_back({*side->spec, side->frame_index, motion, look_ahead});
-    if (!side->trajectory) continue;
-    const int number = side->number_in_rigid;
-    in_ticks.push_back(
-        {*side->spec, side->rigid->frame(number), side->rigid->motion(number), side->rigid->look_ahead()});
+  for (ToolInstance* tool : meeting) {
+    const auto motion = frame_in_contact(world, *tool);
+    const TickTool* ticks = tool->with_ticks();
+    const double look_ahead = ticks ? exchange.exchange_period_s : exchange.contact_refresh_s;
+    in_world.push_back({tool->spec, tool->frame, motion, look_ahead});
+    if (!ticks) continue;
+    const RigidContactSolver& solver = *ticks->rigid_contact;
+    const int number = ticks->number_in_rigid_contact;
+    in_ticks.push_back({tool->spec, solver.frame(number), solver.motion(number), solver.look_ahead()});
   }
   if (!in_ticks.empty()) {
-    contact::ContactForce& own = sides.front()->rigid->contact();
+    contact::ContactForce& own = meeting.front()->with_ticks()->rigid_contact->contact();
     own.add_pair(make(in_ticks, own), spec);
   }
   return make(in_world, *world.contact);
@@ -126,8 +127,8 @@ const ObstacleSpec* obstacle_named(const World& world, const std::string& name) 
 }  // namespace
 
 std::unique_ptr<contact::SampleSource> rigid_source(World& world, const ContactSpec& spec) {
-  ToolInstance *const first = ToolInstance::named(world, spec.first), *const second = ToolInstance::named(
-                                                                          world, spec.second);
+  ToolInstance* const first = world.find_tool(spec.first);
+  ToolInstance* const second = world.find_tool(spec.second);
   const ObstacleSpec* const obstacle = obstacle_named(world, spec.second);
   if (first && obstacle)
     return make_for_ticks_and_world(world, {first}, spec,
@@ -146,28 +147,29 @@ void make_rigid_contact_solver(World& world) {
   if (world.monolithic()) return;
   const std::vector<std::size_t> first = scene::connected_tools(d);
   for (std::size_t i = 0; i < first.size(); ++i) {
-    ToolInstance& side = ToolInstance::of(world, i);
+    ToolInstance& tool = world.tools[i];
     const bool meets = std::any_of(d.contacts.begin(), d.contacts.end(), [&](const ContactSpec& contact) {
       const auto with = [&](const std::string& name) {
-        return obstacle_named(world, name) || ToolInstance::named(world, name);
+        return obstacle_named(world, name) || world.find_tool(name);
       };
-      return (contact.first == side.name && with(contact.second)) ||
-             (contact.second == side.name && with(contact.first));
+      return (contact.first == tool.name && with(contact.second)) ||
+             (contact.second == tool.name && with(contact.first));
     });
     if (!meets) continue;
-    const ToolInstance& leader = ToolInstance::of(world, first[i]);
-    if (side.spec->tick_s != leader.spec->tick_s)
+    const ToolInstance& leader = world.tools[first[i]];
+    if (tool.spec.tick_s != leader.spec.tick_s)
       at_place(world, scene::hands_of(d)[i].tool_key + ".tick_s", "", [&] {
         fail(
             "tools that can touch each other must have the same ticks, but the tool of \"{}\" has tick_s = "
             "{}, that of \"{}\" {}; make them equal",
-            side.name, side.spec->tick_s, leader.name, leader.spec->tick_s);
+            tool.name, tool.spec.tick_s, leader.name, leader.spec.tick_s);
       });
-    side.rigid =
-        leader.rigid
-            ? leader.rigid
-            : std::make_shared<RigidContactSolver>(std::max(d.exchange.contact_refresh_s, side.spec->tick_s));
-    side.number_in_rigid = side.rigid->add(*side.spec);
+    TickTool& ticks = *tool.with_ticks();
+    ticks.rigid_contact = leader.with_ticks()->rigid_contact;
+    if (!ticks.rigid_contact)
+      ticks.rigid_contact =
+          std::make_shared<RigidContactSolver>(std::max(d.exchange.contact_refresh_s, tool.spec.tick_s));
+    ticks.number_in_rigid_contact = ticks.rigid_contact->add(tool.spec);
   }
 }
 

@@ -13,7 +13,8 @@ struct ToolInstance;
 void make_rigid_contact_solver(World& world);
 
 /// Returns the frame of a tool in contact: its block of the State, or its motion over one exchange period.
-std::shared_ptr<contact::MovingFrame> tool_motion(World& world, ToolInstance& side);
+/// The first call adds it to the World's contact.
+std::shared_ptr<contact::MovingFrame> frame_in_contact(World& world, ToolInstance& tool);
 
 /// Returns contact of a tool with an obstacle or another tool; null for other pairs. Ticks use a separate
 /// contact in the RigidContactSolver; the returned one, on the bodies' side, follows the paths of the tools

@@ -9,7 +9,6 @@
 #include "contact/sources.h"
 #include "core/clock.h"
 #include "core/counters.h"
-#include "model_reduction.h"
 #include "palpate/device/profile.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
@@ -269,16 +268,17 @@ double depth_within_itself(const Body& body) {
 }  // namespace
 
 std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand) {
-  const ToolInstance& side = ToolInstance::of(world, hand);
-  return side.handle ? side.handle->counters() : std::vector<std::pair<std::string, long long>>{};
+  if (hand >= world.tools.size()) return {};
+  return world.tools[hand].device->counters();
 }
 
 std::vector<AnswerError> answer_errors_of(const World& world) {
   std::vector<AnswerError> out;
-  for (const auto& side : ToolInstance::all(world)) {
-    if (!side->touch || side->touch->error_bound().exchanges == 0) continue;
-    const ReductionError& m = side->touch->error_bound();
-    out.push_back({side->name, world.description.exchange.linearisation_error, m.largest,
+  for (const ToolInstance& tool : world.tools) {
+    const TickTool* ticks = tool.with_ticks();
+    if (!ticks || !ticks->reduction || ticks->reduction->error_bound().exchanges == 0) continue;
+    const ReductionError& m = ticks->reduction->error_bound();
+    out.push_back({tool.name, world.description.exchange.linearisation_error, m.largest,
                    m.sum / static_cast<double>(m.exchanges), m.exchanges, m.beyond_wanted, m.factored});
   }
   return out;

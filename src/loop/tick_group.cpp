@@ -7,16 +7,16 @@ namespace palpate::loop {
 
 TickGroup::TickGroup(std::vector<Member> members)
     : members_(std::move(members)),
-      rigid_(members_.front().ticks->side().rigid.get()),
+      rigid_(members_.front().ticks->ticks().rigid_contact.get()),
       found_(members_.size()),
       equations_(members_.size()) {}
 
 std::vector<TickGroup> TickGroup::of(const std::vector<Member>& all) {
   std::vector<std::vector<Member>> sets;
   for (const Member& member : all) {
-    const auto& rigid = member.ticks->side().rigid;
+    const auto& rigid = member.ticks->ticks().rigid_contact;
     const auto set = std::find_if(sets.begin(), sets.end(), [&](const auto& others) {
-      return rigid && others.front().ticks->side().rigid == rigid;
+      return rigid && others.front().ticks->ticks().rigid_contact == rigid;
     });
     (set == sets.end() ? sets.emplace_back() : *set).push_back(member);
   }
@@ -33,10 +33,10 @@ void TickGroup::find(double h) {
   motions_.clear();
   for (const Member& member : members_) {
     has_friction = has_friction || member.ticks->has_friction();
-    const tool::Tool& tool = *member.ticks->side().tool;
+    const tool::Tool& tool = member.ticks->ticks().tool;
     motions_.push_back({tool.pose(), tool.twist()});
   }
-  if (rigid_) rigid_->begin_tick(members_.front().ticks->side().tool->time(), motions_);
+  if (rigid_) rigid_->begin_tick(members_.front().ticks->ticks().tool.time(), motions_);
   const bool touches = rigid_ && rigid_->touches();
   if (has_friction || (touches && (rigid_->has_friction() || members_.size() > 1)))
     while (!solve_and_improve(h)) {

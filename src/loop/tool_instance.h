@@ -1,103 +1,90 @@
 #pragma once
+#include <memory>
 #include <optional>
+#include <string>
+#include <variant>
+#include <vector>
 
+#include "coupling/model_reduction.h"
+#include "coupling/rigid_contact_solver.h"
 #include "device/hand_model.h"
-#include "model_reduction.h"
+#include "palpate/contact/contact_force.h"
 #include "palpate/device/limiter.h"
 #include "palpate/device/motors.h"
 #include "palpate/device/passivity.h"
-#include "palpate/loop/world.h"
-#include "palpate/scene/hands.h"
 #include "palpate/tool/tool.h"
-#include "proxy/proxy_set.h"
-#include "rigid_contact_solver.h"
 #include "tool/hand_block.h"
 
+// Poses of a tool. Each is stored once:
+//
+//   ToolSpec::position_m      at the start of the simulation
+//   TickTool::tool.pose()     after the last tick, which only the thread of the ticks reads
+//   TickTool::path            at the ticks since the last exchange, as reported to the bodies; the last one
+//   is
+//                             World::tool_pose() and, until the next ticks, the pose of the next exchange
+//   MonolithicTool::block_id  in the State, at the State's time: World::tool_pose() of the monolithic scheme
+//   TickRecord::tool          at the end of one tick, in transit from the ticks to path and files
+//   LinearisedContact::x0, ReducedContactModel::tool
+//                             pose of an exchange, in transit from the bodies to the ticks and files
+//   RigidContactSolver        at the start of the present tick, in the form that ContactForce reads
+//   HapticLoop::past_         at the last ticks, for records that arrive late
+//
+// The handle has two: HapticLoop::handle_ (at the last tick, read by the ticks) and ToolInstance::handle (as
+// reported to the bodies).
 namespace palpate::loop {
 
-/// State of a tool with ticks, as last communicated to the bodies.
-struct ExchangedTool {
-  double time = 0.0;  ///< [s]
-  Pose pose;
-  Twist twist;
+/// Tool of the partitioned scheme, which advances by ticks. During a run `tool` and `rigid_contact` belong to
+/// the ticks, in real time another thread; the bodies and observers may use only the other members.
+struct TickTool {
+  tool::Tool tool;
+  /// Its motion since the last exchange, and its frame in contact with bodies.
+  std::shared_ptr<contact::TrajectoryFrame> path;
+  std::vector<contact::Tie> ties = {};  ///< Ties of the nodes that it carries.
+  /// Contact with obstacles and other tools, shared by all tools that meet each other; null if there is none.
+  std::shared_ptr<RigidContactSolver> rigid_contact = {};
+  int number_in_rigid_contact = -1;
+  std::unique_ptr<ModelReduction> reduction = {};  ///< For linearisation = "points"; else null.
+  StepFactor step_factor = {};                     ///< For linearisation = "condensed".
 };
 
-/// One tool of a World: the tool, its hand, and its contact. All members are empty without [tool].
-struct ToolInstance {
-  std::string name;                         ///< Name in [[contact]]: "tool" for the first.
-  const ToolSpec* spec = nullptr;           ///< Part of the World's description; null without [tool].
-  const DeviceSpec* device_spec = nullptr;  ///< Part of the World's description; null without [tool].
-  /// Tool with ticks; null for the monolithic scheme.
-  std::unique_ptr<tool::Tool> tool;
-  /// Second tool at the communicated state, for energies; null if not needed.
-  std::unique_ptr<tool::Tool> energy_probe;
-  /// Last communicated state. Bodies and observers may read only this: in real time the tool belongs to
-  /// another thread.
-  ExchangedTool exchanged;
-  /// Monolithic scheme: block of the State; else -1.
-  int block_id = -1;
-  std::unique_ptr<device::Device> handle;
-  /// Monolithic scheme with a simulated hand: its block of the State, instead of the device.
-  struct HandInState {
-    int block_id = -1;
-    tool::HandBlock hand;
+/// Tool of the monolithic scheme: a block of the State.
+struct MonolithicTool {
+  /// Simulated hand that holds the device, as a block of the State.
+  struct Hand {
+    int block_id;
+    tool::HandBlock block;
     device::HandModel model;
   };
-  std::optional<HandInState> hand_in_state;
-  device::HandleSample handle_now;  ///< At the last tick.
-  std::unique_ptr<device::WrenchLimiter> limiter;
-  /// Motors of the device; without delay for a hand in the State, which is not sampled.
-  device::Motors motors;
-  std::unique_ptr<device::PassivityController> passivity;  ///< null if passivity is off
-  /// Frame of the tool in contact; null if no contact refers to the tool.
-  std::shared_ptr<contact::MovingFrame> motion;
-  /// Equals `motion` for the partitioned scheme, written by the ticks; else null.
-  std::shared_ptr<contact::TrajectoryFrame> trajectory;
-  std::shared_ptr<proxy::ProxySet> proxies;  ///< null without contact with a body with proxies
-  int frame_index = -1;                      ///< Index of that frame in the contact, or -1.
-  std::vector<contact::Tie> ties;            ///< Ties of the nodes that a tool with ticks carries.
-  /// Contact of a tool with ticks with obstacles or other tools, shared by all tools that meet each other;
-  /// else null.
-  std::shared_ptr<RigidContactSolver> rigid;
-  int number_in_rigid = -1;  ///< Index in `rigid`
-  /// For linearisation = "points"; else null.
-  std::unique_ptr<ModelReduction> touch;
-  /// Factors the step matrix, for `condensed` and if `touch` cannot iterate; created on demand.
-  std::unique_ptr<dynamics::LinearSolver> condenser;
-  /// Created at the first step matrix without a Cholesky factor.
-  std::unique_ptr<dynamics::LinearSolver> condenser_lu;
-  dynamics::BorderedMatrix condensed_matrix;
+  int block_id;
+  std::optional<Hand> hand = {};  ///< Replaces the device where the scene simulates the hand.
 
-  /// Creates one ToolInstance per hand of the World's description.
-  static void make(World& world) {
-    const std::vector<scene::Hand> hands = scene::hands_of(world.description);
-    for (std::size_t i = 0; i < hands.size(); ++i) {
-      if (i > 0) world.tool_sides_.push_back(std::make_unique<ToolInstance>());
-      ToolInstance& side = *world.tool_sides_.back();
-      side.name = hands[i].name;
-      side.spec = hands[i].tool;
-      side.device_spec = hands[i].device;
-    }
+  /// Returns the tool's pose and twist at a state.
+  dynamics::RigidMotion motion(const dynamics::StateView& state) const {
+    const dynamics::Block& block = *state.layout->find(block_id);
+    const auto q = state.q.segment<7>(block.q_offset);
+    const auto u = state.u.segment<6>(block.u_offset);
+    return {{Quat(q[0], q[1], q[2], q[3]), q.tail<3>()}, {u.head<3>(), u.tail<3>()}};
   }
-  /// Returns a new tool in its initial state.
-  std::unique_ptr<tool::Tool> another_tool(const Vec3& gravity) const {
-    return std::make_unique<tool::Tool>(*spec, spec->gravity ? gravity : Vec3(Vec3::Zero()));
-  }
+};
 
-  /// Returns the ToolInstance of a hand; the first exists even if the scene has no tool.
-  static ToolInstance& of(World& world, std::size_t hand = 0) { return *world.tool_sides_.at(hand); }
-  static const ToolInstance& of(const World& world, std::size_t hand = 0) {
-    return *world.tool_sides_.at(hand);
-  }
-  /// Returns the tool with that name in scenes; null if there is none.
-  static ToolInstance* named(World& world, const std::string& name) {
-    for (const auto& side : world.tool_sides_)
-      if (side->spec && side->name == name) return side.get();
-    return nullptr;
-  }
-  static const std::vector<std::unique_ptr<ToolInstance>>& all(const World& world) {
-    return world.tool_sides_;
-  }
+/// One tool of a World, and the device that moves it. During a run device, limiter, motors and passivity
+/// controller belong to the ticks.
+struct ToolInstance {
+  std::string name;               ///< Name in [[contact]]: "tool" for the first.
+  const ToolSpec& spec;           ///< Part of the World's description.
+  const DeviceSpec& device_spec;  ///< Part of the World's description.
+  std::unique_ptr<device::Device> device;
+  device::WrenchLimiter limiter;
+  std::variant<TickTool, MonolithicTool> scheme;
+  /// Motors of the device; without delay for the monolithic scheme, whose hand is not sampled.
+  device::Motors motors = {};
+  std::unique_ptr<device::PassivityController> passivity = {};  ///< null if passivity is off
+  device::HandleSample handle = {};  ///< At the last tick that was reported to the bodies.
+  int frame = -1;                    ///< Index of its frame in World::contact; -1 if no contact refers to it.
+
+  TickTool* with_ticks() { return std::get_if<TickTool>(&scheme); }
+  const TickTool* with_ticks() const { return std::get_if<TickTool>(&scheme); }
+  const MonolithicTool* in_state() const { return std::get_if<MonolithicTool>(&scheme); }
 };
 
 }  // namespace palpate::loop

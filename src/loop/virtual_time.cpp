@@ -23,9 +23,11 @@ void VirtualTime::make_hands() {
   const scene::Description& d = world_.description;
   if (!d.tool) return;
   check_clock(world_, false);
-  for (const auto& side : ToolInstance::all(world_)) hands_.emplace_back(d, *side);
-  groups_ = TickGroup::all(hands_);
-  if (!world_.monolithic()) return;
+  for (ToolInstance& tool : world_.tools) hands_.emplace_back(d, tool);
+  if (!world_.monolithic()) {
+    groups_ = TickGroup::all(hands_);
+    return;
+  }
   dense_.emplace(world_, [this](std::size_t hand, TickRecord tick) {
     hands_[hand].ticks.render_force(tick);
     bodies_.record_tick(hand, tick);

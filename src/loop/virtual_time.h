@@ -30,7 +30,7 @@ class VirtualTime {
     ContactRecord record;
   };
   struct Hand {
-    Hand(const scene::Description& d, ToolInstance& side) : tick_s(side.spec->tick_s), ticks(d, side) {}
+    Hand(const scene::Description& d, ToolInstance& tool) : tick_s(tool.spec.tick_s), ticks(d, tool) {}
     double tick_s;
     HapticLoop ticks;
     ContactRecord in_force;
@@ -55,5 +55,8 @@ class VirtualTime {
   std::vector<TickGroup> groups_;         ///< Groups of hands_.
   std::optional<MonolithicTicks> dense_;  ///< Monolithic scheme only.
 };
+
+/// Runs both sides to the end in virtual time.
+void run_in_virtual_time(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result);
 
 }  // namespace palpate::loop

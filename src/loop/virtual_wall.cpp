@@ -89,17 +89,21 @@ VirtualWallResult simulate_virtual_wall(const HapticLoopModel& loop, double dura
   const double x_end = pressed ? force_n / (1.0 / yielding + loop.device.arm_stiffness_n_m) : 0.0,
                carried = pressed ? x_end / yielding : 0.0;
 
-  ToolInstance side;
-  side.tool = std::make_unique<tool::Tool>(spec, Vec3::Zero());
-  side.limiter = std::make_unique<device::WrenchLimiter>(kUnlimited, kUnlimited, 0.0);
   auto handle = std::make_unique<AxisHandle>(loop, pressed ? force_n : 0.0);
   handle->place(pressed ? 0.5 * x_end : kPerturbed, pressed ? -0.5 * carried : 0.0);
-  side.handle = std::move(handle);
-  if (pressed) side.tool->set_state(0.0, {Quat::Identity(), Vec3(0.5 * carried / K, 0, 0)}, {});
+  const DeviceSpec device;
+  ToolInstance instance{.name = "tool",
+                        .spec = spec,
+                        .device_spec = device,
+                        .device = std::move(handle),
+                        .limiter = {kUnlimited, kUnlimited, 0.0},
+                        .scheme = TickTool{.tool = {spec, Vec3::Zero()}, .path = {}}};
+  tool::Tool& tool = instance.with_ticks()->tool;
+  if (pressed) tool.set_state(0.0, {Quat::Identity(), Vec3(0.5 * carried / K, 0, 0)}, {});
 
-  HapticLoop ticks(spec, side);
+  HapticLoop ticks(instance);
   ticks.start(0.0);
-  side.limiter->limit(0.0, {}, true);  // its first output is zero, whatever is requested
+  instance.limiter.limit(0.0, {}, true);  // its first output is zero, whatever is requested
   const int count = static_cast<int>(std::ceil(duration_s / loop.tick_s));
   PALPATE_CHECK(count >= 8, "{} ticks are too few to measure growth; at least 8 are needed", count);
   VirtualWallResult out;
@@ -107,7 +111,7 @@ VirtualWallResult simulate_virtual_wall(const HapticLoopModel& loop, double dura
   for (int i = 1; i <= count; ++i) {
     TickRecord tick;
     const auto status =
-        ticks.tick(i * loop.tick_s, loop.tick_s, wall_at(loop, side.tool->pose().translation.x()), tick);
+        ticks.tick(i * loop.tick_s, loop.tick_s, wall_at(loop, tool.pose().translation.x()), tick);
     const double deflection = (tick.handle.translation - tick.tool.translation).x() - carried / k;
     out.largest_force = std::max(out.largest_force, std::abs(tick.device.force.x()));
     if (!status.ok() || !(std::abs(deflection) < 1e3 * std::max(x_end, kPerturbed))) {

@@ -10,7 +10,7 @@
 
 namespace palpate::loop {
 
-World::World() { tool_sides_.push_back(std::make_unique<ToolInstance>()); }
+World::World() = default;
 World::~World() = default;
 
 Points Body::surface_points(const Points& nodes) const {
@@ -37,6 +37,12 @@ const Body* World::find_body(const std::string& name) const {
   for (const Body& b : bodies)
     if (b.name == name) return &b;
   return nullptr;
+}
+
+ToolInstance* World::find_tool(const std::string& name) {
+  const auto at =
+      std::find_if(tools.begin(), tools.end(), [&](const ToolInstance& tool) { return tool.name == name; });
+  return at == tools.end() ? nullptr : &*at;
 }
 
 void World::set_youngs_modulus(Body& body, double youngs_modulus_pa, const std::string& region) {
@@ -112,37 +118,30 @@ std::vector<Wrench> World::wrenches_on_bones() {
 double World::mechanical_energy() {
   const dynamics::StateView view = state.view();
   double energy = system.kinetic_energy(view) + system.potential_energy(view);
-  for (const auto& side : tool_sides_)
-    if (side->tool)
-      energy += side->tool->kinetic_energy() + side->tool->potential_energy(side->handle_now.pose);
+  for (const ToolInstance& tool : tools)
+    if (const TickTool* ticks = tool.with_ticks())
+      energy += ticks->tool.kinetic_energy() + ticks->tool.potential_energy(tool.handle.pose);
   return energy;
 }
 
-bool World::monolithic() const { return tool_sides_.front()->block_id >= 0; }
-bool World::has_tool_of_ticks() const { return tool_sides_.front()->tool != nullptr; }
-int World::tool_frame_index() const { return tool_sides_.front()->frame_index; }
+bool World::monolithic() const { return !tools.empty() && tools.front().in_state(); }
+bool World::has_tool_of_ticks() const { return !tools.empty() && tools.front().with_ticks(); }
+int World::tool_frame_index() const { return tools.empty() ? -1 : tools.front().frame; }
 
 Pose World::tool_pose(std::size_t hand) const {
-  const ToolInstance& side = ToolInstance::of(*this, hand);
-  if (!monolithic()) return side.exchanged.pose;
-  const auto q = state.q().segment<7>(state.layout().find(side.block_id)->q_offset);
-  return {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
+  if (const TickTool* ticks = tools.at(hand).with_ticks()) return ticks->path->last().pose;
+  return tools[hand].in_state()->motion(state.view()).pose;
 }
 
 Twist World::tool_twist(std::size_t hand) const {
-  const ToolInstance& side = ToolInstance::of(*this, hand);
-  if (!monolithic()) return side.exchanged.twist;
-  const auto u = state.u().segment<6>(state.layout().find(side.block_id)->u_offset);
-  return {u.head<3>(), u.tail<3>()};
+  if (const TickTool* ticks = tools.at(hand).with_ticks()) return ticks->path->last().twist;
+  return tools[hand].in_state()->motion(state.view()).twist;
 }
 
 void World::refresh_contact() {
   PALPATE_CHECK(contact, "refresh_contact() called for a World without contact");
-  for (const auto& side : tool_sides_)
-    if (side->trajectory) {
-      side->trajectory->clear();
-      side->trajectory->append(side->exchanged.time, side->exchanged.pose, side->exchanged.twist);
-    }
+  for (ToolInstance& tool : tools)
+    if (TickTool* ticks = tool.with_ticks()) ticks->path->restart();
   contact->refresh(state.view());
 }
 

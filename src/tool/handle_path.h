@@ -1,6 +1,7 @@
 #pragma once
 #include "coupling.h"
-#include "palpate/tool/tool.h"
+#include "palpate/dynamics/exchange.h"
+#include "palpate/tool/tick.h"
 
 namespace palpate::tool {
 

@@ -21,15 +21,4 @@ const Registry<MakeTickScheme>& tick_scheme_registry() {
   return registry;
 }
 
-bool available() { return true; }
-
-const std::vector<ToolIntegratorInfo>& tool_integrators() {
-  static const std::vector<ToolIntegratorInfo> infos = [] {
-    std::vector<ToolIntegratorInfo> out;
-    for (const auto& entry : tick_scheme_registry()) out.push_back({entry.name, entry.summary, entry.order});
-    return out;
-  }();
-  return infos;
-}
-
 }  // namespace palpate::tool

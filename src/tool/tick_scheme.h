@@ -3,6 +3,7 @@
 
 #include "handle_path.h"
 #include "palpate/core/registry.h"
+#include "palpate/dynamics/stepper.h"
 
 namespace palpate::tool {
 

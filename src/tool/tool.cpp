@@ -126,6 +126,17 @@ double Tool::coupling_energy(const Pose& handle) const {
   return tool::coupling_energy(impl_->input.gains, impl_->motion.pose, handle);
 }
 
+bool available() { return true; }
+
+const std::vector<ToolIntegratorInfo>& tool_integrators() {
+  static const std::vector<ToolIntegratorInfo> infos = [] {
+    std::vector<ToolIntegratorInfo> out;
+    for (const auto& entry : tick_scheme_registry()) out.push_back({entry.name, entry.summary, entry.order});
+    return out;
+  }();
+  return infos;
+}
+
 std::string simbody_version() { return PALPATE_SIMBODY_VERSION; }
 
 }  // namespace palpate::tool

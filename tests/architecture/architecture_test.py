@@ -123,6 +123,15 @@ class Planted(unittest.TestCase):
         self.expect({"src/contact/a.h": "\n", "src/loop/bad.cpp": '#include "contact/a.h"\n'},
                     "contact/a.h is private to contact")
 
+    def test_lower_folder_of_a_part_does_not_see_the_rest_of_it(self):
+        world = {"include/palpate/loop/world.h": "#pragma once\n",
+                 "src/loop/coupling/step.h": '#include "palpate/dynamics/system.h"\n',
+                 "include/palpate/dynamics/system.h": "#pragma once\n"}
+        self.assertEqual(breaches_of({**world, "src/loop/run.cpp": '#include "coupling/step.h"\n'})[0], [])
+        self.expect({**world, "src/loop/coupling/step.cpp": '#include "step.h"\n'
+                     '#include "palpate/loop/world.h"\n'},
+                    "src/loop/coupling/step.cpp:2:", "rest of loop", "world.h")
+
     def test_wrapped_library_is_for_those_that_may_include_it(self):
         wrapper = {"src/simbody/headers.h": "#include <SimTKsimbody.h>\n"}
         self.assertEqual(breaches_of({**wrapper, "src/tool/body.h": '#include "simbody/headers.h"\n'}),

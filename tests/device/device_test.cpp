@@ -9,6 +9,8 @@
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
 #include "palpate/device/limiter.h"
+#include "palpate/device/profile.h"
+#include "palpate/device/registry.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

@@ -9,6 +9,7 @@
 #include "messages.h"
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
+#include "palpate/device/registry.h"
 
 using namespace palpate;
 using namespace palpate::device;

@@ -5,6 +5,8 @@
 #include <random>
 
 #include "palpate/device/device.h"
+#include "palpate/device/keyframes.h"
+#include "palpate/device/registry.h"
 
 using namespace palpate;
 using namespace palpate::device;

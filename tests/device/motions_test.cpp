@@ -6,7 +6,9 @@
 #include "messages.h"
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
+#include "palpate/device/keyframes.h"
 #include "palpate/device/motions.h"
+#include "palpate/device/registry.h"
 
 using namespace palpate;
 using namespace palpate::device;

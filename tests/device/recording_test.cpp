@@ -8,6 +8,7 @@
 #include "messages.h"
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
+#include "palpate/device/registry.h"
 #include "temporary_folder.h"
 
 using namespace palpate;

@@ -12,6 +12,7 @@
 
 #include "messages.h"
 #include "palpate/core/error.h"
+#include "palpate/device/registry.h"
 #include "palpate/device/udp.h"
 
 using namespace palpate;

@@ -6,6 +6,8 @@
 
 #include "palpate/device/device.h"
 #include "palpate/device/limiter.h"
+#include "palpate/device/profile.h"
+#include "palpate/device/registry.h"
 #include "palpate/device/workspace.h"
 
 using namespace palpate;

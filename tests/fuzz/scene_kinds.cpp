@@ -2,6 +2,8 @@
 
 #include "palpate/device/device.h"
 #include "palpate/device/motions.h"
+#include "palpate/device/profile.h"
+#include "palpate/device/registry.h"
 #include "palpate/mesh/generators.h"
 
 namespace palpate::fuzz {

@@ -8,6 +8,7 @@
 #include "loop/tool_instance.h"
 #include "messages.h"
 #include "palpate/core/error.h"
+#include "palpate/device/keyframes.h"
 #include "palpate/device/profile.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
@@ -109,7 +110,7 @@ TEST(RecordedTimes, OfARunsRecordAreShiftedAndScaled) {
   slow.device->time_scale = 2.0;
   slow.device->time_offset_s = 0.03;
   const auto world = loop::assemble(slow);
-  const auto path = loop::ToolInstance::of(*world).handle->path();
+  const auto path = world->tools[0].device->path();
   const auto truth = [&](double t) { return device::sample_keyframes(d.device->keyframes, t); };
   for (const double t : {0.01, 0.04, 0.055}) {
     EXPECT_LT((path(0.03 + 2.0 * t).pose.translation - truth(t).pose.translation).norm(), 1e-9) << t;

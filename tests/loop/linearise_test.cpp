@@ -17,7 +17,7 @@ using namespace palpate::small_scenes;
 
 namespace {
 
-loop::ToolInstance& side_of(loop::World& world) { return loop::ToolInstance::of(world); }
+loop::TickTool& ticks_of(loop::World& world) { return *world.tools[0].with_ticks(); }
 
 dynamics::LinearisedContact record_of(loop::World& world, std::uint64_t version, double period_s,
                                       long& frozen_fallbacks) {
@@ -31,7 +31,6 @@ std::unique_ptr<loop::World> touching(const std::string& linearisation) {
   d.exchange.linearisation = linearisation;
   d.integrator.linear_solver = "cholmod";  // differences of 1e-7 are taken between steps
   auto world = loop::assemble(d);
-  side_of(*world).trajectory->append(0.0, side_of(*world).tool->pose(), {});
   world->contact->refresh(world->state.view());
   return world;
 }
@@ -43,10 +42,10 @@ Mat6 stiffness(const dynamics::LinearisedContact& record) {
 /// Wrench on the tool after one linearly implicit step of H, with the tool displaced by `dx` at its end.
 Vec6 wrench_after_step(double H, const Vec3& dx) {
   const auto world = touching("frozen");
-  Pose moved = side_of(*world).tool->pose();
+  Pose moved = ticks_of(*world).tool.pose();
   moved.translation += dx;
-  side_of(*world).trajectory->clear();  // at rest there from now on
-  side_of(*world).trajectory->append(0.0, moved, {});
+  ticks_of(*world).path->clear();  // at rest there from now on
+  ticks_of(*world).path->append(0.0, moved, {});
   EXPECT_TRUE(world->stepper->advance_to(H).ok());
   const Wrench w = world->contact->frame_wrench(world->state.view(), world->tool_frame_index());
   Vec6 out;
@@ -94,8 +93,8 @@ TEST(Linearise, FrozenRecordRepeatsTheContactAtItsOwnPose) {
   const auto world = touching("frozen");
   const dynamics::LinearisedContact record = record_of(*world, 7, 0.01, fallbacks);
   EXPECT_EQ(record.version, 7u);
-  const Vec6 w = dynamics::contact_wrench(record, record.time, side_of(*world).tool->pose(),
-                                          side_of(*world).tool->twist());
+  const Vec6 w = dynamics::contact_wrench(record, record.time, ticks_of(*world).tool.pose(),
+                                          ticks_of(*world).tool.twist());
   const Wrench exact = world->contact->frame_wrench(world->state.view(), world->tool_frame_index());
   EXPECT_LT((w.tail<3>() - exact.force).norm(), 1e-14 * exact.force.norm());
   EXPECT_GT(exact.force.z(), 0.0) << "the block pushes the tool up";
@@ -123,7 +122,7 @@ struct Struck {
     loop::RunOptions options;
     options.duration_s = 1.5;
     EXPECT_TRUE(loop::run(*world, options).status.ok());
-    x0 = side_of(*world).tool->pose();
+    x0 = ticks_of(*world).tool.pose();
     t0 = world->state.time();
     hold(x0, {}, t0);
     world->contact->refresh(world->state.view());
@@ -134,13 +133,12 @@ struct Struck {
     back();
   }
   void hold(const Pose& pose, const Twist& twist, double t) {
-    side_of(*world).trajectory->clear();
-    side_of(*world).trajectory->append(t, pose, twist);
+    ticks_of(*world).path->clear();
+    ticks_of(*world).path->append(t, pose, twist);
   }
   void back() {
     hold(x0, {}, t0);
-    side_of(*world).tool->set_state(t0, x0, {});
-    side_of(*world).exchanged = {t0, x0, {}};
+    ticks_of(*world).tool.set_state(t0, x0, {});
     world->state.set_time(t0);
     world->state.q() = q;
     world->state.u() = u;
@@ -207,7 +205,6 @@ TEST(Linearise, AnIndefiniteStepMatrixIsFactoredByLu) {
   scene::Description d = pressed_block(kDepth);
   d.exchange.linearisation = "condensed";
   auto world = loop::assemble(d);
-  side_of(*world).trajectory->append(0.0, side_of(*world).tool->pose(), {});
   Eigen::Map<Points> x(world->state.q().data(), 3, world->state.q().size() / 3);
   x.row(2) *= 0.2;  // flattened: compressed struts
   x.row(2).array() += 0.8 * 0.02 - 1e-4;

@@ -1,13 +1,12 @@
-#include "loop/model_reduction.h"
+#include "loop/coupling/model_reduction.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
 #include "core/counters.h"
-#include "loop/contact_loads.h"
+#include "loop/coupling/contact_loads.h"
 #include "loop/linearise.h"
-#include "loop/reduced_step.h"
 #include "loop/small_scenes.h"
 #include "loop/summary.h"
 #include "loop/tool_instance.h"
@@ -32,9 +31,10 @@ std::unique_ptr<loop::World> touching(scene::Description d, const std::string& l
   d.exchange.linearisation_error = error;
   d.tool->tick_s = kPeriod;
   auto world = loop::assemble(d);
-  loop::ToolInstance& side = loop::ToolInstance::of(*world);
-  side.exchanged.twist.angular.z() = spin;
-  side.trajectory->append(0.0, side.exchanged.pose, side.exchanged.twist);
+  contact::TrajectoryFrame& path = *world->tools[0].with_ticks()->path;
+  const Pose pose = world->tool_pose();
+  path.clear();
+  path.append(0.0, pose, {Vec3(0, 0, spin), Vec3::Zero()});
   world->contact->refresh(world->state.view());
   VecX u = world->state.u();
   for (Eigen::Index i = 0; i < u.size(); ++i) u[i] += speed * std::sin(1.0 + 7.0 * static_cast<double>(i));
@@ -70,13 +70,12 @@ Linear tick_of(loop::World& world, double length) {
   EXPECT_EQ(record.linear.source, dynamics::LinearisedContact::Source::kPoints);
   contact::ReducedContactStepper ticks(world.description.contacts);
   ticks.adopt(record.touch);
-  const loop::ToolInstance& side = loop::ToolInstance::of(world);
-  dynamics::LinearisedContact tick =
-      ticks.linearise(length, length, {side.exchanged.pose, side.exchanged.twist});
+  const Pose pose = world.tool_pose();
+  const Twist twist = world.tool_twist();
+  dynamics::LinearisedContact tick = ticks.linearise(length, length, {pose, twist});
   const dynamics::RigidMotion end{
-      {quaternion_of(length * side.exchanged.twist.angular) * side.exchanged.pose.rotation,
-       side.exchanged.pose.translation + length * side.exchanged.twist.linear},
-      side.exchanged.twist};
+      {quaternion_of(length * twist.angular) * pose.rotation, pose.translation + length * twist.linear},
+      twist};
   while (!ticks.update_friction(end, kSettled)) tick = ticks.relinearise();
   return Linear(tick);
 }
@@ -109,20 +108,19 @@ TEST(ModelReduction, OneTickOfAPeriodIsTheCondensedAnswer) {
 /// motion: rows and columns of force only.
 ///     A du = H N^T (K Z dx + D Z dv),    dF = -Z^T (K Z dx + D Z dv) + Z^T (H K + D) N du
 Linear tick_of_all_nodes(loop::World& world) {
-  loop::ToolInstance& side = loop::ToolInstance::of(world);
+  loop::StepFactor factor;
   const dynamics::StateView view = world.state.view();
   const bool has_friction = world.contact->begin_step(view);
   VecX s, w, column;
-  loop::known_motion(world, kPeriod, s, w);
+  loop::known_motion(world.system, world.state, kPeriod, s, w);
   std::vector<contact::ReducedTangent> tangents;
   std::vector<contact::ReducedSample> samples;
   MatX du;
   for (bool done = false; !done;) {
-    world.system.step_matrix(view, 1.0, kPeriod, kPeriod * kPeriod, side.condensed_matrix);
-    dynamics::LinearSolver* solver = loop::factored(world.system, side);
-    samples = world.contact->reduced_samples(view, side.frame_index, &tangents);
+    dynamics::LinearSolver* solver = factor.of(world.system, view, kPeriod);
+    samples = world.contact->reduced_samples(view, world.tool_frame_index(), &tangents);
     MatX loads = MatX::Zero(s.size(), 7);  // per x, per v, and without tool motion
-    loads.col(6) = loop::right_hand_side(world, kPeriod, s, w, {});
+    loads.col(6) = loop::right_hand_side(world.system, world.state, kPeriod, s, w, {});
     for (std::size_t j = 0; j < samples.size(); ++j)
       for (std::size_t k = 0; k < static_cast<std::size_t>(samples[j].count); ++k) {
         const double by = kPeriod * samples[j].weight[k];
@@ -193,11 +191,10 @@ TEST(ModelReduction, WhatSlidesIsNotTakenForWhatSticks) {
   constexpr double kCreep = 1e-7, kSpin = 0.35;
   const auto world = touching(d, "points", 0.0, kCreep, kSpin);
   int stick = 0, slide = 0;
-  const loop::ToolInstance& side = loop::ToolInstance::of(*world);
   for (const contact::ReducedSample& s :
-       world->contact->reduced_samples(world->state.view(), side.frame_index)) {
+       world->contact->reduced_samples(world->state.view(), world->tool_frame_index())) {
     if (!(s.gap < 0.0)) continue;
-    const double slip = kSpin * (s.place - side.exchanged.pose.translation).head<2>().norm();
+    const double slip = kSpin * (s.place - world->tool_pose().translation).head<2>().norm();
     stick += slip < 1e-3;
     slide += slip > 1.8e-3;
   }
@@ -400,8 +397,6 @@ TEST(ModelReduction, RoundingGivesNoDirection) {
       d.exchange.linearisation = "points";
       d.exchange.linearisation_error = error;
       const auto world = loop::assemble(d);
-      loop::ToolInstance& side = loop::ToolInstance::of(*world);
-      side.trajectory->append(0.0, side.tool->pose(), {});
       world->contact->refresh(world->state.view());
       VecX q = world->state.q();
       for (Eigen::Index i = 0; i < q.size(); ++i)

@@ -18,7 +18,7 @@ namespace {
 
 struct State {
   VecX q, u;
-  loop::ExchangedTool exchanged;
+  dynamics::RigidMotion tool;
   double device_force = 0.0;
 };
 
@@ -32,7 +32,7 @@ State pressed(const scene::Description& d, double time) {
   options.duration_s = time;
   options.observers = {&feel};
   EXPECT_TRUE(loop::run(*world, options).status.ok());
-  return {world->state.q(), world->state.u(), loop::ToolInstance::of(*world).exchanged, feel.force};
+  return {world->state.q(), world->state.u(), {world->tool_pose(), world->tool_twist()}, feel.force};
 }
 
 struct Answer {
@@ -44,9 +44,9 @@ Answer answer(scene::Description d, const State& state, double error) {
   d.exchange.linearisation = "points";
   d.exchange.linearisation_error = error;
   const auto world = loop::assemble(d);
-  loop::ToolInstance& side = loop::ToolInstance::of(*world);
-  side.exchanged = state.exchanged;
-  side.trajectory->append(0.0, side.exchanged.pose, side.exchanged.twist);
+  contact::TrajectoryFrame& path = *world->tools[0].with_ticks()->path;
+  path.clear();
+  path.append(0.0, state.tool.pose, state.tool.twist);
   world->state.q() = state.q;
   world->state.u() = state.u;
   world->contact->refresh(world->state.view());
@@ -57,8 +57,7 @@ Answer answer(scene::Description d, const State& state, double error) {
   Answer out;
   contact::ReducedContactStepper ticks(d.contacts);
   ticks.adopt(record.touch);
-  const dynamics::LinearisedContact linear =
-      ticks.linearise(period, period, {side.exchanged.pose, side.exchanged.twist});
+  const dynamics::LinearisedContact linear = ticks.linearise(period, period, state.tool);
   out.F = Eigen::Map<const Vec6>(linear.F0.data());
   out.J = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(linear.J.data());
   out.B = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(linear.B.data());

@@ -262,9 +262,9 @@ long allocations_in_ticks(const std::string& device, device::PassivityController
   d.device->velocity_cutoff_per_s = 100.0;
   d.device->force_resolution_n = 0.01;
   const auto world = loop::assemble(d);
-  loop::ToolInstance& side = loop::ToolInstance::of(*world);
-  side.passivity = device::make_passivity_controller(mode, *d.device, d.tool->tick_s);
-  loop::HapticLoop ticks(*d.tool, side);
+  loop::ToolInstance& tool = world->tools[0];
+  tool.passivity = device::make_passivity_controller(mode, *d.device, d.tool->tick_s);
+  loop::HapticLoop ticks(tool);
   ticks.start(0.0);
   dynamics::LinearisedContact record;
   for (std::size_t i = 0; i < 6; ++i) record.J[7 * i] = i < 3 ? -0.1 : -1e3;
@@ -281,7 +281,7 @@ long allocations_in_ticks(const std::string& device, device::PassivityController
   const long taken = malloc_calls - before;
   EXPECT_TRUE(ok);
   EXPECT_GT(out.requested.force.norm(), 0.1);
-  EXPECT_EQ(side.passivity && side.passivity->active_ticks() > 0, mode == Mode::kControl);
+  EXPECT_EQ(tool.passivity && tool.passivity->active_ticks() > 0, mode == Mode::kControl);
   return taken;
 }
 #endif
@@ -299,7 +299,7 @@ long allocations_on_floor(bool mesh) {
     d.tool->inertia_kg_m2 = Vec3::Constant(1e-5);
   }
   const auto world = loop::assemble(d);
-  loop::HapticLoop ticks(d, loop::ToolInstance::of(*world));
+  loop::HapticLoop ticks(d, world->tools[0]);
   loop::TickGroup group(std::vector<loop::TickGroup::Member>{{0, &ticks}});
   ticks.start(0.0);
   loop::TickRecord out;
@@ -346,7 +346,7 @@ long allocations_of_two(bool round) {
   d.contacts[0].friction = 0.3;
   const auto world = loop::assemble(d);
   std::deque<loop::HapticLoop> ticks;
-  for (std::size_t i = 0; i < 2; ++i) ticks.emplace_back(d, loop::ToolInstance::of(*world, i)).start(0.0);
+  for (std::size_t i = 0; i < 2; ++i) ticks.emplace_back(d, world->tools[i]).start(0.0);
   loop::TickGroup group(std::vector<loop::TickGroup::Member>{{0, &ticks[0]}, {1, &ticks[1]}});
   const loop::ContactRecord none;
   loop::TickRecord out;

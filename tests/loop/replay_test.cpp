@@ -10,6 +10,7 @@
 
 #include "loop/haptic_record.h"
 #include "palpate/core/error.h"
+#include "palpate/device/keyframes.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 

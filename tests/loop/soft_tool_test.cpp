@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "loop/body_loop.h"
-#include "loop/carried_bodies.h"
+#include "loop/coupling/carried_bodies.h"
 #include "loop/small_scenes.h"
 #include "loop/ticks_of.h"
 #include "loop/tool_instance.h"
@@ -164,8 +164,7 @@ TEST(SoftTool, TakesItsBodyAlong) {
   other.attachments.clear();
   d.bodies.push_back(other);
   const auto world = loop::assemble(d);
-  loop::ToolInstance& side = loop::ToolInstance::of(*world);
-  const Pose before = side.exchanged.pose;
+  const Pose before = world->tool_pose();
   const Twist twist{Vec3(0.1, 0.2, -0.3), Vec3(0.4, 0.0, 0.1)};
   VecX u = world->state.u();
   for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = 0.01 * std::sin(1.0 + 7.0 * static_cast<double>(i));
@@ -173,17 +172,16 @@ TEST(SoftTool, TakesItsBodyAlong) {
   const Points x = world->positions(world->bodies[0]), y = world->positions(world->bodies[1]);
   const Pose moved{Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())) * before.rotation,
                    before.translation + Vec3(0.05, -0.03, 0.02)};
-  side.exchanged = {0.5, moved, {Vec3(-1, 2, 0.5), Vec3(0.1, -0.2, 0.3)}};
-  loop::carry_along(*world, side, before, twist);
+  const Twist twist_now{Vec3(-1, 2, 0.5), Vec3(0.1, -0.2, 0.3)};
+  loop::carry_along(world->state, world->tools[0].with_ticks()->ties, {before, twist}, {moved, twist_now});
   const Points now = world->positions(world->bodies[0]);
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     const Vec3 place = before.inverse() * Vec3(x.col(i));
     EXPECT_LT((moved.inverse() * Vec3(now.col(i)) - place).norm(), 1e-15);
     const Vec3 against = before.rotation.conjugate() *
                          (u.segment<3>(3 * i) - twist.at(Vec3(x.col(i)) - before.translation)),
-               still = moved.rotation.conjugate() *
-                       (Vec3(world->state.u().segment<3>(3 * i)) -
-                        side.exchanged.twist.at(Vec3(now.col(i)) - moved.translation));
+               still = moved.rotation.conjugate() * (Vec3(world->state.u().segment<3>(3 * i)) -
+                                                     twist_now.at(Vec3(now.col(i)) - moved.translation));
     EXPECT_LT((still - against).norm(), 1e-14);
   }
   EXPECT_EQ(world->positions(world->bodies[1]), y) << "it carries that one alone";
@@ -196,7 +194,7 @@ TEST(SoftTool, TakesItsBodyAlongWhereItIsLate) {
   loop::RunResult result;
   loop::BodyLoop bodies(*world, options, result);
   bodies.restart_path();
-  const Pose before = loop::ToolInstance::of(*world).exchanged.pose;
+  const Pose before = world->tool_pose();
   const Points x = world->positions(world->bodies[0]);
   const Vec3 way(0.03, -0.01, 0.02);
   bodies.follow(0, 0.5, {before.rotation, before.translation + way}, {});

@@ -9,6 +9,7 @@
 #include "palpate/device/device.h"
 #include "palpate/device/motions.h"
 #include "palpate/device/profile.h"
+#include "palpate/device/registry.h"
 #include "palpate/loop/load.h"
 
 namespace {

@@ -38,8 +38,18 @@ std::shared_ptr<MovingFrame> block_frame(int block_id);
 /// @pre each tick rotates by less than half a turn
 class TrajectoryFrame : public MovingFrame {
  public:
+  /// Motion at one time.
+  struct Knot {
+    double t = 0.0;  ///< Time [s].
+    Pose pose;
+    Twist twist;
+  };
   /// Removes all knots.
   void clear();
+  /// Removes all knots but the last.
+  void restart();
+  /// Returns the last knot. @pre at least one knot
+  const Knot& last() const;
   /// Adds a knot at time t [s]; times must increase.
   void append(double t, const Pose& pose, const Twist& twist);
   /// Returns the interpolated pose at state.time. @pre at least one knot
@@ -48,11 +58,6 @@ class TrajectoryFrame : public MovingFrame {
   Twist twist(const dynamics::StateView& state) const override;
 
  private:
-  struct Knot {
-    double t;
-    Pose pose;
-    Twist twist;
-  };
   std::vector<Knot> knots_;
 };
 

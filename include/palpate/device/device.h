@@ -11,9 +11,8 @@
 
 #include "palpate/core/archive.h"
 #include "palpate/core/pose.h"
-#include "palpate/core/registry.h"
-#include "palpate/device/profile.h"
 #include "palpate/device/spec.h"
+#include "palpate/device/specification.h"
 
 namespace palpate::device {
 
@@ -152,28 +151,5 @@ class Device {
   double time_ = 0.0;  ///< Time of the last sample [s].
   bool open_ = false;
 };
-
-/// Factory of one device type. A device is one file in src/device and one entry in the registry, with the
-/// keys of `[device]` that only this type uses; the keys that limit the force apply to all types.
-/// @param folder  folder that relative paths in the spec refer to: the scene's
-using MakeDevice = std::unique_ptr<Device> (*)(const DeviceSpec& spec, const std::string& folder);
-/// Returns the device types by the name in `device.type`.
-const Registry<MakeDevice>& device_registry();
-/// Builds the device that the spec specifies.  @throws Error for an unknown type and invalid settings
-std::unique_ptr<Device> make_device(const DeviceSpec& spec, const std::string& folder = {});
-
-/// Evaluates the path through keyframes; before the first and after the last keyframe it is at rest.
-/// Rotations interpolate the rotation vector between neighbouring keyframes (a fixed axis per segment), so
-/// twist and acceleration are the exact derivatives of the pose. At the time of a keyframe the segment that
-/// starts there applies. At a "step" or a kink of "linear" there is no derivative: only the pose or the twist
-/// jumps.
-/// @throws Error for an empty path
-HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double t);
-
-/// Checks a path: at least one keyframe, all values finite, times strictly ascending, known interpolations,
-/// and rotations of at most half a turn between neighbouring keyframes (beyond that the direction is
-/// ambiguous).
-/// @throws Error beginning with `where`, e.g. "device"
-void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::string& where);
 
 }  // namespace palpate::device

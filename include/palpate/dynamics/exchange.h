@@ -30,6 +30,9 @@ struct LinearisedContact {
 };
 static_assert(std::is_trivially_copyable_v<LinearisedContact>);
 
+/// Sets the time [s], pose and twist about which a record is linear.
+void set_reference(LinearisedContact& record, double t, const Pose& pose, const Twist& twist);
+
 /// Evaluates the linearised wrench (moment, force) at a time, pose and twist [N m, N]; zero for
 /// Source::kNone.
 Vec6 contact_wrench(const LinearisedContact& record, double t, const Pose& pose, const Twist& twist);

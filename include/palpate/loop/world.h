@@ -120,9 +120,14 @@ struct World {
   std::vector<Bone> bones;                         ///< Free, jointed and scripted bones.
   std::shared_ptr<contact::ContactForce> contact;  ///< null without contact pairs
   std::unique_ptr<dynamics::Stepper> stepper;      ///< null without bodies
+  /// One per hand, in the numbering of scene::hands_of(). The type is internal (src/loop/tool_instance.h):
+  /// users of the library read tools through the functions below.
+  std::vector<ToolInstance> tools;
 
   /// Returns the body with that name; null if there is none.
   const Body* find_body(const std::string& name) const;
+  /// Returns the tool with that name in [[contact]]; null if there is none.
+  ToolInstance* find_tool(const std::string& name);
   /// Sets the Young's modulus of a body from the next step on. Its damping changes in proportion (mu_d = beta
   /// mu), and so do regions without a specified Young's modulus.
   /// @param body  one of `bodies`  @param youngs_modulus_pa  > 0
@@ -149,10 +154,6 @@ struct World {
   void refresh_contact();
   /// Returns the kinetic and potential energy of bodies, contact, tool and coupling [J].
   double mechanical_energy();
-
- private:
-  friend struct ToolInstance;
-  std::vector<std::unique_ptr<ToolInstance>> tool_sides_;  ///< One per hand, at least one.
 };
 
 /// Assembles a World from a scene: the only function that depends on concrete parts. It also sets the

@@ -23,19 +23,10 @@
 
 #include <algorithm>
 
-#include "flat_pose.h"
+#include "coupled_tool.h"
 #include "palpate/core/error.h"
 
 namespace palpate::loop {
-namespace {
-
-Vec6 stacked(const Twist& twist) {
-  Vec6 out;
-  out << twist.angular, twist.linear;
-  return out;
-}
-
-}  // namespace
 
 RigidContactSolver::RigidContactSolver(double look_ahead_s) : look_ahead_(look_ahead_s) {}
 
@@ -140,11 +131,9 @@ dynamics::LinearisedContact RigidContactSolver::about_now(int tool,
   const auto u = state_.u().segment<6>(6 * tool);
   const Pose pose{Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
   dynamics::LinearisedContact out = record;
-  out.time = state_.time();
-  out.x0 = flat(pose);
-  Eigen::Map<Vec6>(out.v0.data()) = u;
-  Eigen::Map<Vec6>(out.F0.data()) =
-      dynamics::contact_wrench(record, out.time, pose, {u.head<3>(), u.tail<3>()});
+  const Twist twist{u.head<3>(), u.tail<3>()};
+  set_reference(out, state_.time(), pose, twist);
+  Eigen::Map<Vec6>(out.F0.data()) = dynamics::contact_wrench(record, out.time, pose, twist);
   return out;
 }
 

@@ -1,25 +1,23 @@
 #include "model_reduction.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "contact_loads.h"
 #include "core/counters.h"
 #include "core/finite.h"
-#include "palpate/contact/contact_force.h"
-#include "reduced_step.h"
+#include "reduced_system.h"
 
 namespace palpate::loop {
 
 // Galerkin reduction of the bodies to their possible responses to the tool. X contains the responses in their
-// linearly implicit step over the period H (linearise.cpp) to six load patterns, twelve with friction, and
+// linearly implicit step over the period H (condensation.cpp) to six load patterns, twelve with friction, and
 // without a load:
 //     X = A^-1 [ sum N_j^T K_j Z_j,  H (f - K s - D w) - M w ],     A = M + H D + H^2 K, the contact in K, D,
 // with N_j the map from nodes to sample j. The former are the directions in which nodes respond to a moving
 // tool, with the contact acting in between; the latter is the motion without tool motion. With displacements
 // tau v + X y (v = s/H), tested with X:
 //     X^T M X y'' + X^T D X y' + X^T K X y = X^T (f - M w/H) - tau X^T (K v + D w/H) + contact,
-// (and + tau X^T rate if other tools press the bodies, rate_by_other_tools in reduced_step.h). Its step over
+// (and + tau X^T rate if other tools press the bodies, rate_by_other_tools in implicit_step.h). Its step over
 // H equals the step of all nodes exactly, since that is in the span; within the period it includes their
 // inertia. The samples' part is removed from f, K and D: the ticks add it as it is at each tick.
 //
@@ -108,41 +106,15 @@ MatX rows_of(const auto& x, const std::vector<int>& nodes) {
   return out;
 }
 
-/// Returns y = (k K + d D) x for all forces, in directions of nodes and bones.
-VecX tangent_times(World& world, double k, double d, const VecX& x) {
-  VecX out = VecX::Zero(x.size());
-  for (const auto& term : world.system.terms())
-    if (term->traits().has_tangent) term->apply_tangent(world.state.view(), k, d, x, out);
-  if (k == 0.0) return out;
-  VecX carried = VecX::Zero(x.size());
-  world.system.apply_carried_stiffness(world.state.view(), x, carried);
-  return out + k * carried;
-}
-
-/// Returns X^T P X for a linear map P.  @param scratch  becomes P X, as large as X
-MatX products(const MatX& X, MatX& scratch, const auto& product) {
-  scratch.resize(X.rows(), X.cols());
-  for (Eigen::Index i = 0; i < X.cols(); ++i) scratch.col(i) = product(VecX(X.col(i)));
-  return X.transpose() * scratch;
-}
-
-/// Returns the symmetric part, with negative eigenvalues replaced by zero.
-MatX definite(const MatX& A) {
-  const Eigen::SelfAdjointEigenSolver<MatX> eigen(MatX(0.5 * (A + A.transpose())));
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         eigen.eigenvectors().transpose();
-}
-
-/// Returns the damping coefficients a and b of the body with that node.
-std::pair<double, double> damping_of(const World& world, int node) {
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-    const dynamics::Block* block = world.state.layout().find(world.bodies[i].block_id);
+/// Returns the damping coefficients of the body with that node.
+ReductionOptions::Damping damping_of(const dynamics::Layout& layout,
+                                     const std::vector<ReductionOptions::Damping>& bodies, int node) {
+  for (const ReductionOptions::Damping& body : bodies) {
+    const dynamics::Block* block = layout.find(body.block_id);
     const int first = block ? block->u_offset / 3 : 0;
-    if (!block || node < first || node >= first + block->u_size / 3) continue;
-    const SoftBodySpec& spec = world.description.bodies[i];
-    return {spec.mass_damping_per_s, spec.stiffness_damping_s};
+    if (block && node >= first && node < first + block->u_size / 3) return body;
   }
-  return {0.0, 0.0};
+  return {-1, 0.0, 0.0};
 }
 
 }  // namespace
@@ -167,9 +139,9 @@ void ReductionError::archive(Archive& a) {
   a("sum", sum);
 }
 
-ModelReduction::ModelReduction(World& world, double error, bool keep)
-    : error_(error), keep_(keep), assembly_(world.system), responses_(std::make_unique<StepResponses>()) {
-  if (error > 0.0) response_ = std::make_unique<linear::StepResponse>(world.description.integrator.threads);
+ModelReduction::ModelReduction(dynamics::System& system, ReductionOptions options)
+    : options_(std::move(options)), assembly_(system), responses_(std::make_unique<StepResponses>()) {
+  if (options_.error > 0.0) response_ = std::make_unique<linear::StepResponse>(options_.threads);
 }
 ModelReduction::~ModelReduction() = default;
 
@@ -184,26 +156,26 @@ Eigen::Index ModelReduction::spread_patterns(StepResponses& x, Eigen::Index size
 }
 
 /// Computes X by iteration. Returns false if the system is not supported, or without convergence.
-bool ModelReduction::iterate(World& world, double H, StepResponses& out) {
+bool ModelReduction::iterate(const CoupledTool& tool, double H, StepResponses& out) {
   using dynamics::SolveStatus;
-  const dynamics::StateView view = world.state.view();
+  const dynamics::StateView view = tool.state.view();
   if (!response_ || !assembly_.applies(view)) return false;
   dynamics::ZeroRowSumMatrix& A = response_->step_matrix(assembly_.pattern());
   VecX r;
-  assembly_.assemble(view, out.s, 1.0, H, H * H, r, A, keep_);
+  assembly_.assemble(view, out.s, 1.0, H, H * H, r, A, options_.keep);
   if (response_->take_step_matrix() != SolveStatus::kOk) return false;
   out.stiff = out.f - r;
   MatX& rhs = out.loads;
-  const Eigen::Index loads = spread_patterns(out, world.state.layout().u_size);
+  const Eigen::Index loads = spread_patterns(out, tool.state.layout().u_size);
   if (out.w.isZero(0.0)) {
     rhs.rightCols<1>() = H * r;
   } else {
     assembly_.residual(view, out.s, out.w, H, r);
     rhs.rightCols<1>() = r;
-    out.stiff += tangent_times(world, 0.0, 1.0, out.w);
+    out.stiff += tangent_times(tool.system, view, 0.0, 1.0, out.w);
   }
   if (out.rate.size() > 0) rhs.rightCols<1>() += H * H * out.rate;
-  for (int dof : world.system.driven_dofs()) rhs.row(dof).setZero();
+  for (int dof : tool.system.driven_dofs()) rhs.row(dof).setZero();
   SolveStatus status = response_->begin(rhs);
   // Cauchy-Schwarz bound on the work of the loads, each of length one, on the motion without load.
   const VecX energy = response_->response().diagonal() + response_->residual_energies();
@@ -213,7 +185,7 @@ bool ModelReduction::iterate(World& world, double H, StepResponses& out) {
   }
   for (int k = 0; status == SolveStatus::kOk && k < kMostIterations; ++k) {
     const VecX answer = response_->response().diagonal();
-    if ((response_->error_bound().array() <= error_ * answer.array()).head(loads).all()) break;
+    if ((response_->error_bound().array() <= options_.error * answer.array()).head(loads).all()) break;
     status = response_->advance();
     counters::count("loop.touch_iterations");
   }
@@ -235,143 +207,40 @@ bool ModelReduction::iterate(World& world, double H, StepResponses& out) {
 }
 
 /// Computes X by factorisation. Returns false if the step matrix has no factor.
-bool ModelReduction::factor(World& world, ToolInstance& side, double H, StepResponses& out) {
-  const dynamics::StateView view = world.state.view();
-  world.system.step_matrix(view, 1.0, H, H * H, side.condensed_matrix);
-  dynamics::LinearSolver* solver = factored(world.system, side);
+bool ModelReduction::factorise(const CoupledTool& tool, double H, StepResponses& out) {
+  const dynamics::StateView view = tool.state.view();
+  dynamics::LinearSolver* solver = factor_.of(tool.system, view, H);
   if (!solver) return false;
   counters::count("loop.touch_factored");
-  out.stiff = tangent_times(world, 1.0, 0.0, out.s) + tangent_times(world, 0.0, 1.0, out.w);
+  out.stiff =
+      tangent_times(tool.system, view, 1.0, 0.0, out.s) + tangent_times(tool.system, view, 0.0, 1.0, out.w);
   MatX& rhs = out.loads;
-  const Eigen::Index loads = spread_patterns(out, world.state.layout().u_size);
+  const Eigen::Index loads = spread_patterns(out, tool.state.layout().u_size);
   VecX column;
   for (Eigen::Index i = 0; i < loads; ++i) {
     column = rhs.col(i);
-    world.system.reduce(view, column);
+    tool.system.reduce(view, column);
     rhs.col(i) = column;
   }
-  rhs.rightCols<1>() = right_hand_side(world, H, out.s, out.w, out.rate);
+  rhs.rightCols<1>() = right_hand_side(tool.system, tool.state, H, out.s, out.w, out.rate);
   out.X.resize(rhs.rows(), rhs.cols());
   if (solver->solve(rhs, out.X) != dynamics::SolveStatus::kOk || !all_finite(out.X)) return false;
   out.work = out.X.transpose() * rhs;
   out.exact = true;
   for (Eigen::Index i = 0; i < out.X.cols(); ++i) {
     column = out.X.col(i);
-    world.system.expand(view, column);
+    tool.system.expand(view, column);
     out.X.col(i) = column;
   }
   return true;
 }
 
-namespace {
-
-/// Computes the modes S, m x modes, from M, K and D in X, and stores their stiffness and damping in the
-/// model.
-MatX modes_of(const MatX& M, const MatX& K, const MatX& D, double alike, ReducedContactModel& out) {
-  VecX scale = M.diagonal();
-  for (double& one : scale) one = one > 0.0 ? 1.0 / std::sqrt(one) : 0.0;
-  const Eigen::SelfAdjointEigenSolver<MatX> mass(
-      MatX(scale.asDiagonal() * (0.5 * (M + M.transpose())) * scale.asDiagonal()));
-  const VecX& lengths = mass.eigenvalues();  // ascending
-  const Eigen::Index all = lengths.size(),
-                     alone = (lengths.array() > alike * std::max(lengths[all - 1], 0.0)).count(),
-                     kept = std::min<Eigen::Index>(kModes, alone);
-  out.modes = static_cast<int>(kept);
-  if (kept == 0) return MatX(all, 0);  // every node that responds is held
-  MatX S = scale.asDiagonal() * mass.eigenvectors().rightCols(kept) *
-           lengths.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
-  const MatX k = S.transpose() * K * S;
-  const Eigen::SelfAdjointEigenSolver<MatX> stiffness(MatX(0.5 * (k + k.transpose())));
-  S = (S * stiffness.eigenvectors()).eval();
-  Eigen::Map<VecX>(out.stiffness.data(), kept) = stiffness.eigenvalues().cwiseMax(0.0);
-  Eigen::Map<MatX>(out.damping.data(), kModes, kModes).topLeftCorner(kept, kept) =
-      definite(S.transpose() * D * S);
-  return S;
-}
-
-/// Contribution of the samples to the reduced system in X.
-struct SampleSums {
-  MatX K, D;
-  VecX force;  ///< Force of the samples on the bodies.
-  VecX stiff;  ///< K v + D w/H
-};
-
-/// @param X, mean_change  rows of the samples' nodes only
-SampleSums sum_of(const std::vector<ReducedSample>& samples, const std::vector<ReducedTangent>& tangents,
-                  const MatX& X, const VecX& mean_change) {
-  const Eigen::Index m = X.cols();
-  SampleSums out{MatX::Zero(m, m), MatX::Zero(m, m), VecX::Zero(m), VecX::Zero(m)};
-  const auto nodes_of_X = [&](int node) { return X.middleRows<3>(3 * node); };
-  const auto nodes_of_change = [&](int node) { return mean_change.segment<3>(3 * node); };
-  for (std::size_t j = 0; j < samples.size(); ++j) {
-    const ReducedSample& s = samples[j];
-    if (!presses(s)) continue;
-    const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kModes> P = moved_by(s, nodes_of_X);
-    const auto& [K, D] = tangents[j];
-    out.K.noalias() += P.transpose().lazyProduct((K * P).eval());
-    out.D.noalias() += P.transpose().lazyProduct((D * P).eval());
-    out.force.noalias() -= P.transpose() * s.force;
-    out.stiff.noalias() += P.transpose() * (K * s.velocity + D * moved_by(s, nodes_of_change));
-  }
-  return out;
-}
-
-/// M, K and D in X, without the samples.
-struct Reduced {
-  MatX M, K, D;
-};
-
-/// @param work  X^T A X if X is not exact: K and D are computed from it  @param scratch  as large as X
-Reduced reduced(World& world, const ToolInstance& side, double H, const MatX& X, const MatX* work,
-                MatX& scratch, const SampleSums& sums, std::pair<double, double> damping) {
-  const dynamics::StateView view = world.state.view();
-  const Eigen::Index m = X.cols();
-  const MatX &samples_K = sums.K, &samples_D = sums.D;
-  Reduced out;
-  VecX product;
-  out.M = products(X, scratch, [&](const VecX& v) {
-    world.system.apply_mass(view, v, product);
-    return product;
-  });
-  if (!work) {
-    out.K =
-        products(X, scratch, [&](const VecX& v) { return tangent_times(world, 1.0, 0.0, v); }) - samples_K;
-    out.D =
-        products(X, scratch, [&](const VecX& v) { return tangent_times(world, 0.0, 1.0, v); }) - samples_D;
-    return out;
-  }
-  // Contact of bodies with obstacles, each other and other tools.
-  MatX others_K = MatX::Zero(m, m), others_D = others_K;
-  const auto& contacts = world.description.contacts;
-  if (!std::all_of(contacts.begin(), contacts.end(),
-                   [&](const ContactSpec& c) { return names(c, side.name); })) {
-    const auto contact = [&](double k, double d) {
-      return products(X, scratch, [&](const VecX& v) {
-        product.setZero(v.size());
-        world.contact->apply_tangent(view, k, d, v, product);
-        return product;
-      });
-    };
-    others_K = contact(1.0, 0.0) - samples_K;
-    others_D = contact(0.0, 1.0) - samples_D;
-  }
-  const auto [a, b] = damping;
-  const MatX elements =
-      (*work - (1.0 + H * a) * out.M - H * H * (samples_K + others_K) - H * (samples_D + others_D)) /
-      (H * H + H * b);
-  out.K = elements + others_K;
-  out.D = a * out.M + b * elements + others_D;
-  return out;
-}
-
-}  // namespace
-
-void ModelReduction::prepare(World& world, double H) {
-  const dynamics::StateView view = world.state.view();
+void ModelReduction::prepare(const dynamics::State& state, double H) {
+  const dynamics::StateView view = state.view();
   if (!response_ || !assembly_.applies(view)) return;
   dynamics::ZeroRowSumMatrix& A = response_->step_matrix(assembly_.pattern());
   VecX r;
-  assembly_.assemble(view, VecX::Zero(world.state.layout().u_size), 1.0, H, H * H, r, A, keep_);
+  assembly_.assemble(view, VecX::Zero(state.layout().u_size), 1.0, H, H * H, r, A, options_.keep);
   response_->take_step_matrix();
 }
 
@@ -395,12 +264,12 @@ struct FrictionOfPeriod {
 
 /// Updates friction from the end of the period that X predicts. Returns false if friction does not yet
 /// satisfy its law there.
-bool ModelReduction::update_friction(World& world, const ToolInstance& side, double H,
+bool ModelReduction::update_friction(const CoupledTool& tool, double H,
                                      const std::vector<ReducedSample>& samples,
                                      const std::vector<ReducedTangent>& tangents) {
   const StepResponses& x = *responses_;
-  const Mat3 R = side.exchanged.pose.rotation.toRotationMatrix();
-  const Twist& v = side.exchanged.twist;
+  const Mat3 R = tool.motion.pose.rotation.toRotationMatrix();
+  const Twist& v = tool.motion.twist;
   VecX load = x.X.transpose() * x.loads.rightCols<1>();
   for (std::size_t j = 0; j < samples.size(); ++j) {
     const ReducedSample& s = samples[j];
@@ -412,51 +281,52 @@ bool ModelReduction::update_friction(World& world, const ToolInstance& side, dou
         push;
   }
   const VecX change = x.X * x.work.completeOrthogonalDecomposition().solve(load);
-  contact::FrameStep tool{.frame = side.frame_index};
-  tool.moved << H * v.angular, H * v.linear;
-  return world.contact->improve_step(world.state.view(), x.s + H * change, x.w + change, tool, error_);
+  contact::FrameStep step{.frame = tool.frame};
+  step.moved = H * stacked(v);
+  return tool.contact.improve_step(tool.state.view(), x.s + H * change, x.w + change, step, options_.error);
 }
 
 /// Computes X.  @param samples  renumbers their nodes and sets their velocities  @return false if there is no
 /// X
-bool ModelReduction::answer(World& world, ToolInstance& side, double H, std::vector<ReducedSample>& samples,
+bool ModelReduction::answer(const CoupledTool& tool, double H, std::vector<ReducedSample>& samples,
                             const std::vector<ReducedTangent>& tangents) {
   StepResponses& x = *responses_;
   x.nodes = number_nodes(samples);
   for (ReducedSample& sample : samples)
     sample.velocity = moved_by(
         sample, [&](int k) { return Vec3(x.s.segment<3>(3 * x.nodes[static_cast<std::size_t>(k)]) / H); });
-  world.system.force(world.state.view(), x.f);
-  x.patterns = load_patterns(world, side, samples, tangents, x.nodes.size(), H, kModes - 1);
+  tool.system.force(tool.state.view(), x.f);
+  x.patterns =
+      load_patterns(tool.motion, options_.has_friction, samples, tangents, x.nodes.size(), H, kModes - 1);
   x.error_bound = 0.0;
-  return iterate(world, H, x) || factor(world, side, H, x);
+  return iterate(tool, H, x) || factorise(tool, H, x);
 }
 
-bool ModelReduction::reduce(World& world, ToolInstance& side, double H, ReducedContactModel& out) {
-  const dynamics::StateView view = world.state.view();
+bool ModelReduction::reduce(const CoupledTool& tool, double H, ReducedContactModel& out) {
+  const dynamics::StateView view = tool.state.view();
   out = {};
-  out.time = world.state.time();
+  out.time = tool.state.time();
   std::vector<ReducedTangent> tangents;
-  std::vector<ReducedSample> samples = world.contact->reduced_samples(view, side.frame_index, &tangents);
+  std::vector<ReducedSample> samples = tool.contact.reduced_samples(view, tool.frame, &tangents);
   if (samples.empty()) return true;
   out.samples = static_cast<int>(std::count_if(samples.begin(), samples.end(), presses));
-  const contact::SecantTangents whatever_steps_have(*world.contact);
+  const contact::SecantTangents whatever_steps_have(tool.contact);
   StepResponses& x = *responses_;
   x.still = still_of(samples);
-  known_motion(world, H, x.s, x.w);
-  x.rate = rate_by_other_tools(world, side);
-  const FrictionOfPeriod friction(*world.contact, view);
-  if (friction.has_friction) samples = world.contact->reduced_samples(view, side.frame_index, &tangents);
-  bool exchanged = answer(world, side, H, samples, tangents);
-  while (exchanged && friction.has_friction && !update_friction(world, side, H, samples, tangents)) {
+  known_motion(tool.system, tool.state, H, x.s, x.w);
+  x.rate = rate_by_other_tools(tool);
+  const FrictionOfPeriod friction(tool.contact, view);
+  if (friction.has_friction) samples = tool.contact.reduced_samples(view, tool.frame, &tangents);
+  bool exchanged = answer(tool, H, samples, tangents);
+  while (exchanged && friction.has_friction && !update_friction(tool, H, samples, tangents)) {
     counters::count("loop.touch_bases_anew");
-    samples = world.contact->reduced_samples(view, side.frame_index, &tangents);
-    exchanged = answer(world, side, H, samples, tangents);
+    samples = tool.contact.reduced_samples(view, tool.frame, &tangents);
+    exchanged = answer(tool, H, samples, tangents);
   }
   if (exchanged && x.exact)
     error_bound_.take_factored();
   else if (exchanged)
-    error_bound_.take(x.error_bound, error_);
+    error_bound_.take(x.error_bound, options_.error);
   const VecX change = rows_of(x.w, x.nodes) / H;
   Rows modes = Rows::Zero(kModes, change.size());
   MatX near;
@@ -469,12 +339,15 @@ bool ModelReduction::reduce(World& world, ToolInstance& side, double H, ReducedC
   }
   if (exchanged && x.X.cols() > 0) {
     const SampleSums sums = sum_of(samples, tangents, near, change);
-    const Reduced r = reduced(world, side, H, x.X, x.exact ? nullptr : &x.work, x.product, sums,
-                              damping_of(world, x.nodes[static_cast<std::size_t>(samples.front().node[0])]));
-    const MatX S = modes_of(r.M, r.K, r.D, x.exact ? kDependenceTolerance : kAlikeSingle, out);
+    const ReductionOptions::Damping d = damping_of(
+        tool.state.layout(), options_.damping, x.nodes[static_cast<std::size_t>(samples.front().node[0])]);
+    const MatX S = x.exact ? modes_of(reduce_exactly(tool, x.X, sums, x.product), kDependenceTolerance, out)
+                           : modes_of(reduce_by_work(tool, H, x.X, x.work, sums, options_.others_touch,
+                                                     d.mass, d.stiffness, x.product),
+                                      kAlikeSingle, out);
     if (!x.w.isZero(0.0)) {
       VecX inertia;
-      world.system.apply_mass(view, x.w / H, inertia);
+      tool.system.apply_mass(view, x.w / H, inertia);
       x.f -= inertia;
     }
     const Eigen::Index kept = S.cols();
@@ -485,7 +358,7 @@ bool ModelReduction::reduce(World& world, ToolInstance& side, double H, ReducedC
       Eigen::Map<VecX>(out.force_rate.data(), kept) += S.transpose() * (x.X.transpose() * x.rate);
     modes.topRows(kept).noalias() = S.transpose() * near.transpose();
   }
-  contact::gather_points(samples, side.exchanged.pose, modes, out);
+  contact::gather_points(samples, tool.motion.pose, modes, out);
   return exchanged;
 }
 

@@ -47,15 +47,10 @@ std::vector<int> number_nodes(std::vector<ReducedSample>& samples) {
   return out;
 }
 
-MatX load_patterns(const World& world, const ToolInstance& side, const std::vector<ReducedSample>& samples,
-                   const std::vector<ReducedTangent>& tangents, std::size_t nodes, double H,
-                   Eigen::Index most) {
-  const ExchangedTool& tool = side.exchanged;
+MatX load_patterns(const dynamics::RigidMotion& tool, bool friction,
+                   const std::vector<ReducedSample>& samples, const std::vector<ReducedTangent>& tangents,
+                   std::size_t nodes, double H, Eigen::Index most) {
   const bool pressed = std::any_of(samples.begin(), samples.end(), presses);
-  const auto& contacts = world.description.contacts;
-  const bool friction = std::any_of(contacts.begin(), contacts.end(), [&](const ContactSpec& c) {
-    return names(c, side.name) && c.friction > 0.0;
-  });
   const Mat3 R = tool.pose.rotation.toRotationMatrix();
   const VecX depths = coming_depths(samples, tool.twist, R, H);
   bool more = !pressed;

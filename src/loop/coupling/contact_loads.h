@@ -1,6 +1,6 @@
 #pragma once
 #include "contact/reduced_contact_model.h"
-#include "tool_instance.h"
+#include "palpate/dynamics/rigid_body.h"
 
 namespace palpate::loop {
 
@@ -15,11 +15,6 @@ auto moved_by(const contact::ReducedSample& sample, const auto& x) {
 /// Returns whether a sample exerts a force.
 inline bool presses(const contact::ReducedSample& sample) { return sample.held || sample.gap < 0.0; }
 
-/// Returns whether a contact refers to that tool.
-inline bool names(const ContactSpec& contact, const std::string& tool) {
-  return contact.first == tool || contact.second == tool;
-}
-
 /// Returns the nodes of all samples, each once, ascending, and renumbers the samples' nodes by their index in
 /// this list.
 std::vector<int> number_nodes(std::vector<contact::ReducedSample>& samples);
@@ -29,10 +24,13 @@ std::vector<int> number_nodes(std::vector<contact::ReducedSample>& samples);
 /// down touches within the period), the forces of all samples that will press then. At most six columns
 /// (twelve with friction) and three for the latter; fewer if columns are linearly dependent, as for a
 /// rotating spherical tool.
-/// @param nodes    number of nodes in the samples' numbering
-/// @param most     largest number of columns
+/// @param tool      motion of the tool at the exchange
+/// @param friction  whether a contact of the tool has friction
+/// @param nodes     number of nodes in the samples' numbering
+/// @param H         length of the period [s]
+/// @param most      largest number of columns
 /// @return  3 nodes x columns
-MatX load_patterns(const World& world, const ToolInstance& side,
+MatX load_patterns(const dynamics::RigidMotion& tool, bool friction,
                    const std::vector<contact::ReducedSample>& samples,
                    const std::vector<contact::ReducedTangent>& tangents, std::size_t nodes, double H,
                    Eigen::Index most);

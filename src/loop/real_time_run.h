@@ -1,0 +1,10 @@
+#pragma once
+#include "body_loop.h"
+
+namespace palpate::loop {
+
+/// Runs both sides to the end by the wall clock, the ticks in a thread of their own.  @throws Error as
+/// check_clock()
+void run_in_real_time(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result);
+
+}  // namespace palpate::loop
