@@ -7,7 +7,6 @@
 #include "clock_figures.h"
 #include "loop/describe_fallbacks.h"
 #include "loop/summary.h"
-#include "palpate/core/log.h"
 #include "palpate/scene/hands.h"
 
 namespace palpate::cli {
@@ -90,36 +89,6 @@ void add_port(const loop::PortEnergy& port, Remarks& out) {
 }
 
 }  // namespace
-
-// The thickness of objects is computed only when an overlap grows.
-void OverlapWatch::look(const loop::World& world, double t) {
-  if (!world.contact) return;
-  const std::vector<double> deepest = world.contact->deepest();
-  if (most_.empty()) most_.assign(deepest.size(), 0.0);
-  for (std::size_t i = 0; i < deepest.size(); ++i) {
-    if (!(deepest[i] > most_[i])) continue;
-    const loop::Overlap o = loop::overlaps_of(world)[i];
-    most_[i] = o.half_width_m;
-    if (!o.too_deep()) continue;
-    most_[i] = HUGE_VAL;
-    if (o.of_itself) {
-      log::warn(
-          "contact {} at t = {:.6g} s: penetration reached {:.3g} mm; self-contact detects overlaps up to "
-          "{:.3g} mm, and deeper points are not separated. Increase contact.stiffness_pa_m, or press less "
-          "deeply",
-          o.pair, t, 1e3 * o.deepest_m, 1e3 * o.half_width_m / loop::Overlap::kOwnShare);
-      continue;
-    }
-    log::warn(
-        "contact {} at t = {:.6g} s: penetration reached {:.3g} mm, more than half the thickness of the "
-        "thinner side ({:.3g} mm): {}",
-        o.pair, t, 1e3 * o.deepest_m, 2e3 * o.half_width_m,
-        t == 0.0 ? "bodies that overlap at the start are pushed out at the nearest side, with the full force "
-                   "at once. Separate the two in the scene"
-                 : "the two may pass through each other. Increase contact.stiffness_pa_m, decrease "
-                   "body.youngs_modulus_pa, or press less deeply");
-  }
-}
 
 std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result) {
   Remarks out;

@@ -19,6 +19,7 @@
 #include "report/run_report.h"
 #include "run_command_line.h"
 #include "run_files.h"
+#include "run_remarks.h"
 
 namespace palpate::cli {
 namespace {
@@ -119,7 +120,7 @@ void RunSession::open_folder() {
 }
 
 void RunSession::attach_observers(const PictureOptions& options) {
-  observers_ = {&ran_.figures, &overlaps_};
+  observers_ = {&ran_.figures, &penetration_warning_};
   pictures_.emplace(*world_, arguments_, options, folder_);
   for (loop::Observer* observer : pictures_->observers()) observers_.push_back(observer);
   if (description_.record) {

@@ -7,11 +7,11 @@
 
 #include "checkpoints.h"
 #include "loop/haptic_memory.h"
+#include "loop/penetration_warning.h"
 #include "loop/trace.h"
 #include "palpate/loop/recorder.h"
 #include "run.h"
 #include "run_pictures.h"
-#include "run_remarks.h"
 #include "run_summary.h"
 #include "store/result_folder.h"
 
@@ -53,7 +53,7 @@ class RunSession {
   RunOutput ran_;
   RunIdentity identity_;
   store::ResultFolder lock_;
-  OverlapWatch overlaps_;
+  loop::PenetrationWarning penetration_warning_;
   std::optional<RunPictures> pictures_;
   std::optional<loop::Recorder> recorder_;
   std::optional<loop::TraceRecorder> trace_;
