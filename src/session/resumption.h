@@ -1,0 +1,37 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "palpate/scene/description.h"
+#include "session/checkpoint_files.h"
+#include "store/checkpoint_file.h"
+
+namespace palpate::session {
+
+/// Run to resume from its checkpoint.
+struct Resumption {
+  std::string folder;
+  RunIdentity identity;
+  store::Checkpoint checkpoint;
+  loop::Resumed from;  ///< State of the loop, decoded from `checkpoint`
+
+  /// Returns the scene of the run as arguments, its file by its absolute path.
+  /// @throws Error if the file no longer exists
+  SceneArguments scene() const;
+  /// Checks that a scene, read again, is the scene of the run.  @throws Error if it has changed
+  void check_scene(const scene::Description& description) const;
+};
+
+/// Returns whether the run in a folder has finished, and nothing is left to resume.
+/// @throws Error if there is no such folder
+bool is_finished_run(const std::string& folder);
+
+/// Reads the checkpoint of a run.
+/// @throws Error if there is none, or if another version of palpate wrote it
+Resumption read_resumption(const std::string& folder);
+
+/// Returns the differences between the processor on which the run began and this one, which change the
+/// rounding of the rest of the run: one line per difference.
+std::vector<std::string> processor_differences(const Resumption& resumption);
+
+}  // namespace palpate::session
