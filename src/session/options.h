@@ -9,6 +9,9 @@ struct SceneArguments {
   std::string scene;                   ///< Path or name; empty: made from a text, which checkpoints keep
   std::vector<std::string> overrides;  ///< Changes of keys: "body.0.youngs_modulus_pa=1e5"
   std::string integrator;              ///< Integrator that replaces the one of the scene; empty: unchanged
+
+  /// Returns all changes as overrides.
+  std::vector<std::string> changes() const;
 };
 
 /// Options of a run. Messages about them name the options of `palpate run`, which have the same names.

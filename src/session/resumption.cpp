@@ -5,26 +5,11 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/loop/load.h"
 #include "store/provenance.h"
 #include "store/summary.h"
 
 namespace palpate::session {
-
-SceneArguments Resumption::scene() const {
-  SceneArguments out = identity.options.scene;
-  out.scene = identity.scene_path;
-  if (!std::filesystem::exists(out.scene))
-    fail("{}: the scene of this run no longer exists; restore it, or start a new run", out.scene);
-  return out;
-}
-
-void Resumption::check_scene(const scene::Description& description) const {
-  if (description.source != checkpoint.scene_source)
-    fail(
-        "{}: the scene has changed since the run began, so the recorded data do not belong to it; restore "
-        "the old scene, or run it again",
-        identity.scene_path);
-}
 
 bool is_finished_run(const std::string& folder) {
   if (!std::filesystem::is_directory(folder)) fail("{}: no such folder; give the folder of a run", folder);
@@ -48,6 +33,24 @@ Resumption read_resumption(const std::string& folder) {
         path, out.checkpoint.version, ours);
   out.from.archive("command", out.identity);
   return out;
+}
+
+scene::Description scene_to_resume(const Resumption& resumption,
+                                   const std::function<scene::Description(const SceneArguments&)>& load) {
+  const std::string& text = resumption.checkpoint.scene_source;
+  SceneArguments scene = resumption.identity.options.scene;
+  const bool has_file = !scene.scene.empty();
+  scene.scene = resumption.identity.scene_path;
+  if (!has_file) return loop::parse(text, scene.scene);
+  if (!std::filesystem::exists(scene.scene))
+    fail("{}: the scene of this run no longer exists; restore it, or start a new run", scene.scene);
+  scene::Description description = load(scene);
+  if (description.source != text)
+    fail(
+        "{}: the scene has changed since the run began, so the recorded data do not belong to it; restore "
+        "the old scene, or run it again",
+        scene.scene);
+  return description;
 }
 
 std::vector<std::string> processor_differences(const Resumption& resumption) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,6 @@ struct Resumption {
   RunIdentity identity;
   store::Checkpoint checkpoint;
   loop::Resumed from;  ///< State of the loop, decoded from `checkpoint`
-
-  /// Returns the scene of the run as arguments, its file by its absolute path.
-  /// @throws Error if the file no longer exists
-  SceneArguments scene() const;
-  /// Checks that a scene, read again, is the scene of the run.  @throws Error if it has changed
-  void check_scene(const scene::Description& description) const;
 };
 
 /// Returns whether the run in a folder has finished, and nothing is left to resume.
@@ -29,6 +24,13 @@ bool is_finished_run(const std::string& folder);
 /// Reads the checkpoint of a run.
 /// @throws Error if there is none, or if another version of palpate wrote it
 Resumption read_resumption(const std::string& folder);
+
+/// Reads the scene of a run again, by `load` from its file, or from the checkpoint if it was made from a
+/// text.
+/// @param load  function that loads and checks a scene, given by the absolute path of its file
+/// @throws Error if the file no longer exists, or if the scene has changed since the run began
+scene::Description scene_to_resume(const Resumption& resumption,
+                                   const std::function<scene::Description(const SceneArguments&)>& load);
 
 /// Returns the differences between the processor on which the run began and this one, which change the
 /// rounding of the rest of the run: one line per difference.
