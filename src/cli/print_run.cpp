@@ -81,23 +81,23 @@ void print_outcome(const loop::World& world, const session::RunOutput& ran, cons
   if (options.checkpoint_every_s > 0.0) print_checkpoints(ran.checkpoints, options.checkpoint_every_s);
 }
 
-void print_against_monolithic(const scene::Description& description, const session::RunOutput& ran) {
+void print_against_monolithic(const loop::World& world, const session::RunOutput& ran) {
   if (!ran.against) return;
-  for (const std::string& line : session::monolithic_remarks(description, *ran.against))
+  for (const std::string& line : session::monolithic_remarks(world.description, *ran.against))
     fmt::print("{}\n", line);
 }
 
-void print_files(const scene::Description& description, const session::RunOutput& ran) {
+void print_files(const loop::World& world, const session::RunOutput& ran) {
   if (ran.folder.empty()) {
     fmt::print("no file was written, because the scene has no [record]\n");
     return;
   }
-  fmt::print("in {}: {}\n", ran.folder, fmt::join(session::run_files(description, ran.folder), ", "));
-  if (!description.record)
+  fmt::print("in {}: {}\n", ran.folder, fmt::join(session::run_files(world.description, ran.folder), ", "));
+  if (!world.description.record)
     fmt::print(
         "states{} were not written, because the scene has no [record]; --set record.states=true writes "
         "them\n",
-        description.tool ? " and the force over time" : "");
+        world.description.tool ? " and the force over time" : "");
 }
 
 void print_frames(const session::DrawnFrames& frames) {

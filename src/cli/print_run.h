@@ -10,10 +10,10 @@ namespace palpate::cli {
 void print_outcome(const loop::World& world, const session::RunOutput& ran, const session::Options& options);
 
 /// Prints the error of the wrench on each hand against the monolithic solution, if it was computed.
-void print_against_monolithic(const scene::Description& description, const session::RunOutput& ran);
+void print_against_monolithic(const loop::World& world, const session::RunOutput& ran);
 
 /// Prints the names of the files, and why states or all files were not written.
-void print_files(const scene::Description& description, const session::RunOutput& ran);
+void print_files(const loop::World& world, const session::RunOutput& ran);
 
 /// Prints where the frames of a run are, and how to make a movie of them.
 void print_frames(const session::DrawnFrames& frames);

@@ -36,9 +36,9 @@ int run_to_end(const session::Options& options, const scene::Description& descri
   with_progress("running " + short_name(description), run, &RunSession::simulate);
   print_outcome(run.world(), run.output(), options);
   with_progress("computing the monolithic solution", run, &RunSession::compare_with_monolithic);
-  print_against_monolithic(description, run.output());
+  print_against_monolithic(run.world(), run.output());
   run.write_results();
-  print_files(description, run.output());
+  print_files(run.world(), run.output());
   with_progress("drawing frames", run, &RunSession::draw_frames);
   if (run.output().frames) print_frames(*run.output().frames);
   if (const std::string why = run.failure(); !why.empty()) fail("{}", why);
@@ -49,11 +49,7 @@ int run_to_end(const session::Options& options, const scene::Description& descri
 }  // namespace
 
 int run(const session::Options& options, MissingOutputs& missing) {
-  scene::Description description = scene_of(options.scene);
-  // the motion of a hand in real time cannot be repeated: it is recorded, so that it can be replayed
-  if (options.real_time && description.tool && !description.record)
-    description.record = RecordSpec{.states = false};
-  return run_to_end(options, description, missing, nullptr);
+  return run_to_end(options, scene_of(options.scene), missing, nullptr);
 }
 
 int resume_run(session::Resumption& resumption, const scene::Description& description,

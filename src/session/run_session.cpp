@@ -12,10 +12,21 @@
 
 namespace palpate::session {
 namespace fs = std::filesystem;
+namespace {
+
+/// Returns the scene with what has to be recorded: the motion of a hand in real time cannot be repeated, and
+/// is recorded, so that it can be replayed.
+scene::Description with_record(scene::Description description, const Options& options) {
+  if (options.real_time && description.tool && !description.record)
+    description.record = RecordSpec{.states = false};
+  return description;
+}
+
+}  // namespace
 
 RunSession::RunSession(const Options& options, const scene::Description& description, Resumption* resumption)
     : options_(options),
-      description_(description),
+      description_(with_record(description, options)),
       resumption_(resumption),
       has_checkpoints_(options.checkpoint_every_s > 0.0 || resumption),
       passivity_(device::PassivityController::mode_of(options.passivity)) {
