@@ -18,7 +18,7 @@ struct DemoArguments {
 
 int demo(const DemoArguments& arguments) {
   fmt::print("A tool on the virtual spring of a hand presses a soft ball on a plane.\n\n");
-  RunArguments touch;
+  session::Options touch;
   touch.scene.scene = "press-ball";
   touch.folder = arguments.folder;
   touch.picture = true;

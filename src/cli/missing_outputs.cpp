@@ -2,37 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <map>
 
 #include "cli/stop.h"
 
 namespace palpate::cli {
-namespace {
-
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-}  // namespace
-
-void MissingOutputs::add(const std::string& what, const std::string& why) {
-  things_.push_back(fmt::format("{} ({})", what, first_line(why)));
-}
-
-void MissingOutputs::add(const report::RunReport& report) {
-  std::map<std::string, std::vector<std::string>> captions;  // by reason, which captions often share
-  for (const auto& figure : report.missing_figures)
-    captions[first_line(figure.why)].push_back(first_line(figure.caption));
-  for (const auto& [why, figures] : captions)
-    add(figures.size() == 1 ? fmt::format("figure \"{}\" in {}", figures[0], report.page.string())
-                            : fmt::format("{} figures in {}", figures.size(), report.page.string()),
-        why);
-}
 
 int MissingOutputs::close(int status) const {
-  if (things_.empty() || status == kExitStopped) return status;
+  if (empty() || status == kExitStopped) return status;
   std::fflush(stdout);  // keeps the message the last line of both streams
-  fmt::print(stderr, "palpate: incomplete: missing {}\n", fmt::join(things_, "; "));
+  fmt::print(stderr, "palpate: incomplete: missing {}\n", fmt::join(outputs(), "; "));
   return status == 0 ? kExitIncomplete : status;
 }
 

@@ -1,40 +1,15 @@
 #include "recorded_scene.h"
 
 #include "model_cache.h"
-#include "palpate/core/error.h"
-#include "palpate/loop/load.h"
-#include "store/summary.h"
+#include "session/recorded_scene.h"
 
 namespace palpate::cli {
-namespace {
-
-/// Returns the original path of the scene of a run; for an interrupted run, which has no summary, the path of
-/// its scene.toml.
-std::string path_of_scene(const std::filesystem::path& folder) {
-  if (std::filesystem::exists(folder / "summary.json")) {
-    store::Summary summary = store::read_summary((folder / "summary.json").string());
-    for (const auto& [name, value] : summary.section("options").values)
-      if (const auto* path = std::get_if<std::string>(&value); path && name == "scene_path") return *path;
-  }
-  return (folder / "scene.toml").string();
-}
-
-}  // namespace
 
 scene::Description recorded_scene(const std::string& text, const std::filesystem::path& folder,
                                   const std::vector<std::string>& overrides) {
-  const std::string path = path_of_scene(folder);
-  scene::Description d;
-  try {
-    d = loop::parse(text, path, overrides);
-  } catch (const Error& e) {
-    // line numbers refer to the text that the run kept; the original scene file may have changed since
-    if (std::string_view(e.what()).starts_with(path))
-      fail("{}{}", (folder / "scene.toml").string(), e.what() + path.size());
-    throw;
-  }
-  make_missing_models(d);
-  return d;
+  scene::Description description = session::recorded_scene(text, folder, overrides);
+  make_missing_models(description);
+  return description;
 }
 
 }  // namespace palpate::cli

@@ -7,12 +7,8 @@
 
 namespace palpate::cli {
 
-/// Returns the scene of a run, parsed from the text that the run kept; models of the scene that are missing
-/// from the cache are built.
-/// @param text       text of the scene
-/// @param folder     folder of the run: relative paths start at the folder of the original scene file, or
-/// else here
-/// @param overrides  KEY=VALUE
+/// Returns the scene of a run, as session::recorded_scene(); models of the scene that are missing from the
+/// cache are built.
 scene::Description recorded_scene(const std::string& text, const std::filesystem::path& folder,
                                   const std::vector<std::string>& overrides = {});
 

@@ -20,7 +20,7 @@
 #include "palpate/loop/recorder.h"
 #include "palpate/scene/hands.h"
 #include "recorded_scene.h"
-#include "run_files.h"
+#include "session/run_files.h"
 #include "store/atomic_file.h"
 #include "store/result_folder.h"
 
@@ -100,7 +100,7 @@ int replay(const ReplayArguments& arguments) {
   if (std::filesystem::equivalent(folder, arguments.run, none))
     fail("{}: the replay would overwrite the run that it replays; choose another folder with -o DIR", folder);
   const store::ResultFolder mine(folder);
-  remove_run_files(description, folder);
+  session::remove_run_files(description, folder);
   Ticks ticks(records.size());
   loop::RunFigures figures;
   loop::RunResult result;

@@ -1,27 +1,60 @@
 #include "run.h"
 
-#include "checkpoints.h"
+#include <fmt/format.h>
+
+#include <cstdio>
+
 #include "cli/missing_outputs.h"
+#include "cli/progress.h"
 #include "cli/scene_of.h"
-#include "run_session.h"
+#include "cli/stop.h"
+#include "palpate/core/error.h"
+#include "print_run.h"
+#include "session/run_session.h"
 
 namespace palpate::cli {
+namespace {
 
-int run(const RunArguments& arguments) {
-  MissingOutputs missing;
-  return missing.close(run(arguments, missing));
+/// Calls one step of a run while a line on the terminal shows its progress.
+void with_progress(const std::string& what, session::RunSession& run,
+                   void (session::RunSession::*step)(const session::Callbacks&)) {
+  Progress progress(what);
+  session::Callbacks callbacks;
+  callbacks.progress = [&progress](double fraction) { progress(fraction); };
+  callbacks.stop = &stop_flag();
+  callbacks.waiting = [](const std::string& awaited) {
+    fmt::print("waiting for {}\n", awaited);
+    std::fflush(stdout);
+  };
+  (run.*step)(callbacks);
 }
 
-int run(const RunArguments& arguments, MissingOutputs& missing) {
-  scene::Description description = scene_of(arguments.scene);
-  // the motion of a hand in real time cannot be repeated: it is recorded, so that it can be replayed
-  if (arguments.real_time && description.tool && !description.record)
-    description.record = RecordSpec{.states = false};
-  return RunSession(arguments, description, missing, nullptr).run();
+int run_to_end(const session::Options& options, const scene::Description& description,
+               MissingOutputs& missing, session::Resumption* resumption) {
+  using session::RunSession;
+  RunSession run(options, description, resumption);
+  with_progress("running " + short_name(description), run, &RunSession::simulate);
+  print_outcome(run.world(), run.output(), options);
+  with_progress("computing the monolithic solution", run, &RunSession::compare_with_monolithic);
+  print_against_monolithic(run.world(), run.output());
+  run.write_results();
+  print_files(run.world(), run.output());
+  with_progress("drawing frames", run, &RunSession::draw_frames);
+  if (run.output().frames) print_frames(*run.output().frames);
+  if (const std::string why = run.failure(); !why.empty()) fail("{}", why);
+  missing.add(run.output().missing);
+  return print_stop(run.output()) ? kExitStopped : 0;
 }
 
-int resume_run(Resumption& resumption, const scene::Description& description, MissingOutputs& missing) {
-  return RunSession(resumption.identity.arguments, description, missing, &resumption).run();
+}  // namespace
+
+int run(const session::Options& options, MissingOutputs& missing) {
+  return run_to_end(options, scene_of(options.scene), missing, nullptr);
+}
+
+int resume_run(session::Resumption& resumption, const scene::Description& description,
+               MissingOutputs& missing) {
+  return run_to_end(resumption.identity.options, description, missing, &resumption);
 }
 
 }  // namespace palpate::cli

@@ -1,33 +1,18 @@
 #pragma once
-#include <string>
-
-#include "cli/scene_of.h"
+#include "session/options.h"
+#include "session/resumption.h"
 
 namespace palpate::cli {
 
 class MissingOutputs;
 
-/// Arguments of `palpate run`.
-struct RunArguments {
-  SceneArguments scene;
-  std::string folder;       ///< Output folder; empty: out/NAME
-  double duration_s = 0.0;  ///< Simulated time [s]; 0: the duration of the scene
-  bool picture = false, report = false, trace = false, real_time = false;
-  bool contact_picture = false, frames = false;
-  double frames_per_s = 0.0;           ///< Frames per second of simulated time; 0: as the scene records
-  std::string movie;                   ///< Movie file; empty: none
-  double fps = 0.0, slow = 1.0;        ///< Playback of the movie; fps = 0: 25, or as the loop allows
-  std::string size;                    ///< Size of frames and movie, "640x480"; empty: default size
-  std::string shade = "displacement";  ///< Colours of pictures; or "stress", "penetration"
-  std::string passivity = "off";       ///< Or "observe", "control"
-  bool against_monolithic = false;     ///< Compares with the monolithic solution
-  double checkpoint_every_s = 0.0;     ///< Simulated time between checkpoints [s]; 0: none
-};
+/// Loads a scene, runs it, and keeps what it records.
+/// @param missing  receives outputs that the run could not deliver; the caller reports and closes it
+/// @return the exit status  @throws Error for invalid input, and for a run that failed
+int run(const session::Options& options, MissingOutputs& missing);
 
-/// Runs a scene and keeps what it records.  @return the exit status  @throws Error for invalid input
-int run(const RunArguments& arguments);
-
-/// Runs as a part of another command, which reports and closes `missing`.
-int run(const RunArguments& arguments, MissingOutputs& missing);
+/// Resumes a run of that scene to its end, as run().
+int resume_run(session::Resumption& resumption, const scene::Description& description,
+               MissingOutputs& missing);
 
 }  // namespace palpate::cli

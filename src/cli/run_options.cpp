@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "cli/missing_outputs.h"
 #include "cli/option_checks.h"
 #include "cli/program.h"
 #include "commands.h"
@@ -34,77 +35,77 @@ prints the ffmpeg command that converts --frames, with their rate:
 Both are drawn after the run.  Ctrl-C ends the run, and the frames up to then are drawn; a second Ctrl-C ends
 the drawing.  The frames written until then, and a movie of them, are complete.)";
 
-void add_movie_options(CLI::App& command, RunArguments& arguments) {
+void add_movie_options(CLI::App& command, session::Options& options) {
   command
-      .add_option("--movie", arguments.movie,
+      .add_option("--movie", options.movie,
                   "also a movie of the run, with the force below: .webm (by ffmpeg), .png or .apng (animated "
                   "PNG, without ffmpeg)")
       ->type_name("FILE");
   command
-      .add_option("--fps", arguments.fps,
+      .add_option("--fps", options.fps,
                   "frames per second of playback, in whole periods of the loop; default: 25, or the nearest "
                   "possible rate")
       ->type_name("NUMBER")
       ->check(positive);
-  command.add_option("--slow", arguments.slow, "slow the movie down by FACTOR")
+  command.add_option("--slow", options.slow, "slow the movie down by FACTOR")
       ->type_name("FACTOR")
       ->check(positive)
       ->capture_default_str();
   command
-      .add_option("--size", arguments.size,
+      .add_option("--size", options.size,
                   "size of frames and movie, force included [pixels]; default 960x870")
       ->type_name("WIDTHxHEIGHT");
 }
 
-void add_picture_options(CLI::App& command, RunArguments& arguments) {
-  command.add_flag("--picture", arguments.picture,
+void add_picture_options(CLI::App& command, session::Options& options) {
+  command.add_flag("--picture", options.picture,
                    "also a picture at the largest force, or at the end without a tool (picture.png)");
   command.add_flag(
-      "--contact-picture", arguments.contact_picture,
+      "--contact-picture", options.contact_picture,
       "also two pictures of the largest contact force: proxies in contact, penetration of the "
       "skin and its colliding vertices (contact.png); penetration over the pixels of its deepest "
       "region (depth.png)");
-  command.add_flag("--frames", arguments.frames,
+  command.add_flag("--frames", options.frames,
                    "also numbered pictures over the whole run, with one camera and one range of colours, the "
                    "force below (frames/0000.png ...)");
   command
-      .add_option("--frames-per-s", arguments.frames_per_s,
+      .add_option("--frames-per-s", options.frames_per_s,
                   "frames per second of simulated time, in whole periods of the loop; default: one per "
                   "record.state_period_s, else one per period")
       ->type_name("NUMBER")
       ->check(CLI::PositiveNumber);
-  add_movie_options(command, arguments);
+  add_movie_options(command, options);
   command
-      .add_option("--shade", arguments.shade,
+      .add_option("--shade", options.shade,
                   "quantity that colours picture, frames and movie: displacement, stress or penetration")
       ->type_name("NAME")
       ->capture_default_str();
 }
 
-void add_loop_options(CLI::App& command, RunArguments& arguments) {
-  command.add_flag("--report", arguments.report, "also an HTML page (report.html)");
+void add_loop_options(CLI::App& command, session::Options& options) {
+  command.add_flag("--report", options.report, "also an HTML page (report.html)");
   command
       .add_option(
-          "--passivity", arguments.passivity,
+          "--passivity", options.passivity,
           "observe: compute the energy at the device's port from the force of its motors; control: also "
           "reduce forces that would return more energy than the hand has put in; off")
       ->type_name("MODE")
       ->check(CLI::IsMember({"observe", "control", "off"}))
       ->capture_default_str();
   command.add_flag(
-      "--realtime", arguments.real_time,
+      "--realtime", options.real_time,
       "ticks paced by the system clock in a separate thread; prints their lateness, and records it "
       "per tick (clock.csv; a plot in the report)");
   command.add_flag(
-      "--trace", arguments.trace,
+      "--trace", options.trace,
       "also every attempted step, and the reason for rejection (trace.csv; a plot in the report)");
   command.add_flag(
-      "--against-monolithic", arguments.against_monolithic,
+      "--against-monolithic", options.against_monolithic,
       "then also the monolithic solution (tool and bodies as one system) under the same hand, with the "
       "settings of [compare.haptic]; prints and records the error of force and torque");
   command
       .add_option(
-          "--checkpoint-every", arguments.checkpoint_every_s,
+          "--checkpoint-every", options.checkpoint_every_s,
           "simulated time between checkpoints (checkpoint.h5), from which `palpate resume` continues; the "
           "scene is assembled anew at each, and the cost is printed [s]")
       ->type_name("SECONDS")
@@ -115,18 +116,21 @@ void add_loop_options(CLI::App& command, RunArguments& arguments) {
 
 void add_run(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("run", "run a scene and record its results");
-  auto arguments = std::make_shared<RunArguments>();
-  add_scene(*command, arguments->scene, true);
-  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/SCENE")
+  auto options = std::make_shared<session::Options>();
+  add_scene(*command, options->scene, true);
+  command->add_option("-o,--output", options->folder, "folder for the results; default out/SCENE")
       ->type_name("DIR");
-  command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")
+  command->add_option("--duration-s", options->duration_s, "simulated time, instead of the scene's [s]")
       ->type_name("SECONDS")
       ->check(duration);
-  add_picture_options(*command, *arguments);
-  add_loop_options(*command, *arguments);
+  add_picture_options(*command, *options);
+  add_loop_options(*command, *options);
   command->footer(kRunExamples);
-  command->callback([arguments, &invocation] {
-    invocation.action = [arguments] { return run(*arguments); };
+  command->callback([options, &invocation] {
+    invocation.action = [options] {
+      MissingOutputs missing;
+      return missing.close(run(*options, missing));
+    };
     invocation.factorises = true;
   });
 }

@@ -11,10 +11,7 @@
 namespace palpate::cli {
 
 scene::Description scene_of(const SceneArguments& arguments) {
-  std::vector<std::string> overrides = arguments.overrides;
-  if (!arguments.integrator.empty())
-    overrides.push_back(fmt::format("integrator.name=\"{}\"", arguments.integrator));
-  scene::Description description = loop::load(find_scene(arguments.scene), overrides);
+  scene::Description description = loop::load(find_scene(arguments.scene), arguments.changes());
   for (const std::string& key : description.not_carried_over)
     fmt::print(stderr,
                "palpate: {} of the scene is ignored: the selection by --integrator or --set does not use "

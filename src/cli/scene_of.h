@@ -1,17 +1,12 @@
 #pragma once
 #include <string>
-#include <vector>
 
 #include "palpate/scene/description.h"
+#include "session/options.h"
 
 namespace palpate::cli {
 
-/// Scene argument of a command and the changes to the scene.
-struct SceneArguments {
-  std::string scene;                   ///< Path or name
-  std::vector<std::string> overrides;  ///< Changes of keys: "body.0.youngs_modulus_pa=1e5"
-  std::string integrator;              ///< Integrator that replaces the one of the scene; empty: unchanged
-};
+using session::SceneArguments;
 
 /// Finds, modifies and checks the scene of the command line.
 scene::Description scene_of(const SceneArguments& arguments);

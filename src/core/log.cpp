@@ -31,6 +31,10 @@ class Memory : public spdlog::sinks::base_sink<std::mutex> {
     const std::lock_guard lock(mutex_);
     return texts_;
   }
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    texts_.clear();
+  }
 
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
@@ -65,5 +69,9 @@ void configure(bool quiet, bool verbose) {
 }
 
 std::vector<std::string> warnings() { return memory() ? memory()->texts() : std::vector<std::string>{}; }
+
+void forget_warnings() {
+  if (memory()) memory()->clear();
+}
 
 }  // namespace palpate::log

@@ -9,6 +9,7 @@ void bind_body(pybind11::module_& module);
 void bind_hand(pybind11::module_& module);
 void bind_contact(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
+void bind_runs(pybind11::module_& module);
 void bind_studies(pybind11::module_& module);
 
 }  // namespace palpate::python

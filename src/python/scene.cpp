@@ -18,6 +18,7 @@ Scene Scene::load(const std::string& path) {
   out.path_ = path;
   out.description_ = loop::load(path);
   out.text_ = out.description_.source;
+  out.from_file_ = true;
   return out;
 }
 
@@ -34,7 +35,9 @@ Scene Scene::parse(const std::string& text, const std::string& path,
 void Scene::set(const std::vector<std::string>& more) {
   std::vector<std::string> changes = changes_;
   changes.insert(changes.end(), more.begin(), more.end());
-  *this = parse(text_, path_, changes);
+  Scene changed = parse(text_, path_, changes);
+  changed.from_file_ = from_file_;
+  *this = std::move(changed);
 }
 
 namespace {

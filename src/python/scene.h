@@ -21,10 +21,12 @@ class Scene {
   const std::string& text() const { return text_; }  ///< Text before changes.
   const std::vector<std::string>& changes() const { return changes_; }
   const scene::Description& description() const { return description_; }
+  bool is_from_file() const { return from_file_; }  ///< Whether the text is that of a file.
 
  private:
   std::string text_, path_;
   std::vector<std::string> changes_;
+  bool from_file_ = false;
   scene::Description description_;
 };
 

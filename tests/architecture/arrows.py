@@ -41,9 +41,10 @@ ALLOWED = {
     "study": ["core", "scene", "loop", "store"],
     "haptic_stability": ["core", "mesh", "device", "tool", "scene", "loop"],
     "report": ["core", "mesh", "store"],
+    "session": ["core", "scene", "store", "render", "loop", "compare", "report"],
     "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "study",
-            "haptic_stability", "report"],
-    "python": BELOW_LOOP + ["loop", "compare", "validation"],  # the module of `import palpate`
+            "haptic_stability", "report", "session"],
+    "python": BELOW_LOOP + ["loop", "compare", "session", "validation"],  # the module of `import palpate`
     "validation": BELOW_LOOP + ["loop", "compare", "report", "simbody"],  # the cases in validation/
     # validation/stability: the matrix, which assembles its cases from the parts, as validation does
     "stability": BELOW_LOOP + ["loop"],

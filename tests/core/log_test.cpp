@@ -15,4 +15,8 @@ TEST(Log, KeepsEveryWarningOnce) {
     log::warn("penetration reached {} mm", 11);
     EXPECT_EQ(log::warnings(), (std::vector<std::string>{"penetration reached 11 mm", "too fast"}));
   }
+  log::forget_warnings();
+  EXPECT_TRUE(log::warnings().empty());
+  log::warn("too fast");
+  EXPECT_EQ(log::warnings(), (std::vector<std::string>{"too fast"}));
 }

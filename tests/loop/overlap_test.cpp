@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "loop/penetration_warning.h"
 #include "loop/small_scenes.h"
 #include "loop/summary.h"
+#include "palpate/core/log.h"
 #include "palpate/loop/run.h"
 #include "summary_rows.h"
 
@@ -54,6 +56,28 @@ TEST(Overlap, StandsInTheSummary) {
   ASSERT_NE(summary_rows::find(row, "deepest_overlap_m"), nullptr);
   EXPECT_EQ(std::get<double>(*summary_rows::find(row, "deepest_overlap_m")),
             loop::overlaps_of(*world).at(0).deepest_m);
+}
+
+/// Warnings of a run with the tool at that depth.
+std::vector<std::string> warnings_at(double depth) {
+  log::configure(true, false);
+  scene::Description d = small_scenes::pressed_block(depth);
+  d.contacts[0].method = "distance";
+  const auto world = loop::assemble(d);
+  loop::PenetrationWarning warning;
+  loop::RunOptions options;
+  options.observers = {&warning};
+  EXPECT_TRUE(loop::run(*world, options).status.ok());
+  return log::warnings();
+}
+
+TEST(PenetrationWarning, IsGivenOnceAndNamesContactTimeAndDepth) {
+  EXPECT_TRUE(warnings_at(0.0095).empty());
+  const std::vector<std::string> given = warnings_at(0.0105);
+  ASSERT_EQ(given.size(), 1u);
+  EXPECT_TRUE(given[0].starts_with("contact block - tool at t = 0 s: penetration reached 10.")) << given[0];
+  EXPECT_NE(given[0].find("half the thickness of the thinner side (20 mm)"), std::string::npos) << given[0];
+  EXPECT_NE(given[0].find("overlap at the start"), std::string::npos) << given[0];
 }
 
 }  // namespace

@@ -16,7 +16,11 @@ using spdlog::warn;
 /// `stderr`; without the call, a user of the library gets spdlog's default logger.
 void configure(bool quiet, bool verbose);
 
-/// Returns the distinct warnings since configure(), in order of first occurrence; summary.json stores them.
+/// Returns the distinct warnings since configure() or forget_warnings(), in order of first occurrence;
+/// summary.json stores them.
 std::vector<std::string> warnings();
+
+/// Forgets the warnings of an earlier run of the process.
+void forget_warnings();
 
 }  // namespace palpate::log

@@ -1,5 +1,5 @@
 #pragma once
-#include "options.h"
+#include "model_arguments.h"
 
 namespace palpate::cli {
 

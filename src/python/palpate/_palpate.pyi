@@ -199,3 +199,26 @@ def validate(cases: Sequence[str]) -> list[Measurement]:
 
 def compare_into(folder: str, scene: Scene, integrators: Sequence[str], limit_s: float,
                  reference_limit_s: float, repeats: int, jobs: int, linear_solver: str) -> dict[str, Any]: ...
+
+class _RunOptions:
+    folder: str
+    duration_s: float
+    picture: bool
+    contact_picture: bool
+    frames: bool
+    frames_per_s: float
+    movie: str
+    fps: float
+    slow: float
+    size: str
+    shade: str
+    report: bool
+    trace: bool
+    passivity: str
+    real_time: bool
+    against_monolithic: bool
+    checkpoint_every_s: float
+
+def _run(scene: Scene, options: _RunOptions) -> dict[str, Any]: ...
+def _resume(folder: str) -> dict[str, Any]: ...
+def _movie(run: str, file: str, fps: float, slow: float, size: str, shade: str) -> str: ...

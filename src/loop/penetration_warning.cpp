@@ -1,0 +1,45 @@
+#include "loop/penetration_warning.h"
+
+#include <cmath>
+
+#include "loop/summary.h"
+#include "palpate/core/log.h"
+
+namespace palpate::loop {
+namespace {
+
+void warn_of_own_overlap(const Overlap& o, double t) {
+  log::warn(
+      "contact {} at t = {:.6g} s: penetration reached {:.3g} mm; self-contact detects overlaps up to "
+      "{:.3g} mm, and deeper points are not separated. Increase contact.stiffness_pa_m, or press less "
+      "deeply",
+      o.pair, t, 1e3 * o.deepest_m, 1e3 * o.half_width_m / Overlap::kOwnShare);
+}
+
+void warn_of_overlap(const Overlap& o, double t) {
+  log::warn(
+      "contact {} at t = {:.6g} s: penetration reached {:.3g} mm, more than half the thickness of the "
+      "thinner side ({:.3g} mm): {}",
+      o.pair, t, 1e3 * o.deepest_m, 2e3 * o.half_width_m,
+      t == 0.0 ? "bodies that overlap at the start are pushed out at the nearest side, with the full force "
+                 "at once. Separate the two in the scene"
+               : "the two may pass through each other. Increase contact.stiffness_pa_m, decrease "
+                 "body.youngs_modulus_pa, or press less deeply");
+}
+
+}  // namespace
+
+// The thickness of objects is computed only when an overlap exceeds the last one that was checked.
+void PenetrationWarning::check(const World& world, double t) {
+  if (!world.contact) return;
+  const std::vector<contact::PairReport> pairs = world.contact->pairs();
+  if (checked_to_.empty()) checked_to_.assign(pairs.size(), 0.0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!(pairs[i].deepest > checked_to_[i])) continue;
+    const Overlap o = overlaps_of(world)[i];
+    checked_to_[i] = o.too_deep() ? HUGE_VAL : o.half_width_m;
+    if (o.too_deep()) o.of_itself ? warn_of_own_overlap(o, t) : warn_of_overlap(o, t);
+  }
+}
+
+}  // namespace palpate::loop

@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "report/run_report.h"
+
+namespace palpate::session {
+
+/// Outputs that were requested and could not be delivered, while everything else succeeded.
+class MissingOutputs {
+ public:
+  /// Adds a missing output `what` and the reason `why`.
+  void add(const std::string& what, const std::string& why);
+  /// Adds the figures that are missing from a page.
+  void add(const report::RunReport& report);
+  /// Adds the outputs that are missing from a part of the work.
+  void add(const MissingOutputs& more);
+  bool empty() const { return outputs_.empty(); }
+  /// Returns one line per output: "OUTPUT (REASON)".
+  const std::vector<std::string>& outputs() const { return outputs_; }
+
+ private:
+  std::vector<std::string> outputs_;
+};
+
+}  // namespace palpate::session

@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "compare/haptic.h"
+
+namespace palpate::session {
+
+/// Returns the error of the wrench on each hand against the monolithic solution, one line per quantity; empty
+/// if there is no monolithic solution.
+std::vector<std::string> monolithic_remarks(const scene::Description& description,
+                                            const compare::AgainstMonolithic& against);
+
+}  // namespace palpate::session

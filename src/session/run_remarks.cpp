@@ -1,0 +1,113 @@
+#include "session/run_remarks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "loop/describe_fallbacks.h"
+#include "loop/summary.h"
+#include "palpate/scene/hands.h"
+#include "session/clock_figures.h"
+
+namespace palpate::session {
+namespace {
+
+using Remarks = std::vector<std::string>;
+
+std::string hand_label(const loop::World& world, std::size_t hand) {
+  return hand == 0 ? "the hand" : fmt::format("hand \"{}\"", world.description.hands[hand - 1].name);
+}
+
+/// Adds the event counts of a device, with "packets_stale" printed as "3 packets stale".
+void add_device_counts(const loop::World& world, std::size_t hand, Remarks& out) {
+  std::string text;
+  for (const auto& [name, count] : loop::tallies_of(world, hand)) {
+    std::string words = name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
+  }
+  if (!text.empty()) out.push_back(fmt::format("device of {}: {}", hand_label(world, hand), text));
+}
+
+void add_ticks(const loop::RunResult& result, Remarks& out) {
+  if (result.rejected_ticks > 0)
+    out.push_back(fmt::format(
+        "in {} ticks the wrench was not finite or time did not advance; the force was ramped to zero",
+        result.rejected_ticks));
+  if (result.outside_ticks > 0)
+    out.push_back(
+        fmt::format("in {} ticks the handle was outside the workspace of the device, where forces fade to "
+                    "zero; move the workspace by device.workspace_center_m",
+                    result.outside_ticks));
+}
+
+void add_overlaps(const loop::World& world, Remarks& out) {
+  const std::vector<loop::Overlap> overlaps = loop::overlaps_of(world);
+  std::string text;
+  for (const loop::Overlap& o : overlaps)
+    if (o.deepest_m > 0.0)
+      text += fmt::format("{}{} {:.3g} mm", text.empty() ? "" : ", ", o.pair, 1e3 * o.deepest_m);
+  if (!text.empty()) out.push_back(fmt::format("deepest overlap: {}", text));
+}
+
+void add_quadrature(const loop::World& world, Remarks& out) {
+  std::string text;
+  for (const loop::Overlap& o : loop::overlaps_of(world)) {
+    if (o.quadrature_error == 0.0) continue;
+    text +=
+        fmt::format("{}{} {:.2g} % of the largest force (bound; largest share of one point {:.2g} %)",
+                    text.empty() ? "" : ", ", o.pair, 100.0 * o.quadrature_error, 100.0 * o.largest_share);
+  }
+  if (!text.empty()) out.push_back(fmt::format("contact quadrature: {}", text));
+}
+
+/// Adds the error that exchange.linearisation_error bounds.
+void add_reduction_errors(const loop::World& world, Remarks& out) {
+  for (const loop::AnswerError& e : loop::answer_errors_of(world)) {
+    if (e.factored == e.exchanges) {
+      out.push_back(fmt::format("{}: reduced response of the bodies exact (factored) in all {} exchanges",
+                                e.tool, e.exchanges));
+      continue;
+    }
+    std::string text = fmt::format(
+        "{}: reduced response of the bodies: error at most {:.2g} % (bound) in {} of {} exchanges", e.tool,
+        100.0 * (e.beyond > 0 ? e.requested : e.largest), e.exchanges - e.beyond, e.exchanges);
+    if (e.beyond > 0)  // a bound above 100 % carries no information
+      text += fmt::format("; in {} the iteration stopped at its limit with bounds up to {:.2g} %{}", e.beyond,
+                          100.0 * e.largest, e.largest > 1.0 ? ", which are not informative" : "");
+    if (e.factored > 0) text += fmt::format("; exact (factored) in {}", e.factored);
+    out.push_back(text);
+  }
+}
+
+void add_port(const loop::PortEnergy& port, Remarks& out) {
+  out.push_back(
+      fmt::format("energy at the device port: minimum {:.3g} J, at the end {:.3g} J; the passivity "
+                  "controller dissipated {:.3g} J in {} ticks, {:.2g} % of the work of the motors",
+                  port.least, port.energy, port.controller_dissipated, port.controller_ticks,
+                  port.work > 0.0 ? 100.0 * port.controller_dissipated / port.work : 0.0));
+}
+
+}  // namespace
+
+std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result) {
+  Remarks out;
+  if (world.stepper)
+    if (const std::string fallbacks = loop::describe_fallbacks(result.counters); !fallbacks.empty())
+      out.push_back(fmt::format("fallbacks of {}: {}", world.stepper->name(), fallbacks));
+  if (result.ticks > 0)
+    for (std::size_t i = 0; i <= result.more_hands.size(); ++i) add_device_counts(world, i, out);
+  add_ticks(result, out);
+  if (result.buzz_n)
+    out.push_back(fmt::format("buzz: {:.3g} N RMS of the force on the hand above 30 Hz", *result.buzz_n));
+  add_overlaps(world, out);
+  add_quadrature(world, out);
+  add_reduction_errors(world, out);
+  if (result.port) add_port(*result.port, out);
+  if (result.real_time)
+    for (std::string& line : clock_remarks(result, world.description.exchange.linearisation))
+      out.push_back(std::move(line));
+  return out;
+}
+
+}  // namespace palpate::session

@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "palpate/loop/run.h"
+
+namespace palpate::session {
+
+/// Returns remarks on a run, one line per remark: limits of its result, and events during the run. They are
+/// kept in summary.json, and shown by the command line and at the head of the page.
+std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result);
+
+}  // namespace palpate::session

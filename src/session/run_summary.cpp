@@ -1,0 +1,38 @@
+#include "session/run_summary.h"
+
+#include <filesystem>
+
+#include "compare/summary.h"
+#include "loop/summary.h"
+#include "palpate/core/log.h"
+#include "session/command_line.h"
+#include "session/monolithic_remarks.h"
+#include "store/atomic_file.h"
+
+namespace palpate::session {
+
+store::Summary summary_of(const loop::World& world, const RunOutput& ran, const Options& options,
+                          const std::optional<Outcome>& outcome) {
+  store::Summary summary = loop::summarise(world, ran.result, ran.assemble_s, ran.figures);
+  if (outcome) summary.outcome = outcome->word, summary.message = outcome->message;
+  if (ran.against) compare::add_to_summary(summary, world.description, *ran.against);
+  if (const double every_s = options.checkpoint_every_s; every_s > 0.0)
+    loop::add_checkpoints(summary, ran.checkpoints, every_s);
+  summary.command = command_of(options);
+  summary.overrides = options.scene.overrides;
+  summary.remarks = log::warnings();
+  summary.remarks.insert(summary.remarks.end(), ran.remarks.begin(), ran.remarks.end());
+  if (ran.against)
+    for (std::string& line : monolithic_remarks(world.description, *ran.against))
+      summary.remarks.push_back(std::move(line));
+  return summary;
+}
+
+void write_summary(const loop::World& world, const RunOutput& ran, const Options& options,
+                   const std::optional<Outcome>& outcome) {
+  const std::filesystem::path folder(ran.folder);
+  store::write_summary((folder / "summary.json").string(), summary_of(world, ran, options, outcome));
+  store::write_atomically((folder / "scene.toml").string(), world.description.source);
+}
+
+}  // namespace palpate::session
