@@ -15,6 +15,7 @@
 
 #include "core/clock.h"
 #include "palpate/core/error.h"
+#include "socket_message.h"
 #include "work_server.h"
 
 namespace palpate {

@@ -7,6 +7,8 @@
 #include <list>
 #include <string>
 
+#include "core/work_process.h"
+
 namespace palpate {
 
 /// Runs jobs in parallel, each in a separate process: a crash or an endless loop in one affects neither the
@@ -36,7 +38,7 @@ class ProcessPool {
   /// Function that runs in the child process on the bytes given to start().  `out_of_time` becomes true after
   /// the limit [CPU seconds]; the work should then return.  It must be a function of the program, or of a
   /// library that was loaded before the helper was created (a lambda without captures is allowed).
-  using Work = std::string (*)(const std::string& bytes, const std::atomic<bool>& out_of_time);
+  using Work = work_server::Work;
   /// Callback that receives the outcome, in the caller's process.
   using Done = std::function<void(const Outcome&)>;
 

@@ -1,10 +1,10 @@
+#include "socket_message.h"
+
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-
-#include "work_server.h"
 
 namespace palpate::work_server {
 

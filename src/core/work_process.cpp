@@ -1,3 +1,5 @@
+#include "work_process.h"
+
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -12,7 +14,6 @@
 
 #include "core/clock.h"
 #include "palpate/core/error.h"
-#include "work_server.h"
 
 namespace palpate::work_server {
 namespace {
@@ -61,15 +62,15 @@ void send(int fd, const std::string& bytes) {
 
 }  // namespace
 
-void run_work(const Request& request, const std::string& folder, const std::string& input, int pipe,
+void run_work(Work work, double limit_s, const std::string& folder, const std::string& input, int pipe,
               pid_t server) {
   detach(server);
-  limit_cpu(request.limit_s);
+  limit_cpu(limit_s);
   std::string answer;
   try {
     if (chdir(folder.c_str()) != 0)
       fail("{}: cannot be made the working directory: {}", folder, std::strerror(errno));
-    answer = kGood + request.work(input, out_of_time);
+    answer = kGood + work(input, out_of_time);
   } catch (const std::exception& e) { answer = kBad + std::string(e.what()); }
   const itimerval off{};
   setitimer(ITIMER_PROF, &off, nullptr);

@@ -17,6 +17,7 @@
 #include <mutex>
 
 #include "palpate/core/error.h"
+#include "socket_message.h"
 
 namespace palpate::work_server {
 namespace {
@@ -129,7 +130,7 @@ class Server {
     if (pid == 0) {
       close(socket_);
       close(family_.file());
-      run_work(request, folder, input, pipe, self);
+      run_work(request.work, request.limit_s, folder, input, pipe, self);
     }
     running_[pid] = request.id;
     return say(Notice::Kind::kStarted, request.id, pid);

@@ -1,10 +1,7 @@
 #pragma once
-#include <sys/types.h>
-
 #include <cstdint>
-#include <string>
 
-#include "core/process_pool.h"
+#include "work_process.h"
 
 /// Helper that processes are forked from, seen from both sides of its sockets.
 ///
@@ -22,7 +19,7 @@ struct Request {
   Kind kind;
   std::uint64_t id;
   // For kStart alone; the bytes of folder and input follow, and the write end of the pipe is passed along.
-  ProcessPool::Work work;
+  Work work;
   double limit_s;
   std::uint64_t folder_size, input_size;
 };
@@ -40,23 +37,5 @@ struct Notice {
 void prepare();
 /// Starts a new server.  @return the socket to it, which the caller closes
 int connect();
-
-// --- socket_message.cpp: whole messages over a stream; false where the other side is gone
-
-bool send_bytes(int socket, const void* data, std::size_t size);
-bool receive_bytes(int socket, void* data, std::size_t size);
-/// Sends `size` > 0 bytes and an open file descriptor.
-bool send_with_file(int socket, const void* data, std::size_t size, int file);
-/// Receives `size` bytes.  @param file  file descriptor that was passed along, or -1
-bool receive_with_file(int socket, void* data, std::size_t size, int& file);
-
-// --- work_process.cpp
-
-/// Runs the work in its process and sends the outcome into the pipe; never returns.
-/// @param server  process that it must not outlive
-[[noreturn]] void run_work(const Request& request, const std::string& folder, const std::string& input,
-                           int pipe, pid_t server);
-/// First byte that run_work sends: a result follows, or an exception's message.
-inline constexpr char kGood = 'g', kBad = 'b';
 
 }  // namespace palpate::work_server

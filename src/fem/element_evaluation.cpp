@@ -5,6 +5,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/workers.h"
+#include "palpate/fem/laws.h"
 
 namespace palpate::fem {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 #include "lane_kernels.h"
 #include "palpate/core/types.h"
-#include "palpate/fem/laws.h"
 #include "palpate/fem/material.h"
 #include "palpate/fem/options.h"
 
@@ -24,9 +23,5 @@ struct Law {
   Mat3 (*stress_change)(Tangent tangent, const Mat3& F, const Mat3& dF, const Lame& lame);
   ScalarPath scalar;  ///< scalar fallback of the law's kernels
 };
-
-/// Returns the index of the law `name` in law_registry(), and in LaneKernels::laws.
-/// @throws Error with the nearest known name; `where` begins the message
-std::size_t find_law(const std::string& name, std::string_view where);
 
 }  // namespace palpate::fem

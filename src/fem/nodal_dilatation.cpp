@@ -1,11 +1,10 @@
 #include "palpate/fem/nodal_dilatation.h"
 
 #include <algorithm>
-#include <map>
-#include <utility>
 
 #include <Eigen/LU>
 
+#include "averaging_sites.h"
 #include "core/counters.h"
 #include "core/polar.h"
 #include "corotational.h"
@@ -68,42 +67,6 @@ namespace {
 /// The four shape function gradients of an element as columns.
 using Gradients = Eigen::Matrix<double, 3, 4>;
 
-/// Sites at which averages are taken: each node, once for each material at it. With one material the sites
-/// are the nodes, and nothing is stored.
-struct Sites {
-  std::array<std::vector<int>, 4> corner;  ///< site of each corner of each element
-  std::vector<double> volume;              ///< [m^3]
-  std::vector<int> node, material;
-
-  Sites(const RestElements& elements, const Materials& materials) {
-    if (materials.of_element.empty()) return;
-    std::map<std::pair<int, int>, int> number;  // ordered by node: sites of one node are adjacent
-    for (std::size_t e = 0; e < elements.volume.size(); ++e)
-      for (const auto& nodes : elements.node) number[{nodes[e], materials.number(e)}] = 0;
-    for (auto& [key, site] : number) {
-      site = static_cast<int>(node.size());
-      node.push_back(key.first);
-      material.push_back(key.second);
-    }
-    volume.assign(node.size(), 0.0);
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t e = 0; e < elements.volume.size(); ++e) {
-        corner[a].push_back(number[{elements.node[a][e], materials.number(e)}]);
-        volume[static_cast<std::size_t>(corner[a].back())] += 0.25 * elements.volume[e];
-      }
-  }
-  const std::array<std::vector<int>, 4>& of_corner(const RestElements& elements) const {
-    return node.empty() ? elements.node : corner;
-  }
-  double volume_of(const RestElements& elements, int site) const {
-    return (node.empty() ? elements.nodal_volume : volume)[static_cast<std::size_t>(site)];
-  }
-  int count(const RestElements& elements) const {
-    return node.empty() ? elements.node_count() : static_cast<int>(node.size());
-  }
-  int node_of(int site) const { return node.empty() ? site : node[static_cast<std::size_t>(site)]; }
-};
-
 }  // namespace
 
 double kept_volumetric_share(const Material& material) {
@@ -117,7 +80,7 @@ struct NodalDilatation::Impl {
   int block_id;
   RestElements elements;
   std::vector<int> material_of_element;  ///< empty: one material
-  Sites sites;
+  AveragingSites sites;
   NodeRings rings;
   struct Constants {
     Lame kept;             ///< elastic constants of the SoftBody [Pa]

@@ -11,6 +11,7 @@
 #include "element_evaluation.h"
 #include "node_block.h"
 #include "palpate/core/error.h"
+#include "palpate/fem/laws.h"
 #include "stress.h"
 
 namespace palpate::fem {

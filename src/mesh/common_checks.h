@@ -4,8 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/checks.h"
+#include "mesh/provenance.h"
 #include "palpate/core/error.h"
+#include "palpate/core/types.h"
 
 /// Checks common to tetrahedra and triangles.  Elements: Corners x n, one per column.
 namespace palpate::mesh {

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 
+#include "mesh/surface_checks.h"
 #include "palpate/core/error.h"
 
 // The plane is the least-squares plane of the corners, because the vector area of a crossed outline may

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/checks.h"
+#include "mesh/provenance.h"
 #include "palpate/core/types.h"
 
 /// Triangulation of the polygons of files, without new vertices.

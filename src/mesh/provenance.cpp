@@ -1,4 +1,4 @@
-#include "mesh/checks.h"
+#include "mesh/provenance.h"
 
 #include "palpate/core/error.h"
 

@@ -1,8 +1,9 @@
 #pragma once
 #include <string>
 
-#include "mesh/checks.h"
 #include "mesh/polygon.h"
+#include "mesh/provenance.h"
+#include "palpate/mesh/mesh.h"
 #include "palpate/mesh/regions.h"
 
 /// Readers of file formats.  Each returns indices within range and finite coordinates, or throws Error

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "mesh/checks.h"
 #include "mesh/readers.h"
 #include "mesh/size_check.h"
+#include "mesh/surface_checks.h"
+#include "mesh/tet_checks.h"
 #include "palpate/core/log.h"
 #include "palpate/mesh/generators.h"
 

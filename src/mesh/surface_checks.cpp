@@ -1,3 +1,5 @@
+#include "mesh/surface_checks.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -5,7 +7,6 @@
 #include <vector>
 
 #include "common_checks.h"
-#include "mesh/checks.h"
 #include "palpate/mesh/boundary.h"
 
 namespace palpate::mesh {

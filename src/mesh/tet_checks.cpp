@@ -1,10 +1,11 @@
+#include "mesh/tet_checks.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "common_checks.h"
-#include "mesh/checks.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/quality.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/foreign_files.h"
+#include "source_file.h"
 
 namespace palpate::model {
 
@@ -43,12 +43,6 @@ class Cells {
 
 std::string lower(std::string text);  ///< converts ASCII letters to lower case
 
-/// Readers of the formats in foreign_files.h; `format` is the name for messages.
-SourceFile read_by_gmsh(const std::string& path, const std::string& format);
-SourceFile read_by_cgal(const std::string& path, const std::string& format);  ///< .ply .off .stl
-SourceFile read_meshb(const std::string& path);
-SourceFile read_vtk(const std::string& path);
-SourceFile read_vtk_xml(const std::string& path);  ///< .vtu .vtp
 /// Adds a cell of a VTK cell type.
 void take_vtk_cell(Cells& cells, int type, const std::vector<int>& corners);
 

@@ -9,6 +9,7 @@
 
 #include "cells.h"
 #include "core/sandbox.h"
+#include "format_readers.h"
 #include "palpate/core/error.h"
 #include "store/atomic_file.h"
 

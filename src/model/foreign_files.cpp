@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cells.h"
+#include "format_readers.h"
 #include "mesh/readers.h"
 #include "palpate/core/error.h"
 #include "store/mesh_file.h"

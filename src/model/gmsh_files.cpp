@@ -9,6 +9,7 @@
 
 #include "cells.h"
 #include "core/sandbox.h"
+#include "format_readers.h"
 #include "gmsh_start.h"
 #include "palpate/core/error.h"
 

@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "core/clock.h"
+#include "mesh/surface_checks.h"
+#include "mesh/tet_checks.h"
 #include "model/bind.h"
 #include "model/creases.h"
 #include "palpate/core/error.h"

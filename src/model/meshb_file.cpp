@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "cells.h"
+#include "format_readers.h"
 #include "palpate/core/error.h"
 #include "store/atomic_file.h"
 

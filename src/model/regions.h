@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/checks.h"
+#include "mesh/provenance.h"
 #include "palpate/mesh/regions.h"
 #include "palpate/mesh/skeleton.h"
 

@@ -7,6 +7,7 @@
 
 #include "crossings.h"
 #include "mend.h"
+#include "mesh/surface_checks.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "shells.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/checks.h"
+#include "mesh/provenance.h"
 #include "model/progress.h"
 
 namespace palpate::model {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/checks.h"
+#include "mesh/provenance.h"
 #include "palpate/mesh/mesh.h"
 
 namespace palpate::model {

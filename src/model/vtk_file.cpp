@@ -7,6 +7,8 @@
 #include <cstring>
 
 #include "cells.h"
+#include "foreign_files.h"
+#include "format_readers.h"
 #include "palpate/core/error.h"
 #include "store/atomic_file.h"
 

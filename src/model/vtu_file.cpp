@@ -10,6 +10,8 @@
 #include <pugixml.hpp>
 
 #include "cells.h"
+#include "foreign_files.h"
+#include "format_readers.h"
 #include "palpate/core/error.h"
 #include "store/atomic_file.h"
 

@@ -4,11 +4,10 @@
 
 #include "palpate/core/error.h"
 #include "scene/toml_bounds.h"
+#include "scene/toml_text.h"
 
 namespace palpate::scene {
 namespace {
-constexpr std::string_view kOverride = "--set ";
-
 /// Returns the text of the scene as it runs; comments survive only without overrides.
 std::string effective_source(const toml::table& root, const std::string& text,
                              const std::vector<std::string>& overrides) {
@@ -43,12 +42,6 @@ void leave_out(Document& document, const std::string& table, const std::string& 
   PALPATE_CHECK(found && found.is_table(), "{} is not a table", table);
   found.as_table()->erase(key);
   document.source = effective_source(document.root, "", document.overrides);
-}
-
-std::string location(const toml::source_region& region) {
-  const std::string path = region.path ? *region.path : "scene";
-  if (path.starts_with(kOverride) || !region.begin) return path;
-  return fmt::format("{}:{}:{}", path, region.begin.line, region.begin.column);
 }
 
 std::string location(const Document& document, std::string at) {

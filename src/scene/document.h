@@ -23,9 +23,6 @@ Document parse_document(const std::string& text, const std::string& path,
 /// Removes a key from a table, such as "contact[1]", and from the source.
 void leave_out(Document& document, const std::string& table, const std::string& key);
 
-/// Returns `FILE:LINE:COLUMN`, or `--set PATH=VALUE` for a node set by an override.
-std::string location(const toml::source_region& region);
-
 /// Returns the location of the deepest part of `at` that exists: `body[1].mesh.radius_m`, else
 /// `body[1].mesh`, ...
 std::string location(const Document& document, std::string at);

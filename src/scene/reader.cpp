@@ -34,21 +34,6 @@ double number_in(const Value& v, const toml::node& node, const Range& range) {
 
 }  // namespace
 
-std::string shown(const toml::node& node) {
-  if (const auto* text = node.as_string())
-    return text->get().size() <= 60 ? '"' + text->get() + '"' : "a longer string";
-  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
-  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
-  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
-  const toml::array* array = node.as_array();
-  if (!array) return node.is_table() ? "a table" : "a date or time";
-  if (array->size() > 6) return fmt::format("a list of {}", array->size());
-  std::string text;
-  for (const toml::node& one : *array)
-    text += (text.empty() ? "" : ", ") + (one.is_array() ? std::string("[...]") : shown(one));
-  return "[" + text + "]";
-}
-
 void refuse(const std::string& location, const std::string& where, const std::string& what) {
   fail("{}: {}{}{}", location, where, where.empty() ? "" : ": ", what);
 }

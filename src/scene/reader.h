@@ -9,7 +9,7 @@
 #include "palpate/core/error.h"
 #include "palpate/core/keys.h"
 #include "palpate/scene/kinds.h"
-#include "scene/document.h"
+#include "scene/toml_text.h"
 
 /// Reader of TOML tables into plain specs by tables of keys.  A key table defines a scene table completely:
 /// the names of its keys, their types, units, ranges, defaults and meaning, and whether they are required;
@@ -22,9 +22,6 @@ struct Value {
   std::string where;  ///< Label of the table: `body "ball": mesh`; empty at the top.
   std::string key;    ///< Name of the key: `radius_m`.
 };
-
-/// Formats one node as messages show it, close to the user's notation.
-std::string shown(const toml::node& node);
 
 /// Returns a TOML value as a Setting; empty where it is of another type.
 std::optional<Setting> setting_of(const toml::node& node);

@@ -1,6 +1,6 @@
 #pragma once
 #include "scene/reader.h"
-#include "scene/study.h"
+#include "scene/study_spec.h"
 
 /// Every key of a study file, as data.
 namespace palpate::scene {

@@ -3,8 +3,7 @@
 #include "core/printable.h"
 #include "core/whole_number.h"
 #include "palpate/core/error.h"
-#include "scene/document.h"
-#include "scene/reader.h"
+#include "scene/toml_text.h"
 
 namespace palpate::scene {
 namespace {

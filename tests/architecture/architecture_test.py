@@ -36,13 +36,13 @@ SOUND = {
 }
 
 
-def breaches_of(extra):
+def breaches_of(extra, known_cycles=None):
     with tempfile.TemporaryDirectory() as folder:
         for path, text in {**SOUND, **extra}.items():
             file = Path(folder) / path
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text)
-        return arrows.check(folder)
+        return arrows.check(folder, known_cycles or {})
 
 
 class Tree(unittest.TestCase):
@@ -165,6 +165,37 @@ class Planted(unittest.TestCase):
     def test_cycle_of_files_in_one_part(self):
         self.expect({"src/fem/shape.h": '#include "element.h"\n'},
                     "include cycle", "src/fem/element.h", "src/fem/shape.h")
+
+    def test_cycle_of_units_in_one_part(self):
+        # b.h needs a type of a.h, and a.cpp calls a function of b.h: the type belongs in a third header.
+        planted = {"src/fem/a.h": '#pragma once\n', "src/fem/a.cpp": '#include "a.h"\n#include "b.h"\n',
+                   "src/fem/b.h": '#pragma once\n#include "a.h"\n'}
+        self.expect(planted, "fem: ", "a, b")
+        self.expect({**planted, "src/fem/a.cpp": "\n", "src/fem/a_impl.h": '#include "fem/b.h"\n'}, "a, b")
+        self.expect({**planted, "src/fem/a.h": "\n", "src/fem/b.h": '#include "palpate/fem/a.h"\n',
+                     "include/palpate/fem/a.h": '#pragma once\n'}, "a, b")
+        self.expect({"validation/stability/a.h": "\n",
+                     "validation/stability/a.cpp": '#include "stability/b.h"\n',
+                     "validation/stability/b.cpp": '#include "stability/a.h"\n',
+                     "validation/stability/b.h": "\n"}, "stability: ", "a, b")
+
+    def test_cycle_of_three_units_beside_a_sound_chain(self):
+        self.expect({"src/fem/a.h": "\n", "src/fem/b.h": "\n", "src/fem/c.h": "\n",
+                     "src/fem/a.cpp": '#include "b.h"\n', "src/fem/b.cpp": '#include "c.h"\n',
+                     "src/fem/c.cpp": '#include "a.h"\n#include "shape.h"\n'}, "fem: ", "cycle: a, b, c")
+
+    def test_units_of_the_same_name_in_two_parts_are_two(self):
+        self.assertEqual(breaches_of({"include/palpate/core/a.h": "\n", "include/palpate/fem/a.h": "\n",
+                                      "src/core/a.cpp": '#include "b.h"\n', "src/core/b.h": "\n",
+                                      "src/fem/b.h": "#include <palpate/core/a.h>\n"}), ([], []))
+
+    def test_known_cycle_that_no_longer_exists(self):
+        planted = {"src/fem/a.h": "\n", "src/fem/a.cpp": '#include "b.h"\n',
+                   "src/fem/b.h": '#include "a.h"\n'}
+        self.assertEqual(breaches_of(planted, {"fem": [["a", "b"]]}), ([], []))
+        breaches, _ = breaches_of({**planted, "src/fem/b.h": "\n"}, {"fem": [["a", "b"]]})
+        self.assertEqual(len(breaches), 1, breaches)
+        self.assertIn("does not exist: a, b", breaches[0])
 
     def test_outside_libraries_stay_where_they_belong(self):
         planted = {"cvode/cvode.h": "SUNDIALS", "nvector/nvector_serial.h": "SUNDIALS",

@@ -5,6 +5,7 @@
 
 #include "bodies.h"
 #include "mesh/readers.h"
+#include "palpate/mesh/source.h"
 
 using namespace distance_tests;
 

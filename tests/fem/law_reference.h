@@ -4,6 +4,7 @@
 #include "../../src/fem/law.h"
 #include "../../src/fem/objective_damping.h"
 #include "fem_fixture.h"
+#include "palpate/fem/laws.h"
 
 // Fast path of a SoftBody against the scalar formulas of its law.
 

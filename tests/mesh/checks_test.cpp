@@ -1,4 +1,5 @@
-#include "mesh/checks.h"
+#include "mesh/surface_checks.h"
+#include "mesh/tet_checks.h"
 
 #include <limits>
 

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "helpers.h"
-#include "mesh/checks.h"
+#include "mesh/surface_checks.h"
 #include "palpate/mesh/boundary.h"
 
 using namespace palpate;

@@ -13,7 +13,7 @@ extern "C" {
 #include <filesystem>
 #include <fstream>
 
-#include "mesh/checks.h"
+#include "mesh/tet_checks.h"
 #include "model/gmsh_start.h"
 #include "surfaces.h"
 #include "temporary_folder.h"

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "mesh/checks.h"
+#include "mesh/surface_checks.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
 #include "palpate/mesh/quality.h"

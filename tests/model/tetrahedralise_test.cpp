@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "mesh/checks.h"
+#include "mesh/surface_checks.h"
+#include "mesh/tet_checks.h"
 #include "model/quality_gate.h"
 #include "surfaces.h"
 

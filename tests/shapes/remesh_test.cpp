@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/checks.h"
+#include "mesh/surface_checks.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "shapes/contour.h"

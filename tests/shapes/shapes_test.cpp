@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "mesh/checks.h"
+#include "mesh/surface_checks.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "shapes/gear_profile.h"

@@ -11,6 +11,12 @@ struct Law;
 /// laws take Young's modulus and Poisson's ratio, and agree with linear elasticity at small strain.
 const Registry<const Law*>& law_registry();
 
+/// Returns the index of a law in law_registry().
+/// @param name  Name of the law.
+/// @param where  Beginning of the message.
+/// @throws Error with the nearest known name
+std::size_t find_law(const std::string& name, std::string_view where);
+
 /// Checks that a law exists and supports the given options.
 /// @param law  Name of the law.
 /// @param tangent  Tangent that the law must support.

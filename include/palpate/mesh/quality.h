@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-#include "palpate/mesh/source.h"
+#include "palpate/mesh/mesh.h"
 
 namespace palpate::mesh {
 
@@ -18,6 +18,15 @@ std::array<double, 6> dihedral_angles(const TetMesh& mesh, int tet);
 inline constexpr int kTetEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 /// Faces of a positive tetrahedron, outwards; face f lies opposite node f.
 inline constexpr int kTetFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+/// Report of a mesh check.
+struct MeshReport {
+  int nodes = 0, elements = 0;                     ///< counts of the checked mesh
+  int flipped = 0;                                 ///< elements whose orientation was corrected
+  double volume = 0.0;                             ///< [m^3]
+  double smallest_dihedral_deg = 180.0;            ///< between two faces of one tetrahedron
+  double largest_edge = 0.0, smallest_edge = 0.0;  ///< [m]
+};
 
 /// Measures counts, volume, smallest dihedral angle and edge lengths.
 MeshReport measure(const TetMesh& mesh);

@@ -2,19 +2,11 @@
 #include <string>
 
 #include "palpate/mesh/mesh.h"
+#include "palpate/mesh/quality.h"
 #include "palpate/mesh/regions.h"
 #include "palpate/mesh/spec.h"
 
 namespace palpate::mesh {
-
-/// Report of a mesh check.
-struct MeshReport {
-  int nodes = 0, elements = 0;                     ///< counts of the checked mesh
-  int flipped = 0;                                 ///< elements whose orientation was corrected
-  double volume = 0.0;                             ///< [m^3]
-  double smallest_dihedral_deg = 180.0;            ///< between two faces of one tetrahedron
-  double largest_edge = 0.0, smallest_edge = 0.0;  ///< [m]
-};
 
 /// Reads or generates the tetrahedra of a spec, and checks them: volumes are made positive (reported in
 /// `flipped`); degenerate, duplicate, unreferenced or non-finite entries are rejected with file, element and

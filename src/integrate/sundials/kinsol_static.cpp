@@ -12,6 +12,7 @@
 #include "core/finite.h"
 #include "integrate/make.h"
 #include "integrate/settings.h"
+#include "integrate/static_equations.h"
 #include "integrate/step_solver.h"
 #include "integrate/sundials/check.h"
 #include "integrate/sundials/hooks.h"
@@ -27,8 +28,7 @@ namespace {
 using namespace dynamics;
 
 constexpr int kRecoverable = 1;
-constexpr double kSmallest =  // Positions and forces below it have lost digits to underflow.
-    std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+
 /// Quasi-static equilibrium, f(q, 0, t) = 0, by Newton's method of SUNDIALS KINSOL with the exact tangent at
 /// every iteration. The State at t_end is the equilibrium at t_end, reached from the previous one; velocities
 /// are zero.
@@ -59,7 +59,11 @@ constexpr double kSmallest =  // Positions and forces below it have lost digits 
 class KinsolStatic final : public Stepper, private NewtonHook {
  public:
   KinsolStatic(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
-      : system_(system), state_(state), spec_(spec), solver_(std::move(solver), spec) {
+      : system_(system),
+        state_(state),
+        spec_(spec),
+        solver_(std::move(solver), spec),
+        equations_(system, state, counters_) {
     check_static(spec);
     clamped_before_ = system.clamped_tangents();
     counters::count("integrate.kinsol-static");
@@ -81,10 +85,10 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     q_start_ = state_.q();
     u_start_ = state_.u();
     state_.u().setZero();
-    if (!force(t0_, state_.q(), unbalanced_))
-      return failure(StepStatus::kNotFinite, "the force is not finite");
-    measure();
-    measure_rounding();
+    if (!equations_.begin(t1_)) return failure(StepStatus::kNotFinite, "the force is not finite");
+    Eigen::Map<VecX>(NV_DATA_S(displacement_scale_), n) = equations_.displacement_scale();
+    Eigen::Map<VecX>(NV_DATA_S(force_scale_), n) = equations_.force_scale();
+    start_tolerance_ = std::max(spec_.newton_rtol, equations_.rounding());
     const StepResult result = climb();
     if (!result.ok()) {
       state_.q() = q_start_;
@@ -119,8 +123,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     long iterations = 0;
     while (s < 1.0) {
       if (interrupted()) return failure(StepStatus::kInterrupted, "interrupted");
-      s_ = std::min(1.0, s + load_step);
-      sigma_ = 0.0;
+      equations_.load = std::min(1.0, s + load_step);
+      equations_.sigma = 0.0;
       flag = solve(iterations);
       if (flag < 0 && load_step > tuning::kShortestLoadStep) {
         ++counters_.rejected;
@@ -133,7 +137,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
       if (flag < 0 && !take_proximal_steps(flag, iterations)) return failure(status_of(flag), describe(flag));
       accept_rung();
       counters_.step_parts += halved;
-      s = s_;
+      s = equations_.load;
       load_step = std::min(2.0 * load_step, 1.0);
     }
     state_.set_time(t1_);
@@ -142,51 +146,50 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     return succeeded(t1_ - t0_, static_cast<int>(iterations));
   }
 
-  /// Takes proximal steps to the load s_.
+  /// Takes proximal steps to the load of the equations.
   /// @param flag  KINSOL's last flag
   bool take_proximal_steps(int& flag, long& iterations) {
-    sigma_ = stiffness_over_mass();
-    if (!(sigma_ > 0.0)) return false;
-    const double largest = 1e6 * sigma_;
+    double& sigma = equations_.sigma;
+    sigma = equations_.stiffness_over_mass();
+    if (!(sigma > 0.0)) return false;
+    const double largest = 1e6 * sigma;
     for (int k = 0; k < tuning::kProximalSteps && !interrupted(); ++k) {
       flag = solve(iterations);
       if (flag < 0) {
         ++counters_.rejected;
-        sigma_ *= 10.0;
-        if (!(sigma_ <= largest)) return false;
+        sigma *= 10.0;
+        if (!(sigma <= largest)) return false;
         continue;
       }
       accept_rung();
       ++counters_.downhill;
       VecX left;
-      if (!residual(NV_DATA_S(zero_displacement()), 0.0, left)) return false;
-      if (size_of(left) <= tolerance_) {
-        if (size_of(left) > spec_.newton_rtol) ++counters_.rounding_limited;
+      N_VConst(0.0, x_);
+      if (!equations_.residual(NV_DATA_S(x_), 0.0, left)) return false;
+      if (equations_.size_of(left) <= tolerance_) {
+        if (equations_.size_of(left) > spec_.newton_rtol) ++counters_.rounding_limited;
         return true;
       }
-      sigma_ *= 0.1;
+      sigma *= 0.1;
     }
     flag = KIN_MAXITER_REACHED;
     return false;
   }
 
   void accept_rung() {
-    place(NV_DATA_S(x_), rung_time(), base_q_);
-    project(state_.layout(), base_q_.data());
-    state_.q() = base_q_;
+    equations_.accept(NV_DATA_S(x_));
     ++counters_.steps;
   }
 
-  double rung_time() const { return t0_ + s_ * (t1_ - t0_); }
-
-  /// Solves once by Newton's method for the displacement x_ from base_q_.
+  /// Solves once by Newton's method for the displacement x_ from the last accepted positions.
   int solve(long& iterations) {
     N_VConst(0.0, x_);
     message_.clear();
     finite_ = true;
     set_tolerance(start_tolerance_);
     // Where sigma = 0, a step that moves no position is the last; proximal steps may be arbitrarily small.
-    check(KINSetScaledStepTol(kinsol_, sigma_ == 0.0 ? std::numeric_limits<double>::epsilon() : kSmallest),
+    check(KINSetScaledStepTol(
+              kinsol_, equations_.sigma == 0.0 ? std::numeric_limits<double>::epsilon() : kSmallestLength),
           "KINSetScaledStepTol", state_.time(), 0.0);
     int flag = KINSol(kinsol_, x_, KIN_NONE, displacement_scale_, force_scale_);
     context_->log_warnings();
@@ -195,24 +198,27 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     iterations += now;
     counters_.newton_iterations += now;
     if (flag == KIN_STEP_LT_STPTOL) flag = ends_at_rounding() ? KIN_SUCCESS : KIN_MAXITER_REACHED;
-    if (flag >= 0 && sigma_ == 0.0 && tolerance_ > spec_.newton_rtol && !refine()) flag = KIN_MAXITER_REACHED;
+    if (flag >= 0 && equations_.sigma == 0.0 && tolerance_ > spec_.newton_rtol && !refine())
+      flag = KIN_MAXITER_REACHED;
     if (flag < 0) ++counters_.newton_failures;
     return flag;
   }
 
   /// Returns whether the residual is rounding, after positions stopped moving.
-  bool ends_at_rounding() { return residual(NV_DATA_S(x_), sigma_, g_) && size_of(g_) <= tolerance_; }
+  bool ends_at_rounding() {
+    return equations_.residual(NV_DATA_S(x_), equations_.sigma, g_) && equations_.size_of(g_) <= tolerance_;
+  }
 
   /// Called where Newton's method ended at rounding. Verifies this with the matrix at the solution (the last
   /// matrix may belong to another state), and applies corrections while they lower the residual. Returns
   /// false where the residual is more than rounding.
   bool refine() {
     Eigen::Map<VecX> x(NV_DATA_S(x_), g_.size());
-    if (!residual(x.data(), sigma_, g_)) return false;
-    double size = size_of(g_);
+    if (!equations_.residual(x.data(), equations_.sigma, g_)) return false;
+    double size = equations_.size_of(g_);
     if (size <= spec_.newton_rtol) return true;
-    assemble();
-    if (size > rounding()) return false;
+    equations_.assemble();
+    if (size > equations_.rounding()) return false;
     ++counters_.rounding_limited;
     if (setup() != 0) return true;  // A free body at rest.
     for (int k = 0; k < tuning::kRefinements && size > spec_.newton_rtol; ++k) {
@@ -221,7 +227,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
       kept_ = x;
       x += step_;
       const double before = size;
-      if (!residual(x.data(), sigma_, g_) || !((size = size_of(g_)) < before)) {
+      if (!equations_.residual(x.data(), equations_.sigma, g_) ||
+          !((size = equations_.size_of(g_)) < before)) {
         x = kept_;
         break;
       }
@@ -230,177 +237,32 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     return true;
   }
 
-  // --- the equations
-  /// Sets q to base_q_ moved by the displacement x along u-directions, with driven directions at time t.
-  void place(const double* x, double t, VecX& q) {
-    q_dot(state_.layout(), base_q_.data(), x, rate_.data());
-    q = base_q_ + rate_;
-    system_.impose(state_.layout(), t, q.data(), velocity_.data());
-    velocity_.setZero();
-  }
-
-  bool force(double t, const VecX& q, VecX& f) {
-    const ScopedTimer timer(counters_.force_s);
-    ++counters_.force_evaluations;
-    const StateView at = state_.view(t, q.data(), velocity_.data());
-    system_.force(at, f);
-    system_.reduce(at, f);
-    return all_finite(f);
-  }
-
-  bool residual(const double* x, double sigma, VecX& g) {
-    place(x, rung_time(), q_);
-    if (!force(rung_time(), q_, g)) return false;
-    g -= (1.0 - s_) * unbalanced_;
-    for (int dof : system_.driven_dofs()) g[dof] = 0.0;
-    if (sigma > 0.0) {
-      const StateView at = state_.view(rung_time(), q_.data(), velocity_.data());
-      system_.apply_mass(at, Eigen::Map<const VecX>(x, g.size()), inertia_);
-      system_.reduce(at, inertia_);
-      g -= sigma * inertia_;
-    }
-    return all_finite(g);
-  }
-
-  // --- the measures
-  /// Returns whether a direction of u is a rotation.
-  static bool is_angle(const Block& b, int i) {
-    return !b.angles_u.empty() && b.angles_u[static_cast<std::size_t>(i)] != 0;
-  }
-
-  /// Sets the units of displacements and forces, by direction.
-  void measure() {
-    const Layout& layout = state_.layout();
-    VecX largest = VecX::Zero(layout.u_size);
-    for (const double t : {t0_, t1_}) add_forces(t, largest);
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-    double far = 0.0;
-    const auto reach = [&](const Vec3& x) {
-      low = low.cwiseMin(x);
-      high = high.cwiseMax(x);
-      far = std::max(far, x.cwiseAbs().maxCoeff());
-    };
-    for (int i = 0; i < layout.node_count(); ++i) reach(state_.q().segment<3>(3 * i));
-    for (const Block& b : layout.blocks)
-      if (b.kind == BlockKind::kRigidBody && b.q_size == 7) reach(state_.q().segment<3>(b.q_offset + 4));
-    const double arm = far > 0.0 ? (high - low).norm() : 0.0;
-    VecX is_moment = VecX::Zero(layout.u_size);
-    for (const Block& b : layout.blocks)
-      for (int i = 0; b.kind != BlockKind::kNodes && i < b.u_size; ++i)
-        is_moment[b.u_offset + i] = is_angle(b, i) ? 1.0 : 0.0;
-    // Where all are zero any unit is valid.
-    const auto positive = [](double x) { return x > 0.0 ? std::max(x, kSmallest) : 1.0; };
-    const double force = (largest.array() * (1.0 - is_moment.array())).maxCoeff(),
-                 moment = std::max((largest.array() * is_moment.array()).maxCoeff(), force * arm);
-    far_ = far > 0.0 ? std::max(far, kSmallest) : 0.0;
-    force_ = force;
-    coordinate_.resize(layout.u_size);
-    for (int i = 0; i < layout.u_size; ++i) {
-      const bool angle = is_moment[i] != 0.0;
-      coordinate_[i] = angle ? 1.0 : far_;
-      NV_DATA_S(displacement_scale_)[i] = 1.0 / (angle ? 1.0 : positive(far_));
-      NV_DATA_S(force_scale_)[i] = 1.0 / positive(angle ? moment : force);
-    }
-  }
-
-  /// Computes the largest force of any one term on each free direction.
-  void add_forces(double t, VecX& largest) {
-    VecX f, q = state_.q();
-    system_.impose(state_.layout(), t, q.data(), velocity_.data());
-    velocity_.setZero();
-    const StateView at = state_.view(t, q.data(), velocity_.data());
-    for (const auto& term : system_.terms()) {
-      f.setZero(state_.layout().u_size);
-      term->add_force(at, f);
-      system_.reduce(at, f);
-      if (all_finite(f)) largest = largest.cwiseMax(f.cwiseAbs());
-    }
-  }
-
-  double size_of(const VecX& g) const {
-    return (g.array() * Eigen::Map<const VecX>(NV_DATA_S(force_scale_), g.size()).array()).abs().maxCoeff();
-  }
-
   void set_tolerance(double tolerance) {
     tolerance_ = tolerance;
     check(KINSetFuncNormTol(kinsol_, tolerance), "KINSetFuncNormTol", state_.time(), 0.0);
   }
 
-  /// Sets the tolerance at q0; jacobian() adapts it to the iterates of Newton's method.
-  void measure_rounding() {
-    const ScopedTimer timer(counters_.tangent_s);
-    ++counters_.tangent_evaluations;
-    base_q_ = q_ = state_.q();
-    s_ = sigma_ = 0.0;
-    assemble();
-    start_tolerance_ = std::max(spec_.newton_rtol, rounding());
-  }
-
-  /// Returns the rounding of the residual, from the current matrix A_. The entries of a row of A_ sum to the
-  /// negative contribution of driven directions, which are not in A_.
-  double rounding() {
-    absolute_ = A_;
-    for (double& v : absolute_.body.values()) v = std::abs(v);
-    absolute_.right = A_.right.cwiseAbs();
-    absolute_.bottom = A_.bottom.cwiseAbs();
-    absolute_.corner = A_.corner.cwiseAbs();
-    absolute_.multiply(coordinate_, summands_);
-    for (int dof : system_.driven_dofs()) summands_[dof] = 0.0;
-    return tuning::kRounding * size_of(summands_);
-  }
-
-  /// Returns the initial sigma of proximal steps [1/s^2]: the largest stiffness of a node over the largest
-  /// mass of one, and for directions of other blocks the largest ratio of one direction.
-  double stiffness_over_mass() {
-    const StateView at = state_.view(rung_time(), base_q_.data(), velocity_.data());
-    system_.step_matrix(at, 0.0, 0.0, 1.0, A_);
-    const VecX stiffness = diagonal();
-    system_.step_matrix(at, 1.0, 0.0, 0.0, A_);
-    const VecX mass = diagonal();
-    double stiffest = 0.0, heaviest = 0.0, largest = 0.0;
-    for (int i = 0; i < mass.size(); ++i) {
-      if (system_.driven_mask()[static_cast<std::size_t>(i)] || !(mass[i] > 0.0)) continue;
-      if (i < A_.nodal_size()) {
-        stiffest = std::max(stiffest, stiffness[i]);
-        heaviest = std::max(heaviest, mass[i]);
-      } else {
-        largest = std::max(largest, stiffness[i] / mass[i]);
-      }
-    }
-    if (heaviest > 0.0) largest = std::max(largest, stiffest / heaviest);
-    // Only loads: the stiffness that would balance them within the extent of the objects.
-    return largest > 0.0 || !(heaviest * far_ > 0.0) ? largest : force_ / (heaviest * far_);
-  }
-  VecX diagonal() const {
-    VecX d(A_.size());
-    for (int i = 0; i < A_.body.block_rows(); ++i)
-      for (int k = 0; k < 3; ++k) d[3 * i + k] = std::abs(A_.body.block(A_.body.diagonal(i))[4 * k]);
-    if (A_.border_size() > 0) d.tail(A_.border_size()) = A_.corner.diagonal().cwiseAbs();
-    return d;
-  }
-
   static KinsolStatic& self(void* data) { return *static_cast<KinsolStatic*>(data); }
   static int equations(N_Vector x, N_Vector g, void* data) {
     KinsolStatic& me = self(data);
-    me.finite_ = me.residual(NV_DATA_S(x), me.sigma_, me.g_);
+    me.finite_ = me.equations_.residual(NV_DATA_S(x), me.equations_.sigma, me.g_);
     if (!me.finite_) return kRecoverable;
     Eigen::Map<VecX>(NV_DATA_S(g), me.g_.size()) = -me.g_;  // Its derivative is then K.
     return 0;
   }
   static int jacobian(N_Vector x, N_Vector, SUNMatrix, void* data, N_Vector, N_Vector) {
     KinsolStatic& me = self(data);
+    StaticEquations& equations = me.equations_;
     const ScopedTimer timer(me.counters_.tangent_s);
     ++me.counters_.tangent_evaluations;
-    me.place(NV_DATA_S(x), me.rung_time(), me.q_);
-    me.assemble();
-    if (me.sigma_ == 0.0) me.set_tolerance(std::max(me.spec_.newton_rtol, me.rounding()));
+    equations.assemble_at(NV_DATA_S(x));
+    if (equations.sigma == 0.0) me.set_tolerance(std::max(me.spec_.newton_rtol, equations.rounding()));
     return 0;
   }
-  void assemble() {
-    system_.step_matrix(state_.view(rung_time(), q_.data(), velocity_.data()), sigma_, 0.0, 1.0, A_);
-  }
   int setup() override {
-    return solver_.factor(A_, system_, [this] { assemble(); }) == SolveStatus::kOk ? 0 : kRecoverable;
+    const SolveStatus status =
+        solver_.factor(equations_.matrix(), system_, [this] { equations_.assemble(); });
+    return status == SolveStatus::kOk ? 0 : kRecoverable;
   }
   int solve(N_Vector x, N_Vector b) override {
     rhs_ = Eigen::Map<const VecX>(NV_DATA_S(b), NV_LENGTH_S(b));
@@ -412,21 +274,14 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;
     const auto right_hand_side = [this]() -> const VecX& { return rhs_; };
     if (solver_.solve(
-            system_, [this] { assemble(); }, right_hand_side, step_) != SolveStatus::kOk ||
+            system_, [this] { equations_.assemble(); }, right_hand_side, step_) != SolveStatus::kOk ||
         !all_finite(step_))
       return kRecoverable;
     return 0;
   }
 
   // --- KINSOL
-  N_Vector zero_displacement() {
-    N_VConst(0.0, x_);
-    return x_;
-  }
-
   void allocate() {
-    velocity_.setZero(state_.layout().u_size);
-    rate_.resize(state_.layout().q_size);
     if (kinsol_ && layout_version_ == state_.layout().version) return;
     release();
     const double t = state_.time();
@@ -481,7 +336,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     return fmt::format(
         "{} at {:.3g} of the load: no equilibrium found ({}). Check that the body is held by attachments and "
         "that the load is not too large",
-        flag_name("KINSol", flag), s_, message_);
+        flag_name("KINSol", flag), equations_.load, message_);
   }
   StepResult failure(StepStatus status, const std::string& what) const {
     StepResult r;
@@ -507,11 +362,9 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   StepSolver solver_;
   mutable StepperCounters counters_;
   long clamped_before_ = 0;
-  BorderedMatrix A_, absolute_;
-  VecX q_start_, u_start_, base_q_, q_, rate_, velocity_, unbalanced_, g_, inertia_, rhs_, step_, kept_,
-      coordinate_, summands_;
-  double t0_ = 0.0, t1_ = 0.0, s_ = 1.0, sigma_ = 0.0, start_tolerance_ = 0.0, tolerance_ = 0.0, far_ = 0.0,
-         force_ = 0.0;
+  StaticEquations equations_;
+  VecX q_start_, u_start_, g_, rhs_, step_, kept_;
+  double t0_ = 0.0, t1_ = 0.0, start_tolerance_ = 0.0, tolerance_ = 0.0;
   bool finite_ = true;
   std::string message_;
   std::uint64_t layout_version_ = 0;
