@@ -4,6 +4,7 @@
 
 #include "cases.h"
 #include "images.h"
+#include "palpate/contact/contact_force.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/attachments.h"

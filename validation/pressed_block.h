@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "palpate/contact/contact_force.h"
+#include "palpate/contact/side.h"
 #include "palpate/fem/material.h"
 #include "palpate/mesh/mesh.h"
 

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "palpate/contact/side.h"
+#include "palpate/dynamics/matrix.h"
 
 namespace palpate::contact {
 

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "contact/sources.h"
+#include "palpate/contact/contact_force.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/core/error.h"
 

@@ -9,6 +9,7 @@
 
 #include "contact/sources.h"
 #include "core/clock.h"
+#include "palpate/contact/contact_force.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/state.h"
 #include "palpate/mesh/generators.h"
