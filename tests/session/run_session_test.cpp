@@ -76,11 +76,11 @@ std::vector<Points> states_in(const std::string& folder) {
   return out;
 }
 
-/// Counts of the process in a summary.
+/// Counts of constructions in a summary, by name.
 std::map<std::string, long long> constructions_in(store::Summary summary) {
   std::map<std::string, long long> out;
-  for (const auto& [name, value] : summary.section("constructions").values)
-    if (const auto* count = std::get_if<long long>(&value)) out[name] = *count;
+  for (const store::SummaryFields& row : summary.list("constructions"))
+    out[std::get<std::string>(row.at(0).second)] = std::get<long long>(row.at(1).second);
   return out;
 }
 

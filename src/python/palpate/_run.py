@@ -68,7 +68,8 @@ def resume(folder: str | os.PathLike[str]) -> Run:
     """Continues an interrupted run from its last checkpoint, with its original options.
 
     The results are bitwise identical to those of an uninterrupted run.  Returns a finished run as it is.
-    Raises Error if there is no checkpoint, or if the scene, its meshes or the version of palpate have changed.
+    Raises Error if there is no checkpoint, or if the scene, its meshes or the version of palpate has changed
+    since.
     """
     return _run_of(_palpate._resume(os.fspath(folder)))
 
