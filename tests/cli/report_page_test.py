@@ -138,7 +138,7 @@ class ReportPage(unittest.TestCase):
     def test_charts_of_counts_are_folded_away_and_drawn_when_opened(self):
         self.assertEqual(self.tab.value("document.querySelectorAll('details[open]').length"), 0)
         self.assertGreater(self.tab.value("document.querySelectorAll('details figure.chart').length"), 0)
-        self.assertEqual(self.tab.value("document.querySelectorAll('details figure.chart').length"), 0)
+        self.assertEqual(self.tab.value("document.querySelectorAll('details figure.chart canvas').length"), 0)
         self.seen("details figure.chart")
         self.tab.wait_for("document.querySelectorAll('details figure.chart canvas').length > 0")
 

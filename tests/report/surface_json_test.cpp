@@ -8,6 +8,7 @@
 
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
+#include "palpate/store/run_file.h"
 #include "report/decimate.h"
 #include "temporary_folder.h"
 
