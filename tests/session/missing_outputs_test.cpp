@@ -18,10 +18,10 @@ TEST(MissingOutputs, NameTheOutputAndTheFirstLineOfTheReason) {
 TEST(MissingOutputs, FiguresOfAPageAreGroupedByReason) {
   report::RunReport page;
   page.page = "out/report.html";
-  page.missing_figures = {{"force", "no gnuplot"}, {"energy", "no gnuplot"}, {"bodies", "too large"}};
+  page.missing_figures = {{"force", "no ffmpeg"}, {"energy", "no font"}, {"bodies", "too large"}};
   session::MissingOutputs missing;
   missing.add(page);
   EXPECT_EQ(missing.outputs(),
-            (std::vector<std::string>{"2 figures in out/report.html (no gnuplot)",
+            (std::vector<std::string>{"2 figures in out/report.html (no ffmpeg)",
                                       "figure \"bodies\" in out/report.html (too large)"}));
 }
