@@ -5,8 +5,6 @@
 namespace palpate::loop {
 namespace {
 
-using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-
 // Wrench of the contact on the tool after a time H, with the bodies advanced by one linearly implicit Euler
 // step from (x0, u0), while the tool is displaced by dx and its twist changes by dv. Indices: n all nodes, f
 // free, t tool; c = -df/d(tool), -dF/d(node) from ContactForce::linearise; M, D, K include the contact.
@@ -107,6 +105,7 @@ bool condense(const CoupledTool& tool, StepFactor& factor, double period, double
     F0 = after_tick - tick * slope;
     F1 = slope - last.J * v0;
   }
+  using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
   Eigen::Map<Vec6>(record.F0.data()) = F0;
   Eigen::Map<Vec6>(record.F1.data()) = F1;
   Eigen::Map<RowMajor6>(record.J.data()) = last.J;

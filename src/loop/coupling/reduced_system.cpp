@@ -13,8 +13,6 @@ using contact::ReducedTangent;
 
 namespace {
 
-constexpr int kModes = ReducedContactModel::kMostModes;
-
 /// Returns X^T P X for a linear map P.  @param scratch  becomes P X, as large as X
 MatX products(const MatX& X, MatX& scratch, const auto& product) {
   scratch.resize(X.rows(), X.cols());
@@ -51,7 +49,8 @@ SampleSums sum_of(const std::vector<ReducedSample>& samples, const std::vector<R
   for (std::size_t j = 0; j < samples.size(); ++j) {
     const ReducedSample& s = samples[j];
     if (!presses(s)) continue;
-    const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kModes> P = moved_by(s, nodes_of_X);
+    const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, ReducedContactModel::kMostModes> P =
+        moved_by(s, nodes_of_X);
     const auto& [K, D] = tangents[j];
     out.K.noalias() += P.transpose().lazyProduct((K * P).eval());
     out.D.noalias() += P.transpose().lazyProduct((D * P).eval());
@@ -114,6 +113,7 @@ ReducedSystem reduce_by_work(const CoupledTool& tool, double H, const MatX& X, c
 }
 
 MatX modes_of(const ReducedSystem& system, double dependence, ReducedContactModel& out) {
+  constexpr int kMost = ReducedContactModel::kMostModes;
   const auto& [M, K, D] = system;
   VecX scale = M.diagonal();
   for (double& one : scale) one = one > 0.0 ? 1.0 / std::sqrt(one) : 0.0;
@@ -122,7 +122,7 @@ MatX modes_of(const ReducedSystem& system, double dependence, ReducedContactMode
   const VecX& lengths = mass.eigenvalues();  // ascending
   const Eigen::Index all = lengths.size(),
                      alone = (lengths.array() > dependence * std::max(lengths[all - 1], 0.0)).count(),
-                     kept = std::min<Eigen::Index>(kModes, alone);
+                     kept = std::min<Eigen::Index>(kMost, alone);
   out.modes = static_cast<int>(kept);
   if (kept == 0) return MatX(all, 0);  // every node that responds is held
   MatX S = scale.asDiagonal() * mass.eigenvectors().rightCols(kept) *
@@ -131,7 +131,7 @@ MatX modes_of(const ReducedSystem& system, double dependence, ReducedContactMode
   const Eigen::SelfAdjointEigenSolver<MatX> stiffness(MatX(0.5 * (k + k.transpose())));
   S = (S * stiffness.eigenvectors()).eval();
   Eigen::Map<VecX>(out.stiffness.data(), kept) = stiffness.eigenvalues().cwiseMax(0.0);
-  Eigen::Map<MatX>(out.damping.data(), kModes, kModes).topLeftCorner(kept, kept) =
+  Eigen::Map<MatX>(out.damping.data(), kMost, kMost).topLeftCorner(kept, kept) =
       definite(S.transpose() * D * S);
   return S;
 }
