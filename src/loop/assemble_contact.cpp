@@ -9,6 +9,7 @@
 #include "core/counters.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "proxy/decompose_solid.h"
@@ -164,7 +165,7 @@ std::unique_ptr<contact::SampleSource> image_source(Pair pair, TriMesh rigid,
 std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolInstance& side, Pair pair) {
   const ToolSpec& tool = *side.spec;
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world, side);
-  const bool sphere = tool.shape == "sphere";
+  const bool sphere = tool.shape == ToolShape::kSphere;
   if (pair.spec.method == "distance" && sphere) {
     const Shape shape = round_tool(tool.radius_m, side.frame_index, motion);
     return with_own_points(
@@ -182,7 +183,7 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolInstance& s
     fail(
         "contact {} - {}: method = \"analytic\" needs a tool with shape = \"sphere\", not \"{}\"; use method "
         "= \"auto\"",
-        pair.spec.first, pair.spec.second, tool.shape);
+        pair.spec.first, pair.spec.second, name_of(tool.shape));
   return contact::make_sphere_source(std::move(pair.surface), side.frame_index, motion, Vec3::Zero(),
                                      tool.radius_m, pair.candidate_gap, pair.look_ahead);
 }
