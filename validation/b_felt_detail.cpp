@@ -116,7 +116,7 @@ scene::Description drag(const std::string& model, bool skin, const std::string& 
   d.contacts = {contact};
   const double force = kStiffness * SphereOnSkin{kRadius}.force(kDelta);
   d.tool.emplace();
-  d.tool->shape = "mesh";
+  d.tool->shape = ToolShape::kMesh;
   d.tool->mesh.generator = "ball";
   d.tool->mesh.radius_m = kRadius;
   d.tool->mesh.element_size_m = 4e-4;
@@ -132,7 +132,7 @@ scene::Description drag(const std::string& model, bool skin, const std::string& 
   end = start;
   end.time_s = d.duration_s;
   end.position_m.x() += d.duration_s * kSpeed;
-  end.interpolation = "linear";
+  end.interpolation = Interpolation::kLinear;
   d.device->keyframes = {start, end};
   d.exchange.linearisation = "frozen";
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = fault == "slow-query" ? 0.04 : 2e-3;

@@ -27,7 +27,7 @@ scene::Description free_tool_scene(double length, double width, double element_s
   contact.method = "distance";
   d.contacts = {contact};
   d.tool.emplace();
-  d.tool->shape = "mesh";
+  d.tool->shape = ToolShape::kMesh;
   d.tool->gravity = true;
   d.tool->coupling = {0.0, 0.0, 0.0, 0.0};
   d.device.emplace();

@@ -1,13 +1,9 @@
 #include <cmath>
-#include <functional>
 
-#include "b_bodies.h"
+#include "bouncing_punch.h"
 #include "cases.h"
-#include "faults.h"
-#include "images.h"
 #include "palpate/core/error.h"
-#include "palpate/dynamics/system.h"
-#include "palpate/integrate/integrators.h"
+#include "palpate/core/named_enum.h"
 
 // Problem: a flat punch with area A and mass m meets a plane at speed v0, without gravity. The contact is one
 // spring K = k A with a damper c = d A:
@@ -40,150 +36,9 @@
 namespace palpate::validation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kMass = 0.2, kArea = 1e-4, kStiffness = 2e7;  // K = 2000 N/m, w = 100 rad/s
-constexpr double kSpeed = 0.5, kHeight = 2e-3;
-const double kOmega = std::sqrt(kStiffness * kArea / kMass);
+using namespace punch;
 
-/// Fault "adhesive": Kelvin-Voigt pressure without the cut-off of its tensile part.
-class Adhesive final : public DecoratedTerm {
- public:
-  Adhesive(std::shared_ptr<dynamics::ForceTerm> term, double damping)
-      : DecoratedTerm(std::move(term)), damping_(damping) {}
-  void add_force(const dynamics::StateView& state, VecX& f) override {
-    term().add_force(state, f);
-    if (state.q[2] < 0.0) f[2] += std::min(0.0, -kArea * (kStiffness * state.q[2] + damping_ * state.u[2]));
-  }
-
- private:
-  double damping_;
-};
-
-/// Fault "drag": slight damping out of contact.
-class Drag final : public DecoratedTerm {
- public:
-  using DecoratedTerm::DecoratedTerm;
-  void add_force(const dynamics::StateView& state, VecX& f) override {
-    term().add_force(state, f);
-    f[2] -= 1e-6 * kMass * state.u[2];
-  }
-};
-
-/// Punch above (or in) the plane, simulated with the library's contact term, system and stepper.
-struct Bounce {
-  dynamics::State state;
-  dynamics::System system;
-  std::shared_ptr<contact::ContactForce> term = std::make_shared<contact::ContactForce>();
-  std::unique_ptr<dynamics::Stepper> stepper;
-
-  struct Law {
-    double zeta = 0.0;
-    bool hunt_crossley = false;  ///< a v0 = 3 zeta
-    bool stepped = false;        ///< The end of the punch has 16 steps from 0 to 3 mm instead of a flat face.
-  };
-
-  Bounce(double height, const Law& asked, IntegratorSpec integrator, const std::string& fault) {
-    dynamics::BlockSpec node;
-    node.name = "punch";
-    node.q_size = node.u_size = 3;
-    node.q_scale = kSpeed / kOmega;
-    node.u_scale = kSpeed;
-    const int id = state.insert(node, Vec3(0.1, -0.2, height), Vec3(0, 0, -kSpeed));
-    term->add_frame(contact::fixed_frame());
-    ContactSpec law;
-    law.stiffness_pa_m = kStiffness;
-    law.damping_pa_s_m = 2.0 * asked.zeta * std::sqrt(kStiffness * kArea * kMass) / kArea;
-    if (asked.hunt_crossley != (fault == "other-law")) {
-      law.law = "hunt_crossley";
-      law.hunt_crossley_s_m = 2.0 * asked.zeta / kSpeed;
-    }
-    auto source = make_punch_source(0, kArea, 4, 0);
-    if (asked.stepped)
-      source = spoiled(std::move(source), [](auto& samples) {
-        double up = 0.0;
-        for (auto& s : samples) {
-          s.a.offset.z() += up;
-          s.gap += up;
-          up += 2e-4;
-        }
-      });
-    if (fault == "half-area")
-      source = spoiled(std::move(source), [](auto& samples) {
-        for (auto& s : samples) s.area *= 0.5;
-      });
-    term->add_pair(std::move(source), law);
-    if (fault == "adhesive")
-      system.add(std::make_shared<Adhesive>(term, law.damping_pa_s_m));
-    else if (fault == "drag")
-      system.add(std::make_shared<Drag>(term));
-    else
-      system.add(std::static_pointer_cast<dynamics::ForceTerm>(term));
-    if (fault == "half-damping") system.add(friction_defect(term, 0.5));
-    system.add(std::make_shared<PointMass>(id, kMass));
-    term->refresh(state.view());
-    system.prepare(state.view());
-    if (fault == "tolerance-ignored") integrator.rtol = 1e-3;
-    if (fault == "first-order-rule" && integrator.name == "implicit-midpoint")
-      integrator.name = "backward-euler";
-    stepper = integrate::make_stepper(system, state, integrator);
-  }
-
-  double height() const { return state.q()[2]; }
-  double velocity() const { return state.u()[2]; }
-  double force_at(const VecX& q, const VecX& u) {
-    VecX f = VecX::Zero(3);
-    term->add_force(state.view(0.0, q.data(), u.data()), f);
-    return f[2];
-  }
-
-  dynamics::StepResult advance(double t) {
-    const auto result = stepper->advance_to(t);
-    if (!result.ok()) fail("punch bounce: {}", result.message);
-    return result;
-  }
-};
-
-/// Times at which the punch touched and at which the force on it ended, from the dense output of each step.
-struct Contact final : dynamics::StepFollower {
-  explicit Contact(Bounce& b) : bounce(b) { PALPATE_CHECK(b.stepper->follow(this), "not followed"); }
-  ~Contact() override { bounce.stepper->follow(nullptr); }
-
-  void stepped(const dynamics::Stepper& stepper, double t0, double t1) override {
-    if (std::isnan(touch)) {
-      touch = root(stepper, t0, t1, [&] { return q_[2]; });
-      if (!std::isnan(touch)) t0 = touch;
-    }
-    if (std::isnan(touch) || !std::isnan(release)) return;
-    // Starts slightly inside the step: at touch the force is zero, which is not its end.
-    t0 += 1e-3 * (t1 - t0);
-    release = root(stepper, t0, t1, [&] { return bounce.force_at(q_, u_); });
-    if (!std::isnan(release)) depth_left = -q_[2];
-  }
-
-  Bounce& bounce;
-  double touch = std::nan(""), release = std::nan(""), depth_left = std::nan("");
-
- private:
-  /// Returns the time at which a function falls to zero within the step; NaN if it does not.
-  template <class Value>
-  double root(const dynamics::Stepper& stepper, double t0, double t1, const Value& value) {
-    const auto positive = [&](double t) {
-      PALPATE_CHECK(stepper.dense_output(t, q_, u_), "no dense output at t = {}", t);
-      return value() > 0.0;
-    };
-    if (!positive(t0) || positive(t1)) return std::nan("");
-    double low = t0, high = t1;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (positive(middle) ? low : high) = middle;
-    }
-    positive(high);
-    return high;
-  }
-  VecX q_{3}, u_{3};
-};
-
-IntegratorSpec cvode(const std::string& events) {
+IntegratorSpec cvode(KinkTreatment events) {
   IntegratorSpec spec;
   spec.name = "cvode-bdf";
   spec.rtol = 1e-8;
@@ -216,14 +71,14 @@ struct Outcome {
   double depth_left;   ///< Depth when the force ended [m].
 };
 
-Outcome bounce(const Bounce::Law& law, const std::string& events, const std::string& fault) {
+Outcome bounce(const Bounce::Law& law, KinkTreatment events, const std::string& fault) {
   Bounce b(kHeight, law, cvode(events), fault);
   const Contact contact(b);
   b.advance(kHeight / kSpeed + 2.0 * kPi / kOmega);  // Well after separation.
   return {contact.release - contact.touch, b.velocity() / kSpeed, contact.depth_left};
 }
 
-constexpr const char* kWays[] = {"error-control", "root-finding"};
+constexpr KinkTreatment kWays[] = {KinkTreatment::kErrorControl, KinkTreatment::kRootFinding};
 
 struct Method {
   const char* name;
@@ -305,9 +160,9 @@ Measurement order_through_touch(double zeta, double e, const std::string& fault)
 
 std::vector<Measurement> run_undamped(const std::string& fault) {
   std::vector<Measurement> out;
-  for (const char* way : kWays) {
+  for (const KinkTreatment way : kWays) {
     const Outcome o = bounce({}, way, fault);
-    const std::string name = fmt::format("cvode-bdf, rtol 1e-8, {}: ", way);
+    const std::string name = fmt::format("cvode-bdf, rtol 1e-8, {}: ", name_of(way));
     out.push_back(against(name + "contact duration [s]", o.duration, kPi / kOmega, 1e-6));
     out.push_back(against(name + "speed after over speed before", o.restitution, 1.0, 1e-6));
     out.push_back(
@@ -325,9 +180,9 @@ std::vector<Measurement> run_damped(const std::string& fault) {
     const double angle = kPi - std::atan2(2.0 * zeta * s, 1.0 - 2.0 * zeta * zeta);
     const double e = zeta < 1.0 ? std::exp(-zeta / s * angle) : std::exp(-2.0);
     const double duration = zeta < 1.0 ? angle / (kOmega * s) : 2.0 / kOmega;
-    for (const char* way : kWays) {
+    for (const KinkTreatment way : kWays) {
       const Outcome o = bounce({.zeta = zeta}, way, fault);
-      const std::string name = fmt::format("{}, zeta = {}: ", way, zeta);
+      const std::string name = fmt::format("{}, zeta = {}: ", name_of(way), zeta);
       out.push_back(against(name + "coefficient of restitution", o.restitution, e, 1e-5));
       out.push_back(against(name + "contact duration [s]", o.duration, duration, 1e-5));
       Measurement left;
@@ -359,10 +214,10 @@ std::vector<Measurement> run_hunt_crossley(const std::string& fault) {
   std::vector<Measurement> out;
   for (const bool stepped : {false, true})
     for (const double u : {0.3, 1.0})  // a v0 = 3/2 c v0
-      for (const char* way : kWays) {
+      for (const KinkTreatment way : kWays) {
         const Bounce::Law law{.zeta = u / 3.0, .hunt_crossley = true, .stepped = stepped};
         out.push_back(against(fmt::format("{} punch, {}, 3/2 c v0 = {}: coefficient of restitution",
-                                          stepped ? "stepped" : "flat", way, u),
+                                          stepped ? "stepped" : "flat", name_of(way), u),
                               bounce(law, way, fault).restitution, hunt_crossley_restitution(u), 1e-5));
       }
   return out;

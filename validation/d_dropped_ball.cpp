@@ -194,7 +194,7 @@ std::vector<Measurement> run(const std::string& fault) {
     const bool blind =
         entry.traits.family == "ImEx Runge-Kutta" ||
         std::find(kBlindToKinks.begin(), kBlindToKinks.end(), entry.name) != kBlindToKinks.end();
-    spec.events = coarse || blind ? "root-finding" : "error-control";
+    spec.events = coarse || blind ? KinkTreatment::kRootFinding : KinkTreatment::kErrorControl;
     const double requested = entry.traits.order <= 2 ? 1e-7 : std::max(1e-10, entry.tightest_rtol(spec));
     spec.rtol = fault == "tolerance-ignored" ? 1e-2 : requested;
     spec.max_steps = 100'000'000;

@@ -101,7 +101,7 @@ scene::Description with_tool_out_of_reach(scene::Description d) {
   d.tool->position_m = Vec3(0, 0, 100);
   d.tool->tick_s = period / 10;
   d.device.emplace();
-  d.device->keyframes.push_back({0.0, Vec3(0, 0, 100), Vec3::Zero(), "step"});
+  d.device->keyframes.push_back({0.0, Vec3(0, 0, 100), Vec3::Zero(), Interpolation::kStep});
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = period;
   return d;
 }

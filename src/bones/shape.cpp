@@ -6,6 +6,7 @@
 
 #include "bones/revolved.h"
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/mesh/generators.h"
 
@@ -38,66 +39,54 @@ TriMesh capsule_surface(double radius, double length) {
 ///              per unit of mass.
 Vec3 unit_moments(const BoneSpec& spec) {
   const double r = spec.radius_m, L = spec.length_m, r2 = r * r;
-  if (spec.shape == "sphere") return Vec3::Constant(0.4 * r2);
-  if (spec.shape == "box") {
+  if (spec.shape == BoneShape::kSphere) return Vec3::Constant(0.4 * r2);
+  if (spec.shape == BoneShape::kBox) {
     const Vec3 s = spec.size_m.cwiseAbs2();
     return (s.sum() - s.array()) / 12.0;
   }
   const double across = (3.0 * r2 + L * L) / 12.0, along = r2 / 2.0;
-  if (spec.shape == "cylinder") return {across, across, along};
+  if (spec.shape == BoneShape::kCylinder) return {across, across, along};
   const double rod = L / (L + 4.0 / 3.0 * r), caps = 1.0 - rod,
                both = rod * across + caps * (0.4 * r2 + L * L / 4.0 + 0.375 * L * r);
   return {both, both, rod * along + caps * 0.4 * r2};
 }
 
-bool known(const std::string& shape) {
-  return shape == "sphere" || shape == "box" || shape == "cylinder" || shape == "capsule";
-}
-
-void check_shape(const BoneSpec& spec) {
-  if (spec.shape.empty() || known(spec.shape)) return;
-  fail("bone \"{}\": unknown shape \"{}\"{}", spec.name, spec.shape,
-       suggestion(spec.shape, {"sphere", "box", "cylinder", "capsule"}));
-}
-
 }  // namespace
 
 double bone_volume(const BoneSpec& spec) {
-  check_shape(spec);
   const double r = spec.radius_m, ball = 4.0 / 3.0 * pi * r * r * r, rod = pi * r * r * spec.length_m;
-  if (spec.shape == "sphere") return ball;
-  if (spec.shape == "box") return spec.size_m.prod();
-  if (spec.shape == "cylinder") return rod;
-  return spec.shape == "capsule" ? rod + ball : 0.0;
+  if (spec.shape == BoneShape::kSphere) return ball;
+  if (spec.shape == BoneShape::kBox) return spec.size_m.prod();
+  if (spec.shape == BoneShape::kCylinder) return rod;
+  return spec.shape == BoneShape::kCapsule ? rod + ball : 0.0;
 }
 
 BoneInertia bone_inertia(const BoneSpec& spec) {
   const double volume = bone_volume(spec);
-  if (!spec.shape.empty() && !(volume > 0.0))
+  if (spec.shape && !(volume > 0.0))
     fail("bone \"{}\": shape = \"{}\" has a volume of {} m^3; its sizes must be positive", spec.name,
-         spec.shape, volume);
+         name_of(*spec.shape), volume);
   BoneInertia out{spec.mass_kg > 0.0 ? spec.mass_kg : spec.density_kg_m3 * volume, spec.inertia_kg_m2};
-  if (out.principal.isZero(0.0) && !spec.shape.empty()) out.principal = out.mass * unit_moments(spec);
+  if (out.principal.isZero(0.0) && spec.shape) out.principal = out.mass * unit_moments(spec);
   dynamics::check_inertia(out.mass, out.principal, fmt::format("bone \"{}\"", spec.name).c_str());
   return out;
 }
 
 bool inside_bone(const BoneSpec& spec, const Vec3& p) {
-  check_shape(spec);
   const double some = 1.0 + 1e-9, r = spec.radius_m * some, half = 0.5 * spec.length_m;
-  if (spec.shape == "sphere") return p.norm() <= r;
-  if (spec.shape == "box") return (p.cwiseAbs().array() <= 0.5 * some * spec.size_m.array()).all();
-  if (spec.shape == "cylinder") return p.head<2>().norm() <= r && std::abs(p.z()) <= half * some;
-  return spec.shape == "capsule" && (p - Vec3(0.0, 0.0, std::clamp(p.z(), -half, half))).norm() <= r;
+  if (spec.shape == BoneShape::kSphere) return p.norm() <= r;
+  if (spec.shape == BoneShape::kBox) return (p.cwiseAbs().array() <= 0.5 * some * spec.size_m.array()).all();
+  if (spec.shape == BoneShape::kCylinder) return p.head<2>().norm() <= r && std::abs(p.z()) <= half * some;
+  return spec.shape == BoneShape::kCapsule &&
+         (p - Vec3(0.0, 0.0, std::clamp(p.z(), -half, half))).norm() <= r;
 }
 
 TriMesh bone_surface(const BoneSpec& spec) {
-  check_shape(spec);
-  if (spec.shape == "sphere") return mesh::sphere(spec.radius_m, 8);
-  if (spec.shape == "box") return mesh::box_surface(spec.size_m, {1, 1, 1});
-  if (spec.shape == "cylinder")
+  if (spec.shape == BoneShape::kSphere) return mesh::sphere(spec.radius_m, 8);
+  if (spec.shape == BoneShape::kBox) return mesh::box_surface(spec.size_m, {1, 1, 1});
+  if (spec.shape == BoneShape::kCylinder)
     return mesh::cylinder_surface(spec.radius_m, spec.length_m, 0.3 * spec.radius_m);
-  return spec.shape == "capsule" ? capsule_surface(spec.radius_m, spec.length_m) : TriMesh{};
+  return spec.shape == BoneShape::kCapsule ? capsule_surface(spec.radius_m, spec.length_m) : TriMesh{};
 }
 
 }  // namespace palpate::bones

@@ -33,7 +33,6 @@ TaperedBone tapered_bone(const Bone& bone);
 TriMesh tapered_bone_surface(const Bone& bone);
 
 /// Returns the volume of the shape [m^3]; zero without one.
-/// @throws Error for an unknown shape
 double bone_volume(const BoneSpec& spec);
 
 /// Whether a point is inside the shape, its surface included (to a relative 1e-9); false without a shape.

@@ -24,24 +24,18 @@ std::vector<const JointSpec*> joints_of(const Skeleton& skeleton, const Skeleton
   return out;
 }
 
-Joint joint_named(const std::string& type) {
-  if (type == "hinge") return Joint::kHinge;
-  if (type == "ball") return Joint::kBall;
-  return type == "free" ? Joint::kFree : Joint::kWeld;
-}
-
 /// One joint during planning.
 struct Link {
   const Bone& bone;
   const JointSpec* own;  ///< null: the skeleton's defaults
-  std::string type;
+  JointType type;
   bool scripted;
   std::string where;  ///< place in the scene, for messages
 };
 
 Link link_of(const Bone& bone, const JointSpec* own, const SkeletonSpec& spec, const std::string& body) {
-  const std::string& otherwise = bone.parent < 0 ? spec.root : spec.others;
-  return {bone, own, own && !own->type.empty() ? own->type : otherwise, own && !own->keyframes.empty(),
+  const JointType otherwise = bone.parent < 0 ? spec.root : spec.others;
+  return {bone, own, own ? own->type.value_or(otherwise) : otherwise, own && !own->keyframes.empty(),
           fmt::format("body \"{}\": joint of \"{}\"", body, bone.name)};
 }
 
@@ -51,7 +45,7 @@ TreeBone tree_bone(const Link& link, const SkeletonBone& placed, int parent, con
   TreeBone bone;
   bone.name = link.bone.name;
   bone.parent = parent;
-  bone.joint = joint_named(link.type);
+  bone.joint = link.type;
   bone.start = placed.start;
   bone.mass = spec.density_kg_m3 * placed.shape.volume;
   bone.inertia = bone.mass * placed.shape.unit_moments;
@@ -63,7 +57,7 @@ TreeBone tree_bone(const Link& link, const SkeletonBone& placed, int parent, con
 }
 
 void check_free_bone(const Link& link, const SkeletonSpec& spec, const std::string& body) {
-  if (link.type == "free" && link.bone.parent >= 0)
+  if (link.type == JointType::kFree && link.bone.parent >= 0)
     fail("{}: type = \"free\" is for a bone without a parent; use \"ball\" or \"hinge\"", link.where);
   if (!(spec.density_kg_m3 > 0.0))
     fail(
@@ -92,7 +86,7 @@ SkeletonPlan plan_skeleton(const Skeleton& skeleton, const SkeletonSpec& spec, c
           "{}: it has keyframes, but its parent \"{}\" moves freely; give keyframes to all bones up to the "
           "root, or weld them",
           link.where, parent_name());
-    if ((link.scripted || link.type == "weld") && parent_prescribed) {
+    if ((link.scripted || link.type == JointType::kWeld) && parent_prescribed) {
       bone.moves = link.scripted || parent_moves;
       bone.path = prescribed_path({bone.start, link.bone.head, body_axes,
                                    link.own ? link.own->keyframes : std::vector<KeyframeSpec>{}},

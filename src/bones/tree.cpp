@@ -27,10 +27,10 @@ void check(const TreeBone& bone, int index) {
   const std::string where = fmt::format("bone \"{}\"", bone.name);
   dynamics::check_inertia(bone.mass, bone.inertia, where.c_str());
   PALPATE_CHECK(bone.parent < index, "{}: its parent {} comes after it", where, bone.parent);
-  if (bone.joint == Joint::kFree && bone.parent >= 0)
+  if (bone.joint == JointType::kFree && bone.parent >= 0)
     fail("{}: a free joint is for a root, but this bone has a parent; use \"ball\", \"hinge\" or \"weld\"",
          where);
-  if (bone.joint == Joint::kHinge && !(bone.axis.norm() > 0.0)) fail("{}: a hinge needs an axis", where);
+  if (bone.joint == JointType::kHinge && !(bone.axis.norm() > 0.0)) fail("{}: a hinge needs an axis", where);
   if (!(bone.stiffness >= 0.0 && bone.damping >= 0.0))
     fail("{}: stiffness {} and damping {} of its joint must not be negative", where, bone.stiffness,
          bone.damping);
@@ -38,28 +38,28 @@ void check(const TreeBone& bone, int index) {
 
 /// Returns the frame of a joint at the start: a hinge rotates about its z axis.
 Pose joint_frame(const TreeBone& bone) {
-  if (bone.joint != Joint::kHinge) return {Quat::Identity(), bone.joint_position};
+  if (bone.joint != JointType::kHinge) return {Quat::Identity(), bone.joint_position};
   return {Quat::FromTwoVectors(Vec3::UnitZ(), bone.axis.normalized()), bone.joint_position};
 }
 
 SimTK::MobilizedBody add(SimTK::MobilizedBody& parent, const Pose& parent_start, const TreeBone& bone) {
   const SimTK::Body::Rigid body(SimTK::MassProperties(
       bone.mass, SimTK::Vec3(0), SimTK::Inertia(bone.inertia.x(), bone.inertia.y(), bone.inertia.z())));
-  if (bone.joint == Joint::kFree)
+  if (bone.joint == JointType::kFree)
     return SimTK::MobilizedBody::Free(parent, SimTK::Transform(), body, SimTK::Transform());
   const Pose joint = joint_frame(bone);
   const SimTK::Transform on_parent = to(parent_start.inverse() * joint),
                          on_bone = to(bone.start.inverse() * joint);
-  if (bone.joint == Joint::kHinge) return SimTK::MobilizedBody::Pin(parent, on_parent, body, on_bone);
-  if (bone.joint == Joint::kBall) return SimTK::MobilizedBody::Ball(parent, on_parent, body, on_bone);
+  if (bone.joint == JointType::kHinge) return SimTK::MobilizedBody::Pin(parent, on_parent, body, on_bone);
+  if (bone.joint == JointType::kBall) return SimTK::MobilizedBody::Ball(parent, on_parent, body, on_bone);
   return SimTK::MobilizedBody::Weld(parent, on_parent, body, on_bone);
 }
 
-constexpr int q_count(Joint joint) {
-  return joint == Joint::kFree ? 7 : joint == Joint::kBall ? 4 : joint == Joint::kHinge ? 1 : 0;
+constexpr int q_count(JointType joint) {
+  return joint == JointType::kFree ? 7 : joint == JointType::kBall ? 4 : joint == JointType::kHinge ? 1 : 0;
 }
-constexpr int u_count(Joint joint) {
-  return joint == Joint::kFree ? 6 : joint == Joint::kBall ? 3 : joint == Joint::kHinge ? 1 : 0;
+constexpr int u_count(JointType joint) {
+  return joint == JointType::kFree ? 6 : joint == JointType::kBall ? 3 : joint == JointType::kHinge ? 1 : 0;
 }
 
 /// Computes q' = N u joint by joint: the quaternion rate for quaternions, u itself for the other coordinates.
@@ -70,33 +70,33 @@ class TreeKinematics final : public dynamics::BlockKinematics {
   }
   void q_dot(const dynamics::ConstSegment& q, const dynamics::ConstSegment& u,
              dynamics::Segment out) const override {
-    each([&](Joint joint, int i, int j) {
-      if (joint == Joint::kHinge) {
+    each([&](JointType joint, int i, int j) {
+      if (joint == JointType::kHinge) {
         out[i] = u[j];
         return;
       }
       const Quat rate = Quat(0.0, u[j], u[j + 1], u[j + 2]) * Quat(q[i], q[i + 1], q[i + 2], q[i + 3]);
       out[i] = 0.5 * rate.w();
       out.segment<3>(i + 1) = 0.5 * rate.vec();
-      if (joint == Joint::kFree) out.segment<3>(i + 4) = u.segment<3>(j + 3);
+      if (joint == JointType::kFree) out.segment<3>(i + 4) = u.segment<3>(j + 3);
     });
   }
   void u_of_q_dot(const dynamics::ConstSegment& q, const dynamics::ConstSegment& q_dot,
                   dynamics::Segment u) const override {
-    each([&](Joint joint, int i, int j) {
-      if (joint == Joint::kHinge) {
+    each([&](JointType joint, int i, int j) {
+      if (joint == JointType::kHinge) {
         u[j] = q_dot[i];
         return;
       }
       const Quat rotation(q[i], q[i + 1], q[i + 2], q[i + 3]),
           rate(q_dot[i], q_dot[i + 1], q_dot[i + 2], q_dot[i + 3]);
       u.segment<3>(j) = 2.0 * (rate * rotation.conjugate()).vec() / rotation.squaredNorm();
-      if (joint == Joint::kFree) u.segment<3>(j + 3) = q_dot.segment<3>(i + 4);
+      if (joint == JointType::kFree) u.segment<3>(j + 3) = q_dot.segment<3>(i + 4);
     });
   }
   void project(dynamics::Segment q) const override {
-    each([&](Joint joint, int i, int) {
-      if (joint != Joint::kHinge) q.segment<4>(i).normalize();
+    each([&](JointType joint, int i, int) {
+      if (joint != JointType::kHinge) q.segment<4>(i).normalize();
     });
   }
 
@@ -104,13 +104,13 @@ class TreeKinematics final : public dynamics::BlockKinematics {
   template <class Do>
   void each(const Do& act) const {
     int i = 0, j = 0;
-    for (const Joint joint : joints_) {
-      if (joint != Joint::kWeld) act(joint, i, j);
+    for (const JointType joint : joints_) {
+      if (joint != JointType::kWeld) act(joint, i, j);
       i += q_count(joint);
       j += u_count(joint);
     }
   }
-  std::vector<Joint> joints_;
+  std::vector<JointType> joints_;
 };
 
 }  // namespace
@@ -212,8 +212,8 @@ VecX BoneTree::start() const {
   for (std::size_t b = 0; b < impl_->bones.size(); ++b) {
     const TreeBone& bone = impl_->bones[b];
     const auto at = impl_->first_q[b];
-    if (bone.joint == Joint::kBall) q[at] = 1.0;
-    if (bone.joint == Joint::kFree)
+    if (bone.joint == JointType::kBall) q[at] = 1.0;
+    if (bone.joint == JointType::kFree)
       q.segment<7>(at) << bone.start.rotation.w(), bone.start.rotation.vec(), bone.start.translation;
   }
   return q;
@@ -222,7 +222,7 @@ VecX BoneTree::start() const {
 VecX BoneTree::rigid_start(const Vec3& velocity, const Vec3& angular_velocity, const Vec3& centre) const {
   VecX u = VecX::Zero(u_size());
   for (std::size_t b = 0; b < impl_->bones.size(); ++b)
-    if (impl_->bones[b].joint == Joint::kFree)
+    if (impl_->bones[b].joint == JointType::kFree)
       u.segment<6>(impl_->first_u[b]) << angular_velocity,
           velocity + angular_velocity.cross(impl_->bones[b].start.translation - centre);
   return u;
@@ -240,7 +240,7 @@ dynamics::BlockSpec BoneTree::block(std::string name, double length, double spee
   spec.angles_q.assign(static_cast<std::size_t>(q_size()), 1);
   spec.angles_u.assign(static_cast<std::size_t>(u_size()), 1);
   for (std::size_t b = 0; b < impl_->bones.size(); ++b)
-    if (impl_->bones[b].joint == Joint::kFree)
+    if (impl_->bones[b].joint == JointType::kFree)
       for (int k = 0; k < 3; ++k)
         spec.angles_q[static_cast<std::size_t>(impl_->first_q[b] + 4 + k)] =
             spec.angles_u[static_cast<std::size_t>(impl_->first_u[b] + 3 + k)] = 0;
@@ -295,10 +295,10 @@ VecX BoneTree::force(const VecX& q, const VecX& u) const {
   for (std::size_t b = 0; b < i.bones.size(); ++b) {
     const TreeBone& bone = i.bones[b];
     const auto at = i.first_u[b];
-    if (bone.joint == Joint::kHinge) f[at] -= bone.stiffness * q[i.first_q[b]] + bone.damping * u[at];
+    if (bone.joint == JointType::kHinge) f[at] -= bone.stiffness * q[i.first_q[b]] + bone.damping * u[at];
     // The rotation vector is an eigenvector of its Jacobian: the moment of the energy k |theta|^2 / 2 is -k
     // theta.
-    if (bone.joint == Joint::kBall)
+    if (bone.joint == JointType::kBall)
       f.segment<3>(at) -= bone.stiffness * i.ball_rotation(q, b) + bone.damping * u.segment<3>(at);
   }
   return f;
@@ -316,8 +316,8 @@ void BoneTree::tangent(const VecX& q, double k_scale, double d_scale, MatX& A) c
   for (std::size_t b = 0; b < i.bones.size(); ++b) {
     const TreeBone& bone = i.bones[b];
     const auto at = i.first_u[b];
-    if (bone.joint == Joint::kHinge) A(at, at) += k_scale * bone.stiffness + d_scale * bone.damping;
-    if (bone.joint != Joint::kBall) continue;
+    if (bone.joint == JointType::kHinge) A(at, at) += k_scale * bone.stiffness + d_scale * bone.damping;
+    if (bone.joint != JointType::kBall) continue;
     const Mat3 J = left_jacobian_inverse(i.ball_rotation(q, b));  // theta' = J^-1 u
     A.block<3, 3>(at, at) +=
         0.5 * k_scale * bone.stiffness * (J + J.transpose()) + d_scale * bone.damping * Mat3::Identity();
@@ -331,8 +331,8 @@ double BoneTree::potential_energy(const VecX& q) const {
   for (std::size_t b = 0; b < i.bones.size(); ++b) {
     const TreeBone& bone = i.bones[b];
     energy -= bone.mass * i.gravity.dot(i.poses[b].translation);
-    if (bone.joint == Joint::kHinge) energy += 0.5 * bone.stiffness * q[i.first_q[b]] * q[i.first_q[b]];
-    if (bone.joint == Joint::kBall) energy += 0.5 * bone.stiffness * i.ball_rotation(q, b).squaredNorm();
+    if (bone.joint == JointType::kHinge) energy += 0.5 * bone.stiffness * q[i.first_q[b]] * q[i.first_q[b]];
+    if (bone.joint == JointType::kBall) energy += 0.5 * bone.stiffness * i.ball_rotation(q, b).squaredNorm();
   }
   return energy;
 }
@@ -341,7 +341,7 @@ double BoneTree::dissipated_power(const VecX& u) const {
   double power = 0.0;
   for (std::size_t b = 0; b < impl_->bones.size(); ++b) {
     const TreeBone& bone = impl_->bones[b];
-    if (bone.joint == Joint::kHinge || bone.joint == Joint::kBall)
+    if (bone.joint == JointType::kHinge || bone.joint == JointType::kBall)
       power += bone.damping * u.segment(impl_->first_u[b], u_count(bone.joint)).squaredNorm();
   }
   return power;

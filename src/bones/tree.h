@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/bones/spec.h"
 #include "palpate/dynamics/driven_motion.h"
 #include "palpate/dynamics/rigid_body.h"
 
@@ -10,21 +11,14 @@
 /// joints hold exactly.
 namespace palpate::bones {
 
-/// Joint of a bone to its parent, with its coordinates q and speeds u.
-enum class Joint {
-  kWeld,   ///< no joint: moves with its parent
-  kHinge,  ///< rotates about one axis: q = angle, u = its rate
-  /// Rotates about a point: q = quaternion, u = angular velocity, in the axes that move with the parent
-  /// (world axes at the start).
-  kBall,
-  kFree,  ///< root only: q = (quaternion, position of its origin), u = (angular, linear velocity), world axes
-};
-
 /// One bone at the start, in world axes.  Its frame has the origin at its centre of mass and principal axes.
 struct TreeBone {
   std::string name;
   int parent = -1;  ///< index of an earlier bone; -1: the ground
-  Joint joint = Joint::kBall;
+  /// Joint to the parent, with coordinates q and speeds u: a hinge has an angle and its rate; a ball a
+  /// quaternion and the angular velocity, in the axes that move with the parent (world axes at the start); a
+  /// free bone (quaternion, position of its origin) and (angular, linear velocity), world axes.
+  JointType joint = JointType::kBall;
   Pose start;                          ///< pose of its frame
   double mass = 0.0;                   ///< [kg]
   Vec3 inertia = Vec3::Zero();         ///< principal moments [kg m^2]

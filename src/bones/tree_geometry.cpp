@@ -42,7 +42,7 @@ void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<Constant
     F[p] += F[b];
   }
   for (std::size_t b = 0; b < bone_count; ++b) {
-    if (t.bones[b].joint == Joint::kFree) continue;  // rotates about the bone's origin
+    if (t.bones[b].joint == JointType::kFree) continue;  // rotates about the bone's origin
     const Vec3 joint = t.poses[b] * (t.bones[b].start.inverse() * t.bones[b].joint_position);
     S[b] += (t.poses[b].translation - joint) * F[b].transpose();
   }
@@ -53,7 +53,7 @@ void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<Constant
   };
   const auto shifts = [&](int i) {
     const int b = t.bone_of_u[static_cast<std::size_t>(i)];
-    return t.bones[static_cast<std::size_t>(b)].joint == Joint::kFree &&
+    return t.bones[static_cast<std::size_t>(b)].joint == JointType::kFree &&
            i - t.first_u[static_cast<std::size_t>(b)] >= 3;
   };
   const auto axis = [&](int i) -> Vec3 {

@@ -25,8 +25,8 @@ int resume(const ResumeArguments& arguments) {
   session::Resumption resumption = session::read_resumption(arguments.run);
   for (const std::string& line : session::processor_differences(resumption))
     fmt::print(stderr, "palpate: {}\n", line);
-  const scene::Description description =
-      session::scene_to_resume(resumption, [](const SceneArguments& scene) { return cli::scene_of(scene); });
+  const scene::Description description = session::scene_to_resume(
+      resumption, [](const session::SceneArguments& scene) { return cli::scene_of(scene); });
   fmt::print("{} resumes at t = {} s\n", arguments.run, time_text(resumption.checkpoint.time_s));
   MissingOutputs missing;
   return missing.close(resume_run(resumption, description, missing));

@@ -201,9 +201,9 @@ void keep_summary(const Plan& plan, const Results& results, const StudyArguments
   }
   summary.section("timings").values = {{"wall_s", wall_s}};
   for (const scene::SweepSpec& sweep : plan.spec.sweeps)
-    if (sweep.spacing == "log") add_log_spaced(summary, sweep.key);
+    if (sweep.spacing == scene::Spacing::kLog) add_log_spaced(summary, sweep.key);
   for (const scene::RandomSpec& random : plan.spec.randoms)
-    if (random.distribution == "log-uniform") add_log_spaced(summary, random.key);
+    if (random.distribution == scene::Distribution::kLogUniform) add_log_spaced(summary, random.key);
   store::write_summary((fs::path(folder) / "summary.json").string(), summary);
 }
 

@@ -1,23 +1,12 @@
 #include "core/instructions.h"
 
-#include <algorithm>
 #include <cstdlib>
-#include <iterator>
 
 #include "palpate/core/error.h"
 
 namespace palpate {
 namespace {
 constexpr Instructions kAll[] = {Instructions::kBaseline, Instructions::kAvx2, Instructions::kAvx512};
-}
-
-std::string_view name_of(Instructions set) {
-  switch (set) {
-    case Instructions::kBaseline: return "baseline";
-    case Instructions::kAvx2: return "avx2";
-    case Instructions::kAvx512: return "avx512";
-  }
-  return {};
 }
 
 bool has_instructions(Instructions set) {
@@ -34,12 +23,9 @@ bool has_instructions(Instructions set) {
 }
 
 bool find_instructions(std::string_view name, Instructions& set) {
-  for (const Instructions known : kAll)
-    if (name == name_of(known)) {
-      set = known;
-      return has_instructions(set);
-    }
-  return false;
+  const auto known = value_named<Instructions>(name);
+  if (known) set = *known;
+  return known && has_instructions(set);
 }
 
 Instructions choose_instructions(std::string_view requested, Instructions widest) {
@@ -50,10 +36,10 @@ Instructions choose_instructions(std::string_view requested, Instructions widest
     if (requested == name_of(known)) return known;
     there += fmt::format("{}{}", there.empty() ? "" : ", ", name_of(known));
   }
-  const bool exists = std::any_of(std::begin(kAll), std::end(kAll),
-                                  [&](Instructions known) { return requested == name_of(known); });
-  fail("PALPATE_INSTRUCTIONS = \"{}\": {}; set it to one of {}, or unset it", requested,
-       exists ? "this processor does not support it" : "unknown instruction set", there);
+  fail(
+      "PALPATE_INSTRUCTIONS = \"{}\": {}; set it to one of {}, or unset it", requested,
+      value_named<Instructions>(requested) ? "this processor does not support it" : "unknown instruction set",
+      there);
 }
 
 Instructions best_instructions() {

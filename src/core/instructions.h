@@ -1,13 +1,19 @@
 #pragma once
+#include <array>
 #include <string_view>
+
+#include "palpate/core/named_enum.h"
 
 /// Instruction sets that kernels are compiled for; the one in use is chosen at run time.
 namespace palpate {
 
 /// Instruction sets in ascending order of width.
 enum class Instructions { kBaseline, kAvx2, kAvx512 };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 3> option_names(Instructions) {
+  return {"baseline", "avx2", "avx512"};
+}
 
-std::string_view name_of(Instructions set);  ///< "baseline", "avx2" or "avx512"
 /// Whether this processor supports the set.
 bool has_instructions(Instructions set);
 /// Finds a set by name.  @param name  "baseline", "avx2" or "avx512"  @return whether the set exists and this

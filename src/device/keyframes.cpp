@@ -23,16 +23,14 @@ Blend minimum_jerk(double x, double T) {
           60.0 * x * y * (1.0 - 2.0 * x) / (T * T)};
 }
 Blend linear(double x, double T) { return {x, 1.0 / T, 0.0}; }
-// Stays until the time of the next keyframe, where the next segment begins.
-Blend step(double, double) { return {}; }
 
-using MakeBlend = Blend (*)(double x, double T);
-const Registry<MakeBlend>& blend_registry() {
-  static const Registry<MakeBlend> registry = {
-      {"minimum_jerk", "quintic, at rest at each keyframe", 0, minimum_jerk},
-      {"linear", "constant velocity", 0, linear},
-      {"step", "jump at the time of the keyframe", 0, step}};
-  return registry;
+Blend blend_of(Interpolation interpolation, double x, double T) {
+  switch (interpolation) {
+    case Interpolation::kMinimumJerk: return minimum_jerk(x, T);
+    case Interpolation::kLinear: return linear(x, T);
+    case Interpolation::kStep: break;
+  }
+  return {};  // Stays until the time of the next keyframe, where the next segment begins.
 }
 
 Pose pose_of(const KeyframeSpec& key) { return {quaternion_of(key.rotation_vector_rad), key.position_m}; }
@@ -57,8 +55,7 @@ HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double
   const auto from = to - 1;
 
   const double T = to->time_s - from->time_s;
-  const Blend blend =
-      find(blend_registry(), to->interpolation, "interpolation").make((t - from->time_s) / T, T);
+  const Blend blend = blend_of(to->interpolation, (t - from->time_s) / T, T);
   const Pose start = pose_of(*from);
   const Vec6 d = pose_difference(start, pose_of(*to));
   HandleSample sample;
@@ -76,10 +73,6 @@ void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::stri
     const KeyframeSpec& key = keyframes[i];
     if (!std::isfinite(key.time_s) || !key.position_m.allFinite() || !key.rotation_vector_rad.allFinite())
       fail("{}: keyframes[{}]: time, position and rotation must be finite numbers", where, i);
-    const auto known = names(blend_registry());
-    if (std::find(known.begin(), known.end(), key.interpolation) == known.end())
-      fail("{}: keyframes[{}]: unknown interpolation \"{}\"{}", where, i, key.interpolation,
-           suggestion(key.interpolation, known));
     if (i == 0) continue;
     const KeyframeSpec& before = keyframes[i - 1];
     if (!(key.time_s > before.time_s))

@@ -1,4 +1,5 @@
 #include "palpate/device/passivity.h"
+#include "palpate/core/named_enum.h"
 
 #include <algorithm>
 #include <cmath>
@@ -140,10 +141,8 @@ void PassivityController::archive(Archive& a) {
 }
 
 PassivityController::Mode PassivityController::mode_of(const std::string& name) {
-  if (name == "off") return Mode::kOff;
-  if (name == "observe") return Mode::kObserve;
-  if (name == "control") return Mode::kControl;
-  fail("passivity: unknown mode \"{}\"{}", name, suggestion(name, {"off", "observe", "control"}));
+  if (const auto mode = value_named<Mode>(name)) return *mode;
+  fail("passivity: unknown mode \"{}\"{}", name, suggestion(name, names_of_options<Mode>()));
 }
 
 namespace {

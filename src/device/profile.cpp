@@ -22,8 +22,10 @@ namespace palpate::device {
 // (github.com/jashenlow/chai3d_haply, 2024, same file). The former calls them estimates.
 //
 // No slew rate is published for these devices: it follows from kAmplifierBandwidth below.
-const std::vector<DeviceProfile>& device_profiles() {
-  static const std::vector<DeviceProfile> profiles = {
+namespace {
+
+std::vector<DeviceProfile> devices_of_sensable() {
+  return {
       // SensAble (later Geomagic) PHANTOM Premium 1.5: 381 x 267 x 191 mm, 0.03 mm, backdrive friction
       // 0.04 N, 8.5 N, 1.4 N continuous, 3.5 N/mm, apparent mass less than 75 g.
       {.name = "premium-1.5",
@@ -54,6 +56,11 @@ const std::vector<DeviceProfile>& device_profiles() {
        .mass = 0.045,
        .friction = 0.26,
        .encoder_resolution = 5.5e-5},
+  };
+}
+
+std::vector<DeviceProfile> devices_of_force_dimension() {
+  return {
       // Force Dimension omega.3 and omega.6: 160 mm across and 110 mm deep, 0.01 mm, 12 N
       // continuous, 14.5 N/mm closed loop, up to 4 kHz.  Mass and friction are not stated.
       {.name = "omega.3",
@@ -78,6 +85,11 @@ const std::vector<DeviceProfile>& device_profiles() {
                    .workspace = Vec3(0.110, 0.160, 0.160),
                    .rate = 4000.0},
        .encoder_resolution = 1e-5},
+  };
+}
+
+std::vector<DeviceProfile> devices_of_haply() {
+  return {
       {.name = "haply-pantograph",
        .summary = "Haply Pantograph: 5 N, 0.3 N/mm, planar; estimates by its maker",
        .figures = {.name = "Haply Pantograph",
@@ -99,6 +111,17 @@ const std::vector<DeviceProfile>& device_profiles() {
                    .workspace = Vec3::Constant(0.3),  // a ball of radius 0.15 m
                    .rate = {}}},
   };
+}
+
+}  // namespace
+
+const std::vector<DeviceProfile>& device_profiles() {
+  static const std::vector<DeviceProfile> profiles = [] {
+    std::vector<DeviceProfile> out = devices_of_sensable();
+    for (const auto& others : {devices_of_force_dimension(), devices_of_haply()})
+      out.insert(out.end(), others.begin(), others.end());
+    return out;
+  }();
   return profiles;
 }
 

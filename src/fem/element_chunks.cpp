@@ -132,121 +132,159 @@ Mat3 inverse_triangle(const Mat3& Dm) {
 
 }  // namespace
 
+/// What the chunks are made of: the elements in their order, by chunk and then by material, and the nodes and
+/// edges that each chunk uses.
+struct ElementChunks::Plan {
+  const TetMesh& rest;
+  const RestElements& elements;
+  const std::vector<int>& material_of_element;
+  std::vector<int> starts{0}, order;  ///< first element of each chunk in `order`; elements
+  Uses nodes, edges;
+
+  Plan(const TetMesh& mesh, const RestElements& shapes, const std::vector<int>& materials)
+      : rest(mesh),
+        elements(shapes),
+        material_of_element(materials),
+        order(sorted_elements()),
+        nodes(keys([&](const Corners& corners, int e, auto& out) {
+          for (int corner : corners) out.push_back(static_cast<std::uint64_t>(node(corner, e)));
+        })),
+        edges(keys([&](const Corners& corners, int e, auto& out) {
+          for (const auto& edge : kEdgeCorners) out.push_back(edge_key(corners, edge, e));
+        })) {}
+
+  int material(int e) const {
+    return material_of_element.empty() ? 0 : material_of_element[static_cast<std::size_t>(e)];
+  }
+  int node(int corner, int e) const {
+    return elements.node[static_cast<std::size_t>(corner)][static_cast<std::size_t>(e)];
+  }
+  std::uint64_t edge_key(const Corners& corners, const int (&edge)[2], int e) const {
+    return key_of(node(corners[static_cast<std::size_t>(edge[0])], e),
+                  node(corners[static_cast<std::size_t>(edge[1])], e));
+  }
+
+ private:
+  std::vector<int> sorted_elements() {
+    const int count = elements.count();
+    Points centroids(3, count);
+    for (int e = 0; e < count; ++e) {
+      centroids.col(e).setZero();
+      for (int a = 0; a < 4; ++a) centroids.col(e) += 0.25 * rest.nodes.col(rest.tets(a, e));
+    }
+    std::vector<int> out(static_cast<std::size_t>(count));
+    std::iota(out.begin(), out.end(), 0);
+    bisect(centroids, out, 0, count, chunks_of(count), starts);
+    for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
+      mesh::spatial_order(centroids, out, starts[c], starts[c + 1]);
+      std::stable_sort(out.begin() + starts[c], out.begin() + starts[c + 1],
+                       [&](int a, int b) { return material(a) < material(b); });
+    }
+    return out;
+  }
+
+  /// Returns the keys that `add` gives for the elements of each chunk.
+  template <class Add>
+  std::vector<std::vector<std::uint64_t>> keys(const Add& add) const {
+    std::vector<std::vector<std::uint64_t>> out(starts.size() - 1);
+    for (std::size_t c = 0; c < out.size(); ++c)
+      for (int k = starts[c]; k < starts[c + 1]; ++k) {
+        const int e = order[static_cast<std::size_t>(k)];
+        add(sorted_corners(elements, static_cast<std::size_t>(e)), e, out[c]);
+      }
+    return out;
+  }
+};
+
 ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements,
                              const std::vector<int>& material_of_element)
     : nodal_volume(elements.nodal_volume), element_count_(elements.count()) {
-  Points centroids(3, element_count_);
-  for (int e = 0; e < element_count_; ++e) {
-    centroids.col(e).setZero();
-    for (int a = 0; a < 4; ++a) centroids.col(e) += 0.25 * rest.nodes.col(rest.tets(a, e));
-  }
-  std::vector<int> order(static_cast<std::size_t>(element_count_)), starts{0};
-  std::iota(order.begin(), order.end(), 0);
-  const int chunk_count = chunks_of(element_count_);
-  bisect(centroids, order, 0, element_count_, chunk_count, starts);
-  const auto material = [&](int e) {
-    return material_of_element.empty() ? 0 : material_of_element[static_cast<std::size_t>(e)];
-  };
-  for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
-    mesh::spatial_order(centroids, order, starts[c], starts[c + 1]);
-    std::stable_sort(order.begin() + starts[c], order.begin() + starts[c + 1],
-                     [&](int a, int b) { return material(a) < material(b); });
-  }
-
-  const auto node = [&](int corner, int e) {
-    return elements.node[static_cast<std::size_t>(corner)][static_cast<std::size_t>(e)];
-  };
-  std::vector<std::vector<std::uint64_t>> node_keys(static_cast<std::size_t>(chunk_count)),
-      edge_keys(static_cast<std::size_t>(chunk_count));
-  for (std::size_t c = 0; c < node_keys.size(); ++c)
-    for (int k = starts[c]; k < starts[c + 1]; ++k) {
-      const int e = order[static_cast<std::size_t>(k)];
-      const Corners corners = sorted_corners(elements, static_cast<std::size_t>(e));
-      for (int corner : corners) node_keys[c].push_back(static_cast<std::uint64_t>(node(corner, e)));
-      for (const auto& [a, b] : kEdgeCorners)
-        edge_keys[c].push_back(key_of(node(corners[static_cast<std::size_t>(a)], e),
-                                      node(corners[static_cast<std::size_t>(b)], e)));
-    }
-  const Uses node_uses(std::move(node_keys)), edge_uses(std::move(edge_keys));
-
-  groups.reserve(static_cast<std::size_t>((element_count_ + 7) / 8 + chunk_count));
+  const Plan plan(rest, elements, material_of_element);
+  groups.reserve(static_cast<std::size_t>((element_count_ + 7) / 8 + chunks_of(element_count_)));
   edges.reserve(groups.capacity());
   row_start.push_back(0);
-  for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
-    Chunk chunk;
-    chunk.first_run = static_cast<int>(runs.size());
-    chunk.first_node = static_cast<int>(nodes.size());
-    chunk.nodes = static_cast<int>(node_uses.by_chunk[c].size());
-    chunk.owned_nodes = node_uses.owned[c];
-    chunk.first_shared_node = node_uses.first_shared[c];
-    chunk.first_edge = static_cast<int>(ends.size() / 2);
-    chunk.edges = static_cast<int>(edge_uses.by_chunk[c].size());
-    chunk.owned_edges = edge_uses.owned[c];
-    chunk.first_shared_edge = edge_uses.first_shared[c];
-    for (std::uint64_t key : node_uses.by_chunk[c]) nodes.push_back(static_cast<int>(key));
-    for (std::uint64_t key : edge_uses.by_chunk[c])
-      for (std::uint64_t end : {key >> 32, key & 0xffffffffu})
-        ends.push_back(static_cast<std::uint16_t>(node_uses.find(c, end)));
-    make_rows(chunk);
-    std::size_t lane = 0;
-    for (int k = starts[c]; k < starts[c + 1]; ++k, lane = (lane + 1) % kLanes) {
-      const int e = order[static_cast<std::size_t>(k)];
-      const bool first_of_run = k == starts[c] || material(e) != runs.back().material;
-      if (first_of_run) {
-        runs.push_back({static_cast<int>(groups.size()), 0, material(e)});
-        lane = 0;
-      }
-      if (lane == 0) {
-        ++runs.back().groups;
-        groups.emplace_back();
-        edges.emplace_back();
-        numbers_.insert(numbers_.end(), kLanes, -1);
-        // lanes without an element stay padding
-        for (std::size_t l = 0; l < kLanes; ++l)
-          fill_up(groups.back(), edges.back(), l, chunk.nodes, chunk.edges);
-      }
-      ElementGroup& group = groups.back();
-      const Corners corners = sorted_corners(elements, static_cast<std::size_t>(e));
-      for (std::size_t a = 0; a < 4; ++a)
-        group.node[a][lane] =
-            static_cast<std::uint16_t>(node_uses.find(c, static_cast<std::uint64_t>(node(corners[a], e))));
-      Mat3 Dm;
-      for (int a = 1; a < 4; ++a)
-        Dm.col(a - 1) = rest.nodes.col(node(corners[static_cast<std::size_t>(a)], e)) -
-                        rest.nodes.col(node(corners[0], e));
-      const Mat3 inverse = inverse_triangle(Dm);
-      int entry = 0;
-      for (int r = 0; r < 3; ++r)
-        for (int axis = r; axis < 3; ++axis) group.inverse_edges[entry++][lane] = inverse(r, axis);
-      for (std::size_t k6 = 0; k6 < 6; ++k6)
-        edges.back().edge[k6][lane] = static_cast<std::uint16_t>(
-            edge_uses.find(c, key_of(node(corners[static_cast<std::size_t>(kEdgeCorners[k6][0])], e),
-                                     node(corners[static_cast<std::size_t>(kEdgeCorners[k6][1])], e))));
-      group.volume[lane] = elements.volume[static_cast<std::size_t>(e)];
-      numbers_[numbers_.size() - kLanes + lane] = e;
-    }
-    chunk.runs = static_cast<int>(runs.size()) - chunk.first_run;
-    most_nodes = std::max(most_nodes, chunk.nodes);
-    most_edges = std::max(most_edges, chunk.edges);
-    chunks.push_back(chunk);
-  }
+  for (std::size_t c = 0; c + 1 < plan.starts.size(); ++c) add_chunk(plan, c);
   PALPATE_CHECK(most_nodes + 4 < 65536 && most_edges + 1 < 65536,
                 "a chunk has {} nodes and {} edges, too many for 16-bit indices", most_nodes, most_edges);
-  for (std::uint64_t key : node_uses.shared) shared_nodes.first.push_back(static_cast<int>(key));
-  for (std::uint64_t key : edge_uses.shared) {
+  for (std::uint64_t key : plan.nodes.shared) shared_nodes.first.push_back(static_cast<int>(key));
+  for (std::uint64_t key : plan.edges.shared) {
     shared_edges.first.push_back(static_cast<int>(key >> 32));
     shared_edges.second.push_back(static_cast<int>(key & 0xffffffffu));
   }
-  shared_nodes.start = node_uses.start;
-  shared_nodes.entries = node_uses.entries;
-  shared_edges.start = edge_uses.start;
-  shared_edges.entries = edge_uses.entries;
+  shared_nodes.start = plan.nodes.start;
+  shared_nodes.entries = plan.nodes.entries;
+  shared_edges.start = plan.edges.start;
+  shared_edges.entries = plan.edges.entries;
   const auto fit = [](auto&... grown) { (grown.shrink_to_fit(), ...); };
   fit(groups, edges, numbers_, runs, chunks, nodes, ends, row_start, row_owned, row_edges, shared_nodes.first,
       shared_edges.first, shared_edges.second);
   prefer_huge_pages(groups);
   prefer_huge_pages(edges);
   prefer_huge_pages(row_edges);
+}
+
+void ElementChunks::add_chunk(const Plan& plan, std::size_t c) {
+  Chunk chunk;
+  chunk.first_run = static_cast<int>(runs.size());
+  chunk.first_node = static_cast<int>(nodes.size());
+  chunk.nodes = static_cast<int>(plan.nodes.by_chunk[c].size());
+  chunk.owned_nodes = plan.nodes.owned[c];
+  chunk.first_shared_node = plan.nodes.first_shared[c];
+  chunk.first_edge = static_cast<int>(ends.size() / 2);
+  chunk.edges = static_cast<int>(plan.edges.by_chunk[c].size());
+  chunk.owned_edges = plan.edges.owned[c];
+  chunk.first_shared_edge = plan.edges.first_shared[c];
+  for (std::uint64_t key : plan.nodes.by_chunk[c]) nodes.push_back(static_cast<int>(key));
+  for (std::uint64_t key : plan.edges.by_chunk[c])
+    for (std::uint64_t end : {key >> 32, key & 0xffffffffu})
+      ends.push_back(static_cast<std::uint16_t>(plan.nodes.find(c, end)));
+  make_rows(chunk);
+  std::size_t lane = 0;
+  for (int k = plan.starts[c]; k < plan.starts[c + 1]; ++k, lane = (lane + 1) % kLanes) {
+    const int e = plan.order[static_cast<std::size_t>(k)];
+    const bool first_of_run = k == plan.starts[c] || plan.material(e) != runs.back().material;
+    if (first_of_run) {
+      runs.push_back({static_cast<int>(groups.size()), 0, plan.material(e)});
+      lane = 0;
+    }
+    if (lane == 0) add_group(chunk);
+    fill_lane(plan, c, e, lane);
+  }
+  chunk.runs = static_cast<int>(runs.size()) - chunk.first_run;
+  most_nodes = std::max(most_nodes, chunk.nodes);
+  most_edges = std::max(most_edges, chunk.edges);
+  chunks.push_back(chunk);
+}
+
+/// Adds a group to the last run.  Lanes without an element stay padding.
+void ElementChunks::add_group(const Chunk& chunk) {
+  ++runs.back().groups;
+  groups.emplace_back();
+  edges.emplace_back();
+  numbers_.insert(numbers_.end(), kLanes, -1);
+  for (std::size_t l = 0; l < kLanes; ++l) fill_up(groups.back(), edges.back(), l, chunk.nodes, chunk.edges);
+}
+
+/// Writes element e into a lane of the last group.
+void ElementChunks::fill_lane(const Plan& plan, std::size_t chunk, int e, std::size_t lane) {
+  ElementGroup& group = groups.back();
+  const Corners corners = sorted_corners(plan.elements, static_cast<std::size_t>(e));
+  for (std::size_t a = 0; a < 4; ++a)
+    group.node[a][lane] = static_cast<std::uint16_t>(
+        plan.nodes.find(chunk, static_cast<std::uint64_t>(plan.node(corners[a], e))));
+  Mat3 Dm;
+  for (int a = 1; a < 4; ++a)
+    Dm.col(a - 1) = plan.rest.nodes.col(plan.node(corners[static_cast<std::size_t>(a)], e)) -
+                    plan.rest.nodes.col(plan.node(corners[0], e));
+  const Mat3 inverse = inverse_triangle(Dm);
+  int entry = 0;
+  for (int r = 0; r < 3; ++r)
+    for (int axis = r; axis < 3; ++axis) group.inverse_edges[entry++][lane] = inverse(r, axis);
+  for (std::size_t k = 0; k < 6; ++k)
+    edges.back().edge[k][lane] =
+        static_cast<std::uint16_t>(plan.edges.find(chunk, plan.edge_key(corners, kEdgeCorners[k], e)));
+  group.volume[lane] = plan.elements.volume[static_cast<std::size_t>(e)];
+  numbers_[numbers_.size() - kLanes + lane] = e;
 }
 
 /// Builds the rows of a chunk: the edges at each node, owned ones first, sorted by the node at the other end,

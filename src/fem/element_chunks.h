@@ -98,6 +98,10 @@ class ElementChunks {
   std::size_t bytes() const;
 
  private:
+  struct Plan;
+  void add_chunk(const Plan& plan, std::size_t c);
+  void add_group(const Chunk& chunk);
+  void fill_lane(const Plan& plan, std::size_t chunk, int e, std::size_t lane);
   void make_rows(const Chunk& chunk);
   Element element(const Chunk& chunk, const Run& run, int group, int lane) const;
   /// Index in the mesh of each lane of each group; -1 in padding lanes.

@@ -38,7 +38,7 @@ double disc(double radius) { return std::numbers::pi * radius * radius; }
 
 Shape shape_of(const scene::Description& d) {
   const double r = d.tool->radius_m;
-  if (d.tool->shape != "mesh") return {r, r, disc(r)};
+  if (d.tool->shape != ToolShape::kMesh) return {r, r, disc(r)};
   const auto folder = std::filesystem::path(d.path).parent_path();
   const TriMesh surface = loop::tool_surface(*d.tool, folder.string());
   const Vec3 size = surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff();

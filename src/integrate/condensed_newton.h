@@ -19,7 +19,7 @@ namespace palpate::integrate {
 ///     (M + gamma D + gamma^2 K) du = gamma r2 - gamma^2 K N+ r1,     dq = gamma (r1 + N du).
 /// Rows of driven directions (q' = 0, u' = 0) give dq = gamma r1, du = gamma r2.
 ///
-/// An indefinite matrix is handled as described for StepSolver. Under "project" M, D and K are evaluated
+/// An indefinite matrix is handled as described for StepSolver. Under kProject M, D and K are evaluated
 /// again with definite tangents, which are used until the next evaluate().
 class CondensedNewton {
  public:

@@ -30,7 +30,7 @@ StateView MechanicalProblem::view(double t, const double* y) {
 }
 
 dynamics::System::TermFilter MechanicalProblem::filter(Side side) const {
-  const bool contact_explicit = spec_.explicit_side == "contact";
+  const bool contact_explicit = spec_.explicit_side == ExplicitSide::kContact;
   const auto is_implicit = [contact_explicit](const TermTraits& t) {
     return t.stiff && !(t.contact && contact_explicit);
   };

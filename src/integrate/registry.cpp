@@ -46,9 +46,8 @@ std::vector<PartKey> ark_keys(const dynamics::StepperTraits& traits) {
   return part_keys(keys);
 }
 
-/// Lists the integrators in the order in which they are listed and compared: SUNDIALS methods, then
-/// hand-written ones.
-dynamics::StepperRegistry make_registry() {
+/// Lists the methods of SUNDIALS.
+dynamics::StepperRegistry methods_of_sundials() {
   dynamics::StepperRegistry all = {
       {"cvode-bdf",
        "backward differences of SUNDIALS CVODE, order 1 to 5 (max_order)",
@@ -95,9 +94,14 @@ dynamics::StepperRegistry make_registry() {
                  {"statics", 1, 1, StepControl::kFixed, Stability::kStatic, true, false, "force, tangent"},
                  make_kinsol_static,
                  with({"newton_rtol"}, kImplicit)});
+  return all;
+}
+
+/// Lists the hand-written methods.
+dynamics::StepperRegistry methods_by_hand() {
   const Keys newton_keys =
       together(together(kFixed, kImplicit), {"newton_rtol", "atol_q", "atol_u", "factor_kept_steps"});
-  const dynamics::StepperRegistry by_hand = {
+  return {
       {"linearly-implicit-euler",
        "linearly implicit Euler: one linear solve per step; the interactive method of Galoppo et al. 2007",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto", true},
@@ -142,6 +146,12 @@ dynamics::StepperRegistry make_registry() {
        make_rk4,
        part_keys(kFixed)},
   };
+}
+
+/// Lists the integrators in the order in which they are listed and compared.
+dynamics::StepperRegistry make_registry() {
+  dynamics::StepperRegistry all = methods_of_sundials();
+  const dynamics::StepperRegistry by_hand = methods_by_hand();
   all.insert(all.end(), by_hand.begin(), by_hand.end());
   for (dynamics::StepperEntry& entry : all) {
     if (entry.tightest_rtol) entry.keys.push_back(rtol_key(entry.tightest_rtol, entry.name));

@@ -28,9 +28,9 @@ class ProjectedTangents {
 /// - Unsymmetric, and the chosen solver supports symmetric ones only: an iteration preconditioned by its
 ///   factor of the symmetric part (DirectFallback); LU where that part is indefinite or the iteration does
 ///   not converge.
-/// - Indefinite, and IntegratorSpec::indefinite is "project": the matrix of projected tangents, by the chosen
+/// - Indefinite, and IntegratorSpec::indefinite is kProject: the matrix of projected tangents, by the chosen
 ///   solver. Where that one is indefinite as well: the true matrix, directly.
-/// - Indefinite, and IntegratorSpec::indefinite is "lu": the true matrix, directly. With an inverted element
+/// - Indefinite, and IntegratorSpec::indefinite is kLu: the true matrix, directly. With an inverted element
 ///   or a compressed strut it is still the right Newton matrix, but not one of a minimum: Newton's method may
 ///   converge to a saddle, and a large step may lead anywhere.
 /// - The iteration does not converge, for a right-hand side or a column of the border: a Cholesky factor,
@@ -46,7 +46,7 @@ class ProjectedTangents {
 class StepSolver {
  public:
   StepSolver(std::unique_ptr<dynamics::LinearSolver> chosen, const IntegratorSpec& spec)
-      : solvers_(std::move(chosen), spec), project_(spec.indefinite == "project") {}
+      : solvers_(std::move(chosen), spec), project_(spec.indefinite == IndefiniteTreatment::kProject) {}
 
   /// Factors A.
   /// @param reassemble  writes A again, from the system's current tangents
@@ -96,7 +96,7 @@ class StepSolver {
 
   /// Returns the chosen solver.
   dynamics::LinearSolver& chosen() { return solvers_.chosen(); }
-  /// Returns whether IntegratorSpec::indefinite is "project".
+  /// Returns whether IntegratorSpec::indefinite is kProject.
   bool projects() const { return project_; }
   /// Returns whether the matrix last factored has projected tangents, in place of an indefinite one.
   bool projected() const { return projected_; }

@@ -28,26 +28,16 @@ namespace {
 fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& materials) {
   fem::SoftBodyOptions options;
   options.law = spec.material;
-  if (spec.tangent == "exact")
-    options.tangent = fem::Tangent::kExact;
-  else if (spec.tangent == "projected")
-    options.tangent = fem::Tangent::kProjected;
-  else if (spec.tangent == "warped")
-    options.tangent = fem::Tangent::kWarped;
-  else
-    fail("body \"{}\": unknown tangent \"{}\"{}", spec.name, spec.tangent,
-         suggestion(spec.tangent, {"exact", "projected", "warped"}));
-  fem::check_law(spec.material, options.tangent, spec.volumetric == "nodal",
+  options.tangent = spec.tangent;
+  fem::check_law(spec.material, options.tangent, spec.volumetric == Volumetric::kNodal,
                  fmt::format("body \"{}\"", spec.name));
   options.full_damping_tangent = spec.full_damping_tangent;
-  if (spec.volumetric == "nodal") {
+  if (spec.volumetric == Volumetric::kNodal) {
     for (const fem::Material& material : materials.list)
       options.volumetric_shares.push_back(fem::kept_volumetric_share(material));
     options.volumetric_share =
         *std::min_element(options.volumetric_shares.begin(), options.volumetric_shares.end());
-  } else if (spec.volumetric != "element")
-    fail("body \"{}\": unknown volumetric \"{}\"{}", spec.name, spec.volumetric,
-         suggestion(spec.volumetric, {"element", "nodal"}));
+  }
   return options;
 }
 
@@ -188,10 +178,7 @@ void add_forces(World& world, Body& body, const SoftBodySpec& spec, const fem::M
                                                              options, body.block_id);
     world.system.add(body.dilatation);
   }
-  const bool consistent = spec.mass == "consistent";
-  if (!consistent && spec.mass != "lumped")
-    fail("body \"{}\": unknown mass \"{}\"{}", spec.name, spec.mass,
-         suggestion(spec.mass, {"lumped", "consistent"}));
+  const bool consistent = spec.mass == MassMatrix::kConsistent;
   world.system.add(consistent ? fem::make_consistent_mass(body.rest, materials, body.block_id)
                               : fem::make_lumped_mass(body.rest, materials, body.block_id));
   if (consistent) world.system.set_mass_solver(linear::make_linear_solver("cholmod"));

@@ -19,8 +19,9 @@ const BoneSpec* spec_of(const World& world, const std::string& bone) {
 }
 
 std::vector<int> nodes_inside(const World& world, const Body& body, const AttachmentSpec& spec) {
-  if (spec.region == "box") return fem::nodes_in_box(body.placed, spec.box_min_m, spec.box_max_m);
-  if (spec.region == "sphere") return fem::nodes_in_sphere(body.placed, spec.centre_m, spec.radius_m);
+  if (spec.region == Selection::kBox) return fem::nodes_in_box(body.placed, spec.box_min_m, spec.box_max_m);
+  if (spec.region == Selection::kSphere)
+    return fem::nodes_in_sphere(body.placed, spec.centre_m, spec.radius_m);
   const BoneSpec* bone = spec_of(world, spec.to);
   if (!bone) {
     const ToolSpec& tool = *scene::tool_named(world.description, spec.to);
@@ -36,11 +37,11 @@ std::vector<int> nodes_inside(const World& world, const Body& body, const Attach
 void check_nodes(const Body& body, const AttachmentSpec& spec, const std::vector<int>& nodes) {
   if (!nodes.empty()) return;
   const std::string where = fmt::format("body \"{}\": attachment", body.name);
-  if (spec.region == "box")
+  if (spec.region == Selection::kBox)
     fail("{} box [{}, {}, {}] to [{}, {}, {}] m contains no node; enlarge it or move it over the body", where,
          spec.box_min_m.x(), spec.box_min_m.y(), spec.box_min_m.z(), spec.box_max_m.x(), spec.box_max_m.y(),
          spec.box_max_m.z());
-  if (spec.region == "sphere")
+  if (spec.region == Selection::kSphere)
     fail(
         "{} sphere of radius {} m about [{}, {}, {}] m contains no node; enlarge it or move it over the body",
         where, spec.radius_m, spec.centre_m.x(), spec.centre_m.y(), spec.centre_m.z());
@@ -60,7 +61,8 @@ struct Carrier {
 
 /// Keyframes move the region about its centre: x(t) = centre + position(t) + R(t) (x0 - centre).
 Carrier along_keyframes(const AttachmentSpec& spec) {
-  const Vec3 centre = spec.region == "sphere" ? spec.centre_m : Vec3(0.5 * (spec.box_min_m + spec.box_max_m));
+  const Vec3 centre =
+      spec.region == Selection::kSphere ? spec.centre_m : Vec3(0.5 * (spec.box_min_m + spec.box_max_m));
   return {
       -1,
       [keyframes = spec.keyframes, centre](double t) {

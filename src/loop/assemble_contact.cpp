@@ -10,6 +10,7 @@
 #include "core/counters.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "proxy/decompose_solid.h"
@@ -169,7 +170,7 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolInstance& i
                                                    ToolProxies& proxies) {
   const ToolSpec& tool = instance.spec;
   const std::shared_ptr<contact::MovingFrame> motion = frame_in_contact(world, instance);
-  const bool sphere = tool.shape == "sphere";
+  const bool sphere = tool.shape == ToolShape::kSphere;
   if (pair.spec.method == "distance" && sphere) {
     const Shape shape = round_tool(tool.radius_m, instance.frame, motion);
     return with_own_points(
@@ -187,7 +188,7 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, ToolInstance& i
     fail(
         "contact {} - {}: method = \"analytic\" needs a tool with shape = \"sphere\", not \"{}\"; use method "
         "= \"auto\"",
-        pair.spec.first, pair.spec.second, tool.shape);
+        pair.spec.first, pair.spec.second, name_of(tool.shape));
   return contact::make_sphere_source(std::move(pair.surface), instance.frame, motion, Vec3::Zero(),
                                      tool.radius_m, pair.candidate_gap, pair.look_ahead);
 }

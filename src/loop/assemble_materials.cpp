@@ -4,6 +4,7 @@
 #include "core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/fem/attachments.h"
 #include "palpate/mesh/quality.h"
 
@@ -27,8 +28,8 @@ std::vector<int> elements_in(const RegionSpec& spec, const Points& placed, const
   Points centroids(3, tets.cols());
   for (Eigen::Index t = 0; t < tets.cols(); ++t)
     centroids.col(t) = placed(Eigen::all, tets.col(t)).rowwise().mean();
-  return spec.region == "box" ? fem::nodes_in_box(centroids, spec.box_min_m, spec.box_max_m)
-                              : fem::nodes_in_sphere(centroids, spec.centre_m, spec.radius_m);
+  return spec.region == Selection::kBox ? fem::nodes_in_box(centroids, spec.box_min_m, spec.box_max_m)
+                                        : fem::nodes_in_sphere(centroids, spec.centre_m, spec.radius_m);
 }
 
 /// Returns the region for a table of the scene: one of the file, or a new one.
@@ -36,7 +37,7 @@ Region& region_for(const SoftBodySpec& spec, const RegionSpec& requested, std::v
                    const Body& body) {
   const auto found =
       std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return r.name == requested.name; });
-  if (requested.region == "file") {
+  if (requested.region == Selection::kFile) {
     if (found != regions.end()) return *found;
     if (regions.empty())
       fail(
@@ -48,7 +49,7 @@ Region& region_for(const SoftBodySpec& spec, const RegionSpec& requested, std::v
   }
   if (found != regions.end())
     fail("body \"{}\": region \"{}\" also exists in {}; give the {} another name", spec.name, requested.name,
-         spec.mesh.file, requested.region);
+         spec.mesh.file, name_of(requested.region));
   regions.push_back({requested.name, elements_in(requested, body.placed, body.rest.tets)});
   return regions.back();
 }

@@ -162,7 +162,7 @@ ToolInstance assemble_tool(World& world, const scene::Hand& hand, std::unique_pt
 }
 
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder) {
-  if (spec.shape == "mesh" && spec.mesh.has_model()) {
+  if (spec.shape == ToolShape::kMesh && spec.mesh.has_model()) {
     const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
     TriMesh skin = store::read_model(path).model.skin;
     if (skin.faces.cols() == 0)
@@ -170,7 +170,7 @@ TriMesh tool_surface(const ToolSpec& spec, const std::string& folder) {
     skin.vertices *= spec.mesh.factor();
     return skin;
   }
-  if (spec.shape == "mesh") return mesh::surface(spec.mesh, folder);
+  if (spec.shape == ToolShape::kMesh) return mesh::surface(spec.mesh, folder);
   MeshSpec ball;
   ball.generator = "ball";
   ball.radius_m = spec.radius_m;

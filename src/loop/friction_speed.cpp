@@ -27,8 +27,9 @@ double friction_speed(const World& world, double length) {
 }  // namespace
 
 double tool_friction_speed(const World& world, const ToolSpec& tool) {
-  const double length =
-      tool.shape == "sphere" ? 2.0 * tool.radius_m : length_of(tool_surface(tool, world.folder).vertices);
+  const double length = tool.shape == ToolShape::kSphere
+                            ? 2.0 * tool.radius_m
+                            : length_of(tool_surface(tool, world.folder).vertices);
   return friction_speed(world, length);
 }
 

@@ -27,7 +27,7 @@ struct RigidSide {
   int frame;
   std::shared_ptr<contact::MovingFrame> motion;
   double look_ahead;  ///< time to the next query [s]
-  bool is_round() const { return tool.shape == "sphere"; }
+  bool is_round() const { return tool.shape == ToolShape::kSphere; }
   contact::FrameSurface surface(const World& world) const {
     return {tool_surface(tool, world.folder), frame, motion};
   }

@@ -254,7 +254,8 @@ double half_width(const World& world, const std::string& side) {
   };
   if (const Body* body = world.find_body(side)) return of_points(body->rest.nodes);
   if (const ToolSpec* tool = scene::tool_named(world.description, side))
-    return tool->shape == "sphere" ? tool->radius_m : of_points(tool_surface(*tool, world.folder).vertices);
+    return tool->shape == ToolShape::kSphere ? tool->radius_m
+                                             : of_points(tool_surface(*tool, world.folder).vertices);
   for (const ObstacleSpec& obstacle : world.description.obstacles)
     if (obstacle.name == side)
       return 0.5 * contact::obstacle_entry(obstacle).lengths(contact::obstacle_shape(obstacle)).width;

@@ -32,8 +32,8 @@ struct Overlap {
 /// Returns one entry per [[contact]] of the scene.
 std::vector<Overlap> overlaps_of(const World& world);
 
-/// Error of the reduced response of the bodies to a tool (ReductionError), for "points": relative upper bounds
-/// over the exchanges.
+/// Error of the reduced response of the bodies to a tool (ReductionError), for "points": relative upper
+/// bounds over the exchanges.
 struct AnswerError {
   std::string tool;                  ///< Name in [[contact]].
   double requested = 0.0;            ///< exchange.linearisation_error

@@ -20,8 +20,7 @@
 //   ToolSpec::position_m      at the start of the simulation
 //   TickTool::tool.pose()     after the last tick, which only the thread of the ticks reads
 //   TickTool::path            at the ticks since the last exchange, as reported to the bodies; the last one
-//   is
-//                             World::tool_pose() and, until the next ticks, the pose of the next exchange
+//                             is World::tool_pose() and, until the next ticks, that of the next exchange
 //   MonolithicTool::block_id  in the State, at the State's time: World::tool_pose() of the monolithic scheme
 //   TickRecord::tool          at the end of one tick, in transit from the ticks to path and files
 //   LinearisedContact::x0, ReducedContactModel::tool

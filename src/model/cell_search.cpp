@@ -187,6 +187,26 @@ void refuse_too_thin(const BodySize& size, const Vec3& place, const TetrahedraOp
       thickness, size.area, place.x(), place.y(), place.z(), least);
 }
 
+namespace {
+
+/// Refuses a mesh whose number or size of cells is out of tolerance.
+void refuse_far_off(const Aim& aim, const CellCount& found, const Attempts& attempts, double volume,
+                    const CellMesher& mesher) {
+  if (aim.error(found, 1.0) <= kTolerance) return;
+  if (aim.by_size())
+    fail("no mesh with edges of {} m within 3 % was found, the nearest has {:.4g} m; choose another size",
+         aim.options.element_size_m, found.mean_edge);
+  attempts.refuse(volume, mesher.thickness());
+}
+
+void refuse_other_nodes(const Sizes& sizes, const CellCount& found, const TetrahedraOptions& options) {
+  if (sizes.node_error(found) > kTolerance)
+    fail("no mesh of {} tetrahedra with {} nodes within 3 % was found, the nearest has {} and {}",
+         options.tetrahedra, options.nodes, found.tetrahedra, found.nodes);
+}
+
+}  // namespace
+
 Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const TetrahedraOptions& options,
                         const Progress& progress) {
   // Relative to the first estimate, if creases may require more than the target number: cells near them stay
@@ -247,15 +267,8 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
   }
   const std::vector<std::string> given_up = mesher.notes();
   out.notes.insert(out.notes.begin(), given_up.begin(), given_up.end());
-  if (aim.error(last, 1.0) > kTolerance && !enough(last, 1.0)) {
-    if (aim.by_size())
-      fail("no mesh with edges of {} m within 3 % was found, the nearest has {:.4g} m; choose another size",
-           options.element_size_m, last.mean_edge);
-    attempts_made.refuse(volume, mesher.thickness());
-  }
-  if (sizes.node_error(last) > kTolerance)
-    fail("no mesh of {} tetrahedra with {} nodes within 3 % was found, the nearest has {} and {}",
-         options.tetrahedra, options.nodes, last.tetrahedra, last.nodes);
+  if (!enough(last, 1.0)) refuse_far_off(aim, last, attempts_made, volume, mesher);
+  refuse_other_nodes(sizes, last, options);
   if (progress) progress(1.0);
   return out;
 }

@@ -245,6 +245,24 @@ mesh::Embedding embedded(const LayeredModel& model, const std::string& source,
   } catch (const Error& e) { fail("{}: {}; increase --tetrahedra", source, e.what()); }
 }
 
+/// Measures the quality of the tetrahedra, and refuses those that cannot be simulated.
+/// @param as_given  whether the tetrahedra are the input's
+void check_quality(const Input& input, const Options& options, bool as_given, const TriMesh& surface,
+                   Made& made) {
+  TetMesh& tets = made.file.model.tets;
+  made.quality = measure_quality(tets, mesh::enclosed_volume(surface));
+  QualityGate gate = gate_of(options, made.creased, as_given);
+  if (as_given && options.accept_angles && made.quality.smallest_dihedral_deg < gate.smallest_dihedral_deg) {
+    made.angle_cost = price_of_angles(tets, gate.smallest_dihedral_deg);
+    gate.smallest_dihedral_deg = 0.0;
+    made.file.record.notes.push_back(text(*made.angle_cost));
+  }
+  pass_gate(tets, made.quality, gate, input.source, surface);
+  mesh::Provenance own;
+  own.source = "tetrahedra of " + input.source;
+  mesh::check_tets(tets, own);
+}
+
 }  // namespace
 
 Made make_model(Input input, const Options& given_options, ProgressListener& watcher) {
@@ -277,20 +295,7 @@ Made make_model(Input input, const Options& given_options, ProgressListener& wat
   } else {
     step("fill with tetrahedra", [&] { model.tets = fill({surface, input, options}, step, progress, made); });
   }
-  step("check the quality", [&] {
-    made.quality = measure_quality(model.tets, mesh::enclosed_volume(surface));
-    QualityGate gate = gate_of(options, made.creased, as_given);
-    if (as_given && options.accept_angles &&
-        made.quality.smallest_dihedral_deg < gate.smallest_dihedral_deg) {
-      made.angle_cost = price_of_angles(model.tets, gate.smallest_dihedral_deg);
-      gate.smallest_dihedral_deg = 0.0;
-      record.notes.push_back(text(*made.angle_cost));
-    }
-    pass_gate(model.tets, made.quality, gate, input.source, surface);
-    mesh::Provenance own;
-    own.source = "tetrahedra of " + input.source;
-    mesh::check_tets(model.tets, own);
-  });
+  step("check the quality", [&] { check_quality(input, options, as_given, surface, made); });
 
   model.skeleton = std::move(input.skeleton);
   if (!input.regions.empty() || !options.regions.empty())

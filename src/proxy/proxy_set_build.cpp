@@ -98,6 +98,87 @@ void ProxySet::Impl::add_balls() {
   near_patch.resize(most);
 }
 
+/// Nodes of a soft body, by proxy and by bone.
+struct ProxySet::Impl::Nodes {
+  std::vector<std::vector<int>> owned;  ///< per proxy: nodes of its tetrahedra
+  std::vector<Cloud> of_bone;           ///< nodes that a bone carries; empty: too few, or not followed
+};
+
+ProxySet::Impl::Nodes ProxySet::Impl::divide_nodes(const LayeredModel& model) {
+  Nodes out{std::vector<std::vector<int>>(model.proxies.size()),
+            std::vector<Cloud>(model.skeleton.bones.size())};
+  if (!soft) return out;
+  const auto owner = owner_of_tets(model.tets.tets, node_count, model.embedding,
+                                   owner_of_vertices(model.skin.vertices.cols(), model.proxies));
+  for (std::size_t t = 0; t < owner.size(); ++t)
+    for (int k = 0; k < 4; ++k)
+      out.owned[static_cast<std::size_t>(owner[t])].push_back(
+          model.tets.tets(k, static_cast<Eigen::Index>(t)));
+  if (options.follow != Follow::kRigid || model.bone_of_node.empty()) return out;
+  for (std::size_t b = 0; b < out.of_bone.size(); ++b) {
+    std::vector<int> carried;
+    for (std::size_t n = 0; n < model.bone_of_node.size(); ++n)
+      if (model.bone_of_node[n] == static_cast<int>(b)) carried.push_back(static_cast<int>(n));
+    if (carried.size() >= 4) out.of_bone[b] = add_cloud(model.tets, carried);
+  }
+  return out;
+}
+
+void ProxySet::Impl::add_proxy(const LayeredModel& model, int p, Nodes& all) {
+  const auto at = static_cast<std::size_t>(p);
+  const ProxyHull& hull = model.proxies[at];
+  if (hull.corners.cols() == 0 || !hull.corners.allFinite())
+    fail("body \"{}\": proxy {} has no corners, or a corner that is not finite", model.name, p);
+  if (hull.bone >= static_cast<int>(model.skeleton.bones.size()))
+    fail("body \"{}\": proxy {} is attached to bone {}, but there are {} bones", model.name, p, hull.bone,
+         model.skeleton.bones.size());
+  bone.push_back(hull.bone);
+  first_corner.push_back(rest_corners.size());
+  corner_count.push_back(static_cast<int>(hull.corners.cols()));
+  rest_corners.append(hull.corners);
+  rest_centre.push_back(hull.corners.rowwise().mean());
+  const std::vector<int> owned = sorted_unique(std::move(all.owned[at]));
+  std::vector<int> nodes;
+  double farthest = hull.outside, sum = 1.0;
+  const Hull shape(hull.corners);
+  Hull one;
+  const auto reach_for = [&](const Vec3& x) {
+    one.assign(x, Vec3::Zero(), 1.0);
+    farthest = std::max(farthest, nearest_difference(one, shape).norm());
+  };
+  for (const int v : hull.members) {
+    reach_for(model.skin.vertices.col(v));
+    if (!soft) continue;
+    sum = std::max(sum, model.embedding.weights.col(v).cwiseAbs().sum());
+    for (int k = 0; k < 4; ++k)
+      nodes.push_back(model.tets.tets(k, model.embedding.tet[static_cast<std::size_t>(v)]));
+  }
+  for (const int n : owned) reach_for(model.tets.nodes.col(n));
+  const double size = (hull.corners.rowwise().maxCoeff() - hull.corners.rowwise().minCoeff()).norm();
+  outside.push_back(farthest + 1e-9 * size);  // accuracy of the distance algorithm
+  weight_sum.push_back(sum);
+  if (!soft) return;
+  nodes.insert(nodes.end(), owned.begin(), owned.end());
+  own.push_back(add_cloud(model.tets, sorted_unique(std::move(nodes))));
+  const bool by_bone = hull.bone >= 0 && hull.bone < static_cast<int>(all.of_bone.size()) &&
+                       all.of_bone[static_cast<std::size_t>(hull.bone)].count > 0;
+  guide.push_back(by_bone ? all.of_bone[static_cast<std::size_t>(hull.bone)] : own.back());
+}
+
+/// Marks proxies that share a vertex.
+void ProxySet::Impl::find_adjacent(const LayeredModel& model) {
+  adjacent.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(count), 0);
+  std::vector<std::vector<int>> at_vertex(static_cast<std::size_t>(model.skin.vertices.cols()));
+  for (int p = 0; p < count; ++p) {
+    adjacent[static_cast<std::size_t>(p * count + p)] = 1;
+    for (const int v : model.proxies[static_cast<std::size_t>(p)].members)
+      at_vertex[static_cast<std::size_t>(v)].push_back(p);
+  }
+  for (const auto& list : at_vertex)
+    for (const int p : list)
+      for (const int q : list) adjacent[static_cast<std::size_t>(p * count + q)] = 1;
+}
+
 ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options)
     : impl_(std::make_unique<Impl>()) {
   Impl& s = *impl_;
@@ -119,64 +200,12 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options)
   const std::vector<int> owner_of_face = owner_of_faces(model.skin.faces, vertices, model.proxies);
   s.skin = skin_patches(model.skin, owner_of_face, s.count, s.options.patch_faces);
 
-  std::vector<std::vector<int>> nodes_of(model.proxies.size());
-  std::vector<std::vector<int>> owned(model.proxies.size());
-  std::vector<Cloud> of_bone(model.skeleton.bones.size());
-  if (s.soft) {
-    const auto owner = owner_of_tets(model.tets.tets, s.node_count, model.embedding,
-                                     owner_of_vertices(vertices, model.proxies));
-    for (std::size_t t = 0; t < owner.size(); ++t)
-      for (int k = 0; k < 4; ++k)
-        owned[static_cast<std::size_t>(owner[t])].push_back(model.tets.tets(k, static_cast<Eigen::Index>(t)));
-    for (std::size_t b = 0;
-         b < of_bone.size() && options.follow == Follow::kRigid && !model.bone_of_node.empty(); ++b) {
-      std::vector<int> carried;
-      for (std::size_t n = 0; n < model.bone_of_node.size(); ++n)
-        if (model.bone_of_node[n] == static_cast<int>(b)) carried.push_back(static_cast<int>(n));
-      if (carried.size() >= 4) of_bone[b] = s.add_cloud(model.tets, carried);
-    }
-  }
+  Impl::Nodes nodes = s.divide_nodes(model);
   s.states.resize(model.proxies.size());
   Points middle(3, s.count);
   for (int p = 0; p < s.count; ++p) {
-    const auto at = static_cast<std::size_t>(p);
-    const ProxyHull& hull = model.proxies[at];
-    if (hull.corners.cols() == 0 || !hull.corners.allFinite())
-      fail("body \"{}\": proxy {} has no corners, or a corner that is not finite", model.name, p);
-    if (hull.bone >= static_cast<int>(model.skeleton.bones.size()))
-      fail("body \"{}\": proxy {} is attached to bone {}, but there are {} bones", model.name, p, hull.bone,
-           model.skeleton.bones.size());
-    s.bone.push_back(hull.bone);
-    s.first_corner.push_back(s.rest_corners.size());
-    s.corner_count.push_back(static_cast<int>(hull.corners.cols()));
-    s.rest_corners.append(hull.corners);
-    middle.col(p) = hull.corners.rowwise().mean();
-    s.rest_centre.push_back(middle.col(p));
-    owned[at] = sorted_unique(std::move(owned[at]));
-    double outside = hull.outside, sum = 1.0;
-    const Hull whole(hull.corners);
-    Hull one;
-    const auto reach_for = [&](const Vec3& x) {
-      one.assign(x, Vec3::Zero(), 1.0);
-      outside = std::max(outside, nearest_difference(one, whole).norm());
-    };
-    for (const int v : hull.members) {
-      reach_for(model.skin.vertices.col(v));
-      if (!s.soft) continue;
-      sum = std::max(sum, model.embedding.weights.col(v).cwiseAbs().sum());
-      for (int k = 0; k < 4; ++k)
-        nodes_of[at].push_back(model.tets.tets(k, model.embedding.tet[static_cast<std::size_t>(v)]));
-    }
-    for (const int n : owned[at]) reach_for(model.tets.nodes.col(n));
-    const double size = (hull.corners.rowwise().maxCoeff() - hull.corners.rowwise().minCoeff()).norm();
-    s.outside.push_back(outside + 1e-9 * size);  // accuracy of the distance algorithm
-    s.weight_sum.push_back(sum);
-    if (!s.soft) continue;
-    nodes_of[at].insert(nodes_of[at].end(), owned[at].begin(), owned[at].end());
-    s.own.push_back(s.add_cloud(model.tets, sorted_unique(std::move(nodes_of[at]))));
-    const bool by_bone = hull.bone >= 0 && hull.bone < static_cast<int>(of_bone.size()) &&
-                         of_bone[static_cast<std::size_t>(hull.bone)].count > 0;
-    s.guide.push_back(by_bone ? of_bone[static_cast<std::size_t>(hull.bone)] : s.own.back());
+    s.add_proxy(model, p, nodes);
+    middle.col(p) = s.rest_centre.back();
   }
   s.corners = s.rest_corners;
   s.centre = s.rest_centre;
@@ -188,17 +217,7 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options)
   s.boxes.resize(static_cast<std::size_t>(s.count));
   s.kept_boxes = s.boxes;
   if (s.soft) s.motion.resize(static_cast<int>(s.node_count));
-
-  s.adjacent.assign(static_cast<std::size_t>(s.count) * static_cast<std::size_t>(s.count), 0);
-  std::vector<std::vector<int>> at_vertex(static_cast<std::size_t>(vertices));
-  for (int p = 0; p < s.count; ++p) {
-    s.adjacent[static_cast<std::size_t>(p * s.count + p)] = 1;
-    for (const int v : model.proxies[static_cast<std::size_t>(p)].members)
-      at_vertex[static_cast<std::size_t>(v)].push_back(p);
-  }
-  for (const auto& list : at_vertex)
-    for (const int p : list)
-      for (const int q : list) s.adjacent[static_cast<std::size_t>(p * s.count + q)] = 1;
+  s.find_adjacent(model);
   s.tree = proxy_tree(model.skeleton, model.proxies, middle);
   s.add_motions();
   if (s.soft)

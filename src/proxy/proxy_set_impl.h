@@ -70,6 +70,10 @@ struct ProxySet::Impl {
   std::vector<Box> boxes, kept_boxes;  // per proxy: loose at present; tight when `motion` was kept
   double kept_size = 0.0;              // sum of their half edges; 0: never kept
 
+  struct Nodes;
+  Nodes divide_nodes(const LayeredModel& model);
+  void add_proxy(const LayeredModel& model, int proxy, Nodes& all);
+  void find_adjacent(const LayeredModel& model);
   /// Adds a set of nodes to the node tables.
   Cloud add_cloud(const TetMesh& tets, const std::vector<int>& nodes);
   void add_patch_nodes(const LayeredModel& model);

@@ -62,7 +62,7 @@ void check_hand(const Document& doc, const Hand& hand) {
     check_keyframes(doc, hand.device_key + ".keyframe", label_of(hand, "device"), hand.device->keyframes);
   const Vec3& inertia = hand.tool->inertia_kg_m2;
   const std::string key = hand.tool_key + ".inertia_kg_m2", where = label_of(hand, "tool");
-  if (hand.tool->shape == "mesh" && inertia.isZero(0.0))
+  if (hand.tool->shape == ToolShape::kMesh && inertia.isZero(0.0))
     refuse(location(doc, key), where, "inertia_kg_m2 is missing: shape = \"mesh\" has no default inertia");
   const double largest = inertia.maxCoeff();
   if (!inertia.isZero(0.0) && (inertia.minCoeff() <= 0.0 || 2.0 * largest > inertia.sum() * (1.0 + 1e-9)))

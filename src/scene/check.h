@@ -28,8 +28,8 @@ void check_meshes(const Document& document, const Description& description);
 /// Checks contacts, puts each pair into canonical order, and resolves method = "auto".
 void check_contacts(const Document& document, Description& description);
 
-/// Returns the shape that selects nodes or elements of a body: "box", "sphere", or "" where neither is given.
+/// Returns the shape that selects nodes or elements of a body: box or sphere; empty where neither is given.
 /// @throws Error where both are given, or one is incomplete
-std::string box_or_sphere(const Document& doc, const std::string& key, const std::string& where);
+std::optional<Selection> box_or_sphere(const Document& doc, const std::string& key, const std::string& where);
 
 }  // namespace palpate::scene

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <string_view>
 
 #include "palpate/scene/hands.h"
 #include "scene/check.h"
@@ -8,28 +7,30 @@
 namespace palpate::scene {
 namespace {
 
-/// Key of a shape, and the shapes that need it.
+/// Key of a shape, and whether a shape needs it.
 struct ShapeKey {
   const char* word;
-  std::string_view shapes;
+  bool (*of)(BoneShape shape);
 };
 constexpr ShapeKey kShapeKeys[] = {
-    {"radius_m", "sphere cylinder capsule"}, {"length_m", "cylinder capsule"}, {"size_m", "box"}};
+    {"radius_m", [](BoneShape shape) { return shape != BoneShape::kBox; }},
+    {"length_m",
+     [](BoneShape shape) { return shape == BoneShape::kCylinder || shape == BoneShape::kCapsule; }},
+    {"size_m", [](BoneShape shape) { return shape == BoneShape::kBox; }}};
 
 void check_shape(const Document& doc, const std::string& key, const std::string& where,
                  const BoneSpec& bone) {
-  for (const auto& [word, shapes] : kShapeKeys) {
-    const bool has = given(doc, key + "." + word),
-               fits = !bone.shape.empty() && shapes.find(bone.shape) != std::string_view::npos;
+  for (const auto& [word, of] : kShapeKeys) {
+    const bool has = given(doc, key + "." + word), fits = bone.shape && of(*bone.shape);
     if (has && !fits)
       refuse(location(doc, key + "." + word), where,
-             bone.shape.empty()
+             !bone.shape
                  ? fmt::format("{} needs a shape; add shape = \"capsule\" (sphere, box, cylinder, capsule)",
                                word)
-                 : fmt::format("{} does not apply to shape = \"{}\"; remove it", word, bone.shape));
+                 : fmt::format("{} does not apply to shape = \"{}\"; remove it", word, name_of(*bone.shape)));
     if (fits && !has)
       refuse(location(doc, key), where,
-             fmt::format("{} is missing: shape = \"{}\" needs it", word, bone.shape));
+             fmt::format("{} is missing: shape = \"{}\" needs it", word, name_of(*bone.shape)));
   }
 }
 
@@ -50,14 +51,14 @@ void check_free(const Document& doc, const std::string& key, const std::string& 
   if (mass && density)
     refuse(location(doc, key + ".density_kg_m3"), where,
            "mass_kg and density_kg_m3 exclude each other; remove one");
-  if (density && bone.shape.empty())
+  if (density && !bone.shape)
     refuse(location(doc, key + ".density_kg_m3"), where,
            "density_kg_m3 needs a shape; give mass_kg and inertia_kg_m2 instead");
   if (!mass && !density)
     refuse(location(doc, key), where,
            "mass_kg (or density_kg_m3 of its shape) is missing; a bone that does not move needs fixed = true "
            "or a [[bone.keyframe]]");
-  if (bone.shape.empty() && !inertia)
+  if (!bone.shape && !inertia)
     refuse(location(doc, key), where,
            "inertia_kg_m2 is missing: a bone without a shape has no default inertia");
   const Vec3& I = bone.inertia_kg_m2;
@@ -101,21 +102,21 @@ void check_target(const Document& doc, const std::string& key, const std::string
                        a.to));
 }
 
-/// Returns the way in which an attachment selects nodes: "box", "sphere" or "shape".
-std::string region_of(const Document& doc, const std::string& key, const std::string& where,
-                      const Description& d, const AttachmentSpec& a) {
-  if (std::string shape = box_or_sphere(doc, key, where); !shape.empty()) return shape;
+/// Returns the way in which an attachment selects nodes.
+Selection region_of(const Document& doc, const std::string& key, const std::string& where,
+                    const Description& d, const AttachmentSpec& a) {
+  if (const auto shape = box_or_sphere(doc, key, where)) return *shape;
   if (a.to.empty())
     refuse(location(doc, key), where,
            "box_min_m is missing; select nodes by box_min_m and box_max_m, or by centre_m and radius_m");
   const auto bone =
       std::find_if(d.bones.begin(), d.bones.end(), [&](const BoneSpec& b) { return b.name == a.to; });
-  if (bone != d.bones.end() ? bone->shape.empty() : tool_named(d, a.to)->shape != "sphere")
+  if (bone != d.bones.end() ? !bone->shape : tool_named(d, a.to)->shape != ToolShape::kSphere)
     refuse(location(doc, key), where,
            fmt::format("the nodes are not selected, as \"{}\" has no shape; give box_min_m and box_max_m, or "
                        "centre_m and radius_m",
                        a.to));
-  return "shape";
+  return Selection::kShape;
 }
 
 }  // namespace

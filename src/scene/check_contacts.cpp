@@ -65,7 +65,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
                   const Description& d, ContactSpec& c) {
   const ToolSpec *first_tool = tool_named(d, c.first), *second_tool = tool_named(d, c.second);
   const bool obstacle = sides.is_obstacle(c.second),
-             sphere_tool = second_tool && second_tool->shape == "sphere";
+             sphere_tool = second_tool && second_tool->shape == ToolShape::kSphere;
   if (c.method == "auto") {
     c.method = contact_method(d, c);
     if (const std::string pixels = key + ".pixels"; given(doc, pixels)) {
@@ -83,7 +83,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
     refuse(location(doc, key + ".spring"), where,
            "spring = \"per_point\" does not apply to method = \"distance\", whose points represent areas, "
            "not vertices; remove it");
-  if (c.spring == "per_point" && first_tool && first_tool->shape == "sphere")
+  if (c.spring == "per_point" && first_tool && first_tool->shape == ToolShape::kSphere)
     refuse(location(doc, key + ".spring"), where,
            "spring = \"per_point\" does not apply to a tool with shape = \"sphere\", which has no vertices; "
            "remove it");

@@ -18,17 +18,18 @@ void check_mesh(const Document& doc, const std::string& key, const std::string& 
 void check_tool_mesh(const Document& doc, const Hand& hand) {
   const std::string key = hand.tool_key + ".mesh",
                     where = hand.name == "tool" ? "tool" : fmt::format("hand \"{}\": tool", hand.name);
-  const std::string& shape = hand.tool->shape;
+  const ToolShape shape = hand.tool->shape;
   if (given(doc, key))
     check_mesh(doc, key, where + ": mesh", hand.tool->mesh);
-  else if (shape == "mesh")
+  else if (shape == ToolShape::kMesh)
     refuse(
         location(doc, hand.tool_key + ".shape"), where,
         fmt::format("shape = \"mesh\" needs a [{}]", hand.name == "tool" ? "tool.mesh" : "hand.tool.mesh"));
-  if (shape != "mesh" && given(doc, key))
+  if (shape != ToolShape::kMesh && given(doc, key))
     refuse(location(doc, key), where,
-           fmt::format("mesh does not apply to shape = \"{}\"; write shape = \"mesh\", or remove it", shape));
-  if (shape == "mesh" && given(doc, hand.tool_key + ".radius_m"))
+           fmt::format("mesh does not apply to shape = \"{}\"; write shape = \"mesh\", or remove it",
+                       name_of(shape)));
+  if (shape == ToolShape::kMesh && given(doc, hand.tool_key + ".radius_m"))
     refuse(location(doc, hand.tool_key + ".radius_m"), where,
            "radius_m does not apply to shape = \"mesh\", which has the size of its mesh; remove it");
 }

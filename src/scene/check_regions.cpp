@@ -6,16 +6,16 @@
 namespace palpate::scene {
 namespace {
 
-/// Returns the way in which a region selects elements: "box", "sphere" or "file".
-std::string chosen_by(const Document& doc, const std::string& key, const std::string& where,
-                      const SoftBodySpec& body) {
-  const std::string shape = box_or_sphere(doc, key, where);
-  if (shape.empty() && body.mesh.file.empty())
+/// Returns the way in which a region selects elements.
+Selection chosen_by(const Document& doc, const std::string& key, const std::string& where,
+                    const SoftBodySpec& body) {
+  const std::optional<Selection> shape = box_or_sphere(doc, key, where);
+  if (!shape && body.mesh.file.empty())
     refuse(location(doc, key), where,
            fmt::format("box_min_m is missing: generator = \"{}\" defines no regions; select elements by "
                        "box_min_m and box_max_m, or by centre_m and radius_m",
                        body.mesh.generator));
-  return shape.empty() ? "file" : shape;
+  return shape.value_or(Selection::kFile);
 }
 
 }  // namespace

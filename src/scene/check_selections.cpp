@@ -3,7 +3,8 @@
 
 namespace palpate::scene {
 
-std::string box_or_sphere(const Document& doc, const std::string& key, const std::string& where) {
+std::optional<Selection> box_or_sphere(const Document& doc, const std::string& key,
+                                       const std::string& where) {
   const auto has = [&](const char* word) { return given(doc, key + "." + word); };
   const bool box = has("box_min_m") || has("box_max_m"), sphere = has("centre_m") || has("radius_m");
   if (box && sphere)
@@ -13,7 +14,8 @@ std::string box_or_sphere(const Document& doc, const std::string& key, const std
     if (box && !has(word)) refuse(location(doc, key), where, fmt::format("{} is missing", word));
   for (const char* word : {"centre_m", "radius_m"})
     if (sphere && !has(word)) refuse(location(doc, key), where, fmt::format("{} is missing", word));
-  return box ? "box" : sphere ? "sphere" : "";
+  if (box) return Selection::kBox;
+  return sphere ? std::optional(Selection::kSphere) : std::nullopt;
 }
 
 }  // namespace palpate::scene

@@ -15,15 +15,15 @@ void check_joint(const Document& doc, const std::string& key, const std::string&
       if (has(word))
         refuse(location(doc, key + "." + word), where,
                fmt::format("{} does not apply to a joint with keyframes; remove it", word));
-  if (joint.type == "hinge" && !(joint.axis.norm() > 0.0))
+  if (joint.type == JointType::kHinge && !(joint.axis.norm() > 0.0))
     refuse(location(doc, key), where,
            "axis is missing: a hinge needs an axis in the body frame, for example [1.0, 0.0, 0.0]");
-  if (has("axis") && joint.type != "hinge")
+  if (has("axis") && joint.type != JointType::kHinge)
     refuse(location(doc, key + ".axis"), where, "axis applies only to type = \"hinge\"; remove it");
   for (const char* word : {"stiffness_n_m_rad", "damping_n_m_s_rad"})
-    if (has(word) && (joint.type == "weld" || joint.type == "free"))
+    if (has(word) && (joint.type == JointType::kWeld || joint.type == JointType::kFree))
       refuse(location(doc, key + "." + word), where,
-             fmt::format("{} does not apply to type = \"{}\"; remove it", word, joint.type));
+             fmt::format("{} does not apply to type = \"{}\"; remove it", word, name_of(*joint.type)));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ std::string contact_method(const Description& description, const ContactSpec& co
   if (contact.spring != "per_point") return "distance";
   const auto is_named = [&](const auto& one) { return one.name == contact.second; };
   const ToolSpec* tool = tool_named(description, contact.second);
-  const bool is_exact = (tool && tool->shape == "sphere") ||
+  const bool is_exact = (tool && tool->shape == ToolShape::kSphere) ||
                         std::any_of(description.obstacles.begin(), description.obstacles.end(), is_named);
   return is_exact ? "analytic" : "image";
 }

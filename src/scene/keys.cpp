@@ -97,7 +97,7 @@ const KeyTable<VirtualCouplingSpec>& coupling_keys() {
 
 const KeyTable<ToolSpec>& tool_keys() {
   static const KeyTable<ToolSpec> keys = {
-      text("shape", &ToolSpec::shape, {"sphere", "mesh"}, "a ball with exact gaps, or any closed surface"),
+      option("shape", &ToolSpec::shape, "a ball with exact gaps, or any closed surface"),
       number("radius_m", &ToolSpec::radius_m, ToolRanges::radius_m, "radius for shape = \"sphere\""),
       table("mesh", &ToolSpec::mesh, mesh_keys(), "closed surface for shape = \"mesh\", in the tool's frame"),
       number("mass_kg", &ToolSpec::mass_kg, positive(), "mass of the tool"),
@@ -182,12 +182,12 @@ const KeyTable<IntegratorSpec>& integrator_keys() {
              "Newton stops when its correction, in units of rtol, is below this"),
       number("spectral_radius", &IntegratorSpec::spectral_radius, Ranges::spectral_radius,
              "spectral radius at infinite frequency: 0 damps unresolved modes in one step, 1 not at all"),
-      text("events", &IntegratorSpec::events, {"error-control", "root-finding"},
-           "treatment of kinks of the force: short steps, or a restart at the kink"),
-      text("explicit_side", &IntegratorSpec::explicit_side, {"loads", "contact"},
-           "forces integrated explicitly: loads, or contact and loads"),
-      text("indefinite", &IntegratorSpec::indefinite, {"project", "lu"},
-           "for a step matrix that is not positive definite: projected tangents first, or LU at once"),
+      option("events", &IntegratorSpec::events,
+             "treatment of kinks of the force: short steps, or a restart at the kink"),
+      option("explicit_side", &IntegratorSpec::explicit_side,
+             "forces integrated explicitly: loads, or contact and loads"),
+      option("indefinite", &IntegratorSpec::indefinite,
+             "for a step matrix that is not positive definite: projected tangents first, or LU at once"),
       number("linear_rtol", &IntegratorSpec::linear_rtol, Ranges::linear_rtol,
              "relative accuracy of an iterative linear solver"),
       integer("max_order", &IntegratorSpec::max_order, Ranges::max_order,

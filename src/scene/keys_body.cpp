@@ -76,8 +76,8 @@ const KeyTable<MaterialChangeSpec>& change_keys() {
 const KeyTable<JointSpec>& joint_keys() {
   static const KeyTable<JointSpec> keys = {
       required(text("bone", &JointSpec::bone, {}, "bone that this joint connects to its parent")),
-      unless("the skeleton's", text("type", &JointSpec::type, {"weld", "hinge", "ball", "free"},
-                                    "motion relative to the parent that the joint allows")),
+      unless("the skeleton's",
+             option("type", &JointSpec::type, "motion relative to the parent that the joint allows")),
       unless("none", vec3("axis", &JointSpec::axis, any(), "axis of a hinge, in the body frame")),
       unless("the skeleton's", number("stiffness_n_m_rad", &JointSpec::stiffness_n_m_rad, at_least(0.0),
                                       "torsion spring of the joint, at rest in the initial pose")),
@@ -92,10 +92,10 @@ const KeyTable<JointSpec>& joint_keys() {
 
 const KeyTable<SkeletonSpec>& skeleton_keys() {
   static const KeyTable<SkeletonSpec> keys = {
-      text("root", &SkeletonSpec::root, {"weld", "ball", "free"},
-           "joint between the world and bones without a parent"),
-      text("joints", &SkeletonSpec::others, {"weld", "ball"},
-           "joint between the other bones and their parents"),
+      option("root", &SkeletonSpec::root, "joint between the world and bones without a parent",
+             {JointType::kWeld, JointType::kBall, JointType::kFree}),
+      option("joints", &SkeletonSpec::others, "joint between the other bones and their parents",
+             {JointType::kWeld, JointType::kBall}),
       unless("none",
              number("density_kg_m3", &SkeletonSpec::density_kg_m3,
                     positive("bone has about 1800, 800 more than the tissue whose mass its nodes have"),
@@ -139,8 +139,7 @@ const KeyTable<KeyframeSpec>& keyframe_keys() {
       vec3("position_m", &KeyframeSpec::position_m, any(), "position at that time"),
       vec3("rotation_vector_rad", &KeyframeSpec::rotation_vector_rad, any(),
            "orientation at that time, as rotation axis times angle"),
-      text("interpolation", &KeyframeSpec::interpolation, {"minimum_jerk", "linear", "step"},
-           "interpolation from the previous keyframe"),
+      option("interpolation", &KeyframeSpec::interpolation, "interpolation from the previous keyframe"),
   };
   return keys;
 }
@@ -168,14 +167,13 @@ const KeyTable<SoftBodySpec>& body_keys() {
              "mass-proportional Rayleigh damping"),
       number("stiffness_damping_s", &SoftBodySpec::stiffness_damping_s, MaterialRanges::stiffness_damping_s,
              "stiffness-proportional Rayleigh damping"),
-      text("mass", &SoftBodySpec::mass, {"lumped", "consistent"},
-           "lumped mass at the nodes, or the consistent mass matrix"),
+      option("mass", &SoftBodySpec::mass, "lumped mass at the nodes, or the consistent mass matrix"),
       text("material", &SoftBodySpec::material, {}, "the constitutive law"),
-      text(
-          "tangent", &SoftBodySpec::tangent, {"exact", "projected", "warped"},
+      option(
+          "tangent", &SoftBodySpec::tangent,
           "stiffness matrix: exact derivative of the force, projected to positive definite, or only rotated"),
-      text("volumetric", &SoftBodySpec::volumetric, {"element", "nodal"},
-           "volume change per element, or averaged at nodes (no locking for poissons_ratio near 0.5)"),
+      option("volumetric", &SoftBodySpec::volumetric,
+             "volume change per element, or averaged at nodes (no locking for poissons_ratio near 0.5)"),
       boolean("full_damping_tangent", &SoftBodySpec::full_damping_tangent,
               "keep the unsymmetric part of the derivative of the damping force by position"),
       tables("region", &SoftBodySpec::regions, region_keys(), "elements with a different material"),

@@ -5,8 +5,8 @@ namespace palpate::scene {
 const KeyTable<BoneSpec>& bone_keys() {
   static const KeyTable<BoneSpec> keys = {
       required(text("name", &BoneSpec::name, {}, "name used by attachments")),
-      unless("none", text("shape", &BoneSpec::shape, {"sphere", "box", "cylinder", "capsule"},
-                          "shape around the bone's origin; cylinder and capsule along z")),
+      unless("none", option("shape", &BoneSpec::shape,
+                            "shape around the bone's origin; cylinder and capsule along z")),
       unless("none",
              number("radius_m", &BoneSpec::radius_m, positive(), "radius of a sphere, cylinder or capsule")),
       unless("none", number("length_m", &BoneSpec::length_m, positive(),

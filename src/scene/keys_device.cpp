@@ -33,12 +33,11 @@ const KeyTable<PressSpec>& press_keys() {
   return keys;
 }
 
-}  // namespace
-
-const KeyTable<DeviceSpec>& device_keys() {
+/// Keys of every device: its path, the limits of its force and its workspace.
+KeyTable<DeviceSpec> common_keys() {
   using Ranges = DeviceRanges;
   using Spec = DeviceSpec;
-  static const KeyTable<Spec> keys = {
+  return {
       text("type", &Spec::type, {}, "what moves the handle"),
       text("profile", &Spec::profile, {},
            "published specifications of a device: palpate list device-profiles"),
@@ -72,6 +71,14 @@ const KeyTable<DeviceSpec>& device_keys() {
              "radius of a ball that the handle should not leave; 0: no ball"),
       number("workspace_margin_m", &Spec::workspace_margin_m, Ranges::workspace_margin_m,
              "distance outside the workspace over which the force fades"),
+  };
+}
+
+/// Keys of a simulated hand.
+KeyTable<DeviceSpec> simulated_hand_keys() {
+  using Ranges = DeviceRanges;
+  using Spec = DeviceSpec;
+  return {
       number("arm_mass_kg", &Spec::arm_mass_kg, Ranges::arm, "effective mass of the arm at the handle"),
       number("arm_damping_n_s_m", &Spec::arm_damping_n_s_m, Ranges::arm,
              "damping of the arm about its target pose"),
@@ -101,6 +108,14 @@ const KeyTable<DeviceSpec>& device_keys() {
       number("force_resolution_n", &Spec::force_resolution_n, Ranges::resolution,
              "quantisation step of the motors' force; 0: exact"),
       number("delay_s", &Spec::delay_s, Ranges::delay_s, "delay from a force command to the motors' output"),
+  };
+}
+
+/// Keys of a recording and of a peer on the network.
+KeyTable<DeviceSpec> source_keys() {
+  using Ranges = DeviceRanges;
+  using Spec = DeviceSpec;
+  return {
       unless("none", text("file", &Spec::file, {}, "recorded poses (CSV), relative to the scene's folder")),
       number("time_offset_s", &Spec::time_offset_s, any(),
              "offset added to the recording's times after scaling"),
@@ -114,6 +129,17 @@ const KeyTable<DeviceSpec>& device_keys() {
       number("wait_s", &Spec::wait_s, Ranges::wait_s,
              "longest wait for the peer's first pose, before the clock starts"),
   };
+}
+
+}  // namespace
+
+const KeyTable<DeviceSpec>& device_keys() {
+  static const KeyTable<DeviceSpec> keys = [] {
+    KeyTable<DeviceSpec> out = common_keys();
+    for (const auto& more : {simulated_hand_keys(), source_keys()})
+      out.insert(out.end(), more.begin(), more.end());
+    return out;
+  }();
   return keys;
 }
 

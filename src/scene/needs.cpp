@@ -1,4 +1,5 @@
 #include "scene/needs.h"
+#include "palpate/core/named_enum.h"
 
 #include <algorithm>
 
@@ -16,7 +17,7 @@ int count_if(const List& list, Predicate predicate) {
 
 void add_body_needs(const Description& d, const std::string& linear_solver, std::vector<Need>& out) {
   int fixed = 0, driven = 0, carried = 0, loads = 0;
-  const int nodal = count_if(d.bodies, [](const auto& b) { return b.volumetric == "nodal"; });
+  const int nodal = count_if(d.bodies, [](const auto& b) { return b.volumetric == Volumetric::kNodal; });
   for (const auto& body : d.bodies) {
     fixed += count_if(body.attachments, [](const auto& a) { return a.to.empty() && a.keyframes.empty(); });
     driven += count_if(body.attachments, [](const auto& a) { return !a.keyframes.empty(); });
@@ -122,10 +123,10 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
 
 void add_haptic_needs(const Description& d, std::vector<Need>& out) {
   const bool tool = d.tool.has_value();
-  out.push_back(
-      {"tool", tool,
-       tool ? fmt::format("[tool], {} under a virtual coupling, {}", d.tool->shape, d.exchange.scheme)
-            : "no [tool]"});
+  out.push_back({"tool", tool,
+                 tool ? fmt::format("[tool], {} under a virtual coupling, {}", name_of(d.tool->shape),
+                                    d.exchange.scheme)
+                      : "no [tool]"});
   out.push_back({"device", d.device.has_value(),
                  d.device ? fmt::format("[device], type \"{}\"", d.device->type) : "no [device]"});
   const std::size_t more = d.hands.size();

@@ -8,6 +8,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/keys.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/scene/kinds.h"
 #include "scene/toml_text.h"
 
@@ -69,6 +70,14 @@ inline std::string to_toml(bool value) { return value ? "true" : "false"; }
 inline std::string to_toml(const Vec3& value) { return palpate::to_toml(Setting(value)); }
 inline std::string to_toml(const std::string& value) { return value.empty() ? "" : '"' + value + '"'; }
 inline std::string to_toml(const std::optional<double>& value) { return value ? to_toml(*value) : ""; }
+template <NamedEnum E>
+std::string to_toml(E value) {
+  return to_toml(std::string(name_of(value)));
+}
+template <NamedEnum E>
+std::string to_toml(const std::optional<E>& value) {
+  return value ? to_toml(*value) : "";
+}
 template <class Item>
 std::string to_toml(const std::vector<Item>& values) {
   std::string out;
@@ -215,6 +224,24 @@ template <class Spec>
 Key<Spec> text(const char* name, std::string Spec::*member, Names allowed, const char* meaning) {
   return member_key<Spec, std::string>(
       name, member, [=](const Value& v) { return read_text(v, allowed); }, "text", choices(allowed), meaning);
+}
+/// Makes a key for an option: an enumeration, or an optional one without a default.
+/// @param some  values that the key allows; empty: all
+template <class Spec, NamedEnum E, class Member>
+Key<Spec> option_key(const char* name, Member Spec::*member, const std::vector<E>& some,
+                     const char* meaning) {
+  const Names allowed = names_of_options(some);
+  return member_key<Spec, Member>(
+      name, member, [=](const Value& v) { return *value_named<E>(read_text(v, allowed)); }, "text",
+      choices(allowed), meaning);
+}
+template <class Spec, NamedEnum E>
+Key<Spec> option(const char* name, E Spec::*member, const char* meaning, const std::vector<E>& some = {}) {
+  return option_key<Spec, E>(name, member, some, meaning);
+}
+template <class Spec, NamedEnum E>
+Key<Spec> option(const char* name, std::optional<E> Spec::*member, const char* meaning) {
+  return option_key<Spec, E>(name, member, {}, meaning);
 }
 template <class Spec>
 Key<Spec> vec3(const char* name, Vec3 Spec::*member, Range each, const char* meaning) {

@@ -1,4 +1,5 @@
 #include "scene/study.h"
+#include "palpate/core/named_enum.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,7 +98,7 @@ class Checker {
   }
 
   void fill(SweepSpec& s, const std::string& at, const std::string& where) {
-    const bool log = s.spacing == "log";
+    const bool log = s.spacing == Spacing::kLog;
     if (log && !(*s.from > 0.0 && *s.to > 0.0))
       refuse_at(at, where, "from and to must be positive where spacing = \"log\"");
     for (int i = 0; i < s.count; ++i) {
@@ -115,16 +116,16 @@ class Checker {
     const std::string at = fmt::format("random[{}]", i), where = fmt::format("random \"{}\"", r.key);
     own_key(at + ".key", where, spec, r.key, keys);
     if (r.min && r.max && !(*r.min < *r.max)) refuse_at(at + ".max", where, "max must be greater than min");
-    if (r.distribution == "normal") {
+    if (r.distribution == Distribution::kNormal) {
       if (!r.mean || !r.standard_deviation)
         refuse_at(at, where, "a normal distribution needs mean and standard_deviation");
       return;
     }
     if (!r.min || !r.max)
-      refuse_at(at, where, fmt::format("a {} distribution needs min and max", r.distribution));
+      refuse_at(at, where, fmt::format("a {} distribution needs min and max", name_of(r.distribution)));
     if (r.mean || r.standard_deviation)
       refuse_at(at, where, "mean and standard_deviation belong to distribution = \"normal\"");
-    if (r.distribution == "log-uniform" && !(*r.min > 0.0))
+    if (r.distribution == Distribution::kLogUniform && !(*r.min > 0.0))
       refuse_at(at + ".min", where, "min must be positive where distribution = \"log-uniform\"");
   }
 
@@ -165,10 +166,10 @@ std::string drawn_value(const RandomSpec& r, int seed) {
   for (const char c : r.key) words.push_back(static_cast<unsigned char>(c));
   std::seed_seq sequence(words.begin(), words.end());
   std::mt19937_64 engine(sequence);
-  if (r.distribution != "normal") {
+  if (r.distribution != Distribution::kNormal) {
     const double u = unit(engine);
-    const double value =
-        r.distribution == "uniform" ? *r.min + (*r.max - *r.min) * u : *r.min * std::pow(*r.max / *r.min, u);
+    const double value = r.distribution == Distribution::kUniform ? *r.min + (*r.max - *r.min) * u
+                                                                  : *r.min * std::pow(*r.max / *r.min, u);
     return palpate::to_toml(std::clamp(rounded(value), *r.min, *r.max));
   }
   for (int i = 0; i < kMostRedraws; ++i) {

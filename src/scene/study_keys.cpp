@@ -75,7 +75,7 @@ const KeyTable<SweepSpec>& sweep_keys() {
       unless("none", number("from", &SweepSpec::from, any(), "first of `count` values")),
       unless("none", number("to", &SweepSpec::to, any(), "last of `count` values")),
       unless("none", integer("count", &SweepSpec::count, closed(2, 100000), "number of values")),
-      text("spacing", &SweepSpec::spacing, {"linear", "log"}, "equal differences, or equal ratios"),
+      option("spacing", &SweepSpec::spacing, "equal differences, or equal ratios"),
       boolean("together", &SweepSpec::together,
               "vary together with the previous sweep, value by value, instead of in all combinations"),
   };
@@ -85,8 +85,7 @@ const KeyTable<SweepSpec>& sweep_keys() {
 const KeyTable<RandomSpec>& random_keys() {
   static const KeyTable<RandomSpec> keys = {
       required(text("key", &RandomSpec::key, {}, "dotted path of a scene key; tables count from 0")),
-      text("distribution", &RandomSpec::distribution, {"uniform", "log-uniform", "normal"},
-           "distribution of the values"),
+      option("distribution", &RandomSpec::distribution, "distribution of the values"),
       unless("none", number("min", &RandomSpec::min, any(), "smallest value; for normal: lower truncation")),
       unless("none", number("max", &RandomSpec::max, any(), "largest value; for normal: upper truncation")),
       unless("none", number("mean", &RandomSpec::mean, any(), "mean of the normal distribution")),

@@ -1,9 +1,23 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpate::scene {
+
+/// Spacing of the values of a sweep: equal differences, or equal ratios.
+enum class Spacing { kLinear, kLog };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 2> option_names(Spacing) { return {"linear", "log"}; }
+
+/// Distribution of a parameter that is drawn at random.
+enum class Distribution { kUniform, kLogUniform, kNormal };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 3> option_names(Distribution) {
+  return {"uniform", "log-uniform", "normal"};
+}
 
 /// Parameter and the values that it takes: [[sweep]].
 struct SweepSpec {
@@ -12,7 +26,7 @@ struct SweepSpec {
   std::vector<std::string> values;
   std::optional<double> from, to;
   int count = 0;
-  std::string spacing = "linear";  ///< Or "log".
+  Spacing spacing = Spacing::kLinear;  ///< Of values by from, to and count.
   /// Varies together with the preceding sweep, value by value; else all combinations.
   bool together = false;
 };
@@ -20,8 +34,8 @@ struct SweepSpec {
 /// Parameter whose value is drawn at random per seed: [[random]].
 struct RandomSpec {
   std::string key;
-  std::string distribution = "uniform";  ///< Or "log-uniform", "normal".
-  std::optional<double> min, max;        ///< Bounds; for "normal": truncation.
+  Distribution distribution = Distribution::kUniform;
+  std::optional<double> min, max;  ///< Bounds; for kNormal: truncation.
   std::optional<double> mean, standard_deviation;
 };
 

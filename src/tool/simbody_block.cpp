@@ -67,7 +67,8 @@ SimbodyTerms make_simbody_terms(int block_id, const ToolSpec& spec, const Vec3& 
 // I = 2/5 m r^2 gives r; the rate is sqrt(k/m), or 1/s for a tool without coupling stiffness.
 dynamics::BlockSpec tool_block(const ToolSpec& spec) {
   const RigidParameters p = rigid_parameters(spec, Vec3::Zero());
-  const double length = spec.shape == "sphere" ? spec.radius_m : std::sqrt(2.5 * p.inertia.mean() / p.mass);
+  const double length =
+      spec.shape == ToolShape::kSphere ? spec.radius_m : std::sqrt(2.5 * p.inertia.mean() / p.mass);
   const double rate =
       spec.coupling.stiffness_n_m > 0.0 ? std::sqrt(spec.coupling.stiffness_n_m / p.mass) : 1.0;
   return rigid_block("tool", length, length * rate);

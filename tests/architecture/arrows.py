@@ -123,6 +123,20 @@ KNOWN_CYCLES = {
 }
 
 LONG_FILE = 400
+# Files that are known to be longer.  Entries may only be removed: one that is not longer is a breach.
+KNOWN_LONG = [
+    "src/contact/distance_source.cpp",
+    "src/loop/model_reduction.cpp",
+    "tests/compare/compare_test.cpp",
+    "tests/contact/material_points_test.cpp",
+    "tests/contact/reduced_contact_stepper_test.cpp",
+    "tests/contact/rigid_sides_test.cpp",
+    "tests/contact/sources_test.cpp",
+    "tests/loop/model_reduction_test.cpp",
+    "tests/loop/real_time_test.cpp",
+    "tests/loop/units_test.cpp",
+    "tests/report/work_precision_test.cpp",
+]
 SUFFIXES = {".h", ".hpp", ".cpp", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 
@@ -237,7 +251,7 @@ def unit_cycles(graph):
             backwards.setdefault(target, set()).add(unit)
 
     def reached(start, ways, seen):
-        """Returns the units that can be reached from `start` and were not seen, each after those behind it."""
+        """Returns the units that can be reached from `start`, unless seen, each after those behind it."""
         order, stack = [], [(start, iter(sorted(ways.get(start, []))))]
         seen.add(start)
         while stack:
@@ -279,13 +293,14 @@ def source_files(tree, folders):
                   if path.suffix in SUFFIXES)
 
 
-def check(tree, known_cycles=None):
-    """Returns (breaches, remarks): lists of strings."""
+def check(tree, known_cycles=None, known_long=None):
+    """Returns the breaches, a list of strings."""
     tree = Path(tree)
     files = source_files(tree, ["include", "src", "validation", "benchmarks/product"])
+    known_long = KNOWN_LONG if known_long is None else known_long
     known = set(files)
     shared, used = shared_headers(tree), set()
-    breaches, remarks, graph = [], [], {path: [] for path in files}
+    breaches, graph, long = [], {path: [] for path in files}, []
 
     for path in files:
         own = part_of(path)
@@ -323,8 +338,12 @@ def check(tree, known_cycles=None):
                         f"{path}:{number}: {library} ({name}) belongs in {', '.join(folders)} only")
         lines = (tree / path).read_text(encoding="utf-8", errors="replace").count("\n")
         if lines > LONG_FILE:
-            remarks.append(f"{path}: {lines} lines, more than {LONG_FILE}: wants a reason")
+            long.append(path)
+            if path not in known_long:
+                breaches.append(f"{path}:{LONG_FILE + 1}: {lines} lines, more than {LONG_FILE}: split it")
 
+    breaches += [f"KNOWN_LONG lists {path}, which has at most {LONG_FILE} lines or does not exist"
+                 for path in known_long if path not in long]
     breaches += [f"{header}:1: is listed as shared, but no other part includes it"
                  for header in sorted(shared - used)]
     breaches += link_breaches(tree)
@@ -335,7 +354,7 @@ def check(tree, known_cycles=None):
         breaches += cycle_breaches(graph, KNOWN_CYCLES if known_cycles is None else known_cycles)
     if not files:
         breaches.append(f"{tree}: no source files found")
-    return breaches, remarks
+    return breaches
 
 
 def link_breaches(tree):
@@ -355,9 +374,7 @@ def link_breaches(tree):
 
 def main(arguments):
     tree = Path(arguments[0]) if arguments else Path(__file__).resolve().parents[2]
-    breaches, remarks = check(tree)
-    for line in remarks:
-        print("remark:", line)
+    breaches = check(tree)
     for line in breaches:
         print(line)
     print(f"{len(breaches)} breaches")

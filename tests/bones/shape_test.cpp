@@ -16,15 +16,15 @@ namespace {
 
 std::vector<BoneSpec> shapes() {
   BoneSpec sphere, box, cylinder;
-  sphere.name = sphere.shape = "sphere";
-  box.name = box.shape = "box";
-  cylinder.name = cylinder.shape = "cylinder";
+  sphere.name = sphere.shape = BoneShape::kSphere;
+  box.name = box.shape = BoneShape::kBox;
+  cylinder.name = cylinder.shape = BoneShape::kCylinder;
   sphere.radius_m = 0.02;
   box.size_m = Vec3(0.03, 0.04, 0.05);
   cylinder.radius_m = 0.02;
   cylinder.length_m = 0.07;
   BoneSpec capsule = cylinder;
-  capsule.name = capsule.shape = "capsule";
+  capsule.name = capsule.shape = BoneShape::kCapsule;
   return {sphere, box, cylinder, capsule};
 }
 
@@ -82,7 +82,4 @@ TEST(Bone, GivenNumbersComeBeforeTheShapes) {
   spec.inertia_kg_m2 = Vec3(1e-4, 2e-4, 4e-4);
   expect_contains(message_of([&] { bone_inertia(spec); }),
                   "bone \"sphere\": inertia_kg_m2 = [0.0001, 0.0002, 0.0004] is impossible");
-  spec.shape = "spere";
-  expect_contains(message_of([&] { bone_volume(spec); }),
-                  "bone \"sphere\": unknown shape \"spere\" (did you mean \"sphere\"?)");
 }

@@ -49,7 +49,7 @@ struct Solid {
 TEST(TaperedBone, OfOneRadiusIsTheCapsule) {
   BoneSpec capsule;
   capsule.name = "c";
-  capsule.shape = "capsule";
+  capsule.shape = BoneShape::kCapsule;
   capsule.radius_m = 0.02;
   capsule.length_m = 0.11;
   capsule.mass_kg = 1.0;

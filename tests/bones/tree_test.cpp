@@ -14,7 +14,7 @@ namespace {
 
 const Vec3 kGravity(0.5, -2.0, -9.81);
 
-TreeBone bone_at(const std::string& name, int parent, Joint joint, const Vec3& joint_position,
+TreeBone bone_at(const std::string& name, int parent, JointType joint, const Vec3& joint_position,
                  const Vec3& middle) {
   TreeBone b;
   b.name = name;
@@ -31,11 +31,11 @@ TreeBone bone_at(const std::string& name, int parent, Joint joint, const Vec3& j
 /// second ball joint.
 std::vector<TreeBone> limbs() {
   std::vector<TreeBone> bones;
-  bones.push_back(bone_at("root", -1, Joint::kFree, Vec3::Zero(), Vec3(0.1, 0.2, 0.3)));
-  bones.push_back(bone_at("upper", 0, Joint::kBall, Vec3(0.2, 0.2, 0.3), Vec3(0.3, 0.25, 0.3)));
-  bones.push_back(bone_at("lower", 1, Joint::kHinge, Vec3(0.4, 0.3, 0.3), Vec3(0.5, 0.3, 0.2)));
-  bones.push_back(bone_at("tip", 2, Joint::kWeld, Vec3(0.6, 0.3, 0.1), Vec3(0.65, 0.3, 0.1)));
-  bones.push_back(bone_at("side", 1, Joint::kBall, Vec3(0.35, 0.2, 0.3), Vec3(0.35, 0.1, 0.35)));
+  bones.push_back(bone_at("root", -1, JointType::kFree, Vec3::Zero(), Vec3(0.1, 0.2, 0.3)));
+  bones.push_back(bone_at("upper", 0, JointType::kBall, Vec3(0.2, 0.2, 0.3), Vec3(0.3, 0.25, 0.3)));
+  bones.push_back(bone_at("lower", 1, JointType::kHinge, Vec3(0.4, 0.3, 0.3), Vec3(0.5, 0.3, 0.2)));
+  bones.push_back(bone_at("tip", 2, JointType::kWeld, Vec3(0.6, 0.3, 0.1), Vec3(0.65, 0.3, 0.1)));
+  bones.push_back(bone_at("side", 1, JointType::kBall, Vec3(0.35, 0.2, 0.3), Vec3(0.35, 0.1, 0.35)));
   bones[2].axis = Vec3(0.2, 1.0, -0.3);
   bones[2].stiffness = 0.7;
   bones[2].damping = 0.03;
@@ -81,7 +81,7 @@ auto slope(const Coordinates& at, const VecX& d, const G& g, double e = 1e-5) {
 }  // namespace
 
 TEST(BoneTree, OneFreeBoneIsTheRigidBodyOfTheClosedForm) {
-  const BoneTree tree({bone_at("one", -1, Joint::kFree, Vec3::Zero(), Vec3(0.1, 0.2, 0.3))}, kGravity);
+  const BoneTree tree({bone_at("one", -1, JointType::kFree, Vec3::Zero(), Vec3(0.1, 0.2, 0.3))}, kGravity);
   const Coordinates at(tree, 3);
   ASSERT_EQ(tree.u_size(), 6);
   const TreeBone& b = tree.bone(0);
@@ -112,7 +112,7 @@ TEST(BoneTree, ADoublePendulumHasLagrangesEquations) {
     TreeBone& rod = rods[static_cast<std::size_t>(i)];
     rod.name = i == 0 ? "upper" : "lower";
     rod.parent = i - 1;
-    rod.joint = Joint::kHinge;
+    rod.joint = JointType::kHinge;
     rod.axis = -Vec3::UnitY();  // a positive rotation takes -z towards +x
     rod.joint_position = Vec3(0.0, 0.0, -kLength * i);
     rod.start.translation = rod.joint_position - Vec3(0.0, 0.0, d);
@@ -230,7 +230,8 @@ TEST(BoneTree, HeldForcesStiffenItAsTheirDerivativeSays) {
 
 TEST(BoneTree, TheTangentIsTheDerivativeAtRest) {
   std::vector<TreeBone> bones = limbs();
-  bones[1].joint = Joint::kHinge;  // only the symmetric part of a ball's spring enters the tangent: see below
+  bones[1].joint =
+      JointType::kHinge;  // only the symmetric part of a ball's spring enters the tangent: see below
   const BoneTree tree(bones, kGravity);
   const Coordinates at(tree, 4);
   const VecX still = VecX::Zero(tree.u_size());
@@ -269,9 +270,10 @@ TEST(BoneTree, ItsKinematicsHaveALeftInverse) {
 
 // In other length units, the tolerances of the root's position scale with the length; those of angles do not.
 TEST(BoneTree, KnowsItsAnglesFromItsLengths) {
-  std::vector<TreeBone> bones{bone_at("root", -1, Joint::kFree, Vec3::Zero(), Vec3::Zero()),
-                              bone_at("hinge", 0, Joint::kHinge, Vec3(0.1, 0.0, 0.0), Vec3(0.2, 0.0, 0.0)),
-                              bone_at("ball", 1, Joint::kBall, Vec3(0.3, 0.0, 0.0), Vec3(0.4, 0.0, 0.0))};
+  std::vector<TreeBone> bones{
+      bone_at("root", -1, JointType::kFree, Vec3::Zero(), Vec3::Zero()),
+      bone_at("hinge", 0, JointType::kHinge, Vec3(0.1, 0.0, 0.0), Vec3(0.2, 0.0, 0.0)),
+      bone_at("ball", 1, JointType::kBall, Vec3(0.3, 0.0, 0.0), Vec3(0.4, 0.0, 0.0))};
   const dynamics::BlockSpec block = BoneTree(bones, kGravity).block("limb", 300.0, 5.0);
   EXPECT_EQ(block.q_scale, 300.0);
   EXPECT_EQ(block.u_scale, 5.0);
@@ -287,7 +289,7 @@ TEST(BoneTree, RefusesWhatIsNoTree) {
     return "accepted";
   };
   std::vector<TreeBone> bones = limbs();
-  bones[1].joint = Joint::kFree;
+  bones[1].joint = JointType::kFree;
   EXPECT_NE(message(bones).find("bone \"upper\": a free joint is for a root"), std::string::npos)
       << message(bones);
   bones = limbs();

@@ -79,6 +79,19 @@ TEST(TrajectoryFrame, TwistIsTheDerivativeOfThePose) {
   }
 }
 
+TEST(TrajectoryFrame, RestartsFromItsLastKnot) {
+  contact::TrajectoryFrame frame;
+  EXPECT_THROW(frame.last(), InternalError);
+  frame.append(0.1, {Quat::Identity(), Vec3(1, 0, 0)}, {});
+  frame.append(0.2, {Quat::Identity(), Vec3(2, 0, 0)}, {Vec3::Zero(), Vec3(3, 0, 0)});
+  frame.restart();
+  EXPECT_EQ(frame.last().t, 0.2);
+  EXPECT_EQ(frame.last().pose.translation, Vec3(2, 0, 0));
+  EXPECT_NEAR(frame.pose(at(0.1)).translation.x(), 1.7, 1e-15) << "extrapolated, the first knot is gone";
+  frame.append(0.3, {Quat::Identity(), Vec3(4, 0, 0)}, {});
+  EXPECT_EQ(frame.last().t, 0.3);
+}
+
 TEST(TrajectoryFrame, GoesOnWithTheTwistOutsideAndStandsOnOneKnot) {
   contact::TrajectoryFrame frame;
   EXPECT_THROW(frame.pose(at(0)), InternalError);

@@ -44,8 +44,8 @@ class Counted : public Device {
 DeviceSpec spec_of(const std::string& type, const TemporaryFolder& folder) {
   DeviceSpec spec;
   spec.type = type;
-  spec.keyframes = {{0.1, Vec3(0.1, 0, 0), Vec3(0, 0, 0.2), "minimum_jerk"},
-                    {1.2, Vec3(0, 0.1, 0), Vec3(0, 0.3, 0), "minimum_jerk"}};
+  spec.keyframes = {{0.1, Vec3(0.1, 0, 0), Vec3(0, 0, 0.2), Interpolation::kMinimumJerk},
+                    {1.2, Vec3(0, 0.1, 0), Vec3(0, 0.3, 0), Interpolation::kMinimumJerk}};
   folder.write("poses.csv",
                "time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.5,0.1,0,0,1,0,0,0\n1,0,0,0,0,1,0,0\n");
   spec.file = "poses.csv";

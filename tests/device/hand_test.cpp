@@ -24,7 +24,7 @@ constexpr double kTick = 1e-3;
 DeviceSpec bare(double k = 0.0, double b = 0.0, const Vec3& x = Vec3::Zero()) {
   DeviceSpec spec;
   spec.type = "hand";
-  spec.keyframes = {{0.0, x, Vec3::Zero(), "minimum_jerk"}};
+  spec.keyframes = {{0.0, x, Vec3::Zero(), Interpolation::kMinimumJerk}};
   spec.arm_mass_kg = 0.9;
   spec.device_mass_kg = 0.1;
   spec.arm_stiffness_n_m = k;
@@ -101,8 +101,8 @@ TEST(Hand, rests_where_spring_and_force_balance) {
 TEST(Hand, lags_a_moving_path_by_the_devices_own_damping) {
   DeviceSpec spec = bare(568.0, 20.0);
   spec.device_damping_n_s_m = 4.0;
-  spec.keyframes = {{0.0, Vec3::Zero(), Vec3::Zero(), "linear"},
-                    {10.0, Vec3(2, 0, 0), Vec3::Zero(), "linear"}};
+  spec.keyframes = {{0.0, Vec3::Zero(), Vec3::Zero(), Interpolation::kLinear},
+                    {10.0, Vec3(2, 0, 0), Vec3::Zero(), Interpolation::kLinear}};
   const auto device = make_device(spec);
   for (int i = 0; i <= 6000; ++i) device->sample(i * kTick);
   EXPECT_NEAR(device->position().x(), 0.2 * 6.0 - 4.0 * 0.2 / 568.0, 1e-11);
@@ -145,8 +145,8 @@ TEST(Hand, swings_shrink_by_coulombs_decrement) {
   const double k = 400.0, f = 0.3, w = std::sqrt(k);
   DeviceSpec spec = bare(k, 0.0);
   spec.device_friction_n = f;
-  spec.keyframes = {{0.0, Vec3::Zero(), Vec3::Zero(), "step"},
-                    {1e-9, Vec3(0.02, 0, 0), Vec3::Zero(), "step"}};
+  spec.keyframes = {{0.0, Vec3::Zero(), Vec3::Zero(), Interpolation::kStep},
+                    {1e-9, Vec3(0.02, 0, 0), Vec3::Zero(), Interpolation::kStep}};
   const auto device = make_device(spec);
   device->sample(0.0);
   device->sample(1e-9);

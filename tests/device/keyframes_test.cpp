@@ -14,11 +14,11 @@ using namespace palpate::device;
 namespace {
 
 KeyframeSpec key(double t, const Vec3& p, const Vec3& r = Vec3::Zero(),
-                 const std::string& way = "minimum_jerk") {
+                 Interpolation way = Interpolation::kMinimumJerk) {
   return {t, p, r, way};
 }
 
-std::vector<KeyframeSpec> random_path(const std::string& way) {
+std::vector<KeyframeSpec> random_path(Interpolation way) {
   std::mt19937 rng(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::vector<KeyframeSpec> keys;
@@ -52,7 +52,7 @@ double derivative_error(const std::vector<KeyframeSpec>& keys, double t, double 
 }  // namespace
 
 TEST(Keyframes, rests_before_and_after) {
-  const auto keys = random_path("minimum_jerk");
+  const auto keys = random_path(Interpolation::kMinimumJerk);
   for (double t : {-5.0, 0.0, 0.1, 1.3, 99.0}) {
     const HandleSample s = sample_keyframes(keys, t);
     const KeyframeSpec& k = t < 1.0 ? keys.front() : keys.back();
@@ -79,11 +79,11 @@ TEST(Keyframes, minimum_jerk_values_of_the_quintic) {
 }
 
 TEST(Keyframes, twist_and_acceleration_are_the_derivatives) {
-  for (const char* way : {"minimum_jerk", "linear"}) {
+  for (const auto way : {Interpolation::kMinimumJerk, Interpolation::kLinear}) {
     const auto keys = random_path(way);
     int checked = 0;
     for (double t : {0.17, 0.33, 0.52, 0.86, 1.19}) {
-      if (std::string(way) == "linear") {
+      if (way == Interpolation::kLinear) {
         // no truncation error: constant rate about a fixed axis
         EXPECT_LT(derivative_error(keys, t, 1e-3), 1e-11);
       } else {
@@ -98,7 +98,7 @@ TEST(Keyframes, twist_and_acceleration_are_the_derivatives) {
 }
 
 TEST(Keyframes, minimum_jerk_is_at_rest_and_c2_at_keyframes) {
-  const auto keys = random_path("minimum_jerk");
+  const auto keys = random_path(Interpolation::kMinimumJerk);
   for (std::size_t i = 0; i < keys.size(); ++i)
     for (double side : {-1e-9, 0.0, 1e-9}) {
       const HandleSample s = sample_keyframes(keys, keys[i].time_s + side);
@@ -113,8 +113,8 @@ TEST(Keyframes, minimum_jerk_is_at_rest_and_c2_at_keyframes) {
 
 TEST(Keyframes, step_jumps_at_its_own_time) {
   const std::vector<KeyframeSpec> keys = {key(0.0, Vec3::Zero()),
-                                          key(0.5, Vec3(1, 2, 3), Vec3::Zero(), "step"),
-                                          key(1.0, Vec3(0, 0, 9), Vec3::Zero(), "step")};
+                                          key(0.5, Vec3(1, 2, 3), Vec3::Zero(), Interpolation::kStep),
+                                          key(1.0, Vec3(0, 0, 9), Vec3::Zero(), Interpolation::kStep)};
   EXPECT_EQ(sample_keyframes(keys, std::nextafter(0.5, 0.0)).pose.translation, Vec3(0, 0, 0));
   EXPECT_EQ(sample_keyframes(keys, 0.5).pose.translation, Vec3(1, 2, 3));
   EXPECT_EQ(sample_keyframes(keys, 0.7).twist.linear, Vec3(0, 0, 0));
@@ -126,9 +126,6 @@ TEST(Keyframes, bad_paths_are_refused) {
   EXPECT_NE(message({}).find("device: no keyframes; give at least one"), std::string::npos);
   EXPECT_NE(message({key(0, o), key(0, o)})
                 .find("keyframes[1]: time_s = 0 must be greater than that of the previous keyframe (0)"),
-            std::string::npos);
-  EXPECT_NE(message({key(0, o), key(1, o, o, "minimum_jerc")})
-                .find("unknown interpolation \"minimum_jerc\" (did you mean \"minimum_jerk\"?)"),
             std::string::npos);
   EXPECT_NE(message({key(0, o), key(1, Vec3(NAN, 0, 0))})
                 .find("keyframes[1]: time, position and rotation must be finite"),

@@ -43,8 +43,8 @@ TEST(Workspace, share_fades_smoothly) {
 // Same order of calls as the loop: sample, then limit.
 TEST(Workspace, the_limiter_fades_the_force_of_a_handle_that_leaves_it) {
   DeviceSpec spec;
-  spec.keyframes = {{0.0, Vec3::Zero(), Vec3::Zero(), "linear"},
-                    {1.0, Vec3(0.2, 0, 0), Vec3::Zero(), "linear"}};
+  spec.keyframes = {{0.0, Vec3::Zero(), Vec3::Zero(), Interpolation::kLinear},
+                    {1.0, Vec3(0.2, 0, 0), Vec3::Zero(), Interpolation::kLinear}};
   spec.workspace_radius_m = 0.1;
   spec.workspace_margin_m = 0.05;
   const auto device = make_device(spec);

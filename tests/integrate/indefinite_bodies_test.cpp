@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <random>
 
+#include "palpate/core/named_enum.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"
@@ -83,7 +84,7 @@ TEST(EulerStrut, StepGoesAlongTheUnstableModeUpToATenthOfItsMass) {
   constexpr double kSpeed = 1e-9;
   for (const auto& [h_sigma, expected] : {std::pair{0.31, 0L}, std::pair{0.32, 1L}, std::pair{0.98, 1L}})
     for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level"})
-      for (const char* policy : {"project", "lu"}) {
+      for (const auto policy : {IndefiniteTreatment::kProject, IndefiniteTreatment::kLu}) {
         Strut strut(4.0);
         strut.state.u() = kSpeed * modes.phi.col(0);
         const auto stepper = integrate::make_stepper(strut.system, strut.state,
@@ -93,9 +94,9 @@ TEST(EulerStrut, StepGoesAlongTheUnstableModeUpToATenthOfItsMass) {
                                                       .linear_solver = solver,
                                                       .linear_rtol = 1e-8});
         ASSERT_TRUE(stepper->advance_to(h_sigma / sigma).ok());
-        const std::string what =
-            std::string(solver) + ", " + policy + ", h sigma = " + std::to_string(h_sigma);
-        const bool projects = policy == std::string("project") && expected;
+        const std::string what = std::string(solver) + ", " + std::string(name_of(policy)) +
+                                 ", h sigma = " + std::to_string(h_sigma);
+        const bool projects = policy == IndefiniteTreatment::kProject && expected;
         EXPECT_EQ(stepper->counters().indefinite, projects ? 1 : 0) << what;
         EXPECT_EQ(stepper->counters().projected, projects ? 1 : 0) << what;
         const double speed = std::sqrt(2.0 * strut.system.kinetic_energy(strut.state.view()));
@@ -109,7 +110,7 @@ TEST(EulerStrut, StepGoesAlongTheUnstableModeUpToATenthOfItsMass) {
 // The matrix itself has a Cholesky factor up to (h sigma)^2 = 1.
 TEST(EulerStrut, StepMatrixTurnsIndefiniteAtTheGrowthRate) {
   const double sigma = std::sqrt(-Strut(4.0).smallest_eigenvalue());
-  const auto counts_of = [&](double h_sigma, const char* solver, const char* policy) {
+  const auto counts_of = [&](double h_sigma, const char* solver, IndefiniteTreatment policy) {
     Strut strut(4.0);
     const VecX q0 = strut.state.q();
     const IntegratorSpec spec{.name = "linearly-implicit-euler",
@@ -123,11 +124,12 @@ TEST(EulerStrut, StepMatrixTurnsIndefiniteAtTheGrowthRate) {
     EXPECT_TRUE(strut.state.u().allFinite());
     return std::pair{stepper->counters().indefinite, stepper->counters().projected};
   };
-  EXPECT_EQ(counts_of(0.98, "cholmod", "lu"), std::pair(0L, 0L));
-  EXPECT_EQ(counts_of(1.02, "cholmod", "lu"), std::pair(1L, 0L));
-  EXPECT_EQ(counts_of(1.02, "cholmod", "project"), std::pair(1L, 1L));
+  EXPECT_EQ(counts_of(0.98, "cholmod", IndefiniteTreatment::kLu), std::pair(0L, 0L));
+  EXPECT_EQ(counts_of(1.02, "cholmod", IndefiniteTreatment::kLu), std::pair(1L, 0L));
+  EXPECT_EQ(counts_of(1.02, "cholmod", IndefiniteTreatment::kProject), std::pair(1L, 1L));
   // PCG finds negative curvature only along directions present in the right-hand side
-  for (const char* policy : {"project", "lu"}) counts_of(1.02, "pcg", policy);
+  for (const auto policy : {IndefiniteTreatment::kProject, IndefiniteTreatment::kLu})
+    counts_of(1.02, "pcg", policy);
 }
 
 /// A cube with one end held and the nodes of its free half mirrored through the middle plane: all elements in
@@ -160,7 +162,7 @@ struct Mirrored {
 
 TEST(InvertedElements, GiveAFiniteStepByEitherPolicy) {
   for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level", "auto"})
-    for (const char* policy : {"project", "lu"}) {
+    for (const auto policy : {IndefiniteTreatment::kProject, IndefiniteTreatment::kLu}) {
       Mirrored cube;
       ASSERT_GE(cube.system.inspect(cube.state.view()).first.element, 0) << "the mesh is inside out";
       IntegratorSpec spec{
@@ -171,9 +173,9 @@ TEST(InvertedElements, GiveAFiniteStepByEitherPolicy) {
       ASSERT_TRUE(result.ok()) << result.message;
       EXPECT_TRUE(cube.state.q().allFinite() && cube.state.u().allFinite());
       const StepperCounters& c = stepper->counters();
-      EXPECT_EQ(c.indefinite, 1) << solver << ", " << policy;
-      EXPECT_EQ(c.projected, policy == std::string("project") ? 1 : 0);
-      if (policy == std::string("project")) {
+      EXPECT_EQ(c.indefinite, 1) << solver << ", " << name_of(policy);
+      EXPECT_EQ(c.projected, policy == IndefiniteTreatment::kProject ? 1 : 0);
+      if (policy == IndefiniteTreatment::kProject) {
         EXPECT_LT(cube.system.potential_energy(cube.state.view()), energy)
             << "a definite matrix gives a direction of descent";
       }
@@ -237,7 +239,7 @@ TEST(InvertedElements, AreProjectedAlikeInOnePass) {
 
 /// Largest energy of the crushed cube within 0.5 s, relative to its initial energy, over five seeds; `sum`
 /// accumulates the counts.
-double most_energy(const std::string& solver, double rtol, const std::string& policy, StepperCounters& sum) {
+double most_energy(const std::string& solver, double rtol, IndefiniteTreatment policy, StepperCounters& sum) {
   double most = 0.0;
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Crushed cube(seed);
@@ -268,14 +270,15 @@ double most_energy(const std::string& solver, double rtol, const std::string& po
 // energy.
 TEST(InvertedElements, GainNoEnergyByAnySolver) {
   StepperCounters by_factor, by_lu;
-  const double expected = most_energy("cholmod", 1e-8, "project", by_factor);
+  const double expected = most_energy("cholmod", 1e-8, IndefiniteTreatment::kProject, by_factor);
   EXPECT_LT(expected, 1.0);
   EXPECT_GT(by_factor.projected, 0);
-  EXPECT_GT(most_energy("cholmod", 1e-8, "lu", by_lu), 2.0);
+  EXPECT_GT(most_energy("cholmod", 1e-8, IndefiniteTreatment::kLu, by_lu), 2.0);
   for (const char* solver : {"pcg", "pcg-single", "pcg-two-level", "auto"})
     for (const double rtol : {1e-3, 1e-8}) {
       StepperCounters c;
-      EXPECT_NEAR(most_energy(solver, rtol, "project", c), expected, rtol) << solver << ", " << rtol;
+      EXPECT_NEAR(most_energy(solver, rtol, IndefiniteTreatment::kProject, c), expected, rtol)
+          << solver << ", " << rtol;
       EXPECT_EQ(c.indefinite, by_factor.indefinite) << solver << ", " << rtol;
       EXPECT_EQ(c.projected, c.indefinite) << solver << ", " << rtol;
       EXPECT_EQ(c.unconverged, 0) << solver << ", " << rtol;
@@ -309,7 +312,7 @@ struct ThrownApart {
 // more: their matrices are barely definite.
 TEST(ThrownApart, NoStepIsFasterThanTheForcesPush) {
   constexpr double kStep = 5e-3, kMost = 1.0 / 0.9, kSolved = 1e-6;
-  const auto fastest = [&](const char* solver, const char* policy, long& projected) {
+  const auto fastest = [&](const char* solver, IndefiniteTreatment policy, long& projected) {
     double most = 0.0;
     for (unsigned seed = 1; seed <= 100; ++seed) {
       ThrownApart cube(seed);
@@ -333,11 +336,11 @@ TEST(ThrownApart, NoStepIsFasterThanTheForcesPush) {
     return most;
   };
   long projected = 0, none = 0;
-  EXPECT_GT(fastest("cholmod", "lu", none), 10.0);
+  EXPECT_GT(fastest("cholmod", IndefiniteTreatment::kLu, none), 10.0);
   EXPECT_EQ(none, 0);
   for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level", "auto"}) {
     projected = 0;
-    EXPECT_LE(fastest(solver, "project", projected), kMost * (1.0 + kSolved)) << solver;
+    EXPECT_LE(fastest(solver, IndefiniteTreatment::kProject, projected), kMost * (1.0 + kSolved)) << solver;
     EXPECT_GT(projected, 0) << solver;
   }
 }

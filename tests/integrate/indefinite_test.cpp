@@ -59,7 +59,7 @@ class Indefinite : public testing::TestWithParam<std::string> {
  protected:
   /// From rest at the equilibrium there is no error and no force: adaptive steps grow past gamma = 0.1, and
   /// fixed steps are set beyond it.
-  StepperCounters counts(Unstable& problem, const std::string& policy) const {
+  StepperCounters counts(Unstable& problem, IndefiniteTreatment policy) const {
     IntegratorSpec spec;
     spec.name = GetParam();
     spec.step_s = 1.0;
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Registry, Indefinite, testing::ValuesIn(implicit_method
 
 TEST_P(Indefinite, AsksForDefiniteTangents) {
   Unstable problem(true);
-  const StepperCounters c = counts(problem, "project");
+  const StepperCounters c = counts(problem, IndefiniteTreatment::kProject);
   EXPECT_GT(c.indefinite, 0);
   EXPECT_EQ(c.projected, c.indefinite);
   EXPECT_GE(problem.term->definite_tangents, c.projected);
@@ -92,7 +92,7 @@ TEST_P(Indefinite, AsksForDefiniteTangents) {
 
 TEST_P(Indefinite, FallsBackToLuWhereNoTangentIsDefinite) {
   Unstable problem(false);
-  const StepperCounters c = counts(problem, "project");
+  const StepperCounters c = counts(problem, IndefiniteTreatment::kProject);
   EXPECT_GT(c.indefinite, 0);
   EXPECT_EQ(c.projected, 0);
   EXPECT_GE(problem.term->definite_tangents, c.indefinite) << "asked for each time";
@@ -100,7 +100,7 @@ TEST_P(Indefinite, FallsBackToLuWhereNoTangentIsDefinite) {
 
 TEST_P(Indefinite, TakesLuAtOnceWhereAsked) {
   Unstable problem(true);
-  const StepperCounters c = counts(problem, "lu");
+  const StepperCounters c = counts(problem, IndefiniteTreatment::kLu);
   EXPECT_GT(c.indefinite, 0);
   EXPECT_EQ(c.projected, 0);
   EXPECT_EQ(problem.term->definite_tangents, 0);
@@ -180,7 +180,8 @@ TEST_P(Indefinite, MetWhileSolvingIsProjected) {
 
 TEST_P(Indefinite, MetWhileSolvingIsAnsweredByLuWhereAsked) {
   Toppling problem;
-  const StepperCounters c = pushed(problem, {.name = GetParam(), .indefinite = "lu", .linear_solver = "pcg"});
+  const StepperCounters c =
+      pushed(problem, {.name = GetParam(), .indefinite = IndefiniteTreatment::kLu, .linear_solver = "pcg"});
   EXPECT_GT(c.indefinite, 0);
   EXPECT_EQ(c.projected, 0);
   EXPECT_EQ(problem.term->definite_tangents, 0);
@@ -205,7 +206,8 @@ TEST(LinearlyImplicitEuler, FollowsThePushByAnySolver) {
   Toppling problem;
   problem.state.set_time(kPushed);
   const auto stepper = integrate::make_stepper(
-      problem.system, problem.state, {.name = "linearly-implicit-euler", .step_s = 1.0, .indefinite = "lu"});
+      problem.system, problem.state,
+      {.name = "linearly-implicit-euler", .step_s = 1.0, .indefinite = IndefiniteTreatment::kLu});
   ASSERT_TRUE(stepper->advance_to(kPushed + 1.0).ok());
   EXPECT_NEAR(problem.state.u()[0], -1e-3 / 99.0, 1e-9);
 }

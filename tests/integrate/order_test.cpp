@@ -38,7 +38,7 @@ struct Reference {
 
 double error(const OrderProblem& p, const Reference& truth, IntegratorSpec spec) {
   Problem problem(p.q0, p.u0, p.potentials);
-  spec.explicit_side = "contact";
+  spec.explicit_side = ExplicitSide::kContact;
   spec.max_steps = 1000000;
   const auto stepper = integrate::make_stepper(problem.system, problem.state, spec);
   if (const StepResult r = stepper->advance_to(p.T); !r.ok()) fail("{}: {}", p.name, r.message);

@@ -33,13 +33,13 @@ scene::Description limb() {
   body.youngs_modulus_pa = 2e4;
   body.stiffness_damping_s = 2e-3;
   AttachmentSpec tie;
-  tie.region = "shape";
+  tie.region = Selection::kShape;
   tie.to = "bone";
   body.attachments.push_back(tie);
   d.bodies.push_back(body);
   BoneSpec bone;
   bone.name = "bone";
-  bone.shape = "capsule";
+  bone.shape = BoneShape::kCapsule;
   bone.radius_m = 0.0105;
   bone.length_m = 0.04;
   bone.mass_kg = 1.28e-4;
@@ -94,14 +94,14 @@ TEST(Bones, AFixedOneIsAFixedAttachment) {
   d.bodies[0].angular_velocity_rad_s.setZero();
   d.gravity_m_s2 = Vec3(0, 0, -9.81);
   d.bones[0].fixed = true;
-  d.bones[0].shape = "box";
+  d.bones[0].shape = BoneShape::kBox;
   d.bones[0].size_m = Vec3(0.0202, 0.0202, 0.0602);
   const auto tied = loop::assemble(d);
   EXPECT_EQ(tied->state.layout().border_size(), 0);
   ASSERT_TRUE(loop::run(*tied, {}).status.ok());
   d.bones.clear();
   d.bodies[0].attachments[0].to.clear();
-  d.bodies[0].attachments[0].region = "box";
+  d.bodies[0].attachments[0].region = Selection::kBox;
   d.bodies[0].attachments[0].box_min_m = Vec3(-0.0101, -0.0101, -0.0301);
   d.bodies[0].attachments[0].box_max_m = -d.bodies[0].attachments[0].box_min_m;
   const auto boxed = loop::assemble(d);
@@ -191,10 +191,10 @@ TEST(Bones, NodesThatNoBoneHoldsAreRefused) {
       << refusal(d);
   d = limb();
   d.bodies[0].attachments[0].to = "tool";
-  d.bodies[0].attachments[0].region = "box";
+  d.bodies[0].attachments[0].region = Selection::kBox;
   EXPECT_NE(refusal(d).find("bone \"bone\" carries no nodes"), std::string::npos) << refusal(d);
   d.bones.clear();
-  d.bodies[0].attachments[0].region = "sphere";
+  d.bodies[0].attachments[0].region = Selection::kSphere;
   d.bodies[0].attachments[0].radius_m = 0.02;
   EXPECT_NE(refusal(d).find("neither a bone nor a tool"), std::string::npos) << refusal(d);
 }

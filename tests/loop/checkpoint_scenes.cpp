@@ -71,7 +71,7 @@ Cases make_cases() {
   frozen.scene.device->max_force_slew_n_s = 80.0;
   frozen.scene.device->max_torque_slew_n_m_s = 1.6;
   frozen.scene.device->keyframes[1].time_s = 0.0405;  // after a checkpoint, so that the slew is bounded there
-  frozen.scene.device->keyframes[1].interpolation = "step";
+  frozen.scene.device->keyframes[1].interpolation = Interpolation::kStep;
   Case& late = out["Late"] = pressed("points");
   late.scene.exchange.latency_ticks = 13;
   Case& hand = out["SimulatedHand"] = pressed("points");
@@ -127,7 +127,7 @@ Cases make_cases() {
   soft.scene.contacts.clear();
   AttachmentSpec carried;
   carried.to = "tool";
-  carried.region = "box";
+  carried.region = Selection::kBox;
   carried.box_min_m = Vec3(-1, -1, 0.019);
   carried.box_max_m = Vec3(1, 1, 0.021);
   soft.scene.bodies[0].attachments.push_back(carried);

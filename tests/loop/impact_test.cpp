@@ -4,6 +4,7 @@
 
 #include "loop/small_scenes.h"
 #include "loop/summary.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/run.h"
 #include "summary_rows.h"
 
@@ -86,7 +87,7 @@ TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
 // nothing presses yet, and the force does not. The root finder's values for the old list must still be
 // discarded.
 TEST(Impact, RootsAreFoundWhileTheListOfCandidatesChanges) {
-  const auto landed = [](const std::string& integrator, const std::string& events) {
+  const auto landed = [](const std::string& integrator, KinkTreatment events) {
     scene::Description d = thrown_block(0.5, 0.0125);
     d.bodies[0].angular_velocity_rad_s = Vec3(9.0, 4.0, 0.0);
     d.exchange.contact_refresh_s = 0.002;
@@ -96,13 +97,15 @@ TEST(Impact, RootsAreFoundWhileTheListOfCandidatesChanges) {
     d.integrator.events = events;
     const auto world = loop::assemble(d);
     const loop::RunResult result = loop::run(*world, {});
-    EXPECT_TRUE(result.status.ok()) << integrator << ", " << events << ": " << result.status.message;
-    if (events == "root-finding") { EXPECT_GT(result.counters.events, 3) << integrator; }
+    EXPECT_TRUE(result.status.ok()) << integrator << ", " << name_of(events) << ": " << result.status.message;
+    if (events == KinkTreatment::kRootFinding) { EXPECT_GT(result.counters.events, 3) << integrator; }
     return VecX(world->state.q());
   };
   for (const char* integrator : {"cvode-bdf", "ida", "ark-dirk-esdirk437", "ark-erk-3"})
     EXPECT_LT(
-        (landed(integrator, "root-finding") - landed(integrator, "error-control")).cwiseAbs().maxCoeff(),
+        (landed(integrator, KinkTreatment::kRootFinding) - landed(integrator, KinkTreatment::kErrorControl))
+            .cwiseAbs()
+            .maxCoeff(),
         1e-6)
         << integrator;
 }

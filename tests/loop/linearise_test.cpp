@@ -115,7 +115,7 @@ struct Struck {
     KeyframeSpec start, end;
     end.time_s = 3.0;
     end.position_m = Vec3(2e-4, -1e-4, 3e-4);
-    end.interpolation = "linear";
+    end.interpolation = Interpolation::kLinear;
     d.bodies[0].attachments[0].keyframes = {start, end};
     d.integrator.linear_solver = "cholmod";  // differences of 1e-8 are taken between steps
     world = loop::assemble(d);

@@ -29,7 +29,7 @@ struct Drift {
 /// Holds every node of every body, so that bodies do not move, and queries contact every `period_s`.
 inline void freeze(scene::Description& d, double period_s) {
   AttachmentSpec all;
-  all.region = "box";
+  all.region = Selection::kBox;
   all.box_min_m = Vec3::Constant(-100.0);
   all.box_max_m = Vec3::Constant(100.0);
   for (SoftBodySpec& body : d.bodies) body.attachments.assign(1, all);

@@ -76,7 +76,7 @@ TEST(MaterialChange, OfASceneActsInTheRunWhateverTheIntegrator) {
 
 TEST(MaterialChange, TakesTheNodalDilatationAlong) {
   scene::Description d = sagging("linearly-implicit-euler");
-  d.bodies[0].volumetric = "nodal";
+  d.bodies[0].volumetric = Volumetric::kNodal;
   d.bodies[0].poissons_ratio = 0.49;
   const auto changed = loop::assemble(d);
   d.bodies[0].youngs_modulus_pa = kAfter;

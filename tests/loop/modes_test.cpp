@@ -4,6 +4,7 @@
 
 #include "loop/small_scenes.h"
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/store/run_file.h"
 #include "temporary_folder.h"
 
@@ -26,7 +27,7 @@ TEST(ModesOfAScene, OfAHeldBlockScaleWithTheRootOfItsStiffness) {
 }
 
 TEST(ModesOfAScene, OfAFreeBlockBeginWithSixRigidMotionsWhereverItStandsAndLies) {
-  for (const std::string mass : {"lumped", "consistent"}) {
+  for (const MassMatrix mass : {MassMatrix::kLumped, MassMatrix::kConsistent}) {
     scene::Description d = held_block();
     d.bodies[0].attachments.clear();
     d.bodies[0].mass = mass;
@@ -36,11 +37,11 @@ TEST(ModesOfAScene, OfAFreeBlockBeginWithSixRigidMotionsWhereverItStandsAndLies)
     const auto there = loop::assemble(d);
     const modes::Modes one = loop::find_modes(*here, 9), other = loop::find_modes(*there, 9);
     for (int j = 0; j < 6; ++j) {
-      EXPECT_EQ(one.omega_squared[j], 0.0) << mass << " " << j;
-      EXPECT_EQ(other.omega_squared[j], 0.0) << mass << " " << j;
+      EXPECT_EQ(one.omega_squared[j], 0.0) << name_of(mass) << " " << j;
+      EXPECT_EQ(other.omega_squared[j], 0.0) << name_of(mass) << " " << j;
     }
     for (int j = 6; j < 9; ++j)
-      EXPECT_NEAR(other.omega(j), one.omega(j), 1e-8 * one.omega(j)) << mass << " " << j;
+      EXPECT_NEAR(other.omega(j), one.omega(j), 1e-8 * one.omega(j)) << name_of(mass) << " " << j;
   }
 }
 
@@ -49,7 +50,7 @@ TEST(ModesOfAScene, NodalDilatationUnlocksThemAndAddsNoneOfZeroEnergy) {
   d.bodies[0].attachments.clear();
   d.bodies[0].poissons_ratio = 0.4999;
   const auto locked = loop::assemble(d);
-  d.bodies[0].volumetric = "nodal";
+  d.bodies[0].volumetric = Volumetric::kNodal;
   const auto nodal = loop::assemble(d);
   d.bodies[0].poissons_ratio = 0.499;
   const auto softer = loop::assemble(d);

@@ -157,7 +157,7 @@ TEST(Monolithic, TicksComeInTheirOrderAndNumberWhateverTheRefresh) {
 
 // Each sample that closes or opens under the tool is a root at which a step is shortened.
 TEST(Monolithic, SummaryCountsTheRootsThatStepsWereCutShortAt) {
-  const auto counted = [](const char* events) {
+  const auto counted = [](KinkTreatment events) {
     scene::Description d = monolithic_press(0.002);
     d.integrator.events = events;
     const auto world = loop::assemble(d);
@@ -168,10 +168,10 @@ TEST(Monolithic, SummaryCountsTheRootsThatStepsWereCutShortAt) {
       if (name == "events") return std::pair{std::get<long long>(value), result.counters.events};
     return std::pair{-1LL, -1L};
   };
-  const auto [named, events] = counted("root-finding");
+  const auto [named, events] = counted(KinkTreatment::kRootFinding);
   EXPECT_GT(events, 0);
   EXPECT_EQ(named, events);
-  EXPECT_EQ(counted("error-control").first, 0);
+  EXPECT_EQ(counted(KinkTreatment::kErrorControl).first, 0);
 }
 
 // At rest k (x_h - x_t) + F = 0, as in the partitioned scheme: the two differ in the transient, not in the

@@ -21,7 +21,7 @@ scene::Description stroked_wall(int delay_ticks, double coupling_damping) {
   d.name = "stroked wall";
   d.duration_s = 0.5;
   d.tool.emplace();
-  d.tool->shape = "mesh";
+  d.tool->shape = ToolShape::kMesh;
   d.tool->mesh.generator = "box";
   d.tool->mesh.size_m = Vec3::Constant(0.02);
   d.tool->mesh.element_size_m = 0.01;

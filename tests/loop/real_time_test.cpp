@@ -9,7 +9,6 @@
 #include <deque>
 #include <thread>
 
-#include "core/spsc_ring.h"
 #include "loop/contact_record.h"
 #include "loop/tick_group.h"
 #include "malloc_count.h"
@@ -21,35 +20,6 @@
 namespace {
 
 using namespace palpate;
-
-TEST(SpscRing, GivesEachValueOnceAndInOrder) {
-  SpscRing<long> ring(64);
-  constexpr long kCount = 200'000;
-  std::thread writer([&] {
-    for (long i = 0; i < kCount;) i += ring.push(i);
-  });
-  long expected = 0;
-  for (long value; expected < kCount;) {
-    if (!ring.pop(value)) continue;
-    ASSERT_EQ(value, expected);
-    ++expected;
-  }
-  writer.join();
-  long left = 0;
-  EXPECT_FALSE(ring.pop(left));
-}
-
-TEST(SpscRing, RefusesWhatDoesNotFit) {
-  SpscRing<int> ring(3);
-  ASSERT_EQ(ring.capacity(), 4u);
-  for (int i = 0; i < 4; ++i) EXPECT_TRUE(ring.push(i));
-  EXPECT_FALSE(ring.push(4));
-  int value = -1;
-  EXPECT_TRUE(ring.pop(value));
-  EXPECT_EQ(value, 0);
-  EXPECT_TRUE(ring.push(5));
-  EXPECT_FALSE(ring.push(6));
-}
 
 TEST(Quantile, IsTheNearestRank) {
   const std::vector<float> values = {5, 1, 4, 2, 3};
@@ -292,7 +262,7 @@ long allocations_in_ticks(const std::string& device, device::PassivityController
 long allocations_on_floor(bool mesh) {
   scene::Description d = ball_on_floor();
   if (mesh) {
-    d.tool->shape = "mesh";
+    d.tool->shape = ToolShape::kMesh;
     d.tool->mesh.generator = "ball";
     d.tool->mesh.radius_m = d.tool->radius_m;
     d.tool->mesh.element_size_m = 0.2 * d.tool->radius_m;
@@ -332,13 +302,13 @@ TEST(RealTime, ATickOnAnObstacleTakesNoMemory) {
 long allocations_of_two(bool round) {
   scene::Description d = ball_on_floor();
   d.obstacles.clear();
-  d.tool->shape = "mesh";
+  d.tool->shape = ToolShape::kMesh;
   d.tool->mesh.generator = "ball";
   d.tool->mesh.radius_m = d.tool->radius_m;
   d.tool->mesh.element_size_m = 0.2 * d.tool->radius_m;
   d.tool->inertia_kg_m2 = Vec3::Constant(1e-5);
   scene::HandSpec& below = d.hands.emplace_back(scene::HandSpec{"below", *d.tool, *d.device});
-  if (round) below.tool.shape = "sphere";
+  if (round) below.tool.shape = ToolShape::kSphere;
   below.tool.position_m *= -1.0;
   for (KeyframeSpec& k : below.device.keyframes) k.position_m *= -1.0;
   d.contacts[0].second = "below";

@@ -30,7 +30,7 @@ class Regions : public testing::Test {
 RegionSpec upper_half() {
   RegionSpec out;
   out.name = "lid";
-  out.region = "box";
+  out.region = Selection::kBox;
   out.box_min_m = Vec3(-1, -1, 0.01);
   out.box_max_m = Vec3::Ones();
   return out;
@@ -61,7 +61,7 @@ std::string refusal(const scene::Description& d) {
 TEST_F(Regions, WeighWhatTheirDensitySays) {
   RegionSpec lid = upper_half();
   lid.density_kg_m3 = 3500.0;
-  for (const char* mass : {"lumped", "consistent"}) {
+  for (const MassMatrix mass : {MassMatrix::kLumped, MassMatrix::kConsistent}) {
     scene::Description d = with(lid);
     d.bodies[0].mass = mass;
     const auto world = loop::assemble(d);
@@ -84,14 +84,14 @@ TEST_F(Regions, WeighWhatTheirDensitySays) {
 TEST_F(Regions, OfTheBodysMaterialChangeNothing) {
   RegionSpec lid = upper_half();
   lid.youngs_modulus_pa = 1e4;
-  for (const char* volumetric : {"element", "nodal"}) {
+  for (const Volumetric volumetric : {Volumetric::kElement, Volumetric::kNodal}) {
     scene::Description divided = with(lid);
     divided.integrator.linear_solver = "cholmod";  // accurate to rounding
     scene::Description whole = divided;
     divided.bodies[0].volumetric = whole.bodies[0].volumetric = volumetric;
     // averages of the dilatation end at a border: at 0.2 no share is averaged
     divided.bodies[0].poissons_ratio = whole.bodies[0].poissons_ratio =
-        std::string(volumetric) == "nodal" ? 0.2 : 0.45;
+        volumetric == Volumetric::kNodal ? 0.2 : 0.45;
     whole.bodies[0].regions.clear();
     const VecX a = end_of(divided), b = end_of(whole);
     EXPECT_LT((a - b).norm(), 1e-12 * b.norm());
@@ -183,7 +183,7 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   EXPECT_NE(refusal(d).find("two.msh has no region \"bones\" (did you mean \"bone\"?)"), std::string::npos)
       << refusal(d);
   d.bodies[0].regions[0].name = "bone";
-  d.bodies[0].regions[0].region = "sphere";
+  d.bodies[0].regions[0].region = Selection::kSphere;
   d.bodies[0].regions[0].radius_m = 1.0;
   EXPECT_NE(refusal(d).find("region \"bone\" also exists in two.msh; give the sphere another name"),
             std::string::npos)
@@ -195,7 +195,7 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   // An element in two regions of the scene belongs to the last one.
   RegionSpec all = bone;
   all.name = "all";
-  all.region = "sphere";
+  all.region = Selection::kSphere;
   all.radius_m = 10.0;
   all.density_kg_m3 = 2000.0;
   d.bodies[0].regions = {all, bone};

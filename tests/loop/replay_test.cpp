@@ -128,7 +128,7 @@ TEST(Replay, RetracesARunUnderThePassivityController) {
     d.device->keyframes.push_back(at);
     d.device->keyframes.back().time_s = 1e-3 * tick;
     d.device->keyframes.back().position_m.x() += tick % 2 ? 1e-3 : -1e-3;
-    d.device->keyframes.back().interpolation = "linear";
+    d.device->keyframes.back().interpolation = Interpolation::kLinear;
   }
   loop::HapticRecord record = recorded(d, false, "control.h5", {}, Passivity::kControl);
   EXPECT_EQ(record.passivity, Passivity::kControl);

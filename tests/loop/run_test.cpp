@@ -51,7 +51,7 @@ TEST(Run, NodalDilatationStepsUnderErrorControlAndWithOneLinearSolveAStep) {
   scene::Description d = held_block();
   d.gravity_m_s2 = Vec3(0, 20, -60);
   d.bodies[0].poissons_ratio = 0.4999;
-  d.bodies[0].volumetric = "nodal";
+  d.bodies[0].volumetric = Volumetric::kNodal;
   const VecX start = loop::assemble(d)->state.q();
   const auto end = [&](const std::string& integrator, double setting) {
     d.integrator.name = integrator;

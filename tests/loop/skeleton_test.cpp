@@ -193,7 +193,7 @@ namespace {
 scene::Description jointed(const ModelOnDisk& file, const std::string& root = "weld") {
   scene::Description d = limb(file);
   d.bodies[0].skeleton->root = root;
-  d.bodies[0].skeleton->others = "ball";
+  d.bodies[0].skeleton->others = JointType::kBall;
   d.bodies[0].skeleton->density_kg_m3 = 800.0;
   return d;
 }
@@ -209,7 +209,7 @@ TEST(Skeleton, BonesOnJointsAreOneBlockAndCarryTheirNodes) {
   const auto world = loop::assemble(d);
   EXPECT_EQ(world->state.layout().border_size(), 3 + 1) << "a ball and a hinge; the root is welded";
   EXPECT_EQ(counters::snapshot()["tool.simbody_system"], 1);
-  d.bodies[0].skeleton->root = "free";
+  d.bodies[0].skeleton->root = JointType::kFree;
   EXPECT_EQ(loop::assemble(d)->state.layout().border_size(), 6 + 3 + 1);
 }
 
@@ -289,7 +289,7 @@ TEST(Skeleton, AToolMovesPassiveJointsAndDentsTheFlesh) {
     d.device.emplace();
     for (const auto& [time, lower] : {std::pair{0.0, 0.0}, {0.2, 0.025}, {0.3, 0.025}, {0.5, 0.0}})
       d.device->keyframes.push_back(
-          {time, d.tool->position_m - Vec3(0, 0, lower), Vec3::Zero(), "minimum_jerk"});
+          {time, d.tool->position_m - Vec3(0, 0, lower), Vec3::Zero(), Interpolation::kMinimumJerk});
     ContactSpec contact;
     contact.first = "limb";
     contact.second = "tool";

@@ -20,7 +20,7 @@ scene::Description carried_block() {
   d.contacts.clear();
   d.bodies[0].mesh.element_size_m = 0.005;
   d.bodies[0].attachments[0].to = "tool";
-  d.bodies[0].attachments[0].region = "box";
+  d.bodies[0].attachments[0].region = Selection::kBox;
   d.bodies[0].attachments[0].box_min_m = Vec3(-1, -1, 0.019);
   d.bodies[0].attachments[0].box_max_m = Vec3(1, 1, 0.021);
   d.tool->coupling.rotational_stiffness_n_m_rad = 1.0;

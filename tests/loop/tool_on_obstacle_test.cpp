@@ -84,7 +84,7 @@ std::vector<loop::TickRecord> run(const scene::Description& d, const Vec3& veloc
 TEST(ToolOnObstacle, NoTickIsOutsideTheConeOfFriction) {
   constexpr double kMu = 0.3;
   scene::Description d = ball_over("plane", 0.0);
-  d.tool->shape = "mesh";
+  d.tool->shape = ToolShape::kMesh;
   d.tool->mesh.generator = "box";
   d.tool->mesh.size_m = Vec3::Constant(2.0 * kR);
   d.tool->mesh.element_size_m = kR;
@@ -124,7 +124,7 @@ TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
         d.exchange.scheme = scheme;
         if (mesh && std::string(type) != "plane") continue;  // facets do not balance on a round obstacle
         if (mesh) {
-          d.tool->shape = "mesh";
+          d.tool->shape = ToolShape::kMesh;
           d.tool->mesh.generator = "box";
           d.tool->mesh.size_m = Vec3::Constant(2.0 * kR);
           d.tool->mesh.element_size_m = kR;

@@ -27,7 +27,7 @@ void shape(ToolSpec& tool, const std::string& kind, double half) {
   tool.radius_m = half;
   tool.inertia_kg_m2 = Vec3::Constant(kMass * 4.0 * half * half / 6.0);
   if (kind == "sphere") return;
-  tool.shape = "mesh";
+  tool.shape = ToolShape::kMesh;
   tool.mesh.generator = "box";
   tool.mesh.size_m = Vec3::Constant(2.0 * half);
   tool.mesh.element_size_m = half;

@@ -55,7 +55,7 @@ scene::Description at_soft_plate(double speed) {
   scene::Description d = thrown(speed);
   d.contacts[0].second = "tool";
   d.tool.emplace();
-  d.tool->shape = "mesh";
+  d.tool->shape = ToolShape::kMesh;
   d.tool->mesh.generator = "box";
   d.tool->mesh.size_m = Vec3(0.1, 0.1, kThickness);
   d.tool->mesh.element_size_m = 0.02;

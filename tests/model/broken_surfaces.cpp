@@ -170,22 +170,10 @@ model::Options options(const std::function<void(model::Options&)>& set) {
   return out;
 }
 
-}  // namespace
-
-std::vector<Entry> entries() {
-  const auto hole = [](double z) { return without(ball(), [z](const Vec3& p) { return p.z() > z; }); };
-  const auto remesh = options([](model::Options& o) { o.remesh = true; });
-  const auto accept = options([](model::Options& o) { o.accept_angles = true; });
+/// Returns sound surfaces that are hard to mesh.
+std::vector<Entry> sound_surfaces() {
   const auto largest = options([](model::Options& o) { o.repair.largest_shell = true; });
   const auto no_creases = options([](model::Options& o) { o.creases = model::Creases::kNone; });
-  const auto strict = options([](model::Options& o) { o.repair.wrap = false; });
-  const auto hurried = options([](model::Options& o) { o.tetrahedra.limits.seconds = 1e-6; });
-  const auto few_points = options([](model::Options& o) { o.tetrahedra.limits.points = 250; });
-  // enough for 1,500 tetrahedra, but not for the relief
-  const auto too_few = options([](model::Options& o) {
-    o.tetrahedra.limits.points = 600;
-    o.creases = model::Creases::kNone;
-  });
   return {
       {"ball", [] { return surface(ball()); }, "model"},
       {"noise of a tenth of an edge", [] { return surface(noisy(ball(), 0.015)); }, "model"},
@@ -250,6 +238,14 @@ std::vector<Entry> entries() {
                     }));
        },
        "model", false},
+  };
+}
+
+/// Returns surfaces with defects, and in other units and places.
+std::vector<Entry> defective_surfaces() {
+  const auto hole = [](double z) { return without(ball(), [z](const Vec3& p) { return p.z() > z; }); };
+  const auto strict = options([](model::Options& o) { o.repair.wrap = false; });
+  return {
       {"boxes that share an edge", [] { return surface(boxes_sharing(true)); }, "model"},
       {"boxes that share a vertex", [] { return surface(boxes_sharing(false)); }, "model"},
       {"small hole", [hole] { return surface(hole(0.95)); }, "model"},
@@ -309,6 +305,21 @@ std::vector<Entry> entries() {
       {"far from the origin",
        [] { return surface(mapped(ball(), [](const Vec3& p) -> Vec3 { return p + Vec3(1e4, 0, 0); })); },
        "model"},
+  };
+}
+
+/// Returns tetrahedra of users, and limits that are too small.
+std::vector<Entry> tetrahedra_and_limits() {
+  const auto remesh = options([](model::Options& o) { o.remesh = true; });
+  const auto accept = options([](model::Options& o) { o.accept_angles = true; });
+  const auto hurried = options([](model::Options& o) { o.tetrahedra.limits.seconds = 1e-6; });
+  const auto few_points = options([](model::Options& o) { o.tetrahedra.limits.points = 250; });
+  // enough for 1,500 tetrahedra, but not for the relief
+  const auto too_few = options([](model::Options& o) {
+    o.tetrahedra.limits.points = 600;
+    o.creases = model::Creases::kNone;
+  });
+  return {
       {"fins that meet at poles", [] { return surface(fins()); }, "model", false, {}, 6000},
       {"the same with too few tetrahedra", [] { return surface(fins()); }, "outside the tetrahedra", false},
       {"tetrahedra of others, flat", [] { return tetrahedra(flattened(0.05)); }, "--remesh"},
@@ -323,6 +334,15 @@ std::vector<Entry> entries() {
       {"points run out", [] { return surface(stellated(ball(1.0, 2), 0.6)); },
        "need more than 600 points, most of them around", true, too_few},
   };
+}
+
+}  // namespace
+
+std::vector<Entry> entries() {
+  std::vector<Entry> out = sound_surfaces();
+  for (const auto& more : {defective_surfaces(), tetrahedra_and_limits()})
+    out.insert(out.end(), more.begin(), more.end());
+  return out;
 }
 
 }  // namespace broken

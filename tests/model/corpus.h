@@ -8,6 +8,7 @@
 
 #include "broken_surfaces.h"
 #include "core/clock.h"
+#include "mesh/surface_checks.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 

@@ -93,6 +93,18 @@ TEST(Keys, EachSaysItsUnitDefaultAndMeaning) {
   EXPECT_GT(defaults, 60);
 }
 
+/// A key of an option reads each of its names into the value of that name.
+TEST(Keys, OptionsReadEveryNameTheyList) {
+  int names = 0;
+  for (const auto& row : palpate::scene::key_rows(palpate::loop::kinds())) {
+    if (row.type != "text" || !row.is_value || !row.read_back) continue;
+    static const std::regex quoted("\"[^\"]*\"");
+    for (std::sregex_iterator at(row.range.begin(), row.range.end(), quoted), end; at != end; ++at, ++names)
+      EXPECT_EQ(row.read_back(at->str()), at->str()) << row.table << '.' << row.name;
+  }
+  EXPECT_GT(names, 30);
+}
+
 TEST(Keys, DefaultsAreThoseOfTheSpecs) {
   const auto rows = palpate::scene::key_rows(palpate::loop::kinds());
   const auto row = [&](const std::string& table, const std::string& name) {

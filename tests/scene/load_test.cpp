@@ -42,7 +42,7 @@ TEST(Load, PressBallAsWritten) {
   EXPECT_EQ(d.tool->coupling.rotational_damping_n_m_s_rad, 1e-3);
   ASSERT_EQ(d.device->keyframes.size(), 4u);
   EXPECT_EQ(d.device->keyframes[1].position_m, Vec3(0, 0, 0.072));
-  EXPECT_EQ(d.device->keyframes[1].interpolation, "minimum_jerk");
+  EXPECT_EQ(d.device->keyframes[1].interpolation, Interpolation::kMinimumJerk);
   ASSERT_EQ(d.compare.ladders.size(), 6u);
   EXPECT_EQ(d.compare.ladders[1].integrator, "linearly-implicit-euler");
   EXPECT_TRUE(d.compare.ladders[1].values.empty()) << "down to where the reference cannot tell errors";
@@ -103,9 +103,10 @@ radius_m = 0.01
   EXPECT_EQ(d.bones[0].density_kg_m3, 1800.0);
   EXPECT_TRUE(d.bones[0].gravity);
   EXPECT_TRUE(d.bones[1].fixed);
-  EXPECT_EQ(d.bodies[0].attachments[0].region, "box");
-  EXPECT_EQ(d.bodies[1].attachments[0].region, "shape") << "the bone's own, where nothing else is given";
-  EXPECT_EQ(d.bodies[1].attachments[1].region, "sphere");
+  EXPECT_EQ(d.bodies[0].attachments[0].region, Selection::kBox);
+  EXPECT_EQ(d.bodies[1].attachments[0].region, Selection::kShape)
+      << "the bone's own, where nothing else is given";
+  EXPECT_EQ(d.bodies[1].attachments[1].region, Selection::kSphere);
   EXPECT_EQ(d.bodies[1].attachments[1].to, "tibia");
   EXPECT_THROW(parse(text, "bones.toml", {"body.1.attachment.1.axes=\"xy\""}), palpate::Error);
   EXPECT_THROW(parse(text, "bones.toml", {"bone.0.mass_kg=1"}), palpate::Error) << "mass and density";
@@ -143,8 +144,8 @@ TEST(Load, RegionsSayWhatDiffersFromTheBody) {
              "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = "
              "2e5, region = \"half\"}]"});
   ASSERT_EQ(d.bodies[0].regions.size(), 2u);
-  EXPECT_EQ(d.bodies[0].regions[0].region, "sphere");
-  EXPECT_EQ(d.bodies[0].regions[1].region, "box");
+  EXPECT_EQ(d.bodies[0].regions[0].region, Selection::kSphere);
+  EXPECT_EQ(d.bodies[0].regions[1].region, Selection::kBox);
   EXPECT_EQ(d.bodies[0].regions[0].density_kg_m3, 2e3);
   EXPECT_FALSE(d.bodies[0].regions[0].youngs_modulus_pa);
   EXPECT_EQ(d.bodies[0].changes[1].region, "half") << "a region that changes may start as the body is";
@@ -230,6 +231,92 @@ mesh = { generator = "ball", radius_m = 0.03, element_size_m = 0.01 }
   EXPECT_EQ(sides("[\"ball\", \"apple\"]", another), "ball - apple, distance");
 }
 
+/// Changes to a scene, and the message with which it is refused.
+const std::pair<std::vector<std::string>, const char*> kBadCombinations[] = {
+    {{"body.0.mesh.file=\"a.msh\""}, "file and generator exclude each other"},
+    {{"body.0.mesh={radius_m = 1.0}"}, "needs file = \"PATH\" or generator = \"ball\""},
+    {{"body.0.mesh.generator=box"}, "size_m is missing: generator = \"box\" needs it"},
+    {{"body.0.mesh.scale=2.0"}, "scale does not apply to generator = \"ball\""},
+    {{"obstacle.0.radius_m=1.0"}, "radius_m does not apply to type = \"plane\""},
+    {{"obstacle.0.type=sphere"}, "radius_m is missing: type = \"sphere\" needs it"},
+    {{"obstacle.0.normal=[0,0,0]"}, "has no direction"},
+    {{"obstacle.0.name=tool"}, "name \"tool\" is reserved for [tool]"},
+    {{"body.0.name=\"a/b\""}, "must not contain slashes"},
+    {{"contact.0.method=image"}, "an obstacle has exact gaps"},
+    {{"contact.0.method=distance", "contact.0.pixels=128"}, "pixels does not apply to method = \"distance\""},
+    {{"contact.1.quadrature_error=0.0"}, "quadrature_error = 0 must lie in [1e-06, 0.1]"},
+    {{"contact.1.method=distance", "contact.1.pixels=128"}, "pixels does not apply to method = \"distance\""},
+    {{"contact.1.method=distance", "contact.1.spring=per_point"}, "whose points represent areas"},
+    {{"contact.0.pixels=128"}, "pixels does not apply to an obstacle, whose gaps are exact; remove it"},
+    {{"contact.0.gaps=exact"}, "unknown key \"gaps\""},
+    {{"contact.0.hunt_crossley_s_m=1.0"},
+     "hunt_crossley_s_m does not apply to law = \"kelvin_voigt\", which takes damping_pa_s_m, "
+     "damping_n_s_m; remove it (used by hunt_crossley)"},
+    {{"contact.0.law=hunt_crossley", "contact.0.damping_pa_s_m=1.0"},
+     "damping_pa_s_m does not apply to law = \"hunt_crossley\", which takes hunt_crossley_s_m; remove it "
+     "(used by kelvin_voigt)"},
+    {{"contact.1.between=[\"floor\", \"ball\"]"}, "this pair has two [[contact]] tables"},
+    {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.method=image"}, "an obstacle has exact gaps"},
+    {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.pixels=128"},
+     "an obstacle, whose gaps are exact"},
+    {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.spring=per_point"},
+     "a tool with shape = \"sphere\", which has no vertices"},
+    {{"contact.1.between=[\"tool\", \"tool\"]"},
+     "only a soft body may touch itself; give two different names"},
+    {{"obstacle=[{name = \"floor\", type = \"plane\"}, {name = \"wall\", type = \"plane\"}]",
+      "contact.1.between=[\"wall\", \"floor\"]"},
+     "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool"},
+    {{"contact.1.between=[\"ball\"]"}, "between must list two names, as in [\"ball\", \"floor\"], not 1"},
+    {{"tool.shape=mesh"}, "needs a [tool.mesh]"},
+    {{"tool.mesh.file=\"a.obj\""}, "mesh does not apply to shape = \"sphere\""},
+    {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\""}, "inertia_kg_m2 is missing"},
+    {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\"", "tool.inertia_kg_m2=[1,1,1]",
+      "contact.1.method=analytic"},
+     "needs a tool with shape = \"sphere\""},
+    {{"device.keyframe=[]"}, "write [[keyframe]] with double brackets"},
+    {{"compare.exchange_periods_s=[50.0, 0.01]"}, "exchange_periods_s = 50 is longer than the run"},
+    {{"exchange.exchange_period_s=50.0"}, "exchange_period_s = 50 is longer than the run"},
+    {{"obstacle.0.type=box"}, "size_m is missing: type = \"box\" needs it"},
+    {{"obstacle.0.type=cylinder", "obstacle.0.radius_m=1.0"},
+     "length_m is missing: type = \"cylinder\" needs it"},
+    {{"compare.ladder=[{integrator = \"x\", rtol = [1e-3], step_s = [1e-3]}]"},
+     "rtol and step_s exclude each other"},
+    {{"tool.tick_s=0.003"},
+     "exchange_period_s = 0.01 must be a multiple of the tool's tick of 0.003 s; use 0.009 or 0.012"},
+    {{"exchange.scheme=monolith"}, "exchange: scheme = \"monolith\" is not known"},
+    {{"integrator.max_order=2.5"}, "must be a whole number"},
+    {{"tool.gravity=1"}, "must be true or false"},
+    {{"contact.0.stiffness_pa_m=-1"}, "must be positive"},
+    {{"contact.0.friction=inf"}, "must be a finite number"},
+    {{"body.0.region=[{name = \"core\", youngs_modulus_pa = 1e5}]"},
+     "region \"core\": box_min_m is missing: generator = \"ball\" defines no regions; select elements"},
+    {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01}]"},
+     "sets no material: give youngs_modulus_pa"},
+    {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], youngs_modulus_pa = 1e5}]"},
+     "region \"core\": radius_m is missing"},
+    {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, box_min_m = [0, 0, 0], "
+      "youngs_modulus_pa = 1e5}]"},
+     "a box and a sphere exclude each other"},
+    {{"body.0.region=[{name = \"core\", box_min_m = [0, 0, 0], box_max_m = [1, -1, 1], youngs_modulus_pa = "
+      "1e5}]"},
+     "box_max_m = -1 must not be below box_min_m = 0 along y"},
+    {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus_pa = 1e5}, "
+      "{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.02, density_kg_m3 = 2e3}]"},
+     "region \"core\": this region has two tables"},
+    {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, poissons_ratio = 0.5}]"},
+     "poissons_ratio = 0.5 must lie in (-1, 0.5)"},
+    {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus = 1e5}]"},
+     "unknown key \"youngs_modulus\" (did you mean \"youngs_modulus_pa\"?)"},
+    {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"core\"}]"},
+     "change: region = \"core\", but the body has no [[body.region]]"},
+    {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, density_kg_m3 = 2e3}]",
+      "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"cor\"}]"},
+     "no [[body.region]] is called \"cor\" (did you mean \"core\"?)"},
+    {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = 2e5}]"},
+     "time_s = 0.1 must be greater than the previous one (0.1): both change the same elements"},
+    {{"record=true"}, "record must be one table: write [record]"},
+};
+
 /// Dependencies between two keys of one table; broken_test covers the locations.
 TEST(Load, KeysThatExcludeOrNeedEachOther) {
   const auto refusal = [](const std::vector<std::string>& overrides) -> std::string {
@@ -239,93 +326,7 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
     return "accepted";
   };
   EXPECT_EQ(refusal({}), "accepted");
-  const std::pair<std::vector<std::string>, const char*> cases[] = {
-      {{"body.0.mesh.file=\"a.msh\""}, "file and generator exclude each other"},
-      {{"body.0.mesh={radius_m = 1.0}"}, "needs file = \"PATH\" or generator = \"ball\""},
-      {{"body.0.mesh.generator=box"}, "size_m is missing: generator = \"box\" needs it"},
-      {{"body.0.mesh.scale=2.0"}, "scale does not apply to generator = \"ball\""},
-      {{"obstacle.0.radius_m=1.0"}, "radius_m does not apply to type = \"plane\""},
-      {{"obstacle.0.type=sphere"}, "radius_m is missing: type = \"sphere\" needs it"},
-      {{"obstacle.0.normal=[0,0,0]"}, "has no direction"},
-      {{"obstacle.0.name=tool"}, "name \"tool\" is reserved for [tool]"},
-      {{"body.0.name=\"a/b\""}, "must not contain slashes"},
-      {{"contact.0.method=image"}, "an obstacle has exact gaps"},
-      {{"contact.0.method=distance", "contact.0.pixels=128"},
-       "pixels does not apply to method = \"distance\""},
-      {{"contact.1.quadrature_error=0.0"}, "quadrature_error = 0 must lie in [1e-06, 0.1]"},
-      {{"contact.1.method=distance", "contact.1.pixels=128"},
-       "pixels does not apply to method = \"distance\""},
-      {{"contact.1.method=distance", "contact.1.spring=per_point"}, "whose points represent areas"},
-      {{"contact.0.pixels=128"}, "pixels does not apply to an obstacle, whose gaps are exact; remove it"},
-      {{"contact.0.gaps=exact"}, "unknown key \"gaps\""},
-      {{"contact.0.hunt_crossley_s_m=1.0"},
-       "hunt_crossley_s_m does not apply to law = \"kelvin_voigt\", which takes damping_pa_s_m, "
-       "damping_n_s_m; remove it (used by hunt_crossley)"},
-      {{"contact.0.law=hunt_crossley", "contact.0.damping_pa_s_m=1.0"},
-       "damping_pa_s_m does not apply to law = \"hunt_crossley\", which takes hunt_crossley_s_m; remove it "
-       "(used by kelvin_voigt)"},
-      {{"contact.1.between=[\"floor\", \"ball\"]"}, "this pair has two [[contact]] tables"},
-      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.method=image"}, "an obstacle has exact gaps"},
-      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.pixels=128"},
-       "an obstacle, whose gaps are exact"},
-      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.spring=per_point"},
-       "a tool with shape = \"sphere\", which has no vertices"},
-      {{"contact.1.between=[\"tool\", \"tool\"]"},
-       "only a soft body may touch itself; give two different names"},
-      {{"obstacle=[{name = \"floor\", type = \"plane\"}, {name = \"wall\", type = \"plane\"}]",
-        "contact.1.between=[\"wall\", \"floor\"]"},
-       "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool"},
-      {{"contact.1.between=[\"ball\"]"}, "between must list two names, as in [\"ball\", \"floor\"], not 1"},
-      {{"tool.shape=mesh"}, "needs a [tool.mesh]"},
-      {{"tool.mesh.file=\"a.obj\""}, "mesh does not apply to shape = \"sphere\""},
-      {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\""}, "inertia_kg_m2 is missing"},
-      {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\"", "tool.inertia_kg_m2=[1,1,1]",
-        "contact.1.method=analytic"},
-       "needs a tool with shape = \"sphere\""},
-      {{"device.keyframe=[]"}, "write [[keyframe]] with double brackets"},
-      {{"compare.exchange_periods_s=[50.0, 0.01]"}, "exchange_periods_s = 50 is longer than the run"},
-      {{"exchange.exchange_period_s=50.0"}, "exchange_period_s = 50 is longer than the run"},
-      {{"obstacle.0.type=box"}, "size_m is missing: type = \"box\" needs it"},
-      {{"obstacle.0.type=cylinder", "obstacle.0.radius_m=1.0"},
-       "length_m is missing: type = \"cylinder\" needs it"},
-      {{"compare.ladder=[{integrator = \"x\", rtol = [1e-3], step_s = [1e-3]}]"},
-       "rtol and step_s exclude each other"},
-      {{"tool.tick_s=0.003"},
-       "exchange_period_s = 0.01 must be a multiple of the tool's tick of 0.003 s; use 0.009 or 0.012"},
-      {{"exchange.scheme=monolith"}, "exchange: scheme = \"monolith\" is not known"},
-      {{"integrator.max_order=2.5"}, "must be a whole number"},
-      {{"tool.gravity=1"}, "must be true or false"},
-      {{"contact.0.stiffness_pa_m=-1"}, "must be positive"},
-      {{"contact.0.friction=inf"}, "must be a finite number"},
-      {{"body.0.region=[{name = \"core\", youngs_modulus_pa = 1e5}]"},
-       "region \"core\": box_min_m is missing: generator = \"ball\" defines no regions; select elements"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01}]"},
-       "sets no material: give youngs_modulus_pa"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], youngs_modulus_pa = 1e5}]"},
-       "region \"core\": radius_m is missing"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, box_min_m = [0, 0, 0], "
-        "youngs_modulus_pa = 1e5}]"},
-       "a box and a sphere exclude each other"},
-      {{"body.0.region=[{name = \"core\", box_min_m = [0, 0, 0], box_max_m = [1, -1, 1], youngs_modulus_pa = "
-        "1e5}]"},
-       "box_max_m = -1 must not be below box_min_m = 0 along y"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus_pa = 1e5}, "
-        "{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.02, density_kg_m3 = 2e3}]"},
-       "region \"core\": this region has two tables"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, poissons_ratio = 0.5}]"},
-       "poissons_ratio = 0.5 must lie in (-1, 0.5)"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus = 1e5}]"},
-       "unknown key \"youngs_modulus\" (did you mean \"youngs_modulus_pa\"?)"},
-      {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"core\"}]"},
-       "change: region = \"core\", but the body has no [[body.region]]"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, density_kg_m3 = 2e3}]",
-        "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"cor\"}]"},
-       "no [[body.region]] is called \"cor\" (did you mean \"core\"?)"},
-      {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = 2e5}]"},
-       "time_s = 0.1 must be greater than the previous one (0.1): both change the same elements"},
-      {{"record=true"}, "record must be one table: write [record]"},
-  };
-  for (const auto& [overrides, expected] : cases) {
+  for (const auto& [overrides, expected] : kBadCombinations) {
     const std::string message = refusal(overrides);
     EXPECT_NE(message.find(expected), std::string::npos) << overrides.front() << "\n  " << message;
   }

@@ -144,7 +144,7 @@ TEST(StudySeeds, DrawFromTheDistributionThatTheyAreSaidTo) {
   EXPECT_NEAR(log.second, 2.0 / std::sqrt(12.0), 0.03);
   RandomSpec normal;
   normal.key = "a";
-  normal.distribution = "normal";
+  normal.distribution = Distribution::kNormal;
   normal.mean = 10.0;
   normal.standard_deviation = 2.0;
   const auto gauss = moments(normal, same);

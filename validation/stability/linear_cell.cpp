@@ -91,7 +91,7 @@ StabilityCell linear_cell(const CaseContext& context, const LinearProblem& probl
   StabilityCell cell;
   const auto run = problem.start();
   IntegratorSpec spec = spec_of(context.column, linear_rtol(problem), H);
-  if (problem.contact_share() > 0.0) spec.explicit_side = "contact";
+  if (problem.contact_share() > 0.0) spec.explicit_side = ExplicitSide::kContact;
   const auto stepper = make_stepper(context.column, run->system, run->state, spec);
   stepper->set_interrupt(context.expired);
   const Course course = follow(context, problem, *run, *stepper, H);

@@ -159,10 +159,8 @@ int timed_steps(const FemBenchOptions& options, double h) {
                              : options.steps;
 }
 
-FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double youngs_modulus,
-                       const FemBenchOptions& options, Warm& start_from) {
-  const PeakMemory memory;
-  Beam beam(size.along, size.across, youngs_modulus);
+/// Moves a new beam to the start of the timed steps, or computes that.
+void warm_up(Beam& beam, Warm& start_from) {
   if (start_from.q.size() == beam.rest.size()) {
     beam.state.q() = start_from.q;
     beam.state.u() = start_from.u;
@@ -176,43 +174,62 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
     if (const StepResult r = stepper->advance_to(kWarmTo); !r.ok()) fail("bench fem: {}", r.message);
     start_from = {beam.state.q(), beam.state.u()};
   }
-  auto checked =
-      std::make_unique<CheckedSolver>(linear::make_linear_solver(spec.linear_solver, spec), beam, spec);
-  CheckedSolver& solver = *checked;
-  const auto stepper = find(integrate::stepper_registry(), spec.name, "integrator")
-                           .make(beam.system, beam.state, spec, std::move(checked));
-  constexpr int kUntimed = 4;  // Symbolic analysis, and the solutions used for initial guesses.
+}
+
+/// Times of the stages of each timed step.
+struct StepTimes {
+  /// Force, matrix, factor, solve, step; CPU time of the step's thread and of the solver [ms].
   std::array<std::vector<double>, 7> ms;
-  long iterations = 0;
-  double peak = 0.0;
+  long iterations = 0, lagged = 0;
+  double peak_bytes = 0.0;
+};
+
+StepTimes timed(Beam& beam, dynamics::Stepper& stepper, CheckedSolver& solver, const IntegratorSpec& spec,
+                const FemBenchOptions& options, const PeakMemory& memory) {
+  constexpr int kUntimed = 4;  // Symbolic analysis, and the solutions used for initial guesses.
+  StepTimes out;
   const int steps = timed_steps(options, spec.step_s);
-  long lagged = 0;
   for (int k = 0; k < kUntimed + steps; ++k) {
-    if (k == kUntimed) peak = memory.bytes();  // Before the first check, which stores a factor.
+    if (k == kUntimed) out.peak_bytes = memory.bytes();  // Before the first check, which stores a factor.
     solver.check_next = options.checks > 0 && k >= kUntimed &&
                         (k - kUntimed) % std::max(1, steps / options.checks) == 0 &&
                         solver.checks < options.checks;
     const double checking = solver.checking_s, checking_cpu = solver.checking_cpu_s,
                  solver_cpu = solver.cpu_s;
-    const StepperCounters before = stepper->counters();
+    const StepperCounters before = stepper.counters();
     const double start = wall_seconds(), start_cpu = thread_cpu_seconds();
-    if (const StepResult r = stepper->advance_to(beam.state.time() + spec.step_s); !r.ok())
+    if (const StepResult r = stepper.advance_to(beam.state.time() + spec.step_s); !r.ok())
       fail("bench fem: {}", r.message);
     const double wall = wall_seconds() - start - (solver.checking_s - checking);
     const double cpu = thread_cpu_seconds() - start_cpu - (solver.checking_cpu_s - checking_cpu);
     if (k < kUntimed) continue;
-    const StepperCounters step = stepper->counters() - before;
+    const StepperCounters step = stepper.counters() - before;
     const SolverCounters& solved = step.solver;
-    ms[0].push_back(1e3 * step.force_s);
-    ms[1].push_back(1e3 * step.tangent_s);
-    ms[2].push_back(1e3 * (solved.factor_s + solved.symbolic_s));
-    ms[3].push_back(1e3 * solved.solve_s);
-    ms[4].push_back(1e3 * wall);
-    ms[5].push_back(1e3 * cpu);
-    ms[6].push_back(1e3 * (solver.cpu_s - solver_cpu));
-    iterations += solved.iterations;
-    lagged += solved.lagged;
+    out.ms[0].push_back(1e3 * step.force_s);
+    out.ms[1].push_back(1e3 * step.tangent_s);
+    out.ms[2].push_back(1e3 * (solved.factor_s + solved.symbolic_s));
+    out.ms[3].push_back(1e3 * solved.solve_s);
+    out.ms[4].push_back(1e3 * wall);
+    out.ms[5].push_back(1e3 * cpu);
+    out.ms[6].push_back(1e3 * (solver.cpu_s - solver_cpu));
+    out.iterations += solved.iterations;
+    out.lagged += solved.lagged;
   }
+  return out;
+}
+
+FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double youngs_modulus,
+                       const FemBenchOptions& options, Warm& start_from) {
+  const PeakMemory memory;
+  Beam beam(size.along, size.across, youngs_modulus);
+  warm_up(beam, start_from);
+  auto checked =
+      std::make_unique<CheckedSolver>(linear::make_linear_solver(spec.linear_solver, spec), beam, spec);
+  CheckedSolver& solver = *checked;
+  const auto stepper = find(integrate::stepper_registry(), spec.name, "integrator")
+                           .make(beam.system, beam.state, spec, std::move(checked));
+  const StepTimes times = timed(beam, *stepper, solver, spec, options, memory);
+  const int steps = timed_steps(options, spec.step_s);
   FemBenchRow row;
   row.size = size.name;
   row.linear_solver = spec.linear_solver;
@@ -225,23 +242,23 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
   row.step_s = spec.step_s;
   row.linear_rtol = spec.linear_rtol;
   row.fused_assembly = solver.step_matrices + solver.lagged >= steps;
-  row.force_ms = median(ms[0]);
-  row.matrix_ms = median(ms[1]);
-  row.factor_ms = median(ms[2]);
-  row.solve_ms = median(ms[3]);
-  row.step_ms = median(ms[4]);
-  row.step_cpu_ms = median(ms[5]);
-  row.solver_cpu_ms = median(ms[6]);
-  row.step_least_ms = *std::min_element(ms[4].begin(), ms[4].end());
-  row.solve_least_ms = *std::min_element(ms[3].begin(), ms[3].end());
-  row.step_mean_ms = std::accumulate(ms[4].begin(), ms[4].end(), 0.0) / steps;
-  row.iterations = static_cast<double>(iterations) / steps;
-  row.lagged_share = static_cast<double>(lagged) / steps;
+  row.force_ms = median(times.ms[0]);
+  row.matrix_ms = median(times.ms[1]);
+  row.factor_ms = median(times.ms[2]);
+  row.solve_ms = median(times.ms[3]);
+  row.step_ms = median(times.ms[4]);
+  row.step_cpu_ms = median(times.ms[5]);
+  row.solver_cpu_ms = median(times.ms[6]);
+  row.step_least_ms = *std::min_element(times.ms[4].begin(), times.ms[4].end());
+  row.solve_least_ms = *std::min_element(times.ms[3].begin(), times.ms[3].end());
+  row.step_mean_ms = std::accumulate(times.ms[4].begin(), times.ms[4].end(), 0.0) / steps;
+  row.iterations = static_cast<double>(times.iterations) / steps;
+  row.lagged_share = static_cast<double>(times.lagged) / steps;
   row.squared_courant_number = squared_courant_number(solver.matrix().body, beam.masses);
   row.error = solver.error;
   row.mass_error = solver.mass_error;
   row.rotation_rad = beam.end_rotation();
-  row.peak_bytes = peak;
+  row.peak_bytes = times.peak_bytes;
   row.body_bytes = beam.body_bytes();
   return row;
 }

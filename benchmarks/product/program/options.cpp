@@ -8,6 +8,38 @@
 namespace palpate::cli {
 namespace {
 
+constexpr const char* kExamples = R"(Examples:
+  palpate bench fem                              3,700 and 11,172 nodes, steps of 10 and 1 ms
+  palpate bench fem --size S,M,L --threads 1 -o out/bench
+  palpate bench fem --accuracy -o out/bench
+  palpate bench fem --cells 16 --step-s 0.001
+  palpate bench contact                          the paper's pairs: stages, and cost relative to a step
+  palpate bench contact touch-head --method distance,image
+  palpate bench contact --growth                 skins of 10,000 to 1,000,000 vertices
+  palpate bench contact --check -o out/bench     compares the figures with their limits
+  palpate bench continuity gears --paths 100
+  palpate bench leave-out falling-ball --repeats 9
+
+Exit status with contact --check: 0 if every figure meets its acceptance limit, else 1.)";
+
+/// Adds the options of `bench leave-out` and `bench continuity`.
+void add_repetitions(CLI::App& command, BenchArguments& arguments) {
+  command.add_option("--repeats", arguments.repeats, "leave-out: number of runs of each variant")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command.add_option("--paths", arguments.paths, "continuity: number of random paths per scene")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command.add_option("--path-steps", arguments.path_steps, "continuity: number of steps per path")
+      ->check(CLI::Range(10, 6400))
+      ->capture_default_str();
+  command
+      .add_option("--quadrature-error", arguments.quadrature_error,
+                  "continuity: tolerance of the quadrature error of nearest points, relative to the force")
+      ->check(CLI::Range(1e-6, 0.1))
+      ->capture_default_str();
+}
+
 void add_bench(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand(std::string(kBench.command), kBench.summary);
   auto arguments = std::make_shared<BenchArguments>();
@@ -69,33 +101,8 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   command->add_option("--step-s", arguments->step_s, "fem with --cells: the step [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--repeats", arguments->repeats, "leave-out: number of runs of each variant")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--paths", arguments->paths, "continuity: number of random paths per scene")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command->add_option("--path-steps", arguments->path_steps, "continuity: number of steps per path")
-      ->check(CLI::Range(10, 6400))
-      ->capture_default_str();
-  command
-      ->add_option("--quadrature-error", arguments->quadrature_error,
-                   "continuity: tolerance of the quadrature error of nearest points, relative to the force")
-      ->check(CLI::Range(1e-6, 0.1))
-      ->capture_default_str();
-  command->footer(R"(Examples:
-  palpate bench fem                              3,700 and 11,172 nodes, steps of 10 and 1 ms
-  palpate bench fem --size S,M,L --threads 1 -o out/bench
-  palpate bench fem --accuracy -o out/bench
-  palpate bench fem --cells 16 --step-s 0.001
-  palpate bench contact                          the paper's pairs: stages, and cost relative to a step
-  palpate bench contact touch-head --method distance,image
-  palpate bench contact --growth                 skins of 10,000 to 1,000,000 vertices
-  palpate bench contact --check -o out/bench     compares the figures with their limits
-  palpate bench continuity gears --paths 100
-  palpate bench leave-out falling-ball --repeats 9
-
-Exit status with contact --check: 0 if every figure meets its acceptance limit, else 1.)");
+  add_repetitions(*command, *arguments);
+  command->footer(kExamples);
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return bench(*arguments); };
     invocation.factorises = true;

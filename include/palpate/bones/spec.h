@@ -1,5 +1,8 @@
 #pragma once
+#include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "palpate/core/types.h"
@@ -7,14 +10,31 @@
 
 namespace palpate {
 
+/// Shape of a bone, centred at its origin; cylinder and capsule lie along z.
+enum class BoneShape { kSphere, kBox, kCylinder, kCapsule };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 4> option_names(BoneShape) {
+  return {"sphere", "box", "cylinder", "capsule"};
+}
+
+/// Joint of a bone to its parent, or to the world.
+enum class JointType {
+  kWeld,   ///< no motion
+  kHinge,  ///< rotation about an axis
+  kBall,   ///< any rotation
+  kFree,   ///< rotation and translation, for a bone without a parent
+};
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 4> option_names(JointType) {
+  return {"weld", "hinge", "ball", "free"};
+}
+
 /// A `[[bone]]` table of a scene: a rigid body inside soft ones, which carries some of their nodes.  It moves
 /// freely unless it is fixed or has keyframes.
 struct BoneSpec {
-  std::string name;  ///< unique in the scene
-  /// "sphere", "box", "cylinder" or "capsule" (both along z), centred at the bone's origin; empty: mass and
-  /// inertia are given.
-  std::string shape;
-  double radius_m = 0.0;  ///< radius of a sphere, a cylinder, a capsule
+  std::string name;                ///< unique in the scene
+  std::optional<BoneShape> shape;  ///< empty: mass and inertia are given
+  double radius_m = 0.0;           ///< radius of a sphere, a cylinder, a capsule
   /// Length of a cylinder, or of a capsule between the centres of its caps.
   double length_m = 0.0;
   Vec3 size_m = Vec3::Zero();  ///< edge lengths of a box
@@ -35,9 +55,8 @@ struct BoneSpec {
 
 /// Joint of a skeleton that differs from the skeleton's default, or moves by keyframes.
 struct JointSpec {
-  std::string bone;  ///< bone that this joint attaches to its parent
-  /// "weld", "hinge", "ball", and for a root also "free"; empty: the skeleton's default.
-  std::string type;
+  std::string bone;                 ///< bone that this joint attaches to its parent
+  std::optional<JointType> type;    ///< kFree is for a root; empty: the skeleton's default
   Vec3 axis = Vec3::Zero();         ///< axis of a hinge, in body axes
   double stiffness_n_m_rad = -1.0;  ///< negative: the skeleton's default
   double damping_n_m_s_rad = -1.0;  ///< negative: the skeleton's default
@@ -49,9 +68,8 @@ struct JointSpec {
 /// The `[body.skeleton]` table: the bones of a model file, connected by joints, carry the nodes that the file
 /// binds to them.
 struct SkeletonSpec {
-  /// Joint of bones without a parent to the world: "weld", "ball" or "free".
-  std::string root = "weld";
-  std::string others = "weld";  ///< joint of all other bones to their parents: "weld" or "ball"
+  JointType root = JointType::kWeld;    ///< joint of bones without a parent to the world: no hinge
+  JointType others = JointType::kWeld;  ///< joint of all other bones to their parents: weld or ball
   /// Density of bones that move freely, in addition to the tissue mass of their nodes.
   double density_kg_m3 = 0.0;
   double stiffness_n_m_rad = 0.0;  ///< stiffness of hinges and balls, towards the initial pose

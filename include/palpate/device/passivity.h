@@ -2,6 +2,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "palpate/core/archive.h"
@@ -132,6 +133,10 @@ class PassivityController {
   AccelerationBound bound_;
   Motors reductions_;  ///< Differences between reduced and limited wrenches, with the same delay.
 };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 3> option_names(PassivityController::Mode) {
+  return {"off", "observe", "control"};
+}
 
 /// Builds the controller of a scene's device from its friction, delay and resolutions; null for kOff.
 /// @param mode  mode of operation  @param device  spec of the scene's device  @param tick_s  length of a tick

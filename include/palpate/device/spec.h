@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "palpate/core/keys.h"
@@ -8,14 +10,23 @@
 
 namespace palpate {
 
+/// Interpolation of a path between two keyframes.
+enum class Interpolation {
+  kMinimumJerk,  ///< Quintic, at rest at each keyframe.
+  kLinear,       ///< Constant velocity.
+  kStep,         ///< Jump at the time of the second keyframe.
+};
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 3> option_names(Interpolation) {
+  return {"minimum_jerk", "linear", "step"};
+}
+
 /// One pose of a scripted motion.
 struct KeyframeSpec {
-  double time_s = 0.0;                      ///< Time of the keyframe.
-  Vec3 position_m = Vec3::Zero();           ///< Position of the origin.
-  Vec3 rotation_vector_rad = Vec3::Zero();  ///< Orientation.
-  /// Interpolation from the previous keyframe: "minimum_jerk" (quintic, at rest at each keyframe), "linear",
-  /// "step".
-  std::string interpolation = "minimum_jerk";
+  double time_s = 0.0;                                        ///< Time of the keyframe.
+  Vec3 position_m = Vec3::Zero();                             ///< Position of the origin.
+  Vec3 rotation_vector_rad = Vec3::Zero();                    ///< Orientation.
+  Interpolation interpolation = Interpolation::kMinimumJerk;  ///< From the previous keyframe.
 };
 
 /// Motion by a formula, added to the keyframes: [[device.motion]].

@@ -1,9 +1,29 @@
 #pragma once
+#include <array>
 #include <string>
+#include <string_view>
 
 #include "palpate/core/keys.h"
 
 namespace palpate {
+
+/// Treatment of kinks of the force: by error control, or by root finding with a restart at the root.
+enum class KinkTreatment { kErrorControl, kRootFinding };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 2> option_names(KinkTreatment) {
+  return {"error-control", "root-finding"};
+}
+
+/// Forces that an ImEx method integrates explicitly in addition to the non-stiff ones: loads, or contact and
+/// loads.
+enum class ExplicitSide { kLoads, kContact };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 2> option_names(ExplicitSide) { return {"loads", "contact"}; }
+
+/// Treatment of a step matrix that is not positive definite: the definite tangent, then LU; or LU at once.
+enum class IndefiniteTreatment { kProject, kLu };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 2> option_names(IndefiniteTreatment) { return {"project", "lu"}; }
 
 /// Integrator by name and its settings. Plain data, the `[integrator]` table of a scene.
 /// A scene that sets a key which its method does not use is rejected (the registries list the keys of each
@@ -24,13 +44,10 @@ struct IntegratorSpec {
   double newton_rtol = 1e-8;
   /// generalized-alpha: spectral radius at infinite frequency, in [0, 1].
   double spectral_radius = 0.8;
-  /// Treatment of kinks of the force: "error-control", or "root-finding" with a restart at the root.
-  std::string events = "error-control";
-  /// ImEx: explicit forces in addition to the non-stiff ones: "loads", or "contact" (contact and loads).
-  std::string explicit_side = "loads";
-  /// Treatment of a step matrix that is not positive definite: "project" (definite tangent), then LU; or "lu"
-  /// at once.
-  std::string indefinite = "project";
+  KinkTreatment events = KinkTreatment::kErrorControl;  ///< Treatment of kinks of the force.
+  ExplicitSide explicit_side = ExplicitSide::kLoads;    ///< ImEx: forces integrated explicitly.
+  /// Treatment of a step matrix that is not positive definite.
+  IndefiniteTreatment indefinite = IndefiniteTreatment::kProject;
   /// Linear solver; empty: the method's default (StepperTraits::linear_solver).
   std::string linear_solver = {};
   /// Iterative linear solvers: relative residual of "pcg"; relative error, in the energy norm, of the others.

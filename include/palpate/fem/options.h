@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpate::fem {
@@ -9,6 +11,8 @@ namespace palpate::fem {
 /// kProjected, its nearest positive semi-definite matrix, element by element; kWarped, for laws that support
 /// it, the stiffness at rest rotated with each element (Mueller and Gross 2004).
 enum class Tangent { kExact, kProjected, kWarped };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 3> option_names(Tangent) { return {"exact", "projected", "warped"}; }
 
 /// Options for the evaluation of a body's force and its derivatives.
 struct SoftBodyOptions {

@@ -1,22 +1,43 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "palpate/bones/spec.h"
 #include "palpate/core/keys.h"
 #include "palpate/core/types.h"
 #include "palpate/device/spec.h"
+#include "palpate/fem/options.h"
 #include "palpate/mesh/spec.h"
 
 namespace palpate {
 
+/// Keys that select nodes or elements of a body: those of a box or a sphere, or, where neither is given, the
+/// shape of a bone or a tool, or a region of the mesh file.
+enum class Selection { kBox, kSphere, kShape, kFile };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 4> option_names(Selection) {
+  return {"box", "sphere", "shape", "file"};
+}
+
+/// Mass matrix of a body: lumped at the nodes, or consistent with the shape functions.
+enum class MassMatrix { kLumped, kConsistent };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 2> option_names(MassMatrix) { return {"lumped", "consistent"}; }
+
+/// Volumetric stiffness: by element, or by averages at the nodes (no locking for nu -> 0.5), which only some
+/// laws support.
+enum class Volumetric { kElement, kNodal };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 2> option_names(Volumetric) { return {"element", "nodal"}; }
+
 /// Nodes inside a box or a sphere (at their initial world positions, border included), or inside the bone
 /// that they are attached to: fixed, driven or carried.
 struct AttachmentSpec {
-  /// Keys that define the region: "box", "sphere", or, where neither is given, "shape": the shape of the bone
-  /// or tool in `to`.
-  std::string region = "box";
+  Selection region =
+      Selection::kBox;            ///< keys that define the region; kShape: that of the bone or tool in `to`
   Vec3 box_min_m = Vec3::Zero();  ///< box: lower corner
   Vec3 box_max_m = Vec3::Zero();  ///< box: upper corner
   Vec3 centre_m = Vec3::Zero();   ///< sphere: centre
@@ -32,9 +53,8 @@ struct AttachmentSpec {
 /// whose centroid lies in a box or a sphere (at initial world positions, border included). Values that are
 /// not given are the body's.
 struct RegionSpec {
-  std::string name;  ///< name of the region, unique in the body
-  /// Keys that define the region: "box", "sphere", or "file" where neither is given.
-  std::string region = "file";
+  std::string name;                           ///< name of the region, unique in the body
+  Selection region = Selection::kFile;        ///< keys that define the region
   Vec3 box_min_m = Vec3::Zero();              ///< box: lower corner
   Vec3 box_max_m = Vec3::Zero();              ///< box: upper corner
   Vec3 centre_m = Vec3::Zero();               ///< sphere: centre
@@ -80,11 +100,10 @@ struct SoftBodySpec {
   double density_kg_m3 = 1000.0;               ///< density
   double mass_damping_per_s = 0.0;             ///< mass-proportional damping, alpha
   double stiffness_damping_s = 0.0;  ///< stiffness-proportional, beta: (mu_d, lambda_d) = beta (mu, lambda)
-  std::string mass = "lumped";       ///< "lumped" or "consistent"
-  std::string material = "corotational";  ///< constitutive law, a name in fem::law_registry()
-  std::string tangent = "exact";          ///< "exact", "projected", for some laws "warped"
-  /// Volumetric stiffness: "element", or for some laws "nodal" averages (no locking for nu -> 0.5).
-  std::string volumetric = "element";
+  MassMatrix mass = MassMatrix::kLumped;         ///< mass matrix
+  std::string material = "corotational";         ///< constitutive law, a name in fem::law_registry()
+  fem::Tangent tangent = fem::Tangent::kExact;   ///< stiffness matrix; some laws support kWarped
+  Volumetric volumetric = Volumetric::kElement;  ///< volumetric stiffness
   /// Whether to include the unsymmetric derivative of the damping force by position.
   bool full_damping_tangent = false;
   std::vector<RegionSpec> regions;          ///< an element in several regions belongs to the last

@@ -1,10 +1,17 @@
 #pragma once
+#include <array>
 #include <string>
+#include <string_view>
 
 #include "palpate/core/types.h"
 #include "palpate/mesh/spec.h"
 
 namespace palpate {
+
+/// Shape of a tool: a sphere, with analytic gaps, or any closed surface.
+enum class ToolShape { kSphere, kMesh };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 2> option_names(ToolShape) { return {"sphere", "mesh"}; }
 
 /// Parameters of the virtual coupling between handle and tool, a spring and a damper in each of six
 /// directions: the `[tool.coupling]` table of a scene.
@@ -18,9 +25,9 @@ struct VirtualCouplingSpec {
 /// Parameters of a tool, the `[tool]` table of a scene: a rigid body that a 6-DoF spring-damper pulls after
 /// the handle.
 struct ToolSpec {
-  std::string shape = "sphere";             ///< "sphere" (analytic), or "mesh" (any closed surface)
+  ToolShape shape = ToolShape::kSphere;     ///< Sphere or closed surface.
   double radius_m = 0.01;                   ///< Radius of the sphere.
-  MeshSpec mesh;                            ///< Surface, for shape = "mesh" and for gpu contact.
+  MeshSpec mesh;                            ///< Surface, for ToolShape::kMesh and for gpu contact.
   double mass_kg = 0.1;                     ///< Positive.
   Vec3 inertia_kg_m2 = Vec3::Zero();        ///< Principal, about the centre of mass; zero: a solid sphere's.
   Vec3 position_m = Vec3::Zero();           ///< Origin at the start.

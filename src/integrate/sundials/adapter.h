@@ -145,7 +145,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   FixedStepNewton fixed_step_newton_{*this};
   double rate_ = 1.0, previous_correction_ = 0.0;  ///< Contraction of Newton's iteration.
   void fill_weights(N_Vector y, N_Vector w) const;
-  bool finds_roots() const { return spec_.events == "root-finding"; }
+  bool finds_roots() const { return spec_.events == KinkTreatment::kRootFinding; }
   double weight_scale_ = 1.0;
   Counts counted_;  ///< Counts when last read.
   long newton_before_ = 0;

@@ -76,8 +76,8 @@ class Ark final : public Adapter {
     check(set_tables(memory_, static_cast<ARKODE_DIRKTableID>(method_.implicit_table),
                      static_cast<ARKODE_ERKTableID>(method_.explicit_table), problem().has_manifold()),
           "ARKStepSetTableNum", t, 0.0);
-    check(ARKStepSetInterpolantDegree(memory_,
-                                      spec().events == "root-finding" ? kRootDegree : kInterpolantDegree),
+    check(ARKStepSetInterpolantDegree(
+              memory_, spec().events == KinkTreatment::kRootFinding ? kRootDegree : kInterpolantDegree),
           "ARKStepSetInterpolantDegree", t, 0.0);
     check(ARKStepSetMaxErrTestFails(memory_, tuning::kErrorTestFailures), "ARKStepSetMaxErrTestFails", t,
           0.0);

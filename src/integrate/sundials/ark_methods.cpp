@@ -58,10 +58,9 @@ StepperTraits additive(int order) {
 constexpr auto kA = Stability::kA;
 constexpr auto kL = Stability::kL;
 
-}  // namespace
-
-const std::vector<ArkMethod>& ark_methods() {
-  static const std::vector<ArkMethod> methods = {
+/// Returns the explicit methods.
+std::vector<ArkMethod> explicit_methods() {
+  return {
       {"ark-erk-2", "Heun-Euler 2(1); amplifies undamped motion at every step", 1, -1,
        ARKODE_HEUN_EULER_2_1_2, explicit_(2)},
       {"ark-erk-3", "Bogacki and Shampine 1989, 3(2); stable below 1.7/w_max", 2, -1,
@@ -71,7 +70,12 @@ const std::vector<ArkMethod>& ark_methods() {
       {"ark-erk-5",
        "Cash and Karp 1990, 5(4); used to check references; amplifies undamped motion at every step", 4, -1,
        ARKODE_CASH_KARP_6_4_5, explicit_(5)},
+  };
+}
 
+/// Returns the diagonally implicit methods.
+std::vector<ArkMethod> implicit_methods() {
+  return {
       {"ark-dirk-sdirk212", "SDIRK 2(1), two stages", 1, ARKODE_SDIRK_2_1_2, -1, implicit(2, 1, kA)},
       {"ark-dirk-billington332", "SDIRK of Billington 1983, 2(3)", 3, ARKODE_BILLINGTON_3_3_2, -1,
        implicit(2, 2, kL)},
@@ -116,7 +120,12 @@ const std::vector<ArkMethod>& ark_methods() {
        -1, implicit(5, 2, kL)},
       {"ark-dirk-esdirk547b", "ESDIRK5(4)7L[2]SA2, Kennedy and Carpenter 2019", 4,
        ARKODE_ESDIRK547L2SA2_7_4_5, -1, implicit(5, 2, kL)},
+  };
+}
 
+/// Returns the pairs of an implicit and an explicit method.
+std::vector<ArkMethod> additive_methods() {
+  return {
       {"ark-imex-3",
        "ARK3(2)4L[2]SA, Kennedy and Carpenter 2003: elastic forces implicit, the rest by explicit_side", 2,
        ARKODE_ARK324L2SA_DIRK_4_2_3, ARKODE_ARK324L2SA_ERK_4_2_3, additive(3)},
@@ -131,6 +140,17 @@ const std::vector<ArkMethod>& ark_methods() {
        "events = \"root-finding\"",
        4, ARKODE_ARK548L2SAb_DIRK_8_4_5, ARKODE_ARK548L2SAb_ERK_8_4_5, additive(5)},
   };
+}
+
+}  // namespace
+
+const std::vector<ArkMethod>& ark_methods() {
+  static const std::vector<ArkMethod> methods = [] {
+    std::vector<ArkMethod> out = explicit_methods();
+    for (const auto& others : {implicit_methods(), additive_methods()})
+      out.insert(out.end(), others.begin(), others.end());
+    return out;
+  }();
   return methods;
 }
 
