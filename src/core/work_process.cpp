@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <new>
 
 #include "core/clock.h"
 #include "palpate/core/error.h"
@@ -70,6 +71,8 @@ void run_work(const Request& request, const std::string& folder, const std::stri
     if (chdir(folder.c_str()) != 0)
       fail("{}: cannot be made the working directory: {}", folder, std::strerror(errno));
     answer = kGood + request.work(input, out_of_time);
+  } catch (const std::bad_alloc&) {
+    answer = kNoMemory + std::string("not enough memory");
   } catch (const std::exception& e) { answer = kBad + std::string(e.what()); }
   const itimerval off{};
   setitimer(ITIMER_PROF, &off, nullptr);

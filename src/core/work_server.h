@@ -57,6 +57,6 @@ bool receive_with_file(int socket, void* data, std::size_t size, int& file);
 [[noreturn]] void run_work(const Request& request, const std::string& folder, const std::string& input,
                            int pipe, pid_t server);
 /// First byte that run_work sends: a result follows, or an exception's message.
-inline constexpr char kGood = 'g', kBad = 'b';
+inline constexpr char kGood = 'g', kBad = 'b', kNoMemory = 'm';
 
 }  // namespace palpate::work_server
