@@ -11,13 +11,13 @@
 #include "cli/scene_of.h"
 #include "cli/stop.h"
 #include "compare_tables.h"
-#include "palpate/compare/compare.h"
+#include "experiments/compare/run_comparison.h"
 #include "palpate/core/error.h"
+#include "palpate/experiments/compare.h"
 #include "report/comparison_words.h"
 #include "report/run_report.h"
 #include "report/table.h"
 #include "report/work_precision.h"
-#include "store/result_folder.h"
 
 namespace palpate::cli {
 namespace {
@@ -47,7 +47,8 @@ std::string default_name(const std::vector<scene::Description>& scenes) {
 }
 
 compare::Comparison compare_watched(const std::vector<scene::Description>& scenes,
-                                    const CompareArguments& arguments, const std::string& folder) {
+                                    const CompareArguments& arguments, const experiments::Place& place,
+                                    experiments::EngineOutcome& outcome) {
   Progress progress("reference runs");
   compare::CompareOptions options;
   options.repeats = arguments.repeats;
@@ -61,11 +62,14 @@ compare::Comparison compare_watched(const std::vector<scene::Description>& scene
                                                                 : compare::LinearSolvers::kSame;
   if (options.linear_solvers == compare::LinearSolvers::kSame)
     options.linear_solver = arguments.linear_solver;
-  options.database = (fs::path(folder) / "study.sqlite").string();
   options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
   options.stop = &stop_flag();
-  if (arguments.fresh) fs::remove(options.database);
-  return compare::run(scenes, options);
+  return compare::run(scenes, options, place, outcome);
+}
+
+/// Returns a scene's name, or the absolute path of its file.
+std::string anywhere(const std::string& scene) {
+  return fs::is_regular_file(scene) ? fs::absolute(scene).lexically_normal().string() : scene;
 }
 
 report::ReferenceError reference_of(const compare::Reference& r) {
@@ -85,6 +89,30 @@ void add_missing(const compare::Comparison& comparison, MissingOutputs& missing)
 
 }  // namespace
 
+TaskFolder::Use use_of(const CompareArguments& a, const std::string& folder) {
+  TaskFolder::Use use{folder, a.fresh, false, "comparison", {}};
+  experiments::ArrayJob& job = use.job;
+  job.command = "compare";
+  const auto option = [&job](const char* name, const std::string& value) {
+    job.words.insert(job.words.end(), {name, value});
+  };
+  for (const std::string& scene : a.scenes) {
+    job.words.push_back(anywhere(scene));
+    job.subject += (job.subject.empty() ? "" : " ") + scene;
+  }
+  job.name = "compare " + job.subject;
+  for (const std::string& one : a.overrides) option("--set", one);
+  for (const std::string& one : a.integrators) option("--integrator", one);
+  if (a.duration_s > 0.0) option("--duration-s", fmt::format("{}", a.duration_s));
+  option("--repeats", fmt::format("{}", a.repeats));
+  option("--limit-s", fmt::format("{}", a.limit_s));
+  option("--reference-limit-s", fmt::format("{}", a.reference_limit_s));
+  if (a.haptic) job.words.emplace_back("--haptic");
+  if (a.all) job.words.emplace_back("--all");
+  if (!a.haptic) option("--linear-solver", a.linear_solver);
+  return use;
+}
+
 int compare(const CompareArguments& arguments) {
   MissingOutputs missing;
   return missing.close(compare(arguments, missing));
@@ -94,12 +122,14 @@ int compare(const CompareArguments& arguments, MissingOutputs& missing) {
   const std::vector<scene::Description> scenes = scenes_of(arguments);
   const std::string folder =
       arguments.folder.empty() ? default_folder(default_name(scenes)) : arguments.folder;
-  const store::ResultFolder mine(folder);
+  TaskFolder tasks(arguments.array, use_of(arguments, folder));
 
-  const compare::Comparison comparison = compare_watched(scenes, arguments, folder);
+  experiments::EngineOutcome outcome;
+  const compare::Comparison comparison = compare_watched(scenes, arguments, tasks.place(), outcome);
+  if (tasks.ends_early()) return tasks.end(outcome);
+  tasks.add_missing(outcome, missing);
   compare::write(comparison, folder);
-  if (comparison.reused > 0)
-    fmt::print("{} results are from earlier runs (--fresh repeats them)\n\n", comparison.reused);
+  TaskFolder::print_reused(outcome.reused);
   const fs::path points = fs::path(folder) / "compare.csv";
   const report::Table table = fs::exists(points) ? report::read_csv(points) : report::Table{};
   for (const compare::SceneComparison& scene : comparison.scenes) {

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
-namespace palpate::cli {
+#include "cli/array_job.h"
 
-class MissingOutputs;
+namespace palpate::cli {
 
 /// Arguments of `palpate compare`.
 struct CompareArguments {
@@ -19,7 +19,11 @@ struct CompareArguments {
   std::string linear_solver = "cholmod";             ///< Or "best" (of each method), "named" (by the scene)
   bool fresh = false;   ///< Discards the results of an earlier study in the folder
   bool haptic = false;  ///< Compares one scene with its monolithic solution
+  ArrayArguments array;
 };
+
+/// Returns the use of a folder by a comparison.
+TaskFolder::Use use_of(const CompareArguments& arguments, const std::string& folder);
 
 /// Compares the error and run time of integrators.  @return the exit status
 int compare(const CompareArguments& arguments);

@@ -1,4 +1,4 @@
-#include "compare/haptic.h"
+#include "experiments/compare/haptic.h"
 
 #include <fmt/format.h>
 
@@ -11,12 +11,11 @@
 #include "cli/scene_of.h"
 #include "cli/stop.h"
 #include "compare.h"
-#include "compare/summary.h"
 #include "compare_tables.h"
+#include "experiments/compare/summary.h"
 #include "palpate/core/error.h"
 #include "report/run_report.h"
 #include "report/table.h"
-#include "store/result_folder.h"
 #include "store/summary.h"
 
 namespace palpate::cli {
@@ -34,7 +33,7 @@ scene::Description scene_of(const CompareArguments& a) {
 }
 
 HapticComparison compare_watched(const scene::Description& scene, const CompareArguments& a,
-                                 const std::string& folder) {
+                                 const experiments::Place& place, experiments::EngineOutcome& outcome) {
   Progress progress("references");
   compare::CompareOptions options;
   options.repeats = a.repeats;
@@ -42,11 +41,9 @@ HapticComparison compare_watched(const scene::Description& scene, const CompareA
   options.reference_limit_s = a.reference_limit_s;
   options.jobs = a.jobs;
   options.integrators = a.integrators;
-  options.database = (fs::path(folder) / "study.sqlite").string();
   options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
   options.stop = &stop_flag();
-  if (a.fresh) fs::remove(options.database);
-  return compare::compare_haptic(scene, options);
+  return compare::compare_haptic(scene, options, place, outcome);
 }
 
 std::string percent(double error, double peak) {
@@ -55,7 +52,7 @@ std::string percent(double error, double peak) {
 }
 
 std::string outcome_of(const HapticPoint& p) {
-  if (p.status == compare::PointStatus::kOk) {
+  if (p.status == compare::Status::kOk) {
     if (p.force_unresolved || p.torque_unresolved)
       return fmt::format("{} not resolved by the reference",
                          p.force_unresolved ? p.torque_unresolved ? "force and torque" : "force" : "torque");
@@ -68,8 +65,8 @@ std::string outcome_of(const HapticPoint& p) {
 void print_points(const HapticComparison& c) {
   std::vector<std::vector<std::string>> rows;
   for (const HapticPoint& p : c.points) {
-    if (p.status == compare::PointStatus::kMissing) continue;  // not computed: the comparison was stopped
-    const bool ran = p.status == compare::PointStatus::kOk;
+    if (p.status == compare::Status::kMissing) continue;  // not computed: the comparison was stopped
+    const bool ran = p.status == compare::Status::kOk;
     const auto time = [ran](double s) { return ran ? fmt::format("{:.3f}", s) : std::string("-"); };
     rows.push_back(
         {p.variable, p.value, report::short_number(p.error.force_rms_n),
@@ -140,12 +137,13 @@ int compare_haptic(const CompareArguments& arguments) {
   const scene::Description scene = scene_of(arguments);
   const std::string folder =
       arguments.folder.empty() ? default_folder("compare-haptic-" + short_name(scene)) : arguments.folder;
-  const store::ResultFolder mine(folder);
-  const HapticComparison comparison = compare_watched(scene, arguments, folder);
+  TaskFolder tasks(arguments.array, use_of(arguments, folder));
+  experiments::EngineOutcome outcome;
+  const HapticComparison comparison = compare_watched(scene, arguments, tasks.place(), outcome);
+  if (tasks.ends_early()) return tasks.end(outcome);
   compare::write(comparison, folder);
   keep_summary(arguments, scene, comparison, folder);
-  if (comparison.reused > 0)
-    fmt::print("{} results are from earlier runs (--fresh repeats them)\n\n", comparison.reused);
+  TaskFolder::print_reused(outcome.reused);
   print_reference(comparison);
   print_points(comparison);
   print_orders(comparison);
@@ -157,6 +155,7 @@ int compare_haptic(const CompareArguments& arguments) {
     return kExitStopped;
   }
   MissingOutputs missing;
+  tasks.add_missing(outcome, missing);
   missing.add(written);
   add_missing(comparison, missing);
   return missing.close(0);

@@ -21,11 +21,11 @@ separate process, compared with a tight reference whose error is printed.  The r
 scene's [[compare.ladder]], and a default for each other integrator, down to errors that the reference cannot
 resolve or to --limit-s.  A winner is reported only if the spreads of times and levels do not overlap.
 After Ctrl-C or a crash the same command continues where it stopped.  Writes compare.csv, reference.json,
-study.sqlite (one row per run) and report.html.
+results.db (one row per run) and report.html.
 
 With --haptic one setting at a time differs from the scene, as listed in its [compare.haptic].  Points run
 one at a time unless --jobs is given, with limits of 120 s of CPU time per point and 1800 s per reference
-unless --limit-s and --reference-limit-s are given.  Writes haptic.csv, summary.json, study.sqlite and
+unless --limit-s and --reference-limit-s are given.  Writes haptic.csv, summary.json, results.db and
 report.html.)";
 
 void add_method_options(CLI::App& command, CompareArguments& arguments) {
@@ -90,8 +90,9 @@ void add_compare(CLI::App& app, Invocation& invocation) {
       ->allow_extra_args(false);
   add_beyond_memory(*command);
   add_method_options(*command, *arguments);
-  command->add_flag("--fresh", arguments->fresh,
-                    "start anew instead of continuing the comparison in the folder");
+  CLI::Option* fresh = command->add_flag("--fresh", arguments->fresh,
+                                         "start anew instead of continuing the comparison in the folder");
+  add_array_options(*command, arguments->array)->excludes(fresh);
   command->add_flag(
       "--haptic", arguments->haptic,
       "instead, for one scene: error of force and torque on the hand against the monolithic "

@@ -17,7 +17,7 @@ using Rows = std::vector<std::vector<std::string>>;
 constexpr std::size_t kPointsOnScreen = 80;
 
 std::string outcome_text(const compare::ComparePoint& p) {
-  if (p.status == compare::PointStatus::kOk) {
+  if (p.status == compare::Status::kOk) {
     const std::string silent = loop::describe_fallbacks(p.result.counters);
     if (!p.unresolved) return silent;
     return "not resolved by the reference" + (silent.empty() ? "" : "; " + silent);
@@ -29,7 +29,7 @@ std::string outcome_text(const compare::ComparePoint& p) {
 /// Returns the end of a sequence of neighbouring levels with the same failure, which one line represents.
 std::size_t end_of_failures(const std::vector<compare::ComparePoint>& points, std::size_t first) {
   std::size_t end = first + 1;
-  while (points[first].status != compare::PointStatus::kOk && end < points.size() &&
+  while (points[first].status != compare::Status::kOk && end < points.size() &&
          points[end].label == points[first].label && points[end].status == points[first].status)
     ++end;
   return end;
@@ -44,9 +44,9 @@ void print_points(const compare::SceneComparison& scene) {
   Rows rows;
   for (std::size_t i = 0; i < scene.points.size(); i = end_of_failures(scene.points, i)) {
     const compare::ComparePoint& p = scene.points[i];
-    if (p.status == compare::PointStatus::kMissing) continue;  // not computed: the comparison was stopped
+    if (p.status == compare::Status::kMissing) continue;  // not computed: the comparison was stopped
     const dynamics::StepperCounters& c = p.result.counters;
-    const bool ran = p.status == compare::PointStatus::kOk;
+    const bool ran = p.status == compare::Status::kOk;
     const auto count = [&](long n) { return ran ? std::to_string(n) : std::string("-"); };
     std::string setting = report::setting_text(p.setting_name, p.setting);
     if (const std::size_t end = end_of_failures(scene.points, i); end > i + 1)
@@ -72,7 +72,7 @@ void print_trials(const compare::SceneComparison& scene) {
   for (const compare::ComparePoint& p : scene.trials)
     rows.push_back({p.label, report::setting_text(p.setting_name, p.setting),
                     report::short_number(p.error.position_rel_l2),
-                    p.status == compare::PointStatus::kOk ? fmt::format("{:.3f}", p.cpu_median_s) : "-",
+                    p.status == compare::Status::kOk ? fmt::format("{:.3f}", p.cpu_median_s) : "-",
                     outcome_text(p)});
   fmt::print("{}\n",
              report::format_table({"linear solver tried", "at", "position error", "CPU [s]", ""}, rows));
@@ -116,9 +116,9 @@ void print_prices(const report::Table& table, double reference_error) {
 void print_restarts(const compare::SceneComparison& scene) {
   Rows rows;
   for (const compare::ComparePoint& p : scene.restarts) {
-    if (p.status == compare::PointStatus::kMissing) continue;
+    if (p.status == compare::Status::kMissing) continue;
     const dynamics::StepperCounters& c = p.result.counters;
-    const bool ran = p.status == compare::PointStatus::kOk;
+    const bool ran = p.status == compare::Status::kOk;
     const auto rate = [&](long n) {
       return ran ? fmt::format("{:.0f}", static_cast<double>(n) / p.result.time) : std::string("-");
     };

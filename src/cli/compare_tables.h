@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/compare/compare.h"
+#include "palpate/experiments/comparison.h"
 #include "report/table.h"
 
 /// Output of `palpate compare` for one scene.

@@ -8,7 +8,7 @@
 #include "cli/paths.h"
 #include "cli/program.h"
 #include "commands.h"
-#include "compare/perceptible_difference.h"
+#include "experiments/compare/perceptible_difference.h"
 #include "loop/haptic_record.h"
 #include "palpate/loop/load.h"
 #include "palpate/scene/hands.h"

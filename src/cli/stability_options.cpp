@@ -14,6 +14,7 @@ constexpr const char* kStabilityExamples = R"(Examples:
   palpate stability --slow --seeds 100 -o out/stability
   palpate stability --haptic press-ball --device-mass-kg 0.1 --delay-ticks 1
 
+After Ctrl-C or a crash the same command continues where it stopped (DIR/results.db).
 Writes stability.csv, stability.json and report.html with the heat map; haptic: z_width.csv and report.html
 with a chart. Exit status 0 if every cell agrees with theory; haptic: if the passive range lies within the
 stable one; else 1.)";
@@ -43,6 +44,9 @@ void add_matrix_options(CLI::App& command, StabilityArguments& arguments) {
       ->capture_default_str();
   command.add_option("-o,--output", arguments.folder, "folder for the results; default out/stability")
       ->type_name("DIR");
+  CLI::Option* fresh = command.add_flag("--fresh", arguments.fresh,
+                                        "start anew instead of keeping the results of earlier calls");
+  add_array_options(command, arguments.array)->excludes(fresh);
 }
 
 void add_haptic_options(CLI::App& command, StabilityArguments& arguments) {
@@ -86,6 +90,8 @@ void check_haptic(const StabilityArguments& arguments) {
   if (!arguments.haptic && !arguments.scene.scene.empty()) throw CLI::RequiresError("SCENE", "--haptic");
   if (arguments.haptic && !(arguments.rows.empty() && arguments.integrators.empty()))
     throw CLI::ExcludesError("--haptic", "--row and --integrator");
+  if (arguments.haptic && (arguments.array.slurm || !arguments.array.tasks.empty()))
+    throw CLI::ExcludesError("--haptic", "--slurm and --task");
 }
 
 }  // namespace

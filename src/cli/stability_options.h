@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/array_job.h"
 #include "cli/scene_of.h"
 
 namespace CLI {
@@ -21,6 +22,8 @@ struct StabilityArguments {
   int seeds = 10, jobs = 1;
   double limit_s = 20.0;  ///< Limit of the CPU time per cell [s]
   std::string folder;     ///< Output folder; empty: out/stability, or out/stability-haptic-NAME with --haptic
+  bool fresh = false;     ///< Discards the results of earlier calls in the folder
+  ArrayArguments array;
 
   // haptic loop of a scene (--haptic)
   bool haptic = false;

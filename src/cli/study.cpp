@@ -12,13 +12,14 @@
 #include "cli/progress.h"
 #include "cli/stop.h"
 #include "core/clock.h"
+#include "experiments/indices.h"
+#include "experiments/study/results.h"
+#include "experiments/study/run.h"
 #include "model_cache.h"
 #include "palpate/core/error.h"
 #include "report/run_report.h"
 #include "report/table.h"
-#include "store/result_folder.h"
 #include "store/summary.h"
-#include "study/results.h"
 
 namespace palpate::cli {
 namespace {
@@ -133,51 +134,33 @@ std::vector<std::size_t> all_of(const Plan& plan) {
   return out;
 }
 
-study::RunOutcome run_here(Plan& plan, const std::vector<std::size_t>& tasks, const StudyArguments& arguments,
-                           const std::string& folder) {
+study::RunOutcome run_watched(Plan& plan, const std::vector<std::size_t>& tasks,
+                              const StudyArguments& arguments, TaskFolder& folder) {
   Progress progress("running " + plan.spec.name);
-  study::RunOptions options;
-  options.folder = folder;
+  experiments::EngineOptions options;
   options.jobs = arguments.jobs;
+  options.submit = folder.place().submit;
   options.stop = &stop_flag();
   options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
-  return study::run_tasks(plan, tasks, help_of(), options);
+  return study::run_tasks(plan, tasks, help_of(), folder.store(), options);
 }
 
 std::string why_lost(const study::RunOutcome& outcome) {
   if (outcome.lost.empty()) return "not run yet; the same command without --merge runs them";
-  const study::LostTask& first = outcome.lost.front();
+  const experiments::LostTask& first = outcome.lost.front();
   return fmt::format("task {}: {}; the same command runs {} again", first.index, first.why,
                      outcome.lost.size() == 1 ? "it" : "them");
 }
 
-/// Opens the folder with the results of tasks, one file per task. Elements of an array job share it; a
-/// command that runs all tasks locally, or removes results, locks it exclusively.
-store::ResultFolder tasks_folder(const std::string& folder, store::ResultFolder::Access access) {
-  return store::ResultFolder((fs::path(folder) / "tasks").string(), access);
-}
-
-/// Runs the tasks given by `--tasks`, as an element of an array job does, without writing a table.
-int run_some(Plan& plan, const StudyArguments& arguments, const std::string& folder) {
-  const store::ResultFolder ours = tasks_folder(folder, store::ResultFolder::Access::kShared);
-  const auto tasks = study::indices_of(arguments.tasks, plan.tasks.size());
-  const study::RunOutcome outcome = run_here(plan, tasks, arguments, folder);
-  fmt::print("{} run, {} done before, {} refused by their scenes; results in {}/tasks\n", outcome.run,
-             outcome.reused, outcome.refused, folder);
-  if (outcome.stopped) return kExitStopped;
-  MissingOutputs missing;
-  for (const study::LostTask& one : outcome.lost)
-    missing.add(fmt::format("result of task {}", one.index), one.why);
-  return missing.close(0);
-}
-
-StudyEnd run_all(Plan& plan, const StudyArguments& arguments, const std::string& folder) {
-  if (arguments.merge) return {false, false, why_lost({})};
-  if (arguments.slurm) return study_by_slurm(plan, arguments, folder);
-  const study::RunOutcome outcome = run_here(plan, all_of(plan), arguments, folder);
-  if (outcome.reused > 0)
-    fmt::print("{} results are from earlier runs (--fresh repeats them)\n\n", outcome.reused);
-  return {outcome.stopped, false, why_lost(outcome)};
+TaskFolder::Use use_of(const Plan& plan, const StudyArguments& arguments, const std::string& folder) {
+  TaskFolder::Use out{folder, arguments.fresh, arguments.merge, "study", {}};
+  out.job.command = "study";
+  out.job.words = {plan.spec.path};
+  out.job.name = plan.spec.name;
+  out.job.subject = plan.spec.path;
+  out.hint = fmt::format("  palpate study {} -o {} --merge        makes the table of the results so far\n",
+                         arguments.study, folder);
+  return out;
 }
 
 /// Adds a parameter whose values are spaced by equal ratios.
@@ -216,43 +199,41 @@ int study(const StudyArguments& arguments) {
                                  ? default_folder("study-" + fs::path(arguments.study).stem().string())
                                  : arguments.folder;
   Plan plan = study::list_tasks(spec, help_of());
-  if (!arguments.plan.empty() && arguments.plan != plan.key)
-    fail(
-        "{}: the study, one of its scenes or palpate has changed since the job was submitted; submit it "
-        "again",
-        arguments.study);
-  if (!arguments.tasks.empty()) return run_some(plan, arguments, folder);
+  check_plan(arguments.array, plan.key, arguments.study, "study");
+  if (!arguments.array.tasks.empty()) {
+    const auto some = experiments::indices_of(arguments.array.tasks, plan.tasks.size());
+    TaskFolder tasks(arguments.array, use_of(plan, arguments, folder));
+    const study::RunOutcome outcome = run_watched(plan, some, arguments, tasks);
+    return tasks.end(outcome, static_cast<long>(outcome.refused));
+  }
   study::settle_all(plan, help_of());
   if (arguments.dry_run) {
     print_plan(plan);
     return 0;
   }
-  const store::ResultFolder mine(folder);  // locks the folder of the tables
-  store::ResultFolder tasks;
-  const bool writes_tasks = arguments.fresh || !(arguments.merge || arguments.slurm);
-  if (writes_tasks) tasks = tasks_folder(folder, store::ResultFolder::Access::kAlone);
-  if (arguments.fresh) study::forget_results(folder);
-  if (arguments.slurm) tasks = {};  // releases the folder for the elements of the job
-  const StudyEnd end = run_all(plan, arguments, folder);
-  if (end.submitted) return 0;
+  TaskFolder tasks(arguments.array, use_of(plan, arguments, folder));
+  study::RunOutcome outcome;
+  if (!arguments.merge) outcome = run_watched(plan, all_of(plan), arguments, tasks);
+  if (tasks.ends_early()) return tasks.end(outcome);
+  if (!arguments.array.slurm) TaskFolder::print_reused(outcome.reused);
 
-  const Results results = study::merge(plan, folder);
+  const Results results = study::merge(plan, tasks.store());
   study::write(plan, results, folder);
-  keep_summary(plan, results, arguments, end.stopped, wall_seconds() - start, folder);
+  keep_summary(plan, results, arguments, outcome.stopped, wall_seconds() - start, folder);
   print_results(results);
   print_reasons(results);
   const report::RunReport written = report::write_run_report(folder);
   fmt::print("\nwritten: {0}/study.csv, {0}/study-times.csv, {1}\n", folder, written.page.string());
   fmt::print("{} tasks: {}\n", results.rows.size(), counts_of(results));
-  if (end.stopped) {
+  if (outcome.stopped) {
     fmt::print(stderr, "palpate: stopped; the same command resumes from {}\n", folder);
     return kExitStopped;
   }
   MissingOutputs missing;
   if (!results.missing.empty())
     missing.add(fmt::format("result of task{} {}", results.missing.size() == 1 ? "" : "s",
-                            study::text_of(results.missing)),
-                end.lost);
+                            experiments::text_of(results.missing)),
+                arguments.array.slurm ? tasks.lost() : why_lost(outcome));
   missing.add(written);
   return missing.close(0);
 }

@@ -57,13 +57,15 @@ class ByteReader {
       return std::string(take(count), count);
     } else if constexpr (std::is_same_v<T, VecX>) {
       const auto count = get<std::size_t>();
+      const char* from = take_doubles(count);
       VecX out(static_cast<Eigen::Index>(count));
-      std::memcpy(out.data(), take(count * sizeof(double)), count * sizeof(double));
+      std::memcpy(out.data(), from, count * sizeof(double));
       return out;
     } else if constexpr (std::is_same_v<T, std::vector<double>>) {
       const auto count = get<std::size_t>();
+      const char* from = take_doubles(count);
       std::vector<double> out(count);
-      std::memcpy(out.data(), take(count * sizeof(double)), count * sizeof(double));
+      std::memcpy(out.data(), from, count * sizeof(double));
       return out;
     } else {
       T value;
@@ -75,6 +77,9 @@ class ByteReader {
   bool at_end() const { return at_ == bytes_.size(); }
 
  private:
+  const char* take_doubles(std::size_t count) {
+    return take(count <= bytes_.size() ? count * sizeof(double) : count);
+  }
   const char* take(std::size_t count) {
     if (count > bytes_.size() - at_)
       fail("a stored result is truncated ({} of {} bytes)", at_, bytes_.size());

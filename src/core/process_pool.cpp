@@ -114,7 +114,10 @@ void ProcessPool::finish(std::list<Child>::iterator at) {
     outcome = {Outcome::End::kCrash,
                fmt::format("ended with exit status {} and no result", WEXITSTATUS(status))};
   } else {
-    outcome = {child.bytes[0] == work_server::kGood ? Outcome::End::kDone : Outcome::End::kError,
+    const char first = child.bytes[0];
+    outcome = {first == work_server::kGood       ? Outcome::End::kDone
+               : first == work_server::kNoMemory ? Outcome::End::kNoMemory
+                                                 : Outcome::End::kError,
                child.bytes.substr(1)};
   }
   child.done(outcome);

@@ -29,9 +29,10 @@ class ProcessPool {
  public:
   /// Outcome of one job.
   struct Outcome {
-    enum class End { kDone, kError, kCrash, kOutOfTime };
+    enum class End { kDone, kError, kCrash, kOutOfTime, kNoMemory };
     End end = End::kDone;
-    /// Result of the work; message of its exception; "killed by signal 11"; "out of time: 10 s".
+    /// Result of the work; message of its exception; "killed by signal 11"; "out of time: 10 s";
+    /// "not enough memory" (std::bad_alloc).
     std::string bytes;
     int signal = 0;  ///< Signal that ended the process; 0 for none.
   };

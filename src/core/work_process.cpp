@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <new>
 
 #include "core/clock.h"
 #include "palpate/core/error.h"
@@ -71,6 +72,8 @@ void run_work(Work work, double limit_s, const std::string& folder, const std::s
     if (chdir(folder.c_str()) != 0)
       fail("{}: cannot be made the working directory: {}", folder, std::strerror(errno));
     answer = kGood + work(input, out_of_time);
+  } catch (const std::bad_alloc&) {
+    answer = kNoMemory + std::string("not enough memory");
   } catch (const std::exception& e) { answer = kBad + std::string(e.what()); }
   const itimerval off{};
   setitimer(ITIMER_PROF, &off, nullptr);

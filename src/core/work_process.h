@@ -15,7 +15,7 @@ using Work = std::string (*)(const std::string& bytes, const std::atomic<bool>& 
 /// @param server  process that it must not outlive
 [[noreturn]] void run_work(Work work, double limit_s, const std::string& folder, const std::string& input,
                            int pipe, pid_t server);
-/// First byte that run_work sends: a result follows, or an exception's message.
-inline constexpr char kGood = 'g', kBad = 'b';
+/// First byte that run_work sends: a result follows, an exception's message, or that of exhausted memory.
+inline constexpr char kGood = 'g', kBad = 'b', kNoMemory = 'm';
 
 }  // namespace palpate::work_server

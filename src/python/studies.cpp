@@ -6,8 +6,8 @@
 #include "bindings.h"
 #include "interrupt.h"
 #include "missing_models.h"
-#include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
+#include "palpate/experiments/compare.h"
 #include "scene.h"
 #include "validation.h"
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/haptic.h"
+#include "experiments/compare/monolithic.h"
 
 namespace palpate::session {
 

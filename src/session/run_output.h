@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/haptic.h"
+#include "experiments/compare/monolithic.h"
 #include "loop/checkpoints.h"
 #include "loop/run_figures.h"
 #include "palpate/loop/run.h"

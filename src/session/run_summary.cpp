@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "compare/summary.h"
+#include "experiments/compare/summary.h"
 #include "loop/summary.h"
 #include "palpate/core/log.h"
 #include "session/command_line.h"

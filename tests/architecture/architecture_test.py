@@ -19,7 +19,7 @@ SOUND = {
     "include/palpate/fem/body.h": '#include "palpate/core/types.h"\n#include "palpate/fem/spec.h"\n',
     "src/gl/context.h": "#include <epoxy/gl.h>\n",
     "include/palpate/scene/description.h": '#include "palpate/fem/spec.h"\n',
-    "include/palpate/compare/compare.h": '#include "palpate/scene/description.h"\n',
+    "include/palpate/experiments/compare.h": '#include "palpate/scene/description.h"\n',
     "validation/validation.h": '#include "palpate/fem/body.h"\n',
     "src/store/CMakeLists.txt": "palpate_shared_headers(store\n  csv.h)\n",
     "src/store/csv.h": '#include "palpate/core/types.h"\n',
@@ -95,8 +95,8 @@ class Planted(unittest.TestCase):
                     "mesh may not include fem")
 
     def test_comparison_sees_scenes_not_their_parts(self):
-        self.expect({"src/compare/compare.cpp": '#include "palpate/fem/body.h"\n'},
-                    "compare may not include fem")
+        self.expect({"src/experiments/compare.cpp": '#include "palpate/fem/body.h"\n'},
+                    "experiments may not include fem")
 
     def test_validation_does_not_know_the_command_line(self):
         self.expect({"include/palpate/cli/bad.h": "\n",

@@ -37,19 +37,19 @@ ALLOWED = {
     "model_program": ["core", "mesh", "proxy", "store", "render", "report", "model", "shapes", "cli"],
     "scene": ["core"],  # and the spec.h of every part: see is_allowed
     "loop": BELOW_LOOP,
-    "compare": ["core", "scene", "loop", "store"],  # core and scene: used in loop's headers
-    "study": ["core", "scene", "loop", "store"],
+    "experiments": ["core", "scene", "loop", "store"],
     "haptic_stability": ["core", "mesh", "device", "tool", "scene", "loop"],
     "report": ["core", "mesh", "store"],
-    "session": ["core", "scene", "store", "render", "loop", "compare", "report"],
-    "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "study",
-            "haptic_stability", "report", "session"],
-    "python": BELOW_LOOP + ["loop", "compare", "session", "validation"],  # the module of `import palpate`
-    "validation": BELOW_LOOP + ["loop", "compare", "report", "simbody"],  # the cases in validation/
+    "session": ["core", "scene", "store", "render", "loop", "experiments", "report"],
+    "cli": ["core", "shapes", "scene", "store", "render", "loop", "experiments", "haptic_stability", "report",
+            "session"],
+    "python": BELOW_LOOP + ["loop", "experiments", "session", "validation"],  # of `import palpate`
+    "validation": BELOW_LOOP + ["loop", "experiments", "report", "simbody"],  # the cases in validation/
     # validation/stability: the matrix, which assembles its cases from the parts, as validation does
-    "stability": BELOW_LOOP + ["loop"],
+    "stability": BELOW_LOOP + ["loop", "experiments"],
     # validation/program: the program behind `palpate validate` and `palpate stability`
-    "validation_program": ["core", "store", "report", "cli", "validation", "stability"],
+    "validation_program": ["core", "store", "report", "cli", "validation", "stability",
+                           "experiments"],
     # benchmarks/product; its fem/: a beam made of the parts themselves, without a scene
     "bench": BELOW_LOOP + ["loop"],
     # benchmarks/product/program: the program behind `palpate bench`

@@ -307,7 +307,7 @@ class Interrupt(Cli):
                                     "--integrator", "linearly-implicit-euler", "--limit-s", "300",
                                     "-o", "cut"],
                                    cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        self.wait_for(lambda: (self.folder / "cut/study.sqlite").exists(), process)
+        self.wait_for(lambda: (self.folder / "cut/results.db").exists(), process)
         start = time.monotonic()
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=120)

@@ -29,7 +29,7 @@ class Judgements(Cli):
     def rows(self, database):
         try:
             with contextlib.closing(sqlite3.connect(f"file:{database}?mode=ro", uri=True)) as db:
-                return db.execute("select count(*) from run").fetchone()[0]
+                return db.execute("select count(*) from result where kind = 'point'").fetchone()[0]
         except sqlite3.Error:
             return 0
 
@@ -39,7 +39,7 @@ class Judgements(Cli):
         for words in ("fitted order", "reference error", "is the cheapest", "interleaved"):
             self.assertIn(words, text)
         names = {path.name for path in (self.folder / "cmp").iterdir()}
-        self.assertEqual({"compare.csv", "reference.json", "report.html", "study.sqlite"}, names)
+        self.assertEqual({"compare.csv", "reference.json", "report.html", "results.db"}, names)
 
     def test_compare_takes_several_scenes_and_any_integrator(self):
         arguments = ["compare", "cantilever", "one-tet", "--duration-s", "0.05", "--repeats", "1",
@@ -65,7 +65,7 @@ class Judgements(Cli):
                      "--integrator", "linearly-implicit-euler", "--integrator", "cvode-bdf", "--jobs", "1"]
         process = subprocess.Popen(arguments, cwd=self.folder, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL)
-        database = self.folder / "cut/study.sqlite"
+        database = self.folder / "cut/results.db"
         end = time.monotonic() + 120
         while self.rows(database) < 3 and process.poll() is None and time.monotonic() < end:
             time.sleep(0.01)
@@ -255,7 +255,7 @@ class Judgements(Cli):
         for variable in ("exchange period", "exchange alone", "tick", "integrator", "linearisation"):
             self.assertRegex(text, rf"(?m)^{variable} ")
         names = {path.name for path in (self.folder / "felt").iterdir()}
-        self.assertEqual({"haptic.csv", "summary.json", "report.html", "study.sqlite"}, names)
+        self.assertEqual({"haptic.csv", "summary.json", "report.html", "results.db"}, names)
         figures = json.loads((self.folder / "felt/summary.json").read_text())["figures"]
         self.assertGreater(figures["monolithic_reference"]["peak_force_n"], 0.1)
         self.assertLess(figures["against_monolithic"][0]["force_error_rms_of_peak"], 0.2)

@@ -1,7 +1,9 @@
 """Shared by the tests of studies: a scene of milliseconds, one of seconds, and calls of the program."""
+import contextlib
 import csv
 import os
 import shutil
+import sqlite3
 import subprocess
 import tempfile
 import unittest
@@ -102,5 +104,17 @@ class Studies(unittest.TestCase):
         with open(self.folder / folder / name, encoding="utf-8", newline="") as file:
             return list(csv.DictReader(file))
 
+    def stored(self, folder):
+        """Returns key -> (command, time of its end) of all results, whichever process wrote them."""
+        out = {}
+        for path in [self.folder / folder / "results.db", *(self.folder / folder / "tasks").glob("*.db*")]:
+            try:
+                with contextlib.closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as db:
+                    out.update({key: rest for key, *rest in
+                                db.execute("select key, task, ended_utc from result")})
+            except sqlite3.Error:  # there is none, or it is being created
+                pass
+        return out
+
     def results(self, folder):
-        return sorted(path.name for path in (self.folder / folder / "tasks").glob("*.json"))
+        return sorted(self.stored(folder))

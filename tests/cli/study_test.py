@@ -3,7 +3,6 @@
 
     study_test.py PROGRAM
 """
-import json
 import os
 import re
 import signal
@@ -66,13 +65,15 @@ class Tables(Studies):
             self.assertGreater(float(row["loop_cpu_s"]), 0.0)
             self.assertTrue(row["host"] and row["cpu"])
 
-    def test_a_task_can_be_run_alone_by_the_command_in_its_file(self):
+    def test_a_task_can_be_run_alone_by_the_command_of_its_result(self):
         self.good("quick.toml", "-o", "out", "--task", "5")
-        file = json.loads(next((self.folder / "out/tasks").iterdir()).read_text())
-        self.assertEqual(file["settings"]["seed"], "2")
-        self.assertRegex(file["command"], r"^palpate run '/.*block\.toml' --set 'integrator\.name=")
-        words = re.findall(r"'([^']*)'", file["command"])
-        self.assertIn("body.0.density_kg_m3=" + file["settings"]["body.0.density_kg_m3"], words)
+        (command, _), = self.stored("out").values()
+        self.assertRegex(command, r"^palpate run '/.*block\.toml' --set 'integrator\.name=")
+        words = re.findall(r"'([^']*)'", command)
+        self.assertEqual(self.call("quick.toml", "-o", "out", "--merge").returncode, 3)
+        row = self.rows("out")[5]
+        self.assertEqual((row["seed"], row["status"]), ("2", "ok"))
+        self.assertIn("body.0.density_kg_m3=" + row["body.0.density_kg_m3"], words)
 
     def test_report_has_charts_and_spreads(self):
         text = self.good("quick.toml", "-o", "out")
@@ -152,9 +153,7 @@ class Losses(Studies):
         self.good("quick.toml", "-o", "whole")
         for least in (3, 9):
             child = self.begin("quick.toml", "-o", "killed", "--jobs", "2")
-            tasks = self.folder / "killed/tasks"
-            self.wait_for(lambda: child.poll() is not None or tasks.exists()
-                          and len(list(tasks.glob("*.json"))) >= least)
+            self.wait_for(lambda: child.poll() is not None or len(self.results("killed")) >= least)
             child.kill()
             child.wait()
         kept = len(self.results("killed"))
@@ -162,8 +161,6 @@ class Losses(Studies):
         text = self.good("quick.toml", "-o", "killed")
         self.assertIn(f"{kept} results are from earlier runs", text)
         self.assertEqual(self.table("killed"), self.table("whole"))
-        for name in self.results("killed"):
-            json.loads((self.folder / "killed/tasks" / name).read_text())
 
     def kill_a_worker(self, sig, folder):
         child = self.begin("long.toml", "-o", folder, "--jobs", "2")

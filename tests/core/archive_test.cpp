@@ -6,6 +6,7 @@
 #include <deque>
 #include <limits>
 
+#include "core/archive_bytes.h"
 #include "messages.h"
 #include "palpate/core/error.h"
 
@@ -142,3 +143,53 @@ TEST(Archive, TakesNoNameTwice) {
 }
 
 }  // namespace
+
+namespace {
+
+struct Record {
+  double number = 0.0;
+  std::string text;
+  std::vector<double> list;
+  std::vector<long> counts;
+  VecX vector;
+  bool flag = false;
+
+  void archive(Archive& a) {
+    a("number", number);
+    a("text", text);
+    a("list", list);
+    a.list("counts", counts, [&a](long& count) { a("count", count); });
+    a("vector", vector);
+    a("flag", flag);
+  }
+};
+
+}  // namespace
+
+TEST(ArchiveBytes, GiveBackTheObjectToTheBit) {
+  const Record record{-0.0,
+                      std::string("a\0b", 3),
+                      {0.1, std::numeric_limits<double>::quiet_NaN(), -1e-310},
+                      {3, -9007199254740993},
+                      VecX::LinSpaced(4, 0.0, 1.0),
+                      true};
+  const auto back = restored<Record>(archived(record));
+  EXPECT_TRUE(std::signbit(back.number));
+  EXPECT_EQ(back.text, record.text);
+  ASSERT_EQ(back.list.size(), 3u);
+  EXPECT_EQ(back.list[0], 0.1);
+  EXPECT_TRUE(std::isnan(back.list[1]));
+  EXPECT_EQ(back.list[2], -1e-310);
+  EXPECT_EQ(back.counts, record.counts);
+  EXPECT_EQ(back.vector, record.vector);
+  EXPECT_TRUE(back.flag);
+}
+
+TEST(ArchiveBytes, TruncatedOnesAreAnError) {
+  const std::string bytes = archived(Record{1.0, "text", {1.0, 2.0}, {3}, VecX::Ones(2), true});
+  int refused = 0;
+  for (std::size_t size = 0; size < bytes.size(); ++size) try {
+      restored<Record>(bytes.substr(0, size));
+    } catch (const Error&) { ++refused; }
+  EXPECT_EQ(refused, static_cast<int>(bytes.size()));
+}

@@ -52,6 +52,12 @@ TEST(ProcessPool, AnExceptionIsItsMessage) {
   EXPECT_EQ(outcome.bytes, "no such thing");
 }
 
+TEST(ProcessPool, LackOfMemoryIsNoErrorOfTheWork) {
+  const auto outcome = outcome_of([](const auto&, const auto&) -> std::string { throw std::bad_alloc(); });
+  EXPECT_EQ(outcome.end, End::kNoMemory);
+  EXPECT_EQ(outcome.bytes, "not enough memory");
+}
+
 TEST(ProcessPool, ACrashIsItsSignal) {
   const auto outcome = outcome_of([](const auto&, const auto&) -> std::string {
     raise(SIGSEGV);

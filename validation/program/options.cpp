@@ -30,12 +30,17 @@ void add_validate(CLI::App& app, Invocation& invocation) {
   command->add_flag("--sabotage", arguments->inject_faults)->group("");  // Its name before 0.1, hidden.
   command->add_option("-o,--output", arguments->folder, "also write validation.json and report.html here")
       ->type_name("DIR");
+  CLI::Option* fresh =
+      command->add_flag("--fresh", arguments->fresh,
+                        "start anew instead of keeping the results of earlier calls in the folder");
+  add_array_options(*command, arguments->array)->excludes(fresh);
   command->footer(R"(Examples:
   palpate validate
   palpate validate patch-test cantilever -o out/validation
   palpate validate --inject-faults               shows that the cases can fail
 
-Exit status 0 if every measurement meets its acceptance limit, else 1.)");
+With -o, results are kept in DIR/results.db: after Ctrl-C or a crash the same command continues where it
+stopped.  Exit status 0 if every measurement meets its acceptance limit, else 1.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return validate(*arguments); };
     invocation.factorises = true;

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/array_job.h"
 #include "cli/program.h"
 #include "cli/stability_options.h"
 
@@ -14,6 +15,8 @@ struct ValidateArguments {
   int jobs = 0;                    ///< Cases run in parallel; 0: number of cores.
   bool inject_faults = false;      ///< Injects faults into the physics of each case: each must then fail.
   std::string folder;              ///< Folder for validation.json and report.html; empty: none are written.
+  bool fresh = false;              ///< Discards the results of earlier calls in the folder.
+  ArrayArguments array;
 };
 int validate(const ValidateArguments& arguments);
 

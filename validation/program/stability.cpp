@@ -13,7 +13,6 @@
 #include "options.h"
 #include "report/run_report.h"
 #include "report/table.h"
-#include "store/result_folder.h"
 
 namespace palpate::cli {
 namespace {
@@ -74,7 +73,20 @@ std::string command_of(const StabilityArguments& arguments) {
                                arguments.limit_s);
 }
 
-stability::StabilityMatrix watched(const StabilityArguments& arguments) {
+TaskFolder::Use use_of(const StabilityArguments& arguments, const std::string& folder) {
+  TaskFolder::Use use{folder, arguments.fresh, false, "matrix", {}};
+  experiments::ArrayJob& job = use.job;
+  job.command = job.name = job.subject = "stability";
+  for (const std::string& row : arguments.rows) job.words.insert(job.words.end(), {"--row", row});
+  for (const std::string& name : arguments.integrators)
+    job.words.insert(job.words.end(), {"--integrator", name});
+  if (arguments.slow) job.words.emplace_back("--slow");
+  job.words.insert(job.words.end(), {"--seeds", fmt::format("{}", arguments.seeds), "--limit-s",
+                                     fmt::format("{}", arguments.limit_s)});
+  return use;
+}
+
+stability::StabilityMatrix watched(const StabilityArguments& arguments, const experiments::Place& place) {
   Progress progress("stability");
   stability::StabilityOptions options;
   options.rows = arguments.rows;
@@ -85,6 +97,7 @@ stability::StabilityMatrix watched(const StabilityArguments& arguments) {
   options.limit_s = arguments.limit_s;
   options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
   options.stop = &stop_flag();
+  options.place = place;
   return stability::run(options);
 }
 
@@ -92,8 +105,10 @@ stability::StabilityMatrix watched(const StabilityArguments& arguments) {
 
 int stability(const StabilityArguments& arguments) {
   const std::string folder = arguments.folder.empty() ? default_folder("stability") : arguments.folder;
-  const store::ResultFolder mine(folder);
-  const stability::StabilityMatrix matrix = watched(arguments);
+  TaskFolder tasks(arguments.array, use_of(arguments, folder));
+  const stability::StabilityMatrix matrix = watched(arguments, tasks.place());
+  if (tasks.ends_early()) return tasks.end(matrix.outcome);
+  TaskFolder::print_reused(matrix.outcome.reused);
   stability::write(matrix, folder, command_of(arguments));
   print_matrix(matrix);
   print_cells(matrix, !arguments.cells);
@@ -102,12 +117,13 @@ int stability(const StabilityArguments& arguments) {
   fmt::print("\nwritten: {}\n", written.page.string());
   fmt::print("{} of {} cells agree with theory, in {:.0f} s\n",
              static_cast<long>(matrix.cells.size()) - unexpected, matrix.cells.size(), matrix.wall_s);
-  if (matrix.stopped) {
+  if (matrix.outcome.stopped) {
     fmt::print(stderr, "palpate: stopped; the finished cells are in {}\n", folder);
     return kExitStopped;
   }
   MissingOutputs missing;
   missing.add(written);
+  tasks.add_missing(matrix.outcome, missing);
   return missing.close(unexpected > 0 ? kExitError : 0);
 }
 

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "cli/missing_outputs.h"
 #include "cli/paths.h"
@@ -15,7 +14,6 @@
 #include "report/run_report.h"
 #include "report/table.h"
 #include "store/atomic_file.h"
-#include "store/result_folder.h"
 #include "validation.h"
 #include "validation_pool.h"
 
@@ -142,7 +140,6 @@ void print_meanings(const std::vector<const ValidationCase*>& cases) {
 }
 
 void write_results(const Run& run, const std::string& folder, MissingOutputs& missing) {
-  const store::ResultFolder mine(folder);
   const std::string path = (std::filesystem::path(folder) / "validation.json").string();
   store::write_atomically(path, Json{{"cases", run.cases}}.dump(2) + "\n");
   const report::RunReport written = report::write_run_report(folder);
@@ -150,19 +147,33 @@ void write_results(const Run& run, const std::string& folder, MissingOutputs& mi
   missing.add(written);
 }
 
-}  // namespace
+TaskFolder::Use use_of(const ValidateArguments& arguments) {
+  TaskFolder::Use use{arguments.folder, arguments.fresh, false, "validation", {}};
+  if (use.folder.empty() && (arguments.array.slurm || !arguments.array.tasks.empty()))
+    use.folder = default_folder("validation");
+  experiments::ArrayJob& job = use.job;
+  job.command = job.name = job.subject = "validate";
+  job.words = arguments.cases;
+  if (arguments.slow) job.words.emplace_back("--slow");
+  if (arguments.quick) job.words.emplace_back("--quick");
+  if (arguments.inject_faults) job.words.emplace_back("--inject-faults");
+  return use;
+}
 
-int validate(const ValidateArguments& arguments) {
-  const std::vector<CaseRun> runs = runs_of(chosen(arguments), arguments.inject_faults);
-  std::vector<std::optional<CaseEnd>> ends;
-  {
-    Progress progress("validating");
-    progress(0.0);
-    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    ends = run_cases(runs, arguments.jobs > 0 ? arguments.jobs : cores,
-                     [&](double share, const std::string& ended) { progress(share, ended); });
-  }
-  Run out;
+CaseEnds run_watched(const std::vector<CaseRun>& runs, const ValidateArguments& arguments,
+                     const experiments::Place& place) {
+  Progress progress("validating");
+  progress(0.0);
+  experiments::EngineOptions options;
+  options.jobs = experiments::jobs_or_cores(arguments.jobs);
+  options.stop = &stop_flag();
+  options.progress = [&](double share, const std::string& ended) { progress(share, ended); };
+  return run_cases(runs, place, options);
+}
+
+/// Prints the table, and returns the number of runs that ended.
+std::size_t print_table(const std::vector<CaseRun>& runs, const std::vector<std::optional<CaseEnd>>& ends,
+                        bool with_faults, Run& out) {
   std::vector<const ValidationCase*> ended;
   std::size_t done = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -176,13 +187,26 @@ int validate(const ValidateArguments& arguments) {
   }
   print_meanings(ended);
   using Headers = std::vector<std::string>;
-  fmt::print("{}",
-             report::format_table(arguments.inject_faults ? Headers{"case", "fault", "measured by", "outcome"}
-                                                          : Headers{"case", "quantity", "computed", "exact",
-                                                                    "error", "limit", "order", "verdict"},
-                                  out.rows));
+  fmt::print("{}", report::format_table(with_faults ? Headers{"case", "fault", "measured by", "outcome"}
+                                                    : Headers{"case", "quantity", "computed", "exact",
+                                                              "error", "limit", "order", "verdict"},
+                                        out.rows));
+  return done;
+}
+
+}  // namespace
+
+int validate(const ValidateArguments& arguments) {
+  const std::vector<CaseRun> runs = runs_of(chosen(arguments), arguments.inject_faults);
+  TaskFolder tasks(arguments.array, use_of(arguments));
+  const auto [ends, outcome] = run_watched(runs, arguments, tasks.place());
+  if (tasks.ends_early()) return tasks.end(outcome);
+  TaskFolder::print_reused(outcome.reused);
+  Run out;
+  const std::size_t done = print_table(runs, ends, arguments.inject_faults, out);
   MissingOutputs missing;
-  if (!arguments.folder.empty() && !arguments.inject_faults) write_results(out, arguments.folder, missing);
+  tasks.add_missing(outcome, missing);
+  if (!tasks.folder().empty() && !arguments.inject_faults) write_results(out, tasks.folder(), missing);
   fmt::print("{} of {} {}{}\n", done - static_cast<std::size_t>(out.failed), done,
              arguments.inject_faults ? "faults make their cases fail" : "cases meet their acceptance limits",
              done < runs.size() ? fmt::format("; stopped before the other {}", runs.size() - done) : "");

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "cli/stop.h"
-#include "core/bytes.h"
+#include "core/archive_bytes.h"
 #include "core/clock.h"
-#include "core/process_pool.h"
 
 namespace palpate::cli {
 namespace {
@@ -16,78 +14,110 @@ using validation::ValidationCase;
 
 constexpr double kLimitS = 7200.0;  // [s] of CPU time, after which a case counts as hanging.
 
-std::string encode_job(const CaseRun& run) {
-  ByteWriter out;
-  out.put(run.one - validation::validation_cases().data());
-  out.put(run.fault ? run.fault->name : std::string());
-  return out.take();
+/// Input of a case's process.
+struct Job {
+  std::size_t index = 0;
+  std::string fault;
+
+  void archive(Archive& a) {
+    a("index", index);
+    a("fault", fault);
+  }
+};
+
+/// A ProcessPool::Work: runs a case.
+std::string run_job(const std::string& input, const std::atomic<bool>&) {
+  const auto job = restored<Job>(input);
+  const double start = wall_seconds(), cpu_start = cpu_seconds();
+  CaseEnd end;
+  experiments::Result result;
+  try {
+    end.measurements = validation::validation_cases().at(job.index).run(job.fault);
+  } catch (const std::bad_alloc&) { throw; } catch (const std::exception& e) {
+    end.broken = e.what();
+    result.status = experiments::Status::kFailed;
+    result.reason = e.what();
+  }
+  end.wall_s = end.broken.empty() ? wall_seconds() - start : 0.0;
+  result.cpu_s = cpu_seconds() - cpu_start;
+  result.bytes = archived(end);
+  return archived(result);
 }
 
-/// A ProcessPool::Work: runs the case encoded by encode_job().
-std::string run_job(const std::string& order, const std::atomic<bool>&) {
-  ByteReader in(order);
-  const ValidationCase& one =
-      validation::validation_cases().at(static_cast<std::size_t>(in.get<std::ptrdiff_t>()));
-  const auto fault = in.get<std::string>();
-  const double start = wall_seconds();
-  CaseEnd out{one.run(fault), 0.0, {}};
-  out.wall_s = wall_seconds() - start;
-  return bytes_of(out);
-}
+/// Runs of cases as tasks, the longest first.
+class Cases : public experiments::Experiment {
+ public:
+  Cases(const std::vector<CaseRun>& runs, std::vector<std::optional<CaseEnd>>& ends)
+      : runs_(runs), ends_(ends), order_(runs.size()) {
+    ends_.resize(runs.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t i, std::size_t j) {
+      return runs[i].one->about_s > runs[j].one->about_s;
+    });
+  }
+
+  std::size_t size() const override { return order_.size(); }
+  experiments::Task task(std::size_t i) override {
+    return {"validate", key_of(i), run_of(i).one->name + (fault_of(i).empty() ? "" : ", " + fault_of(i)),
+            run_job, kLimitS};
+  }
+  std::string input(std::size_t i) override {
+    const auto index = run_of(i).one - validation::validation_cases().data();
+    return archived(Job{static_cast<std::size_t>(index), fault_of(i)});
+  }
+  void take(std::size_t i, const experiments::Result& result) override {
+    CaseEnd& end = ends_[order_[i]].emplace();
+    if (result.bytes.empty())
+      end.broken = result.reason;
+    else
+      end = restored<CaseEnd>(result.bytes);
+  }
+  std::string progress_text(std::size_t i) override { return run_of(i).one->name; }
+  std::string key() override {
+    std::string keys;
+    for (std::size_t i = 0; i < size(); ++i) keys += key_of(i);
+    return experiments::key_of({"validate", keys});
+  }
+
+ private:
+  const CaseRun& run_of(std::size_t i) const { return runs_[order_[i]]; }
+  std::string fault_of(std::size_t i) const { return run_of(i).fault ? run_of(i).fault->name : ""; }
+  std::string key_of(std::size_t i) const {
+    return experiments::key_of({"validate", run_of(i).one->name, fault_of(i)});
+  }
+
+  const std::vector<CaseRun>& runs_;
+  std::vector<std::optional<CaseEnd>>& ends_;
+  std::vector<std::size_t> order_;
+};
 
 }  // namespace
 
-std::string bytes_of(const CaseEnd& end) {
-  ByteWriter out;
-  out.put(end.wall_s).put(end.broken).put(end.measurements.size());
-  for (const Measurement& m : end.measurements) {
-    out.put(m.quantity).put(m.computed).put(m.exact).put(m.error).put(m.bar);
-    out.put(m.order).put(m.order_low).put(m.order_high).put(m.note);
-    out.put(m.refinement.size_label).put(m.refinement.size).put(m.refinement.error).put(m.refinement.wall_s);
-  }
-  return out.take();
+void CaseEnd::archive(Archive& a) {
+  a("wall_s", wall_s);
+  a("broken", broken);
+  a.list("measurements", measurements, [&a](Measurement& m) {
+    a("quantity", m.quantity);
+    a("computed", m.computed);
+    a("exact", m.exact);
+    a("error", m.error);
+    a("bar", m.bar);
+    a("order", m.order);
+    a("order_low", m.order_low);
+    a("order_high", m.order_high);
+    a("note", m.note);
+    a("size_label", m.refinement.size_label);
+    a("size", m.refinement.size);
+    a("size_error", m.refinement.error);
+    a("wall_s", m.refinement.wall_s);
+  });
 }
 
-CaseEnd case_end_of(const std::string& bytes) {
-  ByteReader in(bytes);
-  CaseEnd out;
-  out.wall_s = in.get<double>();
-  out.broken = in.get<std::string>();
-  out.measurements.resize(in.get<std::size_t>());
-  for (Measurement& m : out.measurements) {
-    m.quantity = in.get<std::string>();
-    for (double* value : {&m.computed, &m.exact, &m.error, &m.bar, &m.order, &m.order_low, &m.order_high})
-      *value = in.get<double>();
-    m.note = in.get<std::string>();
-    m.refinement.size_label = in.get<std::string>();
-    for (std::vector<double>* list : {&m.refinement.size, &m.refinement.error, &m.refinement.wall_s})
-      *list = in.get<std::vector<double>>();
-  }
-  return out;
-}
-
-std::vector<std::optional<CaseEnd>> run_cases(
-    const std::vector<CaseRun>& runs, int jobs,
-    const std::function<void(double, const std::string&)>& progress) {
-  std::vector<std::size_t> order(runs.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t i, std::size_t j) { return runs[i].one->about_s > runs[j].one->about_s; });
-  std::vector<std::optional<CaseEnd>> out(runs.size());
-  std::size_t next = 0, done = 0;
-  ProcessPool pool(jobs);
-  const auto start = [&](std::size_t index) {
-    pool.start(run_job, encode_job(runs[index]), kLimitS, [&, index](const ProcessPool::Outcome& outcome) {
-      out[index] = outcome.end == ProcessPool::Outcome::End::kDone ? case_end_of(outcome.bytes)
-                                                                   : CaseEnd{{}, 0.0, outcome.bytes};
-      progress(static_cast<double>(++done) / static_cast<double>(runs.size()), runs[index].one->name);
-    });
-  };
-  while (!stop_flag()) {
-    while (next < runs.size() && pool.has_room()) start(order[next++]);
-    if (pool.idle()) break;
-    pool.wait(0.2);
-  }
+CaseEnds run_cases(const std::vector<CaseRun>& runs, const experiments::Place& place,
+                   const experiments::EngineOptions& options) {
+  CaseEnds out;
+  Cases cases(runs, out.ends);
+  out.outcome = experiments::run(cases, place, options);
   return out;
 }
 

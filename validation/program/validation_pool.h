@@ -1,9 +1,9 @@
 #pragma once
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/engine.h"
 #include "validation.h"
 
 namespace palpate::cli {
@@ -19,18 +19,18 @@ struct CaseEnd {
   std::vector<validation::Measurement> measurements;
   double wall_s = 0.0;
   std::string broken;  ///< Reason for missing measurements: an exception's message, "killed by signal 11".
+
+  void archive(Archive& a);
 };
 
-/// Runs cases in parallel, each in a separate process (core's ProcessPool), the longest first. Ends early and
-/// kills the running cases if the user requests a stop.
-/// @param progress receives the completed fraction, and the name of the case that ended last
-/// @return one result per run, in the order of `runs`; empty for runs that had not ended
-std::vector<std::optional<CaseEnd>> run_cases(
-    const std::vector<CaseRun>& runs, int jobs,
-    const std::function<void(double, const std::string&)>& progress);
+/// Results of all runs.
+struct CaseEnds {
+  std::vector<std::optional<CaseEnd>> ends;  ///< In the order of the runs; empty for those that did not end.
+  experiments::EngineOutcome outcome;
+};
 
-/// Encodes a case's measurements as bytes, bitwise, and decodes them.
-std::string bytes_of(const CaseEnd& end);
-CaseEnd case_end_of(const std::string& bytes);
+/// Runs cases in parallel, each in a separate process (experiments/engine.h), the longest first.
+CaseEnds run_cases(const std::vector<CaseRun>& runs, const experiments::Place& place,
+                   const experiments::EngineOptions& options);
 
 }  // namespace palpate::cli

@@ -16,8 +16,9 @@ struct Task {
 StabilityCell run_cell(const Task& task, int seeds, double limit_s, const std::atomic<bool>& expired);
 
 /// Runs all cells, each in a separate process, `jobs` at a time, and returns them in the order of the tasks.
-/// A process that crashes or exceeds its limit leaves a cell with this verdict. Cells not started when `stop`
-/// became true are omitted.
-std::vector<StabilityCell> run_cells(const std::vector<Task>& tasks, const StabilityOptions& options);
+/// A process that crashes or exceeds its limit leaves a cell with this verdict. Cells that did not end are
+/// omitted.
+std::vector<StabilityCell> run_cells(const std::vector<Task>& tasks, const StabilityOptions& options,
+                                     experiments::EngineOutcome& outcome);
 
 }  // namespace palpate::stability

@@ -1,9 +1,11 @@
+#include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
-#include "cell_json.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/tool/tool.h"
+#include "stability.h"
 #include "store/atomic_file.h"
 #include "store/csv.h"
 #include "store/summary.h"
@@ -11,6 +13,33 @@
 namespace palpate::stability {
 
 namespace {
+
+/// Converts a number; one that is not finite becomes null, as JSON has no NaN.
+nlohmann::ordered_json number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json names_of(const Verdicts& verdicts) {
+  auto list = nlohmann::ordered_json::array();
+  for (int v = 0; v < kVerdicts; ++v)
+    if (verdicts.has(static_cast<Verdict>(v))) list.push_back(to_string(static_cast<Verdict>(v)));
+  return list;
+}
+
+nlohmann::ordered_json cell_to_json(const StabilityCell& cell) {
+  return {{"row", cell.row},
+          {"sub_case", cell.sub_case},
+          {"integrator", cell.integrator},
+          {"verdict", to_string(cell.verdict)},
+          {"expected", names_of(cell.expected)},
+          {"as_expected", cell.as_expected()},
+          {"figure", cell.figure},
+          {"energy_gain", number(cell.gain)},
+          {"error", number(cell.error)},
+          {"reason", cell.reason},
+          {"steps", cell.steps},
+          {"cpu_s", cell.cpu_s}};
+}
 
 store::Provenance made_by() {
   store::Provenance p = store::provenance();
@@ -24,7 +53,7 @@ store::Summary summarise(const StabilityMatrix& matrix, const std::string& comma
   store::Summary summary;
   summary.command = command;
   summary.scene = "stability";
-  summary.outcome = matrix.stopped ? "interrupted" : "finished";
+  summary.outcome = matrix.outcome.stopped ? "interrupted" : "finished";
   summary.provenance = made_by();
   double cpu = 0.0;
   for (const StabilityCell& cell : matrix.cells) cpu += cell.cpu_s;
@@ -54,7 +83,7 @@ void write(const StabilityMatrix& matrix, const std::string& folder, const std::
   for (const StabilityRow& row : stability_rows())
     rows.push_back({{"name", row.name}, {"summary", row.summary}});
   const nlohmann::ordered_json all = {{"unexpected", matrix.unexpected()},
-                                      {"stopped", matrix.stopped},
+                                      {"stopped", matrix.outcome.stopped},
                                       {"wall_s", matrix.wall_s},
                                       {"rows", rows},
                                       {"cells", cells}};

@@ -44,8 +44,7 @@ StabilityMatrix run(const StabilityOptions& options) {
     }
   }
   StabilityMatrix matrix;
-  matrix.cells = run_cells(tasks, options);
-  matrix.stopped = matrix.cells.size() < tasks.size();
+  matrix.cells = run_cells(tasks, options, matrix.outcome);
   matrix.wall_s = wall_seconds() - start;
   return matrix;
 }

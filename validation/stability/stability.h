@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/engine.h"
 #include "palpate/dynamics/stepper.h"
 
 /// The stability matrix (docs/theory/verification.md): stiff and extreme cases against every integrator. The
@@ -39,6 +40,8 @@ class Verdicts {
   void add(Verdict verdict) { bits_ |= 1u << static_cast<unsigned>(verdict); }
   bool empty() const { return bits_ == 0; }
   std::string text() const;  ///< "accurate or stable".
+  void archive(Archive& a) { a("bits", bits_); }
+
  private:
   unsigned bits_ = 0;
 };
@@ -57,6 +60,7 @@ struct StabilityCell {
   long steps = 0;      ///< Steps of the integrator.
   double cpu_s = 0.0;
   bool as_expected() const { return expected.has(verdict); }
+  void archive(Archive& a);
 };
 
 struct StabilityRow {
@@ -81,17 +85,17 @@ struct StabilityOptions {
   /// Also called in the process of each cell; null: integrate::stepper_registry.
   const dynamics::StepperRegistry& (*registry)() = nullptr;
   std::function<void(double fraction, const std::string& what)> progress;
-  const std::atomic<bool>* stop = nullptr;  ///< Set from outside: no new cell starts.
+  const std::atomic<bool>* stop = nullptr;  ///< Set from outside: active cells are ended.
+  experiments::Place place;  ///< Where results are kept; cells with another `registry` are not.
 };
 
 struct StabilityMatrix {
   std::vector<StabilityCell> cells;  ///< Rows in order, then sub-cases, then integrators.
-  bool stopped = false;
+  experiments::EngineOutcome outcome;
   double wall_s = 0.0;
   long unexpected() const;
 };
-/// Runs the matrix. Each cell runs in a separate process, from core's ProcessPool: a program that has started
-/// threads or rendered a picture by then must have called ProcessPool::prepare() before.
+/// Runs the matrix. Each cell runs in a separate process (experiments/engine.h).
 /// @throws Error for a row or an integrator that does not exist, with the nearest name
 StabilityMatrix run(const StabilityOptions& options);
 

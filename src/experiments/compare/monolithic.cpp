@@ -1,0 +1,83 @@
+#include "experiments/compare/monolithic.h"
+
+#include <algorithm>
+
+#include "loop/replay.h"
+#include "loop/run_figures.h"
+#include "palpate/core/error.h"
+#include "palpate/scene/hands.h"
+
+namespace palpate::compare {
+namespace {
+
+Trajectory hand_series(const loop::HapticRecord& record) {
+  WrenchRecorder recorder;
+  for (const loop::TickRecord& tick : record.ticks) recorder.tick(tick);
+  return recorder.trajectory();
+}
+
+/// Records the wrenches on each hand.
+class EachHand : public loop::Observer {
+ public:
+  explicit EachHand(std::size_t hands) : of_(hands) {}
+  void tick_of(std::size_t hand, const loop::TickRecord& tick) override { of_[hand].tick(tick); }
+  const Trajectory& of(std::size_t hand) const { return of_[hand].trajectory(); }
+
+ private:
+  std::vector<WrenchRecorder> of_;
+};
+
+HandError hand_error(const Trajectory& felt, const Trajectory& reference) {
+  HandError out;
+  const loop::PeakWrench peak = loop::peak_of(reference.device, reference.tick_times);
+  out.peak_force_n = peak.force_n;
+  out.peak_torque_n_m = peak.torque_n_m;
+  out.error = wrench_distance(felt, reference);
+  return out;
+}
+
+}  // namespace
+
+void refuse_against_monolithic(const scene::Description& d) {
+  if (!d.tool) fail("{}: there is no [tool], so there is no force on a hand to compare", d.path);
+  if (d.bodies.empty())
+    fail("{}: there is no [[body]], so nothing is exchanged; `palpate compare` compares tick periods",
+         d.path);
+  if (d.exchange.scheme == "monolithic")
+    fail("{}: exchange.scheme = \"monolithic\" is the reference itself; use \"partitioned\"", d.path);
+}
+
+AgainstMonolithic against_monolithic(const loop::World& run, const std::vector<loop::HapticRecord>& records,
+                                     bool real_time, const std::function<void(double)>& progress,
+                                     const std::atomic<bool>* stop) {
+  const scene::Description& d = run.description;
+  refuse_against_monolithic(d);
+  const MonolithicScene whole = monolithic_scene(d);
+  AgainstMonolithic out;
+  out.made_by = whole.made_by;
+  out.recorded_hand = real_time || !loop::all_paths_known(run);
+  try {
+    if (records.empty() || records.front().ticks.empty()) fail("the run has no ticks");
+    const auto world = out.recorded_hand ? loop::assemble(whole.description, loop::recorded_hands(records))
+                                         : loop::assemble(whole.description);
+    EachHand felt(records.size());
+    loop::RunOptions options;
+    options.duration_s = records.front().ticks.back().time;
+    options.observers = {&felt};
+    options.progress = progress;
+    options.stop = stop;
+    const loop::RunResult result = loop::run(*world, options);
+    out.cpu_s = result.cpu_s;
+    out.stopped = result.stopped;
+    if (!result.status.ok())
+      fail("{} failed at t = {:g} s: {}", whole.description.integrator.name, result.status.t,
+           result.status.message);
+    if (result.stopped) fail("stopped at t = {:g} s", result.time);
+    static_cast<HandError&>(out) = hand_error(hand_series(records.front()), felt.of(0));
+    for (std::size_t i = 1; i < records.size(); ++i)
+      out.more_hands.push_back(hand_error(hand_series(records[i]), felt.of(i)));
+  } catch (const Error& e) { out.trouble = e.what(); }
+  return out;
+}
+
+}  // namespace palpate::compare

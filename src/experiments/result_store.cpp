@@ -1,0 +1,146 @@
+#include "experiments/result_store.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "palpate/core/error.h"
+#include "palpate/core/log.h"
+#include "store/content_hash.h"
+
+namespace palpate::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using store::ResultDb;
+using store::ResultFolder;
+using Access = ResultDb::Access;
+
+constexpr const char* kPart = ".part";
+
+fs::path main_path(const std::string& folder) { return fs::path(folder) / "results.db"; }
+fs::path tasks_path(const std::string& folder) { return fs::path(folder) / "tasks"; }
+
+/// Returns the files of elements in a fixed order.
+std::vector<fs::path> element_files(const std::string& folder, bool with_parts) {
+  std::vector<fs::path> out;
+  std::error_code none;
+  for (fs::directory_iterator at(tasks_path(folder), none), end; at != end; at.increment(none)) {
+    const std::string name = at->path().filename().string();
+    if (name.ends_with(".db") || (with_parts && name.ends_with(kPart))) out.push_back(at->path());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Copies the results of elements.  A file that a failing disk has damaged is left out: its tasks are run
+/// again.
+void copy_elements(const std::vector<fs::path>& files, ResultDb& to) {
+  for (const fs::path& file : files) try {
+      to.put_all(ResultDb(file.string(), Access::kSingle));
+    } catch (const Error& damaged) { log::warn("{}", damaged.what()); }
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code failed;
+  fs::remove_all(path, failed);
+  if (failed) fail("{}: cannot be removed: {}", path.string(), failed.message());
+}
+
+/// Copies the results of elements into results.db, and removes their files.
+void merge_elements(const std::string& folder, bool with_parts, ResultDb& to) {
+  const std::vector<fs::path> files = element_files(folder, with_parts);
+  copy_elements(files, to);
+  for (const fs::path& file : files) remove_file(file);
+}
+
+/// Returns a file name for a list of tasks.
+std::string name_of(const std::string& list) {
+  return list.size() <= 100 ? list : store::ContentHash().add(list).hex();
+}
+
+}  // namespace
+
+ResultStore::ResultStore() : main_(std::make_unique<ResultDb>(":memory:")) {}
+
+ResultStore ResultStore::here(const std::string& folder, bool fresh) {
+  ResultStore out;
+  out.folder_ = folder;
+  out.tasks_lock_ = ResultFolder(tasks_path(folder).string());
+  if (fresh) {
+    remove_file(main_path(folder));
+    for (const auto& entry : fs::directory_iterator(tasks_path(folder))) remove_file(entry.path());
+  }
+  out.main_ = std::make_unique<ResultDb>(main_path(folder).string());
+  merge_elements(folder, true, *out.main_);
+  return out;
+}
+
+ResultStore ResultStore::element(const std::string& folder, const std::string& list) {
+  ResultStore out;
+  out.folder_ = folder;
+  const fs::path tasks = tasks_path(folder);
+  out.tasks_lock_ = ResultFolder(tasks.string(), ResultFolder::Access::kShared);
+  out.element_ = (tasks / (name_of(list) + ".db")).string();
+  // The element's own earlier results, after a requeue.
+  if (fs::exists(out.element_)) fs::rename(out.element_, out.element_ + kPart);
+  out.extra_ = std::make_unique<ResultDb>(out.element_ + kPart, Access::kSingle);
+  out.main_.reset();
+  if (fs::exists(main_path(folder)))
+    out.main_ = std::make_unique<ResultDb>(main_path(folder).string(), Access::kRead);
+  return out;
+}
+
+ResultStore ResultStore::read(const std::string& folder, bool all_ended) {
+  ResultStore out;
+  out.extra_ = std::make_unique<ResultDb>(":memory:");
+  out.main_.reset();
+  const bool any = !element_files(folder, all_ended).empty();
+  try {
+    if (any) {
+      const ResultFolder lock(tasks_path(folder).string());
+      ResultDb all(main_path(folder).string());
+      merge_elements(folder, all_ended, all);
+    }
+  } catch (const Error&) { copy_elements(element_files(folder, false), *out.extra_); }  // Others are writing.
+  if (fs::exists(main_path(folder)))
+    out.main_ = std::make_unique<ResultDb>(main_path(folder).string(), Access::kRead);
+  return out;
+}
+
+ResultStore::~ResultStore() {
+  std::error_code not_empty;
+  if (!folder_.empty()) fs::remove(tasks_path(folder_), not_empty);
+}
+
+std::optional<Result> ResultStore::find(const std::string& key) const {
+  std::optional<store::ResultRow> row;
+  if (extra_) row = extra_->find(key);
+  if (!row && main_) row = main_->find(key);
+  if (!row) return std::nullopt;
+  Result out;
+  out.status = status_of(row->status);
+  out.reason = row->reason;
+  out.cpu_s = row->cpu_s;
+  out.bytes = row->bytes;
+  out.limit_s = row->limit_s;
+  out.machine = row->machine;
+  return out;
+}
+
+void ResultStore::put(const Task& task, const Result& result) {
+  ResultDb* to = element_.empty() ? main_.get() : extra_.get();
+  PALPATE_CHECK(to, "{}: opened to read its results", folder_);
+  to->put({task.key, task.kind, task.name, to_string(result.status), result.reason, result.cpu_s,
+           result.limit_s, result.machine, result.bytes});
+}
+
+void ResultStore::close() {
+  main_.reset();
+  extra_.reset();
+  if (!element_.empty()) fs::rename(element_ + kPart, element_);
+  element_.clear();
+  tasks_lock_ = {};
+}
+
+}  // namespace palpate::experiments

@@ -1,0 +1,49 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "experiments/task.h"
+#include "store/result_db.h"
+#include "store/result_folder.h"
+
+namespace palpate::experiments {
+
+/// Results in the folder of an experiment.
+///
+///   FOLDER/results.db         written by the one command that works in the folder
+///   FOLDER/tasks/LIST.db      results of `--task LIST`, as an element of an array job; complete
+///   FOLDER/tasks/LIST.db.part the same, while it is written
+///
+/// Only one process ever opens a file that is being written, so the folder may lie on a network file system.
+/// Files in `tasks` are copied into results.db, and removed, by the next command without --task.
+class ResultStore {
+ public:
+  /// Keeps results in memory.
+  ResultStore();
+  /// Opens the folder for a command that runs tasks here.  @param fresh  removes all earlier results
+  /// @throws Error where elements of an array job are writing
+  static ResultStore here(const std::string& folder, bool fresh);
+  /// Opens the folder for an element that runs the tasks in `list`; close() completes its file.
+  static ResultStore element(const std::string& folder, const std::string& list);
+  /// Opens the folder to read its results.
+  /// @param all_ended  no element writes any more: includes the results of those that were killed
+  static ResultStore read(const std::string& folder, bool all_ended = false);
+  ResultStore(ResultStore&&) = default;
+  ResultStore& operator=(ResultStore&&) = default;
+  ~ResultStore();
+
+  /// Returns the result of an earlier task.
+  std::optional<Result> find(const std::string& key) const;
+  void put(const Task& task, const Result& result);
+  void close();
+
+ private:
+  std::string folder_;
+  store::ResultFolder tasks_lock_;
+  std::unique_ptr<store::ResultDb> main_;   ///< results.db; null where there is none.
+  std::unique_ptr<store::ResultDb> extra_;  ///< The element's file; in read(): a copy of all, in memory.
+  std::string element_;                     ///< Path of the element's complete file.
+};
+
+}  // namespace palpate::experiments

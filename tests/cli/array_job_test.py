@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""`--slurm` of study, compare, validate and stability, with programs that act as Slurm's and run the elements
+of an array one after another: the same results as without it. study_slurm_test.py runs a real cluster.
+
+    array_job_test.py PROGRAM
+"""
+import csv
+import os
+import re
+import sys
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from program import QUICK_COMPARISON, Cli  # noqa: E402
+from study_scenes import BLOCK, QUICK, QUICK_TASKS  # noqa: E402
+
+SBATCH = r"""#!/usr/bin/env python3
+import os, pathlib, re, subprocess, sys
+script = sys.argv[-1]
+text = open(script).read()
+number = len(list(pathlib.Path("jobs").glob("*"))) + 1
+pathlib.Path(f"jobs/{number}").write_text(text)
+for k in range(int(re.search(r"--array=0-(\d+)", text).group(1)) + 1):
+    if os.environ.get("LOSE") != f"{number}_{k}":
+        with open(f"jobs-{number}.log", "a") as log:
+            subprocess.run(["bash", script], env={**os.environ, "SLURM_ARRAY_TASK_ID": str(k)}, stdout=log,
+                           stderr=log)
+print(number)
+"""
+# Results of a run that a clock determines.
+TIMES = re.compile(r"_s($|_)|^cpu|^repeats$")
+
+
+class ArrayJobs(Cli):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "jobs").mkdir()
+        (self.folder / "slurm").mkdir()
+        for name, text in (("sbatch", SBATCH), ("squeue", "#!/bin/sh\nexit 0\n"),
+                           ("scontrol", "#!/bin/sh\necho 'MaxArraySize = 1001'\n")):
+            (self.folder / "slurm" / name).write_text(text)
+            (self.folder / "slurm" / name).chmod(0o755)
+
+    def by_slurm(self, *arguments, status=0, **environment):
+        done = self.call(*arguments, "--slurm", PATH=f"{self.folder}/slurm:{os.environ['PATH']}",
+                         **environment)
+        logs = "".join(path.read_text() for path in self.folder.glob("jobs-*.log"))
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr + logs)
+        return done
+
+    def jobs(self):
+        """Returns the number of elements of each job."""
+        scripts = sorted((self.folder / "jobs").iterdir(), key=lambda path: int(path.name))
+        return [int(re.search(r"--array=0-(\d+)", path.read_text()).group(1)) + 1 for path in scripts]
+
+    def rows(self, path):
+        """Returns the rows of a table without times."""
+        with open(self.folder / path, newline="", encoding="utf-8") as file:
+            return [{name: cell for name, cell in row.items() if not TIMES.search(name)}
+                    for row in csv.DictReader(file)]
+
+    def test_study(self):
+        (self.folder / "block.toml").write_text(BLOCK)
+        (self.folder / "quick.toml").write_text(QUICK)
+        self.good("study", "quick.toml", "-o", "local")
+        done = self.by_slurm("study", "quick.toml", "-o", "cluster", "--chunk", "3", status=3, LOSE="1_1")
+        self.assertIn(f"submitted as job 1: {QUICK_TASKS} tasks in an array of 6", done.stdout)
+        self.assertIn("missing result of tasks 3-5 (job 1 ended without them", done.stderr)
+        self.by_slurm("study", "quick.toml", "-o", "cluster")
+        self.assertEqual(self.jobs(), [6, 3])
+        self.assertEqual(*((self.folder / name / "study.csv").read_bytes() for name in ("local", "cluster")))
+        self.assertFalse((self.folder / "cluster/tasks").exists(), "results are in results.db")
+
+    def test_comparison_runs_references_before_sequences(self):
+        arguments = ["compare", "cantilever", *QUICK_COMPARISON, "--limit-s", "30", "--integrator", "cvode-bdf",
+                     "--integrator", "linearly-implicit-euler"]
+        self.good(*arguments, "-o", "local", "--jobs", "2")
+        done = self.by_slurm(*arguments, "-o", "cluster")
+        self.assertEqual(self.jobs()[0], 2, "a reference and its check")
+        self.assertEqual(len(self.jobs()), 2)
+        labels = {row["label"] for row in self.rows("local/compare.csv")}
+        self.assertEqual(self.jobs()[1], len(labels), "one element runs all levels of a sequence")
+        self.assertEqual(self.rows("cluster/compare.csv"), self.rows("local/compare.csv"))
+        self.assertIn("fitted order", done.stdout)
+        again = self.by_slurm(*arguments, "-o", "cluster")
+        self.assertIn("results are from earlier runs", again.stdout)
+        self.assertEqual(len(self.jobs()), 2)
+        self.assertIn("results are from earlier runs", self.good(*arguments, "-o", "cluster"))
+
+    def test_a_comparison_without_its_reference_says_so(self):
+        arguments = ["compare", "cantilever", *QUICK_COMPARISON, "--integrator", "linearly-implicit-euler"]
+        done = self.by_slurm(*arguments, "-o", "cluster", status=3, LOSE="1_0")
+        self.assertRegex(done.stderr, r"missing result of task 0 \(job 1 ended without them")
+        self.by_slurm(*arguments, "-o", "cluster")
+        self.assertEqual(self.jobs(), [2, 1, 1], "the reference, then the sequence")
+
+    def test_trials_of_solvers_come_first(self):
+        self.by_slurm("compare", "cantilever", *QUICK_COMPARISON, "--integrator", "linearly-implicit-euler",
+                      "--linear-solver", "best", "-o", "cluster")
+        self.assertGreaterEqual(len(self.jobs()), 3, "references, trials, sequences")
+        self.assertTrue(self.rows("cluster/trials.csv"))
+        self.assertTrue(self.rows("cluster/compare.csv"))
+
+    def test_matrix(self):
+        arguments = ["stability", "--row", "youngs-modulus", "--integrator", "backward-euler", "--seeds", "1"]
+        self.good(*arguments, "-o", "local", "--jobs", "2")
+        done = self.by_slurm(*arguments, "-o", "cluster", "--chunk", "2")
+        self.assertIn("cells agree with theory", done.stdout)
+        rows = self.rows("local/stability.csv")
+        self.assertEqual(self.rows("cluster/stability.csv"), rows)
+        self.assertEqual(self.jobs(), [(len(rows) + 1) // 2])
+        self.assertIn(f"{len(rows)} results are from earlier runs", self.good(*arguments, "-o", "cluster"))
+        self.assertNotIn("earlier runs", self.good(*arguments, "-o", "cluster", "--fresh"))
+
+    def test_validation(self):
+        cases = ["patch-test", "rigid-motion"]
+        local = self.good("validate", *cases).splitlines()
+        done = self.by_slurm("validate", *cases, "-o", "cluster")
+        for line in local:
+            self.assertIn(line, done.stdout.splitlines())
+        self.assertEqual(self.jobs(), [2])
+        self.assertTrue((self.folder / "cluster/validation.json").exists())
+        self.assertIn("2 results are from earlier runs", self.good("validate", *cases, "-o", "cluster"))
+
+    def test_another_list_is_not_run(self):
+        for command in (["compare", "one-tet", "--integrator", "backward-euler"], ["validate", "patch-test"],
+                        ["stability", "--row", "step"]):
+            text = self.refused(*command, "-o", "out", "--task", "0", "--plan", "0" * 32)
+            self.assertIn("has changed since the job was submitted; submit it again", text)
+            self.assertIn("tasks 0 to", self.refused(*command, "-o", "out", "--task", "9999"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)

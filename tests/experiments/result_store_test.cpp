@@ -1,0 +1,129 @@
+#include "experiments/result_store.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "palpate/core/error.h"
+#include "store/atomic_file.h"
+#include "temporary_folder.h"
+
+using namespace palpate;
+using experiments::Result;
+using experiments::ResultStore;
+using experiments::Status;
+namespace fs = std::filesystem;
+
+namespace {
+
+experiments::Task task_of(const std::string& key) { return {"test", key, "the task " + key, nullptr, 1.0}; }
+
+Result result_of(const std::string& bytes) {
+  Result out;
+  out.status = Status::kFailed;
+  out.reason = "why";
+  out.cpu_s = 0.25;
+  out.limit_s = 3.0;
+  out.bytes = bytes;
+  return out;
+}
+
+std::string bytes_in(const ResultStore& store, const std::string& key) {
+  const auto kept = store.find(key);
+  return kept ? kept->bytes : "none";
+}
+
+}  // namespace
+
+TEST(ResultStore, KeepsResultsInTheFolder) {
+  const TemporaryFolder folder;
+  {
+    ResultStore store = ResultStore::here(folder.string(), false);
+    EXPECT_FALSE(store.find("a"));
+    store.put(task_of("a"), result_of("content"));
+  }
+  EXPECT_FALSE(fs::exists(folder / "tasks")) << "only elements of an array job need it";
+  ResultStore store = ResultStore::here(folder.string(), false);
+  const auto kept = store.find("a");
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->status, Status::kFailed);
+  EXPECT_EQ(kept->reason, "why");
+  EXPECT_EQ(kept->cpu_s, 0.25);
+  EXPECT_EQ(kept->limit_s, 3.0);
+  EXPECT_EQ(kept->bytes, "content");
+  store = ResultStore();
+  EXPECT_EQ(bytes_in(ResultStore::here(folder.string(), true), "a"), "none") << "fresh";
+}
+
+TEST(ResultStore, ResultsOfElementsAreCopiedAndTheirFilesRemoved) {
+  const TemporaryFolder folder;
+  for (const char* list : {"0-3", "7"}) {
+    ResultStore element = ResultStore::element(folder.string(), list);
+    element.put(task_of(list), result_of(list));
+    EXPECT_FALSE(fs::exists(folder / "tasks" / (std::string(list) + ".db"))) << "not complete";
+    element.close();
+    EXPECT_TRUE(fs::exists(folder / "tasks" / (std::string(list) + ".db")));
+  }
+  const ResultStore store = ResultStore::read(folder.string());
+  EXPECT_EQ(bytes_in(store, "0-3"), "0-3");
+  EXPECT_EQ(bytes_in(store, "7"), "7");
+  EXPECT_TRUE(fs::exists(folder / "results.db"));
+  EXPECT_FALSE(fs::exists(folder / "tasks" / "7.db"));
+}
+
+TEST(ResultStore, WhatIsBeingWrittenIsNotRead) {
+  const TemporaryFolder folder;
+  ResultStore done = ResultStore::element(folder.string(), "1");
+  done.put(task_of("a"), result_of("done"));
+  done.close();
+  ResultStore writing = ResultStore::element(folder.string(), "2");
+  writing.put(task_of("b"), result_of("not yet"));
+
+  const ResultStore read = ResultStore::read(folder.string());
+  EXPECT_EQ(bytes_in(read, "a"), "done");
+  EXPECT_EQ(bytes_in(read, "b"), "none");
+  EXPECT_TRUE(fs::exists(folder / "tasks" / "1.db")) << "an element may read the folder";
+  EXPECT_THROW(ResultStore::here(folder.string(), false), Error) << "the element would lose its file";
+  writing = ResultStore();  // killed: its file stays as it is
+
+  EXPECT_EQ(bytes_in(ResultStore::read(folder.string()), "b"), "none");
+  EXPECT_EQ(bytes_in(ResultStore::read(folder.string(), true), "b"), "not yet") << "its job has ended";
+}
+
+TEST(ResultStore, AnElementGoesOnAfterARequeue) {
+  const TemporaryFolder folder;
+  {
+    ResultStore main = ResultStore::here(folder.string(), false);
+    main.put(task_of("m"), result_of("main"));
+  }
+  ResultStore killed = ResultStore::element(folder.string(), "2-3");
+  killed.put(task_of("a"), result_of("kept"));
+  killed = ResultStore();
+  ResultStore again = ResultStore::element(folder.string(), "2-3");
+  EXPECT_EQ(bytes_in(again, "a"), "kept");
+  EXPECT_EQ(bytes_in(again, "m"), "main");
+  again.close();
+  EXPECT_EQ(bytes_in(ResultStore::element(folder.string(), "2-3"), "a"), "kept");
+}
+
+TEST(ResultStore, ADamagedFileLosesItsTasksOnly) {
+  const TemporaryFolder folder;
+  for (const char* list : {"1", "2"}) {
+    ResultStore element = ResultStore::element(folder.string(), list);
+    element.put(task_of(list), result_of(std::string(100000, 'x')));
+    element.close();
+  }
+  const std::string path = (folder / "tasks" / "1.db").string();
+  store::write_atomically(path, store::read_file(path).substr(0, 100));
+  const ResultStore store = ResultStore::here(folder.string(), false);
+  EXPECT_FALSE(store.find("1"));
+  EXPECT_TRUE(store.find("2"));
+}
+
+TEST(Status, HasOneNamePerValue) {
+  for (int i = 0; i < experiments::kStatuses; ++i) {
+    const auto status = static_cast<Status>(i);
+    EXPECT_EQ(experiments::status_of(to_string(status)), status);
+  }
+  EXPECT_EQ(experiments::status_of("no such status"), Status::kMissing);
+}
