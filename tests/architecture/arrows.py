@@ -100,43 +100,7 @@ LOWER_FOLDERS = ["src/loop/coupling/"]
 PROMISED = "include/palpate/"
 SHARED_HEADERS = re.compile(r"^palpate_shared_headers\((\w+)\s+([^)]*)\)", re.M)
 
-# Units of a part that are known to include each other in a cycle; see unit_cycles().  Entries may only be
-# removed: one whose cycle no longer exists is a breach.
-KNOWN_CYCLES = {
-    "cli": [["checkpoints", "run", "run_command_line", "run_pictures", "run_session", "run_summary"]],
-    "compare": [["codec", "compare", "ledger", "plan", "run", "work"], ["haptic", "haptic_plan"]],
-    "contact": [["contact_force", "friction_anchors", "grasp", "pressure", "resultants", "sample_math",
-                 "tangent"],
-                ["contact_view", "fit_window"]],
-    "device": [["device", "limiter", "make", "profile"]],
-    "distance": [["contact_scratch", "skin_contact"]],
-    "loop": [["body_loop", "haptic_loop", "monolithic_ticks", "real_time", "real_time_thread", "run",
-              "tick_group"],
-             ["contact_loads", "model_reduction", "reduced_step", "tool_instance", "world"]],
-    "model_program": [["options", "sources"]],
-    "proxy": [["decompose", "hull_quality"], ["proxy_set", "skin_patches"]],
-    "render": [["camera", "camera_axes"], ["canvas", "picture"]],
-    "report": [["drawable", "plot"]],
-    "store": [["run_file", "xdmf"]],
-    "study": [["run", "task_file"]],
-    "tool": [["handle_path", "simbody_body", "tick_scheme", "tool"]],
-}
-
 LONG_FILE = 400
-# Files that are known to be longer.  Entries may only be removed: one that is not longer is a breach.
-KNOWN_LONG = [
-    "src/contact/distance_source.cpp",
-    "src/loop/model_reduction.cpp",
-    "tests/compare/compare_test.cpp",
-    "tests/contact/material_points_test.cpp",
-    "tests/contact/reduced_contact_stepper_test.cpp",
-    "tests/contact/rigid_sides_test.cpp",
-    "tests/contact/sources_test.cpp",
-    "tests/loop/model_reduction_test.cpp",
-    "tests/loop/real_time_test.cpp",
-    "tests/loop/units_test.cpp",
-    "tests/report/work_precision_test.cpp",
-]
 SUFFIXES = {".h", ".hpp", ".cpp", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 
@@ -278,13 +242,10 @@ def unit_cycles(graph):
     return {part: sorted(groups) for part, groups in cycles.items()}
 
 
-def cycle_breaches(graph, known):
-    """Compares the cycles of units with those that are known."""
-    found = unit_cycles(graph)
-    out = [f"{part}: headers and sources include each other in a cycle: {', '.join(units)}"
-           for part, groups in sorted(found.items()) for units in groups if units not in known.get(part, [])]
-    return out + [f"KNOWN_CYCLES lists a cycle of {part} that does not exist: {', '.join(units)}"
-                  for part, groups in known.items() for units in groups if units not in found.get(part, [])]
+def cycle_breaches(graph):
+    """Returns a breach for each cycle of units."""
+    return [f"{part}: headers and sources include each other in a cycle: {', '.join(units)}"
+            for part, groups in sorted(unit_cycles(graph).items()) for units in groups]
 
 
 def source_files(tree, folders):
@@ -293,14 +254,13 @@ def source_files(tree, folders):
                   if path.suffix in SUFFIXES)
 
 
-def check(tree, known_cycles=None, known_long=None):
+def check(tree):
     """Returns the breaches, a list of strings."""
     tree = Path(tree)
     files = source_files(tree, ["include", "src", "validation", "benchmarks/product"])
-    known_long = KNOWN_LONG if known_long is None else known_long
     known = set(files)
     shared, used = shared_headers(tree), set()
-    breaches, graph, long = [], {path: [] for path in files}, []
+    breaches, graph = [], {path: [] for path in files}
 
     for path in files:
         own = part_of(path)
@@ -338,12 +298,8 @@ def check(tree, known_cycles=None, known_long=None):
                         f"{path}:{number}: {library} ({name}) belongs in {', '.join(folders)} only")
         lines = (tree / path).read_text(encoding="utf-8", errors="replace").count("\n")
         if lines > LONG_FILE:
-            long.append(path)
-            if path not in known_long:
-                breaches.append(f"{path}:{LONG_FILE + 1}: {lines} lines, more than {LONG_FILE}: split it")
+            breaches.append(f"{path}:{LONG_FILE + 1}: {lines} lines, more than {LONG_FILE}: split it")
 
-    breaches += [f"KNOWN_LONG lists {path}, which has at most {LONG_FILE} lines or does not exist"
-                 for path in known_long if path not in long]
     breaches += [f"{header}:1: is listed as shared, but no other part includes it"
                  for header in sorted(shared - used)]
     breaches += link_breaches(tree)
@@ -351,7 +307,7 @@ def check(tree, known_cycles=None, known_long=None):
     if cycle:
         breaches.append("include cycle: " + " -> ".join(cycle))
     else:
-        breaches += cycle_breaches(graph, KNOWN_CYCLES if known_cycles is None else known_cycles)
+        breaches += cycle_breaches(graph)
     if not files:
         breaches.append(f"{tree}: no source files found")
     return breaches
