@@ -16,15 +16,19 @@ namespace {
 
 std::vector<BoneSpec> shapes() {
   BoneSpec sphere, box, cylinder;
-  sphere.name = sphere.shape = BoneShape::kSphere;
-  box.name = box.shape = BoneShape::kBox;
-  cylinder.name = cylinder.shape = BoneShape::kCylinder;
+  sphere.name = "sphere";
+  sphere.shape = BoneShape::kSphere;
+  box.name = "box";
+  box.shape = BoneShape::kBox;
+  cylinder.name = "cylinder";
+  cylinder.shape = BoneShape::kCylinder;
   sphere.radius_m = 0.02;
   box.size_m = Vec3(0.03, 0.04, 0.05);
   cylinder.radius_m = 0.02;
   cylinder.length_m = 0.07;
   BoneSpec capsule = cylinder;
-  capsule.name = capsule.shape = BoneShape::kCapsule;
+  capsule.name = "capsule";
+  capsule.shape = BoneShape::kCapsule;
   return {sphere, box, cylinder, capsule};
 }
 

@@ -77,7 +77,7 @@ TEST(Motions, begin_and_end) {
 
 TEST(Motions, add_to_the_keyframes) {
   DeviceSpec spec;
-  spec.keyframes = {{0.0, Vec3(1, 2, 3), Vec3(0.1, 0, 0), "linear"},
+  spec.keyframes = {{0.0, Vec3(1, 2, 3), Vec3(0.1, 0, 0), Interpolation::kLinear},
                     {4.0, Vec3(2, 2, 3), Vec3::Zero(), Interpolation::kLinear}};
   spec.motions = {motion("stroke"), motion("tap")};
   const auto device = make_device(spec);

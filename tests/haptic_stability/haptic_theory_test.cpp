@@ -6,12 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "haptic_stability/tool_section.h"
 #include "haptic_stability/z_width.h"
 #include "palpate/core/error.h"
 #include "palpate/device/profile.h"
 #include "palpate/loop/run.h"
-#include "palpate/mesh/source.h"
 
 using namespace palpate;
 using namespace palpate::haptic_stability;
@@ -184,6 +182,7 @@ TEST(ZWidth, estimates_contacts_from_the_scene) {
   EXPECT_THROW(loop_of(d), Error);
 }
 
+#ifdef PALPATE_HAS_TOOL
 // A ball of 100 g and 10 mm has 2/5 m r^2 = 4e-6 kg m^2 about any axis. Under a held handle semi-implicit
 // Euler is stable below k = 4 I/h^2 - 2 b/h, in theory and in the simulation of its ticks.
 TEST(RotationalLoop, has_the_limit_of_the_tools_scheme_in_its_own_units) {

@@ -155,5 +155,3 @@ TEST(ZWidth, takes_the_scene_s_device) {
   d.device->delay_s = 0.002;
   EXPECT_EQ(loop_of(d).delay_ticks, 2);
 }
-
-#ifdef PALPATE_HAS_TOOL

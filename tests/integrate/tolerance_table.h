@@ -13,7 +13,7 @@ namespace palpate::fakes {
 struct ToleranceScene {
   const char* name;
   std::unique_ptr<Small> (*make)();
-  const char* explicit_side = "loads";
+  ExplicitSide explicit_side = ExplicitSide::kLoads;
 };
 /// About one period each: errors of undamped motion grow with time.
 inline const std::vector<ToleranceScene>& tolerance_scenes() {
@@ -26,7 +26,9 @@ inline const std::vector<ToleranceScene>& tolerance_scenes() {
 }
 
 /// Scene for additive methods: contact is on the explicit side.
-inline ToleranceScene split_scene() { return {"block, split", smoothly_landing_block, "contact"}; }
+inline ToleranceScene split_scene() {
+  return {"block, split", smoothly_landing_block, ExplicitSide::kContact};
+}
 inline bool is_additive(const dynamics::StepperEntry& entry) {
   return entry.traits.family == "ImEx Runge-Kutta";
 }

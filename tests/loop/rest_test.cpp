@@ -2,6 +2,7 @@
 // monolithic solution, and constant.
 #include <gtest/gtest.h>
 
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 
@@ -32,7 +33,7 @@ Rest at_rest(const scene::Description& d) {
 }
 
 /// A block of many triangles, held below, under a tool that presses it off its centre.
-scene::Description pressed_aside(const std::string& shape, const std::string& method) {
+scene::Description pressed_aside(ToolShape shape, const std::string& method) {
   scene::Description d = small_scenes::pressed_block(0.004);
   d.duration_s = 1.2;
   d.tool->position_m.x() = 0.006;
@@ -44,7 +45,7 @@ scene::Description pressed_aside(const std::string& shape, const std::string& me
   d.bodies.front().stiffness_damping_s = 5e-3;
   d.contacts.front().method = method;
   d.tool->shape = shape;
-  if (shape == "mesh") {
+  if (shape == ToolShape::kMesh) {
     d.tool->mesh.generator = "ball";
     d.tool->mesh.radius_m = d.tool->radius_m;
     d.tool->mesh.element_size_m = 0.3 * d.tool->radius_m;
@@ -54,7 +55,8 @@ scene::Description pressed_aside(const std::string& shape, const std::string& me
 }
 
 struct RestCase {
-  const char *shape, *method, *linearisation, *integrator;
+  ToolShape shape;
+  const char *method, *linearisation, *integrator;
 };
 
 class RestingContact : public ::testing::TestWithParam<RestCase> {};
@@ -75,15 +77,15 @@ TEST_P(RestingContact, HasTheForceOfTheMonolithicSolution) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, RestingContact,
-    ::testing::Values(RestCase{"sphere", "analytic", "points", "linearly-implicit-euler"},
-                      RestCase{"sphere", "distance", "points", "linearly-implicit-euler"},
-                      RestCase{"mesh", "distance", "points", "linearly-implicit-euler"},
-                      RestCase{"mesh", "distance", "condensed", "linearly-implicit-euler"},
-                      RestCase{"mesh", "distance", "frozen", "linearly-implicit-euler"},
-                      RestCase{"sphere", "distance", "points", "cvode-bdf"},
-                      RestCase{"sphere", "distance", "frozen", "cvode-bdf"}),
+    ::testing::Values(RestCase{ToolShape::kSphere, "analytic", "points", "linearly-implicit-euler"},
+                      RestCase{ToolShape::kSphere, "distance", "points", "linearly-implicit-euler"},
+                      RestCase{ToolShape::kMesh, "distance", "points", "linearly-implicit-euler"},
+                      RestCase{ToolShape::kMesh, "distance", "condensed", "linearly-implicit-euler"},
+                      RestCase{ToolShape::kMesh, "distance", "frozen", "linearly-implicit-euler"},
+                      RestCase{ToolShape::kSphere, "distance", "points", "cvode-bdf"},
+                      RestCase{ToolShape::kSphere, "distance", "frozen", "cvode-bdf"}),
     [](const auto& one) {
-      std::string name = std::string(one.param.shape) + "_" + one.param.method + "_" +
+      std::string name = std::string(name_of(one.param.shape)) + "_" + one.param.method + "_" +
                          one.param.linearisation + "_" + one.param.integrator;
       std::replace(name.begin(), name.end(), '-', '_');
       return name;

@@ -77,7 +77,7 @@ scene::Description limb(const ModelOnDisk& file) {
   return d;
 }
 
-JointSpec joint_of(const std::string& bone, const std::string& type = "") {
+JointSpec joint_of(const std::string& bone, std::optional<JointType> type = {}) {
   JointSpec joint;
   joint.bone = bone;
   joint.type = type;
@@ -190,7 +190,7 @@ TEST(Skeleton, AScriptTakesTheTissueAlong) {
 #ifdef PALPATE_HAS_TOOL
 namespace {
 
-scene::Description jointed(const ModelOnDisk& file, const std::string& root = "weld") {
+scene::Description jointed(const ModelOnDisk& file, JointType root = JointType::kWeld) {
   scene::Description d = limb(file);
   d.bodies[0].skeleton->root = root;
   d.bodies[0].skeleton->others = JointType::kBall;
@@ -203,7 +203,7 @@ scene::Description jointed(const ModelOnDisk& file, const std::string& root = "w
 TEST(Skeleton, BonesOnJointsAreOneBlockAndCarryTheirNodes) {
   const ModelOnDisk file;
   scene::Description d = jointed(file);
-  d.bodies[0].skeleton->joints.push_back(joint_of("hand", "hinge"));
+  d.bodies[0].skeleton->joints.push_back(joint_of("hand", JointType::kHinge));
   d.bodies[0].skeleton->joints[0].axis = Vec3::UnitY();
   counters::reset();
   const auto world = loop::assemble(d);
@@ -247,7 +247,7 @@ TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
   const ModelOnDisk file;
   for (const auto& [name, step, bar] :
        {std::tuple{"implicit-midpoint", 0.002, 1e-4}, {"cvode-bdf", 0.002, 1e-4}}) {
-    scene::Description d = jointed(file, "free");
+    scene::Description d = jointed(file, JointType::kFree);
     d.bodies[0].youngs_modulus_pa = 500.0;
     d.bodies[0].velocity_m_s = Vec3(0.3, -0.2, 0.1);
     d.bodies[0].angular_velocity_rad_s = Vec3(2.0, 8.0, -3.0);
@@ -276,7 +276,7 @@ TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
 // the springs return the hand after the tool has left. With welded joints no bone moves.
 TEST(Skeleton, AToolMovesPassiveJointsAndDentsTheFlesh) {
   const ModelOnDisk file;
-  const auto pressed = [&](const std::string& joints, const std::string& linearisation, double duration_s) {
+  const auto pressed = [&](JointType joints, const std::string& linearisation, double duration_s) {
     scene::Description d = jointed(file);
     d.bodies[0].position_m.setZero();
     d.bodies[0].rotation_vector_rad.setZero();
@@ -318,13 +318,13 @@ TEST(Skeleton, AToolMovesPassiveJointsAndDentsTheFlesh) {
     return before.norm() - (world.bone_pose(world.bones[2]).inverse() * Vec3(now.col(top))).norm();
   };
   for (const char* linearisation : {"frozen", "condensed"}) {
-    const auto held = pressed("ball", linearisation, 0.3);
+    const auto held = pressed(JointType::kBall, linearisation, 0.3);
     EXPECT_GT(turned(*held), 0.07) << linearisation << ": 4 degrees";
     EXPECT_LT(turned(*held), 0.025 / 0.075) << linearisation << ": no farther than the handle goes";
     EXPECT_GT(dent(*held), 1e-3) << linearisation;
-    const auto left = pressed("ball", linearisation, 1.2);
+    const auto left = pressed(JointType::kBall, linearisation, 1.2);
     EXPECT_LT(std::abs(turned(*left)), 0.02) << linearisation;
-    const auto welded = pressed("weld", linearisation, 0.3);
+    const auto welded = pressed(JointType::kWeld, linearisation, 0.3);
     EXPECT_EQ(turned(*welded), 0.0) << linearisation;
     EXPECT_GT(dent(*welded), dent(*held)) << linearisation << ": the flesh alone gives way";
   }
@@ -358,7 +358,7 @@ TEST(Skeleton, RefusesWhatCannotHang) {
   EXPECT_NE(refusal(d).find("density_kg_m3 is missing: \"lower\" moves freely"), std::string::npos)
       << refusal(d);
   d = jointed(file);
-  d.bodies[0].skeleton->joints.push_back(joint_of("hnad", "weld"));
+  d.bodies[0].skeleton->joints.push_back(joint_of("hnad", JointType::kWeld));
   EXPECT_NE(refusal(d).find("has no bone \"hnad\" (did you mean \"hand\"?)"), std::string::npos)
       << refusal(d);
   d = jointed(file);
@@ -370,7 +370,7 @@ TEST(Skeleton, RefusesWhatCannotHang) {
   EXPECT_NE(refusal(d).find("cannot have the parent \"upper\", which moves by keyframes"), std::string::npos)
       << refusal(d);
   d = jointed(file);
-  d.bodies[0].skeleton->joints.push_back(joint_of("hand", "free"));
+  d.bodies[0].skeleton->joints.push_back(joint_of("hand", JointType::kFree));
   EXPECT_NE(refusal(d).find("type = \"free\" is for a bone without a parent"), std::string::npos)
       << refusal(d);
 }

@@ -22,7 +22,7 @@ void expect_refused(const std::string& text, std::initializer_list<const char*> 
   for (const char* word : words) expectations::expect_contains(said, word);
 }
 
-RandomSpec drawn_from(const std::string& distribution, double min, double max) {
+RandomSpec drawn_from(scene::Distribution distribution, double min, double max) {
   RandomSpec out;
   out.key = "body.0.youngs_modulus_pa";
   out.distribution = distribution;
@@ -136,15 +136,16 @@ TEST(StudySeeds, DrawFromTheDistributionThatTheyAreSaidTo) {
   };
   const auto same = [](double x) { return x; };
   // five standard deviations of the mean of that many samples
-  const auto uniform = moments(drawn_from("uniform", 2.0, 6.0), same);
+  const auto uniform = moments(drawn_from(scene::Distribution::kUniform, 2.0, 6.0), same);
   EXPECT_NEAR(uniform.first, 4.0, 5.0 * 4.0 / std::sqrt(12.0 * kSeeds));
   EXPECT_NEAR(uniform.second, 4.0 / std::sqrt(12.0), 0.05);
-  const auto log = moments(drawn_from("log-uniform", 1e3, 1e5), [](double x) { return std::log10(x); });
+  const auto log =
+      moments(drawn_from(scene::Distribution::kLogUniform, 1e3, 1e5), [](double x) { return std::log10(x); });
   EXPECT_NEAR(log.first, 4.0, 5.0 * 2.0 / std::sqrt(12.0 * kSeeds));
   EXPECT_NEAR(log.second, 2.0 / std::sqrt(12.0), 0.03);
   RandomSpec normal;
   normal.key = "a";
-  normal.distribution = Distribution::kNormal;
+  normal.distribution = scene::Distribution::kNormal;
   normal.mean = 10.0;
   normal.standard_deviation = 2.0;
   const auto gauss = moments(normal, same);
@@ -159,7 +160,7 @@ TEST(StudySeeds, DrawFromTheDistributionThatTheyAreSaidTo) {
 }
 
 TEST(StudySeeds, DependOnSeedAndKeyAlone) {
-  RandomSpec one = drawn_from("uniform", 0.0, 1.0), other = one;
+  RandomSpec one = drawn_from(scene::Distribution::kUniform, 0.0, 1.0), other = one;
   other.key = "body.0.density_kg_m3";
   EXPECT_EQ(drawn_value(one, 7), drawn_value(one, 7));
   std::set<std::string> values;
@@ -173,6 +174,6 @@ TEST(StudySeeds, DependOnSeedAndKeyAlone) {
 // Computed independently of any library, in Python, from the text of the standard: [rand.util.seedseq] for
 // the seeding, [rand.eng.mers] for the first number x of 64 bits, and floor(x / 2^11) / 2^53.
 TEST(StudySeeds, AreTheSameOnEveryMachine) {
-  EXPECT_EQ(drawn_value(drawn_from("uniform", 0.0, 1.0), 1), "0.0514308");
-  EXPECT_EQ(drawn_value(drawn_from("uniform", 0.0, 1.0), 2), "0.843484");
+  EXPECT_EQ(drawn_value(drawn_from(scene::Distribution::kUniform, 0.0, 1.0), 1), "0.0514308");
+  EXPECT_EQ(drawn_value(drawn_from(scene::Distribution::kUniform, 0.0, 1.0), 2), "0.843484");
 }
