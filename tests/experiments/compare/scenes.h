@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "palpate/experiments/compare.h"
 #include "palpate/loop/load.h"
 
 namespace palpate::compare_scenes {
@@ -68,6 +69,14 @@ position_m = [0.01, 0.0, 0.04]
 exchange_period_s = 0.01
 )",
                      "tool.toml");
+}
+
+/// One run of each of two integrators, of which one has error control.
+inline compare::CompareOptions quick() {
+  compare::CompareOptions options;
+  options.repeats = 1;
+  options.integrators = {"linearly-implicit-euler", "cvode-bdf"};
+  return options;
 }
 
 }  // namespace palpate::compare_scenes
