@@ -131,7 +131,6 @@ KNOWN_LONG = [
     "tests/contact/material_points_test.cpp",
     "tests/contact/reduced_contact_stepper_test.cpp",
     "tests/contact/rigid_sides_test.cpp",
-    "tests/contact/sources_test.cpp",
     "tests/loop/model_reduction_test.cpp",
     "tests/loop/real_time_test.cpp",
     "tests/loop/units_test.cpp",
