@@ -129,7 +129,6 @@ KNOWN_LONG = [
     "src/loop/model_reduction.cpp",
     "tests/compare/compare_test.cpp",
     "tests/contact/material_points_test.cpp",
-    "tests/contact/reduced_contact_stepper_test.cpp",
     "tests/loop/model_reduction_test.cpp",
     "tests/loop/real_time_test.cpp",
     "tests/loop/units_test.cpp",
