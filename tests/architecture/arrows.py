@@ -128,7 +128,6 @@ KNOWN_LONG = [
     "src/contact/distance_source.cpp",
     "src/loop/model_reduction.cpp",
     "tests/compare/compare_test.cpp",
-    "tests/contact/material_points_test.cpp",
     "tests/loop/model_reduction_test.cpp",
     "tests/loop/real_time_test.cpp",
     "tests/loop/units_test.cpp",
