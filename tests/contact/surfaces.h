@@ -38,6 +38,11 @@ inline TriMesh sphere(const Vec3& centre, double radius, int rings) {
   return mesh;
 }
 
+/// A flat block, 1 m wide and 0.5 m high, whose triangles are much larger than a ball of 5 cm.
+inline TriMesh flat_block(int finer = 1) {
+  return mesh::box_surface({1.0, 1.0, 0.5}, {10 * finer, 8 * finer, 4});
+}
+
 /// Closes a surface that has a border by a cone to `tip`, which becomes its last vertex.
 inline TriMesh closed_by_cone(TriMesh open, const Vec3& tip) {
   std::map<std::pair<int, int>, int> edges;
