@@ -100,14 +100,8 @@ void print_prices(const report::Table& table, double reference_error) {
   rows.clear();
   for (const report::Winner& win :
        report::winners(table, kError, "cpu_s_median", report::kTargets, reference_error))
-    rows.push_back({fmt::format("{:g}", win.target),
-                    !win.resolved    ? "not resolved by the reference"
-                    : !win.found     ? "not reached"
-                    : win.declared() ? win.label
-                                     : "no winner: " + win.label,
-                    report::cost_text(win.cost), report::spread_text(win.cost),
-                    win.runner_up.empty() ? "-" : win.runner_up, report::ratio_text(win.runner_up_ratio),
-                    report::ratio_text(win.baseline_ratio)});
+    rows.push_back(
+        report::winner_row(win, win.target, win.declared() ? win.label : "no winner: " + win.label));
   fmt::print("{}\n", report::format_table({"position error at most", "cheapest", "CPU [s]", "range",
                                            "runner-up", "ratio", report::kBaseline},
                                           rows));

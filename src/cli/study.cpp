@@ -51,13 +51,6 @@ std::vector<std::size_t> varying(const Results& results) {
   return out;
 }
 
-/// Formats a cell: integers unchanged, other numbers shortened.
-std::string short_cell(const std::string& cell) {
-  if (cell.find_first_not_of("0123456789") == std::string::npos && !cell.empty()) return cell;
-  const double number = report::to_number(cell);
-  return cell.empty() ? "-" : number == number ? report::short_number(number) : cell;
-}
-
 const std::string& cell_at(const std::vector<std::string>& names, const std::vector<std::string>& cells,
                            const std::string& name) {
   static const std::string none;
@@ -83,8 +76,8 @@ void print_results(const Results& results) {
     for (const std::size_t c : settings) cells.push_back(row.settings[c]);
     cells.push_back(row.status);
     for (const std::string& one : shown)
-      cells.push_back(short_cell(cell_at(results.figures, row.figures, one)));
-    cells.push_back(short_cell(cell_at(results.times, row.times, "loop_cpu_s")));
+      cells.push_back(report::short_cell(cell_at(results.figures, row.figures, one)));
+    cells.push_back(report::short_cell(cell_at(results.times, row.times, "loop_cpu_s")));
   }
   fmt::print("{}", report::format_table(headers, rows));
   if (results.rows.size() > kMostRows)

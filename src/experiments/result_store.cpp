@@ -101,6 +101,7 @@ ResultStore ResultStore::read(const std::string& folder, bool all_ended) {
       const ResultFolder lock(tasks_path(folder).string());
       ResultDb all(main_path(folder).string());
       merge_elements(folder, all_ended, all);
+      if (std::error_code not_empty; all_ended) fs::remove(tasks_path(folder), not_empty);
     }
   } catch (const Error&) { copy_elements(element_files(folder, false), *out.extra_); }  // Others are writing.
   if (fs::exists(main_path(folder)))

@@ -27,13 +27,7 @@ std::string capitalised(std::string text) {
 }
 
 std::string cell_text(const Table& table, std::size_t row, const std::string& column) {
-  if (!table.has(column)) return "-";
-  const std::string& cell = table.cell(row, column);
-  if (is_blank(cell)) return "-";
-  const double value = to_number(cell);
-  return std::isnan(value)                                      ? cell
-         : value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value)
-                                                                : short_number(value);
+  return table.has(column) ? short_cell(table.cell(row, column)) : "-";
 }
 
 Rows cells_of(const Table& table, const std::vector<std::string>& columns, std::size_t most) {

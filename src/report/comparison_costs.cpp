@@ -51,18 +51,8 @@ void add_winners_table(Page& page, const Table& compare, const Quantity& q, doub
                        const std::string& cost_column, const std::string& cost_label, bool explained) {
   Rows rows;
   const std::vector<Winner> all = winners(compare, q.column, cost_column, targets_of(scale), q.reference);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Winner& win = all[i];
-    const std::string target = fmt::format("{:g}", kTargets[i]);
-    if (!win.found) {
-      rows.push_back(
-          {target, win.resolved ? "not reached" : "not resolved by the reference", "-", "-", "-", "-", "-"});
-      continue;
-    }
-    rows.push_back({target, winner_text(win), cost_text(win.cost), spread_text(win.cost),
-                    win.runner_up.empty() ? "-" : win.runner_up, ratio_text(win.runner_up_ratio),
-                    ratio_text(win.baseline_ratio)});
-  }
+  for (std::size_t i = 0; i < all.size(); ++i)
+    rows.push_back(winner_row(all[i], kTargets[i], winner_text(all[i])));
   page.add_table(
       {scale == 1.0 ? "position error" : "force error / peak", "cheapest", cost_label, "range", "runner-up",
        "runner-up / cheapest", kBaseline + " / cheapest"},

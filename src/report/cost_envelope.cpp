@@ -169,6 +169,17 @@ std::vector<Winner> winners(const Table& compare, const std::string& error_colum
   return out;
 }
 
+std::vector<std::string> winner_row(const Winner& win, double shown, const std::string& ranked) {
+  const std::string none = win.resolved ? "not reached" : "not resolved by the reference";
+  return {fmt::format("{:g}", shown),
+          win.found ? ranked : none,
+          cost_text(win.cost),
+          spread_text(win.cost),
+          win.runner_up.empty() ? "-" : win.runner_up,
+          ratio_text(win.runner_up_ratio),
+          ratio_text(win.baseline_ratio)};
+}
+
 std::string ratio_text(const CostRatio& ratio) {
   if (!std::isfinite(ratio.value)) return "-";
   const auto number = [](double value) {

@@ -50,5 +50,9 @@ struct Winner {
 std::vector<Winner> winners(const Table& compare, const std::string& error_column,
                             const std::string& cost_column, const std::vector<double>& targets,
                             double reference_error);
+/// Returns the row of a target in a table: target, winner, cost, range, runner-up, and the two ratios.
+/// @param shown  target as shown
+/// @param ranked  text of the winner, where a sequence reaches the target
+std::vector<std::string> winner_row(const Winner& win, double shown, const std::string& ranked);
 
 }  // namespace palpate::report

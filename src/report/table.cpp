@@ -88,6 +88,14 @@ std::string shown_cell(const std::string& cell) {
   return read_csv_number(cell, value) && !std::isfinite(value) ? short_number(value) : cell;
 }
 
+std::string short_cell(const std::string& cell) {
+  if (is_blank(cell)) return "-";
+  const double value = to_number(cell);
+  return std::isnan(value)                                      ? cell
+         : value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value)
+                                                                : short_number(value);
+}
+
 bool is_yes(std::string_view cell) { return cell == "yes" || cell == "true" || cell == "1"; }
 
 bool is_blank(std::string_view cell) {

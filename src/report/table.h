@@ -50,6 +50,9 @@ std::string within_text(double value, double low, double high);
 
 /// Returns a cell as shown: a number that is not finite as in short_number(), everything else unchanged.
 std::string shown_cell(const std::string& cell);
+/// Returns a cell for a reader: a number in short_number(), whole numbers and words unchanged, "-" for a
+/// blank cell.
+std::string short_cell(const std::string& cell);
 /// Returns whether a cell is "yes", "true" or "1".
 bool is_yes(std::string_view cell);
 /// Returns whether a cell has no value: empty, "-", or NaN.

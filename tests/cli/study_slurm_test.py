@@ -126,7 +126,7 @@ class Slurm(Studies):
 
     def test_what_sbatch_says_is_shown_whole(self):
         text = self.refused("long.toml", "-o", "cluster", "--slurm", "--slurm-options", "--partition=nowhere")
-        self.assertRegex(text, r"sbatch did not take cluster/study\.sbatch \(exit status 1\):\n"
+        self.assertRegex(text, r"sbatch rejected cluster/study\.sbatch \(exit status 1\):\n"
                                r"sbatch: error: invalid partition specified: nowhere\nsbatch: error: ")
 
     def test_a_job_that_is_not_waited_for_is_found_again(self):

@@ -83,3 +83,12 @@ TEST(ToNumber, TakesExactlyOneNumber) {
   for (const char* bad : {"", "1,5", "1.5 m", " 1", "x"})
     EXPECT_TRUE(std::isnan(report::to_number(bad))) << bad;
 }
+
+TEST(ShortCell, ShortensFractionsOnly) {
+  EXPECT_EQ(report::short_cell("0.123456"), "0.123");
+  EXPECT_EQ(report::short_cell("123456"), "123456");
+  EXPECT_EQ(report::short_cell("123456.0"), "123456");
+  EXPECT_EQ(report::short_cell("cvode-bdf"), "cvode-bdf");
+  EXPECT_EQ(report::short_cell(""), "-");
+  EXPECT_EQ(report::short_cell("nan"), "-");
+}

@@ -190,7 +190,7 @@ TEST(Stability, StopsBetweenCells) {
     if (++calls == 2) stop = true;
   };
   const StabilityMatrix matrix = run(options);
-  EXPECT_TRUE(matrix.stopped);
+  EXPECT_TRUE(matrix.outcome.stopped);
   EXPECT_EQ(matrix.cells.size(), 2u);
 }
 
