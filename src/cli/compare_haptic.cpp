@@ -58,8 +58,7 @@ std::string outcome_of(const HapticPoint& p) {
                          p.force_unresolved ? p.torque_unresolved ? "force and torque" : "force" : "torque");
     return p.own ? "the scene's own" : "";
   }
-  const std::string line = p.reason.substr(0, p.reason.find('\n'));
-  return line.size() <= kReasonLength ? line : line.substr(0, line.find_last_of(' ', kReasonLength)) + " ...";
+  return short_reason(p.reason);
 }
 
 void print_points(const HapticComparison& c) {

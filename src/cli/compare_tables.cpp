@@ -22,8 +22,7 @@ std::string outcome_text(const compare::ComparePoint& p) {
     if (!p.unresolved) return silent;
     return "not resolved by the reference" + (silent.empty() ? "" : "; " + silent);
   }
-  const std::string line = p.reason.substr(0, p.reason.find('\n'));
-  return line.size() <= kReasonLength ? line : line.substr(0, line.find_last_of(' ', kReasonLength)) + " ...";
+  return short_reason(p.reason);
 }
 
 /// Returns the end of a sequence of neighbouring levels with the same failure, which one line represents.
@@ -36,6 +35,12 @@ std::size_t end_of_failures(const std::vector<compare::ComparePoint>& points, st
 }
 
 }  // namespace
+
+std::string short_reason(const std::string& reason) {
+  constexpr std::size_t kMost = 90;  // characters
+  const std::string line = reason.substr(0, reason.find('\n'));
+  return line.size() <= kMost ? line : line.substr(0, line.find_last_of(' ', kMost)) + " ...";
+}
 
 void print_points(const compare::SceneComparison& scene) {
   std::vector<std::string> headers = {"integrator",    "setting", "error test",  "position error", "CPU [s]",

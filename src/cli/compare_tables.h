@@ -5,7 +5,8 @@
 /// Output of `palpate compare` for one scene.
 namespace palpate::cli {
 
-constexpr std::size_t kReasonLength = 90;  ///< Length of the reason of a failed point in a table [characters]
+/// Returns the reason of a failed point for a table: its first line, shortened.
+std::string short_reason(const std::string& reason);
 
 /// Prints how the comparison was made, and how far its reference can be trusted.
 void print_reference(const compare::SceneComparison& scene);

@@ -7,8 +7,8 @@
 #include "palpate/core/error.h"
 #include "palpate/core/types.h"
 
-/// Serialization of plain data to bytes, bitwise: between a run's process and the study, and into the study's
-/// database.
+/// Serialization of plain data to bytes, bitwise: archives of results (archive_bytes.h), and the frames of a
+/// picture on disk.
 namespace palpate {
 
 /// Appends values to a byte string; texts and vectors are preceded by their length.

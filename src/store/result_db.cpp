@@ -108,8 +108,8 @@ Machine Machine::here() {
 
 struct ResultDb::Impl {
   Impl(const std::string& file, Access access) : path(file) {
-    const int flags =
-        access == Access::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    const int create = access == Access::kRead ? 0 : SQLITE_OPEN_CREATE,
+              flags = SQLITE_OPEN_READWRITE | create;
     const char* locks = access == Access::kSingle ? "unix-none" : nullptr;
     if (sqlite3_open_v2(path.c_str(), &db, flags, locks) != SQLITE_OK) {
       const std::string why = db ? sqlite3_errmsg(db) : "out of memory";

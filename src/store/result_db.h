@@ -43,7 +43,7 @@ class ResultDb {
  public:
   enum class Access {
     kWrite,
-    kRead,  ///< The file must exist.
+    kRead,  ///< The file must exist.  A put() that a kill has interrupted is undone.
     /// Without locks of SQLite: for a file that only one process opens, also on a file system without locks.
     kSingle,
   };

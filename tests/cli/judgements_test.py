@@ -28,7 +28,7 @@ class Judgements(Cli):
 
     def rows(self, database):
         try:
-            with contextlib.closing(sqlite3.connect(f"file:{database}?mode=ro", uri=True)) as db:
+            with contextlib.closing(sqlite3.connect(f"file:{database}?mode=rw", uri=True)) as db:
                 return db.execute("select count(*) from result where kind = 'point'").fetchone()[0]
         except sqlite3.Error:
             return 0

@@ -109,7 +109,7 @@ class Studies(unittest.TestCase):
         out = {}
         for path in [self.folder / folder / "results.db", *(self.folder / folder / "tasks").glob("*.db*")]:
             try:
-                with contextlib.closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as db:
+                with contextlib.closing(sqlite3.connect(f"file:{path}?mode=rw", uri=True)) as db:
                     out.update({key: rest for key, *rest in
                                 db.execute("select key, task, ended_utc from result")})
             except sqlite3.Error:  # there is none, or it is being created

@@ -8,6 +8,7 @@
 #include "experiments/compare/cells.h"
 #include "experiments/compare/monolithic.h"
 #include "experiments/compare/plan.h"
+#include "experiments/median.h"
 #include "loop/registries.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/load.h"
@@ -266,11 +267,7 @@ void summarise(HapticPoint& point, const TrajectoryError& own) {
   // NaN is never unresolved.
   point.force_unresolved = point.error.force_rms_n < kResolution * own.force_rms_n;
   point.torque_unresolved = point.error.torque_rms_n_m < kResolution * own.torque_rms_n_m;
-  if (point.cpu_s.empty()) return;
-  std::vector<double> sorted = point.cpu_s;
-  std::sort(sorted.begin(), sorted.end());
-  const std::size_t n = sorted.size();
-  point.cpu_median_s = 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+  if (!point.cpu_s.empty()) point.cpu_median_s = experiments::median(point.cpu_s);
 }
 
 std::vector<HapticOrder> haptic_orders(const HapticComparison& c) {

@@ -5,6 +5,7 @@
 #include "core/archive_bytes.h"
 #include "experiments/compare/ledger.h"
 #include "experiments/compare/methods.h"
+#include "experiments/median.h"
 #include "palpate/core/error.h"
 
 namespace palpate::compare {
@@ -16,12 +17,10 @@ void summarise(ComparePoint& point, const TrajectoryError& own) {
   point.force_unresolved = point.error.force_rms_n < kResolution * own.force_rms_n;
   point.torque_unresolved = point.error.torque_rms_n_m < kResolution * own.torque_rms_n_m;
   if (point.cpu_s.empty()) return;
-  std::vector<double> sorted = point.cpu_s;
-  std::sort(sorted.begin(), sorted.end());
-  point.cpu_min_s = sorted.front();
-  point.cpu_max_s = sorted.back();
-  const std::size_t n = sorted.size();
-  point.cpu_median_s = 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+  const auto [least, largest] = std::minmax_element(point.cpu_s.begin(), point.cpu_s.end());
+  point.cpu_min_s = *least;
+  point.cpu_max_s = *largest;
+  point.cpu_median_s = experiments::median(point.cpu_s);
 }
 
 }  // namespace

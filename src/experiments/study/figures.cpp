@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/clock.h"
+#include "experiments/median.h"
 #include "loop/run_figures.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
@@ -114,12 +115,6 @@ void add_times(Times& times, const loop::RunResult& result, double assemble_s) {
   loop::visit_counters(add, result);
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
-
 /// Runs the scene once, and adds its times to `times`.
 SceneRun run_once(const scene::Description& d, const std::atomic<bool>& out_of_time, Times& times) {
   const double start = wall_seconds();
@@ -176,7 +171,7 @@ SceneRun run_scene(const scene::Description& d, int repeats, const std::atomic<b
     out.status = Status::kRefused;
     out.reason = refusal.what();
   }
-  for (const auto& [name, values] : times) out.times.emplace_back(name, text_of(median(values)));
+  for (const auto& [name, values] : times) out.times.emplace_back(name, text_of(experiments::median(values)));
   out.times.emplace_back("peak_memory_mib", text_of(peak_memory_mib()));
   return out;
 }
