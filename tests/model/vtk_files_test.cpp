@@ -1,4 +1,6 @@
+extern "C" {
 #include <gmshc.h>
+}
 #include <gtest/gtest.h>
 #include <zlib.h>
 

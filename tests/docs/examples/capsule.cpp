@@ -4,6 +4,7 @@
 
 #include "contact/analytic_source.h"
 #include "contact/obstacles/keys.h"
+#include "contact/obstacles/sphere.h"
 
 namespace palpate::contact {
 namespace {
