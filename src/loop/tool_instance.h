@@ -25,11 +25,12 @@
 //   TickRecord::tool          at the end of one tick, in transit from the ticks to path and files
 //   LinearisedContact::x0, ReducedContactModel::tool
 //                             pose of an exchange, in transit from the bodies to the ticks and files
+//   TickGroup::motions_       at the start of the present tick, in transit to the RigidContactSolver
 //   RigidContactSolver        at the start of the present tick, in the form that ContactForce reads
 //   HapticLoop::past_         at the last ticks, for records that arrive late
 //
-// The handle has two: HapticLoop::handle_ (at the last tick, read by the ticks) and ToolInstance::handle (as
-// reported to the bodies).
+// The handle has three: HapticLoop::handle_ (at the last tick) and HapticLoop::next_ (at the end of the
+// present tick), both read by the ticks, and ToolInstance::handle (as reported to the bodies).
 namespace palpate::loop {
 
 /// Tool of the partitioned scheme, which advances by ticks. During a run `tool` and `rigid_contact` belong to

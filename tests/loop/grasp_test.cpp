@@ -196,7 +196,7 @@ TEST(Grasp, InRealTime) {
   EXPECT_NEAR(pull(ticks.all), pull(ticks_of(d)), 0.1);
 }
 
-// A record's first tick with the length of the period is the condensed response (touch_reduction_test.cpp),
+// A record's first tick with the length of the period is the condensed response (model_reduction_test.cpp),
 // for held samples as well as for pressing ones: pulled off, where only the grasp acts.
 TEST(Grasp, ModesAnswerWhatIsHeld) {
   constexpr double kPeriod = 0.01;
