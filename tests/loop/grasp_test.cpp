@@ -163,14 +163,14 @@ TEST(Grasp, IsRetracedBitForBit) {
     ASSERT_TRUE(loop::run(*world, options).status.ok());
   }
   const loop::HapticRecord record = loop::read_haptic_record(path);
-  const auto relinearise = loop::retrace(d, {record});
-  ASSERT_EQ(relinearise.size(), record.ticks.size());
-  for (std::size_t i = 0; i < relinearise.size(); ++i) {
-    ASSERT_EQ(relinearise[i].device.force, record.ticks[i].device.force) << i;
-    ASSERT_EQ(relinearise[i].contact.moment, record.ticks[i].contact.moment) << i;
-    ASSERT_EQ(relinearise[i].switches, record.ticks[i].switches) << i;
+  const auto retraced = loop::retrace(d, {record});
+  ASSERT_EQ(retraced.size(), record.ticks.size());
+  for (std::size_t i = 0; i < retraced.size(); ++i) {
+    ASSERT_EQ(retraced[i].device.force, record.ticks[i].device.force) << i;
+    ASSERT_EQ(retraced[i].contact.moment, record.ticks[i].contact.moment) << i;
+    ASSERT_EQ(retraced[i].switches, record.ticks[i].switches) << i;
   }
-  EXPECT_GT(pull(relinearise), 0.3);
+  EXPECT_GT(pull(retraced), 0.3);
   EXPECT_EQ(record.ticks.front().switches, 0u);
   EXPECT_EQ(record.ticks.back().switches, 4u);
   // the recorded hand closes the same switch
