@@ -276,9 +276,10 @@ std::vector<std::pair<std::string, long long>> tallies_of(const World& world, st
 std::vector<AnswerError> answer_errors_of(const World& world) {
   std::vector<AnswerError> out;
   for (const ToolInstance& tool : world.tools) {
-    const TickTool* ticks = tool.with_ticks();
-    if (!ticks || !ticks->reduction || ticks->reduction->error_bound().exchanges == 0) continue;
-    const ReductionError& m = ticks->reduction->error_bound();
+    const PartitionedTool* partitioned = tool.partitioned();
+    if (!partitioned || !partitioned->reduction || partitioned->reduction->error_bound().exchanges == 0)
+      continue;
+    const ReductionError& m = partitioned->reduction->error_bound();
     out.push_back({tool.name, world.description.exchange.linearisation_error, m.largest,
                    m.sum / static_cast<double>(m.exchanges), m.exchanges, m.beyond_wanted, m.factored});
   }

@@ -97,8 +97,8 @@ VirtualWallResult simulate_virtual_wall(const HapticLoopModel& loop, double dura
                         .device_spec = device,
                         .device = std::move(handle),
                         .limiter = {kUnlimited, kUnlimited, 0.0},
-                        .scheme = TickTool{.tool = {spec, Vec3::Zero()}, .path = {}}};
-  tool::Tool& tool = instance.with_ticks()->tool;
+                        .scheme = PartitionedTool{.tool = {spec, Vec3::Zero()}, .path = {}}};
+  tool::Tool& tool = instance.partitioned()->tool;
   if (pressed) tool.set_state(0.0, {Quat::Identity(), Vec3(0.5 * carried / K, 0, 0)}, {});
 
   HapticLoop ticks(instance);

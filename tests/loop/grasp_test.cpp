@@ -213,7 +213,7 @@ TEST(Grasp, ModesAnswerWhatIsHeld) {
     EXPECT_GT(world->contact->statistics().grasps.points, 3);
     Pose away = world->tool_pose();
     away.translation += Vec3(1e-4, 0.0, pull);
-    loop::TickTool& ticks_of_tool = *world->tools[0].with_ticks();
+    loop::PartitionedTool& ticks_of_tool = *world->tools[0].partitioned();
     ticks_of_tool.path->clear();
     ticks_of_tool.path->append(0.0, away, {});
     ticks_of_tool.tool.set_state(0.0, away, {});
