@@ -18,7 +18,7 @@
 #include "report/run_report.h"
 #include "report/table.h"
 #include "store/csv.h"
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 #include "store/summary.h"
 
 namespace palpate::cli {
@@ -187,7 +187,7 @@ int stability_haptic(const StabilityArguments& a) {
 
   const std::string folder =
       a.folder.empty() ? default_folder("stability-haptic-" + short_name(description)) : a.folder;
-  const store::ResultFolder mine(folder);
+  const store::FolderLock mine(folder);
   ZWidth z;
   {
     Progress progress("haptic stability");
