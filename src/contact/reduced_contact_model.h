@@ -8,7 +8,7 @@
 #include "palpate/contact/spec.h"
 #include "palpate/core/archive.h"
 #include "palpate/core/pose.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 #include "palpate/dynamics/rigid_body.h"
 
 /// Reduced contact of soft bodies with a rigid tool, advanced by the tool's ticks between two exchanges.

@@ -13,8 +13,8 @@
 #include "core/spsc_ring.h"
 #include "loop/contact_record.h"
 #include "palpate/core/error.h"
+#include "palpate/core/triple_buffer.h"
 #include "palpate/device/limiter.h"
-#include "palpate/dynamics/exchange.h"
 #include "real_time_thread.h"
 #include "tick_group.h"
 
@@ -286,7 +286,7 @@ class RealTime {
   struct Hand {
     Hand(const scene::Description& d, ToolInstance& tool) : haptic_loop(d, tool) {}
     HapticLoop haptic_loop;
-    dynamics::Exchange<ContactRecord> records;
+    TripleBuffer<ContactRecord> records;
   };
 
   World& world_;
